@@ -1,0 +1,1 @@
+# installed and exported targets

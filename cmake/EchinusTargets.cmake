@@ -1,0 +1,41 @@
+# What every target of the project shares: the language, the warnings, and the arithmetic.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Kind of build" FORCE)
+endif()
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM AND PROJECT_IS_TOP_LEVEL)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+add_library(echinus_options INTERFACE)
+target_compile_options(echinus_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wimplicit-fallthrough
+  $<$<BOOL:${ECHINUS_WARNINGS_AS_ERRORS}>:-Werror>
+  # The same bits on every machine: a fused multiply-add rounds once where the source says twice.
+  -ffp-contract=off
+  # Nobody reads errno after sqrt; without this GCC calls the library instead of the instruction.
+  -fno-math-errno)
+if(ECHINUS_SANITIZE)
+  target_compile_options(echinus_options INTERFACE
+    -fsanitize=${ECHINUS_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(echinus_options INTERFACE -fsanitize=${ECHINUS_SANITIZE})
+endif()
+
+# echinus_add_library(NAME): the library target echinus_NAME with the alias echinus::NAME.
+function(echinus_add_library name)
+  add_library(echinus_${name})
+  add_library(echinus::${name} ALIAS echinus_${name})
+  set_target_properties(echinus_${name} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION 0)
+  target_compile_features(echinus_${name} PUBLIC cxx_std_20)
+  target_include_directories(echinus_${name}
+    PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+    PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(echinus_${name} PRIVATE $<BUILD_INTERFACE:echinus_options>)
+  set_property(GLOBAL APPEND PROPERTY ECHINUS_LIBRARIES echinus_${name})
+endfunction()

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <echinus/geometry.hpp>
+
+#include <cstdint>
+
+namespace echinus {
+
+/// What a query answers for one particle: inside?, how deep, which way out. The same for every kind of map.
+///
+/// The push-out moves the particle to `point`. A particle that is outside and farther than the margin, or not
+/// finite, gets the default value: not inside, depth 0, normal 0, face -1, and `point` the particle itself.
+struct Contact {
+    static constexpr std::int32_t kUnknownFace = -1;
+
+    Vec3f point;   ///< where on the surface the push-out leads, in the frame of the query
+    Vec3f normal;  ///< unit normal of the surface at `point`, out of the solid; 0 when there is no contact
+    float depth{}; ///< distance from the particle to `point`: positive inside, negative outside, 0 for no
+                   ///< contact
+    std::int32_t face = kUnknownFace; ///< the face of the mesh that `point` lies on, where the map knows it
+    bool inside = false;
+
+    /// Inside, or outside within the margin.
+    bool found() const { return inside || normal != Vec3f{}; }
+};
+
+} // namespace echinus

@@ -1,0 +1,181 @@
+#pragma once
+
+#include <echinus/contact.hpp>
+#include <echinus/geometry.hpp>
+#include <echinus/mesh.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+/// The paper's map: around the centre C of the model's bounding sphere a grid of directions, and for each
+/// direction the sorted distances of all points where its ray meets the surface (Vogiannou et al., "Distance
+/// Maps for Collision Detection of Deformable Models", section 2). A sampled map: near silhouettes and
+/// between samples it can be wrong; docs/reproduction.md says how often.
+///
+/// All points are in the frame and unit of the mesh that the map was built from ("local").
+namespace echinus {
+
+/// Which axis of the mesh the poles of the (longitude, colatitude) grid lie on.
+enum class PoleAxis : std::uint8_t { X, Y, Z };
+
+/// What is done about mesh vertices that linear interpolation between samples passes by (the paper's figure
+/// 1b).
+enum class VertexCorrection : std::uint8_t {
+    None,  ///< entries are the exact crossings
+    Paper, ///< the four samples around a vertex are increased by what is missing, on every layer
+    /// Layers where the ray leaves the solid are increased, layers where it enters are decreased, so that the
+    /// map errs on the side of the solid on both.
+    Signed,
+};
+
+/// How one entry is stored.
+enum class EntryFormat : std::uint8_t {
+    Float32,
+    Unorm16, ///< r / R in steps of 1/65535, rounded to nearest: off by at most R / 131070 = 7.6e-6 R; half
+             ///< the bytes
+};
+
+struct DistanceMapOptions {
+    static constexpr std::uint32_t kMinSampleCount = 4;
+    static constexpr std::uint32_t kMaxSampleCount = 8192;
+
+    std::uint32_t longitude_count =
+        200; ///< samples of phi; memory and build time grow with the product of the two
+    std::uint32_t colatitude_count =
+        200; ///< samples of theta; doubling both divides the share of wrong signs by 2.5
+    VertexCorrection correction =
+        VertexCorrection::Signed;                    ///< None is unbiased; Signed misses fewer particles
+    EntryFormat entry_format = EntryFormat::Float32; ///< Unorm16 halves the entries, costs 7.6e-6 R
+    PoleAxis pole_axis = PoleAxis::Z;                ///< samples crowd at the poles: put them where detail is
+    unsigned thread_count = 0; ///< 0: all cores. The bytes of the map do not depend on it.
+};
+
+/// What the build saw. Stored with the map.
+struct DistanceMapStatistics {
+    std::uint32_t face_count = 0; ///< of the mesh
+    std::uint32_t dropped_faces =
+        0; ///< faces with two corners on one point of the lattice; they have no area there
+    std::uint32_t max_entries = 0;       ///< largest number of entries of one direction
+    std::uint32_t corrected_entries = 0; ///< entries moved by the vertex correction
+    std::uint32_t clamped_entries = 0;   ///< corrections cut short at 0, R or a neighbouring entry
+    /// Share of directions whose number of entries has the wrong parity for the centre: holes seen from it. 0
+    /// when the mesh is closed.
+    float wrong_parity_share = 0;
+};
+
+/// A map as plain arrays, wherever they lie: in a DistanceMap, in a mapped file, in JavaScript's memory. Owns
+/// nothing, copies cheaply, and is what all queries take. Invariants (validate() in src/map_file checks them
+/// for untrusted bytes): entry_offsets ascends from 0 to the number of entries; the entries of a direction
+/// ascend within [0, radius].
+struct DistanceMapView {
+    Vec3f centre;     ///< C, local
+    float radius = 0; ///< R: every vertex of the mesh lies within R of C
+    std::uint32_t longitude_count = 0;
+    std::uint32_t colatitude_count = 0;
+    PoleAxis pole_axis = PoleAxis::Z;
+    EntryFormat entry_format = EntryFormat::Float32;
+    VertexCorrection correction = VertexCorrection::None;
+    bool centre_inside = false;
+    /// [direction_count + 1]; direction (i, j) of longitude i and colatitude j has index j * longitude_count
+    /// + i.
+    std::span<const std::uint32_t> entry_offsets;
+    std::span<const float> entries_float32;         ///< [entry_count] distances, or empty
+    std::span<const std::uint16_t> entries_unorm16; ///< [entry_count] distances * 65535 / R, or empty
+
+    std::size_t direction_count() const { return std::size_t{longitude_count} * colatitude_count; }
+    std::size_t entry_count() const { return entry_offsets.empty() ? 0 : entry_offsets.back(); }
+    /// All that a query reads.
+    std::size_t byte_count() const {
+        return entry_offsets.size_bytes() + entries_float32.size_bytes() + entries_unorm16.size_bytes();
+    }
+};
+
+/// A distance map that owns its arrays, or keeps alive the file that they lie in. Immutable; copies share the
+/// arrays. Any number of threads may query one map.
+class DistanceMap {
+  public:
+    /// Builds the map on all cores; same mesh and options, same bytes, whatever the number of threads.
+    /// Time O(faces + crossings + directions).
+    /// @throws Error InvalidMesh as inspect() does, or when all vertices lie on one point; InvalidOptions
+    /// when a sample count lies outside [kMinSampleCount, kMaxSampleCount]
+    static DistanceMap build(const TriangleMesh& mesh, const DistanceMapOptions& options = {});
+
+    /// Puts arrays that already exist under `storage`, which is kept alive as long as the map. Used by the
+    /// file reader.
+    /// @pre the invariants of DistanceMapView hold
+    DistanceMap(const DistanceMapView& view, const DistanceMapStatistics& statistics,
+                std::uint64_t source_hash, std::shared_ptr<const void> storage);
+
+    const DistanceMapView& view() const { return view_; }
+    operator const DistanceMapView&() const {
+        return view_;
+    } // NOLINT: a map may stand wherever a view is asked for
+    const DistanceMapStatistics& statistics() const { return statistics_; }
+    /// Identifies the mesh and the options that the map was built from; thread_count does not enter.
+    std::uint64_t source_hash() const { return source_hash_; }
+
+  private:
+    DistanceMapView view_;
+    DistanceMapStatistics statistics_;
+    std::uint64_t source_hash_ = 0;
+    std::shared_ptr<const void> storage_;
+};
+
+// ---- Queries: paper section 2.2. noexcept, no allocation, any number of threads
+// ------------------------------------
+//
+// NaN or infinity in a point: outside, no contact. The centre itself: centre_inside; its push-out follows the
+// direction longitude 0, colatitude 0. Points on the seam (longitude 0 = 2 pi) and at the poles are ordinary.
+
+/// Is the particle inside? Points outside the bounding sphere are not. Where a direction has no entries, as
+/// in a hole of an open mesh, the whole ray up to R is as the centre is.
+bool contains(const DistanceMapView& map, Vec3f point_local) noexcept;
+
+/// Inside?, how deep along the ray, and where the push-out leads: the interpolated entry nearest to |d| on
+/// the particle's own ray. Depth is radial: it is at least the true depth to the map's surface and often
+/// more. The normal is that of the map's surface there, so that (point, normal) is the contact plane; it is
+/// not parallel to the push-out.
+///
+/// @param margin  particles outside, at most this far from the nearest entry along their ray, get a contact
+/// too (with
+///                negative depth). Not negative; NaN counts as 0.
+/// A particle inside on a ray without entries leaves by the bounding sphere, whose normal it gets.
+Contact contact(const DistanceMapView& map, Vec3f point_local, float margin = 0) noexcept;
+
+/// contains() for many points.
+/// @param points_local  [n]
+/// @param inside        [n] out: 1 inside, 0 outside. Does not overlap points_local.
+/// @pre points_local.size() == inside.size()
+void contains_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local,
+                    std::span<std::uint8_t> inside) noexcept;
+
+/// contact() for many points.
+/// @param points_local  [n]
+/// @param contacts      [n] out. Does not overlap points_local.
+/// @pre points_local.size() == contacts.size()
+void contacts_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local, float margin,
+                    std::span<Contact> contacts) noexcept;
+
+// ---- Looking at a map
+// ------------------------------------------------------------------------------------------------
+
+/// How many directions have 0, 1, 2 ... entries.
+std::vector<std::size_t> entry_histogram(const DistanceMapView& map);
+
+/// How many of the four samples around a point entered the interpolation (paper section 2.2: "rarely ... less
+/// than 3"). 1 to 4, or 0 where no query looks: outside the sphere, not finite.
+int usable_sample_count(const DistanceMapView& map, Vec3f point_local) noexcept;
+
+/// The surface as the map sees it (figures 2 and 3): where four neighbouring directions have the same number
+/// of entries, each layer is a quadrilateral, cut into two triangles.
+struct MapSurface {
+    TriangleMesh mesh;                ///< local frame; wound so that faces look out of the solid
+    std::vector<std::uint32_t> layer; ///< [face_count] 0 for the entries nearest to the centre
+};
+MapSurface reconstruct_surface(const DistanceMapView& map);
+
+} // namespace echinus

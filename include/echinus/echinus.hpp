@@ -1,0 +1,13 @@
+#pragma once
+
+/// All of echinus::core. The mesh readers (mesh_io.hpp), scenes (scene.hpp) and pictures (render.hpp) are
+/// libraries of their own, with headers of their own.
+
+#include <echinus/collider.hpp>
+#include <echinus/contact.hpp>
+#include <echinus/distance_map.hpp>
+#include <echinus/error.hpp>
+#include <echinus/geometry.hpp>
+#include <echinus/map_file.hpp>
+#include <echinus/mesh.hpp>
+#include <echinus/simulation.hpp>

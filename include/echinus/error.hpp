@@ -1,0 +1,36 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace echinus {
+
+/// What went wrong, for a program; the sentence in Error::what() is for a person.
+enum class ErrorCode {
+    Unreadable,         ///< a file does not exist, is a directory, or cannot be read
+    Unwritable,         ///< a file cannot be written: permission, missing folder, full disk
+    WrongFormat,        ///< the bytes are not what the name or the reader promises
+    Damaged,            ///< the right format, but truncated or contradicting itself
+    UnsupportedVersion, ///< a map file of a version that this library does not read
+    InvalidMesh,        ///< no faces, a coordinate that is not finite, an index out of range
+    InvalidOptions,     ///< an option outside the range that its declaration states
+    InvalidScene,       ///< a scene with an unknown key, a missing one or a value out of range
+    Diverged,           ///< a simulation whose positions are no longer finite or have left all bounds
+};
+
+/// Thrown by the offline calls (reading, building, loading, simulating) and by nothing that runs per
+/// particle.
+///
+/// what() is one sentence without a newline that names the file, face, byte or frame, what was found and what
+/// was expected.
+class Error : public std::runtime_error {
+  public:
+    Error(ErrorCode code, const std::string& sentence) : std::runtime_error(sentence), code_(code) {}
+
+    ErrorCode code() const noexcept { return code_; }
+
+  private:
+    ErrorCode code_;
+};
+
+} // namespace echinus

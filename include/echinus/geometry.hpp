@@ -1,0 +1,119 @@
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <type_traits>
+
+/// Points, spheres, poses and views: the few value types that every other header speaks.
+/// The frame is right-handed. Lengths are in the caller's unit.
+namespace echinus {
+
+template <typename T>
+struct Vec3 {
+    T x{}, y{}, z{};
+
+    constexpr Vec3() = default;
+    constexpr Vec3(T x_, T y_, T z_) : x(x_), y(y_), z(z_) {}
+    /// Widening (float to double) is exact; narrowing rounds to nearest.
+    template <typename U>
+    constexpr explicit Vec3(const Vec3<U>& other)
+        : x(static_cast<T>(other.x)), y(static_cast<T>(other.y)), z(static_cast<T>(other.z)) {}
+
+    constexpr Vec3& operator+=(const Vec3& b) { return *this = *this + b; }
+    constexpr Vec3& operator-=(const Vec3& b) { return *this = *this - b; }
+    constexpr Vec3& operator*=(T s) { return *this = *this * s; }
+
+    friend constexpr Vec3 operator+(const Vec3& a, const Vec3& b) {
+        return {a.x + b.x, a.y + b.y, a.z + b.z};
+    }
+    friend constexpr Vec3 operator-(const Vec3& a, const Vec3& b) {
+        return {a.x - b.x, a.y - b.y, a.z - b.z};
+    }
+    friend constexpr Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
+    friend constexpr Vec3 operator*(const Vec3& a, T s) { return {a.x * s, a.y * s, a.z * s}; }
+    friend constexpr Vec3 operator*(T s, const Vec3& a) { return a * s; }
+    friend constexpr bool operator==(const Vec3&, const Vec3&) = default;
+};
+
+using Vec3f = Vec3<float>;
+using Vec3d = Vec3<double>;
+
+// The order of the additions below is part of the promise of equal bits on every machine.
+template <typename T>
+constexpr T dot(const Vec3<T>& a, const Vec3<T>& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <typename T>
+constexpr Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <typename T>
+T length(const Vec3<T>& a) {
+    return std::sqrt(dot(a, a));
+}
+template <typename T>
+bool is_finite(const Vec3<T>& a) {
+    return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
+}
+
+/// A ball: all points within `radius` of `centre`.
+struct Sphere {
+    Vec3d centre;
+    double radius = 0;
+};
+
+/// A rotation as a unit quaternion w + xi + yj + zk.
+struct Rotation {
+    double w = 1, x = 0, y = 0, z = 0;
+
+    /// Turns by `angle_rad` about `axis` (any length but zero), counter-clockwise seen against the axis.
+    static Rotation about(const Vec3d& axis, double angle_rad);
+
+    Vec3d apply(const Vec3d& v) const;
+    Rotation inverse() const { return {w, -x, -y, -z}; }
+    /// First `b`, then `a`.
+    friend Rotation operator*(const Rotation& a, const Rotation& b);
+    Rotation normalised() const;
+};
+
+/// A pose: rotate, then translate. The translation is double, so that a collider may stand far from the
+/// origin.
+struct RigidTransform {
+    Rotation rotation;
+    Vec3d translation;
+
+    Vec3d to_world(const Vec3d& point_local) const { return rotation.apply(point_local) + translation; }
+    Vec3d to_local(const Vec3d& point_world) const {
+        return rotation.inverse().apply(point_world - translation);
+    }
+};
+
+/// A view of `size` values of type T that lie `stride` bytes apart, for instance the positions inside
+/// somebody else's vertex struct. Owns nothing. A contiguous container of T converts to it.
+template <typename T>
+class StridedSpan {
+    using Byte = std::conditional_t<std::is_const_v<T>, const std::byte, std::byte>;
+
+  public:
+    constexpr StridedSpan() = default;
+    StridedSpan(T* first, std::size_t size, std::size_t stride = sizeof(T))
+        : first_(reinterpret_cast<Byte*>(first)), size_(size), stride_(stride) {}
+    template <typename Container>
+    requires requires(Container& c) {
+        { c.data() } -> std::convertible_to<T*>;
+        c.size();
+    }
+    StridedSpan(Container&& container) : StridedSpan(container.data(), container.size()) {}
+
+    std::size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
+    T& operator[](std::size_t i) const { return *reinterpret_cast<T*>(first_ + i * stride_); }
+
+  private:
+    Byte* first_ = nullptr;
+    std::size_t size_ = 0;
+    std::size_t stride_ = sizeof(T);
+};
+
+} // namespace echinus

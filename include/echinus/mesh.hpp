@@ -1,0 +1,124 @@
+#pragma once
+
+#include <echinus/geometry.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace echinus {
+
+/// Three vertex indices, counter-clockwise seen from outside.
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// A triangle soup with shared vertices: what every map is built from. No invariant is kept; inspect() says
+/// what holds.
+struct TriangleMesh {
+    std::vector<Vec3f> vertices; ///< [vertex_count] positions in the caller's unit
+    std::vector<Triangle> faces; ///< [face_count]
+};
+
+/// How often a fault occurs, and the first few faces at which it does.
+struct Fault {
+    static constexpr std::size_t kFirstFaceCount = 8;
+
+    std::size_t count = 0;
+    std::vector<std::uint32_t> first_faces; ///< at most kFirstFaceCount, ascending, each once
+};
+
+/// What a mesh is like. An *edge* is an unordered pair of vertices; a degenerate face contributes none.
+struct MeshReport {
+    std::size_t face_count = 0;
+    std::size_t vertex_count = 0;
+    std::size_t component_count = 0; ///< sets of faces joined by shared vertices
+    bool closed = false;      ///< every edge is balanced: as many faces run along it one way as the other
+    bool manifold = false;    ///< every edge has at most two faces and the faces at each vertex form one fan
+    Fault border_edges;       ///< edges with one face
+    Fault nonmanifold_edges;  ///< edges with more than two faces
+    Fault misoriented_edges;  ///< edges that two of their faces run along the same way while the balance is
+                              ///< not zero
+    Fault duplicate_faces;    ///< faces with the same three vertices, in any order, as an earlier face
+    Fault degenerate_faces;   ///< faces with two equal corners or with area zero
+    double signed_volume = 0; ///< positive where faces turn outwards; of limited meaning when not closed
+    Sphere bounding_sphere;   ///< the smallest that encloses all vertices used by faces
+};
+
+/// Examines a mesh. Time O(n log n).
+/// @throws Error InvalidMesh when there is no face, an index is out of range, or a used vertex is not finite;
+/// the sentence names the first such face.
+MeshReport inspect(const TriangleMesh& mesh);
+
+/// Throws what inspect() would throw, and does nothing else.
+void require_valid(const TriangleMesh& mesh);
+
+/// The smallest sphere that encloses all points, to the rounding of double; every point lies inside or on it.
+/// @pre points are finite. No points give a sphere of radius 0 at the origin.
+Sphere smallest_enclosing_sphere(std::span<const Vec3f> points);
+
+/// What repair() may do. All off by default: a mesh is never changed behind its owner's back.
+struct RepairOptions {
+    bool drop_duplicate_faces = false; ///< keep the first of faces with the same three vertices
+    /// Where two patches of faces fill the same closed boundary of two faces each, keep the
+    /// first. Such are the quads of glmark2's horse that exist twice, split along different diagonals.
+    bool drop_doubled_patches = false;
+    bool flip_inside_out =
+        false; ///< turn all faces of a closed component round when its signed volume is negative
+
+    static constexpr RepairOptions all() { return {true, true, true}; }
+};
+
+/// What repair() did, face numbers as in the mesh that went in, ascending.
+struct RepairReport {
+    std::vector<std::uint32_t> duplicate_faces_dropped;
+    std::vector<std::uint32_t> doubled_patch_faces_dropped;
+    std::size_t components_flipped = 0;
+
+    bool changed_anything() const {
+        return !duplicate_faces_dropped.empty() || !doubled_patch_faces_dropped.empty() ||
+               components_flipped != 0;
+    }
+};
+
+struct RepairedMesh {
+    TriangleMesh mesh;
+    RepairReport report;
+};
+
+/// A mended copy. Does only what the options name and reports all of it; vertices stay as they are.
+/// @throws Error InvalidMesh as inspect() does.
+RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options);
+
+/// Joins vertices at equal positions (0 and -0 are equal), then drops vertices that no face uses. Face order
+/// stays.
+TriangleMesh weld(const TriangleMesh& mesh);
+
+/// Generalised winding number of a point: the solid angle of all faces over 4 pi (Jacobson et al. 2013). 1
+/// inside a closed, outward mesh, 0 outside. Brute force over all faces and independent of every map: a
+/// judge, not a query.
+double winding_number(const TriangleMesh& mesh, const Vec3d& point);
+
+/// Distance from a point to the nearest point of the surface, brute force over all faces: a judge, not a
+/// query.
+double unsigned_distance(const TriangleMesh& mesh, const Vec3d& point);
+
+// ---- Generators: closed, outward, centred at the origin
+// ------------------------------------------------------------
+
+/// A torus about the z axis; the paper's has 60 x 24 segments, which makes 2880 faces.
+/// @throws Error InvalidOptions unless 0 < minor_radius < major_radius and both counts are at least 3
+TriangleMesh make_torus(double major_radius, double minor_radius, std::uint32_t major_segments,
+                        std::uint32_t minor_segments);
+
+/// A sphere of meridians and parallels with its poles on the z axis; all vertices lie on the sphere.
+/// @throws Error InvalidOptions unless radius > 0, meridian_count >= 3 and parallel_count >= 2 (rows of
+/// faces)
+TriangleMesh make_sphere(double radius, std::uint32_t meridian_count, std::uint32_t parallel_count);
+
+/// A box of the given edge lengths, each side cut into segments x segments squares of two faces.
+/// @throws Error InvalidOptions unless all lengths are positive and segments >= 1
+TriangleMesh make_box(const Vec3d& size, std::uint32_t segments = 1);
+
+} // namespace echinus

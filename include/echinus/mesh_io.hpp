@@ -1,0 +1,25 @@
+#pragma once
+
+#include <echinus/mesh.hpp>
+
+#include <filesystem>
+
+/// Mesh files. Library echinus::io (needs Assimp); who uses only echinus::core does without.
+namespace echinus {
+
+/// Reads OBJ, PLY (text and binary), STL (text and binary), OFF, glTF, GLB and 3DS, told apart by the file
+/// name's ending. All meshes of the file are joined (node transforms applied), polygons are triangulated,
+/// equal positions are welded and vertices that no face uses are dropped. Nothing is repaired: inspect() says
+/// what is wrong with the result. Face numbers are those of the file, polygons counted as their triangles.
+///
+/// @throws Error Unreadable, WrongFormat, Damaged or InvalidMesh; the sentence begins with the path.
+TriangleMesh read_mesh(const std::filesystem::path& path);
+
+/// Writes OBJ, PLY (binary), STL (binary) or OFF, told by the file name's ending. Floats are written so that
+/// they read back to the same bits. Writes to a temporary name beside the target and renames, so that a
+/// failure leaves no partial file and the old one whole.
+///
+/// @throws Error Unwritable, or WrongFormat for an ending that is not in the list
+void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
+
+} // namespace echinus
