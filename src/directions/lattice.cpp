@@ -1,0 +1,126 @@
+#include "directions/lattice.hpp"
+
+#include "directions/crossing.hpp"
+
+#include <echinus/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace echinus {
+
+namespace {
+
+/// The smallest float that is not below the distance of any point from the centre.
+float enclosing_radius(const std::vector<Vec3f>& points, const Vec3f& centre) {
+    double radius_sq = 0;
+    for (const Vec3f& point : points) {
+        const Vec3d d = Vec3d(point) - Vec3d(centre);
+        radius_sq = std::max(radius_sq, dot(d, d));
+    }
+    const double radius = std::sqrt(radius_sq) * (1 + 4 * std::numeric_limits<double>::epsilon());
+    const float rounded = static_cast<float>(radius);
+    return rounded < radius ? std::nextafter(rounded, std::numeric_limits<float>::infinity()) : rounded;
+}
+
+std::vector<bool> used_vertices(const TriangleMesh& mesh) {
+    std::vector<bool> used(mesh.vertices.size());
+    for (const Triangle& face : mesh.faces)
+        for (std::uint32_t vertex : face) used[vertex] = true;
+    return used;
+}
+
+/// Outside these bounds squares of lengths leave the range of float.
+void require_usable(float radius) {
+    if (radius == 0)
+        throw Error(ErrorCode::InvalidMesh,
+                    "all vertices of the mesh lie on one point, so that it has no inside");
+    constexpr float kSmallest = 1e-15F;
+    constexpr float kLargest = 1e15F;
+    if (radius >= kSmallest && radius <= kLargest) return;
+    std::ostringstream sentence;
+    sentence << "the mesh has a bounding radius of " << radius << ", outside [" << kSmallest << ", "
+             << kLargest << "]; choose another unit";
+    throw Error(ErrorCode::InvalidMesh, sentence.str());
+}
+
+/// Does the origin lie on the line of one of the face's edges, or on the face itself?
+bool touches_origin(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c) {
+    const LatticePoint ab = cross(a, b);
+    const LatticePoint bc = cross(b, c);
+    const LatticePoint ca = cross(c, a);
+    const LatticePoint zero{};
+    if (ab == zero || bc == zero || ca == zero) return true;
+    if (dot(a, bc) != 0) return false;
+    // In the face's plane the three normals are parallel; they agree in direction exactly around the inside.
+    const int sign = sign_of_perturbation(ab);
+    return sign_of_perturbation(bc) == sign && sign_of_perturbation(ca) == sign;
+}
+
+bool touches_origin(const LatticeMesh& lattice) {
+    return std::any_of(lattice.faces.begin(), lattice.faces.end(), [&](const Triangle& face) {
+        return touches_origin(lattice.vertices[face[0]], lattice.vertices[face[1]],
+                              lattice.vertices[face[2]]);
+    });
+}
+
+LatticeMesh snap_around(const TriangleMesh& mesh, const std::vector<bool>& used, const Vec3f& centre,
+                        float radius) {
+    LatticeMesh lattice;
+    lattice.centre = centre;
+    lattice.radius = radius;
+    lattice.step = static_cast<double>(radius) / static_cast<double>(kLatticeExtent);
+    lattice.vertices.resize(mesh.vertices.size());
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+        if (used[i]) lattice.vertices[i] = lattice.snap(mesh.vertices[i]);
+    for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+        const Triangle& face = mesh.faces[i];
+        const LatticePoint &a = lattice.vertices[face[0]], &b = lattice.vertices[face[1]],
+                           &c = lattice.vertices[face[2]];
+        if (a == b || b == c || c == a) continue;
+        lattice.faces.push_back(face);
+        lattice.face_numbers.push_back(static_cast<std::uint32_t>(i));
+    }
+    return lattice;
+}
+
+/// A step that moves the centre's float coordinates: a lattice step, or more where float is coarser than the
+/// lattice.
+double centre_step(const LatticeMesh& lattice) {
+    const Vec3f& c = lattice.centre;
+    const float largest = std::max({std::fabs(c.x), std::fabs(c.y), std::fabs(c.z)});
+    const float spacing = std::nextafter(largest, std::numeric_limits<float>::infinity()) - largest;
+    return std::max(lattice.step, static_cast<double>(spacing));
+}
+
+} // namespace
+
+LatticePoint LatticeMesh::snap(const Vec3f& point_local) const {
+    const Vec3d d = Vec3d(point_local) - Vec3d(centre);
+    return {std::llround(d.x / step), std::llround(d.y / step), std::llround(d.z / step)};
+}
+
+LatticeMesh snap_to_lattice(const TriangleMesh& mesh) {
+    require_valid(mesh);
+    const std::vector<bool> used = used_vertices(mesh);
+    std::vector<Vec3f> points;
+    for (std::size_t i = 0; i < used.size(); ++i)
+        if (used[i]) points.push_back(mesh.vertices[i]);
+
+    const Vec3f middle(smallest_enclosing_sphere(points).centre);
+    const float radius = enclosing_radius(points, middle);
+    require_usable(radius);
+    LatticeMesh lattice = snap_around(mesh, used, middle, radius);
+    const double step = centre_step(lattice);
+    // Along the curve (t, t^2, t^3) a plane excludes at most three places and a line no more, so this ends;
+    // the first try nearly always holds.
+    for (double t = 1; touches_origin(lattice); ++t) {
+        const Vec3f centre(Vec3d(middle) + Vec3d{t, t * t, t * t * t} * step);
+        lattice = snap_around(mesh, used, centre, enclosing_radius(points, centre));
+    }
+    return lattice;
+}
+
+} // namespace echinus

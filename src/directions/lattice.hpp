@@ -1,0 +1,38 @@
+#pragma once
+
+#include <echinus/geometry.hpp>
+#include <echinus/mesh.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace echinus {
+
+using LatticePoint = Vec3<std::int64_t>;
+
+/// Half the extent of the lattice: a bounding sphere of radius R is snapped to integers in [-2^19, 2^19], in
+/// steps of R / 2^19 = 1.9e-6 R. Products of three coordinates then stay below 2^62, sums included: int64
+/// decides every sign.
+inline constexpr std::int64_t kLatticeExtent = std::int64_t{1} << 19;
+
+/// A mesh on the integer lattice around its centre: what all exact predicates work on.
+struct LatticeMesh {
+    Vec3f centre;                       ///< C, local; the lattice's origin
+    float radius = 0;                   ///< R: every vertex lies within R of C, before snapping
+    double step = 0;                    ///< length of one lattice step, R / kLatticeExtent
+    std::vector<LatticePoint> vertices; ///< [vertex_count] as in the mesh
+    /// Faces whose three corners are different lattice points, and their numbers in the mesh. What was
+    /// dropped had no area on the lattice, and a closed surface stays closed without it.
+    std::vector<Triangle> faces;
+    std::vector<std::uint32_t> face_numbers;
+
+    LatticePoint snap(const Vec3f& point_local) const;
+};
+
+/// Snaps a mesh around the centre of its bounding sphere. Where that centre lies on a face or on the line of
+/// an edge, so that a ray from it could not be made to miss them by a small turn, it moves by whole lattice
+/// steps until it does not.
+/// @throws Error InvalidMesh as inspect() does, or when the bounding radius is 0 or outside [1e-15, 1e15]
+LatticeMesh snap_to_lattice(const TriangleMesh& mesh);
+
+} // namespace echinus

@@ -1,0 +1,109 @@
+#pragma once
+
+#include "directions/angles.hpp"
+
+#include <echinus/distance_map.hpp>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace echinus {
+
+/// The paper's grid of directions (section 2.1): longitude phi_i = 2 pi i / N_phi, periodic, and colatitude
+/// theta_j = pi (j + 1/2) / N_theta. The paper does not say where along theta its samples lie; with the half
+/// no sample sits on a pole, where a whole row would be one direction.
+///
+/// Inside this class vectors are in the grid's frame, whose z axis is the pole axis: to_grid() turns them
+/// there.
+class SphericalGrid {
+  public:
+    SphericalGrid(std::uint32_t longitude_count, std::uint32_t colatitude_count, PoleAxis pole_axis)
+        : longitude_count_(longitude_count), colatitude_count_(colatitude_count), pole_axis_(pole_axis) {}
+
+    std::uint32_t longitude_count() const { return longitude_count_; }
+    std::uint32_t colatitude_count() const { return colatitude_count_; }
+    std::uint32_t index(std::uint32_t longitude, std::uint32_t colatitude) const {
+        return colatitude * longitude_count_ + longitude;
+    }
+
+    template <typename T>
+    Vec3<T> to_grid(const Vec3<T>& v) const {
+        switch (pole_axis_) {
+        case PoleAxis::X:
+            return {v.y, v.z, v.x};
+        case PoleAxis::Y:
+            return {v.z, v.x, v.y};
+        default:
+            return v;
+        }
+    }
+    template <typename T>
+    Vec3<T> from_grid(const Vec3<T>& v) const {
+        switch (pole_axis_) {
+        case PoleAxis::X:
+            return {v.z, v.x, v.y};
+        case PoleAxis::Y:
+            return {v.y, v.z, v.x};
+        default:
+            return v;
+        }
+    }
+
+    /// Unit vector of a sample, in the mesh's frame.
+    Vec3d direction(std::uint32_t longitude, std::uint32_t colatitude) const {
+        const SineCosine phi = sine_cosine_of_turn(longitude, longitude_count_);
+        const SineCosine theta =
+            sine_cosine_of_turn(2 * std::int64_t{colatitude} + 1, 4 * std::int64_t{colatitude_count_});
+        return from_grid(Vec3d{theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine});
+    }
+
+    /// The four samples around a direction and where it lies between them.
+    struct Cell {
+        /// Direction indices of the corners (0,0), (1,0), (0,1), (1,1), the first number along phi.
+        std::array<std::uint32_t, 4> corners;
+        float u, v; ///< in [0, 1], along phi and theta
+    };
+
+    /// @param d_grid  any length, zero included (then longitude 0, colatitude 0), finite, in the grid's frame
+    Cell locate(const Vec3f& d_grid) const {
+        const float horizontal = std::sqrt(d_grid.x * d_grid.x + d_grid.y * d_grid.y);
+        const float phi = atan2_polynomial(d_grid.y, d_grid.x);
+        const float theta = atan2_polynomial(horizontal, d_grid.z);
+        const float s = phi * (static_cast<float>(longitude_count_) / (2 * kPi));
+        const float t = theta * (static_cast<float>(colatitude_count_) / kPi) - 0.5F;
+        const float s_floor = std::floor(s);
+        const float t_floor = std::floor(t);
+        const std::uint32_t i0 = wrap_longitude(static_cast<std::int32_t>(s_floor));
+        const std::uint32_t i1 = i0 + 1 == longitude_count_ ? 0 : i0 + 1;
+        const auto j0 = static_cast<std::int32_t>(t_floor);
+        return {{corner(i0, j0), corner(i1, j0), corner(i0, j0 + 1), corner(i1, j0 + 1)},
+                s - s_floor,
+                t - t_floor};
+    }
+
+  private:
+    /// s lies in [-N/2, N/2], so one addition brings it back.
+    std::uint32_t wrap_longitude(std::int32_t i) const {
+        return static_cast<std::uint32_t>(i < 0 ? i + static_cast<std::int32_t>(longitude_count_) : i);
+    }
+    /// Beyond a pole the row goes on at the opposite longitude (half a sample off where the count is odd).
+    std::uint32_t corner(std::uint32_t i, std::int32_t j) const {
+        const auto last = static_cast<std::int32_t>(colatitude_count_) - 1;
+        if (j >= 0 && j <= last) return index(i, static_cast<std::uint32_t>(j));
+        const std::uint32_t half = longitude_count_ / 2;
+        const std::uint32_t opposite = i >= half ? i - half : i + half;
+        return index(opposite < longitude_count_ ? opposite : 0,
+                     j < 0 ? 0U : static_cast<std::uint32_t>(last));
+    }
+
+    std::uint32_t longitude_count_;
+    std::uint32_t colatitude_count_;
+    PoleAxis pole_axis_;
+};
+
+inline SphericalGrid grid_of(const DistanceMapView& map) {
+    return {map.longitude_count, map.colatitude_count, map.pole_axis};
+}
+
+} // namespace echinus

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <echinus/distance_map.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace echinus {
+
+inline constexpr float kUnormSteps = 65535;
+
+inline std::uint16_t to_unorm16(float entry, float radius) {
+    return static_cast<std::uint16_t>(std::lround(static_cast<double>(entry) / radius * kUnormSteps));
+}
+inline float from_unorm16(std::uint16_t stored, float radius) {
+    return static_cast<float>(stored) * (radius / kUnormSteps);
+}
+
+/// The entry at a position of the entry arrays, whatever its format, in the mesh's unit.
+inline float entry_at(const DistanceMapView& map, std::size_t position) {
+    return map.entry_format == EntryFormat::Float32 ? map.entries_float32[position]
+                                                    : from_unorm16(map.entries_unorm16[position], map.radius);
+}
+
+inline std::uint32_t entry_count_of(const DistanceMapView& map, std::uint32_t direction) {
+    return map.entry_offsets[direction + 1] - map.entry_offsets[direction];
+}
+
+/// Does a ray leave the solid at its k-th entry? Inside and outside alternate from the centre on (paper
+/// section 2.2).
+inline bool is_outward(bool centre_inside, std::uint32_t k) {
+    return (k % 2 == 0) == centre_inside;
+}
+
+} // namespace echinus
