@@ -2,8 +2,10 @@
 
 #include <CLI/CLI.hpp>
 
-/// One function per subcommand, in a file of the same name. Each adds its options, a help text with an
-/// example, and a callback that does the work and throws echinus::Error when it cannot.
+/// One function per subcommand, in a file of the same name. Each adds its options, a footer with an example,
+/// and a callback that does the work. The callback throws echinus::Error when it cannot (exit status 1) and
+/// CLI::ValidationError when it was asked for something that makes no sense (exit status 2); main() prints
+/// either as one line.
 void add_mesh_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_build_command(CLI::App& app);

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+/// What running the echinus program gave.
+struct ProgramResult {
+    int exit_status = -1; ///< -1: killed by a signal
+    std::string output;   ///< standard output
+    std::string error;    ///< standard error
+
+    std::size_t error_line_count() const;
+};
+
+/// A test with an empty folder of its own, from which it runs the program that was built.
+class CommandLineTest : public testing::Test {
+  protected:
+    void SetUp() override;
+    void TearDown() override;
+
+    /// Runs `echinus` with these arguments in the test's folder; `input` becomes its standard input.
+    ProgramResult run(const std::vector<std::string>& arguments, const std::string& input = "") const;
+
+    /// The run must fail in the way the command line promises: this exit status, one line on standard error
+    /// that begins with "echinus: " and contains `words`, and no file in the folder that was not there
+    /// before.
+    void expect_failure(int exit_status, const std::string& words, const std::vector<std::string>& arguments,
+                        const std::string& input = "") const;
+
+    /// The run must succeed without a word on standard error; gives its standard output.
+    std::string expect_success(const std::vector<std::string>& arguments,
+                               const std::string& input = "") const;
+
+    std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+    void write(const std::string& name, const std::string& content) const;
+    std::string content(const std::string& name) const;
+    /// Names of the files in the folder, sorted.
+    std::vector<std::string> files() const;
+
+  private:
+    std::filesystem::path folder_;
+    std::filesystem::path stream_folder_; // standard streams, kept out of the folder under test
+};

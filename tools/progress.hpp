@@ -1,0 +1,26 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+/// A bar on standard error that shows how much of a long task is done, and nothing at all when standard error
+/// is not a terminal. A function object, so that it can be handed to whatever reports a fraction.
+class ProgressBar {
+  public:
+    explicit ProgressBar(std::string label);
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
+    /// Erases the bar, so that what is printed next starts on a clean line.
+    ~ProgressBar();
+
+    /// @param fraction  of the task that is done, 0 to 1; may be called as often as one likes
+    void operator()(double fraction);
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    std::string label_;
+    bool on_terminal_;
+    bool drawn_ = false;
+    Clock::time_point last_drawn_;
+};
