@@ -91,21 +91,29 @@ struct RepairedMesh {
 /// @throws Error InvalidMesh as inspect() does.
 RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options);
 
-/// Joins vertices at equal positions (0 and -0 are equal), then drops vertices that no face uses. Face order
-/// stays.
+/// Joins vertices at equal positions (0 and -0 are equal), then drops vertices that no face uses. The order
+/// of faces stays, and that of the vertices that are left. NaN equals only the same NaN. Time O(n log n).
+/// @throws Error InvalidMesh when an index is out of range
 TriangleMesh weld(const TriangleMesh& mesh);
 
 /// Generalised winding number of a point: the solid angle of all faces over 4 pi (Jacobson et al. 2013). 1
-/// inside a closed, outward mesh, 0 outside. Brute force over all faces and independent of every map: a
-/// judge, not a query.
+/// inside a closed, outward mesh, 0 outside; between them on the surface; NaN for a point that is not finite.
+/// Brute force over all faces and independent of every map: a judge, not a query.
+/// @pre indices are in range
 double winding_number(const TriangleMesh& mesh, const Vec3d& point);
 
 /// Distance from a point to the nearest point of the surface, brute force over all faces: a judge, not a
-/// query.
+/// query. Infinity when there are no faces or the point is not finite.
+/// @pre indices are in range
 double unsigned_distance(const TriangleMesh& mesh, const Vec3d& point);
 
-// ---- Generators: closed, outward, centred at the origin
-// ------------------------------------------------------------
+// ---- Generators ----
+//
+// Closed, outward, centred at the origin; the same bits on every machine. Lengths must be finite and positive
+// as float too.
+
+/// More faces than this are refused as InvalidOptions.
+inline constexpr std::uint32_t kMaxGeneratedFaceCount = 1U << 27U;
 
 /// A torus about the z axis; the paper's has 60 x 24 segments, which makes 2880 faces.
 /// @throws Error InvalidOptions unless 0 < minor_radius < major_radius and both counts are at least 3

@@ -1,0 +1,144 @@
+#include <echinus/mesh.hpp>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+// Active set: the sphere is held by a basis of at most four points. While some point lies outside, the
+// farthest one joins the basis and the smallest sphere of these at most five points is found by trying every
+// subset that could hold it. Each round enlarges the sphere, so there are finitely many; a mesh takes ten to
+// twenty.
+
+namespace echinus {
+
+namespace {
+
+constexpr std::size_t kMaxBasisSize = 4;
+
+struct Basis {
+    std::array<Vec3d, kMaxBasisSize> points;
+    std::size_t size = 0;
+
+    void add(const Vec3d& p) { points[size++] = p; }
+};
+
+struct Candidate {
+    Sphere sphere;
+    Basis basis;
+};
+
+using Row = std::array<double, 4>; // a x + b y + c z = d
+
+/// Solves three linear equations by elimination with complete pivoting: backward stable, so that the centre
+/// found is equally far from all points up to rounding even where they are nearly coplanar. Nothing when the
+/// rows are dependent.
+std::optional<Vec3d> solve(std::array<Row, 3> rows) {
+    std::array<std::size_t, 3> column{0, 1, 2};
+    for (std::size_t k = 0; k < 3; ++k) {
+        std::size_t pivot_row = k;
+        std::size_t pivot_column = k;
+        for (std::size_t i = k; i < 3; ++i)
+            for (std::size_t j = k; j < 3; ++j)
+                if (std::abs(rows[i][column[j]]) > std::abs(rows[pivot_row][column[pivot_column]])) {
+                    pivot_row = i;
+                    pivot_column = j;
+                }
+        std::swap(rows[k], rows[pivot_row]);
+        std::swap(column[k], column[pivot_column]);
+        const double pivot = rows[k][column[k]];
+        if (pivot == 0) return std::nullopt;
+        for (std::size_t i = k + 1; i < 3; ++i) {
+            const double factor = rows[i][column[k]] / pivot;
+            for (std::size_t j = k; j < 3; ++j) rows[i][column[j]] -= factor * rows[k][column[j]];
+            rows[i][3] -= factor * rows[k][3];
+        }
+    }
+    std::array<double, 3> x{};
+    for (std::size_t k = 3; k-- > 0;) {
+        double rest = rows[k][3];
+        for (std::size_t j = k + 1; j < 3; ++j) rest -= rows[k][column[j]] * x[column[j]];
+        x[column[k]] = rest / rows[k][column[k]];
+    }
+    return Vec3d{x[0], x[1], x[2]};
+}
+
+/// The plane of all points that are as far from the origin as from p.
+Row bisector(const Vec3d& p) {
+    return {p.x, p.y, p.z, dot(p, p) / 2};
+}
+
+/// The plane through the origin and across `normal`.
+Row plane_through_origin(const Vec3d& normal) {
+    return {normal.x, normal.y, normal.z, 0};
+}
+
+/// Centre of the smallest sphere that has all points of the basis on it.
+std::optional<Vec3d> circumcentre(const Basis& basis) {
+    const Vec3d origin = basis.points[0];
+    if (basis.size == 1) return origin;
+    const Vec3d a = basis.points[1] - origin;
+    if (basis.size == 2) return origin + a * 0.5;
+    const Vec3d b = basis.points[2] - origin;
+    const Row third =
+        basis.size == 3 ? plane_through_origin(cross(a, b)) : bisector(basis.points[3] - origin);
+    const std::optional<Vec3d> offset = solve({bisector(a), bisector(b), third});
+    if (!offset) return std::nullopt;
+    return origin + *offset;
+}
+
+double largest_distance(const Vec3d& centre, const Basis& basis) {
+    double largest = 0;
+    for (std::size_t i = 0; i < basis.size; ++i)
+        largest = std::max(largest, length(basis.points[i] - centre));
+    return largest;
+}
+
+/// The smallest sphere around the basis and one point outside of its sphere, which therefore lies on the new
+/// one. Each subset's sphere is blown up until it encloses all five; the smallest is the one sought, and none
+/// needs a tolerance.
+Candidate enlarge(const Basis& basis, const Vec3d& outside) {
+    std::optional<Candidate> best;
+    for (unsigned subset = 0; subset < 1U << basis.size; ++subset) {
+        Basis support;
+        support.add(outside);
+        for (std::size_t i = 0; i < basis.size && support.size < kMaxBasisSize; ++i)
+            if ((subset >> i & 1U) != 0) support.add(basis.points[i]);
+        const std::optional<Vec3d> centre = circumcentre(support);
+        if (!centre || !is_finite(*centre)) continue;
+        const double radius = std::max(largest_distance(*centre, basis), length(outside - *centre));
+        if (!best || radius < best->sphere.radius) best = Candidate{{*centre, radius}, support};
+    }
+    return *best; // the empty subset always has a centre
+}
+
+} // namespace
+
+Sphere smallest_enclosing_sphere(std::span<const Vec3f> points) {
+    if (points.empty()) return {};
+    const auto distance_sq = [](const Vec3d& centre, const Vec3f& p) {
+        const Vec3d offset = Vec3d(p) - centre;
+        return dot(offset, offset);
+    };
+    const auto farthest_from = [&](const Vec3d& centre) {
+        return Vec3d(*std::max_element(points.begin(), points.end(), [&](const Vec3f& a, const Vec3f& b) {
+            return distance_sq(centre, a) < distance_sq(centre, b);
+        }));
+    };
+
+    Candidate current;
+    current.sphere.centre = Vec3d(points[0]);
+    current.basis.add(current.sphere.centre);
+    Vec3d farthest = farthest_from(current.sphere.centre);
+    while (length(farthest - current.sphere.centre) > current.sphere.radius) {
+        const Candidate next = enlarge(current.basis, farthest);
+        // Only rounding stops the growth while a point is outside: the last digits are reached.
+        if (!(next.sphere.radius > current.sphere.radius)) break;
+        current = next;
+        farthest = farthest_from(current.sphere.centre);
+    }
+    current.sphere.radius = length(farthest - current.sphere.centre);
+    return current.sphere;
+}
+
+} // namespace echinus

@@ -1,0 +1,79 @@
+#include <echinus/error.hpp>
+#include <echinus/mesh.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+using namespace echinus;
+
+namespace {
+
+double winding_number_at_centre_of_tube(const TriangleMesh& torus) {
+    return winding_number(torus, {1, 0, 0});
+}
+
+ErrorCode code_of(auto&& call) {
+    try {
+        call();
+    } catch (const Error& error) {
+        return error.code();
+    }
+    ADD_FAILURE() << "no error was thrown";
+    return ErrorCode::Unreadable;
+}
+
+} // namespace
+
+TEST(Generators, MakeThePapersTorus) {
+    const TriangleMesh torus = make_torus(1, 0.4, 60, 24);
+    EXPECT_EQ(torus.faces.size(), 2880U);
+    EXPECT_EQ(torus.vertices.size(), 1440U);
+    EXPECT_NEAR(winding_number_at_centre_of_tube(torus), 1, 1e-12);
+    EXPECT_NEAR(winding_number(torus, {0, 0, 0}), 0, 1e-12);
+    for (const Vec3f& p : torus.vertices)
+        ASSERT_NEAR(std::hypot(std::hypot(p.x, p.y) - 1.0, double{p.z}), 0.4, 1e-7);
+}
+
+TEST(Generators, MakeASphereWithAllVerticesOnIt) {
+    const TriangleMesh sphere = make_sphere(3, 60, 30);
+    EXPECT_EQ(sphere.faces.size(), 2U * 60 * 29);
+    EXPECT_EQ(sphere.vertices.size(), 60U * 29 + 2);
+    for (const Vec3f& p : sphere.vertices) ASSERT_NEAR(length(Vec3d(p)), 3, 4e-7);
+}
+
+TEST(Generators, MakeABoxWithSharedEdges) {
+    for (std::uint32_t segments : {1U, 2U, 5U}) {
+        const TriangleMesh box = make_box({1, 2, 3}, segments);
+        EXPECT_EQ(box.faces.size(), 12U * segments * segments);
+        EXPECT_EQ(box.vertices.size(), 6U * segments * segments + 2); // Euler: V = 2 + F / 2
+        EXPECT_NEAR(winding_number(box, {0.49, 0.99, 1.49}), 1, 1e-12);
+        EXPECT_NEAR(winding_number(box, {0.51, 0.99, 1.49}), 0, 1e-12);
+    }
+}
+
+TEST(Generators, RefuseSizesThatMakeNoSolid) {
+    const double infinity = std::numeric_limits<double>::infinity();
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (double bad : {0.0, -1.0, 1.5, 1e-60, infinity, nan})
+        EXPECT_EQ(code_of([&] { make_torus(1, bad, 8, 8); }), ErrorCode::InvalidOptions) << bad;
+    for (double bad : {0.0, -1.0, 1e-60, 1e39, infinity, nan}) {
+        EXPECT_EQ(code_of([&] { make_torus(bad, 0.1, 8, 8); }), ErrorCode::InvalidOptions) << bad;
+        EXPECT_EQ(code_of([&] { make_sphere(bad, 8, 8); }), ErrorCode::InvalidOptions) << bad;
+        EXPECT_EQ(code_of([&] { make_box({1, bad, 1}); }), ErrorCode::InvalidOptions) << bad;
+    }
+}
+
+TEST(Generators, RefuseTooFewAndTooManySegments) {
+    const std::uint32_t many = std::numeric_limits<std::uint32_t>::max();
+    EXPECT_EQ(code_of([&] { make_torus(1, 0.4, 2, 8); }), ErrorCode::InvalidOptions);
+    EXPECT_EQ(code_of([&] { make_torus(1, 0.4, 8, 2); }), ErrorCode::InvalidOptions);
+    EXPECT_EQ(code_of([&] { make_torus(1, 0.4, many, many); }), ErrorCode::InvalidOptions);
+    EXPECT_EQ(code_of([&] { make_sphere(1, 2, 8); }), ErrorCode::InvalidOptions);
+    EXPECT_EQ(code_of([&] { make_sphere(1, 8, 1); }), ErrorCode::InvalidOptions);
+    EXPECT_EQ(code_of([&] { make_sphere(1, many, many); }), ErrorCode::InvalidOptions);
+    EXPECT_EQ(code_of([&] { make_box({1, 1, 1}, 0); }), ErrorCode::InvalidOptions);
+    EXPECT_EQ(code_of([&] { make_box({1, 1, 1}, many); }), ErrorCode::InvalidOptions);
+}

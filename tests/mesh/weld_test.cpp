@@ -1,0 +1,67 @@
+#include <echinus/error.hpp>
+#include <echinus/mesh.hpp>
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+using namespace echinus;
+
+namespace {
+
+/// Every face with vertices of its own.
+TriangleMesh take_apart(const TriangleMesh& mesh) {
+    TriangleMesh soup;
+    for (const Triangle& face : mesh.faces) {
+        const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+        for (std::uint32_t vertex : face) soup.vertices.push_back(mesh.vertices[vertex]);
+        soup.faces.push_back({first, first + 1, first + 2});
+    }
+    return soup;
+}
+
+} // namespace
+
+TEST(Weld, PutsASoupTogetherAgain) {
+    const TriangleMesh torus = make_torus(1, 0.4, 12, 8);
+    const TriangleMesh welded = weld(take_apart(torus));
+    EXPECT_EQ(welded.vertices.size(), torus.vertices.size());
+    ASSERT_EQ(welded.faces.size(), torus.faces.size());
+    for (std::size_t face = 0; face < torus.faces.size(); ++face)
+        for (std::size_t corner = 0; corner < 3; ++corner)
+            ASSERT_EQ(welded.vertices[welded.faces[face][corner]], torus.vertices[torus.faces[face][corner]]);
+}
+
+TEST(Weld, LeavesAWeldedMeshAsItIs) {
+    const TriangleMesh box = make_box({1, 2, 3}, 3);
+    const TriangleMesh welded = weld(box);
+    EXPECT_EQ(welded.vertices, box.vertices);
+    EXPECT_EQ(welded.faces, box.faces);
+}
+
+TEST(Weld, TakesZeroAndMinusZeroForEqual) {
+    const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0F, 0, -0.0F}, {1, 1, 0}},
+                            {{0, 1, 2}, {3, 4, 1}}};
+    const TriangleMesh welded = weld(mesh);
+    EXPECT_EQ(welded.vertices.size(), 4U);
+    EXPECT_EQ(welded.faces[1][0], welded.faces[0][0]);
+}
+
+TEST(Weld, DropsVerticesThatNoFaceUsesAndKeepsTheOrderOfTheRest) {
+    const TriangleMesh mesh{{{9, 9, 9}, {0, 0, 0}, {8, 8, 8}, {1, 0, 0}, {0, 1, 0}}, {{4, 1, 3}}};
+    const TriangleMesh welded = weld(mesh);
+    EXPECT_EQ(welded.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    EXPECT_EQ(welded.faces, (std::vector<Triangle>{{2, 0, 1}}));
+}
+
+TEST(Weld, RefusesAnIndexOutOfRange) {
+    EXPECT_THROW(weld({{{0, 0, 0}}, {{0, 0, 1}}}), Error);
+    EXPECT_THROW(weld({{}, {{0, 0, 0}}}), Error);
+}
+
+TEST(Weld, SurvivesNaN) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const TriangleMesh welded =
+        weld({{{nan, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}}, {{0, 1, 2}, {0, 3, 2}}});
+    EXPECT_EQ(welded.vertices.size(), 3U);
+}
