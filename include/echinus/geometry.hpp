@@ -68,6 +68,7 @@ struct Rotation {
     double w = 1, x = 0, y = 0, z = 0;
 
     /// Turns by `angle_rad` about `axis` (any length but zero), counter-clockwise seen against the axis.
+    /// Both finite. The same bits on every machine.
     static Rotation about(const Vec3d& axis, double angle_rad);
 
     Vec3d apply(const Vec3d& v) const;

@@ -13,6 +13,14 @@ TEST(Rotation, TurnsCounterClockwiseSeenAgainstTheAxis) {
     EXPECT_NEAR(turned.z, 0, 1e-15);
 }
 
+TEST(Rotation, AgreesWithSineAndCosineAtAnyAngle) {
+    for (double angle = -20; angle < 20; angle += 0.37) {
+        const Rotation rotation = Rotation::about({0, 3, 0}, angle);
+        EXPECT_NEAR(rotation.w, std::cos(angle / 2), 1e-14) << angle;
+        EXPECT_NEAR(rotation.y, std::sin(angle / 2), 1e-14) << angle;
+    }
+}
+
 TEST(Rotation, ProductAppliesTheRightFactorFirst) {
     const Rotation a = Rotation::about({1, 2, 3}, 0.7);
     const Rotation b = Rotation::about({-2, 1, 0.5}, 1.9);
