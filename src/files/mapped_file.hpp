@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace echinus {
+
+/// The bytes of a file, mapped into memory where the system and the kind of file allow it, otherwise read (a
+/// pipe, /dev/stdin). They start at an address that is a multiple of 16.
+///
+/// Nobody may shorten or overwrite the file in place as long as it is mapped. Replacing it, as AtomicFile
+/// does, is safe: the mapping keeps the old file.
+class MappedFile {
+  public:
+    /// @throws Error Unreadable; the sentence begins with the path
+    explicit MappedFile(const std::filesystem::path& path);
+    MappedFile(const MappedFile&) = delete;
+    MappedFile& operator=(const MappedFile&) = delete;
+    ~MappedFile();
+
+    std::span<const std::byte> bytes() const { return bytes_; }
+
+  private:
+    std::span<const std::byte> bytes_;
+    std::vector<std::byte> copy_; // empty when mapped
+};
+
+} // namespace echinus
