@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,25 +17,38 @@ namespace echinus {
 
 inline constexpr std::uint32_t kMapFileVersion = 1;
 
+/// What may be noted beside a map. It is not part of the map: with no notes, the same map gives the same
+/// bytes.
+struct MapFileNotes {
+    std::optional<double> build_milliseconds; ///< how long the build took on the machine that did it
+};
+
 /// Writes to a temporary name beside the target and renames: a failure leaves no partial file and the old one
-/// whole. The same map gives the same bytes.
-/// @throws Error Unwritable
-void save(const DistanceMap& map, const std::filesystem::path& path);
+/// whole, also for those who have it mapped. The same map and notes give the same bytes.
+/// @throws Error Unwritable; also when the map is larger than the 2 GiB that a map file can hold
+void save(const DistanceMap& map, const std::filesystem::path& path, const MapFileNotes& notes = {});
 
 /// The bytes that save() writes.
-std::vector<std::byte> serialise(const DistanceMap& map);
+/// @throws Error Unwritable when the map is larger than the 2 GiB that a map file can hold
+std::vector<std::byte> serialise(const DistanceMap& map, const MapFileNotes& notes = {});
 
-/// Maps the file into memory and reads it in place; the map keeps it open. Cost: one pass over the arrays to
-/// check them.
+/// Maps the file into memory and reads it in place; the map keeps the mapping. Cost: one pass over the arrays
+/// to check them. The file may be replaced or removed while it is mapped, as save() does, but must not be
+/// overwritten in place.
 /// @throws Error Unreadable, WrongFormat (not a map file), UnsupportedVersion or Damaged; the sentence begins
 /// with the path
 DistanceMap load_distance_map(const std::filesystem::path& path);
 
-/// The same from bytes in memory. `bytes` must start at an address that is a multiple of 8 and stay unchanged
-/// as long as `storage` lives, which the map keeps alive.
+/// The same from bytes in memory. They must stay unchanged as long as `storage` lives, which the map keeps
+/// alive.
+/// @pre bytes.data() is a multiple of 8
 /// @throws Error as above; the sentence begins with `name`
 DistanceMap load_distance_map(std::span<const std::byte> bytes, std::shared_ptr<const void> storage,
                               const std::string& name);
+
+/// The notes of a map file.
+/// @throws Error as load_distance_map(), except that it does not look at the map
+MapFileNotes load_map_file_notes(const std::filesystem::path& path);
 
 /// Does the file begin like a map file? False also when it cannot be read.
 bool is_map_file(const std::filesystem::path& path) noexcept;

@@ -1,0 +1,296 @@
+#include "support/map_file_attack.hpp"
+#include "support/sample_map.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/map_file.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+using namespace echinus;
+using namespace echinus::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr EntryFormat kFormats[] = {EntryFormat::Float32, EntryFormat::Unorm16};
+
+DistanceMap load_bytes(const std::vector<std::byte>& bytes) {
+    return load_distance_map(bytes, nullptr, "m");
+}
+
+/// Bit for bit: floats are compared as bytes, so that -0 is not 0.
+template <typename T>
+bool same_bits(std::span<const T> a, std::span<const T> b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+}
+
+void expect_same_map(const DistanceMap& a, const DistanceMap& b) {
+    EXPECT_EQ(a.view().centre, b.view().centre);
+    EXPECT_EQ(a.view().radius, b.view().radius);
+    EXPECT_EQ(a.view().longitude_count, b.view().longitude_count);
+    EXPECT_EQ(a.view().colatitude_count, b.view().colatitude_count);
+    EXPECT_EQ(a.view().pole_axis, b.view().pole_axis);
+    EXPECT_EQ(a.view().entry_format, b.view().entry_format);
+    EXPECT_EQ(a.view().correction, b.view().correction);
+    EXPECT_EQ(a.view().centre_inside, b.view().centre_inside);
+    EXPECT_TRUE(same_bits(a.view().entry_offsets, b.view().entry_offsets));
+    EXPECT_TRUE(same_bits(a.view().entries_float32, b.view().entries_float32));
+    EXPECT_TRUE(same_bits(a.view().entries_unorm16, b.view().entries_unorm16));
+    EXPECT_EQ(a.statistics().face_count, b.statistics().face_count);
+    EXPECT_EQ(a.statistics().dropped_faces, b.statistics().dropped_faces);
+    EXPECT_EQ(a.statistics().max_entries, b.statistics().max_entries);
+    EXPECT_EQ(a.statistics().corrected_entries, b.statistics().corrected_entries);
+    EXPECT_EQ(a.statistics().clamped_entries, b.statistics().clamped_entries);
+    EXPECT_EQ(a.statistics().wrong_parity_share, b.statistics().wrong_parity_share);
+    EXPECT_EQ(a.source_hash(), b.source_hash());
+}
+
+/// The reader must refuse with this code and a sentence that contains `words`.
+void expect_refusal(ErrorCode code, const std::string& words, const std::function<void()>& read) {
+    try {
+        read();
+        ADD_FAILURE() << "read without complaint; expected: " << words;
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), code) << error.what();
+        EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+}
+
+std::uint32_t read_word(const std::vector<std::byte>& bytes, std::size_t position, std::size_t byte_count) {
+    std::uint32_t word = 0;
+    for (std::size_t i = 0; i < byte_count; ++i)
+        word |= std::to_integer<std::uint32_t>(bytes[position + i]) << 8 * i;
+    return word;
+}
+
+/// Where a field of the root table lies, found as docs/file_format.md describes it.
+std::size_t root_field_position(const std::vector<std::byte>& bytes, std::size_t field) {
+    const std::size_t table = read_word(bytes, 0, 4);
+    const std::size_t vtable = table - read_word(bytes, table, 4);
+    return table + read_word(bytes, vtable + 4 + 2 * field, 2);
+}
+
+class MapFileOnDisk : public testing::Test {
+  protected:
+    void SetUp() override {
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    fs::path write(const char* name, const std::string& content) const {
+        std::ofstream(folder_ / name, std::ios::binary) << content;
+        return folder_ / name;
+    }
+
+    fs::path folder_ =
+        fs::temp_directory_path() /
+        (std::string("echinus_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+} // namespace
+
+TEST(MapFile, ReadsBackEveryBit) {
+    for (std::uint32_t seed = 0; seed < 50; ++seed) {
+        for (const EntryFormat format : kFormats) {
+            const DistanceMap map = random_map_parts(format, 4 + seed % 7, 4 + seed % 5, seed).map();
+            expect_same_map(map, load_bytes(serialise(map)));
+        }
+    }
+}
+
+TEST(MapFile, ReadsBackAMapWithoutEntries) {
+    for (const EntryFormat format : kFormats) {
+        MapParts parts = random_map_parts(format, 4, 4, 0);
+        parts.entry_offsets.assign(17, 0);
+        parts.entries_float32.clear();
+        parts.entries_unorm16.clear();
+        parts.statistics.max_entries = 0;
+        expect_same_map(parts.map(), load_bytes(serialise(parts.map())));
+    }
+}
+
+TEST(MapFile, GivesTheSameBytesForTheSameMap) {
+    const MapParts parts = random_map_parts(EntryFormat::Float32, 8, 6, 1);
+    EXPECT_EQ(serialise(parts.map()), serialise(parts.map()));
+    const auto once = serialise(parts.map());
+    EXPECT_EQ(serialise(load_bytes(once)), once);
+}
+
+TEST(MapFile, IsReadInPlace) {
+    for (const EntryFormat format : kFormats) {
+        const auto bytes = serialise(random_map_parts(format, 8, 6, 2).map());
+        const DistanceMap map = load_bytes(bytes);
+        const auto lies_within = [&](const void* address) {
+            return address >= bytes.data() && address < bytes.data() + bytes.size();
+        };
+        EXPECT_TRUE(lies_within(map.view().entry_offsets.data()));
+        EXPECT_TRUE(format == EntryFormat::Float32 ? lies_within(map.view().entries_float32.data())
+                                                   : lies_within(map.view().entries_unorm16.data()));
+    }
+}
+
+TEST(MapFile, RefusesEveryTruncation) {
+    for (const EntryFormat format : kFormats) {
+        const auto bytes = serialise(random_map_parts(format, 8, 6, 3).map());
+        ASSERT_TRUE(attack_map_file(bytes));
+        for (std::size_t size = 0; size < bytes.size(); ++size) {
+            EXPECT_FALSE(attack_map_file({bytes.data(), size})) << size << " of " << bytes.size() << " bytes";
+        }
+    }
+}
+
+TEST(MapFile, IgnoresBytesBehindTheMap) {
+    auto bytes = serialise(random_map_parts(EntryFormat::Float32, 8, 6, 3).map());
+    bytes.resize(bytes.size() + 5, std::byte{0xff});
+    EXPECT_TRUE(attack_map_file(bytes));
+}
+
+TEST(MapFile, WithstandsEveryValueOfEveryByte) {
+    for (const EntryFormat format : kFormats) {
+        auto bytes = serialise(random_map_parts(format, 5, 4, 4).map(), {.build_milliseconds = 1.5});
+        for (auto& byte : bytes) {
+            const std::byte original = byte;
+            for (int value = 0; value < 256; ++value) {
+                byte = std::byte(value);
+                EXPECT_NO_THROW(attack_map_file(bytes)) << "byte " << &byte - bytes.data() << " = " << value;
+            }
+            byte = original;
+        }
+    }
+}
+
+TEST(MapFile, NamesWhatContradictsTheMeaning) {
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    struct Case {
+        const char* words;
+        std::function<void(MapParts&)> spoil;
+    };
+    const Case cases[] = {
+        {"centre is not finite", [&](MapParts& p) { p.view.centre.y = kNan; }},
+        {"radius", [&](MapParts& p) { p.view.radius = kInfinity; }},
+        {"radius", [&](MapParts& p) { p.view.radius = kNan; }},
+        {"radius", [&](MapParts& p) { p.view.radius = 0; }},
+        {"radius", [&](MapParts& p) { p.view.radius = -1; }},
+        {"longitude_count is 3 and not within 4 to 8192", [&](MapParts& p) { p.view.longitude_count = 3; }},
+        {"colatitude_count is 8193", [&](MapParts& p) { p.view.colatitude_count = 8193; }},
+        {"longitude_count is 4294967295", [&](MapParts& p) { p.view.longitude_count = 0xffffffff; }},
+        {"pole_axis has the unknown value 3", [&](MapParts& p) { p.view.pole_axis = PoleAxis(3); }},
+        {"entry_format has the unknown value 2", [&](MapParts& p) { p.view.entry_format = EntryFormat(2); }},
+        {"vertex_correction has the unknown value 255",
+         [&](MapParts& p) { p.view.correction = VertexCorrection(255); }},
+        {"entry_offsets has 50 elements and not 49", [&](MapParts& p) { p.entry_offsets.push_back(999); }},
+        {"entry_offsets has 48 elements", [&](MapParts& p) { p.entry_offsets.pop_back(); }},
+        {"entry_offsets[0] is not 0", [&](MapParts& p) { p.entry_offsets[0] = 1; }},
+        {"entry_offsets[8] is smaller", [&](MapParts& p) { p.entry_offsets[7] = p.entry_offsets[8] + 1; }},
+        {"entries_float32 has", [&](MapParts& p) { p.entry_offsets.back() += 1; }},
+        {"entries_float32 has", [&](MapParts& p) { p.entries_float32.pop_back(); }},
+        {"entries_float32 has 0 elements", [&](MapParts& p) { p.entries_float32.clear(); }},
+        {"entries_unorm16 has 1 elements and not 0", [&](MapParts& p) { p.entries_unorm16.push_back(7); }},
+        {"entries_float32 has", [&](MapParts& p) { p.view.entry_format = EntryFormat::Unorm16; }},
+        {"entries_float32[9] is nan", [&](MapParts& p) { p.entries_float32[9] = kNan; }},
+        {"entries_float32[9] is inf", [&](MapParts& p) { p.entries_float32[9] = kInfinity; }},
+        {"entries_float32[9]", [&](MapParts& p) { p.entries_float32[9] = p.view.radius * 1.0001F; }},
+        {"entries_float32[0]", [&](MapParts& p) { p.entries_float32[0] = -0.0001F; }},
+        {"max_entries is 3 and not 4", [&](MapParts& p) { p.statistics.max_entries = 3; }},
+        {"wrong_parity_share", [&](MapParts& p) { p.statistics.wrong_parity_share = 1.5F; }},
+        {"wrong_parity_share", [&](MapParts& p) { p.statistics.wrong_parity_share = kNan; }},
+    };
+    for (const Case& spoilt : cases) {
+        MapParts parts = random_map_parts(EntryFormat::Float32, 8, 6, 5);
+        spoilt.spoil(parts);
+        const auto bytes = serialise(parts.map());
+        expect_refusal(ErrorCode::Damaged, spoilt.words, [&] { load_bytes(bytes); });
+        expect_refusal(ErrorCode::Damaged, "echinus build", [&] { load_bytes(bytes); });
+    }
+}
+
+TEST(MapFile, RefusesEntriesOfADirectionThatDescend) {
+    for (const EntryFormat format : kFormats) {
+        MapParts parts = random_map_parts(format, 8, 6, 6);
+        const auto two_entries =
+            std::adjacent_find(parts.entry_offsets.begin(), parts.entry_offsets.end(),
+                               [](std::uint32_t a, std::uint32_t b) { return b - a == 2; });
+        ASSERT_NE(two_entries, parts.entry_offsets.end());
+        const std::uint32_t first = *two_entries;
+        if (format == EntryFormat::Float32) {
+            std::swap(parts.entries_float32[first], parts.entries_float32[first + 1]);
+        } else {
+            std::swap(parts.entries_unorm16[first], parts.entries_unorm16[first + 1]);
+        }
+        expect_refusal(ErrorCode::Damaged, "[" + std::to_string(first + 1) + "]",
+                       [&] { load_bytes(serialise(parts.map())); });
+    }
+}
+
+TEST(MapFile, RefusesAnotherVersionBeforeItLooksFurther) {
+    auto bytes = serialise(random_map_parts(EntryFormat::Float32, 8, 6, 7).map());
+    constexpr std::size_t kVersionField = 0;
+    bytes[root_field_position(bytes, kVersionField)] = std::byte{9};
+    expect_refusal(ErrorCode::UnsupportedVersion, "version 9", [&] { load_bytes(bytes); });
+    // Whatever else a later version changes: here, the place of the map.
+    constexpr std::size_t kMapField = 3;
+    bytes[root_field_position(bytes, kMapField) + 3] = std::byte{0xff};
+    expect_refusal(ErrorCode::UnsupportedVersion, "version 9", [&] { load_bytes(bytes); });
+}
+
+TEST(MapFile, RefusesAnUnknownKindOfMap) {
+    auto bytes = serialise(random_map_parts(EntryFormat::Float32, 8, 6, 8).map());
+    constexpr std::size_t kMapTypeField = 2;
+    bytes[root_field_position(bytes, kMapTypeField)] = std::byte{77};
+    expect_refusal(ErrorCode::UnsupportedVersion, "unknown kind 77", [&] { load_bytes(bytes); });
+    bytes[root_field_position(bytes, kMapTypeField)] = std::byte{0};
+    expect_refusal(ErrorCode::Damaged, "holds no map", [&] { load_bytes(bytes); });
+}
+
+TEST_F(MapFileOnDisk, KeepsTheMapAliveWhenTheFileIsReplacedOrRemoved) {
+    const DistanceMap map = random_map_parts(EntryFormat::Float32, 8, 6, 9).map();
+    const DistanceMap other = random_map_parts(EntryFormat::Unorm16, 6, 8, 10).map();
+    const fs::path path = folder_ / "map.ech";
+    save(map, path);
+    const DistanceMap loaded = load_distance_map(path);
+    save(other, path);
+    expect_same_map(load_distance_map(path), other);
+    fs::remove(path);
+    expect_same_map(loaded, map);
+}
+
+TEST_F(MapFileOnDisk, CarriesNotesBesideTheMap) {
+    const DistanceMap map = random_map_parts(EntryFormat::Float32, 8, 6, 11).map();
+    save(map, folder_ / "plain.ech");
+    save(map, folder_ / "noted.ech", {.build_milliseconds = 12.25});
+    EXPECT_EQ(load_map_file_notes(folder_ / "plain.ech").build_milliseconds, std::nullopt);
+    EXPECT_EQ(load_map_file_notes(folder_ / "noted.ech").build_milliseconds, 12.25);
+    expect_same_map(load_distance_map(folder_ / "noted.ech"), map);
+}
+
+TEST_F(MapFileOnDisk, RefusesWhatIsNoMapFileByName) {
+    const fs::path missing = folder_ / "missing.ech";
+    expect_refusal(ErrorCode::Unreadable, missing.string(), [&] { load_distance_map(missing); });
+    expect_refusal(ErrorCode::Unreadable, folder_.string(), [&] { load_distance_map(folder_); });
+    for (const char* content : {"", "ECHM", "not a map at all", "v 0 0 0\nv 1 0 0\nf 1 2 3\n"}) {
+        const fs::path path = write("wrong.ech", content);
+        expect_refusal(ErrorCode::WrongFormat, path.string(), [&] { load_distance_map(path); });
+        expect_refusal(ErrorCode::WrongFormat, path.string(), [&] { load_map_file_notes(path); });
+        EXPECT_FALSE(is_map_file(path));
+    }
+    EXPECT_FALSE(is_map_file(missing));
+    EXPECT_FALSE(is_map_file(folder_));
+}
+
+TEST_F(MapFileOnDisk, KnowsAMapFileByItsFirstBytes) {
+    save(random_map_parts(EntryFormat::Float32, 8, 6, 12).map(), folder_ / "any.name");
+    EXPECT_TRUE(is_map_file(folder_ / "any.name"));
+}
+
+TEST_F(MapFileOnDisk, ReportsAFullDisk) {
+    if (!fs::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
+    const DistanceMap map = random_map_parts(EntryFormat::Float32, 8, 6, 13).map();
+    expect_refusal(ErrorCode::Unwritable, "/dev/full", [&] { save(map, "/dev/full"); });
+}
