@@ -1,9 +1,10 @@
 #include "files/mapped_file.hpp"
 #include "map_file/validate.hpp"
-#include "map_generated.h"
 
 #include <echinus/error.hpp>
 #include <echinus/map_file.hpp>
+
+#include <map_generated.h>
 
 #include <bit>
 #include <fstream>

@@ -1,8 +1,9 @@
 #include "files/atomic_file.hpp"
-#include "map_generated.h"
 
 #include <echinus/error.hpp>
 #include <echinus/map_file.hpp>
+
+#include <map_generated.h>
 
 #include <bit>
 #include <cstring>
