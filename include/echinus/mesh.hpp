@@ -29,7 +29,8 @@ struct Fault {
     std::vector<std::uint32_t> first_faces; ///< at most kFirstFaceCount, ascending, each once
 };
 
-/// What a mesh is like. An *edge* is an unordered pair of vertices; a degenerate face contributes none.
+/// What a mesh is like. An *edge* is an unordered pair of vertices; a face with two equal corners has none.
+/// Vertices are told apart by index: weld() first where equal positions mean the same vertex.
 struct MeshReport {
     std::size_t face_count = 0;
     std::size_t vertex_count = 0;
@@ -38,8 +39,7 @@ struct MeshReport {
     bool manifold = false;    ///< every edge has at most two faces and the faces at each vertex form one fan
     Fault border_edges;       ///< edges with one face
     Fault nonmanifold_edges;  ///< edges with more than two faces
-    Fault misoriented_edges;  ///< edges that two of their faces run along the same way while the balance is
-                              ///< not zero
+    Fault misoriented_edges;  ///< edges with two faces that run along it the same way
     Fault duplicate_faces;    ///< faces with the same three vertices, in any order, as an earlier face
     Fault degenerate_faces;   ///< faces with two equal corners or with area zero
     double signed_volume = 0; ///< positive where faces turn outwards; of limited meaning when not closed
@@ -61,11 +61,13 @@ Sphere smallest_enclosing_sphere(std::span<const Vec3f> points);
 /// What repair() may do. All off by default: a mesh is never changed behind its owner's back.
 struct RepairOptions {
     bool drop_duplicate_faces = false; ///< keep the first of faces with the same three vertices
-    /// Where two patches of faces fill the same closed boundary of two faces each, keep the
-    /// first. Such are the quads of glmark2's horse that exist twice, split along different diagonals.
+    /// Where two pairs of faces fill the same quadrilateral of four edges, each along its own diagonal, drop
+    /// the pair that fits the orientation of the faces around worse, or the later one. Such are the caps of
+    /// glmark2's horse.
     bool drop_doubled_patches = false;
-    bool flip_inside_out =
-        false; ///< turn all faces of a closed component round when its signed volume is negative
+    /// Turn round every closed component with a negative signed volume that does not lie in another closed
+    /// one, together with the closed components in it: cavities stay cavities.
+    bool flip_inside_out = false;
 
     static constexpr RepairOptions all() { return {true, true, true}; }
 };
@@ -87,7 +89,9 @@ struct RepairedMesh {
     RepairReport report;
 };
 
-/// A mended copy. Does only what the options name and reports all of it; vertices stay as they are.
+/// A mended copy. Does only what the options name, in their order, and reports all of it; vertices stay as
+/// they are. Time O(n log n); flip_inside_out adds O(components^2) comparisons of boxes and, where boxes
+/// contain each other, winding numbers.
 /// @throws Error InvalidMesh as inspect() does.
 RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options);
 

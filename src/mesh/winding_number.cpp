@@ -1,4 +1,4 @@
-#include <echinus/mesh.hpp>
+#include "mesh/winding_number.hpp"
 
 #include <numbers>
 
@@ -19,12 +19,16 @@ double solid_angle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
 
 } // namespace
 
-double winding_number(const TriangleMesh& mesh, const Vec3d& point) {
+double winding_number(std::span<const Vec3f> vertices, std::span<const Triangle> faces, const Vec3d& point) {
     double sum = 0;
-    for (const Triangle& face : mesh.faces)
-        sum += solid_angle(Vec3d(mesh.vertices[face[0]]) - point, Vec3d(mesh.vertices[face[1]]) - point,
-                           Vec3d(mesh.vertices[face[2]]) - point);
+    for (const Triangle& face : faces)
+        sum += solid_angle(Vec3d(vertices[face[0]]) - point, Vec3d(vertices[face[1]]) - point,
+                           Vec3d(vertices[face[2]]) - point);
     return sum / (4 * std::numbers::pi);
+}
+
+double winding_number(const TriangleMesh& mesh, const Vec3d& point) {
+    return winding_number(mesh.vertices, mesh.faces, point);
 }
 
 } // namespace echinus

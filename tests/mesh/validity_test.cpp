@@ -1,4 +1,5 @@
-#include <echinus/error.hpp>
+#include "support/expect_error.hpp"
+
 #include <echinus/mesh.hpp>
 
 #include <gtest/gtest.h>
@@ -7,17 +8,12 @@
 #include <string>
 
 using namespace echinus;
+using namespace echinus::test;
 
 namespace {
 
-void expect_invalid(const TriangleMesh& mesh, const std::string& expected_words) {
-    try {
-        require_valid(mesh);
-        FAIL() << "an invalid mesh was not noticed";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::InvalidMesh);
-        EXPECT_NE(std::string(error.what()).find(expected_words), std::string::npos) << error.what();
-    }
+void expect_invalid(const TriangleMesh& mesh, const std::string& words) {
+    expect_error(ErrorCode::InvalidMesh, words, [&] { require_valid(mesh); });
 }
 
 const std::vector<Vec3f> kCorners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

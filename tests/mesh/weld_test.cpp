@@ -1,4 +1,5 @@
-#include <echinus/error.hpp>
+#include "support/expect_error.hpp"
+
 #include <echinus/mesh.hpp>
 
 #include <gtest/gtest.h>
@@ -6,6 +7,7 @@
 #include <limits>
 
 using namespace echinus;
+using namespace echinus::test;
 
 namespace {
 
@@ -55,8 +57,10 @@ TEST(Weld, DropsVerticesThatNoFaceUsesAndKeepsTheOrderOfTheRest) {
 }
 
 TEST(Weld, RefusesAnIndexOutOfRange) {
-    EXPECT_THROW(weld({{{0, 0, 0}}, {{0, 0, 1}}}), Error);
-    EXPECT_THROW(weld({{}, {{0, 0, 0}}}), Error);
+    expect_error(ErrorCode::InvalidMesh, "face 0 of the mesh refers to vertex 1", [] {
+        weld({{{0, 0, 0}}, {{0, 0, 1}}});
+    });
+    expect_error(ErrorCode::InvalidMesh, "face 0", [] { weld({{}, {{0, 0, 0}}}); });
 }
 
 TEST(Weld, SurvivesNaN) {

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <echinus/mesh.hpp>
+
+#include <cstddef>
+
+namespace echinus {
+
+/// Turns the faces of inside-out components round (see RepairOptions::flip_inside_out).
+/// @returns how many components were turned
+/// @pre require_valid(mesh)
+std::size_t flip_inside_out_components(TriangleMesh& mesh);
+
+} // namespace echinus

@@ -1,0 +1,111 @@
+#include "mesh/components.hpp"
+#include "mesh/edges.hpp"
+#include "mesh/faces.hpp"
+#include "mesh/union_find.hpp"
+
+#include <echinus/mesh.hpp>
+
+#include <algorithm>
+
+namespace echinus {
+
+namespace {
+
+/// Puts the faces in order, each once, and keeps the first few.
+Fault make_fault(std::size_t count, std::vector<std::uint32_t> faces) {
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    faces.resize(std::min(faces.size(), Fault::kFirstFaceCount));
+    return {count, std::move(faces)};
+}
+
+Fault make_fault(const std::vector<std::uint32_t>& faces) {
+    return make_fault(faces.size(), faces);
+}
+
+/// The edges of one kind and all faces at them.
+struct EdgeFault {
+    std::size_t count = 0;
+    std::vector<std::uint32_t> faces;
+
+    void add(std::span<const EdgeUse> uses) {
+        ++count;
+        for (const EdgeUse& use : uses) faces.push_back(use.face);
+    }
+    Fault finish() { return make_fault(count, std::move(faces)); }
+};
+
+void report_edges(std::span<const EdgeUse> edge_uses, MeshReport& report) {
+    EdgeFault border;
+    EdgeFault nonmanifold;
+    EdgeFault misoriented;
+    report.closed = true;
+    for_each_edge(edge_uses, [&](std::span<const EdgeUse> uses) {
+        if (uses.size() == 1) border.add(uses);
+        if (uses.size() > 2) nonmanifold.add(uses);
+        if (uses.size() == 2 && !is_balanced(uses)) misoriented.add(uses);
+        report.closed = report.closed && is_balanced(uses);
+    });
+    report.border_edges = border.finish();
+    report.nonmanifold_edges = nonmanifold.finish();
+    report.misoriented_edges = misoriented.finish();
+}
+
+/// The faces at each vertex form one fan. Corners of two faces at the same vertex are joined where the faces
+/// share an edge; a fan is one set of corners, so there must be as many sets as vertices.
+bool every_vertex_has_one_fan(const TriangleMesh& mesh, std::span<const EdgeUse> edge_uses) {
+    UnionFind corners(3 * mesh.faces.size());
+    const auto corner_at = [&](const EdgeUse& use, bool low) {
+        return 3 * use.face + (use.ascending == low ? use.corner : (use.corner + 1U) % 3);
+    };
+    for_each_edge(edge_uses, [&](std::span<const EdgeUse> uses) {
+        for (const EdgeUse& use : uses.subspan(1))
+            for (bool low : {true, false}) corners.join(corner_at(uses[0], low), corner_at(use, low));
+    });
+    std::vector<bool> is_used(mesh.vertices.size(), false);
+    for (const EdgeUse& use : edge_uses) { // each corner of a face begins one of its edges
+        const std::uint32_t corner = 3 * use.face + use.corner;
+        if (corners.find(corner) != corner) continue;
+        const std::uint32_t vertex = mesh.faces[use.face][use.corner];
+        if (is_used[vertex]) return false;
+        is_used[vertex] = true;
+    }
+    return true;
+}
+
+std::vector<Vec3f> used_vertices(const TriangleMesh& mesh) {
+    std::vector<bool> is_used(mesh.vertices.size(), false);
+    for (const Triangle& face : mesh.faces)
+        for (std::uint32_t vertex : face) is_used[vertex] = true;
+    std::vector<Vec3f> used;
+    for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex)
+        if (is_used[vertex]) used.push_back(mesh.vertices[vertex]);
+    return used;
+}
+
+/// Seen from a point close by, so that a mesh far from the origin loses no digits.
+double signed_volume(const TriangleMesh& mesh, const Vec3d& reference) {
+    double sum = 0;
+    for (const Triangle& face : mesh.faces) sum += six_volumes(mesh, face, reference);
+    return sum / 6;
+}
+
+} // namespace
+
+MeshReport inspect(const TriangleMesh& mesh) {
+    require_valid(mesh);
+    MeshReport report;
+    report.face_count = mesh.faces.size();
+    report.vertex_count = mesh.vertices.size();
+    report.component_count = find_components(mesh).count;
+    const std::vector<EdgeUse> edge_uses = sorted_edge_uses(mesh);
+    report_edges(edge_uses, report);
+    report.manifold = report.nonmanifold_edges.count == 0 && every_vertex_has_one_fan(mesh, edge_uses);
+    report.duplicate_faces = make_fault(find_duplicate_faces(mesh));
+    report.degenerate_faces = make_fault(find_degenerate_faces(mesh));
+    report.bounding_sphere = smallest_enclosing_sphere(used_vertices(mesh));
+    report.signed_volume = signed_volume(mesh, report.bounding_sphere.centre);
+    return report;
+}
+
+} // namespace echinus

@@ -1,0 +1,127 @@
+#include "support/broken_meshes.hpp"
+#include "support/expect_error.hpp"
+
+#include <echinus/mesh.hpp>
+
+#include <gtest/gtest.h>
+
+using namespace echinus;
+using namespace echinus::test;
+
+namespace {
+
+using Faces = std::vector<std::uint32_t>;
+
+void expect_unchanged(const TriangleMesh& mesh, const RepairOptions& options) {
+    const RepairedMesh repaired = repair(mesh, options);
+    EXPECT_FALSE(repaired.report.changed_anything());
+    EXPECT_EQ(repaired.mesh.faces, mesh.faces);
+    EXPECT_EQ(repaired.mesh.vertices, mesh.vertices);
+}
+
+} // namespace
+
+TEST(Repair, ChangesNothingUnlessAskedTo) {
+    TriangleMesh mesh = inside_out(cube_with_doubled_top());
+    mesh.faces.push_back(mesh.faces[0]);
+    expect_unchanged(mesh, {});
+}
+
+TEST(Repair, ChangesNothingOfASoundMesh) {
+    expect_unchanged(make_torus(1, 0.4, 12, 8), RepairOptions::all());
+    expect_unchanged(make_box({1, 2, 3}, 2), RepairOptions::all());
+}
+
+TEST(Repair, KeepsTheFirstOfDuplicateFaces) {
+    TriangleMesh mesh = make_box({1, 1, 1});
+    const TriangleMesh box = mesh;
+    const Triangle f = mesh.faces[2];
+    mesh.faces.insert(mesh.faces.begin() + 5, {f[2], f[1], f[0]});
+    mesh.faces.push_back({f[1], f[2], f[0]});
+    const RepairedMesh repaired = repair(mesh, {.drop_duplicate_faces = true});
+    EXPECT_EQ(repaired.report.duplicate_faces_dropped, (Faces{5, 13}));
+    EXPECT_EQ(repaired.mesh.faces, box.faces);
+}
+
+TEST(Repair, DropsTheLaterOfTwoPatchesThatFitEquallyWell) {
+    const TriangleMesh mesh = cube_with_doubled_top();
+    EXPECT_FALSE(inspect(mesh).closed);
+    EXPECT_EQ(inspect(mesh).nonmanifold_edges.count, 4U);
+    const RepairedMesh repaired = repair(mesh, {.drop_doubled_patches = true});
+    EXPECT_EQ(repaired.report.doubled_patch_faces_dropped, (Faces{12, 13}));
+    const MeshReport report = inspect(repaired.mesh);
+    EXPECT_TRUE(report.closed);
+    EXPECT_TRUE(report.manifold);
+    EXPECT_NEAR(report.signed_volume, 1, 1e-15);
+}
+
+TEST(Repair, DropsThePatchThatIsTurnedTheWrongWayEvenIfItIsTheFirst) {
+    TriangleMesh mesh = cube_with_doubled_top();
+    std::swap(mesh.faces[10][0], mesh.faces[10][1]);
+    std::swap(mesh.faces[11][0], mesh.faces[11][1]);
+    const RepairedMesh whole_patch_turned = repair(mesh, {.drop_doubled_patches = true});
+    EXPECT_EQ(whole_patch_turned.report.doubled_patch_faces_dropped, (Faces{10, 11}));
+    EXPECT_TRUE(inspect(whole_patch_turned.mesh).closed);
+
+    std::swap(mesh.faces[11][0], mesh.faces[11][1]);
+    const RepairedMesh one_face_turned = repair(mesh, {.drop_doubled_patches = true});
+    EXPECT_EQ(one_face_turned.report.doubled_patch_faces_dropped, (Faces{10, 11}));
+    EXPECT_TRUE(inspect(one_face_turned.mesh).closed);
+}
+
+TEST(Repair, LeavesALoneTetrahedronInPeace) {
+    // Its faces, too, are two pairs with the same four corners; but no surface goes on around them.
+    const TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                                   {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
+    expect_unchanged(tetrahedron, RepairOptions::all());
+}
+
+TEST(Repair, NumbersFacesAsInTheMeshThatWentIn) {
+    TriangleMesh mesh = cube_with_doubled_top();
+    mesh.faces.insert(mesh.faces.begin() + 1, mesh.faces[0]);
+    const RepairedMesh repaired = repair(mesh, RepairOptions::all());
+    EXPECT_EQ(repaired.report.duplicate_faces_dropped, (Faces{1}));
+    EXPECT_EQ(repaired.report.doubled_patch_faces_dropped, (Faces{13, 14}));
+    EXPECT_TRUE(inspect(repaired.mesh).closed);
+}
+
+TEST(Repair, FlipsAnInsideOutMesh) {
+    const RepairedMesh repaired = repair(inside_out(make_torus(1, 0.4, 12, 8)), {.flip_inside_out = true});
+    EXPECT_EQ(repaired.report.components_flipped, 1U);
+    const MeshReport report = inspect(repaired.mesh);
+    EXPECT_TRUE(report.closed);
+    EXPECT_GT(report.signed_volume, 0);
+}
+
+TEST(Repair, FlipsOnlyTheComponentsThatAreInsideOut) {
+    const TriangleMesh box = make_box({1, 1, 1});
+    const TriangleMesh mesh =
+        together(together(box, inside_out(moved(box, {3, 0, 0}))), moved(box, {6, 0, 0}));
+    const RepairedMesh repaired = repair(mesh, {.flip_inside_out = true});
+    EXPECT_EQ(repaired.report.components_flipped, 1U);
+    EXPECT_NEAR(inspect(repaired.mesh).signed_volume, 3, 1e-14);
+    EXPECT_NEAR(winding_number(repaired.mesh, {3, 0, 0}), 1, 1e-12);
+}
+
+TEST(Repair, LeavesACavityInsideASolidAsItIs) {
+    expect_unchanged(together(make_box({4, 4, 4}), inside_out(make_sphere(1, 8, 6))), RepairOptions::all());
+}
+
+TEST(Repair, TurnsACavityTogetherWithTheSolidAroundIt) {
+    const TriangleMesh hollow = together(make_box({4, 4, 4}), inside_out(make_sphere(1, 8, 6)));
+    const RepairedMesh repaired = repair(inside_out(hollow), {.flip_inside_out = true});
+    EXPECT_EQ(repaired.report.components_flipped, 2U);
+    EXPECT_NEAR(winding_number(repaired.mesh, {0, 0, 0}), 0, 1e-12);
+    EXPECT_NEAR(winding_number(repaired.mesh, {1.5, 1.5, 1.5}), 1, 1e-12);
+}
+
+TEST(Repair, DoesNotTurnAnOpenMesh) {
+    TriangleMesh mesh = inside_out(make_sphere(1, 8, 6));
+    mesh.faces.pop_back();
+    expect_unchanged(mesh, RepairOptions::all());
+}
+
+TEST(Repair, RefusesAnInvalidMesh) {
+    expect_error(ErrorCode::InvalidMesh, "no faces", [] { repair({}, RepairOptions::all()); });
+    expect_error(ErrorCode::InvalidMesh, "face 0", [] { repair({{}, {{0, 1, 2}}}, {}); });
+}

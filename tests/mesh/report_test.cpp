@@ -1,0 +1,285 @@
+#include "support/broken_meshes.hpp"
+#include "support/expect_error.hpp"
+
+#include <echinus/mesh.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <random>
+
+using namespace echinus;
+using namespace echinus::test;
+
+namespace {
+
+using Faces = std::vector<std::uint32_t>;
+
+TriangleMesh without_face(TriangleMesh mesh, std::size_t face) {
+    mesh.faces.erase(mesh.faces.begin() + static_cast<std::ptrdiff_t>(face));
+    return mesh;
+}
+
+TriangleMesh with_face(TriangleMesh mesh, const Triangle& face) {
+    mesh.faces.push_back(face);
+    return mesh;
+}
+
+void expect_sound(const TriangleMesh& mesh) {
+    const MeshReport report = inspect(mesh);
+    EXPECT_TRUE(report.closed);
+    EXPECT_TRUE(report.manifold);
+    for (const Fault& fault : {report.border_edges, report.nonmanifold_edges, report.misoriented_edges,
+                               report.duplicate_faces, report.degenerate_faces}) {
+        EXPECT_EQ(fault.count, 0U);
+        EXPECT_TRUE(fault.first_faces.empty());
+    }
+    EXPECT_EQ(report.component_count, 1U);
+    EXPECT_GT(report.signed_volume, 0);
+}
+
+/// Area of a regular polygon with this circumradius.
+double polygon_area(double radius, double corner_count) {
+    return corner_count / 2 * radius * radius * std::sin(2 * std::numbers::pi / corner_count);
+}
+
+} // namespace
+
+TEST(MeshReport, FindsNothingWrongWithWhatTheGeneratorsMake) {
+    for (std::uint32_t segments : {3U, 4U, 7U, 24U}) {
+        expect_sound(make_torus(1, 0.4, segments, segments + 1));
+        expect_sound(make_sphere(2, segments, segments));
+        expect_sound(make_box({1, 2, 3}, segments));
+    }
+    expect_sound(make_sphere(1, 3, 2)); // two tetrahedra
+    expect_sound(make_box({1, 1, 1}, 1));
+}
+
+TEST(MeshReport, GivesTheVolumeOfABox) {
+    EXPECT_NEAR(inspect(make_box({1, 2, 3}, 3)).signed_volume, 6, 1e-14);
+    EXPECT_NEAR(inspect(inside_out(make_box({1, 2, 3}, 3))).signed_volume, -6, 1e-14);
+}
+
+TEST(MeshReport, GivesTheVolumeOfATorusOfPolygons) {
+    // Pappus: the area of the profile, a regular m-gon, times the path of its centre. The path is a polygon
+    // here, too: a wedge of angle a between two profiles has the volume area * sin(a) * major radius, since
+    // all four corners of a quadrilateral between them lie in one plane.
+    for (double n : {3.0, 5.0, 60.0})
+        for (double m : {3.0, 4.0, 24.0}) {
+            const double area = polygon_area(0.4, m);
+            const double path = n * std::sin(2 * std::numbers::pi / n) * 1.0;
+            const TriangleMesh torus = make_torus(1, 0.4, std::uint32_t(n), std::uint32_t(m));
+            const double volume = inspect(torus).signed_volume;
+            EXPECT_NEAR(volume, area * path, 1e-6) << n << " x " << m;
+        }
+}
+
+TEST(MeshReport, SeesTheVolumeOfASphereConvergeFromBelow) {
+    const double exact = 4.0 / 3 * std::numbers::pi;
+    double previous_error = exact;
+    for (std::uint32_t rows : {8U, 16U, 32U, 64U}) {
+        const double error = exact - inspect(make_sphere(1, 2 * rows, rows)).signed_volume;
+        EXPECT_GT(error, 0);
+        EXPECT_LT(error, 0.3 * previous_error); // second order: a quarter each time
+        previous_error = error;
+    }
+}
+
+TEST(MeshReport, DoesNotLoseTheVolumeFarFromTheOrigin) {
+    const TriangleMesh box = moved(make_box({2, 2, 2}, 2), {1e6F, -1e6F, 2e6F});
+    EXPECT_NEAR(inspect(box).signed_volume, 8, 1e-9);
+}
+
+TEST(MeshReport, CountsTheEdgesOfAHoleAsBorder) {
+    const TriangleMesh sphere = make_sphere(1, 12, 8);
+    const MeshReport report = inspect(without_face(sphere, 30));
+    EXPECT_FALSE(report.closed);
+    EXPECT_TRUE(report.manifold);
+    EXPECT_EQ(report.border_edges.count, 3U);
+    EXPECT_EQ(report.border_edges.first_faces.size(), 3U);
+    // The faces named are exactly those that share an edge with the missing one.
+    for (std::uint32_t face : report.border_edges.first_faces) {
+        const Triangle& neighbour = sphere.faces[face < 30 ? face : face + 1];
+        const auto shared = std::count_if(neighbour.begin(), neighbour.end(), [&](std::uint32_t v) {
+            return std::count(sphere.faces[30].begin(), sphere.faces[30].end(), v) != 0;
+        });
+        EXPECT_EQ(shared, 2);
+    }
+}
+
+TEST(MeshReport, CountsASingleFaceAsThreeBorderEdges) {
+    const MeshReport report = inspect({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+    EXPECT_FALSE(report.closed);
+    EXPECT_TRUE(report.manifold);
+    EXPECT_EQ(report.border_edges.count, 3U);
+    EXPECT_EQ(report.border_edges.first_faces, (Faces{0}));
+}
+
+TEST(MeshReport, CountsAFinAsANonmanifoldEdge) {
+    TriangleMesh mesh = make_box({1, 1, 1});
+    mesh.vertices.push_back({3, 3, 3});
+    const Triangle first = mesh.faces[0];
+    const MeshReport report = inspect(with_face(mesh, {first[0], first[1], 8}));
+    EXPECT_FALSE(report.closed);
+    EXPECT_FALSE(report.manifold);
+    EXPECT_EQ(report.nonmanifold_edges.count, 1U);
+    EXPECT_EQ(report.nonmanifold_edges.first_faces.size(), 3U);
+    EXPECT_EQ(report.nonmanifold_edges.first_faces.back(), 12U);
+    EXPECT_EQ(report.border_edges.count, 2U);
+    EXPECT_EQ(report.border_edges.first_faces, (Faces{12}));
+}
+
+TEST(MeshReport, CountsTheEdgesOfATurnedFaceAsMisoriented) {
+    TriangleMesh mesh = make_box({1, 1, 1}, 2);
+    std::swap(mesh.faces[5][0], mesh.faces[5][1]);
+    const MeshReport report = inspect(mesh);
+    EXPECT_FALSE(report.closed);
+    EXPECT_TRUE(report.manifold);
+    EXPECT_EQ(report.misoriented_edges.count, 3U);
+    EXPECT_EQ(report.misoriented_edges.first_faces.size(), 4U);
+    EXPECT_EQ(std::count(report.misoriented_edges.first_faces.begin(),
+                         report.misoriented_edges.first_faces.end(), 5U),
+              1);
+    EXPECT_EQ(report.border_edges.count, 0U);
+    EXPECT_EQ(report.nonmanifold_edges.count, 0U);
+}
+
+TEST(MeshReport, CallsTwoBoxesThatShareAnEdgeClosedButNotManifold) {
+    // Looking along the shared edge, each box a square:
+    //
+    //          +---+
+    //          |   |
+    //      +---+---+
+    //      |   |
+    //      +---+
+    const TriangleMesh box = make_box({1, 1, 1});
+    const MeshReport report = inspect(weld(together(box, moved(box, {1, 1, 0}))));
+    EXPECT_TRUE(report.closed);
+    EXPECT_FALSE(report.manifold);
+    EXPECT_EQ(report.nonmanifold_edges.count, 1U);
+    EXPECT_EQ(report.misoriented_edges.count, 0U);
+    EXPECT_EQ(report.component_count, 1U);
+}
+
+TEST(MeshReport, CallsTwoBoxesThatShareAVertexClosedButNotManifold) {
+    const TriangleMesh box = make_box({1, 1, 1});
+    const MeshReport report = inspect(weld(together(box, moved(box, {1, 1, 1}))));
+    EXPECT_TRUE(report.closed);
+    EXPECT_FALSE(report.manifold);
+    EXPECT_EQ(report.nonmanifold_edges.count, 0U);
+    EXPECT_EQ(report.component_count, 1U);
+}
+
+TEST(MeshReport, CallsAnOpenFanManifoldAndTwoFansAtOneVertexNot) {
+    const std::vector<Vec3f> vertices{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {-1, 0, 0}, {-1, -1, 0}};
+    EXPECT_TRUE(inspect({vertices, {{0, 1, 2}, {0, 2, 3}}}).manifold);
+    EXPECT_FALSE(inspect({vertices, {{0, 1, 2}, {0, 4, 5}}}).manifold);
+}
+
+TEST(MeshReport, CountsComponents) {
+    TriangleMesh mesh = make_box({1, 1, 1});
+    for (int i = 1; i < 5; ++i) mesh = together(mesh, moved(make_sphere(0.4, 6, 4), {3.0F * float(i), 0, 0}));
+    const MeshReport report = inspect(mesh);
+    EXPECT_EQ(report.component_count, 5U);
+    EXPECT_TRUE(report.closed);
+}
+
+TEST(MeshReport, CountsDuplicateFacesInAnyOrderOfTheirCorners) {
+    const TriangleMesh box = make_box({1, 1, 1});
+    const Triangle f = box.faces[3];
+    TriangleMesh mesh = with_face(with_face(box, {f[1], f[2], f[0]}), {f[2], f[1], f[0]});
+    const MeshReport report = inspect(mesh);
+    EXPECT_EQ(report.duplicate_faces.count, 2U);
+    EXPECT_EQ(report.duplicate_faces.first_faces, (Faces{12, 13}));
+    EXPECT_EQ(report.nonmanifold_edges.count, 3U);
+    EXPECT_FALSE(report.manifold);
+    EXPECT_TRUE(report.closed); // the two copies run opposite ways and cancel
+}
+
+TEST(MeshReport, CountsFacesWithoutAreaAsDegenerate) {
+    const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 0, 0}},
+                            {{0, 1, 3}, {0, 0, 1}, {0, 1, 2}, {1, 4, 3}}};
+    const MeshReport report = inspect(mesh);
+    EXPECT_EQ(report.degenerate_faces.count, 3U);
+    EXPECT_EQ(report.degenerate_faces.first_faces, (Faces{1, 2, 3}));
+}
+
+TEST(MeshReport, StaysClosedWithANeedleOfZeroAreaInTheSurface) {
+    // One edge of a tetrahedron has a vertex in its middle that only one of the two faces there uses; the
+    // needle a b m fills the slit of no width.
+    const TriangleMesh mesh{{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}},
+                            {{0, 2, 1}, {0, 4, 3}, {4, 1, 3}, {0, 1, 4}, {0, 3, 2}, {1, 2, 3}}};
+    const MeshReport report = inspect(mesh);
+    EXPECT_TRUE(report.closed);
+    EXPECT_TRUE(report.manifold);
+    EXPECT_EQ(report.degenerate_faces.first_faces, (Faces{3}));
+    EXPECT_NEAR(report.signed_volume, 1.0 / 3, 1e-15);
+}
+
+TEST(MeshReport, ReportsAMeshWithAllPointsEqualAsDegenerateWithRadiusZero) {
+    const MeshReport report = inspect({{{5, 5, 5}, {5, 5, 5}, {5, 5, 5}}, {{0, 1, 2}, {0, 0, 0}}});
+    EXPECT_EQ(report.degenerate_faces.count, 2U);
+    EXPECT_EQ(report.bounding_sphere.radius, 0);
+}
+
+TEST(MeshReport, NamesAtMostTheFirstFewFacesAscending) {
+    TriangleMesh mesh = make_sphere(1, 20, 10);
+    mesh.faces.resize(100);
+    std::reverse(mesh.faces.begin(), mesh.faces.end());
+    const MeshReport report = inspect(mesh);
+    EXPECT_EQ(report.border_edges.count, 20U);
+    EXPECT_EQ(report.border_edges.first_faces.size(), Fault::kFirstFaceCount);
+    EXPECT_TRUE(
+        std::is_sorted(report.border_edges.first_faces.begin(), report.border_edges.first_faces.end()));
+}
+
+TEST(MeshReport, TakesTheSphereOfUsedVerticesOnly) {
+    TriangleMesh mesh = make_box({2, 2, 2});
+    mesh.vertices.push_back({100, 0, 0});
+    mesh.vertices.push_back({std::numeric_limits<float>::quiet_NaN(), 0, 0});
+    const MeshReport report = inspect(mesh);
+    EXPECT_NEAR(report.bounding_sphere.radius, std::sqrt(3.0), 1e-15);
+    EXPECT_EQ(report.vertex_count, 10U);
+}
+
+TEST(MeshReport, DoesNotDependOnTheOrderOfFacesAndVertices) {
+    std::mt19937 random(7);
+    TriangleMesh mesh = make_torus(1, 0.4, 20, 10);
+    mesh.faces.resize(370);
+    const MeshReport expected = inspect(mesh);
+    std::vector<std::uint32_t> order(mesh.vertices.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::shuffle(order.begin(), order.end(), random);
+    TriangleMesh shuffled{std::vector<Vec3f>(mesh.vertices.size()), mesh.faces};
+    for (std::size_t i = 0; i < order.size(); ++i) shuffled.vertices[order[i]] = mesh.vertices[i];
+    for (Triangle& face : shuffled.faces) face = {order[face[1]], order[face[2]], order[face[0]]};
+    std::shuffle(shuffled.faces.begin(), shuffled.faces.end(), random);
+    const MeshReport report = inspect(shuffled);
+    EXPECT_EQ(report.closed, expected.closed);
+    EXPECT_EQ(report.manifold, expected.manifold);
+    EXPECT_EQ(report.border_edges.count, expected.border_edges.count);
+    EXPECT_EQ(report.misoriented_edges.count, 0U);
+    EXPECT_EQ(report.component_count, expected.component_count);
+    EXPECT_NEAR(report.signed_volume, expected.signed_volume, 1e-12);
+}
+
+TEST(MeshReport, HandlesFlatAndHugeAndTinyMeshes) {
+    for (const Vec3d size : {Vec3d{1, 1, 1e-6}, Vec3d{1e9, 1e9, 1e9}, Vec3d{1e-9, 1e-9, 1e-9}}) {
+        const MeshReport report = inspect(make_box(size, 3));
+        EXPECT_TRUE(report.closed);
+        EXPECT_TRUE(report.manifold);
+        EXPECT_EQ(report.degenerate_faces.count, 0U);
+        const double expected = size.x * size.y * size.z;
+        EXPECT_NEAR(report.signed_volume, expected, 2e-7 * expected);
+        EXPECT_NEAR(report.bounding_sphere.radius, length(size) / 2, 1e-7 * length(size));
+    }
+}
+
+TEST(MeshReport, RefusesWhatRequireValidRefuses) {
+    expect_error(ErrorCode::InvalidMesh, "no faces", [] { inspect({}); });
+    expect_error(ErrorCode::InvalidMesh, "face 0", [] { inspect({{{0, 0, 0}}, {{0, 0, 1}}}); });
+}
