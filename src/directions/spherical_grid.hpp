@@ -1,12 +1,15 @@
 #pragma once
 
 #include "directions/angles.hpp"
+#include "geometry/circle.hpp"
 
 #include <echinus/distance_map.hpp>
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace echinus {
 
@@ -50,13 +53,25 @@ class SphericalGrid {
         }
     }
 
-    /// Unit vector of a sample, in the mesh's frame.
-    Vec3d direction(std::uint32_t longitude, std::uint32_t colatitude) const {
-        const SineCosine phi = sine_cosine_of_turn(longitude, longitude_count_);
-        const SineCosine theta =
-            sine_cosine_of_turn(2 * std::int64_t{colatitude} + 1, 4 * std::int64_t{colatitude_count_});
-        return from_grid(Vec3d{theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine});
+    std::size_t direction_count() const { return std::size_t{longitude_count_} * colatitude_count_; }
+
+    /// Unit vectors of all samples by index, in the mesh's frame.
+    std::vector<Vec3d> directions() const {
+        std::vector<CirclePoint> meridians(longitude_count_);
+        for (std::uint32_t i = 0; i < longitude_count_; ++i) meridians[i] = circle_point(i, longitude_count_);
+        std::vector<Vec3d> result;
+        result.reserve(direction_count());
+        for (std::uint32_t j = 0; j < colatitude_count_; ++j) {
+            const CirclePoint theta = colatitude_point(j);
+            for (const CirclePoint& phi : meridians)
+                result.push_back(
+                    from_grid(Vec3d{theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine}));
+        }
+        return result;
     }
+
+    /// The sine of a row's colatitude: the solid angle of its samples, but for a factor that all rows share.
+    double solid_angle_weight(std::uint32_t colatitude) const { return colatitude_point(colatitude).sine; }
 
     /// The four samples around a direction and where it lies between them.
     struct Cell {
@@ -83,6 +98,9 @@ class SphericalGrid {
     }
 
   private:
+    CirclePoint colatitude_point(std::uint32_t j) const {
+        return circle_point(2 * std::uint64_t{j} + 1, 4 * std::uint64_t{colatitude_count_});
+    }
     /// s lies in [-N/2, N/2], so one addition brings it back.
     std::uint32_t wrap_longitude(std::int32_t i) const {
         return static_cast<std::uint32_t>(i < 0 ? i + static_cast<std::int32_t>(longitude_count_) : i);

@@ -1,0 +1,150 @@
+#include "directions/crossings.hpp"
+
+#include "directions/crossing.hpp"
+#include "directions/direction_cap.hpp"
+#include "geometry/parallel.hpp"
+
+#include <echinus/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <numbers>
+
+namespace echinus {
+
+namespace {
+
+struct Crossing {
+    std::uint32_t direction;
+    float distance;
+};
+
+/// The grid's directions on the lattice: what the exact test takes, and its length in the mesh's unit.
+struct LatticeDirections {
+    std::vector<LatticePoint> points;
+    std::vector<double> lengths;
+
+    LatticeDirections(const SphericalGrid& grid, double step) {
+        points.reserve(grid.direction_count());
+        lengths.reserve(grid.direction_count());
+        for (const Vec3d& unit : grid.directions()) {
+            const Vec3d d = unit * static_cast<double>(kLatticeExtent);
+            points.emplace_back(std::llround(d.x), std::llround(d.y), std::llround(d.z));
+            lengths.push_back(length(Vec3d(points.back())) * step);
+        }
+    }
+};
+
+class RayCaster {
+  public:
+    RayCaster(const LatticeMesh& lattice, const SphericalGrid& grid)
+        : lattice_(lattice), grid_(grid), directions_(grid, lattice.step) {}
+
+    /// Appends the crossings of all rays with one face.
+    void cast_at(const Triangle& face, std::vector<Crossing>& crossings) const {
+        const LatticePoint &a = lattice_.vertices[face[0]], &b = lattice_.vertices[face[1]],
+                           &c = lattice_.vertices[face[2]];
+        const FaceCone cone(a, b, c);
+        if (cone.edge_on()) return;
+        const DirectionCap cap({Vec3d(grid_.to_grid(a)), Vec3d(grid_.to_grid(b)), Vec3d(grid_.to_grid(c))});
+        const IndexRange rows = rows_of(cap);
+        const IndexRange columns = columns_of(cap);
+        for (std::int64_t j = rows.first; j <= rows.last; ++j)
+            for (std::int64_t i = columns.first; i <= columns.last; ++i)
+                cast_along(grid_.index(wrapped(i), static_cast<std::uint32_t>(j)), cone, crossings);
+    }
+
+  private:
+    struct IndexRange {
+        std::int64_t first, last;
+    };
+
+    IndexRange rows_of(const DirectionCap& cap) const {
+        const double per_radian = grid_.colatitude_count() / std::numbers::pi;
+        const auto first = static_cast<std::int64_t>(std::ceil(cap.theta_min * per_radian - 0.5));
+        const auto last = static_cast<std::int64_t>(std::floor(cap.theta_max * per_radian - 0.5));
+        return {std::max<std::int64_t>(first, 0), std::min<std::int64_t>(last, grid_.colatitude_count() - 1)};
+    }
+
+    IndexRange columns_of(const DirectionCap& cap) const {
+        const std::int64_t count = grid_.longitude_count();
+        const double per_radian = static_cast<double>(count) / (2 * std::numbers::pi);
+        const auto first =
+            static_cast<std::int64_t>(std::ceil((cap.phi_middle - cap.phi_half_width) * per_radian));
+        const auto last =
+            static_cast<std::int64_t>(std::floor((cap.phi_middle + cap.phi_half_width) * per_radian));
+        return last - first + 1 >= count ? IndexRange{0, count - 1} : IndexRange{first, last};
+    }
+
+    std::uint32_t wrapped(std::int64_t i) const {
+        const std::int64_t count = grid_.longitude_count();
+        return static_cast<std::uint32_t>(i < 0 ? i + count : i >= count ? i - count : i);
+    }
+
+    void cast_along(std::uint32_t direction, const FaceCone& cone, std::vector<Crossing>& crossings) const {
+        const LatticePoint& d = directions_.points[direction];
+        if (!cone.meets(d)) return;
+        const double distance = cone.parameter(d) * directions_.lengths[direction];
+        // Snapping may lift a vertex out of the sphere by a lattice step.
+        crossings.push_back({direction, std::clamp(static_cast<float>(distance), 0.0F, lattice_.radius)});
+    }
+
+    const LatticeMesh& lattice_;
+    const SphericalGrid& grid_;
+    LatticeDirections directions_;
+};
+
+using Batches = std::vector<std::vector<Crossing>>;
+
+/// In no particular order: how faces are shared out differs from run to run.
+Batches cast_at_all_faces(const LatticeMesh& lattice, const SphericalGrid& grid, unsigned thread_count) {
+    const RayCaster caster(lattice, grid);
+    Batches batches;
+    std::mutex mutex;
+    parallel_for(lattice.faces.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        std::vector<Crossing> crossings;
+        for (std::size_t i = begin; i < end; ++i) caster.cast_at(lattice.faces[i], crossings);
+        const std::lock_guard lock(mutex);
+        batches.push_back(std::move(crossings));
+    });
+    return batches;
+}
+
+/// [direction_count + 1] where the crossings of each direction begin.
+std::vector<std::uint32_t> offsets_of(const Batches& batches, std::size_t direction_count) {
+    std::vector<std::uint32_t> offsets(direction_count + 1);
+    std::size_t total = 0;
+    for (const auto& batch : batches) {
+        total += batch.size();
+        for (const Crossing& crossing : batch) ++offsets[crossing.direction + 1];
+    }
+    if (total > std::numeric_limits<std::uint32_t>::max())
+        throw Error(ErrorCode::InvalidMesh, "the rays cross the mesh " + std::to_string(total) +
+                                                " times, more than a map can hold; take fewer directions");
+    for (std::size_t d = 0; d < direction_count; ++d) offsets[d + 1] += offsets[d];
+    return offsets;
+}
+
+} // namespace
+
+Crossings cast_rays(const LatticeMesh& lattice, const SphericalGrid& grid, unsigned thread_count) {
+    const std::size_t direction_count = grid.direction_count();
+    const Batches batches = cast_at_all_faces(lattice, grid, thread_count);
+    Crossings result{offsets_of(batches, direction_count), {}};
+    result.distances.resize(result.offsets.back());
+    std::vector<std::uint32_t> next(result.offsets.begin(), result.offsets.end() - 1);
+    for (const auto& batch : batches)
+        for (const Crossing& crossing : batch)
+            result.distances[next[crossing.direction]++] = crossing.distance;
+    // Sorting also removes the order in which threads delivered.
+    parallel_for(direction_count, thread_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t d = begin; d < end; ++d)
+            std::sort(result.distances.begin() + result.offsets[d],
+                      result.distances.begin() + result.offsets[d + 1]);
+    });
+    return result;
+}
+
+} // namespace echinus

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "directions/lattice.hpp"
+#include "directions/spherical_grid.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace echinus {
+
+/// All crossings of all rays of a grid with a surface, sorted along each ray.
+struct Crossings {
+    std::vector<std::uint32_t>
+        offsets;                  ///< [direction_count + 1]; direction d has offsets[d] up to offsets[d + 1]
+    std::vector<float> distances; ///< from the centre, within [0, radius], ascending along a ray
+};
+
+/// Casts a ray along every direction of the grid. The number of crossings of each ray is exact, also where it
+/// meets an edge or a vertex; the distances are rounded. The result does not depend on the number of threads.
+/// @throws Error InvalidMesh when there are 2^32 crossings or more
+Crossings cast_rays(const LatticeMesh& lattice, const SphericalGrid& grid, unsigned thread_count);
+
+} // namespace echinus

@@ -1,0 +1,158 @@
+// Collision detection with a distance map: paper section 2.2, clause by clause. This scalar code is the
+// specification.
+//
+// The paper's symbols: p the particle, C and R centre and radius of the bounding sphere, d = p - C, (phi_d,
+// theta_d) its angles, S an interpolated distance.
+
+#include "distance_map/interpolation.hpp"
+
+#include <cassert>
+
+namespace echinus {
+
+namespace {
+
+struct Ray {
+    Vec3f d_grid; ///< d, in the grid's frame
+    float length; ///< |d|
+};
+
+Ray ray_to(const DistanceMapView& map, const SphericalGrid& grid, const Vec3f& point_local) {
+    const Vec3f d = grid.to_grid(point_local - map.centre);
+    return {d, length(d)};
+}
+
+/// "Particle p is initially tested against the bounding sphere. If the particle does not penetrate the sphere
+/// then no collision is reported." False for NaN and infinity too, since neither compares below R.
+bool reaches_sphere(const DistanceMapView& map, const Ray& ray, float margin) {
+    return ray.length <= map.radius + margin;
+}
+
+/// "It is then enough to enumerate the intervals (starting from 0), find the interval where |d| lies": the
+/// interval's number is the number of distances that |d| has reached. A particle on the map's surface lies in
+/// the outer interval.
+std::uint32_t interval_of(const DistanceMapView& map, const Interpolation& at, float d_length) {
+    std::uint32_t interval = 0;
+    while (interval < at.entry_count && interpolated_entry(map, at, interval) <= d_length) ++interval;
+    return interval;
+}
+
+/// "If |d| is on an even interval then p penetrates A" when the centre lies inside; "in the other case, |d|
+/// should be on an odd interval".
+bool is_inside(const DistanceMapView& map, std::uint32_t interval) {
+    return (interval % 2 == 0) == map.centre_inside;
+}
+
+struct NearestEntry {
+    std::uint32_t k;
+    float distance;
+};
+
+/// "the interpolated distance value closer to |d|": one of the two ends of the interval. @pre at.entry_count
+/// > 0
+NearestEntry nearest_entry(const DistanceMapView& map, const Interpolation& at, std::uint32_t interval,
+                           float d_length) {
+    if (interval == 0) return {0, interpolated_entry(map, at, 0)};
+    const NearestEntry below{interval - 1, interpolated_entry(map, at, interval - 1)};
+    if (interval == at.entry_count) return below;
+    const NearestEntry above{interval, interpolated_entry(map, at, interval)};
+    return d_length - below.distance <= above.distance - d_length ? below : above;
+}
+
+/// The unit vector along d; for the centre itself that of longitude 0, colatitude 0.
+Vec3f direction_of(const Ray& ray) {
+    return ray.length > 0 ? ray.d_grid * (1 / ray.length) : Vec3f{0, 0, 1};
+}
+
+/// The gradient of |x| - S(phi, theta) on the map's surface: e_r - S_theta / S e_theta - S_phi / (S sin
+/// theta) e_phi. The paper has no normals; without one a solver has no contact plane and friction no
+/// direction.
+Vec3f surface_gradient(const SphericalGrid& grid, const Vec3f& e_r, float distance, const Slope& slope) {
+    const float sine = std::sqrt(e_r.x * e_r.x + e_r.y * e_r.y); // of theta
+    if (!(sine > 0 && distance > 0)) return e_r;                 // on the pole axis longitude has no meaning
+    const Vec3f e_phi{-e_r.y / sine, e_r.x / sine, 0};
+    const Vec3f e_theta = cross(e_phi, e_r);
+    const float per_theta = slope.along_v * (static_cast<float>(grid.colatitude_count()) / kPi) / distance;
+    const float per_phi =
+        slope.along_u * (static_cast<float>(grid.longitude_count()) / (2 * kPi)) / (distance * sine);
+    return e_r - e_theta * per_theta - e_phi * per_phi;
+}
+
+/// The unit normal of the map's surface, out of the solid: along the gradient where the ray leaves it,
+/// against the gradient where the ray enters.
+Vec3f surface_normal(const DistanceMapView& map, const SphericalGrid& grid, const Interpolation& at,
+                     const Vec3f& e_r, const NearestEntry& entry) {
+    const Vec3f gradient = surface_gradient(grid, e_r, entry.distance, slope_of_entry(map, at, entry.k));
+    const Vec3f unit = gradient * (1 / length(gradient));
+    const Vec3f& safe = is_finite(unit) ? unit : e_r; // a gradient too long for a float's square
+    return grid.from_grid(is_outward(map.centre_inside, entry.k) ? safe : -safe);
+}
+
+Contact no_contact(const Vec3f& point_local) {
+    Contact contact;
+    contact.point = point_local;
+    return contact;
+}
+
+} // namespace
+
+bool contains(const DistanceMapView& map, Vec3f point_local) noexcept {
+    const SphericalGrid grid = grid_of(map);
+    const Ray ray = ray_to(map, grid, point_local);
+    if (!reaches_sphere(map, ray, 0)) return false;
+    const Interpolation at = interpolation_at(map, grid.locate(ray.d_grid));
+    return is_inside(map, interval_of(map, at, ray.length));
+}
+
+Contact contact(const DistanceMapView& map, Vec3f point_local, float margin) noexcept {
+    if (!(margin > 0)) margin = 0;
+    const SphericalGrid grid = grid_of(map);
+    const Ray ray = ray_to(map, grid, point_local);
+    Contact result = no_contact(point_local);
+    if (!(reaches_sphere(map, ray, margin) && std::isfinite(ray.length))) return result;
+
+    const Interpolation at = interpolation_at(map, grid.locate(ray.d_grid));
+    const std::uint32_t interval = interval_of(map, at, ray.length);
+    const bool inside = ray.length <= map.radius && is_inside(map, interval);
+    const Vec3f e_r = direction_of(ray);
+    if (at.entry_count == 0) {
+        if (!inside) return result;
+        result.inside = true;
+        result.normal = grid.from_grid(e_r);
+        result.point = map.centre + result.normal * map.radius;
+        result.depth = map.radius - ray.length;
+        return result;
+    }
+
+    const NearestEntry entry = nearest_entry(map, at, interval, ray.length);
+    const float distance = std::fabs(entry.distance - ray.length);
+    if (!inside && !(distance <= margin)) return result;
+    result.inside = inside;
+    result.normal = surface_normal(map, grid, at, e_r, entry);
+    // "in order for p to exit from A, it should translate S - |d| distance along the direction of d"
+    result.point = map.centre + grid.from_grid(e_r) * entry.distance;
+    result.depth = inside ? distance : -distance;
+    return result;
+}
+
+void contains_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local,
+                    std::span<std::uint8_t> inside) noexcept {
+    assert(points_local.size() == inside.size());
+    for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = contains(map, points_local[i]) ? 1 : 0;
+}
+
+void contacts_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local, float margin,
+                    std::span<Contact> contacts) noexcept {
+    assert(points_local.size() == contacts.size());
+    for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = contact(map, points_local[i], margin);
+}
+
+int usable_sample_count(const DistanceMapView& map, Vec3f point_local) noexcept {
+    const SphericalGrid grid = grid_of(map);
+    const Ray ray = ray_to(map, grid, point_local);
+    if (!reaches_sphere(map, ray, 0)) return 0;
+    const Interpolation at = interpolation_at(map, grid.locate(ray.d_grid));
+    return at.usable[0] + at.usable[1] + at.usable[2] + at.usable[3];
+}
+
+} // namespace echinus

@@ -1,0 +1,90 @@
+#include "directions/lattice.hpp"
+
+#include <echinus/error.hpp>
+
+#include <gtest/gtest.h>
+
+using namespace echinus;
+
+namespace {
+
+TriangleMesh tetrahedron(const Vec3f& apex) {
+    return {{apex, {1, 1, -1}, {-1, 1, -1}, {0, -1, -1}}, {{1, 2, 3}, {2, 1, 0}, {3, 2, 0}, {1, 3, 0}}};
+}
+
+/// No edge's line and no face goes through the origin.
+void expect_clear_of_origin(const LatticeMesh& lattice) {
+    for (const Triangle& face : lattice.faces)
+        for (int i = 0; i < 3; ++i) {
+            const LatticePoint& a = lattice.vertices[face[i]];
+            const LatticePoint& b = lattice.vertices[face[(i + 1) % 3]];
+            EXPECT_NE(cross(a, b), LatticePoint{});
+        }
+}
+
+} // namespace
+
+TEST(Lattice, SnapsEveryVertexToWithinHalfAStep) {
+    const TriangleMesh mesh = make_torus(3, 1.1, 40, 20);
+    const LatticeMesh lattice = snap_to_lattice(mesh);
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        const Vec3d back = Vec3d(lattice.centre) + Vec3d(lattice.vertices[i]) * lattice.step;
+        const Vec3d error = back - Vec3d(mesh.vertices[i]);
+        for (double e : {error.x, error.y, error.z}) EXPECT_LE(std::abs(e), 0.5000001 * lattice.step);
+        EXPECT_LE(length(Vec3d(lattice.vertices[i])), static_cast<double>(kLatticeExtent) + 1);
+    }
+}
+
+TEST(Lattice, MovesTheCentreOffAVertexAnEdgeAndAFace) {
+    const TriangleMesh sphere = make_sphere(10, 8, 6); // fixes the bounding sphere's centre at the origin
+    const Vec3f on_vertex{0, 0, 0};
+    const Vec3f on_edge{-1, -1, 1}; // opposite of (1, 1, -1)
+    const Vec3f on_face{0, -1, 1};  // the face with (1, 1, -1) and (-1, 1, -1)
+    for (const Vec3f& apex : {on_vertex, on_edge, on_face}) {
+        TriangleMesh mesh = tetrahedron(apex);
+        const auto offset = static_cast<std::uint32_t>(mesh.vertices.size());
+        mesh.vertices.insert(mesh.vertices.end(), sphere.vertices.begin(), sphere.vertices.end());
+        for (const Triangle& face : sphere.faces)
+            mesh.faces.push_back({face[0] + offset, face[1] + offset, face[2] + offset});
+        const LatticeMesh lattice = snap_to_lattice(mesh);
+        EXPECT_NE(lattice.centre, Vec3f{});
+        EXPECT_LE(length(lattice.centre), 1e-3F);
+        expect_clear_of_origin(lattice);
+    }
+}
+
+TEST(Lattice, DropsFacesThatCollapseAndKeepsTheNumbersOfTheRest) {
+    TriangleMesh mesh = make_box({1, 1, 1});
+    mesh.vertices.push_back(mesh.vertices[0] + Vec3f{1e-8F, 0, 0});
+    mesh.faces.insert(mesh.faces.begin(), {0, 1, static_cast<std::uint32_t>(mesh.vertices.size() - 1)});
+    const LatticeMesh lattice = snap_to_lattice(mesh);
+    EXPECT_EQ(lattice.faces.size(), mesh.faces.size() - 1);
+    EXPECT_EQ(lattice.face_numbers.front(), 1U);
+}
+
+TEST(Lattice, IgnoresVerticesThatNoFaceUses) {
+    TriangleMesh mesh = make_box({1, 1, 1});
+    const LatticeMesh alone = snap_to_lattice(mesh);
+    mesh.vertices.push_back({std::nanf(""), 1e30F, 0});
+    const LatticeMesh with = snap_to_lattice(mesh);
+    EXPECT_EQ(with.centre, alone.centre);
+    EXPECT_EQ(with.radius, alone.radius);
+}
+
+TEST(Lattice, RefusesAMeshOnOnePointAndSizesBeyondFloat) {
+    const auto code_of = [](const TriangleMesh& mesh) {
+        try {
+            snap_to_lattice(mesh);
+        } catch (const Error& error) {
+            return error.code();
+        }
+        return ErrorCode::Unreadable;
+    };
+    TriangleMesh point{{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}, {{0, 1, 2}}};
+    EXPECT_EQ(code_of(point), ErrorCode::InvalidMesh);
+    EXPECT_EQ(code_of(make_box({1e20, 1e20, 1e20})), ErrorCode::InvalidMesh);
+    EXPECT_EQ(code_of(make_box({1e-20, 1e-20, 1e-20})), ErrorCode::InvalidMesh);
+    EXPECT_NO_THROW(snap_to_lattice(make_box({1e9, 1e9, 1e9})));
+    EXPECT_NO_THROW(snap_to_lattice(make_box({1e-9, 1e-9, 1e-9})));
+    EXPECT_NO_THROW(snap_to_lattice(make_box({1, 1e-6, 1e-6})));
+}

@@ -1,0 +1,201 @@
+#include "support/random_points.hpp"
+
+#include <echinus/distance_map.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace echinus;
+
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+float box_side(const Vec3f& p) {
+    return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+}
+
+/// Signed distance to the torus of radii 1 and 0.4, negative inside.
+float torus_distance(const Vec3f& p) {
+    return std::hypot(std::hypot(p.x, p.y) - 1, p.z) - 0.4F;
+}
+
+bool same(const Contact& a, const Contact& b) {
+    return a.inside == b.inside && a.depth == b.depth && a.point == b.point && a.normal == b.normal &&
+           a.face == b.face;
+}
+
+} // namespace
+
+TEST(DistanceMapQuery, AgreesWithTheFormulasOfSphereBoxAndTorus) {
+    test::Random random(1);
+    const DistanceMap sphere = DistanceMap::build(make_sphere(1, 200, 100));
+    const DistanceMap box = DistanceMap::build(make_box({2, 2, 2}));
+    const DistanceMap torus = DistanceMap::build(make_torus(1, 0.4, 200, 100));
+    for (int n = 0; n < 100'000; ++n) {
+        const Vec3f p = test::in_cube(random, 1.8F);
+        if (std::fabs(length(p) - 1) > 1e-3F) ASSERT_EQ(contains(sphere, p), length(p) < 1);
+        // Linear interpolation in a cell of 0.03 rad bends a flat side by up to 2e-3, and rounds its edges.
+        if (std::fabs(box_side(p) - 1) > 0.03F) ASSERT_EQ(contains(box, p), box_side(p) < 1);
+        // Where rays graze the tube, a sample's neighbour misses it.
+        if (std::fabs(torus_distance(p)) > 0.02F) ASSERT_EQ(contains(torus, p), torus_distance(p) < 0);
+    }
+}
+
+TEST(DistanceMapQuery, PushesRadiallyOntoTheSurface) {
+    test::Random random(2);
+    const DistanceMap torus =
+        DistanceMap::build(make_torus(1, 0.4, 200, 100), {.correction = VertexCorrection::None});
+    int checked = 0;
+    for (int n = 0; n < 50'000; ++n) {
+        const Vec3f p = test::in_cube(random, 1.4F);
+        const Contact c = contact(torus, p);
+        ASSERT_EQ(c.inside, contains(torus, p));
+        ASSERT_EQ(c.found(), c.inside);
+        if (!c.inside || torus_distance(p) > -0.05F) continue;
+        ++checked;
+        ASSERT_NEAR(torus_distance(c.point), 0, 0.02F);
+        ASSERT_NEAR(length(c.point - p), c.depth, 1e-5F);
+        ASSERT_NEAR(length(cross(c.point - p, p)), 0, 1e-5F); // along the ray
+        ASSERT_GT(dot(c.normal, c.point - p), 0);
+        ASSERT_NEAR(length(c.normal), 1, 1e-5F);
+        ASSERT_EQ(c.face, Contact::kUnknownFace);
+    }
+    EXPECT_GT(checked, 1000);
+}
+
+TEST(DistanceMapQuery, GivesTheNormalOfTheSurfaceNotOfTheRay) {
+    test::Random random(3);
+    for (PoleAxis axis : {PoleAxis::X, PoleAxis::Y, PoleAxis::Z}) {
+        const DistanceMap box = DistanceMap::build(make_box({2, 2, 2}),
+                                                   {.correction = VertexCorrection::None, .pole_axis = axis});
+        for (int n = 0; n < 20'000; ++n) {
+            const Vec3f p = test::in_cube(random, 1);
+            std::array<float, 3> sides{std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)};
+            std::sort(sides.begin(), sides.end());
+            if (sides[1] > 0.9F * sides[2]) continue; // the ray leaves near an edge of the box
+            const Vec3f normal = contact(box, p).normal;
+            ASSERT_GT(std::max({std::fabs(normal.x), std::fabs(normal.y), std::fabs(normal.z)}), 0.99F);
+            ASSERT_GT(dot(normal, p), 0);
+        }
+    }
+}
+
+TEST(DistanceMapQuery, ReportsParticlesOutsideWithinTheMarginWithNegativeDepth) {
+    const DistanceMap sphere =
+        DistanceMap::build(make_sphere(1, 200, 100), {.correction = VertexCorrection::None});
+    const Contact near = contact(sphere, {0, 0.6F, 0.8008F}, 0.01F); // 0.00064 outside
+    EXPECT_FALSE(near.inside);
+    EXPECT_TRUE(near.found());
+    EXPECT_NEAR(near.depth, -0.00064F, 1e-3F);
+    EXPECT_LT(near.depth, 0);
+    EXPECT_NEAR(length(near.point), 1, 1e-3F);
+
+    const Vec3f far{0, 0, 1.02F};
+    const Contact none = contact(sphere, far, 0.01F);
+    EXPECT_FALSE(none.found());
+    EXPECT_EQ(none.depth, 0);
+    EXPECT_EQ(none.normal, Vec3f{});
+    EXPECT_EQ(none.point, far);
+    EXPECT_TRUE(contact(sphere, far, 0.03F).found());
+    EXPECT_FALSE(contact(sphere, far, kNaN).found());
+    EXPECT_FALSE(contact(sphere, far, -1).found());
+    EXPECT_TRUE(contact(sphere, far, kInfinity).found());
+}
+
+TEST(DistanceMapQuery, TakesNaNAndInfinityForOutside) {
+    const DistanceMap box = DistanceMap::build(make_box({2, 2, 2}));
+    for (float bad : {kNaN, kInfinity, -kInfinity, std::numeric_limits<float>::max()})
+        for (const Vec3f& p : {Vec3f{bad, 0, 0}, Vec3f{0, bad, 0}, Vec3f{0, 0, bad}, Vec3f{bad, bad, bad}}) {
+            EXPECT_FALSE(contains(box, p));
+            for (float margin : {0.0F, 1.0F, kInfinity}) EXPECT_FALSE(contact(box, p, margin).found());
+            EXPECT_EQ(usable_sample_count(box, p), 0);
+        }
+}
+
+TEST(DistanceMapQuery, AnswersAtTheCentre) {
+    const DistanceMap box = DistanceMap::build(make_box({2, 2, 2}));
+    const Vec3f centre = box.view().centre;
+    EXPECT_TRUE(contains(box, centre));
+    const Contact c = contact(box, centre);
+    EXPECT_NEAR(c.depth, 1, 1e-3F);
+    EXPECT_NEAR(c.point.z, 1, 1e-3F);
+    EXPECT_NEAR(c.normal.z, 1, 1e-3F);
+
+    const DistanceMap torus = DistanceMap::build(make_torus(1, 0.4, 60, 24));
+    EXPECT_FALSE(contains(torus, torus.view().centre));
+    EXPECT_FALSE(contact(torus, torus.view().centre).found());
+}
+
+TEST(DistanceMapQuery, IsContinuousAcrossSeamAndPoles) {
+    const DistanceMap box = DistanceMap::build(make_box({2, 2, 2}), {.correction = VertexCorrection::None});
+    const float tiny = 1e-6F;
+    const auto depth = [&](const Vec3f& p) { return contact(box, p).depth; };
+    EXPECT_NEAR(depth({0.5F, tiny, 0.1F}), depth({0.5F, -tiny, 0.1F}), 1e-5F);
+    EXPECT_NEAR(depth({-0.5F, tiny, 0.1F}), depth({-0.5F, -tiny, 0.1F}), 1e-5F);
+    for (float z : {0.5F, -0.5F}) {
+        for (float x : {-tiny, 0.0F, tiny})
+            for (float y : {-tiny, 0.0F, tiny}) EXPECT_NEAR(depth({x, y, z}), 0.5F, 1e-3F);
+        EXPECT_NEAR(std::fabs(contact(box, {0, 0, z}).normal.z), 1, 1e-5F);
+    }
+}
+
+TEST(DistanceMapQuery, AnswersBatchesAsSinglePoints) {
+    test::Random random(4);
+    for (EntryFormat format : {EntryFormat::Float32, EntryFormat::Unorm16}) {
+        const DistanceMap torus = DistanceMap::build(make_torus(1, 0.4, 60, 24), {.entry_format = format});
+        std::vector<Vec3f> points(5000);
+        for (Vec3f& p : points) p = test::in_cube(random, 1.5F);
+        points[17].x = kNaN;
+        std::vector<std::uint8_t> inside(points.size());
+        std::vector<Contact> contacts(points.size());
+        contains_batch(torus, points, inside);
+        contacts_batch(torus, points, 0.05F, contacts);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            ASSERT_EQ(inside[i] != 0, contains(torus, points[i]));
+            if (i != 17) ASSERT_TRUE(same(contacts[i], contact(torus, points[i], 0.05F)));
+        }
+    }
+}
+
+TEST(DistanceMapQuery, DoesNotChangeWhenMeshAndPointsMoveTogether) {
+    // Powers of two and whole numbers keep floats exact, so that the answers must be equal, not merely close.
+    test::Random random(5);
+    const TriangleMesh mesh = make_torus(1, 0.375, 32, 16);
+    TriangleMesh rounded = mesh;
+    for (Vec3f& v : rounded.vertices)
+        v = {std::round(v.x * 4096) / 4096, std::round(v.y * 4096) / 4096, std::round(v.z * 4096) / 4096};
+    const DistanceMap still = DistanceMap::build(rounded);
+    const Vec3f offset{16, -8, 4};
+    TriangleMesh moved = rounded;
+    for (Vec3f& v : moved.vertices) v = (v + offset) * 8;
+    const DistanceMap map = DistanceMap::build(moved);
+    for (int n = 0; n < 20'000; ++n) {
+        Vec3f p = test::in_cube(random, 1.5F);
+        p = {std::round(p.x * 4096) / 4096, std::round(p.y * 4096) / 4096, std::round(p.z * 4096) / 4096};
+        const Contact a = contact(still, p, 0.1F);
+        const Contact b = contact(map, (p + offset) * 8, 0.8F);
+        ASSERT_EQ(a.inside, b.inside);
+        ASSERT_NEAR(a.depth * 8, b.depth, 1e-5F);
+        ASSERT_NEAR(length(a.normal - b.normal), 0, 2e-3F);
+    }
+}
+
+TEST(DistanceMapQuery, TurnsWithItsPoleAxis) {
+    // Renaming the axes of mesh and points and choosing the pole to match is the same map.
+    test::Random random(6);
+    const auto turned = [](const Vec3f& v) { return Vec3f{v.z, v.x, v.y}; };
+    const TriangleMesh mesh = make_box({1, 2, 3}, 2);
+    TriangleMesh renamed = mesh;
+    for (Vec3f& v : renamed.vertices) v = turned(v);
+    const DistanceMap z = DistanceMap::build(mesh, {.pole_axis = PoleAxis::Z});
+    const DistanceMap x = DistanceMap::build(renamed, {.pole_axis = PoleAxis::X});
+    for (int n = 0; n < 20'000; ++n) {
+        const Vec3f p = test::in_cube(random, 2);
+        ASSERT_EQ(contains(z, p), contains(x, turned(p)));
+    }
+}
