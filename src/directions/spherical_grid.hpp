@@ -3,7 +3,8 @@
 #include "directions/angles.hpp"
 #include "geometry/circle.hpp"
 
-#include <echinus/distance_map.hpp>
+#include <echinus/directions.hpp>
+#include <echinus/geometry.hpp>
 
 #include <array>
 #include <cmath>
@@ -123,9 +124,5 @@ class SphericalGrid {
     std::uint32_t colatitude_count_;
     PoleAxis pole_axis_;
 };
-
-inline SphericalGrid grid_of(const DistanceMapView& map) {
-    return {map.longitude_count, map.colatitude_count, map.pole_axis};
-}
 
 } // namespace echinus
