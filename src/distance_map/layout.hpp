@@ -1,7 +1,5 @@
 #pragma once
 
-#include "directions/spherical_grid.hpp"
-
 #include <echinus/distance_map.hpp>
 
 #include <cmath>
@@ -9,10 +7,6 @@
 #include <cstdint>
 
 namespace echinus {
-
-inline SphericalGrid grid_of(const DistanceMapView& map) {
-    return {map.longitude_count, map.colatitude_count, map.pole_axis};
-}
 
 inline constexpr float kUnormSteps = 65535;
 

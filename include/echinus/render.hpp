@@ -1,0 +1,129 @@
+#pragma once
+
+#include <echinus/geometry.hpp>
+#include <echinus/mesh.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+/// Pictures by ray tracing on the processor: no window, no GPU. Library echinus::render (needs Embree 3 and
+/// libpng). All light and the backdrop are fixed: a picture is decided by the objects, their colours and the
+/// camera.
+namespace echinus {
+
+// ---- What is drawn
+// -----------------------------------------------------------------------------------------------------
+
+/// An opaque colour as it is written in a style sheet: sRGB, each part in [0, 1].
+struct Colour {
+    float red = 0, green = 0, blue = 0;
+
+    /// From 0xRRGGBB.
+    static constexpr Colour from_hex(std::uint32_t rgb) {
+        return {static_cast<float>(rgb >> 16 & 0xFF) / 255, static_cast<float>(rgb >> 8 & 0xFF) / 255,
+                static_cast<float>(rgb & 0xFF) / 255};
+    }
+    friend constexpr bool operator==(const Colour&, const Colour&) = default;
+};
+
+/// The colours of the project's figures. The layers are told apart with every common kind of colour
+/// blindness: the scheme "muted" of Paul Tol, "Colour Schemes", SRON/EPS/TN/09-002 (2021), in an order in
+/// which neighbours differ most.
+namespace palette {
+inline constexpr Colour kClay = Colour::from_hex(0xB3ABA0);      ///< the model: warm grey
+inline constexpr Colour kCloth = Colour::from_hex(0xB4584E);     ///< the front of a cloth
+inline constexpr Colour kClothBack = Colour::from_hex(0xD39A7C); ///< and its back
+inline constexpr Colour kInk = Colour::from_hex(0x3A3936);       ///< text and wires
+inline constexpr Colour kLayers[] = {
+    Colour::from_hex(0x44AA99), Colour::from_hex(0xDDCC77), Colour::from_hex(0xCC6677),
+    Colour::from_hex(0x88CCEE), Colour::from_hex(0x999933), Colour::from_hex(0xAA4499),
+    Colour::from_hex(0x332288), Colour::from_hex(0x117733), Colour::from_hex(0x882255),
+};
+} // namespace palette
+
+/// A mesh and what it is painted with. Matte; both sides are lit.
+struct RenderedObject {
+    TriangleMesh mesh; ///< world frame, any unit
+    Colour colour = palette::kClay;
+    std::vector<Colour> face_colours;  ///< [face_count] in place of `colour`, or empty
+    std::optional<Colour> back_colour; ///< of the side that is seen clockwise; absent: as the front
+    /// Edges that bend less than this look smooth, the others sharp. 0 shows every face flat.
+    double crease_angle_deg = 40;
+    double wire_width_px = 0; ///< width of the lines drawn along all edges; 0 draws none
+};
+
+// ---- From where
+// --------------------------------------------------------------------------------------------------------
+
+/// The side from which a picture is taken.
+struct View {
+    Vec3d up = {0, 0, 1}; ///< any length but zero
+    /// Where the camera stands, counter-clockwise about `up`. For up = z, 0 is towards +x; for the other axes
+    /// cyclically: up = y, towards +z; up = x, towards +y.
+    double azimuth_deg = 35;
+    double elevation_deg = 20;      ///< height above the horizon, in [-89, 89]
+    double vertical_field_deg = 24; ///< in [1, 120]; smaller is more like a parallel projection
+    double margin = 0.07;           ///< free border, as a share of the picture's height, in [0, 0.4]
+};
+
+/// A pinhole camera and the floor under what it sees, in the objects' frame.
+struct Camera {
+    Vec3d position;
+    Vec3d right, up, forward; ///< orthonormal; forward goes into the picture
+    double tan_half_height = 0;
+    Vec3d world_up;          ///< unit
+    double floor_height = 0; ///< the floor is where dot(world_up, point) has this value
+};
+
+/// The camera that sees all points as large as the margin allows, on a floor at the height of the lowest.
+/// One camera for several pictures gives them a common scale.
+/// @param aspect  width over height of the picture
+/// @throws Error InvalidOptions for a field of `view` or an aspect out of range, InvalidMesh when there is no
+/// point, a point is not finite, or all lie on one point
+Camera frame(std::span<const Vec3f> points, const View& view, double aspect);
+
+/// The same for all vertices that faces of the objects use.
+/// @throws Error as above, and InvalidMesh as inspect() does
+Camera frame(std::span<const RenderedObject> objects, const View& view, double aspect);
+
+// ---- Pictures
+// ----------------------------------------------------------------------------------------------------------
+
+/// A picture in memory.
+struct Image {
+    std::uint32_t width = 0, height = 0;
+    std::vector<std::uint8_t> rgb; ///< [height][width][3] sRGB, top row first
+};
+
+struct RenderOptions {
+    static constexpr std::uint32_t kMaxSide = 16384;
+    static constexpr std::uint64_t kMaxPixelCount = std::uint64_t{1} << 26;
+    static constexpr std::uint32_t kMaxSampleCount = 4096;
+
+    std::uint32_t width = 1000; ///< pixels, 1 to kMaxSide; width * height at most kMaxPixelCount
+    std::uint32_t height = 750; ///< pixels, the same
+    std::uint32_t samples = 32; ///< rays per pixel, 1 to kMaxSampleCount; time grows with it, grain falls
+                                ///< with its square root. Powers of two are spread best.
+    unsigned thread_count = 0;  ///< 0: all cores. The picture does not depend on it.
+    /// Called with the finished share, ascending to 1, from one thread at a time. May throw to stop.
+    std::function<void(double share)> progress;
+};
+
+/// Draws objects in soft light on a pale, endless floor. Same bytes on every run and for every thread count
+/// on one machine; another processor may round differently, since Embree picks other instructions.
+/// Cost: three rays per sample and pixel that shows something.
+/// @throws Error InvalidOptions for options out of range or face_colours of a wrong size, InvalidMesh as
+/// inspect() does, or when an object has no face with an area
+Image render(std::span<const RenderedObject> objects, const Camera& camera,
+             const RenderOptions& options = {});
+
+/// Writes a PNG (8 bits, sRGB), to a temporary name first.
+/// @throws Error Unwritable, or InvalidOptions when the picture is empty or its size is not that of its data
+void write_png(const std::filesystem::path& path, const Image& image);
+
+} // namespace echinus

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <echinus/mesh.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace echinus {
+
+struct Ray {
+    Vec3f origin;
+    Vec3f direction; ///< need not be unit
+};
+
+/// Where a ray first meets a mesh.
+struct RayHit {
+    static constexpr std::uint32_t kNoFace = 0xFFFFFFFF;
+
+    std::uint32_t face = kNoFace;
+    float distance = 0; ///< in lengths of the ray's direction
+    float u = 0, v = 0; ///< the point is (1 - u - v) corner 0 + u corner 1 + v corner 2
+
+    bool found() const { return face != kNoFace; }
+};
+
+/// Embree's tree over one mesh: finds the nearest hit, or whether there is any. Watertight at shared edges.
+/// Same answers on every run and for every number of threads; any number of threads may ask.
+class Intersector {
+  public:
+    /// @throws Error InvalidOptions when Embree cannot start or has no memory
+    explicit Intersector(const TriangleMesh& mesh);
+    ~Intersector();
+    Intersector(const Intersector&) = delete;
+    Intersector& operator=(const Intersector&) = delete;
+
+    /// Rays are traced in packets; rays of one packet should start close together.
+    static constexpr std::size_t kPacketSize = 16;
+
+    /// @param rays  [n], n <= kPacketSize
+    /// @param hits  [n] out
+    void first_hits(std::span<const Ray> rays, std::span<RayHit> hits) const noexcept;
+
+    /// Does anything lie on the rays beyond their origins?
+    /// @param rays  [n], n <= kPacketSize
+    /// @return bit i set: ray i is blocked
+    std::uint32_t blocked(std::span<const Ray> rays) const noexcept;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace echinus

@@ -1,0 +1,92 @@
+#include "render/light.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace echinus {
+
+namespace {
+
+constexpr double kLampAzimuthDeg = 54;   // to the left of the camera, as seen from what is drawn
+constexpr double kLampElevationDeg = 50; // shadows stay short and fall to the right
+constexpr float kLampRadius = 0.13F;     // tangent of the half angle: 7.4 degrees
+constexpr Vec3f kLampRadiance{1.0F, 0.975F, 0.93F};
+constexpr Vec3f kZenith{0.50F, 0.52F, 0.55F};
+constexpr Vec3f kHorizon{0.29F, 0.30F, 0.315F};
+constexpr Vec3f kFloorBounce{0.22F, 0.213F, 0.202F};
+
+Vec3f unit(const Vec3f& v) {
+    return v * (1 / length(v));
+}
+
+struct Basis {
+    Vec3f x, y;
+};
+
+/// Two unit vectors that are orthogonal to a unit vector and to each other. Duff et al., "Building an
+/// Orthonormal Basis, Revisited", JCGT 6(1), 2017.
+Basis orthonormal_basis(const Vec3f& n) {
+    const float sign = std::copysign(1.0F, n.z);
+    const float a = -1 / (sign + n.z);
+    const float b = n.x * n.y * a;
+    return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
+}
+
+/// The unit square onto the unit disc, area-preserving and without tearing strata apart. Shirley and Chiu,
+/// "A Low Distortion Map Between Disk and Square", 1997.
+Sample2 to_disc(const Sample2& sample) {
+    const float a = 2 * sample[0] - 1;
+    const float b = 2 * sample[1] - 1;
+    if (a == 0 && b == 0) return {0, 0};
+    constexpr float kQuarter = std::numbers::pi_v<float> / 4;
+    const bool wide = std::abs(a) > std::abs(b);
+    const float radius = wide ? a : b;
+    const float angle = wide ? kQuarter * (b / a) : 2 * kQuarter - kQuarter * (a / b);
+    return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+/// Towards the lamp's middle: fixed relative to the camera's level direction, so that every view is well lit.
+Vec3f lamp_middle(const Camera& camera) {
+    constexpr double kDegree = std::numbers::pi / 180;
+    const Vec3d towards_camera = cross(camera.right, camera.world_up);
+    const double azimuth = kLampAzimuthDeg * kDegree;
+    const double elevation = kLampElevationDeg * kDegree;
+    const Vec3d level = towards_camera * std::cos(azimuth) - camera.right * std::sin(azimuth);
+    return unit(Vec3f(level * std::cos(elevation) + camera.world_up * std::sin(elevation)));
+}
+
+} // namespace
+
+StudioLight::StudioLight(const Camera& camera) : up_(camera.world_up), lamp_(lamp_middle(camera)) {
+    const Basis basis = orthonormal_basis(lamp_);
+    lamp_x_ = basis.x * kLampRadius;
+    lamp_y_ = basis.y * kLampRadius;
+}
+
+Vec3f StudioLight::lamp_direction(const Sample2& sample) const {
+    const Sample2 disc = to_disc(sample);
+    return lamp_ + lamp_x_ * disc[0] + lamp_y_ * disc[1];
+}
+
+Vec3f StudioLight::lamp_irradiance(const Vec3f& normal) const {
+    return kLampRadiance * std::max(dot(normal, lamp_), 0.0F);
+}
+
+Vec3f StudioLight::ambient_radiance(const Vec3f& direction) const {
+    const float height = dot(direction, up_);
+    // The floor's light comes in under the horizon; a narrow band in between keeps the change soft.
+    constexpr float kBand = 0.15F;
+    const float sky_share = std::clamp(height / kBand + 0.5F, 0.0F, 1.0F);
+    const Vec3f sky = kHorizon + (kZenith - kHorizon) * std::max(height, 0.0F);
+    return kFloorBounce + (sky - kFloorBounce) * sky_share;
+}
+
+Vec3f cosine_direction(const Vec3f& normal, const Sample2& sample) {
+    const Sample2 disc = to_disc(sample);
+    const Basis basis = orthonormal_basis(normal);
+    const float height = std::sqrt(std::max(0.0F, 1 - disc[0] * disc[0] - disc[1] * disc[1]));
+    return basis.x * disc[0] + basis.y * disc[1] + normal * height;
+}
+
+} // namespace echinus

@@ -1,0 +1,215 @@
+#include "render/tracer.hpp"
+
+#include "render/tone.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace echinus {
+
+namespace {
+
+constexpr Colour kBackdrop = Colour::from_hex(0xFEFDFB);
+/// How dark a place of the floor gets that no light reaches: 1 would be black.
+constexpr float kShadowStrength = 0.66F;
+/// Light from a direction in which another part of the drawing stands, as a share of what the open direction
+/// would send, times that part's albedo, taken to be the point's own.
+constexpr float kInterreflection = 0.55F;
+/// Clearance of rays that start on the surface, in the unit frame.
+constexpr float kClearance = 1e-4F;
+/// Between these distances from the drawing's middle its shadow fades out, in the unit frame.
+constexpr float kFloorFadeStart = 4, kFloorFadeEnd = 7;
+
+Vec3f multiply(const Vec3f& a, const Vec3f& b) {
+    return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+float grey(const Vec3f& light) { return (light.x + light.y + light.z) / 3; }
+Vec3f unit(const Vec3f& v) {
+    return v * (1 / length(v));
+}
+
+/// All that is drawn lies within the unit sphere; most rays about the floor pass it by, and need not be
+/// handed to Embree. The sphere is a little larger here than rounding can make the drawing.
+bool meets_unit_sphere(const Ray& ray) {
+    constexpr float kRadiusSq = 1.0001F;
+    const float distance_sq = dot(ray.origin, ray.origin);
+    if (distance_sq <= kRadiusSq) return true;
+    const float approach = -dot(ray.origin, ray.direction);
+    const float direction_sq = dot(ray.direction, ray.direction);
+    return approach > 0 && (distance_sq - kRadiusSq) * direction_sq <= approach * approach;
+}
+
+template <typename T>
+T blend(const std::array<T, 3>& corners, const RayHit& hit) {
+    return corners[0] * (1 - hit.u - hit.v) + corners[1] * hit.u + corners[2] * hit.v;
+}
+
+/// Moves a point of a flat face out to the curved surface that its normals pretend to, or else the face
+/// itself would cut off the light in the middle of a smooth gradient. Hanika, "Hacking the Shadow
+/// Terminator", Ray Tracing Gems II, 2021.
+Vec3f lift_to_smooth_surface(const Vec3f& point, const std::array<Vec3f, 3>& corners,
+                             const CornerNormals& normals, const RayHit& hit) {
+    std::array<Vec3f, 3> lifts;
+    for (std::size_t k = 0; k < 3; ++k) {
+        lifts[k] = normals[k] * -std::min(dot(point - corners[k], normals[k]), 0.0F);
+    }
+    return point + blend(lifts, hit);
+}
+
+/// Rays to one light from the places seen through one pixel, and what the light adds where they are free.
+class LightRays {
+  public:
+    void add(const Ray& ray, const Vec3f& gain) {
+        if (gain == Vec3f{}) return;
+        rays_[count_] = ray;
+        gains_[count_++] = gain;
+    }
+    Vec3f light(const Intersector& intersector) const {
+        Vec3f sum;
+        if (count_ == 0) return sum;
+        const std::uint32_t blocked = intersector.blocked({rays_.data(), count_});
+        for (std::size_t i = 0; i < count_; ++i) {
+            if ((blocked >> i & 1U) == 0) sum += gains_[i];
+        }
+        return sum;
+    }
+
+  private:
+    std::array<Ray, Intersector::kPacketSize> rays_;
+    std::array<Vec3f, Intersector::kPacketSize> gains_;
+    std::size_t count_ = 0;
+};
+
+} // namespace
+
+Lens::Lens(const Camera& camera, const UnitFrame& frame, std::uint32_t width, std::uint32_t height)
+    : position_(frame.to_unit(camera.position)),
+      pixel_size_(static_cast<float>(2 * camera.tan_half_height / height)) {
+    step_x_ = Vec3f(camera.right) * pixel_size_;
+    step_y_ = Vec3f(camera.up) * -pixel_size_;
+    corner_ = Vec3f(camera.forward) - step_x_ * (static_cast<float>(width) / 2) -
+              step_y_ * (static_cast<float>(height) / 2);
+}
+
+Ray Lens::ray_through(float x, float y) const {
+    return {position_, unit(corner_ + step_x_ * x + step_y_ * y)};
+}
+
+Tracer::Tracer(const PaintedSurface& surface, const Intersector& intersector, const Camera& camera,
+               const RenderOptions& options)
+    : surface_(surface), intersector_(intersector), samples_(options.samples),
+      lens_(camera, surface.frame, options.width, options.height), light_(camera),
+      floor_height_(static_cast<float>((camera.floor_height - dot(camera.world_up, surface.frame.centre)) *
+                                       surface.frame.scale)),
+      wire_colour_(to_linear(palette::kInk)), backdrop_(to_linear(kBackdrop)),
+      sample_count_(options.samples) {}
+
+Vec3f Tracer::pixel(std::uint32_t x, std::uint32_t y) const {
+    Vec3f sum;
+    for (std::uint32_t first = 0; first < sample_count_; first += Intersector::kPacketSize) {
+        sum += packet(x, y, first, std::min<std::size_t>(Intersector::kPacketSize, sample_count_ - first));
+    }
+    return sum * (1 / static_cast<float>(sample_count_));
+}
+
+Vec3f Tracer::packet(std::uint32_t x, std::uint32_t y, std::uint32_t first_sample, std::size_t count) const {
+    std::array<Ray, Intersector::kPacketSize> rays;
+    std::array<RayHit, Intersector::kPacketSize> hits;
+    const std::uint32_t seed = SampleTables::pixel_seed(x, y);
+    bool any_meets = false;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Sample2 offset = samples_.sample(first_sample + i, SampleUse::Pixel, seed);
+        rays[i] = lens_.ray_through(static_cast<float>(x) + offset[0], static_cast<float>(y) + offset[1]);
+        any_meets = any_meets || meets_unit_sphere(rays[i]);
+    }
+    if (any_meets) intersector_.first_hits({rays.data(), count}, hits);
+
+    Vec3f sum;
+    LightRays lamp, sky;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Draw draw{first_sample + i, seed};
+        const Place place =
+            hits[i].found() ? object_place(rays[i], hits[i], draw) : floor_place(rays[i], draw);
+        sum += place.base;
+        lamp.add(place.to_lamp, place.lamp_gain);
+        sky.add(place.to_sky, place.sky_gain);
+    }
+    return sum + lamp.light(intersector_) + sky.light(intersector_);
+}
+
+Tracer::Place Tracer::object_place(const Ray& ray, const RayHit& hit, const Draw& draw) const {
+    const Triangle& face = surface_.mesh.faces[hit.face];
+    const std::array<Vec3f, 3> corners{surface_.mesh.vertices[face[0]], surface_.mesh.vertices[face[1]],
+                                       surface_.mesh.vertices[face[2]]};
+    const Vec3f outward = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const bool from_behind = dot(outward, ray.direction) > 0;
+    const float side = from_behind ? -1.0F : 1.0F; // of the viewer
+    CornerNormals normals = surface_.normals[hit.face];
+    for (Vec3f& normal : normals) normal *= side;
+
+    const Vec3f position = blend(corners, hit);
+    const Vec3f normal = unit(blend(normals, hit));
+    const Vec3f start =
+        lift_to_smooth_surface(position, corners, normals, hit) + unit(outward) * (side * kClearance);
+    const Vec3f paint = albedo(hit, position, from_behind);
+    const Vec3f sky_direction =
+        cosine_direction(normal, samples_.sample(draw.sample, SampleUse::Sky, draw.seed));
+    const Vec3f sky = multiply(light_.ambient_radiance(sky_direction), paint);
+
+    Place place;
+    place.base = multiply(sky, paint) * kInterreflection;
+    place.sky_gain = sky - place.base;
+    place.lamp_gain = multiply(light_.lamp_irradiance(normal), paint);
+    place.to_sky = {start, sky_direction};
+    place.to_lamp = {start, light_.lamp_direction(samples_.sample(draw.sample, SampleUse::Lamp, draw.seed))};
+    return place;
+}
+
+Vec3f Tracer::albedo(const RayHit& hit, const Vec3f& position, bool from_behind) const {
+    if (on_wire(hit, position)) return wire_colour_;
+    const PaintedSurface::Style& style = surface_.styles[surface_.style_index[hit.face]];
+    return from_behind && style.has_back ? style.back : surface_.fronts[hit.face];
+}
+
+bool Tracer::on_wire(const RayHit& hit, const Vec3f& position) const {
+    const float half_width_px = surface_.styles[surface_.style_index[hit.face]].wire_half_width_px;
+    if (half_width_px == 0) return false;
+    const float half_width = half_width_px * lens_.pixel_size() * hit.distance;
+    const Triangle& face = surface_.mesh.faces[hit.face];
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3f& start = surface_.mesh.vertices[face[k]];
+        const Vec3f edge = surface_.mesh.vertices[face[(k + 1) % 3]] - start;
+        if (length(cross(position - start, edge)) < half_width * length(edge)) return true;
+    }
+    return false;
+}
+
+/// The floor has the colour of the backdrop, so that there is no horizon, and is darkened only by the share
+/// of light that the drawing keeps from it.
+Tracer::Place Tracer::floor_place(const Ray& ray, const Draw& draw) const {
+    Place place;
+    place.base = backdrop_;
+    const float fall = dot(ray.direction, light_.up());
+    const float distance = (floor_height_ - dot(ray.origin, light_.up())) / fall;
+    if (!(distance > 0)) return place;
+    const Vec3f point = ray.origin + ray.direction * distance;
+    const float fade =
+        std::clamp((kFloorFadeEnd - length(point)) / (kFloorFadeEnd - kFloorFadeStart), 0.0F, 1.0F);
+    if (fade == 0) return place;
+
+    const Vec3f start = point + light_.up() * kClearance;
+    place.to_sky = {start,
+                    cosine_direction(light_.up(), samples_.sample(draw.sample, SampleUse::Sky, draw.seed))};
+    place.to_lamp = {start, light_.lamp_direction(samples_.sample(draw.sample, SampleUse::Lamp, draw.seed))};
+    // Grey, though the lamp is warmer than the sky: a tinted shadow looks like a stain on a white page.
+    const float lamp = grey(light_.lamp_irradiance(light_.up()));
+    const float sky = grey(light_.ambient_radiance(place.to_sky.direction));
+    const Vec3f full = backdrop_ * (kShadowStrength * fade / (lamp + sky));
+    if (meets_unit_sphere(place.to_lamp)) place.lamp_gain = full * lamp;
+    if (meets_unit_sphere(place.to_sky)) place.sky_gain = full * sky;
+    place.base -= place.lamp_gain + place.sky_gain;
+    return place;
+}
+
+} // namespace echinus

@@ -1,0 +1,54 @@
+#include "render/light.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+using namespace echinus;
+
+namespace {
+
+Camera some_camera() {
+    return frame(std::vector<Vec3f>{{-1, -1, -1}, {1, 1, 1}}, View{}, 1);
+}
+
+} // namespace
+
+TEST(StudioLight, ComesFromAboveTheCamerasLeftShoulder) {
+    const Camera camera = some_camera();
+    const StudioLight light(camera);
+    for (const Sample2& sample : {Sample2{0, 0}, Sample2{0.5F, 0.5F}, Sample2{0.99F, 0.2F}}) {
+        const Vec3d direction(light.lamp_direction(sample));
+        EXPECT_LT(dot(direction, camera.right), 0);
+        EXPECT_GT(dot(direction, camera.world_up), 0);
+        EXPECT_LT(dot(direction, camera.forward), 0);
+    }
+}
+
+TEST(StudioLight, IsBrighterFromTheSkyThanFromTheFloor) {
+    const StudioLight light(some_camera());
+    EXPECT_GT(light.ambient_radiance(light.up()).y, light.ambient_radiance(-light.up()).y);
+    EXPECT_EQ(light.lamp_irradiance(-light.up()), Vec3f{});
+}
+
+TEST(CosineDirection, IsUnitAndFollowsTheCosine) {
+    // Under a density of cos / pi the mean of the cosine over the hemisphere is 2/3, of its square 1/2.
+    for (const Vec3f& normal : {Vec3f{0, 0, 1}, Vec3f{0, 0, -1}, Vec3f{0.6F, 0, 0.8F}, Vec3f{0, -1, 0}}) {
+        double sum = 0;
+        double sum_of_squares = 0;
+        constexpr int kSide = 64;
+        for (int i = 0; i < kSide * kSide; ++i) {
+            const Sample2 sample{(static_cast<float>(i % kSide) + 0.5F) / kSide,
+                                 (static_cast<float>(i / kSide) + 0.5F) / kSide};
+            const Vec3f direction = cosine_direction(normal, sample);
+            ASSERT_NEAR(length(direction), 1, 1e-5);
+            const double cosine = dot(direction, normal);
+            ASSERT_GE(cosine, -1e-6);
+            sum += cosine;
+            sum_of_squares += cosine * cosine;
+        }
+        EXPECT_NEAR(sum / (kSide * kSide), 2.0 / 3, 2e-3);
+        EXPECT_NEAR(sum_of_squares / (kSide * kSide), 0.5, 2e-3);
+    }
+}

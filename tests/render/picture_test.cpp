@@ -1,0 +1,191 @@
+#include <echinus/render.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+using namespace echinus;
+
+namespace {
+
+constexpr Colour kGreen{0.1F, 0.8F, 0.1F};
+constexpr Colour kBlue{0.1F, 0.1F, 0.8F};
+
+struct Pixel {
+    int red, green, blue;
+    int brightness() const { return red + green + blue; }
+};
+
+Pixel pixel_at(const Image& image, std::uint32_t x, std::uint32_t y) {
+    const std::uint8_t* rgb = &image.rgb[3 * (std::size_t{y} * image.width + x)];
+    return {rgb[0], rgb[1], rgb[2]};
+}
+
+RenderOptions options_of(std::uint32_t width, std::uint32_t height, std::uint32_t samples) {
+    RenderOptions options;
+    options.width = width;
+    options.height = height;
+    options.samples = samples;
+    return options;
+}
+
+std::vector<RenderedObject> painted(const TriangleMesh& mesh, Colour colour) {
+    RenderedObject object;
+    object.mesh = mesh;
+    object.colour = colour;
+    return {object};
+}
+
+/// A picture of the objects from the side that `view` names.
+Image picture(const std::vector<RenderedObject>& objects, const RenderOptions& options,
+              const View& view = {}) {
+    return render(objects, frame(objects, view, double(options.width) / options.height), options);
+}
+
+TriangleMesh scaled(TriangleMesh mesh, float factor, const Vec3f& offset = {}) {
+    for (Vec3f& vertex : mesh.vertices) vertex = vertex * factor + offset;
+    return mesh;
+}
+
+} // namespace
+
+TEST(Picture, ASphereCoversTheAreaOfItsSilhouette) {
+    const auto objects = painted(make_sphere(1, 256, 128), kGreen);
+    const RenderOptions options = options_of(200, 200, 4);
+    const Camera camera = frame(objects, View{}, 1);
+    const Image image = render(objects, camera, options);
+
+    // Seen from distance d, the rim of a unit sphere lies at the angle asin(1 / d) from its middle.
+    const double distance = length(camera.position);
+    const double radius_px = 100 * std::tan(std::asin(1 / distance)) / camera.tan_half_height;
+    int covered = 0;
+    for (std::uint32_t y = 0; y < 200; ++y) {
+        for (std::uint32_t x = 0; x < 200; ++x) {
+            const Pixel pixel = pixel_at(image, x, y);
+            // Half covered pixels lie near the middle between green and white.
+            if (pixel.green - pixel.red > 60) ++covered;
+        }
+    }
+    const double expected = std::numbers::pi * radius_px * radius_px;
+    EXPECT_NEAR(covered / expected, 1, 0.01);
+}
+
+TEST(Picture, IsTheSameForEveryThreadCountAndOnEveryRun) {
+    auto objects = painted(make_torus(1, 0.4, 24, 12), palette::kClay);
+    objects.push_back(painted(make_box({0.5, 0.5, 2}), kBlue).front());
+    objects.back().wire_width_px = 1;
+    RenderOptions options = options_of(80, 60, 5);
+    options.thread_count = 1;
+    const Image reference = picture(objects, options);
+    for (unsigned thread_count : {1U, 2U, 3U, 7U, 0U}) {
+        options.thread_count = thread_count;
+        EXPECT_EQ(picture(objects, options).rgb, reference.rgb) << thread_count << " threads";
+    }
+}
+
+TEST(Picture, DoesNotDependOnTheUnitOfLength) {
+    const TriangleMesh torus = make_torus(1, 0.4, 24, 12);
+    const RenderOptions options = options_of(60, 40, 2);
+    const Image reference = picture(painted(torus, kGreen), options);
+    // Powers of two change no digit of any coordinate.
+    EXPECT_EQ(picture(painted(scaled(torus, 0x1p30F), kGreen), options).rgb, reference.rgb);
+    EXPECT_EQ(picture(painted(scaled(torus, 0x1p-30F), kGreen), options).rgb, reference.rgb);
+}
+
+TEST(Picture, ShowsAModelThatStandsFarFromTheOrigin) {
+    const auto objects = painted(scaled(make_box({64, 64, 64}, 2), 1, {1e6F, -3e6F, 2e6F}), kGreen);
+    const Pixel centre = pixel_at(picture(objects, options_of(40, 40, 4)), 20, 20);
+    EXPECT_GT(centre.green, centre.red + 40);
+}
+
+TEST(Picture, HasAShadowOnTheSideAwayFromTheLamp) {
+    View view;
+    view.margin = 0.3;
+    const Image image = picture(painted(make_box({1, 1, 1}), kGreen), options_of(120, 90, 16), view);
+    int darkest_left = 765;
+    int darkest_right = 765;
+    for (std::uint32_t y = 0; y < 90; ++y) {
+        for (std::uint32_t x = 0; x < 120; ++x) {
+            const Pixel pixel = pixel_at(image, x, y);
+            if (pixel.green - pixel.red > 10) continue; // the box itself
+            int& darkest = x < 60 ? darkest_left : darkest_right;
+            darkest = std::min(darkest, pixel.brightness());
+        }
+    }
+    const int backdrop = pixel_at(image, 0, 0).brightness();
+    EXPECT_LT(darkest_right, backdrop - 120);
+    EXPECT_GT(darkest_left, darkest_right + 40);
+}
+
+TEST(Picture, FadesIntoAPaleBackdropWithoutAHorizon) {
+    View view;
+    view.margin = 0.35;
+    view.elevation_deg = 3; // the horizon would cross the picture
+    const Image image = picture(painted(make_sphere(1, 32, 16), kGreen), options_of(90, 60, 8), view);
+    const Pixel top = pixel_at(image, 0, 0);
+    EXPECT_GT(top.brightness(), 3 * 240);
+    for (std::uint32_t y = 0; y < 60; ++y) {
+        EXPECT_NEAR(pixel_at(image, 0, y).brightness(), top.brightness(), 6) << "row " << y;
+    }
+}
+
+TEST(Picture, PaintsEveryFaceWithItsColour) {
+    auto objects = painted(make_box({1, 1, 1}), palette::kClay);
+    const TriangleMesh& mesh = objects[0].mesh;
+    for (const Triangle& face : mesh.faces) {
+        const bool in_front =
+            mesh.vertices[face[0]].x > 0 && mesh.vertices[face[1]].x > 0 && mesh.vertices[face[2]].x > 0;
+        objects[0].face_colours.push_back(in_front ? kBlue : kGreen);
+    }
+    View view;
+    view.azimuth_deg = 0;
+    view.elevation_deg = 0;
+    const Pixel front = pixel_at(picture(objects, options_of(20, 20, 4), view), 10, 10);
+    EXPECT_GT(front.blue, front.green + 60);
+    view.azimuth_deg = 180;
+    const Pixel back = pixel_at(picture(objects, options_of(20, 20, 4), view), 10, 10);
+    EXPECT_GT(back.green, back.blue + 60);
+}
+
+TEST(Picture, PaintsTheBackOfAClothOtherwise) {
+    auto objects =
+        painted({{{0, -1, -1}, {0, 1, -1}, {0, 1, 1}, {0, -1, 1}}, {{0, 1, 2}, {0, 2, 3}}}, kGreen);
+    objects[0].back_colour = kBlue;
+    View view;
+    view.elevation_deg = 0;
+    view.azimuth_deg = 0; // the cloth's normal is +x
+    const Pixel front = pixel_at(picture(objects, options_of(20, 20, 4), view), 10, 10);
+    view.azimuth_deg = 180;
+    const Pixel back = pixel_at(picture(objects, options_of(20, 20, 4), view), 10, 10);
+    EXPECT_GT(front.green, front.blue + 40);
+    EXPECT_GT(back.blue, back.green + 40);
+    // Both sides are turned to the lamp in their picture: neither is left in the dark.
+    EXPECT_NEAR(front.green, back.blue, 12);
+}
+
+TEST(Picture, DrawsWiresAlongEdges) {
+    auto objects =
+        painted({{{0, -1, -1}, {0, 1, -1}, {0, 1, 1}, {0, -1, 1}}, {{0, 1, 2}, {0, 2, 3}}}, kGreen);
+    View view;
+    view.elevation_deg = 0;
+    view.azimuth_deg = 0;
+    const RenderOptions options = options_of(41, 41, 16);
+    const Image plain = picture(objects, options, view);
+    objects[0].wire_width_px = 2;
+    const Image wired = picture(objects, options, view);
+    EXPECT_LT(pixel_at(wired, 20, 20).brightness(),
+              pixel_at(plain, 20, 20).brightness() - 60); // the diagonal
+    EXPECT_EQ(pixel_at(wired, 27, 20).brightness(), pixel_at(plain, 27, 20).brightness());
+}
+
+TEST(Picture, ReportsProgressUpToTheEnd) {
+    std::vector<double> shares;
+    RenderOptions options = options_of(10, 30, 1);
+    options.progress = [&](double share) { shares.push_back(share); };
+    picture(painted(make_box({1, 1, 1}), kGreen), options);
+    ASSERT_EQ(shares.size(), 30U);
+    EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+    EXPECT_EQ(shares.back(), 1);
+}
