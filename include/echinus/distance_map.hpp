@@ -1,6 +1,7 @@
 #pragma once
 
 #include <echinus/contact.hpp>
+#include <echinus/directions.hpp>
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 
@@ -18,9 +19,6 @@
 ///
 /// All points are in the frame and unit of the mesh that the map was built from ("local").
 namespace echinus {
-
-/// Which axis of the mesh the poles of the (longitude, colatitude) grid lie on.
-enum class PoleAxis : std::uint8_t { X, Y, Z };
 
 /// What is done about mesh vertices that linear interpolation between samples passes by (the paper's figure
 /// 1b).

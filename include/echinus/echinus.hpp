@@ -5,6 +5,7 @@
 
 #include <echinus/collider.hpp>
 #include <echinus/contact.hpp>
+#include <echinus/directions.hpp>
 #include <echinus/distance_map.hpp>
 #include <echinus/error.hpp>
 #include <echinus/geometry.hpp>

@@ -3,7 +3,8 @@
 #include "directions/angles.hpp"
 #include "geometry/circle.hpp"
 
-#include <echinus/distance_map.hpp>
+#include <echinus/directions.hpp>
+#include <echinus/geometry.hpp>
 
 #include <array>
 #include <cmath>
@@ -87,17 +88,21 @@ class SphericalGrid {
         const float theta = atan2_polynomial(horizontal, d_grid.z);
         const float s = phi * (static_cast<float>(longitude_count_) / (2 * kPi));
         const float t = theta * (static_cast<float>(colatitude_count_) / kPi) - 0.5F;
-        const float s_floor = std::floor(s);
-        const float t_floor = std::floor(t);
-        const std::uint32_t i0 = wrap_longitude(static_cast<std::int32_t>(s_floor));
+        const std::int32_t s_floor = floor_to_int(s);
+        const std::int32_t j0 = floor_to_int(t);
+        const std::uint32_t i0 = wrap_longitude(s_floor);
         const std::uint32_t i1 = i0 + 1 == longitude_count_ ? 0 : i0 + 1;
-        const auto j0 = static_cast<std::int32_t>(t_floor);
         return {{corner(i0, j0), corner(i1, j0), corner(i0, j0 + 1), corner(i1, j0 + 1)},
-                s - s_floor,
-                t - t_floor};
+                s - static_cast<float>(s_floor),
+                t - static_cast<float>(j0)};
     }
 
   private:
+    /// Without the call that std::floor is on processors older than SSE4.1.
+    static std::int32_t floor_to_int(float value) {
+        const auto truncated = static_cast<std::int32_t>(value);
+        return truncated - (static_cast<float>(truncated) > value ? 1 : 0);
+    }
     CirclePoint colatitude_point(std::uint32_t j) const {
         return circle_point(2 * std::uint64_t{j} + 1, 4 * std::uint64_t{colatitude_count_});
     }
@@ -119,9 +124,5 @@ class SphericalGrid {
     std::uint32_t colatitude_count_;
     PoleAxis pole_axis_;
 };
-
-inline SphericalGrid grid_of(const DistanceMapView& map) {
-    return {map.longitude_count, map.colatitude_count, map.pole_axis};
-}
 
 } // namespace echinus

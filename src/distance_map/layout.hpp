@@ -1,5 +1,7 @@
 #pragma once
 
+#include "directions/spherical_grid.hpp"
+
 #include <echinus/distance_map.hpp>
 
 #include <cmath>
@@ -7,6 +9,10 @@
 #include <cstdint>
 
 namespace echinus {
+
+inline SphericalGrid grid_of(const DistanceMapView& map) {
+    return {map.longitude_count, map.colatitude_count, map.pole_axis};
+}
 
 inline constexpr float kUnormSteps = 65535;
 

@@ -1,3 +1,4 @@
+#include "support/expect_error.hpp"
 #include "support/map_file_attack.hpp"
 #include "support/sample_map.hpp"
 
@@ -48,17 +49,6 @@ void expect_same_map(const DistanceMap& a, const DistanceMap& b) {
     EXPECT_EQ(a.statistics().clamped_entries, b.statistics().clamped_entries);
     EXPECT_EQ(a.statistics().wrong_parity_share, b.statistics().wrong_parity_share);
     EXPECT_EQ(a.source_hash(), b.source_hash());
-}
-
-/// The reader must refuse with this code and a sentence that contains `words`.
-void expect_refusal(ErrorCode code, const std::string& words, const std::function<void()>& read) {
-    try {
-        read();
-        ADD_FAILURE() << "read without complaint; expected: " << words;
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), code) << error.what();
-        EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-    }
 }
 
 std::uint32_t read_word(const std::vector<std::byte>& bytes, std::size_t position, std::size_t byte_count) {
@@ -206,8 +196,8 @@ TEST(MapFile, NamesWhatContradictsTheMeaning) {
         MapParts parts = random_map_parts(EntryFormat::Float32, 8, 6, 5);
         spoilt.spoil(parts);
         const auto bytes = serialise(parts.map());
-        expect_refusal(ErrorCode::Damaged, spoilt.words, [&] { load_bytes(bytes); });
-        expect_refusal(ErrorCode::Damaged, "echinus build", [&] { load_bytes(bytes); });
+        expect_error(ErrorCode::Damaged, spoilt.words, [&] { load_bytes(bytes); });
+        expect_error(ErrorCode::Damaged, "echinus build", [&] { load_bytes(bytes); });
     }
 }
 
@@ -224,8 +214,8 @@ TEST(MapFile, RefusesEntriesOfADirectionThatDescend) {
         } else {
             std::swap(parts.entries_unorm16[first], parts.entries_unorm16[first + 1]);
         }
-        expect_refusal(ErrorCode::Damaged, "[" + std::to_string(first + 1) + "]",
-                       [&] { load_bytes(serialise(parts.map())); });
+        expect_error(ErrorCode::Damaged, "[" + std::to_string(first + 1) + "]",
+                     [&] { load_bytes(serialise(parts.map())); });
     }
 }
 
@@ -233,20 +223,20 @@ TEST(MapFile, RefusesAnotherVersionBeforeItLooksFurther) {
     auto bytes = serialise(random_map_parts(EntryFormat::Float32, 8, 6, 7).map());
     constexpr std::size_t kVersionField = 0;
     bytes[root_field_position(bytes, kVersionField)] = std::byte{9};
-    expect_refusal(ErrorCode::UnsupportedVersion, "version 9", [&] { load_bytes(bytes); });
+    expect_error(ErrorCode::UnsupportedVersion, "version 9", [&] { load_bytes(bytes); });
     // Whatever else a later version changes: here, the place of the map.
     constexpr std::size_t kMapField = 3;
     bytes[root_field_position(bytes, kMapField) + 3] = std::byte{0xff};
-    expect_refusal(ErrorCode::UnsupportedVersion, "version 9", [&] { load_bytes(bytes); });
+    expect_error(ErrorCode::UnsupportedVersion, "version 9", [&] { load_bytes(bytes); });
 }
 
 TEST(MapFile, RefusesAnUnknownKindOfMap) {
     auto bytes = serialise(random_map_parts(EntryFormat::Float32, 8, 6, 8).map());
     constexpr std::size_t kMapTypeField = 2;
     bytes[root_field_position(bytes, kMapTypeField)] = std::byte{77};
-    expect_refusal(ErrorCode::UnsupportedVersion, "unknown kind 77", [&] { load_bytes(bytes); });
+    expect_error(ErrorCode::UnsupportedVersion, "unknown kind 77", [&] { load_bytes(bytes); });
     bytes[root_field_position(bytes, kMapTypeField)] = std::byte{0};
-    expect_refusal(ErrorCode::Damaged, "holds no map", [&] { load_bytes(bytes); });
+    expect_error(ErrorCode::Damaged, "holds no map", [&] { load_bytes(bytes); });
 }
 
 TEST_F(MapFileOnDisk, KeepsTheMapAliveWhenTheFileIsReplacedOrRemoved) {
@@ -272,12 +262,12 @@ TEST_F(MapFileOnDisk, CarriesNotesBesideTheMap) {
 
 TEST_F(MapFileOnDisk, RefusesWhatIsNoMapFileByName) {
     const fs::path missing = folder_ / "missing.ech";
-    expect_refusal(ErrorCode::Unreadable, missing.string(), [&] { load_distance_map(missing); });
-    expect_refusal(ErrorCode::Unreadable, folder_.string(), [&] { load_distance_map(folder_); });
+    expect_error(ErrorCode::Unreadable, missing.string(), [&] { load_distance_map(missing); });
+    expect_error(ErrorCode::Unreadable, folder_.string(), [&] { load_distance_map(folder_); });
     for (const char* content : {"", "ECHM", "not a map at all", "v 0 0 0\nv 1 0 0\nf 1 2 3\n"}) {
         const fs::path path = write("wrong.ech", content);
-        expect_refusal(ErrorCode::WrongFormat, path.string(), [&] { load_distance_map(path); });
-        expect_refusal(ErrorCode::WrongFormat, path.string(), [&] { load_map_file_notes(path); });
+        expect_error(ErrorCode::WrongFormat, path.string(), [&] { load_distance_map(path); });
+        expect_error(ErrorCode::WrongFormat, path.string(), [&] { load_map_file_notes(path); });
         EXPECT_FALSE(is_map_file(path));
     }
     EXPECT_FALSE(is_map_file(missing));
@@ -292,5 +282,5 @@ TEST_F(MapFileOnDisk, KnowsAMapFileByItsFirstBytes) {
 TEST_F(MapFileOnDisk, ReportsAFullDisk) {
     if (!fs::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
     const DistanceMap map = random_map_parts(EntryFormat::Float32, 8, 6, 13).map();
-    expect_refusal(ErrorCode::Unwritable, "/dev/full", [&] { save(map, "/dev/full"); });
+    expect_error(ErrorCode::Unwritable, "/dev/full", [&] { save(map, "/dev/full"); });
 }

@@ -4,6 +4,7 @@
 #include <echinus/map_file.hpp>
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,6 +13,21 @@
 #include <vector>
 
 namespace echinus::test {
+
+/// Points in and around a map's sphere, on its seam and poles, and those that are no points at all.
+inline std::vector<Vec3f> telling_points(const DistanceMapView& map) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    std::vector<Vec3f> points{map.centre, {0, 0, 0}, {kNan, 0, 0}, {kInfinity, 0, 0}, {3e38F, 3e38F, -3e38F}};
+    for (const float fraction : {0.0F, 1e-30F, 0.25F, 0.5F, 0.9999F, 1.0F, 1.5F}) {
+        const float r = map.radius * fraction;
+        for (const Vec3f& d : {Vec3f{r, 0, 0}, Vec3f{-r, -0.0F, 0}, Vec3f{0, r, 0}, Vec3f{0, 0, r},
+                               Vec3f{0, 0, -r}, Vec3f{r * 0.3F, r * -0.4F, r * 0.6F}}) {
+            points.push_back(map.centre + d);
+        }
+    }
+    return points;
+}
 
 /// What a reader of hostile bytes must do: refuse them with an Error, or give a map that can be queried
 /// anywhere, looked at, and written again so that it reads back the same.
@@ -29,6 +45,14 @@ inline bool attack_map_file(std::span<const std::byte> bytes) {
         const bool proper = sentence.starts_with("attacked: ") && sentence.find('\n') == std::string::npos;
         if (!proper) throw std::logic_error("not a proper sentence: " + sentence);
         return false;
+    }
+    const std::vector<Vec3f> points = telling_points(*map);
+    std::vector<Contact> contacts(points.size());
+    contacts_batch(*map, points, map->view().radius, contacts);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (contacts[i].inside != contains(*map, points[i])) {
+            throw std::logic_error("contact and contains disagree");
+        }
     }
     std::size_t direction_count = 0;
     for (const std::size_t count : entry_histogram(*map)) direction_count += count;

@@ -1,0 +1,131 @@
+#include <echinus/map_file.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+
+using namespace echinus;
+namespace fs = std::filesystem;
+
+// Files of every version of the format, kept forever: what one release wrote, all later ones read.
+//
+// Each holds the map of a box of 2 x 3 x 4 around the origin with 8 x 6 directions.
+
+namespace {
+
+const Vec3d kBoxSize{2, 3, 4};
+
+struct Golden {
+    const char* file;
+    DistanceMapOptions options;
+};
+
+const Golden kGoldenFloat32{"v1_box_float32.ech",
+                            {.longitude_count = 8,
+                             .colatitude_count = 6,
+                             .correction = VertexCorrection::None,
+                             .entry_format = EntryFormat::Float32,
+                             .pole_axis = PoleAxis::Z}};
+const Golden kGoldenUnorm16{"v1_box_unorm16.ech",
+                            {.longitude_count = 8,
+                             .colatitude_count = 6,
+                             .correction = VertexCorrection::Signed,
+                             .entry_format = EntryFormat::Unorm16,
+                             .pole_axis = PoleAxis::X}};
+
+fs::path path_of(const Golden& golden) {
+    return fs::path(ECHINUS_GOLDEN_FOLDER) / golden.file;
+}
+
+std::vector<std::byte> bytes_of(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    const std::string content{std::istreambuf_iterator<char>(file), {}};
+    const auto* first = reinterpret_cast<const std::byte*>(content.data());
+    return {first, first + content.size()};
+}
+
+/// The distance from the centre of the box to its surface along sample (i, j), by the slabs of the box; the
+/// poles lie on z.
+double box_distance(const Vec3d& size, std::uint32_t i, std::uint32_t j) {
+    const double phi = 2 * std::numbers::pi * i / 8;
+    const double theta = std::numbers::pi * (j + 0.5) / 6;
+    const Vec3d d{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+    return std::min({size.x / 2 / std::fabs(d.x), size.y / 2 / std::fabs(d.y), size.z / 2 / std::fabs(d.z)});
+}
+
+void expect_options(const DistanceMapView& view, const DistanceMapOptions& options) {
+    EXPECT_EQ(view.longitude_count, options.longitude_count);
+    EXPECT_EQ(view.colatitude_count, options.colatitude_count);
+    EXPECT_EQ(view.correction, options.correction);
+    EXPECT_EQ(view.entry_format, options.entry_format);
+    EXPECT_EQ(view.pole_axis, options.pole_axis);
+}
+
+void expect_box(const DistanceMap& map) {
+    const DistanceMapView& view = map.view();
+    EXPECT_LT(length(view.centre), 1e-5F);
+    EXPECT_NEAR(view.radius, std::sqrt(29.0) / 2, 1e-5);
+    EXPECT_TRUE(view.centre_inside);
+    EXPECT_EQ(view.entry_count(), 48u);
+    EXPECT_EQ(map.statistics().face_count, 12u);
+    EXPECT_EQ(map.statistics().max_entries, 1u);
+    EXPECT_EQ(map.statistics().wrong_parity_share, 0);
+}
+
+/// A failure leaves the new bytes in the build folder: should the change be meant, they are the next golden
+/// file, beside the old ones.
+void expect_same_bytes(const std::vector<std::byte>& actual, const Golden& golden) {
+    if (actual == bytes_of(path_of(golden))) return;
+    const fs::path copy = fs::current_path() / golden.file;
+    std::ofstream(copy, std::ios::binary)
+        .write(reinterpret_cast<const char*>(actual.data()), static_cast<std::streamsize>(actual.size()));
+    ADD_FAILURE() << golden.file << " is written otherwise today; see " << copy;
+}
+
+} // namespace
+
+TEST(GoldenMapFile, OfVersion1WithFloatsHoldsTheBox) {
+    const DistanceMap map = load_distance_map(path_of(kGoldenFloat32));
+    expect_options(map, kGoldenFloat32.options);
+    expect_box(map);
+    for (std::uint32_t j = 0; j < 6; ++j) {
+        for (std::uint32_t i = 0; i < 8; ++i) {
+            EXPECT_NEAR(map.view().entries_float32[j * 8 + i], box_distance(kBoxSize, i, j), 1e-5);
+        }
+    }
+}
+
+TEST(GoldenMapFile, OfVersion1With16BitsHoldsTheBoxOrMore) {
+    const DistanceMap map = load_distance_map(path_of(kGoldenUnorm16));
+    expect_options(map, kGoldenUnorm16.options);
+    expect_box(map);
+    // Poles on x: the grid's x, y, z are the mesh's y, z, x. The correction only pushes outwards here.
+    const Vec3d size_in_grid{kBoxSize.y, kBoxSize.z, kBoxSize.x};
+    for (std::uint32_t j = 0; j < 6; ++j) {
+        for (std::uint32_t i = 0; i < 8; ++i) {
+            const double entry = map.view().entries_unorm16[j * 8 + i] / 65535.0 * map.view().radius;
+            EXPECT_GE(entry, box_distance(size_in_grid, i, j) - 5e-5);
+        }
+    }
+    EXPECT_GT(map.statistics().corrected_entries, 0u);
+}
+
+TEST(GoldenMapFile, IsWrittenBackByteForByte) {
+    for (const Golden& golden : {kGoldenFloat32, kGoldenUnorm16}) {
+        expect_same_bytes(serialise(load_distance_map(path_of(golden))), golden);
+    }
+}
+
+TEST(GoldenMapFile, IsWhatTodaysBuildWritesOnAnyNumberOfThreads) {
+    for (Golden golden : {kGoldenFloat32, kGoldenUnorm16}) {
+        for (const unsigned thread_count : {1u, 3u}) {
+            golden.options.thread_count = thread_count;
+            expect_same_bytes(serialise(DistanceMap::build(make_box(kBoxSize), golden.options)), golden);
+        }
+    }
+}
