@@ -30,8 +30,7 @@ struct LatticeDirections {
         points.reserve(grid.direction_count());
         lengths.reserve(grid.direction_count());
         for (const Vec3d& unit : grid.directions()) {
-            const Vec3d d = unit * static_cast<double>(kLatticeExtent);
-            points.emplace_back(std::llround(d.x), std::llround(d.y), std::llround(d.z));
+            points.push_back(lattice_direction(unit));
             lengths.push_back(length(Vec3d(points.back())) * step);
         }
     }

@@ -97,6 +97,11 @@ double centre_step(const LatticeMesh& lattice) {
 
 } // namespace
 
+LatticePoint lattice_direction(const Vec3d& unit) {
+    const Vec3d d = unit * static_cast<double>(kLatticeExtent);
+    return {std::llround(d.x), std::llround(d.y), std::llround(d.z)};
+}
+
 LatticePoint LatticeMesh::snap(const Vec3f& point_local) const {
     const Vec3d d = Vec3d(point_local) - Vec3d(centre);
     return {std::llround(d.x / step), std::llround(d.y / step), std::llround(d.z / step)};

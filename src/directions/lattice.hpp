@@ -15,6 +15,9 @@ using LatticePoint = Vec3<std::int64_t>;
 /// decides every sign.
 inline constexpr std::int64_t kLatticeExtent = std::int64_t{1} << 19;
 
+/// A unit vector scaled to the lattice's extent and snapped: what rays are cast along.
+LatticePoint lattice_direction(const Vec3d& unit);
+
 /// A mesh on the integer lattice around its centre: what all exact predicates work on.
 struct LatticeMesh {
     Vec3f centre;                       ///< C, local; the lattice's origin
