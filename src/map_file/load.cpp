@@ -7,6 +7,7 @@
 #include <map_generated.h>
 
 #include <bit>
+#include <cmath>
 #include <fstream>
 #include <string_view>
 
@@ -136,11 +137,16 @@ DistanceMap load_distance_map(const std::filesystem::path& path) {
 
 MapFileNotes load_map_file_notes(const std::filesystem::path& path) {
     const MappedFile file(path);
-    const schema::Notes* stored = verified_root(file.bytes(), path.string()).notes();
     MapFileNotes notes;
-    if (stored != nullptr && stored->build_milliseconds()) {
-        notes.build_milliseconds = *stored->build_milliseconds();
+    const schema::Notes* stored = verified_root(file.bytes(), path.string()).notes();
+    if (stored == nullptr || !stored->build_milliseconds()) return notes;
+    const double milliseconds = *stored->build_milliseconds();
+    if (!std::isfinite(milliseconds) || milliseconds < 0) {
+        throw Error(ErrorCode::Damaged, path.string() + ": the notes are damaged: build_milliseconds is " +
+                                            std::to_string(milliseconds) + " and not a finite duration" +
+                                            kBuildAgain);
     }
+    notes.build_milliseconds = milliseconds;
     return notes;
 }
 

@@ -260,6 +260,15 @@ TEST_F(MapFileOnDisk, CarriesNotesBesideTheMap) {
     expect_same_map(load_distance_map(folder_ / "noted.ech"), map);
 }
 
+TEST_F(MapFileOnDisk, RefusesNotesThatAreNoDuration) {
+    const DistanceMap map = random_map_parts(EntryFormat::Float32, 8, 6, 11).map();
+    for (const double milliseconds : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
+        save(map, folder_ / "noted.ech", {.build_milliseconds = milliseconds});
+        expect_error(ErrorCode::Damaged, "build_milliseconds",
+                     [&] { load_map_file_notes(folder_ / "noted.ech"); });
+    }
+}
+
 TEST_F(MapFileOnDisk, RefusesWhatIsNoMapFileByName) {
     const fs::path missing = folder_ / "missing.ech";
     expect_error(ErrorCode::Unreadable, missing.string(), [&] { load_distance_map(missing); });

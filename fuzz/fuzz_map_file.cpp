@@ -1,0 +1,10 @@
+#include "support/map_file_attack.hpp"
+
+#include <cstdint>
+
+/// Any exception but echinus::Error leaves attack_map_file() and ends the program, which is how a fuzzer
+/// knows that it has found something.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    echinus::test::attack_map_file({reinterpret_cast<const std::byte*>(data), size});
+    return 0;
+}
