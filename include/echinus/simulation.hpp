@@ -1,0 +1,159 @@
+#pragma once
+
+#include <echinus/collider.hpp>
+#include <echinus/geometry.hpp>
+#include <echinus/mesh.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// Deformable models after Jakobsen, "Advanced Character Physics" (GDC 2001), the method that the paper's
+/// simulations use (section 2.3): particles moved by Verlet integration, sticks between them relaxed one
+/// after the other, and collision with rigid models inside every relaxation.
+namespace echinus {
+
+/// What a stick stands for; each kind has its own stiffness.
+enum class StickKind : std::uint8_t {
+    Structural, ///< between neighbours of a row or column: keeps the cloth from stretching
+    Shear,      ///< between neighbours along a diagonal: keeps its squares square
+    Bending,    ///< between every second particle of a row or column: keeps it from folding sharply
+};
+inline constexpr std::size_t kStickKindCount = 3;
+
+/// Two particles that want to be `rest_length` apart.
+struct Stick {
+    std::uint32_t a, b;
+    float rest_length; ///< not negative
+    StickKind kind;
+};
+
+/// Particles and the sticks between them, all in world units and axes.
+struct Deformable {
+    std::vector<Vec3f> positions; ///< [particle_count]
+    /// [particle_count] one time step ago: positions - previous_positions = velocity * time_step.
+    std::vector<Vec3f> previous_positions;
+    /// [particle_count] 1 / mass in any unit, since only ratios count; 0 for a particle that is pinned: it
+    /// stays where it is, and no collider moves it.
+    std::vector<float> inverse_masses;
+    std::vector<Stick> sticks;   ///< in the order in which they are relaxed
+    std::vector<Triangle> faces; ///< for pictures; nothing is computed from them
+
+    std::size_t particle_count() const { return positions.size(); }
+};
+
+/// A rectangular sheet of cloth at rest. Its local frame has the sheet's middle at the origin, the columns
+/// along x, the rows along y, and z across it.
+struct ClothOptions {
+    std::uint32_t column_count = 100; ///< particles along x; at least 2
+    std::uint32_t row_count = 100;    ///< particles along y; at least 2. Time per step grows with the product
+    double width = 1;                 ///< along x, units
+    double height = 1;                ///< along y, units
+    RigidTransform pose{};            ///< where the sheet starts
+    std::vector<std::uint32_t> pins{}; ///< particles that never move: row * column_count + column
+};
+
+/// A sheet with structural, shear and bending sticks; for 100 x 100 particles 59 002 of them. Particle (row,
+/// column) has index row * column_count + column; every face turns its front along the sheet's local z.
+/// Sticks run through the sheet row by row, those that follow each other sharing no particle where that can
+/// be had: the processor then works on several at once.
+/// @throws Error InvalidOptions
+Deformable make_cloth(const ClothOptions& options);
+
+/// When a deformable counts as come to rest.
+struct RestCondition {
+    double speed = 0.01;            ///< the fastest particle's, units per second
+    std::uint32_t frame_count = 30; ///< for so many frames in a row; at least 1
+};
+
+struct SimulationOptions {
+    double time_step = 1.0 / 120; ///< seconds per frame. Half of it: twice the time, a quarter of the stretch
+    std::uint32_t iteration_count = 10; ///< relaxations per frame: more cost time and stretch less
+    Vec3d gravity{0, 0, -9.81};         ///< units per second squared
+    double drag = 0.005;                ///< share of the velocity that is lost per frame, 0 to 1
+    /// Share of a stick's error that one relaxation removes, by StickKind. 1 removes all; from 1 to 2 (not
+    /// included) it overshoots, which carries tension further per relaxation.
+    std::array<double, kStickKindCount> stiffness{1, 1, 0.3};
+    double thickness = 0; ///< distance that particles keep from colliders, units
+    /// Coulomb's coefficient: tangential motion relative to the collider is shortened by this times the
+    /// length of the push, and never reversed. 0 is ice.
+    double friction = 0.5;
+    RestCondition rest{};
+    /// A particle farther than this from the middle of where the deformable began ends the simulation as
+    /// diverged, units. 0: 10 000 times the deformable's extent at the start.
+    double bound = 0;
+};
+
+/// What step() spent and counted since the simulation began. Time is not part of the result.
+struct SimulationProfile {
+    double integration_seconds = 0;  ///< Verlet, moving the colliders, and the check for divergence and rest
+    double constraint_seconds = 0;   ///< sticks
+    double collision_seconds = 0;    ///< queries, push-out and friction
+    std::uint64_t query_count = 0;   ///< particles asked, each iteration and collider counted
+    std::uint64_t contact_count = 0; ///< of them, those that were pushed
+};
+
+/// A deformable among colliders. The same input gives the same positions bit for bit, on every run and
+/// machine; it runs on one thread. Copies are independent.
+class Simulation {
+  public:
+    /// Allocates all that step() needs.
+    /// @throws Error InvalidOptions when an option is out of range, the arrays of the deformable do not fit
+    /// together, a stick names a particle that does not exist, a number is not finite, or a collider's scale
+    /// is not positive
+    Simulation(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
+
+    /// One frame: Verlet integration with drag, colliders move on along their velocities, then
+    /// iteration_count times all sticks and then collision of all particles with all colliders.
+    /// @throws Error Diverged, naming the frame; afterwards only reading is allowed
+    void step();
+
+    const Deformable& deformable() const { return deformable_; }
+    std::span<const Vec3f> positions() const { return deformable_.positions; }
+    const std::vector<Collider>& colliders() const { return colliders_; }
+    const SimulationOptions& options() const { return options_; }
+    /// Frames computed so far.
+    std::uint32_t frame() const { return frame_; }
+    /// Speed of the fastest particle in the last frame, units per second; infinite before the first.
+    double largest_speed() const { return largest_speed_; }
+    /// Has the rest condition held for as many frames as it asks?
+    bool at_rest() const { return quiet_frame_count_ >= options_.rest.frame_count; }
+    const SimulationProfile& profile() const { return profile_; }
+    /// XXH64 of the bits of all positions and previous positions.
+    std::uint64_t state_hash() const;
+
+    /// Steers a collider: it keeps these velocities until they are set again.
+    /// @pre collider_index < colliders().size()
+    void set_velocities(std::size_t collider_index, const Vec3d& linear, const Vec3d& angular);
+
+  private:
+    /// A stick with what relaxation needs: how the two particles share the correction, by their masses and
+    /// the stiffness.
+    struct WeightedStick {
+        std::uint32_t a, b;
+        float rest_length;
+        float share_a, share_b;
+    };
+
+    static std::vector<WeightedStick> weigh(const Deformable& deformable, const SimulationOptions& options);
+    void integrate();
+    void relax_sticks();
+    void collide(const Collider& collider, const RigidTransform& previous_pose);
+    void judge_frame();
+
+    Deformable deformable_;
+    std::vector<Collider> colliders_;
+    std::vector<RigidTransform> previous_poses_; // of the colliders, one frame ago
+    SimulationOptions options_;
+    std::vector<WeightedStick> weighted_sticks_;
+    Vec3d start_centre_;
+    double bound_ = 0;
+    std::uint32_t frame_ = 0;
+    std::uint32_t quiet_frame_count_ = 0;
+    double largest_speed_;
+    SimulationProfile profile_;
+};
+
+} // namespace echinus

@@ -1,0 +1,183 @@
+#include "collider/frame_change.hpp"
+#include "simulation/contact_response.hpp"
+#include "simulation/material_motion.hpp"
+#include "simulation/validation.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/simulation.hpp>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace echinus {
+
+namespace {
+
+/// Adds the time of its own life to a sum.
+class Stopwatch {
+  public:
+    explicit Stopwatch(double& sum_seconds) : sum_seconds_(sum_seconds) {}
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+    ~Stopwatch() { sum_seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    double& sum_seconds_;
+    Clock::time_point start_ = Clock::now();
+};
+
+Sphere box_sphere(std::span<const Vec3f> points) {
+    Vec3d low(points.front());
+    Vec3d high = low;
+    for (const Vec3f& p : points) {
+        low = {std::min(low.x, double{p.x}), std::min(low.y, double{p.y}), std::min(low.z, double{p.z})};
+        high = {std::max(high.x, double{p.x}), std::max(high.y, double{p.y}), std::max(high.z, double{p.z})};
+    }
+    return {(low + high) * 0.5, length(high - low) / 2};
+}
+
+/// Contacts are asked for in pieces that stay in the first-level cache.
+constexpr std::size_t kPieceSize = 256;
+
+} // namespace
+
+Simulation::Simulation(Deformable deformable, std::vector<Collider> colliders,
+                       const SimulationOptions& options)
+    : deformable_(std::move(deformable)), colliders_(std::move(colliders)), options_(options),
+      largest_speed_(std::numeric_limits<double>::infinity()) {
+    require_valid(options_);
+    require_valid(deformable_);
+    require_valid(colliders_);
+    for (const Collider& collider : colliders_) previous_poses_.push_back(collider.pose);
+    weighted_sticks_ = weigh(deformable_, options_);
+    const Sphere start = box_sphere(deformable_.positions);
+    start_centre_ = start.centre;
+    // A single particle has no extent; its bound is then in the caller's unit.
+    bound_ = options_.bound > 0 ? options_.bound : 1e4 * (start.radius > 0 ? 2 * start.radius : 1);
+}
+
+std::vector<Simulation::WeightedStick> Simulation::weigh(const Deformable& deformable,
+                                                         const SimulationOptions& options) {
+    std::vector<WeightedStick> weighted;
+    weighted.reserve(deformable.sticks.size());
+    for (const Stick& stick : deformable.sticks) {
+        const double mass_a = deformable.inverse_masses[stick.a];
+        const double mass_b = deformable.inverse_masses[stick.b];
+        if (mass_a + mass_b == 0) continue; // both pinned
+        const double stiffness = options.stiffness[static_cast<std::size_t>(stick.kind)];
+        weighted.push_back({stick.a, stick.b, stick.rest_length,
+                            static_cast<float>(stiffness * mass_a / (mass_a + mass_b)),
+                            static_cast<float>(stiffness * mass_b / (mass_a + mass_b))});
+    }
+    return weighted;
+}
+
+void Simulation::step() {
+    integrate();
+    for (std::uint32_t iteration = 0; iteration < options_.iteration_count; ++iteration) {
+        relax_sticks();
+        for (std::size_t i = 0; i < colliders_.size(); ++i) collide(colliders_[i], previous_poses_[i]);
+    }
+    ++frame_;
+    judge_frame();
+}
+
+void Simulation::set_velocities(std::size_t collider_index, const Vec3d& linear, const Vec3d& angular) {
+    colliders_[collider_index].linear_velocity = linear;
+    colliders_[collider_index].angular_velocity = angular;
+}
+
+/// x' = x + (1 - drag) (x - x_previous) + a dt^2 (Jakobsen 2001, section 2).
+void Simulation::integrate() {
+    const Stopwatch stopwatch(profile_.integration_seconds);
+    const double step = options_.time_step;
+    const Vec3f fall(options_.gravity * (step * step));
+    const auto keep = static_cast<float>(1 - options_.drag);
+    for (std::size_t i = 0; i < deformable_.particle_count(); ++i) {
+        if (deformable_.inverse_masses[i] == 0) continue;
+        Vec3f& position = deformable_.positions[i];
+        Vec3f& previous = deformable_.previous_positions[i];
+        const Vec3f next = position + (position - previous) * keep + fall;
+        previous = position;
+        position = next;
+    }
+    for (std::size_t i = 0; i < colliders_.size(); ++i) {
+        previous_poses_[i] = colliders_[i].pose;
+        colliders_[i].pose = pose_after(colliders_[i], step);
+    }
+}
+
+void Simulation::relax_sticks() {
+    const Stopwatch stopwatch(profile_.constraint_seconds);
+    Vec3f* const positions = deformable_.positions.data();
+    for (const WeightedStick& stick : weighted_sticks_) {
+        Vec3f& a = positions[stick.a];
+        Vec3f& b = positions[stick.b];
+        const Vec3f across = b - a;
+        // The smallest float keeps particles at one place from dividing by zero and is lost in all else.
+        const float distance = std::sqrt(dot(across, across) + std::numeric_limits<float>::min());
+        const Vec3f correction = across * (1 - stick.rest_length / distance);
+        a += correction * stick.share_a;
+        b -= correction * stick.share_b;
+    }
+}
+
+void Simulation::collide(const Collider& collider, const RigidTransform& previous_pose) {
+    const Stopwatch stopwatch(profile_.collision_seconds);
+    const auto thickness = static_cast<float>(options_.thickness);
+    const auto friction = static_cast<float>(options_.friction);
+    const MaterialMotion material(previous_pose, collider.pose);
+    std::array<Contact, kPieceSize> contacts;
+    for (std::size_t begin = 0; begin < deformable_.particle_count(); begin += kPieceSize) {
+        const std::size_t count = std::min(kPieceSize, deformable_.particle_count() - begin);
+        contacts_batch(collider, StridedSpan<const Vec3f>(&deformable_.positions[begin], count),
+                       kReachInThicknesses * thickness, std::span(contacts).first(count));
+        for (std::size_t k = 0; k < count; ++k) {
+            const Contact& contact = contacts[k];
+            Vec3f& position = deformable_.positions[begin + k];
+            if (!contact.found() || deformable_.inverse_masses[begin + k] == 0) continue;
+            const float push = push_length(position, contact, thickness);
+            if (push <= 0) continue;
+            const Vec3f carried = deformable_.previous_positions[begin + k] + material.at(position);
+            const Vec3f motion = push_out(position, contact, thickness) - carried;
+            position = carried + apply_friction(motion, contact.normal, friction * push);
+            ++profile_.contact_count;
+        }
+    }
+    profile_.query_count += deformable_.particle_count();
+}
+
+void Simulation::judge_frame() {
+    const Stopwatch stopwatch(profile_.integration_seconds);
+    const double bound_sq = bound_ * bound_;
+    float largest_motion_sq = 0;
+    for (std::size_t i = 0; i < deformable_.particle_count(); ++i) {
+        const Vec3f& position = deformable_.positions[i];
+        const Vec3d from_start = Vec3d(position) - start_centre_;
+        // Written so that NaN fails it.
+        if (!(dot(from_start, from_start) <= bound_sq))
+            throw Error(ErrorCode::Diverged, "the simulation diverged in frame " + std::to_string(frame_) +
+                                                 ": particle " + std::to_string(i) +
+                                                 " left all bounds; try a smaller time step or stiffness");
+        const Vec3f motion = position - deformable_.previous_positions[i];
+        largest_motion_sq = std::max(largest_motion_sq, dot(motion, motion));
+    }
+    largest_speed_ = std::sqrt(double{largest_motion_sq}) / options_.time_step;
+    quiet_frame_count_ = largest_speed_ < options_.rest.speed ? quiet_frame_count_ + 1 : 0;
+}
+
+std::uint64_t Simulation::state_hash() const {
+    const auto hash_of = [](const std::vector<Vec3f>& points, std::uint64_t seed) {
+        return XXH64(points.data(), points.size() * sizeof(Vec3f), seed);
+    };
+    return hash_of(deformable_.previous_positions, hash_of(deformable_.positions, 0));
+}
+
+} // namespace echinus

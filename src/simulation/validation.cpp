@@ -1,0 +1,81 @@
+#include "simulation/validation.hpp"
+
+#include <echinus/error.hpp>
+
+#include <string>
+
+namespace echinus {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& sentence) {
+    throw Error(ErrorCode::InvalidOptions, sentence);
+}
+
+/// NaN fails every comparison, so it is refused too.
+void require_within(const char* name, double value, double least, double most) {
+    if (value >= least && value <= most) return;
+    fail(std::string("simulation option ") + name + " is " + std::to_string(value) + "; it must lie in [" +
+         std::to_string(least) + ", " + std::to_string(most) + "]");
+}
+
+bool is_finite(const RigidTransform& pose) {
+    const Rotation& r = pose.rotation;
+    return echinus::is_finite(pose.translation) && std::isfinite(r.w + r.x + r.y + r.z);
+}
+
+} // namespace
+
+void require_valid(const SimulationOptions& options) {
+    constexpr double kLargest = 1e9;
+    require_within("time_step", options.time_step, 1e-9, kLargest);
+    require_within("iteration_count", options.iteration_count, 1, 1e6);
+    require_within("drag", options.drag, 0, 1);
+    require_within("thickness", options.thickness, 0, kLargest);
+    require_within("friction", options.friction, 0, kLargest);
+    require_within("bound", options.bound, 0, 1e30);
+    require_within("rest.speed", options.rest.speed, 0, 1e30);
+    require_within("rest.frame_count", options.rest.frame_count, 1, kLargest);
+    for (const double stiffness : options.stiffness) require_within("stiffness", stiffness, 0, 1.99);
+    if (!echinus::is_finite(options.gravity)) fail("simulation option gravity is not finite");
+}
+
+void require_valid(const Deformable& deformable) {
+    const std::size_t count = deformable.particle_count();
+    if (count == 0) fail("the deformable has no particles");
+    if (deformable.previous_positions.size() != count || deformable.inverse_masses.size() != count)
+        fail("the deformable has " + std::to_string(count) + " positions, " +
+             std::to_string(deformable.previous_positions.size()) + " previous positions and " +
+             std::to_string(deformable.inverse_masses.size()) + " inverse masses; it needs as many of each");
+    for (std::size_t i = 0; i < count; ++i) {
+        const float inverse_mass = deformable.inverse_masses[i];
+        if (!echinus::is_finite(deformable.positions[i]) ||
+            !echinus::is_finite(deformable.previous_positions[i]) || !(inverse_mass >= 0) ||
+            !std::isfinite(inverse_mass))
+            fail("particle " + std::to_string(i) +
+                 " has a position that is not finite or an inverse mass that is negative or not finite");
+    }
+    for (std::size_t i = 0; i < deformable.sticks.size(); ++i) {
+        const Stick& stick = deformable.sticks[i];
+        if (stick.a >= count || stick.b >= count || stick.a == stick.b)
+            fail("stick " + std::to_string(i) + " joins particles " + std::to_string(stick.a) + " and " +
+                 std::to_string(stick.b) + "; it needs two different ones of " + std::to_string(count));
+        if (!(stick.rest_length >= 0) || !std::isfinite(stick.rest_length) ||
+            static_cast<std::size_t>(stick.kind) >= kStickKindCount)
+            fail("stick " + std::to_string(i) + " has a rest length or a kind out of range");
+    }
+}
+
+void require_valid(const std::vector<Collider>& colliders) {
+    for (std::size_t i = 0; i < colliders.size(); ++i) {
+        const Collider& collider = colliders[i];
+        if (!(collider.scale > 0) || !std::isfinite(collider.scale))
+            fail("collider " + std::to_string(i) + " has scale " + std::to_string(collider.scale) +
+                 "; it must be positive and finite");
+        if (!is_finite(collider.pose) || !echinus::is_finite(collider.linear_velocity) ||
+            !echinus::is_finite(collider.angular_velocity))
+            fail("collider " + std::to_string(i) + " has a pose or a velocity that is not finite");
+    }
+}
+
+} // namespace echinus

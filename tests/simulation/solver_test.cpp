@@ -1,0 +1,172 @@
+#include <echinus/error.hpp>
+#include <echinus/simulation.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+using namespace echinus;
+
+namespace {
+
+Deformable single_particle(const Vec3f& position, const Vec3f& velocity_times_step) {
+    return {.positions = {position},
+            .previous_positions = {position - velocity_times_step},
+            .inverse_masses = {1},
+            .sticks = {},
+            .faces = {}};
+}
+
+Vec3d momentum(const Simulation& simulation) {
+    const Deformable& d = simulation.deformable();
+    Vec3d sum;
+    for (std::size_t i = 0; i < d.particle_count(); ++i)
+        sum += (Vec3d(d.positions[i]) - Vec3d(d.previous_positions[i])) * (1.0 / d.inverse_masses[i]);
+    return sum;
+}
+
+/// A sheet whose particles differ in mass and start with a velocity that stretches and turns it.
+Deformable lively_cloth() {
+    Deformable cloth = make_cloth({.column_count = 8, .row_count = 6});
+    for (std::size_t i = 0; i < cloth.particle_count(); ++i) {
+        cloth.inverse_masses[i] = 1.0F / static_cast<float>(1 + i % 3);
+        const Vec3f& p = cloth.positions[i];
+        cloth.previous_positions[i] = p - Vec3f{-p.y + p.x, p.x, 0.3F * p.x * p.y + 0.1F} * 0.01F;
+    }
+    return cloth;
+}
+
+double largest_strain(const Simulation& simulation, StickKind kind) {
+    double largest = 0;
+    for (const Stick& stick : simulation.deformable().sticks) {
+        if (stick.kind != kind) continue;
+        const double distance = length(simulation.positions()[stick.b] - simulation.positions()[stick.a]);
+        largest = std::max(largest, std::abs(distance / stick.rest_length - 1));
+    }
+    return largest;
+}
+
+} // namespace
+
+TEST(Solver, LetsAParticleFallAsVerletDoes) {
+    // Without drag, n steps from rest fall by g dt^2 n (n + 1) / 2.
+    const SimulationOptions options{.time_step = 0.01, .gravity = {0, 0, -10}, .drag = 0};
+    Simulation simulation(single_particle({}, {}), {}, options);
+    for (int i = 0; i < 100; ++i) simulation.step();
+    EXPECT_NEAR(simulation.positions()[0].z, -10 * 0.01 * 0.01 * 100 * 101 / 2, 1e-4);
+    EXPECT_EQ(simulation.positions()[0].x, 0);
+    EXPECT_EQ(simulation.frame(), 100u);
+}
+
+TEST(Solver, TakesTheDragFromTheVelocityInEveryFrame) {
+    const SimulationOptions options{.time_step = 0.01, .gravity = {}, .drag = 0.1};
+    Simulation simulation(single_particle({}, {1, 0, 0}), {}, options);
+    simulation.step();
+    EXPECT_NEAR(simulation.positions()[0].x, 0.9, 1e-6);
+    simulation.step();
+    EXPECT_NEAR(simulation.positions()[0].x, 0.9 + 0.81, 1e-6);
+    EXPECT_NEAR(simulation.largest_speed(), 81, 1e-3);
+}
+
+TEST(Solver, KeepsTheMomentumOfAFreeSheet) {
+    Simulation simulation(lively_cloth(), {}, {.gravity = {}, .drag = 0});
+    const Vec3d before = momentum(simulation);
+    ASSERT_GT(length(before), 0.01);
+    for (int i = 0; i < 200; ++i) simulation.step();
+    EXPECT_NEAR(length(momentum(simulation) - before), 0, 1e-3 * length(before));
+}
+
+TEST(Solver, BringsSticksBackToTheirLength) {
+    Deformable cloth = make_cloth({.column_count = 10, .row_count = 10});
+    for (Vec3f& p : cloth.positions) p *= 1.3F;
+    cloth.previous_positions = cloth.positions;
+    Simulation simulation(cloth, {}, {.gravity = {}, .drag = 0.05});
+    EXPECT_NEAR(largest_strain(simulation, StickKind::Structural), 0.3, 1e-3);
+    for (int i = 0; i < 300; ++i) simulation.step();
+    for (const StickKind kind : {StickKind::Structural, StickKind::Shear, StickKind::Bending})
+        EXPECT_LT(largest_strain(simulation, kind), 1e-3);
+}
+
+TEST(Solver, HangsAChainFromItsPinWithNoMoreStretchThanItsWeightMakes) {
+    Deformable chain;
+    for (int i = 0; i < 5; ++i) chain.positions.push_back({float(i) * 0.1F, 0, 0});
+    chain.previous_positions = chain.positions;
+    chain.inverse_masses = {0, 1, 1, 1, 1};
+    for (std::uint32_t i = 0; i < 4; ++i) chain.sticks.push_back({i, i + 1, 0.1F, StickKind::Structural});
+    Simulation simulation(chain, {}, {.drag = 0.02});
+    for (int i = 0; i < 3000 && !simulation.at_rest(); ++i) simulation.step();
+    EXPECT_TRUE(simulation.at_rest());
+    EXPECT_EQ(simulation.positions()[0], Vec3f{});
+    EXPECT_NEAR(simulation.positions()[4].z, -0.4, 0.01);
+    EXPECT_NEAR(simulation.positions()[4].x, 0, 0.01);
+}
+
+TEST(Solver, MovesTheLighterParticleMore) {
+    Deformable pair{.positions = {{0, 0, 0}, {2, 0, 0}},
+                    .previous_positions = {{0, 0, 0}, {2, 0, 0}},
+                    .inverse_masses = {1, 3},
+                    .sticks = {{0, 1, 1, StickKind::Structural}},
+                    .faces = {}};
+    Simulation simulation(pair, {}, {.iteration_count = 1, .gravity = {}});
+    simulation.step();
+    EXPECT_FLOAT_EQ(simulation.positions()[0].x, 0.25F);
+    EXPECT_FLOAT_EQ(simulation.positions()[1].x, 1.25F);
+}
+
+TEST(Solver, LeavesTwoParticlesOnOneSpotFinite) {
+    Deformable pair{.positions = {{1, 1, 1}, {1, 1, 1}},
+                    .previous_positions = {{1, 1, 1}, {1, 1, 1}},
+                    .inverse_masses = {1, 1},
+                    .sticks = {{0, 1, 1, StickKind::Structural}},
+                    .faces = {}};
+    Simulation simulation(pair, {}, {.gravity = {}});
+    simulation.step();
+    EXPECT_EQ(simulation.positions()[0], (Vec3f{1, 1, 1}));
+}
+
+TEST(Solver, GivesTheSameBitsOnEveryRunAndInEveryCopy) {
+    Simulation first(lively_cloth(), {}, {});
+    Simulation second(lively_cloth(), {}, {});
+    for (int i = 0; i < 20; ++i) first.step();
+    for (int i = 0; i < 10; ++i) second.step();
+    EXPECT_NE(first.state_hash(), second.state_hash());
+    Simulation copy = second;
+    for (int i = 0; i < 10; ++i) second.step();
+    for (int i = 0; i < 10; ++i) copy.step();
+    EXPECT_EQ(first.state_hash(), second.state_hash());
+    EXPECT_EQ(first.state_hash(), copy.state_hash());
+}
+
+TEST(Solver, SeparatesStatesThatDifferOnlyInVelocity) {
+    const Simulation slow(single_particle({1, 2, 3}, {}), {}, {});
+    const Simulation fast(single_particle({1, 2, 3}, {0, 0, 0.5F}), {}, {});
+    EXPECT_NE(slow.state_hash(), fast.state_hash());
+}
+
+TEST(Solver, CountsQuietFramesInARowForRest) {
+    const RestCondition rest{.speed = 0.15, .frame_count = 5};
+    Simulation simulation(single_particle({}, {0.01F, 0, 0}), {},
+                          {.time_step = 0.01, .gravity = {}, .drag = 0.5, .rest = rest});
+    // Speeds are 0.5, 0.25, 0.125, ...: quiet from the third frame on, at rest with the seventh.
+    for (int i = 0; i < 6; ++i) simulation.step();
+    EXPECT_FALSE(simulation.at_rest());
+    simulation.step();
+    EXPECT_TRUE(simulation.at_rest());
+}
+
+TEST(Solver, NamesTheFrameInWhichItDiverges) {
+    Simulation simulation(single_particle({}, {1, 0, 0}), {}, {.gravity = {}, .drag = 0, .bound = 10.5});
+    try {
+        for (int i = 0; i < 20; ++i) simulation.step();
+        FAIL() << "nothing was noticed";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::Diverged);
+        EXPECT_NE(std::string(error.what()).find("frame 11"), std::string::npos) << error.what();
+    }
+}
+
+TEST(Solver, TakesOverflowForDivergence) {
+    Simulation simulation(single_particle({}, {1e38F, 0, 0}), {}, {.gravity = {}, .bound = 1e30});
+    EXPECT_THROW(simulation.step(), Error);
+}

@@ -1,0 +1,68 @@
+#include <echinus/error.hpp>
+#include <echinus/simulation.hpp>
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+
+using namespace echinus;
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// The sentence with which a simulation refuses a change to a sound set-up; empty when it does not.
+std::string refusal(const std::function<void(Deformable&, SimulationOptions&)>& spoil) {
+    Deformable cloth = make_cloth({.column_count = 3, .row_count = 3});
+    SimulationOptions options;
+    spoil(cloth, options);
+    try {
+        const Simulation simulation(cloth, {}, options);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::InvalidOptions);
+        return error.what();
+    }
+    return "";
+}
+
+std::string refusal_of_option(const std::function<void(SimulationOptions&)>& spoil) {
+    return refusal([&](Deformable&, SimulationOptions& options) { spoil(options); });
+}
+
+void expect_names(const std::string& sentence, const std::string& name) {
+    EXPECT_NE(sentence.find(name), std::string::npos) << "'" << sentence << "' does not name " << name;
+}
+
+} // namespace
+
+TEST(SimulationSetUp, IsAcceptedWhenSound) {
+    EXPECT_EQ(refusal([](Deformable&, SimulationOptions&) {}), "");
+}
+
+TEST(SimulationSetUp, NamesTheOptionOutOfRange) {
+    expect_names(refusal_of_option([](auto& o) { o.time_step = 0; }), "time_step");
+    expect_names(refusal_of_option([](auto& o) { o.time_step = kNaN; }), "time_step");
+    expect_names(refusal_of_option([](auto& o) { o.iteration_count = 0; }), "iteration_count");
+    expect_names(refusal_of_option([](auto& o) { o.drag = 1.01; }), "drag");
+    expect_names(refusal_of_option([](auto& o) { o.thickness = -0.1; }), "thickness");
+    expect_names(refusal_of_option([](auto& o) { o.friction = kNaN; }), "friction");
+    expect_names(refusal_of_option([](auto& o) { o.stiffness[1] = 2; }), "stiffness");
+    expect_names(refusal_of_option([](auto& o) { o.gravity.y = kNaN; }), "gravity");
+    expect_names(refusal_of_option([](auto& o) { o.bound = -1; }), "bound");
+    expect_names(refusal_of_option([](auto& o) { o.rest.speed = -1; }), "rest.speed");
+    expect_names(refusal_of_option([](auto& o) { o.rest.frame_count = 0; }), "rest.frame_count");
+}
+
+TEST(SimulationSetUp, NamesTheParticleOrStickAtFault) {
+    expect_names(refusal([](Deformable& d, auto&) { d.positions[4].x = float(kNaN); }), "particle 4");
+    expect_names(refusal([](Deformable& d, auto&) { d.previous_positions[5].z = float(1 / 0.0F); }),
+                 "particle 5");
+    expect_names(refusal([](Deformable& d, auto&) { d.inverse_masses[6] = -1; }), "particle 6");
+    expect_names(refusal([](Deformable& d, auto&) { d.sticks[2].b = 9; }), "stick 2");
+    expect_names(refusal([](Deformable& d, auto&) { d.sticks[3].a = d.sticks[3].b; }), "stick 3");
+    expect_names(refusal([](Deformable& d, auto&) { d.sticks[1].rest_length = float(kNaN); }), "stick 1");
+    expect_names(refusal([](Deformable& d, auto&) { d.inverse_masses.pop_back(); }), "8 inverse masses");
+    expect_names(refusal([](Deformable& d, auto&) { d = {}; }), "no particles");
+}
