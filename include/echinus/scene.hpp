@@ -1,0 +1,75 @@
+#pragma once
+
+#include <echinus/distance_map.hpp>
+#include <echinus/geometry.hpp>
+#include <echinus/mesh.hpp>
+#include <echinus/simulation.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+
+/// The set-up of a simulation as JSON (docs/scenes.md has every key). Library echinus::scene (needs
+/// nlohmann-json). It reads no meshes: who has echinus::io, or a mesh from elsewhere, hands the map in.
+namespace echinus {
+
+struct ModelFile {
+    std::string name; ///< as written in the scene, for instance "horse.3ds"; see find_model()
+};
+struct TorusModel { ///< arguments of make_torus()
+    double major_radius = 1, minor_radius = 0.4;
+    std::uint32_t major_segments = 60, minor_segments = 24;
+};
+struct SphereModel { ///< arguments of make_sphere()
+    double radius = 1;
+    std::uint32_t meridian_count = 60, parallel_count = 30;
+};
+struct BoxModel { ///< arguments of make_box()
+    Vec3d size{1, 1, 1};
+    std::uint32_t segments = 1;
+};
+using SceneModel = std::variant<ModelFile, TorusModel, SphereModel, BoxModel>;
+
+/// Everything that a simulation starts from. A scene that was read is complete and in range.
+struct Scene {
+    SceneModel model;
+    RepairOptions repair; ///< for the mesh, before the map is built
+    DistanceMapOptions map;
+    RigidTransform pose; ///< of the collider at the start
+    double scale = 1;    ///< of the collider
+    Vec3d linear_velocity;
+    Vec3d angular_velocity; ///< radians per second
+    ClothOptions cloth;
+    SimulationOptions simulation;
+    std::uint32_t frame_limit = 3000; ///< the simulation ends here when it has not come to rest
+};
+
+/// @throws Error Unreadable, or InvalidScene with a sentence that begins with the path and names the key at
+/// fault: unknown (then with the most similar one that exists), missing, given twice, of the wrong type or
+/// out of range
+Scene read_scene(const std::filesystem::path& path);
+
+/// The same from text; `name` stands for the path in errors.
+Scene parse_scene(std::string_view json, const std::string& name);
+
+/// Where a model's file lies: the first of the folders that has it. An absolute name needs no folder.
+/// @throws Error Unreadable, naming the folders that were looked through
+std::filesystem::path find_model(const ModelFile& model, std::span<const std::filesystem::path> folders);
+
+/// The mesh of a model that is no file.
+/// @throws Error InvalidOptions as the generators do
+TriangleMesh make_mesh(const TorusModel& model);
+TriangleMesh make_mesh(const SphereModel& model);
+TriangleMesh make_mesh(const BoxModel& model);
+
+/// The scene's collider, with a map of the scene's model.
+Collider make_collider(const Scene& scene, const DistanceMap& map);
+
+/// The scene's cloth and collider, ready to step.
+/// @throws Error InvalidOptions
+Simulation make_simulation(const Scene& scene, const DistanceMap& map);
+
+} // namespace echinus

@@ -1,0 +1,253 @@
+#include "scene/json_object.hpp"
+
+#include <echinus/error.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <sstream>
+
+namespace echinus {
+
+using nlohmann::json;
+
+namespace {
+
+/// The parser keeps the last of two values with one key; here the second is an error.
+class DuplicateKeys {
+  public:
+    explicit DuplicateKeys(const std::string& name) : name_(name) {}
+
+    bool operator()(int, json::parse_event_t event, json& parsed) {
+        if (event == json::parse_event_t::object_start) keys_.emplace_back();
+        if (event == json::parse_event_t::object_end) keys_.pop_back();
+        if (event == json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second)
+            throw Error(ErrorCode::InvalidScene,
+                        name_ + ": the key " + parsed.dump() + " is given twice in one object");
+        return true;
+    }
+
+  private:
+    const std::string& name_;
+    std::vector<std::set<std::string>> keys_; // of the objects that are open
+};
+
+/// The library's message without its own tag in brackets.
+std::string reason_of(const json::exception& error) {
+    const std::string message = error.what();
+    const std::size_t end_of_tag = message.find("] ");
+    return end_of_tag == std::string::npos ? message : message.substr(end_of_tag + 2);
+}
+
+/// Levenshtein's distance: insertions, deletions and replacements that make one word the other.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+std::string as_text(double number) {
+    std::ostringstream text;
+    text << number;
+    return text.str();
+}
+
+std::string expected_number(const char* kind, Range range) {
+    if (range.most == std::numeric_limits<double>::infinity())
+        return std::string(kind) + " of at least " + as_text(range.least);
+    return std::string(kind) + " from " + as_text(range.least) + " to " + as_text(range.most);
+}
+
+std::string expected_array(std::size_t size, const std::string& element) {
+    return "an array of " + std::to_string(size) + ", each " + element;
+}
+
+bool within(double value, Range range) {
+    return value >= range.least && value <= range.most;
+}
+
+/// Does `value` hold an element of the type and in the range? Numbers of type double may be written as
+/// integers, but not the other way round.
+bool holds(const json& value, double, Range range) {
+    return value.is_number() && within(value.get<double>(), range);
+}
+bool holds(const json& value, std::uint32_t, Range range) {
+    return value.is_number_integer() && within(value.get<double>(), range);
+}
+
+template <typename T, std::size_t kSize>
+bool read_array(const json& value, std::array<T, kSize>& array, Range range) {
+    if (!value.is_array() || value.size() != kSize) return false;
+    const auto fits = [&](const json& element) { return holds(element, T{}, range); };
+    if (!std::all_of(value.begin(), value.end(), fits)) return false;
+    for (std::size_t i = 0; i < kSize; ++i) array[i] = value[i].get<T>();
+    return true;
+}
+
+std::string list_of(const std::vector<std::string_view>& words) {
+    std::string list;
+    for (const std::string_view word : words) {
+        if (!list.empty()) list += word == words.back() ? " or " : ", ";
+        list += '"' + std::string(word) + '"';
+    }
+    return list;
+}
+
+std::optional<std::size_t> number_of(const json& value, const std::vector<std::string_view>& words) {
+    if (!value.is_string()) return std::nullopt;
+    const auto found = std::find(words.begin(), words.end(), value.get_ref<const std::string&>());
+    if (found == words.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - words.begin());
+}
+
+/// A value as it stands in the scene, shortened where it is long.
+std::string excerpt(const json& value) {
+    constexpr std::size_t kLongest = 60;
+    const std::string text = value.dump(-1, ' ', true, json::error_handler_t::replace);
+    return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+}
+
+} // namespace
+
+json parse_json(std::string_view text, const std::string& name) {
+    try {
+        constexpr bool kThrow = true;
+        constexpr bool kIgnoreComments = true;
+        return json::parse(text, DuplicateKeys(name), kThrow, kIgnoreComments);
+    } catch (const json::exception& error) {
+        throw Error(ErrorCode::InvalidScene, name + ": not JSON: " + reason_of(error));
+    }
+}
+
+JsonObject::JsonObject(const json& value, const std::string& scene_name, const std::string& key_path)
+    : value_(value), scene_name_(scene_name), key_path_(key_path) {
+    if (!value.is_object())
+        fail((key_path.empty() ? "the scene" : key_path) + " is " + excerpt(value) +
+             "; it must be an object");
+}
+
+void JsonObject::require(const char* key) {
+    if (!has(key)) fail("the key " + path_of(key) + " is missing");
+}
+
+void JsonObject::read(const char* key, double& value, Range range) {
+    const json* found = find(key);
+    if (found == nullptr) return;
+    if (!holds(*found, double{}, range)) refuse(key, expected_number("a number", range));
+    value = found->get<double>();
+}
+
+void JsonObject::read(const char* key, std::uint32_t& value, Range range) {
+    const json* found = find(key);
+    if (found == nullptr) return;
+    if (!holds(*found, std::uint32_t{}, range)) refuse(key, expected_number("a whole number", range));
+    value = found->get<std::uint32_t>();
+}
+
+void JsonObject::read(const char* key, Vec3d& value, Range range) {
+    const json* found = find(key);
+    std::array<double, 3> xyz{};
+    if (found == nullptr) return;
+    if (!read_array(*found, xyz, range)) refuse(key, expected_array(3, expected_number("a number", range)));
+    value = {xyz[0], xyz[1], xyz[2]};
+}
+
+void JsonObject::read(const char* key, std::array<double, 2>& value, Range range) {
+    const json* found = find(key);
+    if (found != nullptr && !read_array(*found, value, range))
+        refuse(key, expected_array(2, expected_number("a number", range)));
+}
+
+void JsonObject::read(const char* key, std::array<std::uint32_t, 2>& value, Range range) {
+    const json* found = find(key);
+    if (found != nullptr && !read_array(*found, value, range))
+        refuse(key, expected_array(2, expected_number("a whole number", range)));
+}
+
+void JsonObject::read(const char* key, std::vector<std::array<std::uint32_t, 2>>& value, Range range) {
+    const json* found = find(key);
+    if (found == nullptr) return;
+    const std::string expected = "an array of " + expected_array(2, expected_number("a whole number", range));
+    if (!found->is_array()) refuse(key, expected);
+    value.resize(found->size());
+    for (std::size_t i = 0; i < value.size(); ++i)
+        if (!read_array((*found)[i], value[i], range)) refuse(key, expected);
+}
+
+std::optional<std::string> JsonObject::read_string(const char* key) {
+    const json* found = find(key);
+    if (found == nullptr) return std::nullopt;
+    if (!found->is_string()) refuse(key, "a string");
+    return found->get<std::string>();
+}
+
+std::optional<std::size_t> JsonObject::read_word(const char* key,
+                                                 const std::vector<std::string_view>& words) {
+    const json* found = find(key);
+    if (found == nullptr) return std::nullopt;
+    const std::optional<std::size_t> number = number_of(*found, words);
+    if (!number) refuse(key, list_of(words));
+    return number;
+}
+
+std::vector<std::size_t> JsonObject::read_words(const char* key, const std::vector<std::string_view>& words) {
+    const json* found = find(key);
+    std::vector<std::size_t> numbers;
+    if (found == nullptr) return numbers;
+    const std::string expected = "an array of " + list_of(words);
+    if (!found->is_array()) refuse(key, expected);
+    for (const json& element : *found) {
+        const std::optional<std::size_t> number = number_of(element, words);
+        if (!number) refuse(key, expected);
+        numbers.push_back(*number);
+    }
+    return numbers;
+}
+
+std::optional<JsonObject> JsonObject::object(const char* key) {
+    const json* found = find(key);
+    if (found == nullptr) return std::nullopt;
+    return JsonObject(*found, scene_name_, path_of(key));
+}
+
+void JsonObject::finish() const {
+    for (const auto& item : value_.items()) {
+        const std::string& key = item.key();
+        if (std::find(known_keys_.begin(), known_keys_.end(), key) != known_keys_.end()) continue;
+        const auto farther = [&](const std::string& a, const std::string& b) {
+            return edit_distance(key, a) < edit_distance(key, b);
+        };
+        const auto nearest = std::min_element(known_keys_.begin(), known_keys_.end(), farther);
+        fail("there is no key " + excerpt(path_of(key)) + "; the nearest is " + excerpt(path_of(*nearest)));
+    }
+}
+
+void JsonObject::refuse(const char* key, const std::string& expected) const {
+    fail(path_of(key) + " is " + excerpt(value_.at(key)) + "; it must be " + expected);
+}
+
+const json* JsonObject::find(const char* key) {
+    known_keys_.emplace_back(key);
+    const auto found = value_.find(key);
+    return found == value_.end() ? nullptr : &*found;
+}
+
+std::string JsonObject::path_of(const std::string& key) const {
+    return key_path_.empty() ? key : key_path_ + "." + key;
+}
+
+void JsonObject::fail(const std::string& sentence) const {
+    throw Error(ErrorCode::InvalidScene, scene_name_ + ": " + sentence);
+}
+
+} // namespace echinus

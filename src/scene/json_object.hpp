@@ -1,0 +1,69 @@
+#pragma once
+
+#include <echinus/geometry.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace echinus {
+
+/// Parses JSON with comments.
+/// @throws Error InvalidScene when the text is no JSON or gives a key twice; the sentence begins with `name`
+nlohmann::json parse_json(std::string_view text, const std::string& name);
+
+/// Limits of a number, both included.
+struct Range {
+    double least, most;
+};
+
+/// Reads one object of a scene key by key and remembers which keys it was asked for; finish() refuses all
+/// others. A key that is absent leaves the value as it is, unless it is required. Every error is an Error
+/// InvalidScene that names the file and the key's path.
+class JsonObject {
+  public:
+    /// @param key_path  of the object itself, "" for the whole scene
+    /// @throws Error InvalidScene when `value` is no object
+    JsonObject(const nlohmann::json& value, const std::string& scene_name, const std::string& key_path);
+
+    bool has(const char* key) const { return value_.contains(key); }
+    void require(const char* key);
+
+    void read(const char* key, double& value, Range range);
+    void read(const char* key, std::uint32_t& value, Range range);
+    void read(const char* key, Vec3d& value, Range range);
+    void read(const char* key, std::array<double, 2>& value, Range range);
+    /// Whole numbers have to be written as such: 10, not 1e1.
+    void read(const char* key, std::array<std::uint32_t, 2>& value, Range range);
+    void read(const char* key, std::vector<std::array<std::uint32_t, 2>>& value, Range range);
+    std::optional<std::string> read_string(const char* key);
+    /// A string that has to be one of `words`; returns its number.
+    std::optional<std::size_t> read_word(const char* key, const std::vector<std::string_view>& words);
+    /// A list of such strings.
+    std::vector<std::size_t> read_words(const char* key, const std::vector<std::string_view>& words);
+    /// The object under a key, if it is there.
+    std::optional<JsonObject> object(const char* key);
+    bool is_string(const char* key) const { return has(key) && value_[key].is_string(); }
+
+    /// To be called when everything has been asked for.
+    void finish() const;
+
+    /// Refuses the value of a key: `expected` completes "...; it must be ".
+    [[noreturn]] void refuse(const char* key, const std::string& expected) const;
+
+  private:
+    const nlohmann::json* find(const char* key);
+    std::string path_of(const std::string& key) const;
+    [[noreturn]] void fail(const std::string& sentence) const;
+
+    const nlohmann::json& value_;
+    std::string scene_name_, key_path_;
+    std::vector<std::string> known_keys_;
+};
+
+} // namespace echinus

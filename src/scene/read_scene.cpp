@@ -1,0 +1,225 @@
+#include "scene/json_object.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/scene.hpp>
+
+#include <fstream>
+#include <limits>
+#include <numbers>
+
+namespace echinus {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Beyond 1e9 units a float no longer resolves what is near the origin.
+constexpr Range kCoordinate{-1e9, 1e9};
+constexpr Range kLength{1e-9, 1e9};
+constexpr Range kSegmentCount{1, 4096};
+constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+
+using Counts = std::array<std::uint32_t, 2>;
+
+SceneModel read_torus(JsonObject torus) {
+    TorusModel model;
+    Counts segments{model.major_segments, model.minor_segments};
+    torus.read("major", model.major_radius, kLength);
+    torus.read("minor", model.minor_radius, kLength);
+    torus.read("segments", segments, kSegmentCount);
+    torus.finish();
+    model.major_segments = segments[0];
+    model.minor_segments = segments[1];
+    return model;
+}
+
+SceneModel read_sphere(JsonObject sphere) {
+    SphereModel model;
+    Counts segments{model.meridian_count, model.parallel_count};
+    sphere.read("radius", model.radius, kLength);
+    sphere.read("segments", segments, kSegmentCount);
+    sphere.finish();
+    model.meridian_count = segments[0];
+    model.parallel_count = segments[1];
+    return model;
+}
+
+SceneModel read_box(JsonObject box) {
+    BoxModel model;
+    box.read("size", model.size, kLength);
+    box.read("segments", model.segments, kSegmentCount);
+    box.finish();
+    return model;
+}
+
+/// A file's name, or an object with the one key that names a generated shape.
+SceneModel read_model(JsonObject& scene) {
+    scene.require("model");
+    if (scene.is_string("model")) return ModelFile{*scene.read_string("model")};
+    std::optional<JsonObject> model = scene.object("model");
+    std::vector<SceneModel> found;
+    if (auto torus = model->object("torus")) found.push_back(read_torus(*torus));
+    if (auto sphere = model->object("sphere")) found.push_back(read_sphere(*sphere));
+    if (auto box = model->object("box")) found.push_back(read_box(*box));
+    model->finish();
+    if (found.size() != 1)
+        scene.refuse("model", "a file's name or an object with one of the keys torus, sphere and box");
+    return found.front();
+}
+
+RepairOptions read_repair(JsonObject& scene) {
+    RepairOptions options;
+    for (const std::size_t word :
+         scene.read_words("repair", {"duplicate_faces", "doubled_patches", "inside_out"})) {
+        if (word == 0) options.drop_duplicate_faces = true;
+        if (word == 1) options.drop_doubled_patches = true;
+        if (word == 2) options.flip_inside_out = true;
+    }
+    return options;
+}
+
+DistanceMapOptions read_map(JsonObject& scene) {
+    DistanceMapOptions options;
+    auto map = scene.object("map");
+    if (!map) return options;
+    Counts directions{options.longitude_count, options.colatitude_count};
+    map->read("directions", directions,
+              {DistanceMapOptions::kMinSampleCount, DistanceMapOptions::kMaxSampleCount});
+    options.longitude_count = directions[0];
+    options.colatitude_count = directions[1];
+    if (auto word = map->read_word("correction", {"none", "paper", "signed"}))
+        options.correction = static_cast<VertexCorrection>(*word);
+    if (auto word = map->read_word("entries", {"float32", "unorm16"}))
+        options.entry_format = static_cast<EntryFormat>(*word);
+    if (auto word = map->read_word("pole_axis", {"x", "y", "z"}))
+        options.pole_axis = static_cast<PoleAxis>(*word);
+    map->finish();
+    return options;
+}
+
+RigidTransform read_pose(JsonObject& object) {
+    RigidTransform pose;
+    object.read("position", pose.translation, kCoordinate);
+    auto rotation = object.object("rotation");
+    if (!rotation) return pose;
+    Vec3d axis;
+    double degrees = 0;
+    rotation->require("axis");
+    rotation->require("degrees");
+    rotation->read("axis", axis, kCoordinate);
+    rotation->read("degrees", degrees, {-1e6, 1e6});
+    if (length(axis) < 1e-9) rotation->refuse("axis", "a direction, longer than zero");
+    rotation->finish();
+    pose.rotation = Rotation::about(axis, degrees * kRadiansPerDegree);
+    return pose;
+}
+
+void read_collider(JsonObject& root, Scene& scene) {
+    auto collider = root.object("collider");
+    if (!collider) return;
+    Vec3d degrees_per_second;
+    scene.pose = read_pose(*collider);
+    collider->read("scale", scene.scale, kLength);
+    collider->read("linear_velocity", scene.linear_velocity, kCoordinate);
+    collider->read("angular_velocity", degrees_per_second, {-1e6, 1e6});
+    collider->finish();
+    scene.angular_velocity = degrees_per_second * kRadiansPerDegree;
+}
+
+void read_pins(JsonObject& cloth, ClothOptions& options) {
+    std::vector<Counts> pins;
+    cloth.read("pins", pins, {0, 1e6});
+    for (const auto& [column, row] : pins) {
+        if (column >= options.column_count || row >= options.row_count)
+            cloth.refuse("pins", "[column, row] of particles that the cloth has");
+        options.pins.push_back(row * options.column_count + column);
+    }
+}
+
+void read_cloth(JsonObject& root, Scene& scene) {
+    root.require("cloth");
+    auto cloth = root.object("cloth");
+    ClothOptions& options = scene.cloth;
+    Counts particles{options.column_count, options.row_count};
+    std::array<double, 2> size{};
+    cloth->require("size");
+    cloth->read("particles", particles, {2, 4096});
+    cloth->read("size", size, kLength);
+    cloth->read("thickness", scene.simulation.thickness, {0, 1e9});
+    options.column_count = particles[0];
+    options.row_count = particles[1];
+    options.width = size[0];
+    options.height = size[1];
+    options.pose = read_pose(*cloth);
+    read_pins(*cloth, options);
+    cloth->finish();
+}
+
+void read_material(JsonObject& root, SimulationOptions& options) {
+    auto material = root.object("material");
+    if (!material) return;
+    constexpr Range kStiffness{0, 1.99};
+    material->read("structural", options.stiffness[0], kStiffness);
+    material->read("shear", options.stiffness[1], kStiffness);
+    material->read("bending", options.stiffness[2], kStiffness);
+    material->read("friction", options.friction, {0, 1e9});
+    material->read("drag", options.drag, {0, 1});
+    material->finish();
+}
+
+void read_solver(JsonObject& root, SimulationOptions& options) {
+    root.read("gravity", options.gravity, kCoordinate);
+    root.read("time_step", options.time_step, {1e-9, 1e9});
+    root.read("iterations", options.iteration_count, {1, 1e6});
+}
+
+void read_end(JsonObject& root, Scene& scene) {
+    root.read("frame_limit", scene.frame_limit, {1, 1e9});
+    auto rest = root.object("at_rest");
+    if (!rest) return;
+    rest->read("speed", scene.simulation.rest.speed, {0, kInfinity});
+    rest->read("frames", scene.simulation.rest.frame_count, {1, 1e9});
+    rest->finish();
+}
+
+std::string read_text(const fs::path& path) {
+    // A scene has some hundred bytes; whoever names a device or a mesh by mistake should hear of it soon.
+    constexpr std::size_t kLargest = std::size_t{1} << 20;
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored))
+        throw Error(ErrorCode::Unreadable, path.string() + ": is a directory, not a scene");
+    std::ifstream file(path, std::ios::binary);
+    std::string text(kLargest + 1, '\0');
+    if (file) file.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (!file.is_open() || file.bad())
+        throw Error(ErrorCode::Unreadable, path.string() + ": cannot be read, or does not exist");
+    text.resize(static_cast<std::size_t>(file.gcount()));
+    if (text.size() > kLargest)
+        throw Error(ErrorCode::InvalidScene, path.string() + ": is larger than 1 MB, which no scene is");
+    return text;
+}
+
+} // namespace
+
+Scene parse_scene(std::string_view json, const std::string& name) {
+    const nlohmann::json document = parse_json(json, name);
+    JsonObject root(document, name, "");
+    Scene scene;
+    scene.model = read_model(root);
+    scene.repair = read_repair(root);
+    scene.map = read_map(root);
+    read_collider(root, scene);
+    read_cloth(root, scene);
+    read_material(root, scene.simulation);
+    read_solver(root, scene.simulation);
+    read_end(root, scene);
+    root.finish();
+    return scene;
+}
+
+Scene read_scene(const fs::path& path) {
+    return parse_scene(read_text(path), path.string());
+}
+
+} // namespace echinus

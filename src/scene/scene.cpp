@@ -1,0 +1,44 @@
+#include <echinus/error.hpp>
+#include <echinus/scene.hpp>
+
+namespace echinus {
+
+namespace fs = std::filesystem;
+
+fs::path find_model(const ModelFile& model, std::span<const fs::path> folders) {
+    std::string tried;
+    for (const fs::path& folder : folders) {
+        std::error_code ignored;
+        const fs::path path = folder / model.name; // an absolute name replaces the folder
+        if (fs::is_regular_file(path, ignored)) return path;
+        tried += (tried.empty() ? "" : ", ") + folder.string();
+    }
+    throw Error(ErrorCode::Unreadable, "the model " + model.name + " is in none of the folders " + tried +
+                                           "; scripts/setup puts the models of the scenes into models/");
+}
+
+TriangleMesh make_mesh(const TorusModel& model) {
+    return make_torus(model.major_radius, model.minor_radius, model.major_segments, model.minor_segments);
+}
+
+TriangleMesh make_mesh(const SphereModel& model) {
+    return make_sphere(model.radius, model.meridian_count, model.parallel_count);
+}
+
+TriangleMesh make_mesh(const BoxModel& model) {
+    return make_box(model.size, model.segments);
+}
+
+Collider make_collider(const Scene& scene, const DistanceMap& map) {
+    return {.map = map,
+            .pose = scene.pose,
+            .scale = scene.scale,
+            .linear_velocity = scene.linear_velocity,
+            .angular_velocity = scene.angular_velocity};
+}
+
+Simulation make_simulation(const Scene& scene, const DistanceMap& map) {
+    return Simulation(make_cloth(scene.cloth), {make_collider(scene, map)}, scene.simulation);
+}
+
+} // namespace echinus

@@ -1,0 +1,226 @@
+#include <echinus/error.hpp>
+#include <echinus/scene.hpp>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <numbers>
+
+using namespace echinus;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A scene with every key, none at its default.
+const char* const kFullScene = R"({
+    "model": "horse.3ds",
+    "repair": ["doubled_patches", "inside_out"],
+    "map": {"directions": [128, 64], "correction": "paper", "entries": "unorm16", "pole_axis": "y"},
+    "collider": {"position": [1, 2, 3], "rotation": {"axis": [0, 0, 2], "degrees": 90}, "scale": 2.5,
+                 "linear_velocity": [0.1, 0.2, 0.3], "angular_velocity": [0, 180, 0]},
+    "cloth": {"particles": [20, 30], "size": [1.5, 2], "position": [4, 5, 6],
+              "rotation": {"axis": [1, 0, 0], "degrees": -90}, "thickness": 0.02, "pins": [[0, 0], [19, 29]]},
+    "material": {"structural": 1.1, "shear": 0.9, "bending": 0.2, "friction": 0.7, "drag": 0.003},
+    "gravity": [0, -9.8, 0], "time_step": 0.01, "iterations": 12,
+    "frame_limit": 500, "at_rest": {"speed": 0.02, "frames": 25}
+})";
+
+std::string refusal(const std::string& text) {
+    try {
+        parse_scene(text, "a.json");
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::InvalidScene) << error.what();
+        EXPECT_EQ(std::string(error.what()).rfind("a.json: ", 0), 0u) << error.what();
+        return error.what();
+    }
+    return "";
+}
+
+/// Every object of a scene, as JSON pointers.
+void collect_objects(const json& value, const json::json_pointer& at,
+                     std::vector<json::json_pointer>& objects) {
+    if (!value.is_object()) return;
+    objects.push_back(at);
+    for (const auto& item : value.items()) collect_objects(item.value(), at / item.key(), objects);
+}
+
+/// Every value of a scene that is no object, as JSON pointers.
+void collect_values(const json& value, const json::json_pointer& at,
+                    std::vector<json::json_pointer>& values) {
+    if (!value.is_object()) return values.push_back(at);
+    for (const auto& item : value.items()) collect_values(item.value(), at / item.key(), values);
+}
+
+std::string dotted(const json::json_pointer& pointer) {
+    std::string path = pointer.to_string().substr(1);
+    std::replace(path.begin(), path.end(), '/', '.');
+    return path;
+}
+
+} // namespace
+
+TEST(Scene, IsReadKeyByKey) {
+    const Scene scene = parse_scene(kFullScene, "a.json");
+    EXPECT_EQ(std::get<ModelFile>(scene.model).name, "horse.3ds");
+    EXPECT_FALSE(scene.repair.drop_duplicate_faces);
+    EXPECT_TRUE(scene.repair.drop_doubled_patches);
+    EXPECT_TRUE(scene.repair.flip_inside_out);
+    EXPECT_EQ(scene.map.longitude_count, 128u);
+    EXPECT_EQ(scene.map.colatitude_count, 64u);
+    EXPECT_EQ(scene.map.correction, VertexCorrection::Paper);
+    EXPECT_EQ(scene.map.entry_format, EntryFormat::Unorm16);
+    EXPECT_EQ(scene.map.pole_axis, PoleAxis::Y);
+    EXPECT_EQ(scene.pose.translation, (Vec3d{1, 2, 3}));
+    EXPECT_NEAR(length(scene.pose.rotation.apply({1, 0, 0}) - Vec3d{0, 1, 0}), 0, 1e-12);
+    EXPECT_EQ(scene.scale, 2.5);
+    EXPECT_EQ(scene.linear_velocity, (Vec3d{0.1, 0.2, 0.3}));
+    EXPECT_NEAR(scene.angular_velocity.y, std::numbers::pi, 1e-12);
+    EXPECT_EQ(scene.cloth.column_count, 20u);
+    EXPECT_EQ(scene.cloth.row_count, 30u);
+    EXPECT_EQ(scene.cloth.width, 1.5);
+    EXPECT_EQ(scene.cloth.height, 2);
+    EXPECT_EQ(scene.cloth.pose.translation, (Vec3d{4, 5, 6}));
+    EXPECT_NEAR(length(scene.cloth.pose.rotation.apply({0, 0, 1}) - Vec3d{0, 1, 0}), 0, 1e-12);
+    EXPECT_EQ(scene.cloth.pins, (std::vector<std::uint32_t>{0, 29 * 20 + 19}));
+    EXPECT_EQ(scene.simulation.thickness, 0.02);
+    EXPECT_EQ(scene.simulation.stiffness, (std::array{1.1, 0.9, 0.2}));
+    EXPECT_EQ(scene.simulation.friction, 0.7);
+    EXPECT_EQ(scene.simulation.drag, 0.003);
+    EXPECT_EQ(scene.simulation.gravity, (Vec3d{0, -9.8, 0}));
+    EXPECT_EQ(scene.simulation.time_step, 0.01);
+    EXPECT_EQ(scene.simulation.iteration_count, 12u);
+    EXPECT_EQ(scene.frame_limit, 500u);
+    EXPECT_EQ(scene.simulation.rest.speed, 0.02);
+    EXPECT_EQ(scene.simulation.rest.frame_count, 25u);
+}
+
+TEST(Scene, NeedsOnlyAModelAndTheSizeOfTheCloth) {
+    const Scene scene = parse_scene(R"({"model": {"torus": {}}, "cloth": {"size": [2, 2]}})", "a.json");
+    EXPECT_EQ(std::get<TorusModel>(scene.model).major_segments, 60u);
+    EXPECT_EQ(scene.cloth.column_count, 100u);
+    EXPECT_EQ(scene.simulation.iteration_count, 10u);
+    EXPECT_EQ(refusal(R"({"cloth": {"size": [2, 2]}})"), "a.json: the key model is missing");
+    EXPECT_EQ(refusal(R"({"model": {"torus": {}}})"), "a.json: the key cloth is missing");
+    EXPECT_EQ(refusal(R"({"model": {"torus": {}}, "cloth": {}})"), "a.json: the key cloth.size is missing");
+}
+
+TEST(Scene, MakesTheShapesThatItNames) {
+    const auto model_of = [](const std::string& model) {
+        return parse_scene(R"({"cloth": {"size": [1, 1]}, "model": )" + model + "}", "a.json").model;
+    };
+    const auto torus =
+        std::get<TorusModel>(model_of(R"({"torus": {"major": 2, "minor": 0.5, "segments": [12, 8]}})"));
+    EXPECT_EQ(make_mesh(torus).faces.size(), 12u * 8u * 2u);
+    const auto sphere = std::get<SphereModel>(model_of(R"({"sphere": {"radius": 3, "segments": [10, 6]}})"));
+    EXPECT_NEAR(inspect(make_mesh(sphere)).bounding_sphere.radius, 3, 1e-5);
+    const auto box = std::get<BoxModel>(model_of(R"({"box": {"size": [1, 2, 3], "segments": 2}})"));
+    EXPECT_NEAR(inspect(make_mesh(box)).signed_volume, 6, 1e-5);
+}
+
+TEST(Scene, RefusesAModelThatIsNoneOrTwo) {
+    const std::string rest = R"(, "cloth": {"size": [1, 1]}})";
+    EXPECT_NE(refusal(R"({"model": {})" + rest), "");
+    EXPECT_NE(refusal(R"({"model": {"torus": {}, "box": {}})" + rest), "");
+    EXPECT_NE(refusal(R"({"model": 3)" + rest), "");
+    EXPECT_EQ(refusal(R"({"model": {"tours": {}})" + rest),
+              R"(a.json: there is no key "model.tours"; the nearest is "model.torus")");
+}
+
+TEST(Scene, RefusesAMisspeltKeyInEveryObjectAndNamesTheRightOne) {
+    const json full = json::parse(kFullScene);
+    std::vector<json::json_pointer> objects;
+    collect_objects(full, json::json_pointer(), objects);
+    ASSERT_EQ(objects.size(), 8u);
+    for (const auto& at : objects) {
+        for (const auto& item : full[at].items()) {
+            json spoilt = full;
+            spoilt[at][item.key() + "x"] = item.value();
+            const std::string path = dotted(at / item.key());
+            EXPECT_EQ(refusal(spoilt.dump()),
+                      "a.json: there is no key \"" + path + "x\"; the nearest is \"" + path + "\"");
+        }
+    }
+}
+
+TEST(Scene, RefusesEveryValueOfAWrongTypeByItsPath) {
+    const json full = json::parse(kFullScene);
+    std::vector<json::json_pointer> places;
+    collect_values(full, json::json_pointer(), places);
+    collect_objects(full, json::json_pointer(), places);
+    ASSERT_GT(places.size(), 30u);
+    for (const auto& at : places) {
+        if (at.empty()) continue;
+        for (const json& wrong : {json(nullptr), json(true), json::parse("[[]]")}) {
+            json spoilt = full;
+            spoilt[at] = wrong;
+            const std::string sentence = refusal(spoilt.dump());
+            EXPECT_EQ(sentence.rfind("a.json: " + dotted(at) + " is ", 0), 0u) << sentence;
+        }
+    }
+    EXPECT_NE(refusal("[]"), "");
+    EXPECT_NE(refusal("3"), "");
+}
+
+TEST(Scene, RefusesEveryNumberOutOfRangeByItsPath) {
+    const json full = json::parse(kFullScene);
+    std::vector<json::json_pointer> places;
+    collect_values(full, json::json_pointer(), places);
+    for (const auto& at : places) {
+        const json& value = full[at];
+        if (!value.is_number() && !(value.is_array() && value[0].is_number())) continue;
+        json spoilt = full;
+        const bool any_sign = value.is_array() && value.size() == 3;
+        const double wrong = any_sign ? 1e12 : -1;
+        (value.is_array() ? spoilt[at][0] : spoilt[at]) = wrong;
+        if (dotted(at).ends_with("degrees")) spoilt[at] = 1e12;
+        const std::string sentence = refusal(spoilt.dump());
+        EXPECT_EQ(sentence.rfind("a.json: " + dotted(at) + " is ", 0), 0u) << sentence;
+    }
+    EXPECT_NE(
+        refusal(
+            R"({"model": "a", "cloth": {"size": [1, 1], "rotation": {"axis": [0, 0, 0], "degrees": 1}}})"),
+        "");
+}
+
+TEST(Scene, RefusesAPinOutsideTheCloth) {
+    const auto pinned = [](const std::string& pins) {
+        return refusal(R"({"model": "a", "cloth": {"size": [1, 1], "particles": [3, 4], "pins": )" + pins +
+                       "}}");
+    };
+    EXPECT_EQ(pinned("[[2, 3]]"), "");
+    EXPECT_NE(pinned("[[3, 0]]"), "");
+    EXPECT_NE(pinned("[[0, 4]]"), "");
+}
+
+TEST(SceneFile, ThatCannotBeReadIsRefusedByName) {
+    const fs::path folder = fs::temp_directory_path() / "echinus_scene_file";
+    fs::create_directories(folder);
+    std::ofstream(folder / "empty.json");
+    std::ofstream(folder / "huge.json") << std::string(2'000'000, ' ');
+    const auto code_of = [](const fs::path& path) {
+        try {
+            read_scene(path);
+        } catch (const Error& error) {
+            EXPECT_EQ(std::string(error.what()).rfind(path.string() + ": ", 0), 0u) << error.what();
+            return error.code();
+        }
+        return ErrorCode::Damaged;
+    };
+    EXPECT_EQ(code_of(folder), ErrorCode::Unreadable);
+    EXPECT_EQ(code_of(folder / "missing.json"), ErrorCode::Unreadable);
+    EXPECT_EQ(code_of(folder / "empty.json"), ErrorCode::InvalidScene);
+    EXPECT_EQ(code_of(folder / "huge.json"), ErrorCode::InvalidScene);
+    fs::remove_all(folder);
+}
+
+TEST(SceneFile, OfTheRepositoryIsSound) {
+    std::size_t count = 0;
+    for (const auto& entry : fs::directory_iterator(ECHINUS_SCENES)) {
+        if (entry.path().extension() != ".json") continue;
+        EXPECT_NO_THROW(read_scene(entry.path())) << entry.path();
+        ++count;
+    }
+    EXPECT_GE(count, 5u);
+}
