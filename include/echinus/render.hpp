@@ -1,5 +1,6 @@
 #pragma once
 
+#include <echinus/distance_map.hpp>
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 
@@ -9,6 +10,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 /// Pictures by ray tracing on the processor: no window, no GPU. Library echinus::render (needs Embree 3 and
@@ -35,13 +37,15 @@ struct Colour {
 /// blindness: the scheme "muted" of Paul Tol, "Colour Schemes", SRON/EPS/TN/09-002 (2021), in an order in
 /// which neighbours differ most.
 namespace palette {
-inline constexpr Colour kClay = Colour::from_hex(0xB3ABA0);      ///< the model: warm grey
+inline constexpr Colour kClay = Colour::from_hex(0xBDB5AA);      ///< the model: warm grey
 inline constexpr Colour kCloth = Colour::from_hex(0xB4584E);     ///< the front of a cloth
 inline constexpr Colour kClothBack = Colour::from_hex(0xD39A7C); ///< and its back
+inline constexpr Colour kPage = Colour::from_hex(0xF9F8F6);      ///< the backdrop of every picture
+inline constexpr Colour kLayerBack = Colour::from_hex(0xE4DED4); ///< the inside of any layer: bone
 inline constexpr Colour kInk = Colour::from_hex(0x3A3936);       ///< text and wires
 inline constexpr Colour kLayers[] = {
     Colour::from_hex(0x44AA99), Colour::from_hex(0xDDCC77), Colour::from_hex(0xCC6677),
-    Colour::from_hex(0x88CCEE), Colour::from_hex(0x999933), Colour::from_hex(0xAA4499),
+    Colour::from_hex(0x88CCEE), Colour::from_hex(0xAA4499), Colour::from_hex(0x999933),
     Colour::from_hex(0x332288), Colour::from_hex(0x117733), Colour::from_hex(0x882255),
 };
 } // namespace palette
@@ -68,7 +72,8 @@ struct View {
     double azimuth_deg = 35;
     double elevation_deg = 20;      ///< height above the horizon, in [-89, 89]
     double vertical_field_deg = 24; ///< in [1, 120]; smaller is more like a parallel projection
-    double margin = 0.07;           ///< free border, as a share of the picture's height, in [0, 0.4]
+    double margin = 0.07;           ///< free border, as a share of the picture's height, in [0, 0.35]
+    double footer = 0;              ///< more room below, for a caption: a share of the height, in [0, 0.25]
 };
 
 /// A pinhole camera and the floor under what it sees, in the objects' frame.
@@ -125,5 +130,32 @@ Image render(std::span<const RenderedObject> objects, const Camera& camera,
 /// Writes a PNG (8 bits, sRGB), to a temporary name first.
 /// @throws Error Unwritable, or InvalidOptions when the picture is empty or its size is not that of its data
 void write_png(const std::filesystem::path& path, const Image& image);
+
+// ---- Figures: several pictures on one page
+// -----------------------------------------------------------------------------
+
+/// Where a text stands relative to its anchor.
+enum class TextAlign : std::uint8_t { Left, Centre, Right };
+
+/// Draws one line of text with strokes of its own: printable ASCII, another character becomes a box.
+/// @param x, y      anchor in pixels: the base line's left end, middle or right end
+/// @param height_px height of a capital letter
+void draw_text(Image& image, double x, double y, std::string_view text, double height_px,
+               Colour colour = palette::kInk, TextAlign align = TextAlign::Left);
+
+/// How far draw_text() advances, in pixels.
+double text_width(std::string_view text, double height_px);
+
+/// Puts pictures of one size side by side, row after row.
+/// @throws Error InvalidOptions when there is none, their sizes differ, or the page is larger than
+/// RenderOptions allows
+Image arrange(std::span<const Image> pictures, std::uint32_t column_count);
+
+/// The paper's figures 2 and 3: the model, and beside it the surface rebuilt from its map, each layer of
+/// entries in its own colour with a legend.
+/// @param options  width is that of the whole figure
+/// @throws Error as frame() and render(), and InvalidMesh when the map has no surface
+Image draw_map_figure(const TriangleMesh& model, const DistanceMapView& map, const View& view,
+                      const RenderOptions& options = {});
 
 } // namespace echinus

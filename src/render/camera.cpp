@@ -26,7 +26,8 @@ void require_valid_view(const View& view, double aspect) {
     require_range(view.azimuth_deg, -3600, 3600, "the azimuth");
     require_range(view.elevation_deg, -89, 89, "the elevation");
     require_range(view.vertical_field_deg, 1, 120, "the vertical field");
-    require_range(view.margin, 0, 0.4, "the margin");
+    require_range(view.margin, 0, 0.35, "the margin");
+    require_range(view.footer, 0, 0.25, "the footer");
     require_range(aspect, 1e-3, 1e3, "the picture's width over its height");
 }
 
@@ -62,25 +63,25 @@ Camera aim(const View& view) {
     return camera;
 }
 
-/// How far a wedge |x - x0| <= t (z - z0) must reach to hold a set of points given as (x, z): the two values
-/// that bound x0 and z0 from both sides.
+/// Fits the wedge of what a camera sees along one axis of the picture to a set of points (x, z), where z is
+/// the depth: -t_low (z - z0) <= x - x0 <= t_high (z - z0). Two sums bound x0 and z0 from both sides.
 class WedgeFit {
   public:
-    explicit WedgeFit(double tan_half) : tan_half_(tan_half) {}
+    WedgeFit(double tan_low, double tan_high) : tan_low_(tan_low), tan_high_(tan_high) {}
 
     void add(double x, double z) {
-        right_ = std::max(right_, x - tan_half_ * z);
-        left_ = std::max(left_, -x - tan_half_ * z);
+        high_ = std::max(high_, x - tan_high_ * z);
+        low_ = std::max(low_, -x - tan_low_ * z);
     }
     /// The largest z0 that holds all points.
-    double apex_z() const { return -(right_ + left_) / (2 * tan_half_); }
-    /// The x0 that leaves as much room on one side as on the other, for any z0.
-    double apex_x() const { return (right_ - left_) / 2; }
+    double nearest_apex_z() const { return -(high_ + low_) / (tan_high_ + tan_low_); }
+    /// For a z0 that is not larger, the x0 in the middle of those that hold all points.
+    double apex_x(double z0) const { return (high_ - low_ + (tan_high_ - tan_low_) * z0) / 2; }
 
   private:
-    double tan_half_;
-    double right_ = -std::numeric_limits<double>::infinity();
-    double left_ = -std::numeric_limits<double>::infinity();
+    double tan_low_, tan_high_;
+    double high_ = -std::numeric_limits<double>::infinity();
+    double low_ = -std::numeric_limits<double>::infinity();
 };
 
 } // namespace
@@ -97,10 +98,11 @@ Camera frame(std::span<const Vec3f> points, const View& view, double aspect) {
     }
 
     Camera camera = aim(view);
-    const double tan_used = camera.tan_half_height * (1 - 2 * view.margin);
-    const double side_room = aspect - 2 * view.margin; // the border is as wide at the sides
-    WedgeFit across(camera.tan_half_height * std::max(side_room, 0.1 * aspect));
-    WedgeFit along(tan_used);
+    const double upper = camera.tan_half_height * (1 - 2 * view.margin);
+    const double lower = camera.tan_half_height * (1 - 2 * view.margin - 2 * view.footer);
+    const double side = camera.tan_half_height * std::max(aspect - 2 * view.margin, 0.1 * aspect);
+    WedgeFit across(side, side);
+    WedgeFit along(lower, upper);
     camera.floor_height = std::numeric_limits<double>::infinity();
     for (const Vec3f& point : points) {
         const Vec3d relative = Vec3d(point) - bounds.centre;
@@ -109,9 +111,9 @@ Camera frame(std::span<const Vec3f> points, const View& view, double aspect) {
         along.add(dot(relative, camera.up), depth);
         camera.floor_height = std::min(camera.floor_height, dot(Vec3d(point), camera.world_up));
     }
-    const double depth = std::min(across.apex_z(), along.apex_z());
-    camera.position =
-        bounds.centre + camera.right * across.apex_x() + camera.up * along.apex_x() + camera.forward * depth;
+    const double depth = std::min(across.nearest_apex_z(), along.nearest_apex_z());
+    camera.position = bounds.centre + camera.right * across.apex_x(depth) + camera.up * along.apex_x(depth) +
+                      camera.forward * depth;
     return camera;
 }
 

@@ -11,10 +11,10 @@ namespace {
 constexpr double kLampAzimuthDeg = 54;   // to the left of the camera, as seen from what is drawn
 constexpr double kLampElevationDeg = 50; // shadows stay short and fall to the right
 constexpr float kLampRadius = 0.13F;     // tangent of the half angle: 7.4 degrees
-constexpr Vec3f kLampRadiance{1.0F, 0.975F, 0.93F};
-constexpr Vec3f kZenith{0.50F, 0.52F, 0.55F};
-constexpr Vec3f kHorizon{0.29F, 0.30F, 0.315F};
-constexpr Vec3f kFloorBounce{0.22F, 0.213F, 0.202F};
+constexpr Vec3f kLampRadiance{0.87F, 0.85F, 0.81F};
+constexpr Vec3f kZenith{0.44F, 0.455F, 0.48F};
+constexpr Vec3f kHorizon{0.26F, 0.27F, 0.283F};
+constexpr Vec3f kFloorBounce{0.20F, 0.194F, 0.185F};
 
 Vec3f unit(const Vec3f& v) {
     return v * (1 / length(v));
@@ -39,11 +39,15 @@ Sample2 to_disc(const Sample2& sample) {
     const float a = 2 * sample[0] - 1;
     const float b = 2 * sample[1] - 1;
     if (a == 0 && b == 0) return {0, 0};
-    constexpr float kQuarter = std::numbers::pi_v<float> / 4;
     const bool wide = std::abs(a) > std::abs(b);
     const float radius = wide ? a : b;
-    const float angle = wide ? kQuarter * (b / a) : 2 * kQuarter - kQuarter * (a / b);
-    return {radius * std::cos(angle), radius * std::sin(angle)};
+    const float angle = std::numbers::pi_v<float> / 4 * (wide ? b / a : a / b);
+    // Taylor series suffice within an eighth of a turn (4e-6) and are a fifth of the cost of std::sin and
+    // std::cos, of which a picture would take tens of millions.
+    const float square = angle * angle;
+    const float cosine = 1 - square * (1 - square * (1 - square / 30) / 12) / 2;
+    const float sine = angle * (1 - square * (1 - square * (1 - square / 42) / 20) / 6);
+    return wide ? Sample2{radius * cosine, radius * sine} : Sample2{radius * sine, radius * cosine};
 }
 
 /// Towards the lamp's middle: fixed relative to the camera's level direction, so that every view is well lit.

@@ -1,11 +1,10 @@
 #include "files/atomic_file.hpp"
+#include "render/image.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/render.hpp>
 
 #include <png.h>
-
-#include <memory>
 
 namespace echinus {
 
@@ -31,13 +30,7 @@ std::vector<std::uint8_t> encode_png(const Image& image) {
 } // namespace
 
 void write_png(const std::filesystem::path& path, const Image& image) {
-    const std::size_t expected = std::size_t{3} * image.width * image.height;
-    if (expected == 0 || image.rgb.size() != expected) {
-        throw Error(ErrorCode::InvalidOptions,
-                    path.string() + ": a picture of " + std::to_string(image.width) + " x " +
-                        std::to_string(image.height) + " pixels needs " + std::to_string(expected) +
-                        " bytes of colour, more than none, but has " + std::to_string(image.rgb.size()));
-    }
+    require_consistent(image);
     const std::vector<std::uint8_t> bytes = encode_png(image);
     AtomicFile file(path);
     file.write(bytes.data(), bytes.size());

@@ -1,4 +1,5 @@
 #include "geometry/parallel.hpp"
+#include "render/image.hpp"
 #include "render/intersector.hpp"
 #include "render/painted_surface.hpp"
 #include "render/tone.hpp"
@@ -15,14 +16,7 @@ namespace echinus {
 namespace {
 
 void require_valid_options(const RenderOptions& options) {
-    const auto side_ok = [](std::uint32_t side) { return side >= 1 && side <= RenderOptions::kMaxSide; };
-    const std::uint64_t pixel_count = std::uint64_t{options.width} * options.height;
-    if (!side_ok(options.width) || !side_ok(options.height) || pixel_count > RenderOptions::kMaxPixelCount) {
-        throw Error(ErrorCode::InvalidOptions,
-                    "a picture of " + std::to_string(options.width) + " x " + std::to_string(options.height) +
-                        " pixels: sides must be 1 to " + std::to_string(RenderOptions::kMaxSide) + ", and " +
-                        std::to_string(RenderOptions::kMaxPixelCount) + " pixels are the most in all");
-    }
+    require_drawable(options.width, options.height);
     if (options.samples < 1 || options.samples > RenderOptions::kMaxSampleCount) {
         throw Error(ErrorCode::InvalidOptions, std::to_string(options.samples) +
                                                    " samples per pixel: give 1 to " +

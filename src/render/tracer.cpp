@@ -15,7 +15,7 @@ constexpr Colour kBackdrop = Colour::from_hex(0xFEFDFB);
 constexpr float kShadowStrength = 0.66F;
 /// Light from a direction in which another part of the drawing stands, as a share of what the open direction
 /// would send, times that part's albedo, taken to be the point's own.
-constexpr float kInterreflection = 0.55F;
+constexpr float kInterreflection = 0.85F;
 /// Clearance of rays that start on the surface, in the unit frame.
 constexpr float kClearance = 1e-4F;
 /// Between these distances from the drawing's middle its shadow fades out, in the unit frame.
@@ -24,7 +24,9 @@ constexpr float kFloorFadeStart = 4, kFloorFadeEnd = 7;
 Vec3f multiply(const Vec3f& a, const Vec3f& b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
-float grey(const Vec3f& light) { return (light.x + light.y + light.z) / 3; }
+float grey(const Vec3f& light) {
+    return (light.x + light.y + light.z) / 3;
+}
 Vec3f unit(const Vec3f& v) {
     return v * (1 / length(v));
 }
@@ -65,12 +67,17 @@ class LightRays {
         rays_[count_] = ray;
         gains_[count_++] = gain;
     }
-    Vec3f light(const Intersector& intersector) const {
-        Vec3f sum;
-        if (count_ == 0) return sum;
+    struct Sum {
+        Vec3f light;
+        bool any_blocked = false;
+    };
+    Sum trace(const Intersector& intersector) const {
+        if (count_ == 0) return {};
         const std::uint32_t blocked = intersector.blocked({rays_.data(), count_});
+        Sum sum;
+        sum.any_blocked = blocked != 0;
         for (std::size_t i = 0; i < count_; ++i) {
-            if ((blocked >> i & 1U) == 0) sum += gains_[i];
+            if ((blocked >> i & 1U) == 0) sum.light += gains_[i];
         }
         return sum;
     }
@@ -108,12 +115,17 @@ Tracer::Tracer(const PaintedSurface& surface, const Intersector& intersector, co
 Vec3f Tracer::pixel(std::uint32_t x, std::uint32_t y) const {
     Vec3f sum;
     for (std::uint32_t first = 0; first < sample_count_; first += Intersector::kPacketSize) {
-        sum += packet(x, y, first, std::min<std::size_t>(Intersector::kPacketSize, sample_count_ - first));
+        const std::size_t count = std::min<std::size_t>(Intersector::kPacketSize, sample_count_ - first);
+        const Seen seen = packet(x, y, first, count);
+        // Most pixels of most pictures: nothing more is to be found out about them.
+        if (first == 0 && count == Intersector::kPacketSize && seen.only_open_floor) return backdrop_;
+        sum += seen.light;
     }
     return sum * (1 / static_cast<float>(sample_count_));
 }
 
-Vec3f Tracer::packet(std::uint32_t x, std::uint32_t y, std::uint32_t first_sample, std::size_t count) const {
+Tracer::Seen Tracer::packet(std::uint32_t x, std::uint32_t y, std::uint32_t first_sample,
+                            std::size_t count) const {
     std::array<Ray, Intersector::kPacketSize> rays;
     std::array<RayHit, Intersector::kPacketSize> hits;
     const std::uint32_t seed = SampleTables::pixel_seed(x, y);
@@ -125,17 +137,22 @@ Vec3f Tracer::packet(std::uint32_t x, std::uint32_t y, std::uint32_t first_sampl
     }
     if (any_meets) intersector_.first_hits({rays.data(), count}, hits);
 
-    Vec3f sum;
+    Seen seen;
     LightRays lamp, sky;
     for (std::uint32_t i = 0; i < count; ++i) {
         const Draw draw{first_sample + i, seed};
         const Place place =
             hits[i].found() ? object_place(rays[i], hits[i], draw) : floor_place(rays[i], draw);
-        sum += place.base;
+        seen.only_open_floor = seen.only_open_floor && !hits[i].found();
+        seen.light += place.base;
         lamp.add(place.to_lamp, place.lamp_gain);
         sky.add(place.to_sky, place.sky_gain);
     }
-    return sum + lamp.light(intersector_) + sky.light(intersector_);
+    const LightRays::Sum from_lamp = lamp.trace(intersector_);
+    const LightRays::Sum from_sky = sky.trace(intersector_);
+    seen.light += from_lamp.light + from_sky.light;
+    seen.only_open_floor = seen.only_open_floor && !from_lamp.any_blocked && !from_sky.any_blocked;
+    return seen;
 }
 
 Tracer::Place Tracer::object_place(const Ray& ray, const RayHit& hit, const Draw& draw) const {

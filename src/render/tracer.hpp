@@ -44,7 +44,13 @@ class Tracer {
         std::uint32_t sample, seed;
     };
 
-    Vec3f packet(std::uint32_t x, std::uint32_t y, std::uint32_t first_sample, std::size_t count) const;
+    /// What the samples of one packet saw.
+    struct Seen {
+        Vec3f light; ///< summed
+        bool only_open_floor = true;
+    };
+
+    Seen packet(std::uint32_t x, std::uint32_t y, std::uint32_t first_sample, std::size_t count) const;
     Place object_place(const Ray& ray, const RayHit& hit, const Draw& draw) const;
     Place floor_place(const Ray& ray, const Draw& draw) const;
     Vec3f albedo(const RayHit& hit, const Vec3f& position, bool from_behind) const;

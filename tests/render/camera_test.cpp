@@ -44,17 +44,24 @@ TEST(Camera, ShowsAllPointsWithinTheMarginAndNoSmallerThanItMust) {
         view.azimuth_deg = 360 * share(random);
         view.elevation_deg = 170 * share(random) - 85;
         view.margin = 0.3 * share(random);
+        view.footer = 0.2 * share(random);
         const double aspect = 1 + share(random);
         const Camera camera = frame(points, view, aspect);
 
-        double widest = 0;
-        double highest = 0;
+        double widest = -10;
+        double highest = -10;
+        double lowest = -10;
+        const double upper = 1 - 2 * view.margin;
+        const double lower = upper - 2 * view.footer;
         for (const Vec3f& point : points) {
             const auto [x, y] = project(camera, point);
-            widest = std::max(widest, std::abs(x) / (aspect - 2 * view.margin));
-            highest = std::max(highest, std::abs(y) / (1 - 2 * view.margin));
+            widest = std::max(widest, std::abs(x) - (aspect - 2 * view.margin));
+            highest = std::max(highest, y - upper);
+            lowest = std::max(lowest, -y - lower);
         }
-        EXPECT_NEAR(std::max(widest, highest), 1, 1e-4);
+        // Nothing reaches into the border, and across or upright the room is used up.
+        EXPECT_LT(std::max({widest, highest, lowest}), 1e-4);
+        EXPECT_GT(std::max(widest, std::min(highest, lowest)), -1e-4);
     }
 }
 
@@ -103,6 +110,7 @@ TEST(Camera, RefusesWhatItCannotFrame) {
     refuses({.azimuth_deg = nan}, 1, points);
     refuses({.vertical_field_deg = 0}, 1, points);
     refuses({.margin = 0.5}, 1, points);
+    refuses({.footer = 0.5}, 1, points);
     refuses({}, 0, points);
     refuses({}, nan, points);
     refuses({}, 1, {});
