@@ -1,6 +1,7 @@
 #include "directions/lattice.hpp"
 
 #include "directions/crossing.hpp"
+#include "mesh/used_vertices.hpp"
 
 #include <echinus/error.hpp>
 
@@ -20,16 +21,9 @@ float enclosing_radius(const std::vector<Vec3f>& points, const Vec3f& centre) {
         const Vec3d d = Vec3d(point) - Vec3d(centre);
         radius_sq = std::max(radius_sq, dot(d, d));
     }
-    const double radius = std::sqrt(radius_sq) * (1 + 4 * std::numeric_limits<double>::epsilon());
-    const float rounded = static_cast<float>(radius);
-    return rounded < radius ? std::nextafter(rounded, std::numeric_limits<float>::infinity()) : rounded;
-}
-
-std::vector<bool> used_vertices(const TriangleMesh& mesh) {
-    std::vector<bool> used(mesh.vertices.size());
-    for (const Triangle& face : mesh.faces)
-        for (std::uint32_t vertex : face) used[vertex] = true;
-    return used;
+    const float radius = static_cast<float>(std::sqrt(radius_sq));
+    const bool too_small = static_cast<double>(radius) * radius < radius_sq; // the product is exact
+    return too_small ? std::nextafter(radius, std::numeric_limits<float>::infinity()) : radius;
 }
 
 /// Outside these bounds squares of lengths leave the range of float.
@@ -109,11 +103,8 @@ LatticePoint LatticeMesh::snap(const Vec3f& point_local) const {
 
 LatticeMesh snap_to_lattice(const TriangleMesh& mesh) {
     require_valid(mesh);
-    const std::vector<bool> used = used_vertices(mesh);
-    std::vector<Vec3f> points;
-    for (std::size_t i = 0; i < used.size(); ++i)
-        if (used[i]) points.push_back(mesh.vertices[i]);
-
+    const std::vector<bool> used = is_vertex_used(mesh);
+    const std::vector<Vec3f> points = used_positions(mesh);
     const Vec3f middle(smallest_enclosing_sphere(points).centre);
     const float radius = enclosing_radius(points, middle);
     require_usable(radius);

@@ -2,6 +2,7 @@
 #include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
 #include "mesh/union_find.hpp"
+#include "mesh/used_vertices.hpp"
 
 #include <echinus/mesh.hpp>
 
@@ -73,16 +74,6 @@ bool every_vertex_has_one_fan(const TriangleMesh& mesh, std::span<const EdgeUse>
     return true;
 }
 
-std::vector<Vec3f> used_vertices(const TriangleMesh& mesh) {
-    std::vector<bool> is_used(mesh.vertices.size(), false);
-    for (const Triangle& face : mesh.faces)
-        for (std::uint32_t vertex : face) is_used[vertex] = true;
-    std::vector<Vec3f> used;
-    for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex)
-        if (is_used[vertex]) used.push_back(mesh.vertices[vertex]);
-    return used;
-}
-
 /// Seen from a point close by, so that a mesh far from the origin loses no digits.
 double signed_volume(const TriangleMesh& mesh, const Vec3d& reference) {
     double sum = 0;
@@ -103,7 +94,7 @@ MeshReport inspect(const TriangleMesh& mesh) {
     report.manifold = report.nonmanifold_edges.count == 0 && every_vertex_has_one_fan(mesh, edge_uses);
     report.duplicate_faces = make_fault(find_duplicate_faces(mesh));
     report.degenerate_faces = make_fault(find_degenerate_faces(mesh));
-    report.bounding_sphere = smallest_enclosing_sphere(used_vertices(mesh));
+    report.bounding_sphere = smallest_enclosing_sphere(used_positions(mesh));
     report.signed_volume = signed_volume(mesh, report.bounding_sphere.centre);
     return report;
 }

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 using namespace echinus;
 
 namespace {
@@ -32,6 +35,19 @@ TEST(Lattice, SnapsEveryVertexToWithinHalfAStep) {
         const Vec3d error = back - Vec3d(mesh.vertices[i]);
         for (double e : {error.x, error.y, error.z}) EXPECT_LE(std::abs(e), 0.5000001 * lattice.step);
         EXPECT_LE(length(Vec3d(lattice.vertices[i])), static_cast<double>(kLatticeExtent) + 1);
+    }
+}
+
+TEST(Lattice, TakesTheSmallestFloatThatEnclosesAllVertices) {
+    EXPECT_EQ(snap_to_lattice(make_sphere(524'288, 8, 4)).radius, 524'288.0F);
+    for (float size : {1.0F, 3.0F, 0.7F}) {
+        const TriangleMesh box = make_box({size, 2.0 * size, 3.0 * size});
+        const LatticeMesh lattice = snap_to_lattice(box);
+        double farthest = 0;
+        for (const Vec3f& vertex : box.vertices)
+            farthest = std::max(farthest, length(Vec3d(vertex) - Vec3d(lattice.centre)));
+        EXPECT_GE(lattice.radius, farthest);
+        EXPECT_LT(std::nextafter(lattice.radius, 0.0F), farthest);
     }
 }
 
