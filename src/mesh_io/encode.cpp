@@ -1,0 +1,99 @@
+#include "mesh_io/encode.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+
+namespace echinus {
+
+namespace {
+
+template <typename Number>
+void append_text(std::string& text, Number value) {
+    std::array<char, 32> digits;
+    const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+    text.append(digits.data(), result.ptr);
+}
+
+/// "x y z\n"
+template <typename Number>
+void append_line(std::string& text, Number x, Number y, Number z) {
+    append_text(text, x);
+    text += ' ';
+    append_text(text, y);
+    text += ' ';
+    append_text(text, z);
+    text += '\n';
+}
+
+template <typename Number>
+void append_little_endian(std::string& bytes, Number value) {
+    auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(value);
+    if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
+    bytes.append(raw.data(), raw.size());
+}
+
+void append_little_endian(std::string& bytes, const Vec3f& v) {
+    for (const float coordinate : {v.x, v.y, v.z}) append_little_endian(bytes, coordinate);
+}
+
+Vec3f unit_normal(const TriangleMesh& mesh, const Triangle& face) {
+    const Vec3d a(mesh.vertices[face[0]]);
+    const Vec3d normal = cross(Vec3d(mesh.vertices[face[1]]) - a, Vec3d(mesh.vertices[face[2]]) - a);
+    const double size = length(normal);
+    return size > 0 ? Vec3f(normal * (1 / size)) : Vec3f{};
+}
+
+} // namespace
+
+std::string encode_obj(const TriangleMesh& mesh) {
+    std::string text;
+    for (const Vec3f& p : mesh.vertices) {
+        text += "v ";
+        append_line(text, p.x, p.y, p.z);
+    }
+    for (const Triangle& f : mesh.faces) {
+        text += "f ";
+        append_line(text, f[0] + 1ULL, f[1] + 1ULL, f[2] + 1ULL);
+    }
+    return text;
+}
+
+std::string encode_off(const TriangleMesh& mesh) {
+    std::string text =
+        "OFF\n" + std::to_string(mesh.vertices.size()) + " " + std::to_string(mesh.faces.size()) + " 0\n";
+    for (const Vec3f& p : mesh.vertices) append_line(text, p.x, p.y, p.z);
+    for (const Triangle& f : mesh.faces) {
+        text += "3 ";
+        append_line(text, f[0], f[1], f[2]);
+    }
+    return text;
+}
+
+std::string encode_ply(const TriangleMesh& mesh) {
+    std::string bytes =
+        "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.vertices.size()) +
+        "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+        std::to_string(mesh.faces.size()) + "\nproperty list uchar uint vertex_indices\nend_header\n";
+    for (const Vec3f& p : mesh.vertices) append_little_endian(bytes, p);
+    for (const Triangle& f : mesh.faces) {
+        append_little_endian(bytes, std::uint8_t{3});
+        for (const std::uint32_t vertex : f) append_little_endian(bytes, vertex);
+    }
+    return bytes;
+}
+
+std::string encode_stl(const TriangleMesh& mesh) {
+    std::string bytes = "binary STL";
+    bytes.resize(80, ' ');
+    append_little_endian(bytes, static_cast<std::uint32_t>(mesh.faces.size()));
+    for (const Triangle& f : mesh.faces) {
+        append_little_endian(bytes, unit_normal(mesh, f));
+        for (const std::uint32_t vertex : f) append_little_endian(bytes, mesh.vertices[vertex]);
+        append_little_endian(bytes, std::uint16_t{0}); // attributes
+    }
+    return bytes;
+}
+
+} // namespace echinus

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <echinus/mesh.hpp>
+
+#include <string>
+
+/// The bytes of mesh files. Text has the shortest decimals that read back to the same float.
+/// @pre indices are in range
+namespace echinus {
+
+std::string encode_obj(const TriangleMesh& mesh);
+std::string encode_off(const TriangleMesh& mesh);
+std::string encode_ply(const TriangleMesh& mesh); ///< binary, little endian
+std::string encode_stl(const TriangleMesh& mesh); ///< binary; normals are computed, 0 for faces without area
+
+} // namespace echinus

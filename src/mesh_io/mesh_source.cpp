@@ -1,0 +1,20 @@
+#include "mesh_io/mesh_source.hpp"
+
+#include <algorithm>
+
+namespace echinus {
+
+std::string printable(std::string_view text) {
+    std::string shown(text);
+    const auto is_unprintable = [](char c) { return c < ' ' || c > '~'; };
+    std::replace_if(shown.begin(), shown.end(), is_unprintable, '?');
+    return shown;
+}
+
+std::string in_quotes(std::string_view text) {
+    constexpr std::size_t kMaxLength = 24;
+    const std::string shown = printable(text.substr(0, kMaxLength));
+    return "'" + shown + (text.size() > kMaxLength ? "...'" : "'");
+}
+
+} // namespace echinus

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <echinus/error.hpp>
+
+#include <string>
+#include <string_view>
+
+namespace echinus {
+
+/// A mesh file in memory.
+struct MeshSource {
+    std::string name; ///< the path, with which every sentence of an error begins
+    std::string_view bytes;
+
+    [[noreturn]] void fail(ErrorCode code, const std::string& what) const {
+        throw Error(code, name + ": " + what);
+    }
+};
+
+/// The text with ? for bytes that do not print, so that it can stand in a sentence.
+std::string printable(std::string_view text);
+
+/// A word of a file for use in a sentence: in quotation marks, printable, cut short.
+std::string in_quotes(std::string_view text);
+
+} // namespace echinus

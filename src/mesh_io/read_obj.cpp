@@ -1,0 +1,101 @@
+#include "mesh_io/line_scanner.hpp"
+#include "mesh_io/readers.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <limits>
+
+// The format: Wavefront Technologies, "Advanced Visualizer", appendix B1, "Object Files". Read are vertices
+// and faces; the other statements are passed over.
+
+namespace echinus {
+
+namespace {
+
+constexpr std::array<std::string_view, 42> kOtherStatements{
+    "vt",   "vn",     "vp",     "p",        "l",        "fo",         "o",         "g",      "s",
+    "mg",   "mtllib", "usemtl", "maplib",   "usemap",   "bevel",      "lod",       "cstype", "deg",
+    "bmat", "step",   "curv",   "curv2",    "surf",     "parm",       "trim",      "hole",   "scrv",
+    "sp",   "end",    "con",    "c_interp", "d_interp", "shadow_obj", "trace_obj", "ctech",  "stech",
+    "call", "csh",    "cdc",    "bzp",      "bsp",      "res"};
+
+class ObjReader {
+  public:
+    explicit ObjReader(const MeshSource& source) : scanner_(source) {}
+
+    PolygonMesh read() {
+        while (scanner_.next_line()) read_statement();
+        if (mesh_.vertices.size() > std::numeric_limits<std::uint32_t>::max())
+            scanner_.fail(ErrorCode::InvalidMesh, "there are more than 2^32 vertices");
+        require_largest_index();
+        return std::move(mesh_);
+    }
+
+  private:
+    void read_statement() {
+        const std::string_view keyword = scanner_.next_word();
+        if (keyword == "v")
+            read_vertex();
+        else if (keyword == "f")
+            read_face();
+        else if (std::find(kOtherStatements.begin(), kOtherStatements.end(), keyword) ==
+                 kOtherStatements.end())
+            scanner_.fail(ErrorCode::WrongFormat, in_quotes(keyword) + " is no statement of an OBJ file");
+    }
+
+    /// A weight or a colour may follow.
+    void read_vertex() {
+        const float x = scanner_.next_coordinate();
+        const float y = scanner_.next_coordinate();
+        const float z = scanner_.next_coordinate();
+        mesh_.vertices.emplace_back(x, y, z);
+    }
+
+    void read_face() {
+        std::uint32_t corner_count = 0;
+        for (; !scanner_.at_end_of_line(); ++corner_count)
+            mesh_.corners.push_back(vertex_index(scanner_.next_word()));
+        mesh_.corner_counts.push_back(corner_count);
+    }
+
+    /// Of a corner v, v/vt, v//vn or v/vt/vn: from 1, or negative and counted back from the latest vertex.
+    std::uint32_t vertex_index(std::string_view corner) {
+        const std::string_view digits = corner.substr(0, corner.find('/'));
+        std::int64_t number = 0;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+        if (error != std::errc{} || end != digits.data() + digits.size())
+            scanner_.fail(ErrorCode::Damaged, "a vertex number was expected, not " + in_quotes(corner));
+        const std::int64_t index =
+            number < 0 ? static_cast<std::int64_t>(mesh_.vertices.size()) + number : number - 1;
+        if (number == 0 || index < 0 || index > std::numeric_limits<std::uint32_t>::max())
+            scanner_.fail(ErrorCode::InvalidMesh, "there is no vertex " + std::to_string(number));
+        if (index > largest_index_) {
+            largest_index_ = index;
+            line_of_largest_ = scanner_.line_number();
+        }
+        return static_cast<std::uint32_t>(index);
+    }
+
+    /// At the end, since a face may precede its vertices.
+    void require_largest_index() const {
+        if (largest_index_ >= static_cast<std::int64_t>(mesh_.vertices.size()))
+            scanner_.fail_at(line_of_largest_, ErrorCode::InvalidMesh,
+                             "the face refers to vertex " + std::to_string(largest_index_ + 1) +
+                                 ", but the file has only " + std::to_string(mesh_.vertices.size()) +
+                                 " vertices");
+    }
+
+    LineScanner scanner_;
+    PolygonMesh mesh_;
+    std::int64_t largest_index_ = -1;
+    std::size_t line_of_largest_ = 0;
+};
+
+} // namespace
+
+PolygonMesh read_obj(const MeshSource& source) {
+    return ObjReader(source).read();
+}
+
+} // namespace echinus

@@ -1,0 +1,112 @@
+#include "mesh_io/scene_guards.hpp"
+
+#include "mesh_io/byte_reader.hpp"
+
+#include <algorithm>
+
+namespace echinus {
+
+namespace {
+
+void require_moderate(std::size_t found, std::size_t limit, const char* what, const MeshSource& source) {
+    if (found > limit)
+        source.fail(ErrorCode::Damaged,
+                    std::string(what) + ", of which at most " + std::to_string(limit) + " are read");
+}
+
+/// The offset after a string's closing quotation mark.
+std::size_t end_of_string(std::string_view json, std::size_t begin) {
+    for (std::size_t i = begin + 1; i < json.size(); ++i) {
+        if (json[i] == '\\')
+            ++i;
+        else if (json[i] == '"')
+            return i + 1;
+    }
+    return json.size();
+}
+
+/// Could this string be the key "children"? Escaped letters are not spelt out: nobody writes them there.
+bool may_be_children(std::string_view string) {
+    return string == "\"children\"" || string.find("\\u") != std::string_view::npos;
+}
+
+void require_moderate_json(std::string_view json, const MeshSource& source) {
+    std::size_t depth = 0;
+    std::size_t deepest = 0;
+    std::size_t parent_count = 0;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const char c = json[i];
+        if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
+        if ((c == ']' || c == '}') && depth > 0) --depth;
+        if (c != '"') continue;
+        const std::size_t end = end_of_string(json, i);
+        if (may_be_children(json.substr(i, end - i))) ++parent_count;
+        i = end - 1;
+    }
+    require_moderate(deepest, kMaxJsonDepth, "the JSON has too many brackets in brackets", source);
+    require_moderate(parent_count, kMaxParentNodes, "there are too many nodes with children", source);
+}
+
+// Chunks of 3DS (Autodesk, "3D Studio File Toolkit", chunk list): an id, the size with this head, the
+// content.
+constexpr std::uint16_t kMainChunk = 0x4D4D;
+constexpr std::uint16_t kKeyframes = 0xB000;
+constexpr std::uint16_t kObjectNode = 0xB002;
+constexpr std::size_t kChunkHeadSize = 6;
+
+/// Calls visit(id, begin, end) for the content of each chunk in a range, as far as they are whole.
+template <typename Visit>
+void for_each_chunk(const MeshSource& source, std::size_t begin, std::size_t end, Visit&& visit) {
+    while (begin + kChunkHeadSize <= end) {
+        ByteReader head(source, begin, ByteOrder::LittleEndian);
+        const auto id = head.next<std::uint16_t>();
+        const std::size_t size = head.next<std::uint32_t>();
+        if (size < kChunkHeadSize || size > end - begin) return;
+        visit(id, begin + kChunkHeadSize, begin + size);
+        begin += size;
+    }
+}
+
+} // namespace
+
+void require_readable_gltf(const MeshSource& source) {
+    const std::size_t first = source.bytes.find_first_not_of(" \t\r\n");
+    if (first == std::string_view::npos || source.bytes[first] != '{')
+        source.fail(ErrorCode::WrongFormat, "the brace with which a glTF file begins was not found");
+    require_moderate_json(source.bytes, source);
+}
+
+void require_readable_glb(const MeshSource& source) {
+    constexpr std::size_t kJsonBegin = 20; // after magic, version, length, and the chunk's length and type
+    if (!source.bytes.starts_with("glTF"))
+        source.fail(ErrorCode::WrongFormat, "the word glTF with which a GLB file begins was not found");
+    ByteReader head(source, 8, ByteOrder::LittleEndian);
+    const std::size_t length = head.next<std::uint32_t>();
+    if (length != source.bytes.size())
+        source.fail(ErrorCode::Damaged, "the file says that it has " + std::to_string(length) +
+                                            " bytes, but it has " + std::to_string(source.bytes.size()));
+    const std::size_t json_length = head.next<std::uint32_t>();
+    head.skip(4);
+    head.skip(json_length);
+    require_moderate_json(source.bytes.substr(kJsonBegin, json_length), source);
+}
+
+void require_readable_3ds(const MeshSource& source) {
+    ByteReader head(source, 0, ByteOrder::LittleEndian);
+    if (source.bytes.size() < kChunkHeadSize || head.next<std::uint16_t>() != kMainChunk)
+        source.fail(ErrorCode::WrongFormat, "the bytes 4D 4D with which a 3DS file begins were not found");
+    const std::size_t length = head.next<std::uint32_t>();
+    if (length > source.bytes.size())
+        source.fail(ErrorCode::Damaged, "the file says that it has " + std::to_string(length) +
+                                            " bytes, but it has " + std::to_string(source.bytes.size()));
+    std::size_t node_count = 0;
+    for_each_chunk(source, kChunkHeadSize, length, [&](std::uint16_t id, std::size_t begin, std::size_t end) {
+        if (id != kKeyframes) return;
+        for_each_chunk(source, begin, end, [&](std::uint16_t inner_id, std::size_t, std::size_t) {
+            if (inner_id == kObjectNode) ++node_count;
+        });
+    });
+    require_moderate(node_count, kMaxParentNodes, "there are too many nodes", source);
+}
+
+} // namespace echinus

@@ -1,0 +1,34 @@
+#include "files/atomic_file.hpp"
+#include "mesh_io/encode.hpp"
+#include "mesh_io/ending.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/mesh_io.hpp>
+
+namespace echinus {
+
+namespace {
+
+using Encode = std::string (*)(const TriangleMesh&);
+
+Encode encoder_for(const std::filesystem::path& path) {
+    const std::string ending = lower_case_ending(path);
+    if (ending == ".obj") return encode_obj;
+    if (ending == ".off") return encode_off;
+    if (ending == ".ply") return encode_ply;
+    if (ending == ".stl") return encode_stl;
+    throw Error(ErrorCode::WrongFormat, path.string() +
+                                            ": meshes are written to files that end in .obj, .ply, "
+                                            ".stl or .off, not in '" +
+                                            ending + "'");
+}
+
+} // namespace
+
+void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
+    const Encode encode = encoder_for(path);
+    require_valid(mesh);
+    write_file(path, encode(mesh));
+}
+
+} // namespace echinus

@@ -1,0 +1,130 @@
+#include "mesh_io/exported_files.hpp"
+#include "support/expect_error.hpp"
+#include "support/expect_same_faces.hpp"
+#include "support/temporary_folder.hpp"
+
+#include <echinus/mesh_io.hpp>
+
+#include <gtest/gtest.h>
+
+using namespace echinus;
+using namespace echinus::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kEndings[] = {".obj", ".off", ".ply", ".stl", ".gltf", ".glb", ".3ds"};
+
+class ReadMesh : public TemporaryFolderTest {
+  protected:
+    void expect_refused(ErrorCode code, const std::string& words, const fs::path& file) const {
+        expect_error(code, file.string() + ": " + words, [&] { read_mesh(file); });
+    }
+};
+
+} // namespace
+
+TEST_F(ReadMesh, ReadsWhatAssimpWritesInEveryFormat) {
+    const TriangleMesh torus = make_torus(1, 0.25, 16, 8);
+    for (const ExportedKind& kind : kExportedKinds) {
+        SCOPED_TRACE(kind.exporter);
+        const fs::path file = path(std::string("torus_") + kind.exporter + kind.ending);
+        export_with_assimp(file, torus, kind);
+        const TriangleMesh mesh = read_mesh(file);
+        EXPECT_EQ(mesh.vertices.size(), torus.vertices.size());
+        TriangleMesh expected = torus;
+        if (kind.ending == std::string(".3ds")) // Assimp's exporter turns the model about the x axis
+            for (Vec3f& p : expected.vertices) p = {p.x, p.z, -p.y};
+        expect_same_faces(mesh, expected, 2e-6); // Assimp writes six digits
+        EXPECT_TRUE(inspect(mesh).closed);
+    }
+}
+
+TEST_F(ReadMesh, GivesTheSameMeshOnEachReading) {
+    for (const ExportedKind& kind : kExportedKinds) {
+        const fs::path file = path(std::string("box") + kind.ending);
+        export_with_assimp(file, make_box({1, 2, 3}, 3), kind);
+        const TriangleMesh first = read_mesh(file);
+        const TriangleMesh second = read_mesh(file);
+        EXPECT_EQ(first.vertices, second.vertices);
+        EXPECT_EQ(first.faces, second.faces);
+    }
+}
+
+TEST_F(ReadMesh, TellsFormatsByTheEndingInAnyCase) {
+    const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    EXPECT_EQ(read_mesh(write("a.OBJ", obj)).faces.size(), 1U);
+    expect_refused(ErrorCode::WrongFormat, "meshes are read from files that end in .obj",
+                   write("a.txt", obj));
+    expect_refused(ErrorCode::WrongFormat, "meshes are read from files that end in .obj", write("obj", obj));
+}
+
+TEST_F(ReadMesh, RefusesEmptyFilesDirectoriesAndMissingFiles) {
+    for (const std::string ending : kEndings) {
+        SCOPED_TRACE(ending);
+        expect_refused(ErrorCode::Damaged, "the file is empty", write("empty" + ending, ""));
+        fs::create_directory(path("folder" + ending));
+        expect_refused(ErrorCode::Unreadable, "", path("folder" + ending));
+        expect_refused(ErrorCode::Unreadable, "", path("missing" + ending));
+    }
+}
+
+TEST_F(ReadMesh, RefusesAPictureByAnyName) {
+    const std::string png("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\x08\2\0\0\0\x90wS\xde", 33);
+    for (const std::string ending : kEndings) {
+        SCOPED_TRACE(ending);
+        expect_refused(ErrorCode::WrongFormat, "", write("picture" + ending, png));
+    }
+}
+
+TEST_F(ReadMesh, RefusesFilesWithoutFaces) {
+    expect_refused(ErrorCode::InvalidMesh, "the file has no faces", write("a.obj", "v 0 0 0\nl 1 1\n"));
+    expect_refused(ErrorCode::InvalidMesh, "the file has no faces", write("a.off", "OFF\n1 0 0\n0 0 0\n"));
+    expect_refused(ErrorCode::InvalidMesh, "the file has no faces",
+                   write("b.off", "OFF\n2 1 0\n0 0 0\n1 0 0\n2 0 1\n"));
+    expect_refused(ErrorCode::InvalidMesh, "the file has no faces", write("a.stl", "solid a\nendsolid a\n"));
+    expect_refused(ErrorCode::InvalidMesh, "the file has no faces", write("b.stl", std::string(84, '\0')));
+    expect_refused(ErrorCode::InvalidMesh, "the file has no faces",
+                   write("a.ply", "ply\nformat ascii 1.0\nend_header\n"));
+}
+
+TEST_F(ReadMesh, TakesASingleFaceAsAnOpenMesh) {
+    const TriangleMesh mesh = read_mesh(write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+    EXPECT_EQ(inspect(mesh).border_edges.count, 3U);
+}
+
+TEST_F(ReadMesh, WeldsEqualPositionsAndDropsUnusedVertices) {
+    const TriangleMesh mesh =
+        read_mesh(write("a.obj", "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv -0 0 0\nv 0 1 0\nv 0 0 1\n"
+                                 "f 2 3 4\nf 5 6 7\n"));
+    EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+    EXPECT_EQ(mesh.faces, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+}
+
+TEST_F(ReadMesh, ReturnsAMeshOfEqualPointsForInspectToJudge) {
+    const TriangleMesh mesh = read_mesh(write("a.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n"));
+    EXPECT_EQ(mesh.vertices.size(), 1U);
+    EXPECT_EQ(inspect(mesh).degenerate_faces.count, 1U);
+}
+
+TEST_F(ReadMesh, ReadsConcavePolygonsWithoutFacesOutside) {
+    const TriangleMesh mesh =
+        read_mesh(write("a.obj", "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 4 0\nv 3 1 0\nv 1 1 0\nv 1 4 0\nv 0 4 0\n"
+                                 "f 1 2 3 4 5 6 7 8\n"));
+    EXPECT_EQ(mesh.faces.size(), 6U);
+    EXPECT_GT(unsigned_distance(mesh, {2, 2, 0}), 0.99); // between the arms of the U
+}
+
+TEST_F(ReadMesh, KeepsHugeTinyAndFlatMeshesAsTheyAre) {
+    for (const Vec3d& size : {Vec3d{1e9, 1e9, 1e9}, Vec3d{1e-9, 1e-9, 1e-9}, Vec3d{1, 1, 1e-6}}) {
+        const TriangleMesh box = make_box(size, 2);
+        for (const std::string ending : {".obj", ".off", ".ply", ".stl"}) {
+            const fs::path file = path("box" + ending);
+            write_mesh(file, box);
+            const MeshReport report = inspect(read_mesh(file));
+            EXPECT_TRUE(report.closed) << ending;
+            EXPECT_EQ(report.vertex_count, box.vertices.size()) << ending;
+            EXPECT_NEAR(report.bounding_sphere.radius / length(size), 0.5, 1e-6) << ending;
+        }
+    }
+}

@@ -1,0 +1,78 @@
+#include "mesh_io/readers.hpp"
+#include "support/expect_error.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace echinus;
+using namespace echinus::test;
+
+namespace {
+
+using Indices = std::vector<std::uint32_t>;
+
+PolygonMesh read(const std::string& text) {
+    return read_obj({"a.obj", text});
+}
+
+const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+void expect_obj_error(ErrorCode code, const std::string& words, const std::string& text) {
+    expect_error(code, "a.obj: " + words, [&] { read(text); });
+}
+
+} // namespace
+
+TEST(ReadObj, ReadsEverySpellingOfACorner) {
+    for (const char* face :
+         {"f 1 2 3 4", "f 1/7 2/8 3/9 4/9", "f 1//7 2//8 3//9 4//9", "f 1/1/7 2/2/8 3/3/9 4/4/9",
+          "f -4 -3 -2 -1", "f -4//-1 -3//-1 -2//-1 -1//-1", "f 1/ 2/ 3/ 4/"}) {
+        const PolygonMesh mesh = read(kSquare + face);
+        EXPECT_EQ(mesh.corners, (Indices{0, 1, 2, 3})) << face;
+        EXPECT_EQ(mesh.corner_counts, (Indices{4})) << face;
+    }
+}
+
+TEST(ReadObj, PassesOverEverythingButVerticesAndFaces) {
+    const PolygonMesh mesh =
+        read("# made by hand\nmtllib a.mtl\no thing\ng part\nv 0 0 0 1\nv 1 0 0 0.5 0.5 0.5\nvt 0 0\n"
+             "vn 0 0 1\nv 1 1 0\nusemtl red\ns off\np 1\nl 1 2\nf 1 2 3\n");
+    EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}));
+    EXPECT_EQ(mesh.corners, (Indices{0, 1, 2}));
+}
+
+TEST(ReadObj, CountsNegativeNumbersFromTheVerticesSoFar) {
+    EXPECT_EQ(read("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 9 9 9\nf -1 -2 -3\n").corners,
+              (Indices{0, 1, 2, 3, 2, 1}));
+}
+
+TEST(ReadObj, LetsAFacePrecedeItsVertices) {
+    EXPECT_EQ(read("f 1 2 3\n" + kSquare).corners, (Indices{0, 1, 2}));
+}
+
+TEST(ReadObj, NamesTheLineOfAnIndexOutOfRange) {
+    expect_obj_error(ErrorCode::InvalidMesh, "line 5: there is no vertex 0", kSquare + "f 0 1 2\n");
+    expect_obj_error(ErrorCode::InvalidMesh, "line 5: there is no vertex -5", kSquare + "f -5 1 2\n");
+    expect_obj_error(ErrorCode::InvalidMesh, "line 6: the face refers to vertex 7, but the file has only 4",
+                     kSquare + "f 1 2 3\nf 1 2 7\nf 1 2 3\n");
+    expect_obj_error(ErrorCode::InvalidMesh, "line 5: there is no vertex 4294967297",
+                     kSquare + "f 1 2 4294967297\n");
+    expect_obj_error(ErrorCode::Damaged, "line 5: a vertex number", kSquare + "f 1 2 99999999999999999999\n");
+}
+
+TEST(ReadObj, NamesTheLineOfANumberThatIsNone) {
+    expect_obj_error(ErrorCode::Damaged, "line 1: a coordinate was expected, not ''", "v 0 0\n");
+    expect_obj_error(ErrorCode::Damaged, "line 1: a coordinate was expected, not 'zero'", "v 0 0 zero\n");
+    expect_obj_error(ErrorCode::InvalidMesh, "line 2: the coordinate 'nan' is not finite",
+                     "v 0 0 0\nv nan 0 0\n");
+    expect_obj_error(ErrorCode::InvalidMesh, "line 1: the coordinate '-inf' is not finite", "v 0 -inf 0\n");
+    expect_obj_error(ErrorCode::Damaged, "line 5: a vertex number was expected, not 'x'",
+                     kSquare + "f 1 2 x\n");
+    expect_obj_error(ErrorCode::Damaged, "line 5: a vertex number was expected, not '//1'",
+                     kSquare + "f 1 2 //1\n");
+}
+
+TEST(ReadObj, RefusesAFileOfAnotherKind) {
+    expect_obj_error(ErrorCode::WrongFormat, "line 1: '?PNG' is no statement", "\x89PNG\r\n\x1a\n");
+    expect_obj_error(ErrorCode::WrongFormat, "line 1: '{\"asset\":' is no statement", "{\"asset\": {}}");
+    expect_obj_error(ErrorCode::WrongFormat, "line 1: 'OFF' is no statement", "OFF\n4 4 0\n");
+}

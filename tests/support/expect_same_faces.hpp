@@ -1,0 +1,22 @@
+#pragma once
+
+#include <echinus/mesh.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+
+namespace echinus::test {
+
+/// Face by face, the corners stand at the same places, up to a distance, whatever the order of the vertices.
+inline void expect_same_faces(const TriangleMesh& mesh, const TriangleMesh& expected, double tolerance = 0) {
+    ASSERT_EQ(mesh.faces.size(), expected.faces.size());
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face)
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const Vec3d found(mesh.vertices[mesh.faces[face][corner]]);
+            const Vec3d sought(expected.vertices[expected.faces[face][corner]]);
+            ASSERT_LE(length(found - sought), tolerance) << "corner " << corner << " of face " << face;
+        }
+}
+
+} // namespace echinus::test

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+namespace echinus::test {
+
+/// A test with an empty folder of its own, which disappears with it.
+class TemporaryFolderTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = std::filesystem::temp_directory_path() /
+                  (std::string("echinus_") + test->test_suite_name() + "_" + test->name());
+        std::filesystem::remove_all(folder_);
+        std::filesystem::create_directories(folder_);
+    }
+    void TearDown() override { std::filesystem::remove_all(folder_); }
+
+    std::filesystem::path path(const std::string& name) const { return folder_ / name; }
+
+    std::filesystem::path write(const std::string& name, std::string_view content) const {
+        std::ofstream(path(name), std::ios::binary) << content;
+        return path(name);
+    }
+
+  private:
+    std::filesystem::path folder_;
+};
+
+} // namespace echinus::test
