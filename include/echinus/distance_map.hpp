@@ -139,9 +139,8 @@ bool contains(const DistanceMapView& map, Vec3f point_local) noexcept;
 /// not parallel to the push-out.
 ///
 /// @param margin  particles outside, at most this far from the nearest entry along their ray, get a contact
-/// too (with
-///                negative depth). Not negative; NaN counts as 0.
-/// A particle inside on a ray without entries leaves by the bounding sphere, whose normal it gets.
+///                too, with negative depth. Not negative; NaN counts as 0.
+/// Where the solid has no far end along a ray, as in a hole of an open mesh, the bounding sphere is its end.
 Contact contact(const DistanceMapView& map, Vec3f point_local, float margin = 0) noexcept;
 
 /// contains() for many points.

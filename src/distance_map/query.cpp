@@ -6,20 +6,27 @@
 
 #include "distance_map/interpolation.hpp"
 
+#include <algorithm>
 #include <cassert>
 
 namespace echinus {
 
 namespace {
 
+/// Squares of very short and very long vectors leave the range of float: a power of two brings those back.
+Vec3f well_scaled(const Vec3f& v) {
+    const float largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+    return largest < 0x1p-50F ? v * 0x1p100F : largest > 0x1p60F ? v * 0x1p-100F : v;
+}
+
 struct Ray {
-    Vec3f d_grid; ///< d, in the grid's frame
+    Vec3f along;  ///< d in the grid's frame, well scaled: only its direction counts
     float length; ///< |d|
 };
 
 Ray ray_to(const DistanceMapView& map, const SphericalGrid& grid, const Vec3f& point_local) {
     const Vec3f d = grid.to_grid(point_local - map.centre);
-    return {d, length(d)};
+    return {well_scaled(d), length(d)};
 }
 
 /// "Particle p is initially tested against the bounding sphere. If the particle does not penetrate the sphere
@@ -59,9 +66,18 @@ NearestEntry nearest_entry(const DistanceMapView& map, const Interpolation& at, 
     return d_length - below.distance <= above.distance - d_length ? below : above;
 }
 
+/// Along a ray through a hole of an open mesh the solid goes on up to the bounding sphere. Is that the
+/// nearest way out?
+bool leaves_by_sphere(const DistanceMapView& map, const Interpolation& at, std::uint32_t interval,
+                      float d_length) {
+    if (interval < at.entry_count || !is_inside(map, interval)) return false;
+    return interval == 0 || map.radius - d_length <= d_length - interpolated_entry(map, at, interval - 1);
+}
+
 /// The unit vector along d; for the centre itself that of longitude 0, colatitude 0.
 Vec3f direction_of(const Ray& ray) {
-    return ray.length > 0 ? ray.d_grid * (1 / ray.length) : Vec3f{0, 0, 1};
+    const float l = length(ray.along);
+    return l > 0 ? ray.along * (1 / l) : Vec3f{0, 0, 1};
 }
 
 /// The gradient of |x| - S(phi, theta) on the map's surface: e_r - S_theta / S e_theta - S_phi / (S sin
@@ -82,9 +98,10 @@ Vec3f surface_gradient(const SphericalGrid& grid, const Vec3f& e_r, float distan
 /// against the gradient where the ray enters.
 Vec3f surface_normal(const DistanceMapView& map, const SphericalGrid& grid, const Interpolation& at,
                      const Vec3f& e_r, const NearestEntry& entry) {
-    const Vec3f gradient = surface_gradient(grid, e_r, entry.distance, slope_of_entry(map, at, entry.k));
+    const Vec3f gradient =
+        well_scaled(surface_gradient(grid, e_r, entry.distance, slope_of_entry(map, at, entry.k)));
     const Vec3f unit = gradient * (1 / length(gradient));
-    const Vec3f& safe = is_finite(unit) ? unit : e_r; // a gradient too long for a float's square
+    const Vec3f& safe = is_finite(unit) ? unit : e_r; // a gradient that is infinite
     return grid.from_grid(is_outward(map.centre_inside, entry.k) ? safe : -safe);
 }
 
@@ -100,7 +117,7 @@ bool contains(const DistanceMapView& map, Vec3f point_local) noexcept {
     const SphericalGrid grid = grid_of(map);
     const Ray ray = ray_to(map, grid, point_local);
     if (!reaches_sphere(map, ray, 0)) return false;
-    const Interpolation at = interpolation_at(map, grid.locate(ray.d_grid));
+    const Interpolation at = interpolation_at(map, grid.locate(ray.along));
     return is_inside(map, interval_of(map, at, ray.length));
 }
 
@@ -111,24 +128,19 @@ Contact contact(const DistanceMapView& map, Vec3f point_local, float margin) noe
     Contact result = no_contact(point_local);
     if (!(reaches_sphere(map, ray, margin) && std::isfinite(ray.length))) return result;
 
-    const Interpolation at = interpolation_at(map, grid.locate(ray.d_grid));
+    const Interpolation at = interpolation_at(map, grid.locate(ray.along));
     const std::uint32_t interval = interval_of(map, at, ray.length);
+    const bool by_sphere = leaves_by_sphere(map, at, interval, ray.length);
+    if (!by_sphere && at.entry_count == 0) return result;
+    const NearestEntry entry =
+        by_sphere ? NearestEntry{at.entry_count, map.radius} : nearest_entry(map, at, interval, ray.length);
     const bool inside = ray.length <= map.radius && is_inside(map, interval);
-    const Vec3f e_r = direction_of(ray);
-    if (at.entry_count == 0) {
-        if (!inside) return result;
-        result.inside = true;
-        result.normal = grid.from_grid(e_r);
-        result.point = map.centre + result.normal * map.radius;
-        result.depth = map.radius - ray.length;
-        return result;
-    }
-
-    const NearestEntry entry = nearest_entry(map, at, interval, ray.length);
     const float distance = std::fabs(entry.distance - ray.length);
     if (!inside && !(distance <= margin)) return result;
+
+    const Vec3f e_r = direction_of(ray);
     result.inside = inside;
-    result.normal = surface_normal(map, grid, at, e_r, entry);
+    result.normal = by_sphere ? grid.from_grid(e_r) : surface_normal(map, grid, at, e_r, entry);
     // "in order for p to exit from A, it should translate S - |d| distance along the direction of d"
     result.point = map.centre + grid.from_grid(e_r) * entry.distance;
     result.depth = inside ? distance : -distance;
@@ -151,7 +163,7 @@ int usable_sample_count(const DistanceMapView& map, Vec3f point_local) noexcept 
     const SphericalGrid grid = grid_of(map);
     const Ray ray = ray_to(map, grid, point_local);
     if (!reaches_sphere(map, ray, 0)) return 0;
-    const Interpolation at = interpolation_at(map, grid.locate(ray.d_grid));
+    const Interpolation at = interpolation_at(map, grid.locate(ray.along));
     return at.usable[0] + at.usable[1] + at.usable[2] + at.usable[3];
 }
 

@@ -105,3 +105,29 @@ TEST(PaperRules, ARayWithoutEntriesIsAsTheCentreAndLeavesByTheSphere) {
     test::HandMadeMap outside(8, 4, false);
     EXPECT_FALSE(contact(outside.view(), at(1, 1, 0.25F), 10).found());
 }
+
+TEST(PaperRules, WhereTheSolidHasNoFarEndTheSphereIsIt) {
+    test::HandMadeMap map(8, 4, false);
+    map.fill({0.2F}); // the ray enters and never leaves: a hole in the far side
+    EXPECT_NEAR(contact(map.view(), at(1, 1, 0.3F)).depth, 0.1F, 1e-5F);
+    for (float distance : {0.9F, 1.1F}) {
+        const Contact c = contact(map.view(), at(1, 1, distance), 0.2F);
+        EXPECT_EQ(c.inside, distance < 1);
+        EXPECT_NEAR(c.depth, 1 - distance, 1e-5F);
+        EXPECT_NEAR(length(c.point), 1, 1e-5F);
+        EXPECT_NEAR(dot(c.normal, c.point), 1, 1e-5F);
+    }
+    EXPECT_FALSE(contact(map.view(), at(1, 1, 1.1F), 0.05F).found());
+}
+
+TEST(PaperRules, ContactsNearTheCentreAreAsGoodAsElsewhere) {
+    test::HandMadeMap map(8, 4, true);
+    map.fill({0.5F});
+    const Vec3f d = at(1.3F, 1.6F, 1);
+    for (const float scale : {0x1p-10F, 0x1p-64F, 0x1p-75F, 0x1p-120F}) {
+        const Contact c = contact(map.view(), d * scale);
+        EXPECT_NEAR(length(cross(d, c.point)), 0, 1e-6F);
+        EXPECT_NEAR(length(c.normal), 1, 1e-6F);
+        EXPECT_NEAR(c.depth, 0.5F - scale, 1e-6F);
+    }
+}
