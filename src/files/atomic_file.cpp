@@ -52,6 +52,12 @@ void AtomicFile::write(const void* data, std::size_t byte_count) {
     if (byte_count != 0 && std::fwrite(data, 1, byte_count, file_) != byte_count) fail("write");
 }
 
+void AtomicFile::overwrite(long offset, const void* data, std::size_t byte_count) {
+    if (std::fseek(file_, offset, SEEK_SET) != 0) fail("seek in");
+    write(data, byte_count);
+    if (std::fseek(file_, 0, SEEK_END) != 0) fail("seek in");
+}
+
 void AtomicFile::commit() {
     // Buffered bytes meet a full disk only now, so both results count.
     const bool flushed = std::fflush(file_) == 0;

@@ -22,6 +22,8 @@ class AtomicFile {
 
     void write(const void* data, std::size_t byte_count);
     void write(std::string_view text) { write(text.data(), text.size()); }
+    /// Replaces bytes that were written before, such as a count in a header; writing goes on at the end.
+    void overwrite(long offset, const void* data, std::size_t byte_count);
     void commit();
 
   private:

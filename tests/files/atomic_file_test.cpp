@@ -47,6 +47,17 @@ TEST_F(AtomicFileTest, AppearsOnlyWithCommit) {
     EXPECT_EQ(files_in_folder(), 1);
 }
 
+TEST_F(AtomicFileTest, OverwritesWhatWasWrittenAndGoesOnAtTheEnd) {
+    const fs::path target = folder_ / "out.txt";
+    AtomicFile file(target);
+    file.write("count ?, ");
+    file.write("body");
+    file.overwrite(6, "7", 1);
+    file.write(", tail");
+    file.commit();
+    EXPECT_EQ(content(target), "count 7, body, tail");
+}
+
 TEST_F(AtomicFileTest, LeavesTheOldFileWholeWithoutCommit) {
     const fs::path target = folder_ / "out.txt";
     write_file(target, "old");
