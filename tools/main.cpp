@@ -46,6 +46,7 @@ void parse_and_run(int argc, char** argv) {
                "Exit status: 0 done, 1 failed, 2 wrong use; an error is one line on standard error.\n"
                "echinus COMMAND --help shows the options of a command and an example.");
     add_mesh_command(app);
+    add_simulate_command(app);
     try {
         app.parse(argc, argv);
         if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");

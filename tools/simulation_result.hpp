@@ -1,0 +1,34 @@
+#pragma once
+
+#include "verdict.hpp"
+
+#include <echinus/scene.hpp>
+#include <echinus/simulation.hpp>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+/// Where the collider stood in a frame that was saved.
+struct SavedPose {
+    std::uint32_t frame;
+    echinus::RigidTransform pose;
+};
+
+/// What `simulate` reports when it is done.
+struct SimulationResult {
+    const std::string& scene_name;
+    const echinus::Simulation& simulation;
+    const echinus::MeshReport& model;
+    double collider_radius; ///< R of the collider in the world
+    Verdict verdict;
+    std::vector<SavedPose> poses; ///< one when the collider stands still
+};
+
+/// The object of report.json.
+nlohmann::ordered_json to_json(const SimulationResult& result);
+
+/// A table for people.
+std::string to_text(const SimulationResult& result);
