@@ -127,8 +127,12 @@ struct RenderOptions {
 Image render(std::span<const RenderedObject> objects, const Camera& camera,
              const RenderOptions& options = {});
 
-/// Writes a PNG (8 bits, sRGB), to a temporary name first.
-/// @throws Error Unwritable, or InvalidOptions when the picture is empty or its size is not that of its data
+/// The bytes of a PNG file (8 bits, sRGB).
+/// @throws Error InvalidOptions when the picture is empty or its size is not that of its data
+std::vector<std::uint8_t> encode_png(const Image& image);
+
+/// Writes encode_png() to a file, to a temporary name first.
+/// @throws Error Unwritable, or as encode_png()
 void write_png(const std::filesystem::path& path, const Image& image);
 
 // ---- Figures: several pictures on one page

@@ -8,10 +8,8 @@
 
 namespace echinus {
 
-namespace {
-
-/// libpng's own growing buffer: its simplified interface either measures, or writes to memory it is given.
 std::vector<std::uint8_t> encode_png(const Image& image) {
+    require_consistent(image);
     png_image header{};
     header.version = PNG_IMAGE_VERSION;
     header.width = image.width;
@@ -27,10 +25,7 @@ std::vector<std::uint8_t> encode_png(const Image& image) {
     return bytes;
 }
 
-} // namespace
-
 void write_png(const std::filesystem::path& path, const Image& image) {
-    require_consistent(image);
     const std::vector<std::uint8_t> bytes = encode_png(image);
     AtomicFile file(path);
     file.write(bytes.data(), bytes.size());
