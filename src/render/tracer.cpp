@@ -20,6 +20,9 @@ constexpr float kInterreflection = 0.85F;
 constexpr float kClearance = 1e-4F;
 /// Between these distances from the drawing's middle its shadow fades out, in the unit frame.
 constexpr float kFloorFadeStart = 4, kFloorFadeEnd = 7;
+/// Over this share of the picture's smaller side shadows also fade out towards its border, so that pictures
+/// stand on a page and beside each other without a seam.
+constexpr float kBorderFade = 0.12F;
 
 Vec3f multiply(const Vec3f& a, const Vec3f& b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};
@@ -109,8 +112,8 @@ Tracer::Tracer(const PaintedSurface& surface, const Intersector& intersector, co
       lens_(camera, surface.frame, options.width, options.height), light_(camera),
       floor_height_(static_cast<float>((camera.floor_height - dot(camera.world_up, surface.frame.centre)) *
                                        surface.frame.scale)),
-      wire_colour_(to_linear(palette::kInk)), backdrop_(to_linear(kBackdrop)),
-      sample_count_(options.samples) {}
+      wire_colour_(to_linear(palette::kInk)), backdrop_(to_linear(kBackdrop)), sample_count_(options.samples),
+      width_(options.width), height_(options.height) {}
 
 Vec3f Tracer::pixel(std::uint32_t x, std::uint32_t y) const {
     Vec3f sum;
@@ -139,10 +142,11 @@ Tracer::Seen Tracer::packet(std::uint32_t x, std::uint32_t y, std::uint32_t firs
 
     Seen seen;
     LightRays lamp, sky;
+    const float fade = border_fade(x, y);
     for (std::uint32_t i = 0; i < count; ++i) {
         const Draw draw{first_sample + i, seed};
         const Place place =
-            hits[i].found() ? object_place(rays[i], hits[i], draw) : floor_place(rays[i], draw);
+            hits[i].found() ? object_place(rays[i], hits[i], draw) : floor_place(rays[i], draw, fade);
         seen.only_open_floor = seen.only_open_floor && !hits[i].found();
         seen.light += place.base;
         lamp.add(place.to_lamp, place.lamp_gain);
@@ -202,9 +206,16 @@ bool Tracer::on_wire(const RayHit& hit, const Vec3f& position) const {
     return false;
 }
 
+float Tracer::border_fade(std::uint32_t x, std::uint32_t y) const {
+    const std::uint32_t distance = std::min({x, width_ - 1 - x, y, height_ - 1 - y});
+    const float width = kBorderFade * static_cast<float>(std::min(width_, height_));
+    const float share = std::min(static_cast<float>(distance) / width, 1.0F);
+    return share * share * (3 - 2 * share);
+}
+
 /// The floor has the colour of the backdrop, so that there is no horizon, and is darkened only by the share
 /// of light that the drawing keeps from it.
-Tracer::Place Tracer::floor_place(const Ray& ray, const Draw& draw) const {
+Tracer::Place Tracer::floor_place(const Ray& ray, const Draw& draw, float border_fade) const {
     Place place;
     place.base = backdrop_;
     const float fall = dot(ray.direction, light_.up());
@@ -212,6 +223,7 @@ Tracer::Place Tracer::floor_place(const Ray& ray, const Draw& draw) const {
     if (!(distance > 0)) return place;
     const Vec3f point = ray.origin + ray.direction * distance;
     const float fade =
+        border_fade *
         std::clamp((kFloorFadeEnd - length(point)) / (kFloorFadeEnd - kFloorFadeStart), 0.0F, 1.0F);
     if (fade == 0) return place;
 

@@ -52,7 +52,9 @@ class Tracer {
 
     Seen packet(std::uint32_t x, std::uint32_t y, std::uint32_t first_sample, std::size_t count) const;
     Place object_place(const Ray& ray, const RayHit& hit, const Draw& draw) const;
-    Place floor_place(const Ray& ray, const Draw& draw) const;
+    Place floor_place(const Ray& ray, const Draw& draw, float border_fade) const;
+    /// 1 inside the picture, 0 at its border.
+    float border_fade(std::uint32_t x, std::uint32_t y) const;
     Vec3f albedo(const RayHit& hit, const Vec3f& position, bool from_behind) const;
     bool on_wire(const RayHit& hit, const Vec3f& position) const;
 
@@ -65,6 +67,7 @@ class Tracer {
     Vec3f wire_colour_;
     Vec3f backdrop_;
     std::uint32_t sample_count_;
+    std::uint32_t width_, height_;
 };
 
 } // namespace echinus
