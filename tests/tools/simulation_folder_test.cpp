@@ -1,0 +1,291 @@
+#include "files/atomic_file.hpp"
+#include "simulation_folder.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/mesh_io.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <random>
+
+using namespace echinus;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uint32_t kSide = 4; // the cloth is kSide x kSide points
+constexpr std::size_t kPointCount = kSide * kSide;
+
+TriangleMesh square_cloth() {
+    TriangleMesh cloth;
+    for (std::size_t i = 0; i < kPointCount; ++i) {
+        cloth.vertices.push_back({static_cast<float>(i % kSide), static_cast<float>(i / kSide), 0});
+    }
+    for (std::uint32_t j = 0; j + 1 < kSide; ++j) {
+        for (std::uint32_t i = 0; i + 1 < kSide; ++i) {
+            const std::uint32_t corner = j * kSide + i;
+            cloth.faces.push_back({corner, corner + 1, corner + kSide + 1});
+            cloth.faces.push_back({corner, corner + kSide + 1, corner + kSide});
+        }
+    }
+    return cloth;
+}
+
+/// A cloth that falls as a whole for half of the samples and is stretched in the other half.
+std::vector<Vec3f> positions_at(std::size_t sample, std::size_t sample_count) {
+    std::vector<Vec3f> points = square_cloth().vertices;
+    const std::size_t half = sample_count / 2;
+    const float fallen = 0.2F * static_cast<float>(std::min(sample, half));
+    const float stretch = 1 + 0.1F * static_cast<float>(sample > half ? sample - half : 0);
+    for (Vec3f& point : points) point = {point.x * stretch, point.y, point.z - fallen};
+    return points;
+}
+
+template <typename T>
+void append(std::string& bytes, const T& value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
+}
+
+std::string cache_bytes(std::int32_t sample_count, float start_frame = 0, float frames_per_sample = 1) {
+    std::string bytes("POINTCACHE2\0", 12);
+    append(bytes, std::int32_t{1});
+    append(bytes, static_cast<std::int32_t>(kPointCount));
+    append(bytes, start_frame);
+    append(bytes, frames_per_sample);
+    append(bytes, sample_count);
+    for (std::int32_t sample = 0; sample < sample_count; ++sample) {
+        for (const Vec3f& point :
+             positions_at(static_cast<std::size_t>(sample), static_cast<std::size_t>(sample_count)))
+            append(bytes, point);
+    }
+    return bytes;
+}
+
+constexpr const char* kReport = R"({
+    "gravity": [0, -9.81, 0], "frames": 9, "frames_to_rest": 9,
+    "collider": {"mesh": "collider.obj", "poses": [
+        {"frame": 0, "translation": [0, 0, 0], "rotation": [1, 0, 0, 0]},
+        {"frame": 4, "translation": [10, 0, 0], "rotation": [0, 0, 0, 1]}]}})";
+
+class SimulationFolderTest : public testing::Test {
+  protected:
+    void SetUp() override {
+        folder_ =
+            fs::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+        write_mesh(folder_ / "cloth.obj", square_cloth());
+        write_mesh(folder_ / "collider.obj", make_box({2, 2, 2}));
+        write("cloth.pc2", cache_bytes(10));
+        write("report.json", kReport);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    void write(const std::string& name, const std::string& content) const {
+        write_file(folder_ / name, content);
+    }
+
+    /// Opens the folder and reads all of it.
+    void read_everything() const {
+        const SimulationFolder folder(folder_);
+        for (std::size_t sample = 0; sample < folder.sample_count(); ++sample) {
+            folder.cloth(sample);
+            folder.collider(sample);
+        }
+    }
+    void expect_error(ErrorCode code, const std::string& words) const {
+        try {
+            read_everything();
+            FAIL() << "accepted what should be refused for: " << words;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), code) << error.what();
+            EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+            EXPECT_TRUE(std::string(error.what()).starts_with(folder_.string())) << error.what();
+        }
+    }
+    static std::string replaced(std::string text, const std::string& old_part, const std::string& new_part) {
+        return text.replace(text.find(old_part), old_part.size(), new_part);
+    }
+
+    fs::path folder_;
+};
+
+} // namespace
+
+TEST_F(SimulationFolderTest, GivesTheClothOfEverySampleWithTheFacesOfItsRestMesh) {
+    const SimulationFolder folder(folder_);
+    ASSERT_EQ(folder.sample_count(), 10U);
+    for (std::size_t sample = 0; sample < 10; ++sample) {
+        const TriangleMesh cloth = folder.cloth(sample);
+        EXPECT_EQ(cloth.vertices, positions_at(sample, 10));
+        EXPECT_EQ(cloth.faces, square_cloth().faces);
+    }
+}
+
+TEST_F(SimulationFolderTest, PosesTheColliderAsItStoodLast) {
+    const SimulationFolder folder(folder_);
+    const TriangleMesh box = make_box({2, 2, 2});
+    EXPECT_EQ(folder.collider(0).vertices, box.vertices);
+    EXPECT_EQ(folder.collider(3).vertices, box.vertices);
+    for (std::size_t sample : {4U, 9U}) {
+        const TriangleMesh moved = folder.collider(sample); // half a turn about z, then along x
+        for (std::size_t v = 0; v < box.vertices.size(); ++v) {
+            const Vec3f& point = box.vertices[v];
+            EXPECT_NEAR(length(moved.vertices[v] - Vec3f{10 - point.x, -point.y, point.z}), 0, 1e-6);
+        }
+    }
+}
+
+TEST_F(SimulationFolderTest, TakesUpFromGravity) {
+    EXPECT_GT(SimulationFolder(folder_).up().y, 0);
+    write("report.json", replaced(kReport, "-9.81", "0"));
+    EXPECT_EQ(SimulationFolder(folder_).up(), (Vec3d{0, 0, 1}));
+}
+
+TEST_F(SimulationFolderTest, KnowsWhetherTheClothCameToRest) {
+    EXPECT_EQ(SimulationFolder(folder_).rest_frame(), 9);
+    write("report.json", replaced(kReport, "\"frames_to_rest\": 9", "\"frames_to_rest\": null"));
+    EXPECT_FALSE(SimulationFolder(folder_).rest_frame());
+}
+
+TEST_F(SimulationFolderTest, FindsTheSampleOfAFrame) {
+    write("cloth.pc2", cache_bytes(10, 20, 5));
+    const SimulationFolder folder(folder_);
+    EXPECT_EQ(folder.sample_at(20), 0U);
+    EXPECT_EQ(folder.sample_at(65), 9U);
+    EXPECT_EQ(folder.sample_at(31), 2U);
+    EXPECT_EQ(folder.frame_of(2), 30);
+    EXPECT_THROW(folder.sample_at(17), Error);
+    EXPECT_THROW(folder.sample_at(68), Error);
+    EXPECT_THROW(folder.sample_at(std::numeric_limits<std::int64_t>::min()), Error);
+    EXPECT_THROW(folder.sample_at(std::numeric_limits<std::int64_t>::max()), Error);
+}
+
+TEST_F(SimulationFolderTest, RefusesACacheCutShortAtAnyByte) {
+    const std::string whole = cache_bytes(2);
+    for (std::size_t size = 0; size < whole.size(); ++size) {
+        write("cloth.pc2", whole.substr(0, size));
+        EXPECT_THROW(read_everything(), Error) << size << " bytes";
+    }
+    write("cloth.pc2", whole + '\0');
+    expect_error(ErrorCode::Damaged, "bytes");
+}
+
+TEST_F(SimulationFolderTest, SurvivesAnyHeader) {
+    std::mt19937 random(11);
+    const std::string whole = cache_bytes(2);
+    for (int round = 0; round < 500; ++round) {
+        std::string bytes = whole;
+        for (int change = 0; change < 3; ++change) bytes[random() % 32] = static_cast<char>(random() % 256);
+        if (bytes == whole) continue;
+        write("cloth.pc2", bytes);
+        try {
+            read_everything(); // some changes, as of the start frame, are harmless
+        } catch (const Error&) {
+        }
+    }
+}
+
+TEST_F(SimulationFolderTest, SaysWhatIsWrongWithACache) {
+    const auto with = [](std::size_t offset, auto value) {
+        std::string bytes = cache_bytes(3);
+        std::memcpy(bytes.data() + offset, &value, sizeof(value));
+        return bytes;
+    };
+    write("cloth.pc2", with(0, 'p'));
+    expect_error(ErrorCode::WrongFormat, "POINTCACHE2");
+    write("cloth.pc2", with(12, std::int32_t{2}));
+    expect_error(ErrorCode::UnsupportedVersion, "version 2");
+    write("cloth.pc2", with(16, std::int32_t{-1}));
+    expect_error(ErrorCode::Damaged, "-1 points");
+    write("cloth.pc2", with(16, std::numeric_limits<std::int32_t>::max()));
+    expect_error(ErrorCode::Damaged, "bytes");
+    write("cloth.pc2", with(28, std::int32_t{0}));
+    expect_error(ErrorCode::Damaged, "0 samples");
+    write("cloth.pc2", with(24, std::numeric_limits<float>::quiet_NaN()));
+    expect_error(ErrorCode::Damaged, "frames per sample");
+    write("cloth.pc2", with(32 + 12 * (kPointCount + 3) + 4, std::numeric_limits<float>::infinity()));
+    expect_error(ErrorCode::Damaged, "point 3 of sample 1");
+}
+
+TEST_F(SimulationFolderTest, SaysWhatIsWrongWithAReport) {
+    const auto wrong = [&](const std::string& old_part, const std::string& new_part,
+                           const std::string& words) {
+        write("report.json", replaced(kReport, old_part, new_part));
+        expect_error(ErrorCode::Damaged, words);
+    };
+    wrong("{", "", "JSON");
+    wrong("\"gravity\"", "\"gravty\"", "gravity");
+    wrong("-9.81, 0]", "-9.81]", "gravity");
+    wrong("-9.81", "\"down\"", "gravity");
+    wrong("\"frames_to_rest\": 9", "\"frames_to_rest\": \"soon\"", "frames_to_rest");
+    wrong("\"collider.obj\"", "7", "mesh");
+    wrong("[0, 0, 0, 1]", "[0, 0, 0, 0]", "rotation");
+    wrong("[0, 0, 0, 1]", "[0, 0, 1]", "rotation");
+    wrong("\"frame\": 4", "\"frame\": 0", "ascend");
+    wrong("\"translation\": [10, 0, 0]", "\"translation\": 10", "translation");
+    write(
+        "report.json",
+        R"({"gravity": [0,0,-1], "frames_to_rest": null, "collider": {"mesh": "collider.obj", "poses": []}})");
+    expect_error(ErrorCode::Damaged, "poses");
+}
+
+TEST_F(SimulationFolderTest, SaysWhichFileIsMissing) {
+    for (const char* name : {"cloth.pc2", "cloth.obj", "collider.obj", "report.json"}) {
+        const fs::path aside = folder_ / "aside";
+        fs::rename(folder_ / name, aside);
+        expect_error(ErrorCode::Unreadable, name);
+        fs::rename(aside, folder_ / name);
+    }
+}
+
+TEST_F(SimulationFolderTest, RefusesARestMeshOfAnotherCloth) {
+    TriangleMesh other = square_cloth();
+    other.faces.resize(2);
+    write_mesh(folder_ / "cloth.obj", other);
+    expect_error(ErrorCode::Damaged, "vertices");
+}
+
+TEST_F(SimulationFolderTest, ChoosesMomentsThatDiffer) {
+    write("cloth.pc2", cache_bytes(40));
+    const std::vector<std::size_t> moments = choose_moments(SimulationFolder(folder_), 6);
+    ASSERT_EQ(moments.size(), 6U);
+    EXPECT_EQ(moments.front(), 0U);
+    EXPECT_EQ(moments.back(), 39U);
+    EXPECT_TRUE(std::is_sorted(moments.begin(), moments.end()));
+    EXPECT_EQ(std::adjacent_find(moments.begin(), moments.end()), moments.end());
+    // For 20 samples the cloth only falls, which changes little: that is worth one moment after the first.
+    EXPECT_LE(std::count_if(moments.begin(), moments.end(), [](std::size_t sample) { return sample < 20; }),
+              2);
+}
+
+TEST_F(SimulationFolderTest, SpendsNoMomentsOnAClothThatOnlyTrembles) {
+    // It changes in the first tenth of the time and trembles for the rest.
+    std::string bytes = cache_bytes(100);
+    std::vector<Vec3f> points = square_cloth().vertices;
+    for (std::size_t sample = 0; sample < 100; ++sample) {
+        std::vector<Vec3f> moved = points;
+        const float stretch = 1 + 0.2F * static_cast<float>(std::min<std::size_t>(sample, 10)) +
+                              (sample % 2 == 0 ? 0.02F : 0.0F);
+        for (Vec3f& point : moved) point.x *= stretch;
+        std::memcpy(bytes.data() + 32 + sample * sizeof(Vec3f) * kPointCount, moved.data(),
+                    sizeof(Vec3f) * kPointCount);
+    }
+    write("cloth.pc2", bytes);
+    const std::vector<std::size_t> moments = choose_moments(SimulationFolder(folder_), 6);
+    ASSERT_EQ(moments.size(), 6U);
+    EXPECT_LE(moments[4], 10U);
+    EXPECT_EQ(moments[5], 99U);
+}
+
+TEST_F(SimulationFolderTest, ChoosesAllMomentsWhereThereAreFew) {
+    for (std::int32_t count = 1; count <= 6; ++count) {
+        write("cloth.pc2", cache_bytes(count));
+        const std::vector<std::size_t> moments = choose_moments(SimulationFolder(folder_), 6);
+        ASSERT_EQ(moments.size(), static_cast<std::size_t>(count));
+        for (std::size_t i = 0; i < moments.size(); ++i) EXPECT_EQ(moments[i], i);
+    }
+}
