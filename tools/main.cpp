@@ -54,7 +54,7 @@ void parse_and_run(int argc, char** argv) {
         std::ostringstream text;
         app.exit(help_or_version, text, text);
         print(text.str());
-        if (!text.str().ends_with('\n')) print("\n"); // CLI11 forgets it after the footer of a subcommand
+        if (!text.str().ends_with('\n')) print("\n"); // CLI11 forgets it in the help of nested subcommands
     }
     flush_standard_output();
 }

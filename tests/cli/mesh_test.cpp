@@ -36,10 +36,11 @@ TEST_F(MeshCommand, WritesObjToStandardOutput) {
 }
 
 TEST_F(MeshCommand, ShowsAnExampleInTheHelpOfEachShape) {
-    for (const char* shape : {"torus", "sphere", "box"})
-        EXPECT_NE(
-            expect_success({"mesh", shape, "--help"}).find(std::string("echinus mesh ") + shape + " --"),
-            std::string::npos);
+    for (const std::string shape : {"torus", "sphere", "box"}) {
+        const std::string help = expect_success({"mesh", shape, "--help"});
+        EXPECT_NE(help.find("Example: echinus mesh " + shape + " --"), std::string::npos);
+        EXPECT_TRUE(help.ends_with("\n"));
+    }
 }
 
 TEST_F(MeshCommand, RefusesWrongUse) {
