@@ -16,7 +16,8 @@ namespace echinus {
 ///
 /// @throws Error Unreadable, WrongFormat, Damaged (a file that is shorter or longer than it says; the
 /// sentence names line or byte) or InvalidMesh (no faces; an index out of range or a coordinate that is not
-/// finite as a float, also where no face uses it); the sentence begins with the path.
+/// finite as a float, also where no face uses it); the sentence begins with the path. glTF with
+/// compressed or quantised positions is refused as WrongFormat.
 TriangleMesh read_mesh(const std::filesystem::path& path);
 
 /// Writes OBJ, PLY (binary), STL (binary) or OFF, told by the file name's ending. Floats are written so that

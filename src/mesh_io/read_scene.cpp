@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <exception>
 #include <memory>
+#include <span>
 #include <utility>
 
 namespace echinus {
@@ -18,21 +19,6 @@ namespace echinus {
 namespace {
 
 namespace fs = std::filesystem;
-
-const std::uint8_t* data_of(std::string_view bytes) {
-    return reinterpret_cast<const std::uint8_t*>(bytes.data());
-}
-
-/// A file beside the mesh, as Assimp wants to see it.
-class NeighbourStream : public Assimp::MemoryIOStream {
-  public:
-    explicit NeighbourStream(std::unique_ptr<MappedFile> file)
-        : MemoryIOStream(reinterpret_cast<const std::uint8_t*>(file->bytes().data()), file->bytes().size()),
-          file_(std::move(file)) {}
-
-  private:
-    std::unique_ptr<MappedFile> file_;
-};
 
 /// Gives Assimp the bytes that were checked, and the buffers of a glTF file if they are ordinary files: a
 /// pipe or a device that somebody named there could keep it waiting for ever.
@@ -46,15 +32,22 @@ class SceneFiles : public Assimp::IOSystem {
     }
     char getOsSeparator() const override { return '/'; }
     Assimp::IOStream* Open(const char* path, const char*) override {
-        if (path == source_.name)
-            return new Assimp::MemoryIOStream(data_of(source_.bytes), source_.bytes.size());
         if (!Exists(path)) return nullptr;
-        return new NeighbourStream(std::make_unique<MappedFile>(path));
+        if (path == source_.name) return stream_over(std::as_bytes(std::span(source_.bytes)));
+        neighbours_.push_back(std::make_unique<MappedFile>(path));
+        return stream_over(neighbours_.back()->bytes());
     }
-    void Close(Assimp::IOStream* file) override { delete file; }
+    void Close(Assimp::IOStream* stream) override { delete stream; }
 
   private:
+    /// Some of Assimp's readers delete a stream, some close it, and some forget it where a file is damaged:
+    /// the stream owns nothing, so that little is lost then.
+    static Assimp::IOStream* stream_over(std::span<const std::byte> bytes) {
+        return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+    }
+
     const MeshSource& source_;
+    std::vector<std::unique_ptr<MappedFile>> neighbours_;
 };
 
 using Transform = aiMatrix4x4t<double>;

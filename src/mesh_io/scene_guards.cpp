@@ -30,7 +30,17 @@ bool may_be_children(std::string_view string) {
     return string == "\"children\"" || string.find("\\u") != std::string_view::npos;
 }
 
-void require_moderate_json(std::string_view json, const MeshSource& source) {
+/// Extensions of glTF that keep positions in another form than 32-bit floats. Assimp would take the bytes for
+/// such floats, or the mesh for empty.
+void require_plain_floats(std::string_view string, const MeshSource& source) {
+    for (const std::string_view extension :
+         {"KHR_mesh_quantization", "KHR_draco_mesh_compression", "EXT_meshopt_compression"})
+        if (string.find(extension) != std::string_view::npos)
+            source.fail(ErrorCode::WrongFormat, "the file uses the extension " + std::string(extension) +
+                                                    ", which is not read; export it without compression");
+}
+
+void require_readable_json(std::string_view json, const MeshSource& source) {
     std::size_t depth = 0;
     std::size_t deepest = 0;
     std::size_t parent_count = 0;
@@ -40,7 +50,9 @@ void require_moderate_json(std::string_view json, const MeshSource& source) {
         if ((c == ']' || c == '}') && depth > 0) --depth;
         if (c != '"') continue;
         const std::size_t end = end_of_string(json, i);
-        if (may_be_children(json.substr(i, end - i))) ++parent_count;
+        const std::string_view string = json.substr(i, end - i);
+        require_plain_floats(string, source);
+        if (may_be_children(string)) ++parent_count;
         i = end - 1;
     }
     require_moderate(deepest, kMaxJsonDepth, "the JSON has too many brackets in brackets", source);
@@ -73,7 +85,7 @@ void require_readable_gltf(const MeshSource& source) {
     const std::size_t first = source.bytes.find_first_not_of(" \t\r\n");
     if (first == std::string_view::npos || source.bytes[first] != '{')
         source.fail(ErrorCode::WrongFormat, "the brace with which a glTF file begins was not found");
-    require_moderate_json(source.bytes, source);
+    require_readable_json(source.bytes, source);
 }
 
 void require_readable_glb(const MeshSource& source) {
@@ -88,7 +100,7 @@ void require_readable_glb(const MeshSource& source) {
     const std::size_t json_length = head.next<std::uint32_t>();
     head.skip(4);
     head.skip(json_length);
-    require_moderate_json(source.bytes.substr(kJsonBegin, json_length), source);
+    require_readable_json(source.bytes.substr(kJsonBegin, json_length), source);
 }
 
 void require_readable_3ds(const MeshSource& source) {

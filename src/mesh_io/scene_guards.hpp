@@ -5,16 +5,16 @@
 #include <cstddef>
 
 /// What Assimp has to be kept from. Its readers follow nested data by calling themselves and run out of stack
-/// where a file nests deeply (version 5.2.5: from some 10 000 nodes in a chain on); and they take files that
-/// say that they are longer than they are.
+/// where a file nests deeply (version 5.2.5: from some 10 000 nodes in a chain on); they take files that
+/// say that they are longer than they are, and compressed positions for plain ones.
 namespace echinus {
 
 /// Nodes that have children of their own: in the worst case they form one chain.
 inline constexpr std::size_t kMaxParentNodes = 4096;
 inline constexpr std::size_t kMaxJsonDepth = 256;
 
-/// @throws Error WrongFormat when the file does not begin like one of its kind; Damaged when it is shorter
-/// than its head says, or is nested too deeply to be read
+/// @throws Error WrongFormat when the file does not begin like one of its kind or has compressed positions;
+/// Damaged when it is shorter than its head says, or is nested too deeply to be read
 void require_readable_gltf(const MeshSource& source);
 void require_readable_glb(const MeshSource& source);
 void require_readable_3ds(const MeshSource& source);

@@ -142,6 +142,20 @@ TEST_F(ReadScene, RefusesNestingThatWouldExhaustTheStack) {
                    replaced(chain, "children", "childre\\u006e") + "{}]}");
 }
 
+TEST_F(ReadScene, RefusesA3dsFileWithAnEnormousTreeOfNodes) {
+    std::string nodes;
+    for (int i = 0; i < 5000; ++i) nodes += chunk(0xB002, "");
+    expect_refused(ErrorCode::Damaged, "there are too many nodes", "tree.3ds",
+                   chunk(0x4D4D, chunk(0xB000, nodes)));
+}
+
+TEST_F(ReadScene, RefusesCompressedPositions) {
+    for (const std::string extension :
+         {"KHR_mesh_quantization", "KHR_draco_mesh_compression", "EXT_meshopt_compression"})
+        expect_refused(ErrorCode::WrongFormat, "the file uses the extension " + extension, "small.gltf",
+                       replaced(exported(kGltf), "{", "{\"extensionsRequired\":[\"" + extension + "\"],"));
+}
+
 TEST_F(ReadScene, RefusesOtherFormats) {
     const std::string png = "\x89PNG\r\n\x1a\n and some more bytes";
     expect_refused(ErrorCode::WrongFormat, "the word glTF", "a.glb", png);
