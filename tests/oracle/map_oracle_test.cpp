@@ -1,5 +1,6 @@
 #include "oracle/exact_judge.hpp"
 #include "oracle/test_meshes.hpp"
+#include "oracle/wrong_share.hpp"
 #include "support/point_sets.hpp"
 
 #include <echinus/distance_map.hpp>
@@ -12,13 +13,6 @@ namespace {
 
 bool centre_is_judged_inside(const TriangleMesh& mesh, const DistanceMap& map) {
     return test::ExactJudge(mesh).inside(map.view().centre);
-}
-
-/// In percent.
-double wrong_share(const DistanceMap& map, const test::ExactJudge& judge, const std::vector<Vec3f>& points) {
-    std::size_t wrong_count = 0;
-    for (const Vec3f& p : points) wrong_count += contains(map, p) != judge.inside(p);
-    return 100 * static_cast<double>(wrong_count) / static_cast<double>(points.size());
 }
 
 } // namespace
@@ -45,7 +39,7 @@ TEST(MapOracle, IsSeldomWrongOnTheTorus) {
     for (const auto& [axis, uniform_limit, surface_limit] : cases) {
         const DistanceMap map =
             DistanceMap::build(torus, {.correction = VertexCorrection::None, .pole_axis = axis});
-        EXPECT_LT(wrong_share(map, judge, test::uniform_points(torus, 40'000)), uniform_limit);
-        EXPECT_LT(wrong_share(map, judge, test::surface_points(torus, 40'000)), surface_limit);
+        EXPECT_LT(test::wrong_share(map, judge, test::uniform_points(torus, 40'000)), uniform_limit);
+        EXPECT_LT(test::wrong_share(map, judge, test::surface_points(torus, 40'000)), surface_limit);
     }
 }

@@ -2,7 +2,6 @@
 
 #include <echinus/mesh.hpp>
 
-#include <filesystem>
 #include <initializer_list>
 #include <string>
 #include <vector>
@@ -58,11 +57,6 @@ inline std::vector<NamedMesh> generated_meshes() {
         {"pair of boxes", joined({translated(make_box({1, 1, 1}, 2), {2, 0, 0}),
                                   translated(make_box({1, 1, 1}, 2), {-2, 0, 0})})},
     };
-}
-
-/// Where the development meshes lie, if they do: beside the repository and not part of it.
-inline std::filesystem::path development_meshes() {
-    return std::filesystem::path(ECHINUS_SOURCE_DIR) / ".." / "shared" / "meshes";
 }
 
 } // namespace echinus::test
