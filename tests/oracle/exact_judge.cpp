@@ -77,6 +77,7 @@ struct ExactJudge::Structure {
 };
 
 ExactJudge::ExactJudge(const TriangleMesh& mesh) : structure_(std::make_unique<const Structure>(mesh)) {}
+ExactJudge::ExactJudge(ExactJudge&& other) noexcept = default;
 ExactJudge::~ExactJudge() = default;
 
 ExactSide ExactJudge::side(const Vec3d& point) const {

@@ -17,6 +17,7 @@ class ExactJudge {
   public:
     /// @pre the mesh is closed; faces without area are left out
     explicit ExactJudge(const TriangleMesh& mesh);
+    ExactJudge(ExactJudge&& other) noexcept;
     ~ExactJudge();
 
     /// By the parity of a ray, decided exactly for the coordinates as they are.

@@ -25,6 +25,6 @@ enum class Axis : std::uint8_t { X, Y, Z };
 /// in. Row by row.
 /// @param smoothing  standard deviation of the smoothing, in widths of the sheet
 std::vector<Vec3f> cloth_points(const TriangleMesh& mesh, std::size_t columns, std::size_t rows, Axis up,
-                                double smoothing = 0.02);
+                                double smoothing = 0.01);
 
 } // namespace echinus::test

@@ -52,7 +52,7 @@ TEST(PointSets, UniformPointsFillTheBoundingSphereEvenly) {
 
 TEST(PointSets, SurfacePointsScatterAboutTheSurfaceOnBothSides) {
     const double radius = inspect(torus()).bounding_sphere.radius;
-    const auto points = test::surface_points(torus(), 2'000);
+    const auto points = test::surface_points(torus(), 600);
     double squares = 0;
     int inside = 0;
     for (const Vec3f& p : points) {
@@ -60,8 +60,8 @@ TEST(PointSets, SurfacePointsScatterAboutTheSurfaceOnBothSides) {
         squares += distance * distance;
         inside += winding_number(torus(), Vec3d(p)) > 0.5;
     }
-    EXPECT_NEAR(std::sqrt(squares / 2'000), 0.01, 0.001);
-    EXPECT_NEAR(inside / 2'000.0, 0.5, 0.04);
+    EXPECT_NEAR(std::sqrt(squares / 600), 0.01, 0.001);
+    EXPECT_NEAR(inside / 600.0, 0.5, 0.08);
 }
 
 TEST(PointSets, SurfacePointsWithoutSpreadLieOnFacesInProportionToTheirArea) {
@@ -119,6 +119,6 @@ TEST(PointSets, AreTheSameOnEveryMachine) {
               (Vec3f{0x1.17dfa6p+0F, 0x1.a8346ap-3F, 0x1.3d50b4p+0F}));
     EXPECT_EQ(test::surface_points(box, 1000).back(),
               (Vec3f{0x1.ff0cf4p-2F, -0x1.fb0038p-4F, 0x1.522b76p-1F}));
-    EXPECT_EQ(test::cloth_points(torus(), 40, 25, test::Axis::Y)[321],
-              (Vec3f{-0x1.cac082p-2F, 0x1.0cfc22p+0F, -0x1.7ae148p-2F}));
+    EXPECT_EQ(test::cloth_points(torus(), 40, 25, test::Axis::Y, 0.05)[321],
+              (Vec3f{-0x1.cac082p-2F, 0x1.7bbcd2p-4F, -0x1.7ae148p-2F}));
 }
