@@ -1,11 +1,10 @@
 #include "files/atomic_file.hpp"
 #include "files/mapped_file.hpp"
-
-#include <echinus/error.hpp>
+#include "support/expect_error.hpp"
+#include "support/temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <string>
 
 using namespace echinus;
@@ -13,36 +12,26 @@ namespace fs = std::filesystem;
 
 namespace {
 
-class MappedFileTest : public testing::Test {
-  protected:
-    void TearDown() override { fs::remove(path_); }
+using MappedFileTest = test::TemporaryFolderTest;
 
-    static std::string text(const MappedFile& file) {
-        return {reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()};
-    }
-
-    fs::path path_ =
-        fs::temp_directory_path() /
-        (std::string("echinus_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-};
+std::string text(const MappedFile& file) {
+    return {reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()};
+}
 
 } // namespace
 
 TEST_F(MappedFileTest, ShowsTheBytesOfAFile) {
     const std::string content(100'000, 'x');
-    write_file(path_, content);
-    EXPECT_EQ(text(MappedFile(path_)), content);
+    EXPECT_EQ(text(MappedFile(write("file", content))), content);
 }
 
 TEST_F(MappedFileTest, ShowsNothingForAnEmptyFile) {
-    write_file(path_, "");
-    EXPECT_TRUE(MappedFile(path_).bytes().empty());
+    EXPECT_TRUE(MappedFile(write("file", "")).bytes().empty());
 }
 
 TEST_F(MappedFileTest, KeepsTheOldBytesWhenTheFileIsReplaced) {
-    write_file(path_, "old");
-    const MappedFile file(path_);
-    write_file(path_, "newer");
+    const MappedFile file(write("file", "old"));
+    write_file(path("file"), "newer");
     EXPECT_EQ(text(file), "old");
 }
 
@@ -52,13 +41,7 @@ TEST_F(MappedFileTest, ReadsWhatCannotBeMapped) {
 }
 
 TEST_F(MappedFileTest, RefusesAMissingFileAndADirectoryByName) {
-    for (const fs::path& path : {path_, fs::temp_directory_path()}) {
-        try {
-            MappedFile file(path);
-            FAIL() << "it opened";
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ErrorCode::Unreadable);
-            EXPECT_TRUE(std::string(error.what()).starts_with(path.string()));
-        }
+    for (const fs::path& refused : {path("missing"), path("")}) {
+        test::expect_error(ErrorCode::Unreadable, refused.string(), [&] { MappedFile file(refused); });
     }
 }

@@ -24,6 +24,7 @@ class TemporaryFolderTest : public testing::Test {
     std::filesystem::path path(const std::string& name) const { return folder_ / name; }
 
     std::filesystem::path write(const std::string& name, std::string_view content) const {
+        std::filesystem::remove(path(name)); // overwriting in place waits for the disk on some file systems
         std::ofstream(path(name), std::ios::binary) << content;
         return path(name);
     }
