@@ -1,5 +1,7 @@
 #pragma once
 
+#include "output.hpp"
+
 #include <CLI/CLI.hpp>
 
 /// One function per subcommand, in a file of the same name. Each adds its options, a footer with an example,
@@ -12,3 +14,10 @@ void add_build_command(CLI::App& app);
 void add_query_command(CLI::App& app);
 void add_simulate_command(CLI::App& app);
 void add_render_command(CLI::App& app);
+
+/// Refuses --json together with a result that goes to standard output itself.
+inline void require_one_result(const std::filesystem::path& target, bool json) {
+    if (json && target == kStandardStream) {
+        throw CLI::ValidationError("--json", "cannot be used with -o -, both print on standard output");
+    }
+}

@@ -42,11 +42,14 @@ void parse_and_run(int argc, char** argv) {
     app.name("echinus");
     app.set_version_flag("--version", "echinus " ECHINUS_VERSION);
     app.require_subcommand(0, 1); // none is refused below: here it would hide a misspelt one
+    add_mesh_command(app);
+    add_info_command(app);
+    add_build_command(app);
+    add_query_command(app);
+    add_simulate_command(app);
     app.footer("A file named - is standard input or standard output.\n"
                "Exit status: 0 done, 1 failed, 2 wrong use; an error is one line on standard error.\n"
                "echinus COMMAND --help shows the options of a command and an example.");
-    add_mesh_command(app);
-    add_simulate_command(app);
     try {
         app.parse(argc, argv);
         if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");

@@ -23,6 +23,7 @@ std::string read_all(const fs::path& path) {
 }
 
 void write_all(const fs::path& path, const std::string& content) {
+    fs::remove(path); // overwriting in place waits for the disk on some file systems
     std::ofstream(path, std::ios::binary) << content;
 }
 
@@ -47,17 +48,17 @@ void CommandLineTest::TearDown() {
     fs::remove_all(folder_.parent_path());
 }
 
-ProgramResult CommandLineTest::run(const std::vector<std::string>& arguments,
-                                   const std::string& input) const {
-    const auto stream = [&](const char* name) { return stream_folder_ / name; };
+ProgramResult CommandLineTest::run(const std::vector<std::string>& arguments, const std::string& input,
+                                   const std::string& output_target) const {
+    const auto stream = [&](const char* name) { return (stream_folder_ / name).string(); };
     write_all(stream("input"), input);
     std::string command = "cd " + quoted(folder_.string()) + " && " + quoted(ECHINUS_PROGRAM);
     for (const std::string& argument : arguments) command += " " + quoted(argument);
-    command += " <" + quoted(stream("input").string()) + " >" + quoted(stream("output").string()) + " 2>" +
-               quoted(stream("error").string());
+    command += " <" + quoted(stream("input")) + " 2>" + quoted(stream("error")) + " >" +
+               quoted(output_target.empty() ? stream("output") : output_target);
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_all(stream("output")),
-            read_all(stream("error"))};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1,
+            output_target.empty() ? read_all(stream("output")) : "", read_all(stream("error"))};
 }
 
 void CommandLineTest::expect_failure(int exit_status, const std::string& words,

@@ -21,8 +21,10 @@ class CommandLineTest : public testing::Test {
     void SetUp() override;
     void TearDown() override;
 
-    /// Runs `echinus` with these arguments in the test's folder; `input` becomes its standard input.
-    ProgramResult run(const std::vector<std::string>& arguments, const std::string& input = "") const;
+    /// Runs `echinus` with these arguments in the test's folder; `input` becomes its standard input. Standard
+    /// output is caught, or goes to the file `output_target`.
+    ProgramResult run(const std::vector<std::string>& arguments, const std::string& input = "",
+                      const std::string& output_target = "") const;
 
     /// The run must fail in the way the command line promises: this exit status, one line on standard error
     /// that begins with "echinus: " and contains `words`, and no file in the folder that was not there

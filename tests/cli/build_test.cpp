@@ -1,0 +1,148 @@
+#include "cli/command_line.hpp"
+#include "cli/sample_files.hpp"
+
+#include <echinus/map_file.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <cstring>
+
+using namespace echinus;
+using namespace echinus::test;
+using nlohmann::json;
+
+namespace {
+
+class BuildCommand : public CommandLineTest {
+  protected:
+    void SetUp() override {
+        CommandLineTest::SetUp();
+        write("box.obj", box_text());
+    }
+
+    /// The arguments of a small build with some more.
+    static std::vector<std::string> small(std::vector<std::string> more) {
+        more.insert(more.begin(), {"build", "box.obj", "--directions", "24x12"});
+        return more;
+    }
+    std::vector<std::byte> map_bytes(const std::string& name) const {
+        return serialise(load_distance_map(path(name)));
+    }
+};
+
+} // namespace
+
+TEST_F(BuildCommand, PrintsWhatItBuilt) {
+    const json built = json::parse(expect_success(small({"-o", "box.ech", "--json"})));
+    EXPECT_EQ(built["kind"], "distance");
+    EXPECT_EQ(built["faces"], 12);
+    EXPECT_EQ(built["directions"], 24 * 12);
+    EXPECT_EQ(built["entries"], 24 * 12);
+    EXPECT_EQ(built["max_entries"], 1);
+    EXPECT_EQ(built["bytes"], (24 * 12 + 1) * 4 + 24 * 12 * 4);
+    EXPECT_EQ(built["centre_inside"], true);
+    EXPECT_GE(built["build_ms"].get<double>(), 0);
+}
+
+TEST_F(BuildCommand, TakesTheOptionsOfThePaperUnlessTold) {
+    const json built = json::parse(expect_success({"build", "box.obj", "-o", "box.ech", "--json"}));
+    EXPECT_EQ(built["directions"], 200 * 200);
+    EXPECT_EQ(built["correction"], "signed");
+    EXPECT_EQ(built["entry_format"], "float32");
+    EXPECT_EQ(built["pole"], "z");
+}
+
+TEST_F(BuildCommand, ObeysItsOptions) {
+    const json built =
+        json::parse(expect_success(small({"--kind", "distance", "--correction", "none", "--entries",
+                                          "unorm16", "--pole", "x", "-o", "box.ech", "--json"})));
+    EXPECT_EQ(built["correction"], "none");
+    EXPECT_EQ(built["entry_format"], "unorm16");
+    EXPECT_EQ(built["pole"], "x");
+    EXPECT_EQ(built["longitude_count"], 24);
+    EXPECT_EQ(built["colatitude_count"], 12);
+    const DistanceMap expected =
+        DistanceMap::build(make_box({2, 3, 4}), {.longitude_count = 24,
+                                                 .colatitude_count = 12,
+                                                 .correction = VertexCorrection::None,
+                                                 .entry_format = EntryFormat::Unorm16,
+                                                 .pole_axis = PoleAxis::X});
+    const DistanceMap actual = load_distance_map(path("box.ech"));
+    const auto entries = expected.view().entries_unorm16;
+    ASSERT_EQ(actual.view().entries_unorm16.size(), entries.size());
+    EXPECT_EQ(std::memcmp(actual.view().entries_unorm16.data(), entries.data(), entries.size_bytes()), 0);
+}
+
+TEST_F(BuildCommand, GivesTheSameMapOnAnyNumberOfThreads) {
+    expect_success(small({"--threads", "1", "-o", "one.ech"}));
+    expect_success(small({"--threads", "3", "-o", "three.ech"}));
+    EXPECT_EQ(map_bytes("one.ech"), map_bytes("three.ech"));
+}
+
+TEST_F(BuildCommand, ReadsAndWritesTheStandardStreams) {
+    expect_success(small({"-o", "file.ech"}));
+    write("stream.ech",
+          expect_success({"build", "-", "--format", "obj", "--directions", "24x12", "-o", "-"}, box_text()));
+    EXPECT_EQ(map_bytes("stream.ech"), map_bytes("file.ech"));
+    expect_failure(2, "--json", small({"-o", "-", "--json"}));
+    expect_failure(2, "--format", {"build", "-", "-o", "box.ech"}, box_text());
+}
+
+TEST_F(BuildCommand, RefusesAnOpenMeshUnlessTold) {
+    write("open.obj", open_box_text());
+    expect_failure(1, "open.obj: the mesh is not closed: 3 border edges (at faces",
+                   {"build", "open.obj", "-o", "open.ech"});
+    expect_failure(1, "--allow-open", {"build", "open.obj", "--repair", "-o", "open.ech"});
+    const json built = json::parse(expect_success(
+        {"build", "open.obj", "--allow-open", "--directions", "24x12", "-o", "open.ech", "--json"}));
+    EXPECT_GT(built["wrong_parity_share"].get<double>(), 0);
+}
+
+TEST_F(BuildCommand, MendsTheMeshOnlyWhenTold) {
+    write("doubled.obj", doubled_face_text());
+    expect_failure(1, "mend it with --repair", {"build", "doubled.obj", "-o", "map.ech"});
+    const json built = json::parse(expect_success(
+        {"build", "doubled.obj", "--repair", "--directions", "24x12", "-o", "map.ech", "--json"}));
+    EXPECT_EQ(built["repairs"]["duplicate_faces_dropped"], 1);
+    EXPECT_EQ(built["faces"], 12);
+    const std::string text =
+        expect_success({"build", "doubled.obj", "--repair", "--directions", "24x12", "-o", "map.ech"});
+    EXPECT_NE(text.find("Repair: 1 duplicate face dropped."), std::string::npos) << text;
+}
+
+TEST_F(BuildCommand, RefusesOptionsThatMakeNoSense) {
+    const auto refuse = [&](const std::string& words, std::vector<std::string> options) {
+        options.insert(options.begin(), {"build", "box.obj", "-o", "box.ech"});
+        expect_failure(2, words, options);
+    };
+    refuse("--directions", {"--directions", "200"});
+    refuse("--directions", {"--directions", "20x"});
+    refuse("--directions", {"--directions", "20x30x40"});
+    refuse("--directions", {"--directions", "-20x30"});
+    refuse("--directions", {"--directions", "99999999999x30"});
+    refuse("colatitude_count", {"--directions", "200x3"});
+    refuse("longitude_count", {"--directions", "100000x200"});
+    refuse("--kind: 'exact' is not one of distance", {"--kind", "exact"});
+    refuse("--correction: 'some' is not one of signed|paper|none", {"--correction", "some"});
+    refuse("--entries", {"--entries", "0"});
+    refuse("--pole", {"--pole", "w"});
+    refuse("--threads", {"--threads", "-1"});
+    refuse("--threads", {"--threads", "1000000"});
+    expect_failure(2, "--output", {"build", "box.obj"});
+    expect_failure(2, "MESH", {"build", "-o", "box.ech"});
+}
+
+TEST_F(BuildCommand, LeavesNothingWhenTheMapCannotBeWritten) {
+    expect_failure(1, "missing/box.ech", small({"-o", "missing/box.ech"}));
+    std::filesystem::create_directory(path("folder"));
+    expect_failure(1, "folder", small({"-o", "folder"}));
+    if (std::filesystem::exists("/dev/full")) expect_failure(1, "No space left", small({"-o", "/dev/full"}));
+}
+
+TEST_F(BuildCommand, KeepsTheOldMapWhenItFails) {
+    expect_success(small({"-o", "box.ech"}));
+    const std::string old = content("box.ech");
+    write("box.obj", open_box_text());
+    expect_failure(1, "not closed", small({"-o", "box.ech"}));
+    EXPECT_EQ(content("box.ech"), old);
+}

@@ -1,0 +1,55 @@
+#include "input.hpp"
+
+#include "output.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <iostream>
+
+using echinus::ErrorCode;
+
+std::string name_of_input(const std::filesystem::path& path) {
+    return path == kStandardStream ? "standard input" : path.string();
+}
+
+Input::Input(const std::filesystem::path& path)
+    : name_(name_of_input(path)), stream_(path == kStandardStream ? std::cin : file_) {
+    if (path == kStandardStream) return;
+    errno = 0;
+    file_.open(path, std::ios::binary);
+    // A directory opens like a file and fails only when it is read, without a reason.
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) errno = EISDIR;
+    if (!file_ || errno == EISDIR) {
+        fail(ErrorCode::Unreadable, std::string("cannot open the file: ") + std::strerror(errno));
+    }
+}
+
+std::size_t Input::read(void* bytes, std::size_t byte_count) {
+    stream_.read(static_cast<char*>(bytes), static_cast<std::streamsize>(byte_count));
+    require_good();
+    return static_cast<std::size_t>(stream_.gcount());
+}
+
+bool Input::read_line(std::string& line) {
+    const bool found = static_cast<bool>(std::getline(stream_, line));
+    require_good();
+    if (found && line.ends_with('\r')) line.pop_back();
+    return found;
+}
+
+bool Input::next_is(char byte) {
+    return stream_.peek() == std::char_traits<char>::to_int_type(byte);
+}
+
+bool Input::at_end() {
+    return stream_.peek() == std::char_traits<char>::eof();
+}
+
+void Input::fail(ErrorCode code, const std::string& finding) const {
+    throw echinus::Error(code, name_ + ": " + finding);
+}
+
+void Input::require_good() const {
+    if (stream_.bad()) fail(ErrorCode::Unreadable, "cannot be read to its end");
+}

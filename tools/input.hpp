@@ -1,0 +1,38 @@
+#pragma once
+
+#include <echinus/error.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <istream>
+#include <string>
+
+/// How sentences call an input: its path, or "standard input" for "-".
+std::string name_of_input(const std::filesystem::path& path);
+
+/// A file, or standard input for "-", open for reading.
+class Input {
+  public:
+    /// @throws echinus::Error Unreadable
+    explicit Input(const std::filesystem::path& path);
+
+    /// Reads up to `byte_count` bytes; fewer only at the end.
+    /// @throws echinus::Error Unreadable
+    std::size_t read(void* bytes, std::size_t byte_count);
+    /// The next line without its line break (LF or CR LF); false at the end.
+    /// @throws echinus::Error Unreadable
+    bool read_line(std::string& line);
+    /// Does the rest begin with this byte?
+    bool next_is(char byte);
+    bool at_end();
+
+    /// Throws an Error whose sentence is "NAME: FINDING".
+    [[noreturn]] void fail(echinus::ErrorCode code, const std::string& finding) const;
+
+  private:
+    void require_good() const;
+
+    std::string name_;
+    std::ifstream file_;
+    std::istream& stream_;
+};

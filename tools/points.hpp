@@ -1,0 +1,52 @@
+#pragma once
+
+#include "input.hpp"
+
+#include <echinus/geometry.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <vector>
+
+/// Points from a file, handed out in order, block by block.
+class PointSource {
+  public:
+    virtual ~PointSource() = default;
+
+    /// How many there are in all.
+    virtual std::uint64_t count() const = 0;
+    /// Fills the block as far as points are left; gives how many that were, 0 at the end.
+    /// @throws echinus::Error when the file turns out to hold fewer or more than it promised
+    virtual std::size_t read(std::span<echinus::Vec3f> block) = 0;
+};
+
+enum class TableFormat { Npy, Csv };
+
+/// By the ending of a file's name (.npy, .csv), otherwise by the first byte.
+TableFormat format_of_points(const std::filesystem::path& path, Input& input);
+
+/// Points from an array [n, 3] in a .npy file: float32, or float64 that is rounded to float32; C or Fortran
+/// order. The latter is read into memory whole.
+/// @throws echinus::Error WrongFormat or Damaged
+std::unique_ptr<PointSource> open_npy_points(std::unique_ptr<Input> input);
+
+/// Points from lines "x,y,z", read into memory whole. Empty lines and lines that begin with # are skipped,
+/// and so is the first line when it holds names.
+/// @throws echinus::Error Damaged with the number of the line
+std::unique_ptr<PointSource> open_csv_points(std::unique_ptr<Input> input);
+
+/// Points that lie in memory.
+class PointList final : public PointSource {
+  public:
+    explicit PointList(std::vector<echinus::Vec3f> points) : points_(std::move(points)) {}
+
+    std::uint64_t count() const override { return points_.size(); }
+    std::size_t read(std::span<echinus::Vec3f> block) override;
+
+  private:
+    std::vector<echinus::Vec3f> points_;
+    std::size_t read_count_ = 0;
+};
