@@ -29,36 +29,46 @@ struct Candidate {
 };
 
 using Row = std::array<double, 4>; // a x + b y + c z = d
+using Rows = std::array<Row, 3>;
+using Columns = std::array<std::size_t, 3>; // the order in which the unknowns are eliminated
+
+/// Brings the largest coefficient that is left to place k, k.
+void pivot(Rows& rows, Columns& columns, std::size_t k) {
+    std::size_t row = k;
+    std::size_t column = k;
+    for (std::size_t i = k; i < 3; ++i)
+        for (std::size_t j = k; j < 3; ++j)
+            if (std::abs(rows[i][columns[j]]) > std::abs(rows[row][columns[column]])) {
+                row = i;
+                column = j;
+            }
+    std::swap(rows[k], rows[row]);
+    std::swap(columns[k], columns[column]);
+}
+
+void eliminate(Rows& rows, const Columns& columns, std::size_t k) {
+    for (std::size_t i = k + 1; i < 3; ++i) {
+        const double factor = rows[i][columns[k]] / rows[k][columns[k]];
+        for (std::size_t j = k; j < 3; ++j) rows[i][columns[j]] -= factor * rows[k][columns[j]];
+        rows[i][3] -= factor * rows[k][3];
+    }
+}
 
 /// Solves three linear equations by elimination with complete pivoting: backward stable, so that the centre
 /// found is equally far from all points up to rounding even where they are nearly coplanar. Nothing when the
 /// rows are dependent.
-std::optional<Vec3d> solve(std::array<Row, 3> rows) {
-    std::array<std::size_t, 3> column{0, 1, 2};
+std::optional<Vec3d> solve(Rows rows) {
+    Columns columns{0, 1, 2};
     for (std::size_t k = 0; k < 3; ++k) {
-        std::size_t pivot_row = k;
-        std::size_t pivot_column = k;
-        for (std::size_t i = k; i < 3; ++i)
-            for (std::size_t j = k; j < 3; ++j)
-                if (std::abs(rows[i][column[j]]) > std::abs(rows[pivot_row][column[pivot_column]])) {
-                    pivot_row = i;
-                    pivot_column = j;
-                }
-        std::swap(rows[k], rows[pivot_row]);
-        std::swap(column[k], column[pivot_column]);
-        const double pivot = rows[k][column[k]];
-        if (pivot == 0) return std::nullopt;
-        for (std::size_t i = k + 1; i < 3; ++i) {
-            const double factor = rows[i][column[k]] / pivot;
-            for (std::size_t j = k; j < 3; ++j) rows[i][column[j]] -= factor * rows[k][column[j]];
-            rows[i][3] -= factor * rows[k][3];
-        }
+        pivot(rows, columns, k);
+        if (rows[k][columns[k]] == 0) return std::nullopt;
+        eliminate(rows, columns, k);
     }
     std::array<double, 3> x{};
     for (std::size_t k = 3; k-- > 0;) {
         double rest = rows[k][3];
-        for (std::size_t j = k + 1; j < 3; ++j) rest -= rows[k][column[j]] * x[column[j]];
-        x[column[k]] = rest / rows[k][column[k]];
+        for (std::size_t j = k + 1; j < 3; ++j) rest -= rows[k][columns[j]] * x[columns[j]];
+        x[columns[k]] = rest / rows[k][columns[k]];
     }
     return Vec3d{x[0], x[1], x[2]};
 }
@@ -112,30 +122,30 @@ Candidate enlarge(const Basis& basis, const Vec3d& outside) {
     return *best; // the empty subset always has a centre
 }
 
+Vec3d farthest_from(const Vec3d& centre, std::span<const Vec3f> points) {
+    const auto distance_sq = [&](const Vec3f& p) {
+        const Vec3d offset = Vec3d(p) - centre;
+        return dot(offset, offset);
+    };
+    return Vec3d(*std::max_element(points.begin(), points.end(), [&](const Vec3f& a, const Vec3f& b) {
+        return distance_sq(a) < distance_sq(b);
+    }));
+}
+
 } // namespace
 
 Sphere smallest_enclosing_sphere(std::span<const Vec3f> points) {
     if (points.empty()) return {};
-    const auto distance_sq = [](const Vec3d& centre, const Vec3f& p) {
-        const Vec3d offset = Vec3d(p) - centre;
-        return dot(offset, offset);
-    };
-    const auto farthest_from = [&](const Vec3d& centre) {
-        return Vec3d(*std::max_element(points.begin(), points.end(), [&](const Vec3f& a, const Vec3f& b) {
-            return distance_sq(centre, a) < distance_sq(centre, b);
-        }));
-    };
-
     Candidate current;
     current.sphere.centre = Vec3d(points[0]);
     current.basis.add(current.sphere.centre);
-    Vec3d farthest = farthest_from(current.sphere.centre);
+    Vec3d farthest = farthest_from(current.sphere.centre, points);
     while (length(farthest - current.sphere.centre) > current.sphere.radius) {
         const Candidate next = enlarge(current.basis, farthest);
         // Only rounding stops the growth while a point is outside: the last digits are reached.
         if (!(next.sphere.radius > current.sphere.radius)) break;
         current = next;
-        farthest = farthest_from(current.sphere.centre);
+        farthest = farthest_from(current.sphere.centre, points);
     }
     current.sphere.radius = length(farthest - current.sphere.centre);
     return current.sphere;

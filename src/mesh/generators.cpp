@@ -30,6 +30,34 @@ void add_quad(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_
     mesh.faces.push_back({a, c, d});
 }
 
+Vec3f torus_point(double major_radius, double minor_radius, const CirclePoint& around_axis,
+                  const CirclePoint& around_tube) {
+    const double axis_distance = major_radius + minor_radius * around_tube.cosine;
+    return Vec3f(Vec3d{axis_distance * around_axis.cosine, axis_distance * around_axis.sine,
+                       minor_radius * around_tube.sine});
+}
+
+Vec3f sphere_point(double radius, const CirclePoint& colatitude, const CirclePoint& longitude) {
+    return Vec3f(Vec3d{radius * (colatitude.sine * longitude.cosine),
+                       radius * (colatitude.sine * longitude.sine), radius * colatitude.cosine});
+}
+
+/// The north pole is the first vertex, the south pole the last; between them lie the parallels in order.
+void add_sphere_faces(TriangleMesh& mesh, std::uint32_t meridian_count, std::uint32_t parallel_count) {
+    const std::uint32_t north_pole = 0;
+    const std::uint32_t south_pole = 1 + meridian_count * (parallel_count - 1);
+    const auto vertex = [&](std::uint32_t parallel, std::uint32_t meridian) {
+        return 1 + (parallel - 1) * meridian_count + meridian % meridian_count;
+    };
+    for (std::uint32_t m = 0; m < meridian_count; ++m)
+        mesh.faces.push_back({north_pole, vertex(1, m), vertex(1, m + 1)});
+    for (std::uint32_t p = 1; p + 1 < parallel_count; ++p)
+        for (std::uint32_t m = 0; m < meridian_count; ++m)
+            add_quad(mesh, vertex(p, m), vertex(p + 1, m), vertex(p + 1, m + 1), vertex(p, m + 1));
+    for (std::uint32_t m = 0; m < meridian_count; ++m)
+        mesh.faces.push_back({south_pole, vertex(parallel_count - 1, m + 1), vertex(parallel_count - 1, m)});
+}
+
 /// One side of a box: segments x segments squares with vertices of its own, on the side where `normal_axis`
 /// is at its largest (or smallest). x, y, z follow each other cyclically, so u x v points along the normal.
 void add_box_side(TriangleMesh& mesh, const std::array<double, 3>& size, std::uint32_t segments,
@@ -72,14 +100,9 @@ TriangleMesh make_torus(double major_radius, double minor_radius, std::uint32_t 
 
     TriangleMesh mesh;
     for (std::uint32_t i = 0; i < major_segments; ++i)
-        for (std::uint32_t j = 0; j < minor_segments; ++j) {
-            const CirclePoint around_axis = circle_point(i, major_segments);
-            const CirclePoint around_tube = circle_point(j, minor_segments);
-            const double axis_distance = major_radius + minor_radius * around_tube.cosine;
-            mesh.vertices.emplace_back(Vec3d{axis_distance * around_axis.cosine,
-                                             axis_distance * around_axis.sine,
-                                             minor_radius * around_tube.sine});
-        }
+        for (std::uint32_t j = 0; j < minor_segments; ++j)
+            mesh.vertices.push_back(torus_point(major_radius, minor_radius, circle_point(i, major_segments),
+                                                circle_point(j, minor_segments)));
     for (std::uint32_t i = 0; i < major_segments; ++i)
         for (std::uint32_t j = 0; j < minor_segments; ++j) {
             const std::uint32_t ring = i * minor_segments;
@@ -97,29 +120,14 @@ TriangleMesh make_sphere(double radius, std::uint32_t meridian_count, std::uint3
     require_face_count(2.0 * meridian_count * parallel_count);
 
     TriangleMesh mesh;
-    const auto north_pole = std::uint32_t{0};
-    const std::uint32_t south_pole = 1 + meridian_count * (parallel_count - 1);
-    const auto vertex = [&](std::uint32_t parallel, std::uint32_t meridian) {
-        return 1 + (parallel - 1) * meridian_count + meridian % meridian_count;
-    };
     mesh.vertices.emplace_back(Vec3d{0, 0, radius});
     for (std::uint32_t parallel = 1; parallel < parallel_count; ++parallel)
-        for (std::uint32_t meridian = 0; meridian < meridian_count; ++meridian) {
-            const CirclePoint colatitude = circle_point(parallel, 2 * std::uint64_t{parallel_count});
-            const CirclePoint longitude = circle_point(meridian, meridian_count);
-            mesh.vertices.emplace_back(Vec3d{radius * (colatitude.sine * longitude.cosine),
-                                             radius * (colatitude.sine * longitude.sine),
-                                             radius * colatitude.cosine});
-        }
+        for (std::uint32_t meridian = 0; meridian < meridian_count; ++meridian)
+            mesh.vertices.push_back(sphere_point(radius,
+                                                 circle_point(parallel, 2 * std::uint64_t{parallel_count}),
+                                                 circle_point(meridian, meridian_count)));
     mesh.vertices.emplace_back(Vec3d{0, 0, -radius});
-
-    for (std::uint32_t m = 0; m < meridian_count; ++m)
-        mesh.faces.push_back({north_pole, vertex(1, m), vertex(1, m + 1)});
-    for (std::uint32_t p = 1; p + 1 < parallel_count; ++p)
-        for (std::uint32_t m = 0; m < meridian_count; ++m)
-            add_quad(mesh, vertex(p, m), vertex(p + 1, m), vertex(p + 1, m + 1), vertex(p, m + 1));
-    for (std::uint32_t m = 0; m < meridian_count; ++m)
-        mesh.faces.push_back({south_pole, vertex(parallel_count - 1, m + 1), vertex(parallel_count - 1, m)});
+    add_sphere_faces(mesh, meridian_count, parallel_count);
     return mesh;
 }
 
