@@ -3,7 +3,6 @@
 
 #include <echinus/error.hpp>
 
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <charconv>
-#include <optional>
 #include <string_view>
 
 using echinus::ErrorCode;
@@ -29,10 +28,7 @@ class DictReader {
             }
         }
         skip_space();
-        if (!rest_.empty()) fail();
-        for (const bool seen : {header_.descr.empty(), !has_order_, !has_shape_}) {
-            if (seen) fail();
-        }
+        if (!rest_.empty() || header_.descr.empty() || !has_order_ || !has_shape_) fail();
         return header_;
     }
 
@@ -73,7 +69,7 @@ class DictReader {
     }
 
     std::string take(std::size_t length) {
-        const std::string text(rest_.substr(0, length));
+        std::string text(rest_.substr(0, length));
         rest_.remove_prefix(length);
         return text;
     }
@@ -83,7 +79,7 @@ class DictReader {
         if (quote == '"') expect('"');
         const std::size_t end = rest_.find(quote);
         if (end == std::string_view::npos) fail();
-        const std::string text = take(end);
+        std::string text = take(end);
         expect(quote);
         return text;
     }
