@@ -69,7 +69,7 @@ struct RestCondition {
 };
 
 struct SimulationOptions {
-    double time_step = 1.0 / 120; ///< seconds per frame. Half of it: twice the time, a quarter of the stretch
+    double time_step = 1.0 / 240; ///< seconds per frame. Half of it: twice the time, a quarter of the stretch
     std::uint32_t iteration_count = 10; ///< relaxations per frame: more cost time and stretch less
     Vec3d gravity{0, 0, -9.81};         ///< units per second squared
     double drag = 0.005;                ///< share of the velocity that is lost per frame, 0 to 1

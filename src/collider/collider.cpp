@@ -48,9 +48,10 @@ bool contains(const Collider& collider, Vec3f point_world) noexcept {
 
 Contact contact(const Collider& collider, Vec3f point_world, float margin_world) noexcept {
     const FrameChange frame(collider);
-    const Contact local =
+    Contact found =
         contact(collider.map, frame.point_to_local(point_world), frame.length_to_local(margin_world));
-    return frame.contact_to_world(local, point_world);
+    frame.contact_to_world(found, point_world);
+    return found;
 }
 
 void contains_batch(const Collider& collider, StridedSpan<const Vec3f> points_world,
@@ -69,7 +70,7 @@ void contacts_batch(const Collider& collider, StridedSpan<const Vec3f> points_wo
         const std::span<Contact> piece = contacts.subspan(begin, points_local.size());
         contacts_batch(collider.map, points_local, margin_local, piece);
         for (std::size_t i = 0; i < piece.size(); ++i)
-            piece[i] = frame.contact_to_world(piece[i], points_world[begin + i]);
+            frame.contact_to_world(piece[i], points_world[begin + i]);
     });
 }
 

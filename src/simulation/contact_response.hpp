@@ -16,17 +16,27 @@ struct ResponseRules {
 /// 76 degrees the thickness is not kept in full.
 inline constexpr float kReachInThicknesses = 4;
 
-/// How far a particle has to be pushed: 0 or less when it keeps its distance.
-float push_length(const Vec3f& position, const Contact& contact, float thickness);
+/// Has the particle met the surface, or come nearer than the thickness?
+bool needs_response(const Vec3f& position, const Contact& contact, float thickness);
 
-/// Where the push leads. A particle inside goes the paper's way (section 2.2): along the ray to the surface,
-/// and from there the thickness along the normal. One that is outside but too near goes along the normal of
-/// the contact plane until it keeps its distance: pushed along the ray, it would land beside where it was,
-/// once more in every relaxation, and creep uphill.
-Vec3f push_out(const Vec3f& position, const Contact& contact, float thickness);
+/// The push that the contact asks for. A particle inside goes the paper's way (section 2.2), along the ray to
+/// the surface, and from there the thickness along the normal. One that is outside but too near goes along
+/// the normal of the contact plane: pushed along the ray it would land beside where it was, once more in
+/// every relaxation, and creep uphill.
+Vec3f wanted_push(const Vec3f& position, const Contact& contact, float thickness);
+
+/// The part of the wanted push that is carried out. Going back is free: as far as the particle came against
+/// the push in this frame, it is pushed. The rest of the push would be new motion. Outside the surface it is
+/// left out: there the map's answer may change from one cell of directions to the next, and a particle that
+/// were thrown would never rest. Inside, a tenth of it in every relaxation leads the particle out.
+/// @param motion  since the last frame, relative to the collider's material
+Vec3f granted_push(const Vec3f& wanted, const Vec3f& motion, bool inside);
 
 /// The motion that friction leaves: its part along the contact plane is shortened by at most `grip`, and
 /// never reversed. @pre normal has unit length
 Vec3f apply_friction(const Vec3f& motion, const Vec3f& normal, float grip);
+
+/// The motion that a contact leaves of a particle's motion: push, then friction in proportion to the push.
+Vec3f respond(const Vec3f& position, const Vec3f& motion, const Contact& contact, const ResponseRules& rules);
 
 } // namespace echinus

@@ -10,6 +10,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -129,29 +130,48 @@ void Simulation::relax_sticks() {
     }
 }
 
+namespace {
+
+/// Is a particle deeper than it moved, although it began the frame outside? It then came through no surface
+/// that the map knows but through the side of a layer: at a silhouette neighbouring directions differ in
+/// their number of entries, and along the ray the way out may be far from the way in.
+bool came_through_a_side(const Collider& collider, const Contact& contact, const Vec3f& start,
+                         const Vec3f& motion) {
+    return contact.inside && contact.depth > length(motion) && !contains(collider, start);
+}
+
+/// Where a contact leaves a particle. One that came through a side goes back to where it came from.
+/// @param start  where the particle would be, had it moved with the collider since the last frame
+Vec3f answer(const Collider& collider, const Contact& contact, const Vec3f& position, const Vec3f& start,
+             const ResponseRules& rules) {
+    const Vec3f motion = position - start;
+    if (came_through_a_side(collider, contact, start, motion)) return start;
+    return start + respond(position, motion, contact, rules);
+}
+
+} // namespace
+
 void Simulation::collide(const Collider& collider, const RigidTransform& previous_pose) {
     const Stopwatch stopwatch(profile_.collision_seconds);
-    const auto thickness = static_cast<float>(options_.thickness);
-    const auto friction = static_cast<float>(options_.friction);
+    const ResponseRules rules{static_cast<float>(options_.thickness), static_cast<float>(options_.friction)};
     const MaterialMotion material(previous_pose, collider.pose);
+    const std::size_t particle_count = deformable_.particle_count();
     std::array<Contact, kPieceSize> contacts;
-    for (std::size_t begin = 0; begin < deformable_.particle_count(); begin += kPieceSize) {
-        const std::size_t count = std::min(kPieceSize, deformable_.particle_count() - begin);
-        contacts_batch(collider, StridedSpan<const Vec3f>(&deformable_.positions[begin], count),
-                       kReachInThicknesses * thickness, std::span(contacts).first(count));
-        for (std::size_t k = 0; k < count; ++k) {
-            const Contact& contact = contacts[k];
-            Vec3f& position = deformable_.positions[begin + k];
-            if (!contact.found() || deformable_.inverse_masses[begin + k] == 0) continue;
-            const float push = push_length(position, contact, thickness);
-            if (push <= 0) continue;
-            const Vec3f carried = deformable_.previous_positions[begin + k] + material.at(position);
-            const Vec3f motion = push_out(position, contact, thickness) - carried;
-            position = carried + apply_friction(motion, contact.normal, friction * push);
+    for (std::size_t begin = 0; begin < particle_count; begin += kPieceSize) {
+        const std::size_t end = std::min(begin + kPieceSize, particle_count);
+        contacts_batch(collider, StridedSpan<const Vec3f>(&deformable_.positions[begin], end - begin),
+                       kReachInThicknesses * rules.thickness, std::span(contacts).first(end - begin));
+        for (std::size_t i = begin; i < end; ++i) {
+            const Contact& contact = contacts[i - begin];
+            Vec3f& position = deformable_.positions[i];
+            if (!needs_response(position, contact, rules.thickness)) continue;
+            if (deformable_.inverse_masses[i] == 0) continue;
+            const Vec3f start = deformable_.previous_positions[i] + material.at(position);
+            position = answer(collider, contact, position, start, rules);
             ++profile_.contact_count;
         }
     }
-    profile_.query_count += deformable_.particle_count();
+    profile_.query_count += particle_count;
 }
 
 void Simulation::judge_frame() {
