@@ -18,18 +18,19 @@ namespace echinus {
 
 /// The four samples around one direction and what each contributes.
 struct Interpolation {
-    std::array<std::uint32_t, 4> first_entry; ///< position of the sample's first entry
-    std::array<float, 4> weight; ///< bilinear; 0 for ignored samples. Their sum is not 1 if some are.
+    std::array<std::uint32_t, 4>
+        first_entry;             ///< where each sample's entries begin; the reference's if ignored
+    std::array<float, 4> weight; ///< bilinear, 0 for ignored samples; they add up to 1
     std::array<bool, 4> usable;
     float u, v;
+    float weight_sum;          ///< what the weights of the usable samples added up to before
     std::uint32_t entry_count; ///< of the reference sample, hence of all usable ones
-    float weight_sum;
 };
 
 /// "the sample which is closer to (phi_d, theta_d) as the reference sample": distances along phi and theta in
 /// cells.
-inline int reference_corner(const SphericalGrid::Cell& cell) {
-    return (cell.u > 0.5F ? 1 : 0) + (cell.v > 0.5F ? 2 : 0);
+inline std::size_t reference_corner(const SphericalGrid::Cell& cell) {
+    return (cell.u > 0.5F ? 1U : 0U) + (cell.v > 0.5F ? 2U : 0U);
 }
 
 inline Interpolation interpolation_at(const DistanceMapView& map, const SphericalGrid::Cell& cell) {
@@ -38,16 +39,18 @@ inline Interpolation interpolation_at(const DistanceMapView& map, const Spherica
     result.v = cell.v;
     const std::array<float, 4> bilinear{(1 - cell.u) * (1 - cell.v), cell.u * (1 - cell.v),
                                         (1 - cell.u) * cell.v, cell.u * cell.v};
-    result.entry_count = entry_count_of(map, cell.corners[static_cast<std::size_t>(reference_corner(cell))]);
+    const std::uint32_t reference = cell.corners[reference_corner(cell)];
+    result.entry_count = entry_count_of(map, reference);
     result.weight_sum = 0;
     for (std::size_t corner = 0; corner < 4; ++corner) {
-        const std::uint32_t direction = cell.corners[corner];
-        result.first_entry[corner] = map.entry_offsets[direction];
         // "ignore (in the interpolation) all the other samples with different length than the reference one"
-        result.usable[corner] = entry_count_of(map, direction) == result.entry_count;
-        result.weight[corner] = result.usable[corner] ? bilinear[corner] : 0;
+        const bool usable = entry_count_of(map, cell.corners[corner]) == result.entry_count;
+        result.usable[corner] = usable;
+        result.first_entry[corner] = map.entry_offsets[usable ? cell.corners[corner] : reference];
+        result.weight[corner] = usable ? bilinear[corner] : 0;
         result.weight_sum += result.weight[corner];
     }
+    for (float& weight : result.weight) weight /= result.weight_sum; // the reference's alone is 1/4 or more
     return result;
 }
 
@@ -55,8 +58,8 @@ inline Interpolation interpolation_at(const DistanceMapView& map, const Spherica
 inline float interpolated_entry(const DistanceMapView& map, const Interpolation& at, std::uint32_t k) {
     float sum = 0;
     for (std::size_t corner = 0; corner < 4; ++corner)
-        if (at.usable[corner]) sum += at.weight[corner] * entry_at(map, at.first_entry[corner] + k);
-    return sum / at.weight_sum;
+        sum += at.weight[corner] * entry_at(map, at.first_entry[corner] + k);
+    return sum;
 }
 
 struct Slope {

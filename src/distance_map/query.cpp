@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
 
 namespace echinus {
 
@@ -35,12 +36,25 @@ bool reaches_sphere(const DistanceMapView& map, const Ray& ray, float margin) {
     return ray.length <= map.radius + margin;
 }
 
+/// Where a particle lies along its ray.
+struct Interval {
+    std::uint32_t number;
+    float below, above; ///< its ends; where no entry is, the centre and the bounding sphere
+};
+
 /// "It is then enough to enumerate the intervals (starting from 0), find the interval where |d| lies": the
 /// interval's number is the number of distances that |d| has reached. A particle on the map's surface lies in
 /// the outer interval.
-std::uint32_t interval_of(const DistanceMapView& map, const Interpolation& at, float d_length) {
-    std::uint32_t interval = 0;
-    while (interval < at.entry_count && interpolated_entry(map, at, interval) <= d_length) ++interval;
+Interval interval_of(const DistanceMapView& map, const Interpolation& at, float d_length) {
+    Interval interval{0, 0, map.radius};
+    for (; interval.number < at.entry_count; ++interval.number) {
+        const float distance = interpolated_entry(map, at, interval.number);
+        if (distance > d_length) {
+            interval.above = distance;
+            break;
+        }
+        interval.below = distance;
+    }
     return interval;
 }
 
@@ -50,28 +64,24 @@ bool is_inside(const DistanceMapView& map, std::uint32_t interval) {
     return (interval % 2 == 0) == map.centre_inside;
 }
 
-struct NearestEntry {
+/// An end of the particle's interval: the k-th entry, or the bounding sphere where k is their number.
+struct IntervalEnd {
     std::uint32_t k;
     float distance;
 };
 
-/// "the interpolated distance value closer to |d|": one of the two ends of the interval. @pre at.entry_count
-/// > 0
-NearestEntry nearest_entry(const DistanceMapView& map, const Interpolation& at, std::uint32_t interval,
-                           float d_length) {
-    if (interval == 0) return {0, interpolated_entry(map, at, 0)};
-    const NearestEntry below{interval - 1, interpolated_entry(map, at, interval - 1)};
-    if (interval == at.entry_count) return below;
-    const NearestEntry above{interval, interpolated_entry(map, at, interval)};
-    return d_length - below.distance <= above.distance - d_length ? below : above;
-}
-
-/// Along a ray through a hole of an open mesh the solid goes on up to the bounding sphere. Is that the
-/// nearest way out?
-bool leaves_by_sphere(const DistanceMapView& map, const Interpolation& at, std::uint32_t interval,
-                      float d_length) {
-    if (interval < at.entry_count || !is_inside(map, interval)) return false;
-    return interval == 0 || map.radius - d_length <= d_length - interpolated_entry(map, at, interval - 1);
+/// "the interpolated distance value closer to |d|": one of the two ends of the interval. The centre is no
+/// end, and the bounding sphere only where the solid reaches it, through a hole of an open mesh.
+std::optional<IntervalEnd> nearest_end(const DistanceMapView& map, const Interpolation& at,
+                                       const Interval& interval, float d_length) {
+    const IntervalEnd below{interval.number - 1, interval.below};
+    const IntervalEnd above{interval.number, interval.above};
+    const bool has_below = interval.number > 0;
+    const bool has_above = interval.number < at.entry_count || is_inside(map, interval.number);
+    if (has_below && has_above) return d_length - below.distance < above.distance - d_length ? below : above;
+    if (has_below) return below;
+    if (has_above) return above;
+    return std::nullopt;
 }
 
 /// The unit vector along d; for the centre itself that of longitude 0, colatitude 0.
@@ -97,12 +107,13 @@ Vec3f surface_gradient(const SphericalGrid& grid, const Vec3f& e_r, float distan
 /// The unit normal of the map's surface, out of the solid: along the gradient where the ray leaves it,
 /// against the gradient where the ray enters.
 Vec3f surface_normal(const DistanceMapView& map, const SphericalGrid& grid, const Interpolation& at,
-                     const Vec3f& e_r, const NearestEntry& entry) {
+                     const Vec3f& e_r, const IntervalEnd& end) {
+    if (end.k == at.entry_count) return grid.from_grid(e_r); // the bounding sphere
     const Vec3f gradient =
-        well_scaled(surface_gradient(grid, e_r, entry.distance, slope_of_entry(map, at, entry.k)));
+        well_scaled(surface_gradient(grid, e_r, end.distance, slope_of_entry(map, at, end.k)));
     const Vec3f unit = gradient * (1 / length(gradient));
     const Vec3f& safe = is_finite(unit) ? unit : e_r; // a gradient that is infinite
-    return grid.from_grid(is_outward(map.centre_inside, entry.k) ? safe : -safe);
+    return grid.from_grid(is_outward(map.centre_inside, end.k) ? safe : -safe);
 }
 
 Contact no_contact(const Vec3f& point_local) {
@@ -118,7 +129,7 @@ bool contains(const DistanceMapView& map, Vec3f point_local) noexcept {
     const Ray ray = ray_to(map, grid, point_local);
     if (!reaches_sphere(map, ray, 0)) return false;
     const Interpolation at = interpolation_at(map, grid.locate(ray.along));
-    return is_inside(map, interval_of(map, at, ray.length));
+    return is_inside(map, interval_of(map, at, ray.length).number);
 }
 
 Contact contact(const DistanceMapView& map, Vec3f point_local, float margin) noexcept {
@@ -129,20 +140,18 @@ Contact contact(const DistanceMapView& map, Vec3f point_local, float margin) noe
     if (!(reaches_sphere(map, ray, margin) && std::isfinite(ray.length))) return result;
 
     const Interpolation at = interpolation_at(map, grid.locate(ray.along));
-    const std::uint32_t interval = interval_of(map, at, ray.length);
-    const bool by_sphere = leaves_by_sphere(map, at, interval, ray.length);
-    if (!by_sphere && at.entry_count == 0) return result;
-    const NearestEntry entry =
-        by_sphere ? NearestEntry{at.entry_count, map.radius} : nearest_entry(map, at, interval, ray.length);
-    const bool inside = ray.length <= map.radius && is_inside(map, interval);
-    const float distance = std::fabs(entry.distance - ray.length);
+    const Interval interval = interval_of(map, at, ray.length);
+    const std::optional<IntervalEnd> end = nearest_end(map, at, interval, ray.length);
+    if (!end) return result;
+    const bool inside = ray.length <= map.radius && is_inside(map, interval.number);
+    const float distance = std::fabs(end->distance - ray.length);
     if (!inside && !(distance <= margin)) return result;
 
     const Vec3f e_r = direction_of(ray);
     result.inside = inside;
-    result.normal = by_sphere ? grid.from_grid(e_r) : surface_normal(map, grid, at, e_r, entry);
+    result.normal = surface_normal(map, grid, at, e_r, *end);
     // "in order for p to exit from A, it should translate S - |d| distance along the direction of d"
-    result.point = map.centre + grid.from_grid(e_r) * entry.distance;
+    result.point = map.centre + grid.from_grid(e_r) * end->distance;
     result.depth = inside ? distance : -distance;
     return result;
 }
