@@ -18,8 +18,7 @@
 /// camera.
 namespace echinus {
 
-// ---- What is drawn
-// -----------------------------------------------------------------------------------------------------
+// ---- What is drawn ----
 
 /// An opaque colour as it is written in a style sheet: sRGB, each part in [0, 1].
 struct Colour {
@@ -61,8 +60,7 @@ struct RenderedObject {
     double wire_width_px = 0; ///< width of the lines drawn along all edges; 0 draws none
 };
 
-// ---- From where
-// --------------------------------------------------------------------------------------------------------
+// ---- From where ----
 
 /// The side from which a picture is taken.
 struct View {
@@ -90,14 +88,13 @@ struct Camera {
 /// @param aspect  width over height of the picture
 /// @throws Error InvalidOptions for a field of `view` or an aspect out of range, InvalidMesh when there is no
 /// point, a point is not finite, or all lie on one point
-Camera frame(std::span<const Vec3f> points, const View& view, double aspect);
+Camera camera_for(std::span<const Vec3f> points, const View& view, double aspect);
 
 /// The same for all vertices that faces of the objects use.
 /// @throws Error as above, and InvalidMesh as inspect() does
-Camera frame(std::span<const RenderedObject> objects, const View& view, double aspect);
+Camera camera_for(std::span<const RenderedObject> objects, const View& view, double aspect);
 
-// ---- Pictures
-// ----------------------------------------------------------------------------------------------------------
+// ---- Pictures ----
 
 /// A picture in memory.
 struct Image {
@@ -135,8 +132,7 @@ std::vector<std::uint8_t> encode_png(const Image& image);
 /// @throws Error Unwritable, or as encode_png()
 void write_png(const std::filesystem::path& path, const Image& image);
 
-// ---- Figures: several pictures on one page
-// -----------------------------------------------------------------------------
+// ---- Figures: several pictures on one page ----
 
 /// Where a text stands relative to its anchor.
 enum class TextAlign : std::uint8_t { Left, Centre, Right };
@@ -158,7 +154,7 @@ Image arrange(std::span<const Image> pictures, std::uint32_t column_count);
 /// The paper's figures 2 and 3: the model, and beside it the surface rebuilt from its map, each layer of
 /// entries in its own colour with a legend.
 /// @param options  width is that of the whole figure
-/// @throws Error as frame() and render(), and InvalidMesh when the map has no surface
+/// @throws Error as camera_for() and render(), and InvalidMesh when the map has no surface
 Image draw_map_figure(const TriangleMesh& model, const DistanceMapView& map, const View& view,
                       const RenderOptions& options = {});
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <sstream>
 
 namespace echinus {
 
@@ -14,9 +15,9 @@ namespace {
 
 void require_range(double value, double low, double high, const char* name) {
     if (value >= low && value <= high) return; // false for NaN, too
-    throw Error(ErrorCode::InvalidOptions, std::string("View: ") + name + " is " + std::to_string(value) +
-                                               ", but must lie in [" + std::to_string(low) + ", " +
-                                               std::to_string(high) + "]");
+    std::ostringstream sentence;
+    sentence << "View: " << name << " is " << value << ", but must lie in [" << low << ", " << high << "]";
+    throw Error(ErrorCode::InvalidOptions, sentence.str());
 }
 
 void require_valid_view(const View& view, double aspect) {
@@ -86,7 +87,7 @@ class WedgeFit {
 
 } // namespace
 
-Camera frame(std::span<const Vec3f> points, const View& view, double aspect) {
+Camera camera_for(std::span<const Vec3f> points, const View& view, double aspect) {
     require_valid_view(view, aspect);
     if (!std::all_of(points.begin(), points.end(), [](const Vec3f& point) { return is_finite(point); })) {
         throw Error(ErrorCode::InvalidMesh, "a point to be drawn is not finite");
@@ -117,8 +118,8 @@ Camera frame(std::span<const Vec3f> points, const View& view, double aspect) {
     return camera;
 }
 
-Camera frame(std::span<const RenderedObject> objects, const View& view, double aspect) {
-    return frame(used_points(objects), view, aspect);
+Camera camera_for(std::span<const RenderedObject> objects, const View& view, double aspect) {
+    return camera_for(used_points(objects), view, aspect);
 }
 
 } // namespace echinus

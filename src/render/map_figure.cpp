@@ -98,7 +98,7 @@ Image draw_map_figure(const TriangleMesh& model, const DistanceMapView& map, con
     View roomy_view = view;
     roomy_view.footer = std::max(view.footer, kFooter);
     const RenderOptions left = half_of(options, 0);
-    const Camera camera = frame(objects, roomy_view, static_cast<double>(left.width) / left.height);
+    const Camera camera = camera_for(objects, roomy_view, static_cast<double>(left.width) / left.height);
 
     std::array pictures{render({&objects[0], 1}, camera, left),
                         render({&objects[1], 1}, camera, half_of(options, 1))};

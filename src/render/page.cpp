@@ -40,6 +40,10 @@ void mix_in(std::uint8_t* rgb, const Colour& colour, double share) {
     }
 }
 
+void fill(Image& image, const Colour& colour) {
+    for (std::size_t i = 0; i < image.rgb.size(); i += 3) mix_in(&image.rgb[i], colour, 1);
+}
+
 /// The pixels of one axis that strokes can touch.
 struct PixelRange {
     double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -73,10 +77,6 @@ void draw_strokes(Image& image, std::span<const PageStroke> strokes, double widt
             if (share > 0) mix_in(&image.rgb[3 * (std::size_t{y} * image.width + x)], colour, share);
         }
     }
-}
-
-void fill(Image& image, Colour colour) {
-    for (std::size_t i = 0; i < image.rgb.size(); i += 3) mix_in(&image.rgb[i], colour, 1);
 }
 
 double text_width(std::string_view text, double height_px) {

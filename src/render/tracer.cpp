@@ -10,6 +10,7 @@ namespace echinus {
 
 namespace {
 
+/// Shows as palette::kPage when highlights have been compressed.
 constexpr Colour kBackdrop = Colour::from_hex(0xFEFDFB);
 /// How dark a place of the floor gets that no light reaches: 1 would be black.
 constexpr float kShadowStrength = 0.66F;
@@ -163,16 +164,18 @@ Tracer::Place Tracer::object_place(const Ray& ray, const RayHit& hit, const Draw
     const Triangle& face = surface_.mesh.faces[hit.face];
     const std::array<Vec3f, 3> corners{surface_.mesh.vertices[face[0]], surface_.mesh.vertices[face[1]],
                                        surface_.mesh.vertices[face[2]]};
-    const Vec3f outward = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const Vec3f outward(face_normal(surface_.mesh, face));
     const bool from_behind = dot(outward, ray.direction) > 0;
     const float side = from_behind ? -1.0F : 1.0F; // of the viewer
     CornerNormals normals = surface_.normals[hit.face];
     for (Vec3f& normal : normals) normal *= side;
 
     const Vec3f position = blend(corners, hit);
-    const Vec3f normal = unit(blend(normals, hit));
+    const Vec3f smooth = blend(normals, hit);
+    // Normals that point apart may cancel out.
+    const Vec3f normal = dot(smooth, smooth) > 1e-6F ? unit(smooth) : outward * side;
     const Vec3f start =
-        lift_to_smooth_surface(position, corners, normals, hit) + unit(outward) * (side * kClearance);
+        lift_to_smooth_surface(position, corners, normals, hit) + outward * (side * kClearance);
     const Vec3f paint = albedo(hit, position, from_behind);
     const Vec3f sky_direction =
         cosine_direction(normal, samples_.sample(draw.sample, SampleUse::Sky, draw.seed));

@@ -46,7 +46,7 @@ TEST(Camera, ShowsAllPointsWithinTheMarginAndNoSmallerThanItMust) {
         view.margin = 0.3 * share(random);
         view.footer = 0.2 * share(random);
         const double aspect = 1 + share(random);
-        const Camera camera = frame(points, view, aspect);
+        const Camera camera = camera_for(points, view, aspect);
 
         double widest = -10;
         double highest = -10;
@@ -71,21 +71,21 @@ TEST(Camera, StandsOnTheSideThatTheViewNames) {
     view.azimuth_deg = 0;
     view.elevation_deg = 0;
     view.up = {0, 0, 1};
-    EXPECT_GT(frame(points, view, 1).position.x, 2);
+    EXPECT_GT(camera_for(points, view, 1).position.x, 2);
     view.up = {0, 3, 0};
-    EXPECT_GT(frame(points, view, 1).position.z, 2);
+    EXPECT_GT(camera_for(points, view, 1).position.z, 2);
     view.up = {1, 0, 0};
-    EXPECT_GT(frame(points, view, 1).position.y, 2);
+    EXPECT_GT(camera_for(points, view, 1).position.y, 2);
     view.up = {0, 0, 1};
     view.azimuth_deg = 90;
-    EXPECT_GT(frame(points, view, 1).position.y, 2);
+    EXPECT_GT(camera_for(points, view, 1).position.y, 2);
     view.elevation_deg = 89;
-    EXPECT_GT(frame(points, view, 1).position.z, 2);
+    EXPECT_GT(camera_for(points, view, 1).position.z, 2);
 }
 
 TEST(Camera, HasARightHandedBasisThatStandsUpright) {
     const std::vector<Vec3f> points{{-1, -2, -1}, {1, 1, 4}};
-    const Camera camera = frame(points, View{}, 1.5);
+    const Camera camera = camera_for(points, View{}, 1.5);
     EXPECT_NEAR(length(cross(camera.right, camera.up) + camera.forward), 0, 1e-12);
     EXPECT_NEAR(dot(camera.right, camera.world_up), 0, 1e-12);
     EXPECT_GT(dot(camera.up, camera.world_up), 0);
@@ -95,13 +95,13 @@ TEST(Camera, PutsTheFloorUnderTheLowestPoint) {
     const std::vector<Vec3f> points{{0, 5, 1}, {2, -3, 0}, {1, 1, 1}};
     View view;
     view.up = {0, 2, 0};
-    EXPECT_EQ(frame(points, view, 1).floor_height, -3);
+    EXPECT_EQ(camera_for(points, view, 1).floor_height, -3);
 }
 
 TEST(Camera, RefusesWhatItCannotFrame) {
     const std::vector<Vec3f> points{{0, 0, 0}, {1, 0, 0}};
     const auto refuses = [&](const View& view, double aspect, std::span<const Vec3f> seen) {
-        EXPECT_THROW(frame(seen, view, aspect), Error);
+        EXPECT_THROW(camera_for(seen, view, aspect), Error);
     };
     const double nan = std::numeric_limits<double>::quiet_NaN();
     refuses({.up = {0, 0, 0}}, 1, points);

@@ -10,7 +10,7 @@ using namespace echinus;
 namespace {
 
 Camera some_camera() {
-    return frame(std::vector<Vec3f>{{-1, -1, -1}, {1, 1, 1}}, View{}, 1);
+    return camera_for(std::vector<Vec3f>{{-1, -1, -1}, {1, 1, 1}}, View{}, 1);
 }
 
 } // namespace

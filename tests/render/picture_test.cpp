@@ -43,7 +43,7 @@ std::vector<RenderedObject> painted(const TriangleMesh& mesh, Colour colour) {
 /// A picture of the objects from the side that `view` names.
 Image picture(const std::vector<RenderedObject>& objects, const RenderOptions& options,
               const View& view = {}) {
-    return render(objects, frame(objects, view, double(options.width) / options.height), options);
+    return render(objects, camera_for(objects, view, double(options.width) / options.height), options);
 }
 
 TriangleMesh scaled(TriangleMesh mesh, float factor, const Vec3f& offset = {}) {
@@ -56,7 +56,7 @@ TriangleMesh scaled(TriangleMesh mesh, float factor, const Vec3f& offset = {}) {
 TEST(Picture, ASphereCoversTheAreaOfItsSilhouette) {
     const auto objects = painted(make_sphere(1, 256, 128), kGreen);
     const RenderOptions options = options_of(200, 200, 4);
-    const Camera camera = frame(objects, View{}, 1);
+    const Camera camera = camera_for(objects, View{}, 1);
     const Image image = render(objects, camera, options);
 
     // Seen from distance d, the rim of a unit sphere lies at the angle asin(1 / d) from its middle.

@@ -1,3 +1,6 @@
+#include "support/expect_error.hpp"
+#include "support/temporary_folder.hpp"
+
 #include <echinus/error.hpp>
 #include <echinus/render.hpp>
 
@@ -30,26 +33,15 @@ Image read_png(const fs::path& path) {
     return image;
 }
 
-class Png : public testing::Test {
-  protected:
-    Png()
-        : folder_(fs::path(testing::TempDir()) /
-                  testing::UnitTest::GetInstance()->current_test_info()->name()) {
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    ~Png() override { fs::remove_all(folder_); }
-
-    fs::path folder_;
-};
+class Png : public test::TemporaryFolderTest {};
 
 } // namespace
 
 TEST_F(Png, ReadsBackToTheSamePixels) {
     for (const auto& [width, height] : {std::pair{1U, 1U}, std::pair{17U, 5U}, std::pair{3U, 200U}}) {
         const Image image = gradient(width, height);
-        write_png(folder_ / "p.png", image);
-        const Image back = read_png(folder_ / "p.png");
+        write_png(path("p.png"), image);
+        const Image back = read_png(path("p.png"));
         EXPECT_EQ(back.width, width);
         EXPECT_EQ(back.height, height);
         EXPECT_EQ(back.rgb, image.rgb);
@@ -59,17 +51,12 @@ TEST_F(Png, ReadsBackToTheSamePixels) {
 TEST_F(Png, RefusesAPictureThatContradictsItself) {
     Image image = gradient(4, 4);
     image.rgb.pop_back();
-    EXPECT_THROW(write_png(folder_ / "p.png", image), Error);
-    EXPECT_THROW(write_png(folder_ / "p.png", Image{}), Error);
-    EXPECT_TRUE(fs::is_empty(folder_));
+    EXPECT_THROW(write_png(path("p.png"), image), Error);
+    EXPECT_THROW(write_png(path("p.png"), Image{}), Error);
+    EXPECT_TRUE(fs::is_empty(path(".")));
 }
 
 TEST_F(Png, SaysSoWhenTheFolderIsMissing) {
-    try {
-        write_png(folder_ / "missing" / "p.png", gradient(2, 2));
-        FAIL() << "wrote into a folder that does not exist";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), ErrorCode::Unwritable);
-        EXPECT_NE(std::string(error.what()).find("p.png"), std::string::npos);
-    }
+    test::expect_error(ErrorCode::Unwritable, "p.png",
+                       [this] { write_png(path("missing") / "p.png", gradient(2, 2)); });
 }

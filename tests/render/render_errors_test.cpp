@@ -1,3 +1,5 @@
+#include "support/expect_error.hpp"
+
 #include <echinus/error.hpp>
 #include <echinus/render.hpp>
 
@@ -10,7 +12,7 @@ using namespace echinus;
 namespace {
 
 const TriangleMesh kBox = make_box({1, 1, 1});
-const Camera kCamera = frame(kBox.vertices, View{}, 1);
+const Camera kCamera = camera_for(kBox.vertices, View{}, 1);
 
 RenderOptions small_options() {
     RenderOptions options;
@@ -20,13 +22,7 @@ RenderOptions small_options() {
 }
 
 void expect_error(ErrorCode code, const std::vector<RenderedObject>& objects, const RenderOptions& options) {
-    try {
-        render(objects, kCamera, options);
-        FAIL() << "drew what cannot be drawn";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code(), code) << error.what();
-        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-    }
+    test::expect_error(code, "", [&] { render(objects, kCamera, options); });
 }
 
 RenderedObject object_with(const TriangleMesh& mesh) {
