@@ -1,5 +1,6 @@
-#include "files/atomic_file.hpp"
 #include "simulation_folder.hpp"
+#include "support/expect_error.hpp"
+#include "support/temporary_folder.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/mesh_io.hpp>
@@ -70,68 +71,54 @@ constexpr const char* kReport = R"({
         {"frame": 0, "translation": [0, 0, 0], "rotation": [1, 0, 0, 0]},
         {"frame": 4, "translation": [10, 0, 0], "rotation": [0, 0, 0, 1]}]}})";
 
-class SimulationFolderTest : public testing::Test {
+class SimulationFolderTest : public test::TemporaryFolderTest {
   protected:
     void SetUp() override {
-        folder_ =
-            fs::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-        write_mesh(folder_ / "cloth.obj", square_cloth());
-        write_mesh(folder_ / "collider.obj", make_box({2, 2, 2}));
+        TemporaryFolderTest::SetUp();
+        write_mesh(path("cloth.obj"), square_cloth());
+        write_mesh(path("collider.obj"), make_box({2, 2, 2}));
         write("cloth.pc2", cache_bytes(10));
         write("report.json", kReport);
     }
-    void TearDown() override { fs::remove_all(folder_); }
 
-    void write(const std::string& name, const std::string& content) const {
-        write_file(folder_ / name, content);
-    }
+    fs::path folder() const { return path(""); }
 
     /// Opens the folder and reads all of it.
     void read_everything() const {
-        const SimulationFolder folder(folder_);
-        for (std::size_t sample = 0; sample < folder.sample_count(); ++sample) {
-            folder.cloth(sample);
-            folder.collider(sample);
+        const SimulationFolder simulation(folder());
+        for (std::size_t sample = 0; sample < simulation.sample_count(); ++sample) {
+            simulation.cloth(sample);
+            simulation.collider(sample);
         }
     }
     void expect_error(ErrorCode code, const std::string& words) const {
-        try {
-            read_everything();
-            FAIL() << "accepted what should be refused for: " << words;
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), code) << error.what();
-            EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-            EXPECT_TRUE(std::string(error.what()).starts_with(folder_.string())) << error.what();
-        }
+        test::expect_error(code, words, [this] { read_everything(); });
+        test::expect_error(code, folder().string(), [this] { read_everything(); });
     }
     static std::string replaced(std::string text, const std::string& old_part, const std::string& new_part) {
         return text.replace(text.find(old_part), old_part.size(), new_part);
     }
-
-    fs::path folder_;
 };
 
 } // namespace
 
 TEST_F(SimulationFolderTest, GivesTheClothOfEverySampleWithTheFacesOfItsRestMesh) {
-    const SimulationFolder folder(folder_);
-    ASSERT_EQ(folder.sample_count(), 10U);
+    const SimulationFolder simulation(folder());
+    ASSERT_EQ(simulation.sample_count(), 10U);
     for (std::size_t sample = 0; sample < 10; ++sample) {
-        const TriangleMesh cloth = folder.cloth(sample);
+        const TriangleMesh cloth = simulation.cloth(sample);
         EXPECT_EQ(cloth.vertices, positions_at(sample, 10));
         EXPECT_EQ(cloth.faces, square_cloth().faces);
     }
 }
 
 TEST_F(SimulationFolderTest, PosesTheColliderAsItStoodLast) {
-    const SimulationFolder folder(folder_);
+    const SimulationFolder simulation(folder());
     const TriangleMesh box = make_box({2, 2, 2});
-    EXPECT_EQ(folder.collider(0).vertices, box.vertices);
-    EXPECT_EQ(folder.collider(3).vertices, box.vertices);
+    EXPECT_EQ(simulation.collider(0).vertices, box.vertices);
+    EXPECT_EQ(simulation.collider(3).vertices, box.vertices);
     for (std::size_t sample : {4U, 9U}) {
-        const TriangleMesh moved = folder.collider(sample); // half a turn about z, then along x
+        const TriangleMesh moved = simulation.collider(sample); // half a turn about z, then along x
         for (std::size_t v = 0; v < box.vertices.size(); ++v) {
             const Vec3f& point = box.vertices[v];
             EXPECT_NEAR(length(moved.vertices[v] - Vec3f{10 - point.x, -point.y, point.z}), 0, 1e-6);
@@ -140,28 +127,28 @@ TEST_F(SimulationFolderTest, PosesTheColliderAsItStoodLast) {
 }
 
 TEST_F(SimulationFolderTest, TakesUpFromGravity) {
-    EXPECT_GT(SimulationFolder(folder_).up().y, 0);
+    EXPECT_GT(SimulationFolder(folder()).up().y, 0);
     write("report.json", replaced(kReport, "-9.81", "0"));
-    EXPECT_EQ(SimulationFolder(folder_).up(), (Vec3d{0, 0, 1}));
+    EXPECT_EQ(SimulationFolder(folder()).up(), (Vec3d{0, 0, 1}));
 }
 
 TEST_F(SimulationFolderTest, KnowsWhetherTheClothCameToRest) {
-    EXPECT_EQ(SimulationFolder(folder_).rest_frame(), 9);
+    EXPECT_EQ(SimulationFolder(folder()).rest_frame(), 9);
     write("report.json", replaced(kReport, "\"frames_to_rest\": 9", "\"frames_to_rest\": null"));
-    EXPECT_FALSE(SimulationFolder(folder_).rest_frame());
+    EXPECT_FALSE(SimulationFolder(folder()).rest_frame());
 }
 
 TEST_F(SimulationFolderTest, FindsTheSampleOfAFrame) {
     write("cloth.pc2", cache_bytes(10, 20, 5));
-    const SimulationFolder folder(folder_);
-    EXPECT_EQ(folder.sample_at(20), 0U);
-    EXPECT_EQ(folder.sample_at(65), 9U);
-    EXPECT_EQ(folder.sample_at(31), 2U);
-    EXPECT_EQ(folder.frame_of(2), 30);
-    EXPECT_THROW(folder.sample_at(17), Error);
-    EXPECT_THROW(folder.sample_at(68), Error);
-    EXPECT_THROW(folder.sample_at(std::numeric_limits<std::int64_t>::min()), Error);
-    EXPECT_THROW(folder.sample_at(std::numeric_limits<std::int64_t>::max()), Error);
+    const SimulationFolder simulation(folder());
+    EXPECT_EQ(simulation.sample_at(20), 0U);
+    EXPECT_EQ(simulation.sample_at(65), 9U);
+    EXPECT_EQ(simulation.sample_at(31), 2U);
+    EXPECT_EQ(simulation.frame_of(2), 30);
+    EXPECT_THROW(simulation.sample_at(17), Error);
+    EXPECT_THROW(simulation.sample_at(68), Error);
+    EXPECT_THROW(simulation.sample_at(std::numeric_limits<std::int64_t>::min()), Error);
+    EXPECT_THROW(simulation.sample_at(std::numeric_limits<std::int64_t>::max()), Error);
 }
 
 TEST_F(SimulationFolderTest, RefusesACacheCutShortAtAnyByte) {
@@ -235,23 +222,23 @@ TEST_F(SimulationFolderTest, SaysWhatIsWrongWithAReport) {
 
 TEST_F(SimulationFolderTest, SaysWhichFileIsMissing) {
     for (const char* name : {"cloth.pc2", "cloth.obj", "collider.obj", "report.json"}) {
-        const fs::path aside = folder_ / "aside";
-        fs::rename(folder_ / name, aside);
+        const fs::path aside = path("aside");
+        fs::rename(path(name), aside);
         expect_error(ErrorCode::Unreadable, name);
-        fs::rename(aside, folder_ / name);
+        fs::rename(aside, path(name));
     }
 }
 
 TEST_F(SimulationFolderTest, RefusesARestMeshOfAnotherCloth) {
     TriangleMesh other = square_cloth();
     other.faces.resize(2);
-    write_mesh(folder_ / "cloth.obj", other);
+    write_mesh(path("cloth.obj"), other);
     expect_error(ErrorCode::Damaged, "vertices");
 }
 
 TEST_F(SimulationFolderTest, ChoosesMomentsThatDiffer) {
     write("cloth.pc2", cache_bytes(40));
-    const std::vector<std::size_t> moments = choose_moments(SimulationFolder(folder_), 6);
+    const std::vector<std::size_t> moments = choose_moments(SimulationFolder(folder()), 6);
     ASSERT_EQ(moments.size(), 6U);
     EXPECT_EQ(moments.front(), 0U);
     EXPECT_EQ(moments.back(), 39U);
@@ -275,7 +262,7 @@ TEST_F(SimulationFolderTest, SpendsNoMomentsOnAClothThatOnlyTrembles) {
                     sizeof(Vec3f) * kPointCount);
     }
     write("cloth.pc2", bytes);
-    const std::vector<std::size_t> moments = choose_moments(SimulationFolder(folder_), 6);
+    const std::vector<std::size_t> moments = choose_moments(SimulationFolder(folder()), 6);
     ASSERT_EQ(moments.size(), 6U);
     EXPECT_LE(moments[4], 10U);
     EXPECT_EQ(moments[5], 99U);
@@ -284,7 +271,7 @@ TEST_F(SimulationFolderTest, SpendsNoMomentsOnAClothThatOnlyTrembles) {
 TEST_F(SimulationFolderTest, ChoosesAllMomentsWhereThereAreFew) {
     for (std::int32_t count = 1; count <= 6; ++count) {
         write("cloth.pc2", cache_bytes(count));
-        const std::vector<std::size_t> moments = choose_moments(SimulationFolder(folder_), 6);
+        const std::vector<std::size_t> moments = choose_moments(SimulationFolder(folder()), 6);
         ASSERT_EQ(moments.size(), static_cast<std::size_t>(count));
         for (std::size_t i = 0; i < moments.size(); ++i) EXPECT_EQ(moments[i], i);
     }
