@@ -46,6 +46,7 @@ void parse_and_run(int argc, char** argv) {
     add_build_command(app);
     add_query_command(app);
     add_simulate_command(app);
+    add_render_command(app);
     app.footer("A file named - is standard input or standard output.\n"
                "Exit status: 0 done, 1 failed, 2 wrong use; an error is one line on standard error.\n"
                "echinus COMMAND --help shows the options of a command and an example.");
