@@ -98,9 +98,13 @@ Image draw_map_figure(const TriangleMesh& model, const DistanceMapView& map, con
     View roomy_view = view;
     roomy_view.footer = std::max(view.footer, kFooter);
     const RenderOptions left = half_of(options, 0);
-    const Camera camera = camera_for(objects, roomy_view, static_cast<double>(left.width) / left.height);
+    const double aspect = static_cast<double>(left.width) / left.height;
+    const std::span<const RenderedObject> model_alone(&objects[0], 1);
+    Camera camera = camera_for(objects, roomy_view, aspect);
+    // Where the map reaches below the model, the model shall not hang in the air.
+    camera.floor_height = camera_for(model_alone, roomy_view, aspect).floor_height;
 
-    std::array pictures{render({&objects[0], 1}, camera, left),
+    std::array pictures{render(model_alone, camera, left),
                         render({&objects[1], 1}, camera, half_of(options, 1))};
     draw_caption(pictures[0], "model, " + std::to_string(model.faces.size()) + " faces");
     draw_caption(pictures[1], "map, " + std::to_string(map.longitude_count) + " x " +
