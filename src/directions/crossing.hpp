@@ -40,11 +40,18 @@ class FaceCone {
 
     /// The crossing's distance in multiples of d. Rounded; only the decision is exact. @pre meets(d)
     double parameter(const LatticePoint& d) const {
-        const std::int64_t denominator = dot(d, ab_) + dot(d, bc_) + dot(d, ca_); // below 2^62
-        return static_cast<double>(determinant_) / static_cast<double>(denominator);
+        return static_cast<double>(determinant_) / static_cast<double>(denominator(d));
+    }
+
+    /// Does the ray meet the face before it reaches the end of d? Exact. @pre meets(d)
+    bool nearer_than(const LatticePoint& d) const {
+        return outward() ? determinant_ < denominator(d) : determinant_ > denominator(d);
     }
 
   private:
+    std::int64_t denominator(const LatticePoint& d) const { // below 2^62
+        return dot(d, ab_) + dot(d, bc_) + dot(d, ca_);
+    }
     bool on_face_side(const LatticePoint& d, const LatticePoint& n) const {
         const std::int64_t value = dot(d, n);
         const bool positive = value != 0 ? value > 0 : sign_of_perturbation(n) > 0;

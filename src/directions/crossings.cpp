@@ -1,16 +1,14 @@
 #include "directions/crossings.hpp"
 
 #include "directions/crossing.hpp"
-#include "directions/direction_cap.hpp"
+#include "directions/samples_in_cap.hpp"
 #include "geometry/parallel.hpp"
 
 #include <echinus/error.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <mutex>
-#include <numbers>
 
 namespace echinus {
 
@@ -48,40 +46,11 @@ class RayCaster {
         const FaceCone cone(a, b, c);
         if (cone.edge_on()) return;
         const DirectionCap cap({Vec3d(grid_.to_grid(a)), Vec3d(grid_.to_grid(b)), Vec3d(grid_.to_grid(c))});
-        const IndexRange rows = rows_of(cap);
-        const IndexRange columns = columns_of(cap);
-        for (std::int64_t j = rows.first; j <= rows.last; ++j)
-            for (std::int64_t i = columns.first; i <= columns.last; ++i)
-                cast_along(grid_.index(wrapped(i), static_cast<std::uint32_t>(j)), cone, crossings);
+        for_each_sample_in(grid_, cap, 0,
+                           [&](std::uint32_t direction) { cast_along(direction, cone, crossings); });
     }
 
   private:
-    struct IndexRange {
-        std::int64_t first, last;
-    };
-
-    IndexRange rows_of(const DirectionCap& cap) const {
-        const double per_radian = grid_.colatitude_count() / std::numbers::pi;
-        const auto first = static_cast<std::int64_t>(std::ceil(cap.theta_min * per_radian - 0.5));
-        const auto last = static_cast<std::int64_t>(std::floor(cap.theta_max * per_radian - 0.5));
-        return {std::max<std::int64_t>(first, 0), std::min<std::int64_t>(last, grid_.colatitude_count() - 1)};
-    }
-
-    IndexRange columns_of(const DirectionCap& cap) const {
-        const std::int64_t count = grid_.longitude_count();
-        const double per_radian = static_cast<double>(count) / (2 * std::numbers::pi);
-        const auto first =
-            static_cast<std::int64_t>(std::ceil((cap.phi_middle - cap.phi_half_width) * per_radian));
-        const auto last =
-            static_cast<std::int64_t>(std::floor((cap.phi_middle + cap.phi_half_width) * per_radian));
-        return last - first + 1 >= count ? IndexRange{0, count - 1} : IndexRange{first, last};
-    }
-
-    std::uint32_t wrapped(std::int64_t i) const {
-        const std::int64_t count = grid_.longitude_count();
-        return static_cast<std::uint32_t>(i < 0 ? i + count : i >= count ? i - count : i);
-    }
-
     void cast_along(std::uint32_t direction, const FaceCone& cone, std::vector<Crossing>& crossings) const {
         const LatticePoint& d = directions_.points[direction];
         if (!cone.meets(d)) return;

@@ -4,47 +4,27 @@
 // distance of the vertex."
 //
 // What it leaves open, and our reading:
-// - Which layer is the vertex's? The one whose interpolated distance is nearest to it. Signed: nearest among
-// the layers
-//   that are crossed the way the vertex's faces are; a vertex on a silhouette, with faces of both kinds, has
-//   none.
-// - Vertices between samples of different counts are left alone: that is the paper's second error situation,
-// which the
-//   query treats.
+// - Which layer is the vertex's? It has as many crossings before it as the vertex has on its own ray. The
+// layer nearest to the vertex may be another one: that of the other side of a thin part.
+// - A vertex on a silhouette has faces that rays leave through and faces that they enter through, hence no
+// layer of its own.
+// - Vertices whose ray is crossed more or less often than one of the samples around it are left alone: that
+// is the paper's second error situation, which the query treats.
 // - Several vertices in one cell: each sample moves by the largest amount that one of them asks for.
 // - Increasing errs on the side of the solid only where the ray leaves it. Where it enters, Signed decreases.
 
 #include "distance_map/vertex_correction.hpp"
 
-#include "directions/crossing.hpp"
 #include "distance_map/interpolation.hpp"
+#include "distance_map/vertex_layers.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 namespace echinus {
 
 namespace {
-
-/// How the rays cross the faces around a vertex.
-enum class Facing : std::uint8_t { None, Outward, Inward, Both };
-
-std::vector<Facing> facings_of(const LatticeMesh& lattice) {
-    std::vector<Facing> facings(lattice.vertices.size(), Facing::None);
-    for (const Triangle& face : lattice.faces) {
-        const FaceCone cone(lattice.vertices[face[0]], lattice.vertices[face[1]], lattice.vertices[face[2]]);
-        const Facing facing = cone.edge_on()   ? Facing::Both
-                              : cone.outward() ? Facing::Outward
-                                               : Facing::Inward;
-        for (std::uint32_t vertex : face) {
-            Facing& seen = facings[vertex];
-            seen = seen == Facing::None || seen == facing ? facing : Facing::Both;
-        }
-    }
-    return facings;
-}
 
 /// The uncorrected entries, as the query sees them.
 DistanceMapView as_map(const LatticeMesh& lattice, const SphericalGrid& grid, bool centre_inside,
@@ -59,11 +39,6 @@ DistanceMapView as_map(const LatticeMesh& lattice, const SphericalGrid& grid, bo
     return map;
 }
 
-struct Layer {
-    std::uint32_t k;
-    float missing; ///< distance of the vertex minus the interpolated distance
-};
-
 class Corrector {
   public:
     Corrector(VertexCorrection correction, const LatticeMesh& lattice, const SphericalGrid& grid,
@@ -71,15 +46,18 @@ class Corrector {
         : correction_(correction), step_(lattice.step), grid_(grid), centre_inside_(centre_inside),
           map_(as_map(lattice, grid, centre_inside, crossings)), shifts_(crossings.distances.size()) {}
 
-    void consider(const LatticePoint& vertex, Facing facing) {
+    void consider(const LatticePoint& vertex, const VertexLayer& layer) {
+        if (!has_layer_of_its_own(layer)) return;
         const Vec3d d = Vec3d(vertex) * step_;
         const Interpolation at = interpolation_at(map_, grid_.locate(grid_.to_grid(Vec3f(d))));
         if (!(at.usable[0] && at.usable[1] && at.usable[2] && at.usable[3])) return;
-        const std::optional<Layer> layer = layer_of(at, static_cast<float>(length(d)), facing);
-        if (!layer || !is_missed(*layer)) return;
+        if (at.entry_count != layer.crossing_count) return;
+        const std::uint32_t k = layer.crossings_before;
+        const float missing = static_cast<float>(length(d)) - interpolated_entry(map_, at, k);
+        if (moves_outward(k) ? missing <= 0 : missing >= 0) return;
         for (std::uint32_t first : at.first_entry) {
-            float& shift = shifts_[first + layer->k];
-            shift = std::max(shift, std::fabs(layer->missing));
+            float& shift = shifts_[first + k];
+            shift = std::max(shift, std::fabs(missing));
         }
     }
 
@@ -91,20 +69,13 @@ class Corrector {
     }
 
   private:
-    std::optional<Layer> layer_of(const Interpolation& at, float distance, Facing facing) const {
-        std::optional<Layer> nearest;
-        for (std::uint32_t k = 0; k < at.entry_count; ++k) {
-            if (correction_ == VertexCorrection::Signed && facing != facing_of_layer(k)) continue;
-            const float missing = distance - interpolated_entry(map_, at, k);
-            if (!nearest || std::fabs(missing) < std::fabs(nearest->missing)) nearest = Layer{k, missing};
-        }
-        return nearest;
-    }
-    Facing facing_of_layer(std::uint32_t k) const {
-        return is_outward(centre_inside_, k) ? Facing::Outward : Facing::Inward;
-    }
-    bool is_missed(const Layer& layer) const {
-        return moves_outward(layer.k) ? layer.missing > 0 : layer.missing < 0;
+    /// On a mesh that is not closed, or is inside out in part, the way that the faces are crossed need not be
+    /// that of the layer; Signed, which goes by the layer, then leaves the vertex alone.
+    bool has_layer_of_its_own(const VertexLayer& layer) const {
+        if (layer.facing != Facing::Outward && layer.facing != Facing::Inward) return false;
+        if (layer.crossings_before >= layer.crossing_count) return false;
+        if (correction_ == VertexCorrection::Paper) return true;
+        return is_outward(centre_inside_, layer.crossings_before) == (layer.facing == Facing::Outward);
     }
 
     VertexCorrection correction_;
@@ -121,9 +92,8 @@ CorrectionCounts correct_at_vertices(VertexCorrection correction, const LatticeM
                                      const SphericalGrid& grid, bool centre_inside, Crossings& crossings) {
     if (correction == VertexCorrection::None) return {};
     Corrector corrector(correction, lattice, grid, centre_inside, crossings);
-    const std::vector<Facing> facings = facings_of(lattice);
-    for (std::size_t i = 0; i < facings.size(); ++i)
-        if (facings[i] != Facing::None) corrector.consider(lattice.vertices[i], facings[i]);
+    const std::vector<VertexLayer> layers = layers_of_vertices(lattice, grid);
+    for (std::size_t i = 0; i < layers.size(); ++i) corrector.consider(lattice.vertices[i], layers[i]);
 
     CorrectionCounts counts;
     std::vector<float>& entries = crossings.distances;

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "directions/direction_cap.hpp"
+#include "directions/spherical_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace echinus {
+
+/// Calls `visit(index)` for the samples of a grid inside a cap, and those at most `reach` cells outside it
+/// along phi and theta.
+template <typename Visit>
+void for_each_sample_in(const SphericalGrid& grid, const DirectionCap& cap, double reach,
+                        const Visit& visit) {
+    const auto count_of_rows = static_cast<std::int64_t>(grid.colatitude_count());
+    const auto count_of_columns = static_cast<std::int64_t>(grid.longitude_count());
+    const double rows_per_radian = static_cast<double>(count_of_rows) / std::numbers::pi;
+    const double columns_per_radian = static_cast<double>(count_of_columns) / (2 * std::numbers::pi);
+    const auto at_or_above = [reach](double s) { return static_cast<std::int64_t>(std::ceil(s - reach)); };
+    const auto at_or_below = [reach](double s) { return static_cast<std::int64_t>(std::floor(s + reach)); };
+
+    const std::int64_t first_row =
+        std::max<std::int64_t>(at_or_above(cap.theta_min * rows_per_radian - 0.5), 0);
+    const std::int64_t last_row =
+        std::min(at_or_below(cap.theta_max * rows_per_radian - 0.5), count_of_rows - 1);
+    std::int64_t first_column = at_or_above((cap.phi_middle - cap.phi_half_width) * columns_per_radian);
+    std::int64_t last_column = at_or_below((cap.phi_middle + cap.phi_half_width) * columns_per_radian);
+    if (last_column - first_column + 1 >= count_of_columns) {
+        first_column = 0;
+        last_column = count_of_columns - 1;
+    }
+    for (std::int64_t row = first_row; row <= last_row; ++row)
+        for (std::int64_t column = first_column; column <= last_column; ++column) {
+            const std::int64_t wrapped = column < 0                   ? column + count_of_columns
+                                         : column >= count_of_columns ? column - count_of_columns
+                                                                      : column;
+            visit(grid.index(static_cast<std::uint32_t>(wrapped), static_cast<std::uint32_t>(row)));
+        }
+}
+
+} // namespace echinus
