@@ -62,10 +62,13 @@ struct ClothOptions {
 /// @throws Error InvalidOptions
 Deformable make_cloth(const ClothOptions& options);
 
-/// When a deformable counts as come to rest.
+/// When a deformable counts as come to rest: every particle has stayed within `distance` of one place for
+/// `frame_count` frames in a row. Not a bound on speed: gravity alone adds 0.04 units per second in one frame
+/// of 1/240 s, and a particle that contacts and sticks pass to and fro by a hair trembles at such a speed for
+/// ever.
 struct RestCondition {
-    double speed = 0.01;            ///< the fastest particle's, units per second
-    std::uint32_t frame_count = 30; ///< for so many frames in a row; at least 1
+    double distance = 0.001;        ///< units
+    std::uint32_t frame_count = 60; ///< at least 1
 };
 
 struct SimulationOptions {
@@ -142,6 +145,7 @@ class Simulation {
     void relax_sticks();
     void collide(const Collider& collider, const RigidTransform& previous_pose);
     void judge_frame();
+    void judge_rest();
 
     Deformable deformable_;
     std::vector<Collider> colliders_;
@@ -151,6 +155,7 @@ class Simulation {
     Vec3d start_centre_;
     double bound_ = 0;
     std::uint32_t frame_ = 0;
+    std::vector<Vec3f> resting_places_; // where each particle was, quiet_frame_count_ frames ago
     std::uint32_t quiet_frame_count_ = 0;
     double largest_speed_;
     SimulationProfile profile_;

@@ -4,7 +4,6 @@
 #include <echinus/scene.hpp>
 
 #include <fstream>
-#include <limits>
 #include <numbers>
 
 namespace echinus {
@@ -13,7 +12,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Beyond 1e9 units a float no longer resolves what is near the origin.
 constexpr Range kCoordinate{-1e9, 1e9};
 constexpr Range kLength{1e-9, 1e9};
@@ -178,7 +176,7 @@ void read_end(JsonObject& root, Scene& scene) {
     root.read("frame_limit", scene.frame_limit, {1, 1e9});
     auto rest = root.object("at_rest");
     if (!rest) return;
-    rest->read("speed", scene.simulation.rest.speed, {0, kInfinity});
+    rest->read("distance", scene.simulation.rest.distance, {0, 1e9});
     rest->read("frames", scene.simulation.rest.frame_count, {1, 1e9});
     rest->finish();
 }

@@ -58,6 +58,7 @@ Simulation::Simulation(Deformable deformable, std::vector<Collider> colliders,
     require_valid(colliders_);
     for (const Collider& collider : colliders_) previous_poses_.push_back(collider.pose);
     weighted_sticks_ = weigh(deformable_, options_);
+    resting_places_ = deformable_.positions;
     const Sphere start = box_sphere(deformable_.positions);
     start_centre_ = start.centre;
     // A single particle has no extent; its bound is then in the caller's unit.
@@ -190,7 +191,19 @@ void Simulation::judge_frame() {
         largest_motion_sq = std::max(largest_motion_sq, dot(motion, motion));
     }
     largest_speed_ = std::sqrt(double{largest_motion_sq}) / options_.time_step;
-    quiet_frame_count_ = largest_speed_ < options_.rest.speed ? quiet_frame_count_ + 1 : 0;
+    judge_rest();
+}
+
+void Simulation::judge_rest() {
+    const auto distance_sq = static_cast<float>(options_.rest.distance * options_.rest.distance);
+    const std::vector<Vec3f>& positions = deformable_.positions;
+    bool all_stay = true;
+    for (std::size_t i = 0; i < positions.size() && all_stay; ++i) {
+        const Vec3f away = positions[i] - resting_places_[i];
+        all_stay = dot(away, away) <= distance_sq;
+    }
+    quiet_frame_count_ = all_stay ? quiet_frame_count_ + 1 : 0;
+    if (!all_stay) resting_places_ = positions;
 }
 
 std::uint64_t Simulation::state_hash() const {

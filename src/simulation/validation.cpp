@@ -34,7 +34,7 @@ void require_valid(const SimulationOptions& options) {
     require_within("thickness", options.thickness, 0, kLargest);
     require_within("friction", options.friction, 0, kLargest);
     require_within("bound", options.bound, 0, 1e30);
-    require_within("rest.speed", options.rest.speed, 0, 1e30);
+    require_within("rest.distance", options.rest.distance, 0, 1e9);
     require_within("rest.frame_count", options.rest.frame_count, 1, kLargest);
     for (const double stiffness : options.stiffness) require_within("stiffness", stiffness, 0, 1.99);
     if (!echinus::is_finite(options.gravity)) fail("simulation option gravity is not finite");

@@ -144,12 +144,13 @@ TEST(Solver, SeparatesStatesThatDifferOnlyInVelocity) {
     EXPECT_NE(slow.state_hash(), fast.state_hash());
 }
 
-TEST(Solver, CountsQuietFramesInARowForRest) {
-    const RestCondition rest{.speed = 0.15, .frame_count = 5};
+TEST(Solver, RestsWhenItHasStayedNearOnePlaceForSoManyFrames) {
+    const RestCondition rest{.distance = 0.0013, .frame_count = 5};
     Simulation simulation(single_particle({}, {0.01F, 0, 0}), {},
                           {.time_step = 0.01, .gravity = {}, .drag = 0.5, .rest = rest});
-    // Speeds are 0.5, 0.25, 0.125, ...: quiet from the third frame on, at rest with the seventh.
-    for (int i = 0; i < 6; ++i) simulation.step();
+    // It goes by 5, 2.5, 1.25, 0.6 ... mm. The third step alone is short enough but leads too far with the
+    // fourth; all later ones together are shorter: at rest with the ninth.
+    for (int i = 0; i < 8; ++i) simulation.step();
     EXPECT_FALSE(simulation.at_rest());
     simulation.step();
     EXPECT_TRUE(simulation.at_rest());

@@ -51,7 +51,7 @@ TEST(SimulationSetUp, NamesTheOptionOutOfRange) {
     expect_names(refusal_of_option([](auto& o) { o.stiffness[1] = 2; }), "stiffness");
     expect_names(refusal_of_option([](auto& o) { o.gravity.y = kNaN; }), "gravity");
     expect_names(refusal_of_option([](auto& o) { o.bound = -1; }), "bound");
-    expect_names(refusal_of_option([](auto& o) { o.rest.speed = -1; }), "rest.speed");
+    expect_names(refusal_of_option([](auto& o) { o.rest.distance = -1; }), "rest.distance");
     expect_names(refusal_of_option([](auto& o) { o.rest.frame_count = 0; }), "rest.frame_count");
 }
 
