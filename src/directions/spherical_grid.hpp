@@ -74,6 +74,22 @@ class SphericalGrid {
     /// The sine of a row's colatitude: the solid angle of its samples, but for a factor that all rows share.
     double solid_angle_weight(std::uint32_t colatitude) const { return colatitude_point(colatitude).sine; }
 
+    /// Longitude and colatitude in cells, counted from sample 0.
+    struct Coordinates {
+        float along_phi;   ///< in [-N_phi / 2, N_phi / 2]
+        float along_theta; ///< in [-1/2, N_theta - 1/2]
+    };
+
+    /// @param d_grid  any length, zero included (then longitude 0, colatitude 0), in the grid's frame.
+    /// Finite; what is not gives coordinates without meaning
+    Coordinates coordinates_of(const Vec3f& d_grid) const {
+        const float horizontal = std::sqrt(d_grid.x * d_grid.x + d_grid.y * d_grid.y);
+        const float phi = atan2_polynomial(d_grid.y, d_grid.x);
+        const float theta = atan2_polynomial(horizontal, d_grid.z);
+        return {phi * (static_cast<float>(longitude_count_) / (2 * kPi)),
+                theta * (static_cast<float>(colatitude_count_) / kPi) - 0.5F};
+    }
+
     /// The four samples around a direction and where it lies between them.
     struct Cell {
         /// Direction indices of the corners (0,0), (1,0), (0,1), (1,1), the first number along phi.
@@ -81,21 +97,18 @@ class SphericalGrid {
         float u, v; ///< in [0, 1], along phi and theta
     };
 
-    /// @param d_grid  any length, zero included (then longitude 0, colatitude 0), finite, in the grid's frame
-    Cell locate(const Vec3f& d_grid) const {
-        const float horizontal = std::sqrt(d_grid.x * d_grid.x + d_grid.y * d_grid.y);
-        const float phi = atan2_polynomial(d_grid.y, d_grid.x);
-        const float theta = atan2_polynomial(horizontal, d_grid.z);
-        const float s = phi * (static_cast<float>(longitude_count_) / (2 * kPi));
-        const float t = theta * (static_cast<float>(colatitude_count_) / kPi) - 0.5F;
-        const std::int32_t s_floor = floor_to_int(s);
-        const std::int32_t j0 = floor_to_int(t);
-        const std::uint32_t i0 = wrap_longitude(s_floor);
+    Cell cell_at(const Coordinates& at) const {
+        const std::int32_t phi_floor = floor_to_int(at.along_phi);
+        const std::int32_t j0 = floor_to_int(at.along_theta);
+        const std::uint32_t i0 = wrap_longitude(phi_floor);
         const std::uint32_t i1 = i0 + 1 == longitude_count_ ? 0 : i0 + 1;
         return {{corner(i0, j0), corner(i1, j0), corner(i0, j0 + 1), corner(i1, j0 + 1)},
-                s - static_cast<float>(s_floor),
-                t - static_cast<float>(j0)};
+                at.along_phi - static_cast<float>(phi_floor),
+                at.along_theta - static_cast<float>(j0)};
     }
+
+    /// @param d_grid  as for coordinates_of()
+    Cell locate(const Vec3f& d_grid) const { return cell_at(coordinates_of(d_grid)); }
 
   private:
     /// Without the call that std::floor is on processors older than SSE4.1.

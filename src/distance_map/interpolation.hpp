@@ -44,12 +44,14 @@ inline Interpolation interpolation_at(const DistanceMapView& map, const Spherica
     result.weight_sum = 0;
     for (std::size_t corner = 0; corner < 4; ++corner) {
         // "ignore (in the interpolation) all the other samples with different length than the reference one"
-        const bool usable = entry_count_of(map, cell.corners[corner]) == result.entry_count;
-        result.usable[corner] = usable;
-        result.first_entry[corner] = map.entry_offsets[usable ? cell.corners[corner] : reference];
-        result.weight[corner] = usable ? bilinear[corner] : 0;
+        const bool same_count = entry_count_of(map, cell.corners[corner]) == result.entry_count;
+        result.usable[corner] = same_count;
+        result.first_entry[corner] = map.entry_offsets[same_count ? cell.corners[corner] : reference];
+        result.weight[corner] = same_count ? bilinear[corner] : 0;
         result.weight_sum += result.weight[corner];
     }
+    const auto& usable = result.usable;
+    if (usable[0] && usable[1] && usable[2] && usable[3]) return result; // they add up to 1 already
     for (float& weight : result.weight) weight /= result.weight_sum; // the reference's alone is 1/4 or more
     return result;
 }

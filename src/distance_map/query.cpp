@@ -6,6 +6,8 @@
 
 #include "distance_map/interpolation.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <optional>
 
@@ -13,17 +15,23 @@ namespace echinus {
 
 namespace {
 
+/// The ray from the centre to a particle.
 struct Ray {
     Vec3f along;  ///< d in the grid's frame, lengthened where it is very short: only its direction counts
     float length; ///< |d|
+    SphericalGrid::Coordinates at; ///< (phi_d, theta_d)
 };
 
+/// Free of branches: the compiler turns loops over it into vector instructions.
+Ray ray_along(const SphericalGrid& grid, const Vec3f& d_grid) {
+    const float d_length = length(d_grid);
+    constexpr float kShort = 0x1p-50F; // far above where squares leave the range of float
+    const Vec3f along = d_grid * (d_length < kShort ? 0x1p100F : 1);
+    return {along, d_length, grid.coordinates_of(along)};
+}
+
 Ray ray_to(const DistanceMapView& map, const SphericalGrid& grid, const Vec3f& point_local) {
-    const Vec3f d = grid.to_grid(point_local - map.centre);
-    const float d_length = length(d);
-    constexpr float kShort = 0x1p-50F;                    // far above where squares leave the range of float
-    const float scale = d_length < kShort ? 0x1p100F : 1; // a product always: a branch here costs 10 ns
-    return {d * scale, d_length};
+    return ray_along(grid, grid.to_grid(point_local - map.centre));
 }
 
 /// "Particle p is initially tested against the bounding sphere. If the particle does not penetrate the sphere
@@ -117,24 +125,19 @@ Contact no_contact(const Vec3f& point_local) {
     return contact;
 }
 
-} // namespace
-
-bool contains(const DistanceMapView& map, Vec3f point_local) noexcept {
-    const SphericalGrid grid = grid_of(map);
-    const Ray ray = ray_to(map, grid, point_local);
+bool contains(const DistanceMapView& map, const SphericalGrid& grid, const Ray& ray) {
     if (!reaches_sphere(map, ray, 0)) return false;
-    const Interpolation at = interpolation_at(map, grid.locate(ray.along));
+    const Interpolation at = interpolation_at(map, grid.cell_at(ray.at));
     return is_inside(map, interval_of(map, at, ray.length).number);
 }
 
-Contact contact(const DistanceMapView& map, Vec3f point_local, float margin) noexcept {
-    if (!(margin > 0)) margin = 0;
-    const SphericalGrid grid = grid_of(map);
-    const Ray ray = ray_to(map, grid, point_local);
+/// @pre margin >= 0
+Contact contact(const DistanceMapView& map, const SphericalGrid& grid, const Ray& ray,
+                const Vec3f& point_local, float margin) {
     Contact result = no_contact(point_local);
     if (!(reaches_sphere(map, ray, margin) && std::isfinite(ray.length))) return result;
 
-    const Interpolation at = interpolation_at(map, grid.locate(ray.along));
+    const Interpolation at = interpolation_at(map, grid.cell_at(ray.at));
     const Interval interval = interval_of(map, at, ray.length);
     const std::optional<IntervalEnd> end = nearest_end(map, at, interval, ray.length);
     if (!end) return result;
@@ -151,23 +154,91 @@ Contact contact(const DistanceMapView& map, Vec3f point_local, float margin) noe
     return result;
 }
 
+/// NaN and negative margins ask for particles inside only.
+float usable_margin(float margin) {
+    return margin > 0 ? margin : 0;
+}
+
+/// The rays to some points of a batch, each number in an array of its own, as vector instructions want them.
+class RayPiece {
+  public:
+    static constexpr std::size_t kSize = 128; // these arrays stay in the first-level cache
+
+    void aim(const DistanceMapView& map, const SphericalGrid& grid,
+             const StridedSpan<const Vec3f>& points_local, std::size_t begin, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const Vec3f d = grid.to_grid(points_local[begin + i] - map.centre);
+            x_[i] = d.x;
+            y_[i] = d.y;
+            z_[i] = d.z;
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            const Ray ray = ray_along(grid, {x_[i], y_[i], z_[i]});
+            x_[i] = ray.along.x;
+            y_[i] = ray.along.y;
+            z_[i] = ray.along.z;
+            length_[i] = ray.length;
+            along_phi_[i] = ray.at.along_phi;
+            along_theta_[i] = ray.at.along_theta;
+        }
+    }
+
+    Ray operator[](std::size_t i) const {
+        return {{x_[i], y_[i], z_[i]}, length_[i], {along_phi_[i], along_theta_[i]}};
+    }
+
+  private:
+    using Numbers = std::array<float, kSize>;
+    Numbers x_, y_, z_, length_, along_phi_, along_theta_;
+};
+
+/// Calls `answer(i, ray)` for the rays to all points of a batch.
+template <typename Answer>
+void for_each_ray(const DistanceMapView& map, const SphericalGrid& grid,
+                  const StridedSpan<const Vec3f>& points_local, const Answer& answer) {
+    RayPiece piece;
+    for (std::size_t begin = 0; begin < points_local.size(); begin += RayPiece::kSize) {
+        const std::size_t count = std::min(RayPiece::kSize, points_local.size() - begin);
+        piece.aim(map, grid, points_local, begin, count);
+        for (std::size_t i = 0; i < count; ++i) answer(begin + i, piece[i]);
+    }
+}
+
+} // namespace
+
+bool contains(const DistanceMapView& map, Vec3f point_local) noexcept {
+    const SphericalGrid grid = grid_of(map);
+    return contains(map, grid, ray_to(map, grid, point_local));
+}
+
+Contact contact(const DistanceMapView& map, Vec3f point_local, float margin) noexcept {
+    const SphericalGrid grid = grid_of(map);
+    return contact(map, grid, ray_to(map, grid, point_local), point_local, usable_margin(margin));
+}
+
 void contains_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local,
                     std::span<std::uint8_t> inside) noexcept {
     assert(points_local.size() == inside.size());
-    for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = contains(map, points_local[i]) ? 1 : 0;
+    const SphericalGrid grid = grid_of(map);
+    for_each_ray(map, grid, points_local,
+                 [&](std::size_t i, const Ray& ray) { inside[i] = contains(map, grid, ray) ? 1 : 0; });
 }
 
 void contacts_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local, float margin,
                     std::span<Contact> contacts) noexcept {
     assert(points_local.size() == contacts.size());
-    for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = contact(map, points_local[i], margin);
+    const SphericalGrid grid = grid_of(map);
+    const float usable = usable_margin(margin);
+    for_each_ray(map, grid, points_local, [&](std::size_t i, const Ray& ray) {
+        contacts[i] = contact(map, grid, ray, points_local[i], usable);
+    });
 }
 
 int usable_sample_count(const DistanceMapView& map, Vec3f point_local) noexcept {
     const SphericalGrid grid = grid_of(map);
     const Ray ray = ray_to(map, grid, point_local);
     if (!reaches_sphere(map, ray, 0)) return 0;
-    const Interpolation at = interpolation_at(map, grid.locate(ray.along));
+    const Interpolation at = interpolation_at(map, grid.cell_at(ray.at));
     return at.usable[0] + at.usable[1] + at.usable[2] + at.usable[3];
 }
 
