@@ -8,17 +8,7 @@ namespace {
 
 constexpr float kRecoveryPerRelaxation = 0.1F;
 
-/// How far the particle is below the plane at `thickness` over the contact plane.
-float missing_distance(const Vec3f& position, const Contact& contact, float thickness) {
-    return thickness - dot(position - contact.point, contact.normal);
-}
-
 } // namespace
-
-bool needs_response(const Vec3f& position, const Contact& contact, float thickness) {
-    if (contact.inside) return true;
-    return contact.found() && missing_distance(position, contact, thickness) > 0;
-}
 
 Vec3f wanted_push(const Vec3f& position, const Contact& contact, float thickness) {
     if (contact.inside) return contact.point + contact.normal * thickness - position;

@@ -16,8 +16,17 @@ struct ResponseRules {
 /// 76 degrees the thickness is not kept in full.
 inline constexpr float kReachInThicknesses = 4;
 
-/// Has the particle met the surface, or come nearer than the thickness?
-bool needs_response(const Vec3f& position, const Contact& contact, float thickness);
+/// How far the particle is below the plane at `thickness` over the contact plane.
+inline float missing_distance(const Vec3f& position, const Contact& contact, float thickness) {
+    return thickness - dot(position - contact.point, contact.normal);
+}
+
+/// Has the particle met the surface, or come nearer than the thickness? Asked for every particle, hence
+/// inline.
+inline bool needs_response(const Vec3f& position, const Contact& contact, float thickness) {
+    if (contact.inside) return true;
+    return contact.found() && missing_distance(position, contact, thickness) > 0;
+}
 
 /// The push that the contact asks for. A particle inside goes the paper's way (section 2.2), along the ray to
 /// the surface, and from there the thickness along the normal. One that is outside but too near goes along
