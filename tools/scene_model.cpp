@@ -11,10 +11,17 @@ namespace fs = std::filesystem;
 namespace {
 
 struct MeshOfModel {
+    const fs::path& scene_path;
     const std::vector<fs::path>& folders;
 
     TriangleMesh operator()(const ModelFile& file) const { return read_mesh(find_model(file, folders)); }
-    TriangleMesh operator()(const auto& shape) const { return make_mesh(shape); }
+    TriangleMesh operator()(const auto& shape) const {
+        try {
+            return make_mesh(shape);
+        } catch (const Error& error) {
+            throw Error(ErrorCode::InvalidScene, scene_path.string() + ": \"model\": " + error.what());
+        }
+    }
 };
 
 /// The push-out needs an inside; a hole would let cloth through, and the judge could not tell.
@@ -34,7 +41,7 @@ void require_closed(const TriangleMesh& mesh, const fs::path& scene_path) {
 RepairedMesh load_model(const Scene& scene, const fs::path& scene_path, std::vector<fs::path> folders) {
     folders.push_back(scene_path.parent_path() / ".." / "models");
     folders.emplace_back("models");
-    RepairedMesh model = repair(std::visit(MeshOfModel{folders}, scene.model), scene.repair);
+    RepairedMesh model = repair(std::visit(MeshOfModel{scene_path, folders}, scene.model), scene.repair);
     require_closed(model.mesh, scene_path);
     return model;
 }

@@ -33,7 +33,8 @@ struct BoxModel { ///< arguments of make_box()
 };
 using SceneModel = std::variant<ModelFile, TorusModel, SphereModel, BoxModel>;
 
-/// Everything that a simulation starts from. A scene that was read is complete and in range.
+/// Everything that a simulation starts from. A scene that was read is complete and each number in its
+/// range; whether a shape is possible, its generator tells.
 struct Scene {
     SceneModel model;
     RepairOptions repair; ///< for the mesh, before the map is built
