@@ -60,7 +60,11 @@ Sphere smallest_enclosing_sphere(std::span<const Vec3f> points);
 
 /// What repair() may do. All off by default: a mesh is never changed behind its owner's back.
 struct RepairOptions {
-    bool drop_duplicate_faces = false; ///< keep the first of faces with the same three vertices
+    /// Of faces with the same three vertices, opposite ones cancel: both go. Of those that are left, which
+    /// turn the same way, the first stays. Where that leaves the mesh open, and keeping all that are left or
+    /// just the first face of all closes it, that is done instead. So a closed mesh stays closed. Nothing is
+    /// dropped where no face would be left.
+    bool drop_duplicate_faces = false;
     /// Where two pairs of faces fill the same quadrilateral of four edges, each along its own diagonal, drop
     /// the pair that fits the orientation of the faces around worse, or the later one. Such are the caps of
     /// glmark2's horse.

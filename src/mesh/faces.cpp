@@ -29,7 +29,7 @@ double six_volumes(const TriangleMesh& mesh, const Triangle& face, const Vec3d& 
                cross(Vec3d(mesh.vertices[face[1]]) - reference, Vec3d(mesh.vertices[face[2]]) - reference));
 }
 
-std::vector<std::uint32_t> find_duplicate_faces(const TriangleMesh& mesh) {
+std::vector<std::vector<std::uint32_t>> find_equal_faces(const TriangleMesh& mesh) {
     std::vector<Triangle> keys;
     keys.reserve(mesh.faces.size());
     for (const Triangle& face : mesh.faces) keys.push_back(sorted(face));
@@ -38,9 +38,20 @@ std::vector<std::uint32_t> find_duplicate_faces(const TriangleMesh& mesh) {
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
         return keys[a] != keys[b] ? keys[a] < keys[b] : a < b;
     });
+    std::vector<std::vector<std::uint32_t>> groups;
+    for (std::size_t i = 1; i < order.size(); ++i) {
+        if (keys[order[i]] != keys[order[i - 1]]) continue;
+        const bool is_second = i == 1 || keys[order[i]] != keys[order[i - 2]];
+        if (is_second) groups.push_back({order[i - 1]});
+        groups.back().push_back(order[i]);
+    }
+    return groups;
+}
+
+std::vector<std::uint32_t> find_duplicate_faces(const TriangleMesh& mesh) {
     std::vector<std::uint32_t> duplicates;
-    for (std::size_t i = 1; i < order.size(); ++i)
-        if (keys[order[i]] == keys[order[i - 1]]) duplicates.push_back(order[i]);
+    for (const std::vector<std::uint32_t>& group : find_equal_faces(mesh))
+        duplicates.insert(duplicates.end(), group.begin() + 1, group.end());
     std::sort(duplicates.begin(), duplicates.end());
     return duplicates;
 }

@@ -15,6 +15,9 @@ bool has_equal_corners(const Triangle& face);
 /// @pre indices are in range
 double six_volumes(const TriangleMesh& mesh, const Triangle& face, const Vec3d& reference);
 
+/// The sets of two or more faces that have the same three vertices, in any order; each set ascending.
+std::vector<std::vector<std::uint32_t>> find_equal_faces(const TriangleMesh& mesh);
+
 /// The faces that have the same three vertices, in any order, as an earlier face; ascending.
 std::vector<std::uint32_t> find_duplicate_faces(const TriangleMesh& mesh);
 

@@ -1,6 +1,6 @@
 #include "mesh/doubled_patches.hpp"
-#include "mesh/faces.hpp"
 #include "mesh/inside_out.hpp"
+#include "mesh/surplus_faces.hpp"
 
 #include <echinus/mesh.hpp>
 
@@ -49,7 +49,7 @@ RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options) {
     ShrinkingMesh result(mesh);
     RepairReport report;
     if (options.drop_duplicate_faces)
-        report.duplicate_faces_dropped = result.drop(find_duplicate_faces(result.mesh()));
+        report.duplicate_faces_dropped = result.drop(find_surplus_faces(result.mesh()));
     if (options.drop_doubled_patches)
         report.doubled_patch_faces_dropped = result.drop(find_doubled_patch_faces(result.mesh()));
     if (options.flip_inside_out) report.components_flipped = flip_inside_out_components(result.mesh());

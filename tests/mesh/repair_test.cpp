@@ -19,6 +19,13 @@ void expect_unchanged(const TriangleMesh& mesh, const RepairOptions& options) {
     EXPECT_EQ(repaired.mesh.vertices, mesh.vertices);
 }
 
+/// Both outward, one above and one below the face that they share, which is there once for each: face 0
+/// and 4.
+TriangleMesh glued_tetrahedra() {
+    return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}},
+            {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 1, 2}, {0, 4, 1}, {0, 2, 4}, {1, 4, 2}}};
+}
+
 } // namespace
 
 TEST(Repair, ChangesNothingUnlessAskedTo) {
@@ -41,6 +48,44 @@ TEST(Repair, KeepsTheFirstOfDuplicateFaces) {
     const RepairedMesh repaired = repair(mesh, {.drop_duplicate_faces = true});
     EXPECT_EQ(repaired.report.duplicate_faces_dropped, (Faces{5, 13}));
     EXPECT_EQ(repaired.mesh.faces, box.faces);
+}
+
+TEST(Repair, DropsBothOfTheOppositeFacesAlongWhichSolidsAreGlued) {
+    const RepairedMesh repaired = repair(glued_tetrahedra(), {.drop_duplicate_faces = true});
+    EXPECT_TRUE(inspect(glued_tetrahedra()).closed);
+    EXPECT_EQ(repaired.report.duplicate_faces_dropped, (Faces{0, 4}));
+    EXPECT_EQ(repaired.mesh.faces.size(), 6U);
+    EXPECT_TRUE(inspect(repaired.mesh).closed);
+    EXPECT_TRUE(inspect(repaired.mesh).manifold);
+    EXPECT_NEAR(inspect(repaired.mesh).signed_volume, 1.0 / 3, 1e-15);
+}
+
+TEST(Repair, KeepsAFaceThatOverlappingSolidsShare) {
+    // Two tetrahedra on the same side of their common face: without one of its copies, one would be open.
+    TriangleMesh mesh = glued_tetrahedra();
+    mesh.vertices[4] = {0, 0, 2};
+    for (std::size_t face = 4; face < 8; ++face) std::swap(mesh.faces[face][1], mesh.faces[face][2]);
+    EXPECT_TRUE(inspect(mesh).closed);
+    expect_unchanged(mesh, {.drop_duplicate_faces = true});
+}
+
+TEST(Repair, MakesOneSolidOfTwoThatCoincide) {
+    TriangleMesh mesh = make_box({1, 1, 1});
+    const TriangleMesh box = mesh;
+    mesh.faces.insert(mesh.faces.end(), box.faces.begin(), box.faces.end());
+    EXPECT_EQ(repair(mesh, {.drop_duplicate_faces = true}).mesh.faces, box.faces);
+}
+
+TEST(Repair, KeepsTheFirstOfTwoOppositeFacesWhereThatClosesTheMesh) {
+    TriangleMesh mesh = make_box({1, 1, 1});
+    const TriangleMesh box = mesh;
+    mesh.faces.push_back({box.faces[3][1], box.faces[3][0], box.faces[3][2]});
+    EXPECT_FALSE(inspect(mesh).closed);
+    EXPECT_EQ(repair(mesh, {.drop_duplicate_faces = true}).mesh.faces, box.faces);
+}
+
+TEST(Repair, LeavesAMeshOfNothingButOppositeFacesAsItIs) {
+    expect_unchanged({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}}, RepairOptions::all());
 }
 
 TEST(Repair, DropsTheLaterOfTwoPatchesThatFitEquallyWell) {
