@@ -3,6 +3,8 @@
 #include "mesh_io/byte_reader.hpp"
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 namespace echinus {
 
@@ -62,9 +64,15 @@ void require_readable_json(std::string_view json, const MeshSource& source) {
 // Chunks of 3DS (Autodesk, "3D Studio File Toolkit", chunk list): an id, the size with this head, the
 // content.
 constexpr std::uint16_t kMainChunk = 0x4D4D;
+constexpr std::uint16_t kEditor = 0x3D3D;
+constexpr std::uint16_t kObject = 0x4000; // a name that ends with a zero byte, then chunks
+constexpr std::uint16_t kMesh = 0x4100;
+constexpr std::uint16_t kVertexList = 0x4110;
+constexpr std::uint16_t kFaceList = 0x4120;
 constexpr std::uint16_t kKeyframes = 0xB000;
 constexpr std::uint16_t kObjectNode = 0xB002;
 constexpr std::size_t kChunkHeadSize = 6;
+constexpr std::size_t kFaceSize = 8; // three vertices and flags, of 16 bits each
 
 /// Calls visit(id, begin, end) for the content of each chunk in a range, as far as they are whole.
 template <typename Visit>
@@ -77,6 +85,64 @@ void for_each_chunk(const MeshSource& source, std::size_t begin, std::size_t end
         visit(id, begin + kChunkHeadSize, begin + size);
         begin += size;
     }
+}
+
+/// The lists of one mesh of a 3DS file.
+struct MeshLists {
+    std::size_t vertex_count = 0;
+    std::vector<std::size_t> face_lists; ///< offsets of the face counts
+};
+
+void require_vertices(const MeshSource& source, const std::string& mesh_name, const MeshLists& lists) {
+    std::size_t face = 0;
+    for (const std::size_t offset : lists.face_lists) {
+        ByteReader reader(source, offset, ByteOrder::LittleEndian);
+        for (std::size_t left = reader.next<std::uint16_t>(); left > 0; --left, ++face) {
+            for (int corner = 0; corner < 3; ++corner) {
+                const std::size_t vertex = reader.next<std::uint16_t>();
+                if (vertex >= lists.vertex_count)
+                    source.fail(ErrorCode::InvalidMesh,
+                                "face " + std::to_string(face) + " of the mesh " + in_quotes(mesh_name) +
+                                    " refers to vertex " + std::to_string(vertex) + ", but there are " +
+                                    std::to_string(lists.vertex_count) + " vertices, numbered from 0");
+            }
+            reader.skip(sizeof(std::uint16_t)); // flags
+        }
+    }
+}
+
+/// Faces beyond the end of their chunk are refused: many small chunks that promise many faces each would take
+/// for ever to read.
+void require_whole_face_list(const MeshSource& source, std::size_t begin, std::size_t end) {
+    const std::size_t face_count = ByteReader(source, begin, ByteOrder::LittleEndian).next<std::uint16_t>();
+    if (sizeof(std::uint16_t) + face_count * kFaceSize > end - begin)
+        source.fail(ErrorCode::Damaged, "a list of " + std::to_string(face_count) + " faces has only " +
+                                            std::to_string(end - begin) + " bytes");
+}
+
+/// Assimp joins lists of one kind, in whatever order they come.
+void require_vertices_of_mesh(const MeshSource& source, const std::string& mesh_name, std::size_t begin,
+                              std::size_t end) {
+    MeshLists lists;
+    for_each_chunk(source, begin, end, [&](std::uint16_t id, std::size_t content, std::size_t content_end) {
+        if (id == kVertexList)
+            lists.vertex_count += ByteReader(source, content, ByteOrder::LittleEndian).next<std::uint16_t>();
+        if (id != kFaceList) return;
+        require_whole_face_list(source, content, content_end);
+        lists.face_lists.push_back(content);
+    });
+    require_vertices(source, mesh_name, lists);
+}
+
+void require_vertices_of_object(const MeshSource& source, std::size_t begin, std::size_t end) {
+    const std::string_view content = source.bytes.substr(begin, end - begin);
+    const std::size_t name_length = content.find('\0');
+    if (name_length == std::string_view::npos) return;
+    const std::string name(content.substr(0, name_length));
+    for_each_chunk(source, begin + name_length + 1, end,
+                   [&](std::uint16_t id, std::size_t mesh_begin, std::size_t mesh_end) {
+                       if (id == kMesh) require_vertices_of_mesh(source, name, mesh_begin, mesh_end);
+                   });
 }
 
 } // namespace
@@ -119,6 +185,14 @@ void require_readable_3ds(const MeshSource& source) {
         });
     });
     require_moderate(node_count, kMaxParentNodes, "there are too many nodes", source);
+    for_each_chunk(source, kChunkHeadSize, length, [&](std::uint16_t id, std::size_t begin, std::size_t end) {
+        if (id != kEditor) return;
+        for_each_chunk(source, begin, end,
+                       [&](std::uint16_t inner_id, std::size_t object_begin, std::size_t object_end) {
+                           if (inner_id == kObject)
+                               require_vertices_of_object(source, object_begin, object_end);
+                       });
+    });
 }
 
 } // namespace echinus

@@ -149,6 +149,20 @@ TEST_F(ReadScene, RefusesA3dsFileWithAnEnormousTreeOfNodes) {
                    chunk(0x4D4D, chunk(0xB000, nodes)));
 }
 
+TEST_F(ReadScene, RefusesA3dsFileWithAFaceThatRefersToAMissingVertex) {
+    TriangleMesh box = make_box({1, 2, 3});
+    box.faces[5][1] = 8;
+    expect_refused(ErrorCode::InvalidMesh,
+                   "face 5 of the mesh 'box' refers to vertex 8, but there are 8 vertices, numbered from 0",
+                   "beyond.3ds", encode_3ds(box));
+}
+
+TEST_F(ReadScene, RefusesA3dsListThatPromisesMoreFacesThanItHas) {
+    const std::string object = std::string("box") + '\0' + chunk(0x4100, chunk(0x4120, "\xFF\xFF"));
+    expect_refused(ErrorCode::Damaged, "a list of 65535 faces has only 2 bytes", "short.3ds",
+                   chunk(0x4D4D, chunk(0x3D3D, chunk(0x4000, object))));
+}
+
 TEST_F(ReadScene, RefusesCompressedPositions) {
     for (const std::string extension :
          {"KHR_mesh_quantization", "KHR_draco_mesh_compression", "EXT_meshopt_compression"})
