@@ -1,6 +1,8 @@
 #include "mesh_io/scene_guards.hpp"
 
 #include "mesh_io/byte_reader.hpp"
+#include "mesh_io/gltf_indices.hpp"
+#include "mesh_io/json_view.hpp"
 
 #include <algorithm>
 #include <string>
@@ -14,17 +16,6 @@ void require_moderate(std::size_t found, std::size_t limit, const char* what, co
     if (found > limit)
         source.fail(ErrorCode::Damaged,
                     std::string(what) + ", of which at most " + std::to_string(limit) + " are read");
-}
-
-/// The offset after a string's closing quotation mark.
-std::size_t end_of_string(std::string_view json, std::size_t begin) {
-    for (std::size_t i = begin + 1; i < json.size(); ++i) {
-        if (json[i] == '\\')
-            ++i;
-        else if (json[i] == '"')
-            return i + 1;
-    }
-    return json.size();
 }
 
 /// Could this string be the key "children"? Escaped letters are not spelt out: nobody writes them there.
@@ -51,7 +42,7 @@ void require_readable_json(std::string_view json, const MeshSource& source) {
         if (c == '[' || c == '{') deepest = std::max(deepest, ++depth);
         if ((c == ']' || c == '}') && depth > 0) --depth;
         if (c != '"') continue;
-        const std::size_t end = end_of_string(json, i);
+        const std::size_t end = end_of_json_string(json, i);
         const std::string_view string = json.substr(i, end - i);
         require_plain_floats(string, source);
         if (may_be_children(string)) ++parent_count;
@@ -145,6 +136,15 @@ void require_vertices_of_object(const MeshSource& source, std::size_t begin, std
                    });
 }
 
+/// The content of the chunk after the JSON, if there is one.
+std::string_view binary_chunk(const MeshSource& source, std::size_t begin) {
+    constexpr std::size_t kHeadSize = 8; // length and type
+    ByteReader head(source, begin, ByteOrder::LittleEndian);
+    if (head.bytes_left() < kHeadSize) return {};
+    const std::size_t length = head.next<std::uint32_t>();
+    return source.bytes.substr(begin + kHeadSize, length);
+}
+
 } // namespace
 
 void require_readable_gltf(const MeshSource& source) {
@@ -152,6 +152,7 @@ void require_readable_gltf(const MeshSource& source) {
     if (first == std::string_view::npos || source.bytes[first] != '{')
         source.fail(ErrorCode::WrongFormat, "the brace with which a glTF file begins was not found");
     require_readable_json(source.bytes, source);
+    require_gltf_vertices(source, source.bytes, {});
 }
 
 void require_readable_glb(const MeshSource& source) {
@@ -166,7 +167,9 @@ void require_readable_glb(const MeshSource& source) {
     const std::size_t json_length = head.next<std::uint32_t>();
     head.skip(4);
     head.skip(json_length);
-    require_readable_json(source.bytes.substr(kJsonBegin, json_length), source);
+    const std::string_view json = source.bytes.substr(kJsonBegin, json_length);
+    require_readable_json(json, source);
+    require_gltf_vertices(source, json, binary_chunk(source, kJsonBegin + json_length));
 }
 
 void require_readable_3ds(const MeshSource& source) {

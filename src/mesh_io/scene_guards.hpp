@@ -7,7 +7,7 @@
 /// What Assimp has to be kept from. Its readers follow nested data by calling themselves and run out of stack
 /// where a file nests deeply (version 5.2.5: from some 10 000 nodes in a chain on); they take files that
 /// say that they are longer than they are, and compressed positions for plain ones; and they put another
-/// vertex for one that a 3DS file lacks.
+/// vertex for one that a 3DS file lacks, or drop the face in glTF.
 namespace echinus {
 
 /// Nodes that have children of their own: in the worst case they form one chain.
@@ -16,7 +16,7 @@ inline constexpr std::size_t kMaxJsonDepth = 256;
 
 /// @throws Error WrongFormat when the file does not begin like one of its kind or has compressed positions;
 /// Damaged when it is shorter than its head says, or is nested too deeply to be read; InvalidMesh when a face
-/// of a 3DS file refers to a vertex that is not there
+/// refers to a vertex that is not there
 void require_readable_gltf(const MeshSource& source);
 void require_readable_glb(const MeshSource& source);
 void require_readable_3ds(const MeshSource& source);

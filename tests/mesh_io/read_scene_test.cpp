@@ -45,6 +45,65 @@ std::string encode_3ds(const TriangleMesh& mesh) {
     return chunk(0x4D4D, chunk(0x3D3D, chunk(0x4000, object)));
 }
 
+std::string base64(const std::string& bytes) {
+    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string bits;
+    for (const char byte : bytes)
+        for (int bit = 7; bit >= 0; --bit) bits += (byte >> bit & 1) != 0 ? '1' : '0';
+    bits.resize((bits.size() + 5) / 6 * 6, '0');
+    std::string text;
+    for (std::size_t i = 0; i < bits.size(); i += 6)
+        text += kDigits[std::stoul(bits.substr(i, 6), nullptr, 2)];
+    return text + std::string((4 - text.size() % 4) % 4, '=');
+}
+
+/// A glTF file of one tetrahedron, in the three ways in which a file can hold its numbers.
+struct SmallGltf {
+    std::string json(const std::string& uri) const {
+        const std::string size = std::to_string(binary.size());
+        return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+               R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],"accessors":[)"
+               R"({"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},)"
+               R"({"bufferView":1,"byteOffset":4,"componentType":)" +
+               component_type + R"(,"count":12,"type":"SCALAR"}],"bufferViews":[)" +
+               R"({"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":)" +
+               std::to_string(binary.size() - 48) + R"(}],"buffers":[{)" + uri + R"("byteLength":)" + size +
+               "}]}";
+    }
+    std::string embedded() const {
+        return json(R"("uri":"data:application/octet-stream;base64,)" + base64(binary) + "\",");
+    }
+    std::string glb() const {
+        std::string text = json("");
+        text.resize((text.size() + 3) / 4 * 4, ' ');
+        const auto size_of = [](const std::string& s) {
+            return bytes_of(static_cast<std::uint32_t>(s.size()));
+        };
+        const std::string chunks =
+            size_of(text) + "JSON" + text + size_of(binary) + std::string("BIN\0", 4) + binary;
+        return "glTF" + bytes_of(std::uint32_t{2}) +
+               bytes_of(static_cast<std::uint32_t>(chunks.size() + 12)) + chunks;
+    }
+
+    std::string component_type;
+    std::string binary;
+};
+
+template <typename Index>
+SmallGltf small_gltf(const std::string& component_type, Index last_corner) {
+    std::string binary;
+    for (const Vec3f& p : {Vec3f(0, 0, 0), Vec3f(1, 0, 0), Vec3f(0, 1, 0), Vec3f(0, 0, 1)})
+        binary += bytes_of(p);
+    binary += "skip"; // the accessor's own offset
+    for (const int vertex : {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2}) binary += bytes_of(static_cast<Index>(vertex));
+    return {component_type, binary + bytes_of(last_corner)};
+}
+
+std::vector<SmallGltf> small_gltfs(std::uint8_t last_corner) {
+    return {small_gltf<std::uint8_t>("5121", last_corner), small_gltf<std::uint16_t>("5123", last_corner),
+            small_gltf<std::uint32_t>("5125", last_corner)};
+}
+
 class ReadScene : public TemporaryFolderTest {
   protected:
     std::string exported(const ExportedKind& kind) const {
@@ -161,6 +220,28 @@ TEST_F(ReadScene, RefusesA3dsListThatPromisesMoreFacesThanItHas) {
     const std::string object = std::string("box") + '\0' + chunk(0x4100, chunk(0x4120, "\xFF\xFF"));
     expect_refused(ErrorCode::Damaged, "a list of 65535 faces has only 2 bytes", "short.3ds",
                    chunk(0x4D4D, chunk(0x3D3D, chunk(0x4000, object))));
+}
+
+TEST_F(ReadScene, TakesIndicesOfEveryTypeFromEveryKindOfBuffer) {
+    for (const SmallGltf& file : small_gltfs(3)) {
+        SCOPED_TRACE(file.component_type);
+        write("beside.bin", file.binary);
+        EXPECT_TRUE(inspect(read_mesh(write("a.gltf", file.json(R"("uri":"beside.bin",)")))).closed);
+        EXPECT_TRUE(inspect(read_mesh(write("a.gltf", file.embedded()))).closed);
+        EXPECT_TRUE(inspect(read_mesh(write("a.glb", file.glb()))).closed);
+    }
+}
+
+TEST_F(ReadScene, RefusesAGltfFileWithAFaceThatRefersToAMissingVertex) {
+    const std::string words =
+        "a face of mesh 0 refers to vertex 4, but there are 4 vertices, numbered from 0";
+    for (const SmallGltf& file : small_gltfs(4)) {
+        SCOPED_TRACE(file.component_type);
+        write("beside.bin", file.binary);
+        expect_refused(ErrorCode::InvalidMesh, words, "a.gltf", file.json(R"("uri":"beside.bin",)"));
+        expect_refused(ErrorCode::InvalidMesh, words, "a.gltf", file.embedded());
+        expect_refused(ErrorCode::InvalidMesh, words, "a.glb", file.glb());
+    }
 }
 
 TEST_F(ReadScene, RefusesCompressedPositions) {
