@@ -15,8 +15,8 @@ drape() { # horse or torus; every fifth of 120 frames a second is kept, as many 
     "$echinus" simulate "scenes/$1.json" --every 5 -o "$out/$1"
 }
 
-draw_figures() { # FOLDER
-    "$echinus" render map "$out/horse.ech" models/horse.3ds --up y -o "$1/horse_map.png"
+draw_figures() { # FOLDER; after drape: the mended horse, of which the map is, lies beside its cloth
+    "$echinus" render map "$out/horse.ech" "$out/horse/collider.obj" --up y -o "$1/horse_map.png"
     "$echinus" render map "$out/torus.ech" "$out/torus.obj" -o "$1/torus_map.png"
     "$echinus" render sheet "$out/horse" -o "$1/horse_cloth.png"
     "$echinus" render sheet "$out/torus" -o "$1/torus_cloth.png"

@@ -39,16 +39,25 @@ DistanceMapOptions options_of(const BuildArguments& arguments) {
     return options;
 }
 
-/// Behind a hole a map cannot know what is inside, so that wrong answers must be asked for.
-void require_closed(const TriangleMesh& mesh, const BuildArguments& arguments) {
+/// Behind a hole a map cannot know what is inside, so that wrong answers must be asked for. What has no
+/// volume has no inside, and the correction of a mesh that is inside out would take off where it should add.
+void require_solid(const TriangleMesh& mesh, const BuildArguments& arguments) {
     const MeshReport report = inspect(mesh);
+    const std::string name = arguments.mesh.name();
+    if (report.closed && report.signed_volume == 0)
+        throw Error(ErrorCode::InvalidMesh,
+                    name + ": the mesh encloses no volume; it is flat, or so far from the origin that its "
+                           "vertices round to one place: move it to the origin");
+    if (report.closed && report.signed_volume < 0)
+        throw Error(ErrorCode::InvalidMesh, name + ": the mesh is inside out, its faces turn clockwise seen "
+                                                   "from outside; mend it with --repair");
     if (report.closed || arguments.allow_open) return;
     const std::string remedy =
         foresee_repair(mesh).closed_then
             ? "mend it with --repair"
             : "mend it elsewhere, or accept wrong answers behind its holes with --allow-open";
-    throw Error(ErrorCode::InvalidMesh, arguments.mesh.name() + ": the mesh is not closed: " +
-                                            describe_openness(report) + "; " + remedy);
+    throw Error(ErrorCode::InvalidMesh,
+                name + ": the mesh is not closed: " + describe_openness(report) + "; " + remedy);
 }
 
 struct BuiltMap {
@@ -64,10 +73,15 @@ BuiltMap build_map(TriangleMesh mesh, const BuildArguments& arguments) {
         mesh = std::move(repaired.mesh);
         repairs = std::move(repaired.report);
     }
-    require_closed(mesh, arguments);
+    require_solid(mesh, arguments);
     const auto start = std::chrono::steady_clock::now();
     DistanceMap map = DistanceMap::build(mesh, options_of(arguments));
     const std::chrono::duration<double, std::milli> duration = std::chrono::steady_clock::now() - start;
+    if (map.view().entry_count() == 0)
+        throw Error(
+            ErrorCode::InvalidMesh,
+            "no ray from the centre meets the mesh; it is too thin for so few directions, or so far from the "
+            "origin that its vertices round to a few places");
     return {std::move(map), {.build_milliseconds = duration.count()}, std::move(repairs)};
 }
 

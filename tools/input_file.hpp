@@ -43,17 +43,23 @@ class InputFile {
     bool is_copy_;
 };
 
-/// Calls `use()`. An Error that it throws about a mesh begins with the mesh's name then, also where the one
+/// Calls `use()`. An Error of this code that it throws begins with the file's name then, also where the one
 /// who found the fault saw only its data.
 template <typename Use>
-auto naming_mesh(const std::string& name, Use&& use) {
+auto naming_file(const std::string& name, echinus::ErrorCode code, Use&& use) {
     try {
         return std::forward<Use>(use)();
     } catch (const echinus::Error& error) {
         const bool is_named = std::string(error.what()).starts_with(name);
-        if (error.code() != echinus::ErrorCode::InvalidMesh || is_named) throw;
+        if (error.code() != code || is_named) throw;
         throw echinus::Error(error.code(), name + ": " + error.what());
     }
+}
+
+/// naming_file() for faults of a mesh.
+template <typename Use>
+auto naming_mesh(const std::string& name, Use&& use) {
+    return naming_file(name, echinus::ErrorCode::InvalidMesh, std::forward<Use>(use));
 }
 
 /// Where a mesh comes from, on the command line: a file, or "-" with --format.

@@ -1,5 +1,7 @@
 #include "scene_model.hpp"
 
+#include "input_file.hpp"
+
 #include <echinus/error.hpp>
 #include <echinus/mesh_io.hpp>
 
@@ -14,7 +16,10 @@ struct MeshOfModel {
     const fs::path& scene_path;
     const std::vector<fs::path>& folders;
 
-    TriangleMesh operator()(const ModelFile& file) const { return read_mesh(find_model(file, folders)); }
+    TriangleMesh operator()(const ModelFile& file) const {
+        return read_mesh(naming_file(scene_path.string(), ErrorCode::Unreadable,
+                                     [&] { return find_model(file, folders); }));
+    }
     TriangleMesh operator()(const auto& shape) const {
         try {
             return make_mesh(shape);
@@ -39,6 +44,7 @@ void require_closed(const TriangleMesh& mesh, const fs::path& scene_path) {
 } // namespace
 
 RepairedMesh load_model(const Scene& scene, const fs::path& scene_path, std::vector<fs::path> folders) {
+    folders.push_back(scene_path.parent_path().empty() ? "." : scene_path.parent_path());
     folders.push_back(scene_path.parent_path() / ".." / "models");
     folders.emplace_back("models");
     RepairedMesh model = repair(std::visit(MeshOfModel{scene_path, folders}, scene.model), scene.repair);

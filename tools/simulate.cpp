@@ -1,4 +1,5 @@
 #include "command.hpp"
+#include "input_file.hpp"
 #include "output.hpp"
 #include "output_folder.hpp"
 #include "point_cache.hpp"
@@ -100,7 +101,9 @@ void simulate(const SimulateArguments& arguments) {
     write_mesh(folder.path_of("collider.obj"), scaled(model.mesh, scene.scale));
 
     Samples samples(folder, cloth, arguments);
-    std::vector<SavedPose> poses = run(simulation, samples, scene.frame_limit, arguments.frames_per_sample);
+    std::vector<SavedPose> poses = naming_file(arguments.scene.string(), ErrorCode::Diverged, [&] {
+        return run(simulation, samples, scene.frame_limit, arguments.frames_per_sample);
+    });
     samples.commit();
 
     const Collider& collider = simulation.colliders().front();
@@ -132,8 +135,9 @@ void add_options(CLI::App& command, SimulateArguments& arguments) {
         ->required()
         ->type_name("DIR");
     command
-        .add_option("--models", arguments.model_folders,
-                    "Folder to look for the scene's model in, before ../models beside the scene and models")
+        .add_option(
+            "--models", arguments.model_folders,
+            "Folder to look for the scene's model in, before the scene's own, ../models beside it and models")
         ->type_name("DIR");
     command.add_option("--frames", arguments.frame_limit, "Frame limit in place of the scene's")
         ->check(CLI::Range(1U, 1'000'000'000U))

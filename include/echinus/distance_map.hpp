@@ -98,8 +98,12 @@ class DistanceMap {
   public:
     /// Builds the map on all cores; same mesh and options, same bytes, whatever the number of threads.
     /// Time O(faces + crossings + directions).
-    /// @throws Error InvalidMesh as inspect() does, or when all vertices lie on one point; InvalidOptions
-    /// when a sample count lies outside [kMinSampleCount, kMaxSampleCount]
+    /// @param mesh  closed; behind a hole answers are wrong, and wrong_parity_share tells how many directions
+    /// see one. VertexCorrection::Signed also wants faces that are counter-clockwise seen from outside. A
+    /// solid so flat or thin that no ray meets it gives a map without entries, for which everything is
+    /// outside
+    /// @throws Error InvalidMesh as inspect() does, or when the bounding radius lies outside [1e-15, 1e15];
+    /// InvalidOptions when a sample count lies outside [kMinSampleCount, kMaxSampleCount]
     static DistanceMap build(const TriangleMesh& mesh, const DistanceMapOptions& options = {});
 
     /// Puts arrays that already exist under `storage`, which is kept alive as long as the map. Used by the

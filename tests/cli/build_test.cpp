@@ -146,3 +146,14 @@ TEST_F(BuildCommand, KeepsTheOldMapWhenItFails) {
     expect_failure(1, "not closed", small({"-o", "box.ech"}));
     EXPECT_EQ(content("box.ech"), old);
 }
+
+TEST_F(BuildCommand, RefusesWhatHasNoInsideOrIsInsideOut) {
+    TriangleMesh box = echinus::make_box({2, 3, 4});
+    for (echinus::Triangle& face : box.faces) std::swap(face[0], face[1]);
+    write("inside_out.obj", obj_text(box));
+    expect_failure(1, "inside_out.obj: the mesh is inside out", {"build", "inside_out.obj", "-o", "box.ech"});
+    expect_success({"build", "inside_out.obj", "--repair", "-o", "box.ech"});
+    for (echinus::Vec3f& vertex : box.vertices) vertex.z = 0;
+    write("flat.obj", obj_text(box));
+    expect_failure(1, "flat.obj: the mesh encloses no volume", {"build", "flat.obj", "-o", "flat.ech"});
+}
