@@ -10,6 +10,7 @@
 #include <string>
 
 using echinus::Contact;
+using echinus::Vec3f;
 
 namespace {
 
@@ -17,7 +18,8 @@ class NpyAnswers final : public AnswerWriter {
   public:
     NpyAnswers(const std::filesystem::path& target, std::uint64_t count) : output_(target) {
         output_.write(format_npy_header("[('inside', '|u1'), ('depth', '<f4'), ('normal', '<f4', (3,)), "
-                                        "('point', '<f4', (3,)), ('face', '<i4')]",
+                                        "('point', '<f4', (3,)), ('face', '<i4'), "
+                                        "('certain', '|u1')]",
                                         count));
     }
 
@@ -29,6 +31,7 @@ class NpyAnswers final : public AnswerWriter {
             append(contact.normal);
             append(contact.point);
             append(contact.face);
+            append(static_cast<std::uint8_t>(contact.certain));
         }
         output_.write(records_);
     }
@@ -51,15 +54,16 @@ class NpyAnswers final : public AnswerWriter {
 class CsvAnswers final : public AnswerWriter {
   public:
     explicit CsvAnswers(const std::filesystem::path& target) : output_(target) {
-        output_.write("inside,depth,normal_x,normal_y,normal_z,point_x,point_y,point_z,face\n");
+        output_.write("inside,depth,normal_x,normal_y,normal_z,point_x,point_y,point_z,face,certain\n");
     }
 
     void write(std::span<const Contact> contacts) override {
         lines_.clear();
         for (const Contact& contact : contacts) {
-            const auto& [point, normal, depth, face, inside] = contact;
-            fmt::format_to(std::back_inserter(lines_), "{},{},{},{},{},{},{},{},{}\n", inside ? 1 : 0, depth,
-                           normal.x, normal.y, normal.z, point.x, point.y, point.z, face);
+            const Vec3f &normal = contact.normal, &point = contact.point;
+            fmt::format_to(std::back_inserter(lines_), "{},{},{},{},{},{},{},{},{},{}\n",
+                           contact.inside ? 1 : 0, contact.depth, normal.x, normal.y, normal.z, point.x,
+                           point.y, point.z, contact.face, contact.certain ? 1 : 0);
         }
         output_.write(lines_);
     }

@@ -6,6 +6,14 @@
 
 namespace echinus {
 
+/// Which part of a triangle the nearest point lies on.
+enum class Feature : std::uint8_t {
+    Unknown, ///< no contact, or a distance map's: it does not know its mesh
+    Face,
+    Edge,
+    Vertex,
+};
+
 /// What a query answers for one particle: inside?, how deep, which way out. The same for every kind of map.
 ///
 /// The push-out moves the particle to `point`. A particle that is outside and farther than the margin, or not
@@ -19,6 +27,10 @@ struct Contact {
                    ///< contact
     std::int32_t face = kUnknownFace; ///< the face of the mesh that `point` lies on, where the map knows it
     bool inside = false;
+    /// False where the mesh is open and `inside` was decided by the generalised winding number
+    /// (exact_map.hpp). A distance map never marks its answers.
+    bool certain = true;
+    Feature feature = Feature::Unknown; ///< what of the face is nearest
 
     /// Inside, or outside within the margin.
     bool found() const { return inside || normal != Vec3f{}; }

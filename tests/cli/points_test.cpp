@@ -239,9 +239,9 @@ TEST_F(Points, GetAnswersAsPackedRecords) {
     Input input(target);
     const NpyHeader header = read_npy_header(input);
     EXPECT_EQ(header.descr, "[('inside', '|u1'), ('depth', '<f4'), ('normal', '<f4', (3,)), "
-                            "('point', '<f4', (3,)), ('face', '<i4')]");
+                            "('point', '<f4', (3,)), ('face', '<i4'), ('certain', '|u1')]");
     EXPECT_EQ(header.shape, std::vector<std::uint64_t>{2});
-    constexpr std::size_t kRecordSize = 33;
+    constexpr std::size_t kRecordSize = 34;
     EXPECT_EQ((fs::file_size(target) - 2 * kRecordSize) % 64, 0u);
     for (const Contact& contact : contacts) {
         char record[kRecordSize];
@@ -255,6 +255,7 @@ TEST_F(Points, GetAnswersAsPackedRecords) {
         std::int32_t face = 0;
         std::memcpy(&face, record + 29, sizeof face);
         EXPECT_EQ(face, contact.face);
+        EXPECT_EQ(record[33] != 0, contact.certain);
     }
     EXPECT_TRUE(input.at_end());
 }
@@ -268,6 +269,6 @@ TEST_F(Points, GetAnswersAsText) {
     std::string names, values;
     std::getline(file, names);
     std::getline(file, values);
-    EXPECT_EQ(names, "inside,depth,normal_x,normal_y,normal_z,point_x,point_y,point_z,face");
-    EXPECT_EQ(values, "1,0.5,0,0,1,1,2,0.1,7");
+    EXPECT_EQ(names, "inside,depth,normal_x,normal_y,normal_z,point_x,point_y,point_z,face,certain");
+    EXPECT_EQ(values, "1,0.5,0,0,1,1,2,0.1,7,1");
 }

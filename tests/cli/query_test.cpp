@@ -48,6 +48,7 @@ std::string records(const std::vector<Contact>& contacts) {
         append(bytes, contact.normal);
         append(bytes, contact.point);
         append(bytes, contact.face);
+        bytes += contact.certain ? '\1' : '\0';
     }
     return bytes;
 }
@@ -95,7 +96,7 @@ TEST_F(QueryCommand, KnowsThePointsOfABox) {
     std::string line;
     std::string inside;
     std::getline(lines, line);
-    EXPECT_EQ(line, "inside,depth,normal_x,normal_y,normal_z,point_x,point_y,point_z,face");
+    EXPECT_EQ(line, "inside,depth,normal_x,normal_y,normal_z,point_x,point_y,point_z,face,certain");
     while (std::getline(lines, line)) inside += line[0];
     EXPECT_EQ(inside, "11001");
 }
@@ -129,9 +130,9 @@ TEST_F(QueryCommand, AnswersNoPointsWithNoAnswers) {
 
 TEST_F(QueryCommand, AnswersPointsThatAreNoNumbers) {
     EXPECT_EQ(expect_success({"query", "box.ech", "-", "-o", "-"}, "nan,0,0\n0,inf,0\n"),
-              "inside,depth,normal_x,normal_y,normal_z,point_x,point_y,point_z,face\n"
-              "0,0,0,0,0,nan,0,0,-1\n"
-              "0,0,0,0,0,0,inf,0,-1\n");
+              "inside,depth,normal_x,normal_y,normal_z,point_x,point_y,point_z,face,certain\n"
+              "0,0,0,0,0,nan,0,0,-1,1\n"
+              "0,0,0,0,0,0,inf,0,-1,1\n");
 }
 
 TEST_F(QueryCommand, AnswersMoreThanOneBlock) {
@@ -147,13 +148,14 @@ TEST_F(QueryCommand, WritesAnswersThatNumpyReads) {
     const std::string python = python_with_numpy();
     if (python.empty()) GTEST_SKIP() << "python3-numpy is not there";
     expect_success({"query", "box.ech", "points.npy", "-o", "answers.npy"});
-    const std::string script = "import numpy as n; a = n.load('" + path("answers.npy").string() +
-                               "'); p = n.load('" + path("points.npy").string() +
-                               "'); assert a.shape == (5,) and p.shape == (5, 3); "
-                               "assert a.dtype.names == ('inside', 'depth', 'normal', 'point', 'face'); "
-                               "assert a['inside'].tolist() == [1, 1, 0, 0, 1]; "
-                               "assert a['normal'].shape == (5, 3) and a['point'].dtype == n.float32; "
-                               "assert (a['face'] == -1).all() and (a['point'][3] == p[3]).all()";
+    const std::string script =
+        "import numpy as n; a = n.load('" + path("answers.npy").string() + "'); p = n.load('" +
+        path("points.npy").string() +
+        "'); assert a.shape == (5,) and p.shape == (5, 3); "
+        "assert a.dtype.names == ('inside', 'depth', 'normal', 'point', 'face', 'certain'); "
+        "assert a['inside'].tolist() == [1, 1, 0, 0, 1]; "
+        "assert a['normal'].shape == (5, 3) and a['point'].dtype == n.float32; "
+        "assert (a['face'] == -1).all() and (a['point'][3] == p[3]).all()";
     EXPECT_EQ(std::system((python + " -c \"" + script + "\"").c_str()), 0);
 }
 
