@@ -37,7 +37,7 @@ struct LatticeDirections {
 class RayCaster {
   public:
     RayCaster(const LatticeMesh& lattice, const SphericalGrid& grid)
-        : lattice_(lattice), grid_(grid), directions_(grid, lattice.step) {}
+        : lattice_(lattice), grid_(grid), directions_(grid, lattice.frame.step) {}
 
     /// Appends the crossings of all rays with one face.
     void cast_at(const Triangle& face, std::vector<Crossing>& crossings) const {

@@ -65,7 +65,7 @@ LatticeMesh snap_around(const TriangleMesh& mesh, const std::vector<bool>& used,
     LatticeMesh lattice;
     lattice.centre = centre;
     lattice.radius = radius;
-    lattice.step = static_cast<double>(radius) / static_cast<double>(kLatticeExtent);
+    lattice.frame = LatticeFrame(centre, radius);
     lattice.vertices.resize(mesh.vertices.size());
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
         if (used[i]) lattice.vertices[i] = lattice.snap(mesh.vertices[i]);
@@ -86,19 +86,14 @@ double centre_step(const LatticeMesh& lattice) {
     const Vec3f& c = lattice.centre;
     const float largest = std::max({std::fabs(c.x), std::fabs(c.y), std::fabs(c.z)});
     const float spacing = std::nextafter(largest, std::numeric_limits<float>::infinity()) - largest;
-    return std::max(lattice.step, static_cast<double>(spacing));
+    return std::max(lattice.frame.step, static_cast<double>(spacing));
 }
 
 } // namespace
 
 LatticePoint lattice_direction(const Vec3d& unit) {
     const Vec3d d = unit * static_cast<double>(kLatticeExtent);
-    return {std::llround(d.x), std::llround(d.y), std::llround(d.z)};
-}
-
-LatticePoint LatticeMesh::snap(const Vec3f& point_local) const {
-    const Vec3d d = Vec3d(point_local) - Vec3d(centre);
-    return {std::llround(d.x / step), std::llround(d.y / step), std::llround(d.z / step)};
+    return rounded(d);
 }
 
 LatticeMesh snap_to_lattice(const TriangleMesh& mesh) {

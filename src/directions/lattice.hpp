@@ -3,6 +3,7 @@
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -15,21 +16,43 @@ using LatticePoint = Vec3<std::int64_t>;
 /// decides every sign.
 inline constexpr std::int64_t kLatticeExtent = std::int64_t{1} << 19;
 
+/// Where a lattice lies: mesh and particles are snapped by the same sums, so that a particle on a vertex
+/// stays on it.
+struct LatticeFrame {
+    Vec3d centre;    ///< C, local; the lattice's origin
+    double step = 0; ///< length of one lattice step, R / kLatticeExtent
+    double inverse_step = 0;
+
+    LatticeFrame() = default;
+    LatticeFrame(const Vec3f& centre_, float radius)
+        : centre(centre_), step(static_cast<double>(radius) / static_cast<double>(kLatticeExtent)),
+          inverse_step(1 / step) {}
+
+    /// In lattice steps, not rounded.
+    Vec3d to_lattice(const Vec3f& point_local) const { return (Vec3d(point_local) - centre) * inverse_step; }
+    Vec3d to_local(const Vec3d& place) const { return centre + place * step; }
+};
+
+/// The nearest lattice point. @pre components within 2^62
+inline LatticePoint rounded(const Vec3d& place) {
+    return {std::lrint(place.x), std::lrint(place.y), std::lrint(place.z)};
+}
+
 /// A unit vector scaled to the lattice's extent and snapped: what rays are cast along.
 LatticePoint lattice_direction(const Vec3d& unit);
 
 /// A mesh on the integer lattice around its centre: what all exact predicates work on.
 struct LatticeMesh {
-    Vec3f centre;                       ///< C, local; the lattice's origin
-    float radius = 0;                   ///< R: every vertex lies within R of C, before snapping
-    double step = 0;                    ///< length of one lattice step, R / kLatticeExtent
+    Vec3f centre;     ///< C, local; the lattice's origin
+    float radius = 0; ///< R: every vertex lies within R of C, before snapping
+    LatticeFrame frame;
     std::vector<LatticePoint> vertices; ///< [vertex_count] as in the mesh
     /// Faces whose three corners are different lattice points, and their numbers in the mesh. What was
     /// dropped had no area on the lattice, and a closed surface stays closed without it.
     std::vector<Triangle> faces;
     std::vector<std::uint32_t> face_numbers;
 
-    LatticePoint snap(const Vec3f& point_local) const;
+    LatticePoint snap(const Vec3f& point_local) const { return rounded(frame.to_lattice(point_local)); }
 };
 
 /// Snaps a mesh around the centre of its bounding sphere. Where that centre lies on a face or on the line of

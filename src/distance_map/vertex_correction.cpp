@@ -43,7 +43,7 @@ class Corrector {
   public:
     Corrector(VertexCorrection correction, const LatticeMesh& lattice, const SphericalGrid& grid,
               bool centre_inside, const Crossings& crossings)
-        : correction_(correction), step_(lattice.step), grid_(grid), centre_inside_(centre_inside),
+        : correction_(correction), step_(lattice.frame.step), grid_(grid), centre_inside_(centre_inside),
           map_(as_map(lattice, grid, centre_inside, crossings)), shifts_(crossings.distances.size()) {}
 
     void consider(const LatticePoint& vertex, const VertexLayer& layer) {

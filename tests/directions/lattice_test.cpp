@@ -31,9 +31,9 @@ TEST(Lattice, SnapsEveryVertexToWithinHalfAStep) {
     const TriangleMesh mesh = make_torus(3, 1.1, 40, 20);
     const LatticeMesh lattice = snap_to_lattice(mesh);
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-        const Vec3d back = Vec3d(lattice.centre) + Vec3d(lattice.vertices[i]) * lattice.step;
+        const Vec3d back = Vec3d(lattice.centre) + Vec3d(lattice.vertices[i]) * lattice.frame.step;
         const Vec3d error = back - Vec3d(mesh.vertices[i]);
-        for (double e : {error.x, error.y, error.z}) EXPECT_LE(std::abs(e), 0.5000001 * lattice.step);
+        for (double e : {error.x, error.y, error.z}) EXPECT_LE(std::abs(e), 0.5000001 * lattice.frame.step);
         EXPECT_LE(length(Vec3d(lattice.vertices[i])), static_cast<double>(kLatticeExtent) + 1);
     }
 }

@@ -31,7 +31,7 @@ RayCounts for_each_ray(const LatticeMesh& lattice, const SphericalGrid& grid, Ch
     for (const Vec3d& unit : grid.directions()) {
         const Vec3d d(lattice_direction(unit));
         const test::ExactCrossings exact = caster.cast(d);
-        check(direction++, exact, length(d) * lattice.step);
+        check(direction++, exact, length(d) * lattice.frame.step);
         ++counts.all;
         counts.degenerate += !exact.generic;
     }

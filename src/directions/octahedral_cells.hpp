@@ -1,0 +1,89 @@
+#pragma once
+
+#include "directions/lattice.hpp"
+
+#include <cstdint>
+#include <cstdlib>
+
+namespace echinus {
+
+/// |x| + |y| + |z|, the radial coordinate of octahedral maps. Along it and in an octant, faces stay flat.
+inline std::int64_t l1_norm(const LatticePoint& p) {
+    return std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
+}
+
+/// Directions on the octahedron |x| + |y| + |z| = 1, each of its eight sides cut into n^2 triangles by the
+/// planes through the origin where n |x| / (|x| + |y| + |z|), and the same of y and z, is a whole number.
+///
+/// Square (i, j) of side 1/n holds the triangle *up*, below its diagonal, and but for the last of each row
+/// the triangle *down*, above it. Cells are numbered by octant, then i, then j, then up before down. A cell
+/// is cut into 16 *parts* in the same way, a quarter as wide, numbered in the same order; those of a *down*
+/// cell seen as if it were turned by half a turn.
+class OctahedralCells {
+  public:
+    static constexpr std::int32_t kPartsPerSide = 4;
+    static constexpr std::int32_t kPartCount = kPartsPerSide * kPartsPerSide;
+
+    explicit OctahedralCells(std::uint32_t divisions) : n_(static_cast<std::int32_t>(divisions)) {}
+
+    std::int32_t divisions() const { return n_; }
+    std::size_t count() const {
+        return std::size_t{8} * static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_);
+    }
+
+    /// Bit 0, 1, 2 set where x, y, z is negative.
+    static std::uint32_t octant_of(const LatticePoint& p) {
+        return (p.x < 0 ? 1U : 0U) | (p.y < 0 ? 2U : 0U) | (p.z < 0 ? 4U : 0U);
+    }
+
+    /// The number of triangle (i, j, down) in a larger triangle cut into n^2.
+    static constexpr std::uint32_t index_in_triangle(std::int32_t n, std::int32_t i, std::int32_t j,
+                                                     bool down) {
+        return static_cast<std::uint32_t>(i * (2 * n - i) + 2 * j + (down ? 1 : 0));
+    }
+
+    std::uint32_t index(std::uint32_t octant, std::int32_t i, std::int32_t j, bool down) const {
+        return octant * static_cast<std::uint32_t>(n_ * n_) + index_in_triangle(n_, i, j, down);
+    }
+
+    struct Place {
+        std::uint32_t cell, part;
+    };
+
+    /// Where a direction lies; for one on a wall, in one of those that share it. Decided as integers would
+    /// decide it: quotients of integers below 2^30 by integers below 2^21 differ from the next whole number
+    /// by 2^-21 or not at all, and what is computed below is off by far less than the 2^-30 that is added.
+    /// @param p  components within kLatticeExtent; the origin stands for (e, e^2, e^3), as everywhere
+    Place locate(const LatticePoint& p) const {
+        constexpr double kNudge = 0x1p-30;
+        const std::int32_t fine_n = kPartsPerSide * n_;
+        const std::int64_t sum = l1_norm(p);
+        const double parts_per_step = fine_n / static_cast<double>(sum);
+        const double along_x =
+            sum > 0 ? static_cast<double>(std::abs(p.x)) * parts_per_step + kNudge : fine_n;
+        const double along_y = sum > 0 ? static_cast<double>(std::abs(p.y)) * parts_per_step + kNudge : 0;
+        auto i = static_cast<std::int32_t>(along_x);
+        auto j = static_cast<std::int32_t>(along_y);
+        std::int32_t down = along_x + along_y - (i + j) > 1 + 4 * kNudge ? 1 : 0;
+        if (i + j == fine_n) { // a corner of the grid on the octant's edge; step back into what touches it
+            if (i > 0)
+                --i;
+            else
+                --j;
+        }
+        std::int32_t part_i = i % kPartsPerSide, part_j = j % kPartsPerSide;
+        const bool cell_down = part_i + part_j + down >= kPartsPerSide;
+        if (cell_down) {
+            part_i = kPartsPerSide - 1 - part_i;
+            part_j = kPartsPerSide - 1 - part_j;
+            down = 1 - down;
+        }
+        return {index(octant_of(p), i / kPartsPerSide, j / kPartsPerSide, cell_down),
+                index_in_triangle(kPartsPerSide, part_i, part_j, down != 0)};
+    }
+
+  private:
+    std::int32_t n_;
+};
+
+} // namespace echinus
