@@ -8,6 +8,7 @@
 #include <echinus/directions.hpp>
 #include <echinus/distance_map.hpp>
 #include <echinus/error.hpp>
+#include <echinus/exact_map.hpp>
 #include <echinus/geometry.hpp>
 #include <echinus/map_file.hpp>
 #include <echinus/mesh.hpp>

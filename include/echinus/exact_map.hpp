@@ -1,0 +1,239 @@
+#pragma once
+
+#include <echinus/contact.hpp>
+#include <echinus/geometry.hpp>
+#include <echinus/mesh.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+
+/// The map that is always right. Directions around the centre are divided into cells; for each cell the
+/// radial intervals in which surface lies, its *bands*, are stored, rounded outwards, with the faces that
+/// pass through. Between bands there is no surface, so a comparison answers; in a band the band's faces are
+/// tested with exact arithmetic. The number of cells trades memory for speed and never touches an answer.
+///
+/// "Exact" is meant on the map's integer lattice, whose step is 1.9e-6 of the bounding radius: mesh and
+/// particle are snapped to it, and from there on no sign is rounded (docs/accuracy.md).
+///
+/// All points are in the frame and unit of the mesh that the map was built from ("local").
+namespace echinus {
+
+/// Which places are inside, told by the winding number of the surface around them. The rules differ only
+/// where parts of the surface overlap, are nested, inverted or doubled.
+enum class InsideRule : std::uint8_t {
+    Nonzero, ///< the union of all parts, whichever way they are turned
+    Parity,  ///< an odd winding number: a part within a part is a hole
+};
+
+/// Where the rays start. Any centre gives the same answers; one that sees little of the surface edge-on gives
+/// shorter lists of faces.
+enum class CentreChoice : std::uint8_t {
+    BoundingSphere, ///< the centre of the smallest enclosing sphere: the finest lattice
+    /// The place that promises the fewest face tests per query, by a search that costs some twenty coarse
+    /// builds. Its lattice is coarser, by the growth of the radius.
+    Search,
+};
+
+struct ExactMapOptions {
+    static constexpr std::uint32_t kMaxDivisions = 512;
+
+    /// Each octant of directions is cut into divisions^2 cells. More cells: shorter bands and lists, faster
+    /// answers near the surface, more bytes. 0 chooses by the number of faces.
+    std::uint32_t divisions = 0;
+    /// With divisions = 0: the most cells that keep ExactMapView::byte_count() within this. 0: no budget.
+    std::size_t byte_budget = 0;
+    InsideRule rule = InsideRule::Nonzero;
+    CentreChoice centre = CentreChoice::BoundingSphere;
+    unsigned thread_count = 0; ///< 0: all cores. The bytes of the map do not depend on it.
+};
+
+/// What the build saw. Stored with the map.
+struct ExactMapStatistics {
+    std::uint32_t face_count = 0; ///< of the mesh
+    std::uint32_t dropped_faces =
+        0;                          ///< with two corners on one point of the lattice; they have no area there
+    std::uint32_t longest_list = 0; ///< most faces of one band
+    float mean_list = 0;            ///< faces of a band, mean over all bands
+    /// Faces that a query in a band tests, expected for a particle on the surface: the mean over bands, each
+    /// weighed by its number of faces.
+    float expected_tests = 0;
+    /// Share of the bounding sphere's volume where the answer is certain; 1 when the mesh is closed.
+    float certain_share = 1;
+    /// Share of directions, by solid angle, that hold a place where it is not.
+    float uncertain_directions = 0;
+};
+
+/// Indices that are stored in 16 bits where they fit. At most one of the two spans is used.
+struct IndexArray {
+    std::span<const std::uint16_t> narrow;
+    std::span<const std::uint32_t> wide;
+
+    std::size_t size() const { return narrow.size() + wide.size(); }
+    std::size_t size_bytes() const { return narrow.size_bytes() + wide.size_bytes(); }
+    std::uint32_t operator[](std::size_t i) const { return wide.empty() ? narrow[i] : wide[i]; }
+};
+
+/// A radial interval of one cell in which surface lies, [lower, upper) in units of ExactMapView::kBandUnit
+/// lattice steps of the L1 norm |x| + |y| + |z|.
+struct Band {
+    std::uint16_t lower, upper;
+    std::uint32_t first_reference; ///< its faces: references[first_reference] up to the next band's first
+};
+static_assert(sizeof(Band) == 8);
+
+/// Boxes around the faces of up to eight subtrees: a node of a tree that is eight wide, so that all eight
+/// boxes are compared at once.
+struct TreeNode {
+    static constexpr std::size_t kWidth = 8;
+    static constexpr std::uint32_t kLeaf = 0x8000'0000;
+
+    /// Corners in units of ExactMapView::kBoxUnit lattice steps, rounded outwards. A child that does not
+    /// exist has low > high.
+    std::int16_t low[3][kWidth], high[3][kWidth];
+    /// A node, or kLeaf + a group of up to kWidth faces: leaf g holds the faces from kWidth g on.
+    std::uint32_t children[kWidth];
+};
+static_assert(sizeof(TreeNode) == 128);
+
+/// An edge of the surface's border: `multiplicity` more faces run from a to b than from b to a.
+struct BorderEdge {
+    std::uint32_t a, b; ///< vertices
+    std::int32_t multiplicity;
+};
+static_assert(sizeof(BorderEdge) == 12);
+
+/// A map as plain arrays, wherever they lie. Owns nothing, copies cheaply, and is what all queries take.
+/// validate() in src/map_file checks the invariants for untrusted bytes.
+struct ExactMapView {
+    static constexpr int kBandUnit = 16;
+    static constexpr int kBoxUnit = 32;
+    /// Stands for the winding number of a gap that is not constant, for want of a closed surface.
+    static constexpr std::int16_t kUncertain = std::numeric_limits<std::int16_t>::min();
+
+    Vec3f centre;     ///< C, local
+    float radius = 0; ///< R: every vertex of the mesh lies within R of C
+    std::uint32_t divisions = 0;
+    InsideRule rule = InsideRule::Nonzero;
+    std::span<const std::uint32_t> band_offsets; ///< [cell_count + 1]
+    /// [band_count + 1] by cell, then outwards; the last is a sentinel. A band without faces is possible: it
+    /// parts two gaps of an open surface.
+    std::span<const Band> bands;
+    /// [band_count] Winding number of the gap between a band and the one below it, or kUncertain. Beyond a
+    /// cell's last band it is 0.
+    std::span<const std::int16_t> winding_below;
+    IndexArray references; ///< [reference_count] faces
+    /// [reference_count] Which of the 16 parts of its cell a face touches, a bit each
+    /// (src/directions/octahedral_cells.hpp). A query looks only at the faces of its own part.
+    std::span<const std::uint16_t> reference_parts;
+    std::span<const Vec3<std::int32_t>> vertices; ///< [vertex_count] on the lattice
+    IndexArray corners;                           ///< [3 face_count] vertices of each face
+    IndexArray face_numbers;                      ///< [face_count] the mesh's number of each face
+    std::span<const TreeNode> nodes;              ///< the first is the root
+    std::span<const BorderEdge> border;           ///< empty when the surface is closed
+
+    std::size_t cell_count() const { return std::size_t{8} * divisions * divisions; }
+    std::size_t face_count() const { return face_numbers.size(); }
+    /// All that a query reads, mesh and tree included.
+    std::size_t byte_count() const {
+        return band_offsets.size_bytes() + bands.size_bytes() + winding_below.size_bytes() +
+               references.size_bytes() + reference_parts.size_bytes() + vertices.size_bytes() +
+               corners.size_bytes() + face_numbers.size_bytes() + nodes.size_bytes() + border.size_bytes();
+    }
+};
+
+/// An exact map that owns its arrays, or keeps alive the file that they lie in. Immutable but for rebuild();
+/// copies share the arrays. Any number of threads may query one map.
+class ExactMap {
+  public:
+    /// Builds the map on all cores; same mesh and options, same bytes, whatever the number of threads.
+    /// @param mesh  closed, or not: then the winding number is the generalised one (Jacobson et al. 2013),
+    ///              gaps in which it stays clear of one half are certain, and everywhere else it is
+    ///              computed for each particle, in time proportional to the border's length
+    /// @throws Error InvalidMesh as inspect() does, or when the bounding radius lies outside [1e-15, 1e15];
+    /// InvalidOptions for divisions beyond kMaxDivisions, divisions together with a budget, or a budget that
+    /// the coarsest map exceeds
+    static ExactMap build(const TriangleMesh& mesh, const ExactMapOptions& options = {});
+
+    /// Puts arrays that already exist under `storage`, which is kept alive as long as the map. Used by the
+    /// file reader.
+    /// @pre the invariants of ExactMapView hold
+    ExactMap(const ExactMapView& view, const ExactMapStatistics& statistics, std::uint64_t source_hash,
+             std::shared_ptr<const void> storage);
+
+    const ExactMapView& view() const { return view_; }
+    operator const ExactMapView&() const {
+        return view_;
+    } // NOLINT: a map may stand wherever a view is asked for
+    const ExactMapStatistics& statistics() const { return statistics_; }
+    /// Identifies the mesh and the options that the map was built from; thread_count does not enter.
+    std::uint64_t source_hash() const { return source_hash_; }
+
+  private:
+    ExactMapView view_;
+    ExactMapStatistics statistics_;
+    std::uint64_t source_hash_ = 0;
+    std::shared_ptr<const void> storage_;
+};
+
+// ---- Queries. noexcept, no allocation, any number of threads --------------------------------------------
+//
+// NaN or infinity in a point: outside, no contact. On the lattice a particle never lies on the surface: it
+// stands for itself moved by (e, e^2, e^3), with e infinitely small (docs/accuracy.md). So a particle on a
+// face is inside or outside by the way that the face is turned, and neighbouring closed parts that share a
+// face leave no gap and no overlap between them.
+
+/// An answer, and whether it is more than the generalised winding number's (see Contact::certain).
+struct Containment {
+    bool inside = false;
+    bool certain = true;
+};
+
+/// Is the particle inside?
+bool contains(const ExactMapView& map, Vec3f point_local) noexcept;
+
+/// contains(), with the mark of certainty.
+Containment classify(const ExactMapView& map, Vec3f point_local) noexcept;
+
+/// Inside?, the nearest point of the whole surface, and its distance: the global minimum, by a branch and
+/// bound search.
+///
+/// The normal is the direction from the surface point to a particle outside, or from a particle inside to the
+/// surface point. For a particle within two lattice steps of the surface, where snapping would leave this to
+/// chance, it is the angle-weighted pseudonormal of the faces that meet there (Baerentzen and Aanaes 2005).
+///
+/// @param margin   particles outside get a contact too when the surface is at most this far; not negative,
+///                 NaN counts as 0
+/// @param stretch  the world's scale along the map's axes: the distance that is least, and depth and margin,
+///                 are those of the stretched mesh; `point` stays local and `normal` is that of the stretched
+///                 mesh. Not 0; negative mirrors
+Contact contact(const ExactMapView& map, Vec3f point_local, float margin = 0,
+                const Vec3d& stretch = {1, 1, 1}) noexcept;
+
+/// contains() for many points; @pre points_local.size() == inside.size()
+void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
+                    std::span<std::uint8_t> inside) noexcept;
+
+/// contact() for many points; @pre points_local.size() == contacts.size()
+void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local, float margin,
+                    std::span<Contact> contacts, const Vec3d& stretch = {1, 1, 1}) noexcept;
+
+/// Where a particle's way first meets the surface.
+struct SweepHit {
+    float parameter = 1; ///< along the way: 0 at `from`, 1 at `to`; 1 when nothing is met
+    Vec3f point;         ///< from + parameter (to - from), local; `to` when nothing is met
+    Vec3f normal;        ///< unit normal of the face, out of the solid; 0 when nothing is met
+    std::int32_t face = Contact::kUnknownFace; ///< the mesh's number
+    bool entering = false;                     ///< from the face's front to its back
+
+    bool found() const { return face != Contact::kUnknownFace; }
+};
+
+/// The first crossing of the straight way between two points with the surface. Exact on the lattice, and of
+/// one mind with contains(): when it finds nothing, the winding number is the same at both ends. NaN or
+/// infinity in a point: nothing is met.
+SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexcept;
+
+} // namespace echinus

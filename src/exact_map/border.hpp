@@ -1,0 +1,31 @@
+#pragma once
+
+#include "directions/lattice.hpp"
+
+#include <echinus/exact_map.hpp>
+
+#include <span>
+#include <vector>
+
+/// The border of an open surface, and what it means for winding numbers.
+///
+/// Close the surface with a cone: a triangle from each border edge to the origin of the lattice. The rays
+/// from the origin see that cone edge-on and never cross it, so the signed crossings of a particle's ray
+/// beyond the particle are the winding number of the closed whole, an integer. The generalised winding number
+/// of the surface alone (Jacobson et al. 2013) is that integer less the cone's part:
+///
+///     w(p) = crossings_beyond(p) + border_part(p),  border_part = - sum of solid angles of the cone / 4 pi.
+///
+/// So it takes the border to compute, not the surface.
+namespace echinus {
+
+/// The edges along which a different number of faces runs one way than the other, ascending. Vertices on one
+/// lattice point count as one. Empty when the surface is closed.
+std::vector<BorderEdge> find_border(const LatticeMesh& lattice);
+
+/// What the border adds to the signed crossings beyond a place to make the generalised winding number. A
+/// place on the cone stands for p + (e, e^2, e^3), as everywhere.
+double border_part(std::span<const BorderEdge> border, std::span<const Vec3<std::int32_t>> vertices,
+                   const LatticePoint& p);
+
+} // namespace echinus

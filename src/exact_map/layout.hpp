@@ -1,0 +1,47 @@
+#pragma once
+
+#include "directions/lattice.hpp"
+#include "directions/octahedral_cells.hpp"
+
+#include <echinus/exact_map.hpp>
+
+#include <array>
+
+/// What build and queries share about an exact map's arrays.
+namespace echinus {
+
+/// Lattice steps of the L1 norm to the units of Band, rounded down.
+inline std::int64_t band_unit_of(std::int64_t l1) {
+    return l1 / ExactMapView::kBandUnit;
+}
+
+inline LatticeFrame frame_of(const ExactMapView& map) {
+    return {map.centre, map.radius};
+}
+
+inline std::array<LatticePoint, 3> face_corners(const ExactMapView& map, std::uint32_t face) {
+    const auto corner = [&](std::size_t k) {
+        return LatticePoint(map.vertices[map.corners[3 * std::size_t{face} + k]]);
+    };
+    return {corner(0), corner(1), corner(2)};
+}
+
+/// The bands of a cell, as numbers of ExactMapView::bands.
+struct BandRange {
+    std::uint32_t first, last; ///< half open
+};
+
+inline BandRange bands_of_cell(const ExactMapView& map, std::uint32_t cell) {
+    return {map.band_offsets[cell], map.band_offsets[cell + 1]};
+}
+
+/// Winding number of the gap beyond a band of a cell, or kUncertain.
+inline int winding_beyond(const ExactMapView& map, std::uint32_t band, const BandRange& bands) {
+    return band + 1 < bands.last ? map.winding_below[band + 1] : 0;
+}
+
+inline bool is_inside(InsideRule rule, std::int64_t winding) {
+    return rule == InsideRule::Nonzero ? winding != 0 : winding % 2 != 0;
+}
+
+} // namespace echinus

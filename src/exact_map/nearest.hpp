@@ -1,0 +1,29 @@
+#pragma once
+
+#include <echinus/exact_map.hpp>
+
+#include <cstdint>
+#include <optional>
+
+/// Nearest points of an exact map's surface. Places are in lattice steps from the centre, and distances those
+/// of space stretched along the axes (see contact()).
+namespace echinus {
+
+struct NearestPoint {
+    Vec3d point;
+    double distance = 0; ///< of the stretched
+    std::uint32_t face = 0;
+    Feature feature = Feature::Unknown;
+};
+
+/// The nearest point of the whole surface, if it is at most `farthest` away: a branch and bound search of the
+/// face tree, so that the minimum is global.
+std::optional<NearestPoint> nearest_point(const ExactMapView& map, const Vec3d& place, const Vec3d& stretch,
+                                          double farthest) noexcept;
+
+/// Unit normal of the stretched surface at a point of it: the sum of the normals of the faces within `reach`
+/// of it, each weighed by the angle that the face spans there (a full turn inside a face, half a turn on its
+/// edge). Baerentzen and Aanaes 2005.
+Vec3f pseudonormal(const ExactMapView& map, const Vec3d& point, const Vec3d& stretch, double reach) noexcept;
+
+} // namespace echinus

@@ -1,0 +1,86 @@
+#include "exact_map/cell_cover.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+using namespace echinus;
+
+namespace {
+
+class RandomLattice {
+  public:
+    explicit RandomLattice(unsigned seed) : random_(seed) {}
+    std::int64_t coordinate(std::int64_t extent) {
+        return std::uniform_int_distribution<std::int64_t>(-extent, extent)(random_);
+    }
+    LatticePoint point(std::int64_t extent) {
+        return {coordinate(extent), coordinate(extent), coordinate(extent)};
+    }
+
+  private:
+    std::mt19937_64 random_;
+};
+
+} // namespace
+
+TEST(OctahedralCells, NumberEveryCellAndPartOnce) {
+    for (std::uint32_t divisions : {1U, 2U, 3U, 7U}) {
+        const OctahedralCells cells(divisions);
+        std::set<std::uint32_t> found;
+        RandomLattice random(divisions);
+        for (int n = 0; n < 200'000; ++n) {
+            const LatticePoint p = random.point(kLatticeExtent);
+            if (p == LatticePoint{}) continue;
+            const auto [cell, part] = cells.locate(p);
+            ASSERT_LT(cell, cells.count());
+            found.insert(cell * 16 + part);
+        }
+        EXPECT_EQ(found.size(), 16 * cells.count());
+    }
+}
+
+TEST(OctahedralCells, LocateDirectionsOnWallsAxesAndCornersWithinRange) {
+    for (std::int32_t divisions : {1, 2, 4, 24, 512})
+        for (std::int64_t x = -4; x <= 4; ++x)
+            for (std::int64_t y = -4; y <= 4; ++y)
+                for (std::int64_t z = -4; z <= 4; ++z) {
+                    const OctahedralCells cells(static_cast<std::uint32_t>(divisions));
+                    for (std::int64_t scale : {1L, 1000L, 131'072L})
+                        ASSERT_LT(cells.locate({x * scale, y * scale, z * scale}).cell, cells.count());
+                }
+}
+
+// The property that exactness rests on: whatever point of a face is looked up, wherever it lies on the walls
+// of cells and parts, they were covered, and its L1 norm lies in the cover's range.
+TEST(CellCover, HoldsEveryPointOfTheFace) {
+    RandomLattice random(7);
+    for (int n = 0; n < 400; ++n) {
+        const std::int64_t extent = n % 2 == 0 ? 64 : kLatticeExtent / 16;
+        const std::int64_t scale = n % 2 == 0 ? 1024 : 1;
+        const LatticePoint middle = random.point(8 * extent);
+        std::array<LatticePoint, 3> face;
+        for (LatticePoint& corner : face) corner = (middle + random.point(extent)) * scale;
+        const OctahedralCells cells(static_cast<std::uint32_t>(1 + n % 32));
+        std::vector<CellCover> covers;
+        cover_cells(cells, face, covers);
+        for (int k = 0; k <= 16; ++k)
+            for (int l = 0; l + k <= 16; ++l) {
+                // Weights in sixteenths, so that the point lies on the lattice and on the face, edges and
+                // corners too.
+                const LatticePoint sum = face[0] * k + face[1] * l + face[2] * (16 - k - l);
+                if (sum.x % 16 != 0 || sum.y % 16 != 0 || sum.z % 16 != 0) continue;
+                const LatticePoint p{sum.x / 16, sum.y / 16, sum.z / 16};
+                if (p == LatticePoint{}) continue;
+                const auto [cell, part] = cells.locate(p);
+                const auto t = static_cast<double>(l1_norm(p));
+                const bool held = std::any_of(covers.begin(), covers.end(), [&](const CellCover& cover) {
+                    return cover.cell == cell && (cover.parts >> part & 1) != 0 &&
+                           cover.nearest <= t + 1e-3 && t <= cover.farthest + 1e-3;
+                });
+                ASSERT_TRUE(held) << "face " << n << ", cell " << cell << ", t " << t;
+            }
+    }
+}

@@ -1,0 +1,58 @@
+#include "support/random_points.hpp"
+
+#include <echinus/exact_map.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace echinus;
+
+TEST(ExactMapContact, FindsTheNearestPointOfTheWholeSurface) {
+    test::Random random(1);
+    for (const TriangleMesh& mesh :
+         {make_torus(1, 0.4, 40, 16), make_box({2, 1, 0.25}, 3), make_sphere(1, 20, 10)}) {
+        const ExactMap map = ExactMap::build(mesh);
+        const float radius = map.view().radius;
+        for (int n = 0; n < 2000; ++n) {
+            const Vec3f p = test::in_sphere(random, radius);
+            const double expected = unsigned_distance(mesh, Vec3d(p));
+            const Contact c = contact(map, p, 10 * radius);
+            ASSERT_TRUE(c.found());
+            ASSERT_EQ(c.inside, contains(map, p));
+            ASSERT_NEAR(c.depth, c.inside ? expected : -expected, 1e-5 * radius);
+            ASSERT_NEAR(length(p + c.normal * c.depth - c.point), 0, 1e-5F * radius);
+            ASSERT_NEAR(unsigned_distance(mesh, Vec3d(c.point)), 0, 1e-5 * radius);
+            ASSERT_LT(static_cast<std::size_t>(c.face), mesh.faces.size());
+        }
+    }
+}
+
+TEST(ExactMapContact, IsExactAtTheCentreOfABall) {
+    const ExactMap map = ExactMap::build(make_sphere(1, 100, 50));
+    const Contact c = contact(map, {0, 0, 0});
+    EXPECT_TRUE(c.inside);
+    EXPECT_NEAR(c.depth, unsigned_distance(make_sphere(1, 100, 50), {}), 1e-5);
+}
+
+TEST(ExactMapContact, EndsAtTheMargin) {
+    const ExactMap map = ExactMap::build(make_box({2, 2, 2}));
+    const Vec3f p{0.25F, 0.5F, 1.1F};
+    EXPECT_FALSE(contact(map, p).found());
+    EXPECT_FALSE(contact(map, p, 0.0999F).found());
+    const Contact c = contact(map, p, 0.1001F);
+    EXPECT_TRUE(c.found());
+    EXPECT_FALSE(c.inside);
+    EXPECT_NEAR(c.depth, -0.1F, 1e-5F);
+    EXPECT_EQ(contact(map, p, std::nanf("")).point, p);
+}
+
+TEST(ExactMapContact, HasThePseudonormalOnTheSurface) {
+    const ExactMap map = ExactMap::build(make_box({2, 2, 2}));
+    const auto normal = [&](const Vec3f& p) { return contact(map, p, 1e-3F).normal; };
+    const float half = std::sqrt(0.5F);
+    const float third = std::sqrt(1.0F / 3);
+    EXPECT_NEAR(length(normal({0.3F, 0.2F, 1}) - Vec3f{0, 0, 1}), 0, 1e-4F);
+    EXPECT_NEAR(length(normal({0.3F, 1, 1}) - Vec3f{0, half, half}), 0, 1e-4F);
+    EXPECT_NEAR(length(normal({1, -1, 1}) - Vec3f{third, -third, third}), 0, 1e-4F);
+}

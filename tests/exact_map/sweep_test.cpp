@@ -1,0 +1,120 @@
+#include "support/random_points.hpp"
+
+#include <echinus/exact_map.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+using namespace echinus;
+
+namespace {
+
+/// Where the way meets the plane of each face, in double: no answer is better by chance than to its rounding.
+double first_parameter(const TriangleMesh& mesh, const Vec3d& from, const Vec3d& to) {
+    double first = 2;
+    for (const Triangle& face : mesh.faces) {
+        const Vec3d a(mesh.vertices[face[0]]), b(mesh.vertices[face[1]]), c(mesh.vertices[face[2]]);
+        const Vec3d normal = cross(b - a, c - a);
+        const double start = dot(normal, from - a), end = dot(normal, to - a);
+        if ((start > 0) == (end > 0)) continue;
+        const double t = start / (start - end);
+        const Vec3d p = from + (to - from) * t;
+        const auto left_of = [&](const Vec3d& v, const Vec3d& w) {
+            return dot(cross(w - v, p - v), normal) >= 0;
+        };
+        if (left_of(a, b) && left_of(b, c) && left_of(c, a)) first = std::min(first, t);
+    }
+    return first;
+}
+
+Vec3f between(const Vec3f& from, const Vec3f& to, float t) {
+    return from + (to - from) * t;
+}
+
+} // namespace
+
+TEST(ExactMapSweep, FindsTheFirstCrossingThatAnyFaceHas) {
+    test::Random random(5);
+    for (const TriangleMesh& mesh : {make_torus(1, 0.4, 30, 12), make_box({2, 1, 0.25}, 3)}) {
+        const ExactMap map = ExactMap::build(mesh);
+        for (int n = 0; n < 5000; ++n) {
+            const Vec3f from = test::in_sphere(random, 1.5F * map.view().radius);
+            const Vec3f step = test::in_sphere(random, n % 2 == 0 ? 0.1F : 3.0F);
+            const Vec3f to = from + step;
+            const double expected = first_parameter(mesh, Vec3d(from), Vec3d(to));
+            const SweepHit hit = sweep(map, from, to);
+            const double tolerance = 1e-4 * map.view().radius / length(Vec3d(step));
+            if (hit.found() != (expected <= 1)) {
+                // Both ends of the way decide, to the lattice's resolution.
+                const double end =
+                    std::min(unsigned_distance(mesh, Vec3d(from)), unsigned_distance(mesh, Vec3d(to)));
+                ASSERT_LT(end, 1e-5 * map.view().radius);
+            } else if (hit.found() && std::fabs(hit.parameter - expected) > tolerance) {
+                // A grazed edge may be missed by a hair.
+                ASSERT_LT(unsigned_distance(
+                              mesh, Vec3d(from) + Vec3d(step) * std::min<double>(hit.parameter, expected)),
+                          1e-5 * map.view().radius);
+            }
+        }
+    }
+}
+
+TEST(ExactMapSweep, IsOfOneMindWithContainsOnVerticesEdgesAndFaces) {
+    // Corners of the grid lie on the box's vertices, edges, faces and on the lines between them.
+    const TriangleMesh mesh = make_box({2, 2, 2}, 2);
+    const ExactMap map = ExactMap::build(mesh);
+    test::Random random(6);
+    std::uniform_int_distribution<int> coordinate(-6, 6);
+    const auto grid_point = [&] {
+        return Vec3f{0.25F * static_cast<float>(coordinate(random)),
+                     0.25F * static_cast<float>(coordinate(random)),
+                     0.25F * static_cast<float>(coordinate(random))};
+    };
+    for (int n = 0; n < 50'000; ++n) {
+        const Vec3f from = grid_point(), to = grid_point();
+        const SweepHit hit = sweep(map, from, to);
+        const bool starts_inside = contains(map, from);
+        if (starts_inside != contains(map, to)) ASSERT_TRUE(hit.found());
+        if (!hit.found()) continue;
+        ASSERT_EQ(hit.entering, !starts_inside);
+        ASSERT_NEAR(unsigned_distance(mesh, Vec3d(hit.point)), 0, 1e-5);
+        for (float share : {0.1F, 0.5F, 0.9F}) {
+            const Vec3f before = between(from, to, hit.parameter * share);
+            if (unsigned_distance(mesh, Vec3d(before)) > 1e-5)
+                ASSERT_EQ(contains(map, before), starts_inside);
+        }
+    }
+}
+
+TEST(ExactMapSweep, CutsWaysThatBeginAndEndFarAway) {
+    const ExactMap map = ExactMap::build(make_box({2, 2, 2}));
+    const SweepHit hit = sweep(map, {-1e6F, 0.1F, 0.2F}, {1e6F, 0.1F, 0.2F});
+    ASSERT_TRUE(hit.found());
+    EXPECT_TRUE(hit.entering);
+    EXPECT_NEAR(hit.point.x, -1, 0.1); // float has no finer step there
+    EXPECT_NEAR(hit.parameter, 0.5F, 1e-6F);
+    EXPECT_EQ(hit.normal, (Vec3f{-1, 0, 0}));
+    EXPECT_FALSE(sweep(map, {-1e6F, 5, 0}, {1e6F, 5, 0}).found());
+}
+
+TEST(ExactMapSweep, PassesThroughTheCentre) {
+    const TriangleMesh mesh = make_torus(1, 0.4, 30, 12);
+    const ExactMap map = ExactMap::build(mesh);
+    const Vec3f c = map.view().centre;
+    const SweepHit hit = sweep(map, c, c + Vec3f{2, 0, 0});
+    ASSERT_TRUE(hit.found());
+    EXPECT_TRUE(hit.entering);
+    EXPECT_NEAR(hit.point.x, 0.6F, 0.02F);
+    EXPECT_TRUE(sweep(map, c - Vec3f{2, 0, 0}, c + Vec3f{2, 0, 0}).found());
+    EXPECT_FALSE(sweep(map, c - Vec3f{0, 0, 2}, c + Vec3f{0, 0, 2}).found());
+}
+
+TEST(ExactMapSweep, MeetsNothingFromNowhere) {
+    const ExactMap map = ExactMap::build(make_box({2, 2, 2}));
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_FALSE(sweep(map, {nan, 0, 0}, {0, 0, 0}).found());
+    EXPECT_FALSE(sweep(map, {0, 0, 0}, {0, std::numeric_limits<float>::infinity(), 0}).found());
+    EXPECT_FALSE(sweep(map, {0, 0, 0}, {0, 0, 0}).found());
+}
