@@ -3,6 +3,7 @@
 /// All of echinus::core. The mesh readers (mesh_io.hpp), scenes (scene.hpp) and pictures (render.hpp) are
 /// libraries of their own, with headers of their own.
 
+#include <echinus/any_map.hpp>
 #include <echinus/collider.hpp>
 #include <echinus/contact.hpp>
 #include <echinus/directions.hpp>
