@@ -10,19 +10,20 @@
 
 namespace echinus {
 
-/// The part of a face that lies in a cell's cone, as a range of the L1 norm in lattice steps.
+/// Where a face passes through a cell's cone.
 struct CellCover {
     std::uint32_t cell;
-    std::uint16_t parts; ///< that the face touches, a bit each; of an edge-on face all
-    double nearest, farthest;
+    std::uint16_t parts;      ///< of the cell that the face touches, a bit each
+    double nearest, farthest; ///< range of the L1 norm, in lattice steps
 };
 
-/// Appends every cell whose closed cone the face touches. Cells are widened by far more than the rounding of
-/// this code, so that none is missed; a cell too many costs a reference and no answer.
+/// Appends every cell whose closed cone the face touches. Cells, parts and ranges are wider than the face by
+/// far more than this code rounds, so that none is missed; one too many costs a reference and no answer.
 ///
-/// The face is clipped in space against the planes through the origin that bound octant, row, square and
-/// triangle. On what is left, a flat polygon in one octant, the L1 norm is linear, so its extremes are at the
-/// corners.
+/// The face is cut at the octants' walls. In an octant its directions are a convex polygon of the plane
+/// x + y + z = 1, and a cell or part is touched unless a side of it or of the polygon lies between them (the
+/// separating axis theorem). Over that plane the reciprocal of the L1 norm is an affine function, so its
+/// extremes lie at the corners of the parts touched.
 void cover_cells(const OctahedralCells& cells, const std::array<LatticePoint, 3>& face,
                  std::vector<CellCover>& covers);
 
