@@ -2,6 +2,8 @@
 
 #include "directions/lattice.hpp"
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 
@@ -46,6 +48,44 @@ class OctahedralCells {
         return octant * static_cast<std::uint32_t>(n_ * n_) + index_in_triangle(n_, i, j, down);
     }
 
+    /// A cell by its numbers.
+    struct Triangle {
+        std::uint32_t octant;
+        std::int32_t i, j;
+        bool down;
+    };
+
+    Triangle triangle(std::uint32_t cell) const {
+        const auto cells_per_octant = static_cast<std::uint32_t>(n_ * n_);
+        const std::uint32_t in_octant = cell % cells_per_octant;
+        // The rows before row i hold i (2n - i) cells, so in_octant < n^2 - (n - i)^2 for all rows after it.
+        const auto i = n_ - static_cast<std::int32_t>(std::ceil(std::sqrt(double(cells_per_octant - in_octant))));
+        const auto in_row = static_cast<std::int32_t>(in_octant) - i * (2 * n_ - i);
+        return {cell / cells_per_octant, i, in_row / 2, in_row % 2 != 0};
+    }
+
+    /// The part that holds a cell's middle.
+    static constexpr std::uint32_t middle_part() { return index_in_triangle(kPartsPerSide, 1, 1, false); }
+
+    /// The direction of a cell's middle, on no wall. @pre the cell exists
+    LatticePoint middle(std::uint32_t cell) const {
+        const auto [octant, i, j, down] = triangle(cell);
+        const std::int64_t third = down ? 2 : 1;
+        const std::int64_t k = n_ - third - i - j;
+        const std::int64_t scale = kLatticeExtent / (3 * n_);
+        return mirrored(octant, LatticePoint{3 * i + third, 3 * j + third, 3 * k + third} * scale);
+    }
+
+    /// A cell's corners on the octahedron.
+    std::array<Vec3d, 3> corners(std::uint32_t cell) const {
+        const auto [octant, i, j, down] = triangle(cell);
+        const auto corner = [&, octant = octant](std::int32_t x, std::int32_t y) {
+            return mirrored(octant, Vec3d{double(x), double(y), double(n_ - x - y)} * (1.0 / n_));
+        };
+        if (down) return {corner(i + 1, j), corner(i, j + 1), corner(i + 1, j + 1)};
+        return {corner(i, j), corner(i + 1, j), corner(i, j + 1)};
+    }
+
     struct Place {
         std::uint32_t cell, part;
     };
@@ -83,6 +123,11 @@ class OctahedralCells {
     }
 
   private:
+    template <typename T>
+    static Vec3<T> mirrored(std::uint32_t octant, const Vec3<T>& v) {
+        return {octant & 1U ? -v.x : v.x, octant & 2U ? -v.y : v.y, octant & 4U ? -v.z : v.z};
+    }
+
     std::int32_t n_;
 };
 

@@ -2,6 +2,7 @@
 
 #include "directions/crossing.hpp"
 #include "exact_map/cell_cover.hpp"
+#include "exact_map/gap_states.hpp"
 #include "exact_map/layout.hpp"
 #include "geometry/parallel.hpp"
 
@@ -10,6 +11,9 @@
 #include <algorithm>
 #include <limits>
 #include <mutex>
+#include <numeric>
+#include <optional>
+#include <string>
 #include <tuple>
 
 namespace echinus {
@@ -27,14 +31,13 @@ struct Interval {
     }
 };
 
-struct CellInterval {
-    std::uint32_t cell;
-    Interval interval;
-};
-
 struct CellIntervals {
     std::vector<std::uint32_t> offsets; ///< [cell_count + 1]
     std::vector<Interval> intervals;    ///< by cell, ascending
+
+    std::span<const Interval> of(std::uint32_t cell) const {
+        return std::span(intervals).subspan(offsets[cell], offsets[cell + 1] - offsets[cell]);
+    }
 };
 
 std::array<LatticePoint, 3> corners_of(const LatticeMesh& lattice, std::uint32_t face) {
@@ -43,39 +46,62 @@ std::array<LatticePoint, 3> corners_of(const LatticeMesh& lattice, std::uint32_t
 }
 
 Interval interval_of(const CellCover& cover, std::uint32_t face) {
-    constexpr double kRounding = 0.01; // lattice steps, far above what clipping loses
+    constexpr double kRounding = 0.01; // lattice steps, far above what the cover rounds
     const auto lower = static_cast<std::int64_t>(std::max(0.0, cover.nearest - kRounding));
     const auto upper = static_cast<std::int64_t>(cover.farthest + kRounding) + 1;
     return {static_cast<std::uint16_t>(band_unit_of(lower)),
             static_cast<std::uint16_t>(band_unit_of(upper) + 1), face, cover.parts};
 }
 
-CellIntervals find_intervals(const LatticeMesh& lattice, const OctahedralCells& cells,
-                             unsigned thread_count) {
-    std::vector<std::vector<CellInterval>> batches;
+/// What one thread found, in the order of its faces.
+struct FoundCovers {
+    std::size_t first_face;
+    std::vector<std::uint32_t> cells;
+    std::vector<Interval> intervals;
+};
+
+std::vector<FoundCovers> cover_all_faces(const LatticeMesh& lattice, const OctahedralCells& cells,
+                                         unsigned thread_count) {
+    std::vector<FoundCovers> found;
     std::mutex mutex;
     parallel_for(lattice.faces.size(), thread_count, [&](std::size_t begin, std::size_t end) {
-        std::vector<CellInterval> batch;
+        FoundCovers mine{begin, {}, {}};
+        mine.cells.reserve(6 * (end - begin));
+        mine.intervals.reserve(6 * (end - begin));
         std::vector<CellCover> covers;
-        for (std::size_t face = begin; face < end; ++face) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto face = static_cast<std::uint32_t>(i);
             covers.clear();
-            cover_cells(cells, corners_of(lattice, static_cast<std::uint32_t>(face)), covers);
-            for (const CellCover& cover : covers)
-                batch.push_back({cover.cell, interval_of(cover, static_cast<std::uint32_t>(face))});
+            cover_cells(cells, corners_of(lattice, face), covers);
+            for (const CellCover& cover : covers) {
+                mine.cells.push_back(cover.cell);
+                mine.intervals.push_back(interval_of(cover, face));
+            }
         }
         const std::lock_guard lock(mutex);
-        batches.push_back(std::move(batch));
+        found.push_back(std::move(mine));
     });
+    return found;
+}
 
+CellIntervals find_intervals(const LatticeMesh& lattice, const OctahedralCells& cells, unsigned thread_count) {
+    const std::vector<FoundCovers> found = cover_all_faces(lattice, cells, thread_count);
+    std::size_t total = 0;
+    for (const FoundCovers& part : found) total += part.cells.size();
+    if (total > std::numeric_limits<std::uint32_t>::max())
+        throw Error(ErrorCode::InvalidMesh, "the faces pass through cells " + std::to_string(total) +
+                                                " times, more than a map can hold; take fewer cells");
     CellIntervals result;
     result.offsets.resize(cells.count() + 1);
-    for (const auto& batch : batches)
-        for (const CellInterval& item : batch) ++result.offsets[item.cell + 1];
-    for (std::size_t cell = 0; cell < cells.count(); ++cell) result.offsets[cell + 1] += result.offsets[cell];
-    result.intervals.resize(result.offsets.back());
+    for (const FoundCovers& part : found)
+        for (std::uint32_t cell : part.cells) ++result.offsets[cell + 1];
+    std::partial_sum(result.offsets.begin(), result.offsets.end(), result.offsets.begin());
+    result.intervals.resize(total);
     std::vector<std::uint32_t> next(result.offsets.begin(), result.offsets.end() - 1);
-    for (const auto& batch : batches)
-        for (const CellInterval& item : batch) result.intervals[next[item.cell]++] = item.interval;
+    for (const FoundCovers& part : found)
+        for (std::size_t i = 0; i < part.cells.size(); ++i)
+            result.intervals[next[part.cells[i]]++] = part.intervals[i];
+    // Sorting also removes the order in which threads delivered.
     parallel_for(cells.count(), thread_count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t cell = begin; cell < end; ++cell)
             std::sort(result.intervals.begin() + result.offsets[cell],
@@ -84,89 +110,201 @@ CellIntervals find_intervals(const LatticeMesh& lattice, const OctahedralCells& 
     return result;
 }
 
-/// A ray strictly inside a cell.
-LatticePoint middle_of(const OctahedralCells& cells, std::uint32_t octant, std::int32_t i, std::int32_t j,
-                       bool down) {
-    const std::int64_t k = cells.divisions() - (down ? 2 : 1) - i - j;
-    const std::int64_t third = down ? 2 : 1;
-    const std::int64_t scale = kLatticeExtent / (3 * cells.divisions());
-    return {(octant & 1U ? -1 : 1) * scale * (3 * i + third),
-            (octant & 2U ? -1 : 1) * scale * (3 * j + third),
-            (octant & 4U ? -1 : 1) * scale * (3 * k + third)};
+std::int16_t stored_winding(int winding) {
+    if (winding > std::numeric_limits<std::int16_t>::max() || winding < -std::numeric_limits<std::int16_t>::max())
+        throw Error(ErrorCode::InvalidMesh, "the surface winds around a place more than 32767 times");
+    return static_cast<std::int16_t>(winding);
 }
 
+/// Beyond the lattice's largest L1 norm.
+constexpr std::uint16_t kEverBeyond = std::numeric_limits<std::uint16_t>::max();
+
+/// Appends the bands of consecutive cells.
 class BandBuilder {
   public:
-    BandBuilder(const LatticeMesh& lattice, const CellIntervals& intervals)
-        : lattice_(lattice), intervals_(intervals) {
-        result_.offsets.reserve(intervals.offsets.size());
-        result_.offsets.push_back(0);
-    }
+    /// @param gap_states  of an open surface; none when it is closed
+    BandBuilder(const LatticeMesh& lattice, const OctahedralCells& cells, const CellIntervals& intervals,
+                const GapStates* gap_states)
+        : lattice_(lattice), cells_(cells), intervals_(intervals), gap_states_(gap_states) {}
 
-    void add_cell(std::uint32_t cell, const LatticePoint& middle) {
-        const std::uint32_t first = intervals_.offsets[cell];
-        const std::uint32_t last = intervals_.offsets[cell + 1];
-        const std::size_t first_band = result_.bands.size();
-        for (std::uint32_t i = first; i < last;) i = add_band(i, last, middle);
-        // Beyond the outermost band the winding number is 0; from there inwards each band adds what it holds.
-        int winding = 0;
-        for (std::size_t band = result_.bands.size(); band-- > first_band;) {
-            winding += changes_[band - first_band];
-            if (winding > std::numeric_limits<std::int16_t>::max() ||
-                winding < std::numeric_limits<std::int16_t>::min())
-                throw Error(ErrorCode::InvalidMesh, "the surface winds around a place more than 32767 times");
-            result_.winding_below[band] = static_cast<std::int16_t>(winding);
-        }
-        changes_.clear();
+    void add_cell(std::uint32_t cell) {
+        merge_intervals(cell);
+        if (gap_states_ == nullptr)
+            append_closed();
+        else
+            append_open(cell);
         result_.offsets.push_back(static_cast<std::uint32_t>(result_.bands.size()));
     }
 
-    Bands finish() {
-        result_.bands.push_back({0, 0, static_cast<std::uint32_t>(result_.references.size())});
-        return std::move(result_);
-    }
+    Bands take() { return std::move(result_); }
 
   private:
-    /// Merges intervals that overlap or touch, from number i on. Returns the first that is left.
-    std::uint32_t add_band(std::uint32_t i, std::uint32_t last, const LatticePoint& middle) {
-        Band band{intervals_.intervals[i].lower, intervals_.intervals[i].upper,
-                  static_cast<std::uint32_t>(result_.references.size())};
-        int change = 0;
-        for (; i < last && intervals_.intervals[i].lower <= band.upper; ++i) {
-            const Interval& interval = intervals_.intervals[i];
-            band.upper = std::max(band.upper, interval.upper);
+    struct MergedBand {
+        std::uint16_t lower, upper;
+        std::span<const Interval> intervals;
+        int winding_below; ///< on the ray through the cell's middle
+    };
+
+    /// Merges intervals that overlap or touch, and counts what the middle ray crosses.
+    void merge_intervals(std::uint32_t cell) {
+        merged_.clear();
+        std::span<const Interval> rest = intervals_.of(cell);
+        while (!rest.empty()) {
+            std::uint16_t upper = rest.front().upper;
+            std::size_t count = 1;
+            for (; count < rest.size() && rest[count].lower <= upper; ++count)
+                upper = std::max(upper, rest[count].upper);
+            merged_.push_back({rest.front().lower, upper, rest.first(count), 0});
+            rest = rest.subspan(count);
+        }
+        const LatticePoint middle = cells_.middle(cell);
+        int winding = 0;
+        for (std::size_t band = merged_.size(); band-- > 0;) {
+            winding += crossings(merged_[band].intervals, middle);
+            merged_[band].winding_below = winding;
+        }
+    }
+
+    int crossings(std::span<const Interval> intervals, const LatticePoint& middle) const {
+        int sum = 0;
+        for (const Interval& interval : intervals) {
+            if ((interval.parts >> OctahedralCells::middle_part() & 1) == 0) continue;
             const auto corners = corners_of(lattice_, interval.face);
             const FaceCone cone(corners[0], corners[1], corners[2]);
-            if (cone.edge_on()) continue; // no ray meets it, but it does part the inside from the outside
+            if (!cone.edge_on() && cone.meets(middle)) sum += cone.outward() ? 1 : -1;
+        }
+        return sum;
+    }
+
+    void append(const MergedBand& band, std::int16_t winding_below) {
+        append_limit(band.lower, band.upper, winding_below);
+        for (const Interval& interval : band.intervals) {
+            const auto corners = corners_of(lattice_, interval.face);
+            if (dot(corners[0], cross(corners[1], corners[2])) == 0)
+                continue; // edge-on: no ray meets it, but it does part the inside from the outside
             result_.references.push_back(interval.face);
             result_.reference_parts.push_back(interval.parts);
-            if (cone.meets(middle)) change += cone.outward() ? 1 : -1;
         }
-        result_.bands.push_back(band);
-        result_.winding_below.push_back(0);
-        changes_.push_back(change);
-        return i;
+    }
+
+    void append_limit(std::uint16_t lower, std::uint16_t upper, std::int16_t winding_below) {
+        result_.bands.push_back({lower, upper, static_cast<std::uint32_t>(result_.references.size())});
+        result_.winding_below.push_back(winding_below);
+    }
+
+    void append_closed() {
+        for (const MergedBand& band : merged_) append(band, stored_winding(band.winding_below));
+    }
+
+    /// The same, with gaps cut into pieces by bands without faces. A band in which crossings do not tell the
+    /// winding number gets such a band right above it, with nothing but an uncertain gap between the two.
+    void append_open(std::uint32_t cell) {
+        const double whole = l1_at_sphere(cell);
+        uncertain_ = 0;
+        std::uint16_t lower = 0;
+        for (std::size_t b = 0; b < merged_.size(); ++b) {
+            const MergedBand& band = merged_[b];
+            append(band, append_gap(cell, lower, band.lower, band.winding_below));
+            const int beyond = b + 1 < merged_.size() ? merged_[b + 1].winding_below : 0;
+            if (!gap_states_->certain_in_band(cell, band.lower, band.upper, beyond)) {
+                append_limit(band.upper, band.upper, ExactMapView::kUncertain);
+                uncertain_ += volume(band.lower, band.upper, whole);
+            }
+            lower = band.upper;
+        }
+        constexpr double kBeyondOtherRays = 1.05; // the middle's is not the longest way to the sphere
+        const auto end = static_cast<std::uint16_t>(kBeyondOtherRays * whole / ExactMapView::kBandUnit);
+        const std::int16_t last = append_gap(cell, lower, std::max(end, lower), 0);
+        if (last != 0) append_limit(kEverBeyond, kEverBeyond, last);
+        result_.uncertain_volumes.push_back({uncertain_, whole * whole * whole});
+    }
+
+    /// Appends all pieces of a gap but the last, whose winding number is returned.
+    std::int16_t append_gap(std::uint32_t cell, std::uint16_t lower, std::uint16_t upper, int crossings) {
+        pieces_.clear();
+        gap_states_->append_pieces(cell, lower, upper, crossings, pieces_);
+        if (pieces_.empty()) return ExactMapView::kUncertain; // a gap without a place in it
+        const double whole = l1_at_sphere(cell);
+        std::uint16_t piece_lower = lower;
+        for (const GapPiece& piece : pieces_) {
+            if (piece.winding == ExactMapView::kUncertain) uncertain_ += volume(piece_lower, piece.upper, whole);
+            if (&piece != &pieces_.back()) append_limit(piece.upper, piece.upper, piece.winding);
+            piece_lower = piece.upper;
+        }
+        return pieces_.back().winding;
+    }
+
+    /// Of a cell's cone between two L1 norms, but for a factor that all cells share.
+    static double volume(std::uint16_t lower, std::uint16_t upper, double whole) {
+        const double low = std::min(whole, static_cast<double>(lower) * ExactMapView::kBandUnit);
+        const double high = std::min(whole, static_cast<double>(upper) * ExactMapView::kBandUnit);
+        return high * high * high - low * low * low;
+    }
+
+    /// The L1 norm at which the ray through a cell's middle leaves the bounding sphere.
+    double l1_at_sphere(std::uint32_t cell) const {
+        const LatticePoint middle = cells_.middle(cell);
+        return static_cast<double>(kLatticeExtent * l1_norm(middle)) / length(Vec3d(middle));
     }
 
     const LatticeMesh& lattice_;
+    const OctahedralCells& cells_;
     const CellIntervals& intervals_;
-    std::vector<int> changes_; // of the winding number across each band of the cell at hand, inwards
+    const GapStates* gap_states_;
+    std::vector<MergedBand> merged_;
+    std::vector<GapPiece> pieces_;
+    double uncertain_ = 0; ///< volume of the cell at hand
     Bands result_;
 };
 
+void append_vector(auto& to, const auto& from) {
+    to.insert(to.end(), from.begin(), from.end());
+}
+
+/// Bands of consecutive cells.
+struct FoundBands {
+    std::size_t first_cell;
+    Bands bands;
+};
+
+Bands joined(std::vector<FoundBands> found, const OctahedralCells& cells) {
+    std::sort(found.begin(), found.end(),
+              [](const FoundBands& a, const FoundBands& b) { return a.first_cell < b.first_cell; });
+    Bands all;
+    all.offsets.reserve(cells.count() + 1);
+    all.offsets.push_back(0);
+    for (const FoundBands& part : found) {
+        const auto first_band = static_cast<std::uint32_t>(all.bands.size());
+        const auto first_reference = static_cast<std::uint32_t>(all.references.size());
+        for (std::uint32_t offset : part.bands.offsets) all.offsets.push_back(first_band + offset);
+        for (const Band& band : part.bands.bands)
+            all.bands.push_back({band.lower, band.upper, first_reference + band.first_reference});
+        append_vector(all.references, part.bands.references);
+        append_vector(all.reference_parts, part.bands.reference_parts);
+        append_vector(all.winding_below, part.bands.winding_below);
+        append_vector(all.uncertain_volumes, part.bands.uncertain_volumes);
+    }
+    all.bands.push_back({0, 0, static_cast<std::uint32_t>(all.references.size())});
+    return all;
+}
+
 } // namespace
 
-Bands find_bands(const LatticeMesh& lattice, const OctahedralCells& cells, unsigned thread_count) {
+Bands find_bands(const LatticeMesh& lattice, std::span<const BorderEdge> border, const OctahedralCells& cells,
+                 unsigned thread_count) {
     const CellIntervals intervals = find_intervals(lattice, cells, thread_count);
-    BandBuilder builder(lattice, intervals);
-    for (std::uint32_t octant = 0; octant < 8; ++octant)
-        for (std::int32_t i = 0; i < cells.divisions(); ++i)
-            for (std::int32_t j = 0; j < cells.divisions() - i; ++j)
-                for (bool down : {false, true}) {
-                    if (down && i + j == cells.divisions() - 1) continue;
-                    builder.add_cell(cells.index(octant, i, j, down), middle_of(cells, octant, i, j, down));
-                }
-    return builder.finish();
+    std::optional<GapStates> gap_states;
+    if (!border.empty()) gap_states.emplace(lattice, border, cells);
+    std::vector<FoundBands> found;
+    std::mutex mutex;
+    parallel_for(cells.count(), thread_count, [&](std::size_t begin, std::size_t end) {
+        BandBuilder builder(lattice, cells, intervals, gap_states ? &*gap_states : nullptr);
+        for (std::size_t cell = begin; cell < end; ++cell) builder.add_cell(static_cast<std::uint32_t>(cell));
+        Bands bands = builder.take();
+        const std::lock_guard lock(mutex);
+        found.push_back({begin, std::move(bands)});
+    });
+    return joined(std::move(found), cells);
 }
 
 } // namespace echinus

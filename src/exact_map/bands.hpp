@@ -6,6 +6,7 @@
 #include <echinus/exact_map.hpp>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace echinus {
@@ -13,14 +14,20 @@ namespace echinus {
 struct Bands {
     std::vector<std::uint32_t> offsets;    ///< [cell_count + 1]
     std::vector<Band> bands;               ///< [band_count + 1]
-    std::vector<std::uint32_t> references; ///< faces, ascending within a band; edge-on faces have none
+    std::vector<std::uint32_t> references; ///< faces; edge-on faces have none
     std::vector<std::uint16_t> reference_parts;
     std::vector<std::int16_t> winding_below; ///< [band_count]
+    /// Of a cell's part of the bounding sphere, but for a factor that all cells share.
+    struct Volume {
+        double uncertain, whole;
+    };
+    std::vector<Volume> uncertain_volumes; ///< [cell_count] of an open surface; none of a closed one
 };
 
 /// Finds the bands of every cell and the winding numbers between them. Does not depend on the number of
 /// threads.
-/// @pre the mesh is closed
-Bands find_bands(const LatticeMesh& lattice, const OctahedralCells& cells, unsigned thread_count);
+/// @throws Error InvalidMesh when winding numbers or references are too large to be stored
+Bands find_bands(const LatticeMesh& lattice, std::span<const BorderEdge> border, const OctahedralCells& cells,
+                 unsigned thread_count);
 
 } // namespace echinus

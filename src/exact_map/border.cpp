@@ -72,16 +72,18 @@ std::vector<std::uint32_t> first_vertices_at(const std::vector<LatticePoint>& ve
     return first;
 }
 
-/// Solid angle of the cone triangle (origin, a, b) seen from a lattice point, in which nothing is left to
-/// rounding that decides on which side of it the point lies: there it jumps by a full turn.
+/// Solid angle of the cone triangle (origin, a, b) seen from share * d. On which side of it that lies, where the
+/// angle jumps by a full turn, is a matter of d alone, so that nothing of it is left to rounding.
 /// Van Oosterom and Strackee 1983, as in mesh/winding_number.cpp.
-double cone_solid_angle(const LatticePoint& a, const LatticePoint& b, const LatticePoint& p) {
+double cone_solid_angle(const LatticePoint& a, const LatticePoint& b, const LatticePoint& d, double share) {
     const LatticePoint normal = cross(a, b);
-    const std::int64_t volume = -dot(p, normal);
-    const Vec3d pa(a - p), pb(b - p), po(LatticePoint{} - p);
+    const std::int64_t volume = -dot(d, normal);
+    const Vec3d p = Vec3d(d) * share;
+    const Vec3d pa = Vec3d(a) - p, pb = Vec3d(b) - p, po = p * -1.0;
     const double la = length(pa), lb = length(pb), lo = length(po);
+    const double numerator = share * std::fabs(static_cast<double>(volume));
     const double denominator = la * lb * lo + dot(pa, pb) * lo + dot(pb, po) * la + dot(po, pa) * lb;
-    const double angle = 2 * std::atan2(static_cast<double>(std::abs(volume)), denominator);
+    const double angle = 2 * std::atan2(numerator, denominator);
     const bool positive = volume != 0 ? volume > 0 : sign_of_perturbation(normal) < 0;
     return positive ? angle : -angle;
 }
@@ -96,11 +98,11 @@ std::vector<BorderEdge> find_border(const LatticeMesh& lattice) {
 }
 
 double border_part(std::span<const BorderEdge> border, std::span<const Vec3<std::int32_t>> vertices,
-                   const LatticePoint& p) {
+                   const LatticePoint& d, double share) {
     double sum = 0;
     for (const BorderEdge& edge : border)
         sum += edge.multiplicity *
-               cone_solid_angle(LatticePoint(vertices[edge.a]), LatticePoint(vertices[edge.b]), p);
+               cone_solid_angle(LatticePoint(vertices[edge.a]), LatticePoint(vertices[edge.b]), d, share);
     return sum / (4 * std::numbers::pi);
 }
 

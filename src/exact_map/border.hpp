@@ -23,9 +23,9 @@ namespace echinus {
 /// lattice point count as one. Empty when the surface is closed.
 std::vector<BorderEdge> find_border(const LatticeMesh& lattice);
 
-/// What the border adds to the signed crossings beyond a place to make the generalised winding number. A
-/// place on the cone stands for p + (e, e^2, e^3), as everywhere.
+/// What the border adds to the signed crossings beyond the place share * d to make the generalised winding
+/// number. A place on the cone stands for one at d + (e, e^2, e^3), as everywhere.
 double border_part(std::span<const BorderEdge> border, std::span<const Vec3<std::int32_t>> vertices,
-                   const LatticePoint& p);
+                   const LatticePoint& d, double share = 1);
 
 } // namespace echinus

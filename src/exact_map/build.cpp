@@ -83,7 +83,7 @@ ExactMap ExactMap::build(const TriangleMesh& mesh, const ExactMapOptions& option
     const std::uint32_t divisions =
         options.divisions != 0 ? options.divisions : default_divisions(lattice.faces.size());
     const OctahedralCells cells(divisions);
-    Bands bands = find_bands(lattice, cells, options.thread_count);
+    Bands bands = find_bands(lattice, border, cells, options.thread_count);
 
     Indices references(bands.references, lattice.faces.size());
     std::vector<Vec3<std::int32_t>> vertices;
