@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <vector>
 
 /// The map that is always right. Directions around the centre are divided into cells; for each cell the
 /// radial intervals in which surface lies, its *bands*, are stored, rounded outwards, with the faces that
@@ -144,8 +145,8 @@ struct ExactMapView {
     }
 };
 
-/// An exact map that owns its arrays, or keeps alive the file that they lie in. Immutable but for rebuild();
-/// copies share the arrays. Any number of threads may query one map.
+/// An exact map that owns its arrays, or keeps alive the file that they lie in. Immutable; copies share the
+/// arrays. Any number of threads may query one map.
 class ExactMap {
   public:
     /// Builds the map on all cores; same mesh and options, same bytes, whatever the number of threads.
@@ -176,6 +177,28 @@ class ExactMap {
     ExactMapStatistics statistics_;
     std::uint64_t source_hash_ = 0;
     std::shared_ptr<const void> storage_;
+};
+
+/// Builds maps of a surface whose vertices move while its triangles stay, such as an animated body: memory is
+/// used again from one map to the next. Not for several threads at once.
+class ExactMapBuilder {
+  public:
+    /// @throws Error InvalidOptions as ExactMap::build() does
+    ExactMapBuilder(std::vector<Triangle> faces, const ExactMapOptions& options);
+    ~ExactMapBuilder();
+    ExactMapBuilder(ExactMapBuilder&&) noexcept;
+    ExactMapBuilder& operator=(ExactMapBuilder&&) noexcept;
+
+    /// The map of the faces with these vertices: the same, bit for bit, as ExactMap::build() of them. Centre,
+    /// radius, lattice and resolution are found anew.
+    /// The builder keeps the map. A map that was copied from it keeps its arrays; without a copy the next
+    /// rebuild() writes into the same memory, and views of the old map end.
+    /// @throws Error as ExactMap::build() does; the builder then holds no map and can be used again
+    const ExactMap& rebuild(std::span<const Vec3f> vertices);
+
+  private:
+    struct Memory;
+    std::unique_ptr<Memory> memory_;
 };
 
 // ---- Queries. noexcept, no allocation, any number of threads --------------------------------------------

@@ -98,17 +98,21 @@ LatticePoint lattice_direction(const Vec3d& unit) {
 
 LatticeMesh snap_to_lattice(const TriangleMesh& mesh) {
     require_valid(mesh);
+    return snap_to_lattice(mesh, Vec3f(smallest_enclosing_sphere(used_positions(mesh)).centre));
+}
+
+LatticeMesh snap_to_lattice(const TriangleMesh& mesh, const Vec3f& wanted_centre) {
+    require_valid(mesh);
     const std::vector<bool> used = is_vertex_used(mesh);
     const std::vector<Vec3f> points = used_positions(mesh);
-    const Vec3f middle(smallest_enclosing_sphere(points).centre);
-    const float radius = enclosing_radius(points, middle);
+    const float radius = enclosing_radius(points, wanted_centre);
     require_usable(radius);
-    LatticeMesh lattice = snap_around(mesh, used, middle, radius);
+    LatticeMesh lattice = snap_around(mesh, used, wanted_centre, radius);
     const double step = centre_step(lattice);
     // Along the curve (t, t^2, t^3) a plane excludes at most three places and a line no more, so this ends;
     // the first try nearly always holds.
     for (double t = 1; touches_origin(lattice); ++t) {
-        const Vec3f centre(Vec3d(middle) + Vec3d{t, t * t, t * t * t} * step);
+        const Vec3f centre(Vec3d(wanted_centre) + Vec3d{t, t * t, t * t * t} * step);
         lattice = snap_around(mesh, used, centre, enclosing_radius(points, centre));
     }
     return lattice;

@@ -61,4 +61,7 @@ struct LatticeMesh {
 /// @throws Error InvalidMesh as inspect() does, or when the bounding radius is 0 or outside [1e-15, 1e15]
 LatticeMesh snap_to_lattice(const TriangleMesh& mesh);
 
+/// The same around another centre; the radius grows until it holds every vertex.
+LatticeMesh snap_to_lattice(const TriangleMesh& mesh, const Vec3f& centre);
+
 } // namespace echinus

@@ -59,7 +59,8 @@ class OctahedralCells {
         const auto cells_per_octant = static_cast<std::uint32_t>(n_ * n_);
         const std::uint32_t in_octant = cell % cells_per_octant;
         // The rows before row i hold i (2n - i) cells, so in_octant < n^2 - (n - i)^2 for all rows after it.
-        const auto i = n_ - static_cast<std::int32_t>(std::ceil(std::sqrt(double(cells_per_octant - in_octant))));
+        const auto i =
+            n_ - static_cast<std::int32_t>(std::ceil(std::sqrt(double(cells_per_octant - in_octant))));
         const auto in_row = static_cast<std::int32_t>(in_octant) - i * (2 * n_ - i);
         return {cell / cells_per_octant, i, in_row / 2, in_row % 2 != 0};
     }

@@ -5,6 +5,7 @@
 #include "directions/spherical_grid.hpp"
 #include "distance_map/layout.hpp"
 #include "distance_map/vertex_correction.hpp"
+#include "mesh/mesh_hash.hpp"
 
 #include <echinus/error.hpp>
 
@@ -59,10 +60,7 @@ std::uint64_t hash_of(const TriangleMesh& mesh, const DistanceMapOptions& option
     const std::array<std::uint32_t, 5> fields{
         options.longitude_count, options.colatitude_count, static_cast<std::uint32_t>(options.correction),
         static_cast<std::uint32_t>(options.entry_format), static_cast<std::uint32_t>(options.pole_axis)};
-    const std::uint64_t of_options = XXH64(fields.data(), sizeof fields, 0);
-    const std::uint64_t of_vertices =
-        XXH64(mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3f), of_options);
-    return XXH64(mesh.faces.data(), mesh.faces.size() * sizeof(Triangle), of_vertices);
+    return mesh_hash(mesh, XXH64(fields.data(), sizeof fields, 0));
 }
 
 std::uint32_t largest_count(const Crossings& crossings) {

@@ -84,7 +84,8 @@ std::vector<FoundCovers> cover_all_faces(const LatticeMesh& lattice, const Octah
     return found;
 }
 
-CellIntervals find_intervals(const LatticeMesh& lattice, const OctahedralCells& cells, unsigned thread_count) {
+CellIntervals find_intervals(const LatticeMesh& lattice, const OctahedralCells& cells,
+                             unsigned thread_count) {
     const std::vector<FoundCovers> found = cover_all_faces(lattice, cells, thread_count);
     std::size_t total = 0;
     for (const FoundCovers& part : found) total += part.cells.size();
@@ -111,7 +112,8 @@ CellIntervals find_intervals(const LatticeMesh& lattice, const OctahedralCells& 
 }
 
 std::int16_t stored_winding(int winding) {
-    if (winding > std::numeric_limits<std::int16_t>::max() || winding < -std::numeric_limits<std::int16_t>::max())
+    if (winding > std::numeric_limits<std::int16_t>::max() ||
+        winding < -std::numeric_limits<std::int16_t>::max())
         throw Error(ErrorCode::InvalidMesh, "the surface winds around a place more than 32767 times");
     return static_cast<std::int16_t>(winding);
 }
@@ -227,7 +229,8 @@ class BandBuilder {
         const double whole = l1_at_sphere(cell);
         std::uint16_t piece_lower = lower;
         for (const GapPiece& piece : pieces_) {
-            if (piece.winding == ExactMapView::kUncertain) uncertain_ += volume(piece_lower, piece.upper, whole);
+            if (piece.winding == ExactMapView::kUncertain)
+                uncertain_ += volume(piece_lower, piece.upper, whole);
             if (&piece != &pieces_.back()) append_limit(piece.upper, piece.upper, piece.winding);
             piece_lower = piece.upper;
         }
@@ -267,10 +270,10 @@ struct FoundBands {
     Bands bands;
 };
 
-Bands joined(std::vector<FoundBands> found, const OctahedralCells& cells) {
+void join(std::vector<FoundBands> found, const OctahedralCells& cells, Bands& all) {
     std::sort(found.begin(), found.end(),
               [](const FoundBands& a, const FoundBands& b) { return a.first_cell < b.first_cell; });
-    Bands all;
+    all.clear();
     all.offsets.reserve(cells.count() + 1);
     all.offsets.push_back(0);
     for (const FoundBands& part : found) {
@@ -285,13 +288,21 @@ Bands joined(std::vector<FoundBands> found, const OctahedralCells& cells) {
         append_vector(all.uncertain_volumes, part.bands.uncertain_volumes);
     }
     all.bands.push_back({0, 0, static_cast<std::uint32_t>(all.references.size())});
-    return all;
 }
 
 } // namespace
 
-Bands find_bands(const LatticeMesh& lattice, std::span<const BorderEdge> border, const OctahedralCells& cells,
-                 unsigned thread_count) {
+void Bands::clear() {
+    offsets.clear();
+    bands.clear();
+    references.clear();
+    reference_parts.clear();
+    winding_below.clear();
+    uncertain_volumes.clear();
+}
+
+void find_bands(const LatticeMesh& lattice, std::span<const BorderEdge> border, const OctahedralCells& cells,
+                unsigned thread_count, Bands& result) {
     const CellIntervals intervals = find_intervals(lattice, cells, thread_count);
     std::optional<GapStates> gap_states;
     if (!border.empty()) gap_states.emplace(lattice, border, cells);
@@ -304,7 +315,17 @@ Bands find_bands(const LatticeMesh& lattice, std::span<const BorderEdge> border,
         const std::lock_guard lock(mutex);
         found.push_back({begin, std::move(bands)});
     });
-    return joined(std::move(found), cells);
+    join(std::move(found), cells, result);
+}
+
+double expected_tests(const Bands& bands) {
+    if (bands.references.empty()) return 0;
+    double sum_of_squares = 0;
+    for (std::size_t band = 0; band + 1 < bands.bands.size(); ++band) {
+        const double count = bands.bands[band + 1].first_reference - bands.bands[band].first_reference;
+        sum_of_squares += count * count;
+    }
+    return sum_of_squares / static_cast<double>(bands.references.size());
 }
 
 } // namespace echinus

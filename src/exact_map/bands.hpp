@@ -22,12 +22,17 @@ struct Bands {
         double uncertain, whole;
     };
     std::vector<Volume> uncertain_volumes; ///< [cell_count] of an open surface; none of a closed one
+
+    void clear();
 };
 
-/// Finds the bands of every cell and the winding numbers between them. Does not depend on the number of
-/// threads.
+/// Finds the bands of every cell and the winding numbers between them, and puts them where `result` has
+/// memory from another time. Does not depend on the number of threads.
 /// @throws Error InvalidMesh when winding numbers or references are too large to be stored
-Bands find_bands(const LatticeMesh& lattice, std::span<const BorderEdge> border, const OctahedralCells& cells,
-                 unsigned thread_count);
+void find_bands(const LatticeMesh& lattice, std::span<const BorderEdge> border, const OctahedralCells& cells,
+                unsigned thread_count, Bands& result);
+
+/// Faces of the band that the average reference belongs to: those that a query near the surface meets.
+double expected_tests(const Bands& bands);
 
 } // namespace echinus

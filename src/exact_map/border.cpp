@@ -72,9 +72,9 @@ std::vector<std::uint32_t> first_vertices_at(const std::vector<LatticePoint>& ve
     return first;
 }
 
-/// Solid angle of the cone triangle (origin, a, b) seen from share * d. On which side of it that lies, where the
-/// angle jumps by a full turn, is a matter of d alone, so that nothing of it is left to rounding.
-/// Van Oosterom and Strackee 1983, as in mesh/winding_number.cpp.
+/// Solid angle of the cone triangle (origin, a, b) seen from share * d. On which side of it that lies, where
+/// the angle jumps by a full turn, is a matter of d alone, so that nothing of it is left to rounding. Van
+/// Oosterom and Strackee 1983, as in mesh/winding_number.cpp.
 double cone_solid_angle(const LatticePoint& a, const LatticePoint& b, const LatticePoint& d, double share) {
     const LatticePoint normal = cross(a, b);
     const std::int64_t volume = -dot(d, normal);

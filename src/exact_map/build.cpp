@@ -1,34 +1,57 @@
+// From a mesh to an exact map: onto the lattice, into a tree, into the cells.
+
 #include "exact_map/bands.hpp"
 #include "exact_map/border.hpp"
+#include "exact_map/centre_search.hpp"
 #include "exact_map/face_tree.hpp"
 #include "exact_map/layout.hpp"
+#include "exact_map/resolution.hpp"
+#include "mesh/mesh_hash.hpp"
 
 #include <echinus/error.hpp>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <optional>
 #include <string>
 #include <utility>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
 
 namespace echinus {
 
 namespace {
 
-/// Cells enough that a band near the surface holds a handful of faces, and not so many that they outweigh the
-/// mesh: a bit more cells than faces.
-std::uint32_t default_divisions(std::size_t face_count) {
-    const double divisions = std::sqrt(1.2 * static_cast<double>(face_count) / 8);
-    return std::clamp(static_cast<std::uint32_t>(std::lround(divisions)), 4U, ExactMapOptions::kMaxDivisions);
+void require_sound(const ExactMapOptions& options) {
+    if (options.divisions > ExactMapOptions::kMaxDivisions)
+        throw Error(ErrorCode::InvalidOptions, "divisions is " + std::to_string(options.divisions) +
+                                                   ", more than " +
+                                                   std::to_string(ExactMapOptions::kMaxDivisions));
+    if (options.divisions != 0 && options.byte_budget != 0)
+        throw Error(ErrorCode::InvalidOptions,
+                    "divisions and byte_budget are both given; the one leaves no choice to the other");
+}
+
+std::uint64_t hash_of(const TriangleMesh& mesh, const ExactMapOptions& options) {
+    const std::array<std::uint64_t, 4> fields{options.divisions, options.byte_budget,
+                                              static_cast<std::uint64_t>(options.rule),
+                                              static_cast<std::uint64_t>(options.centre)};
+    return mesh_hash(mesh, XXH64(fields.data(), sizeof fields, 0));
 }
 
 /// An IndexArray's storage.
 class Indices {
   public:
-    Indices(const std::vector<std::uint32_t>& values, std::size_t bound) {
+    /// @param bound  above all values
+    template <typename Values>
+    void assign(const Values& values, std::size_t bound) {
+        narrow_.clear();
+        wide_.clear();
         if (bound <= 65536)
-            narrow_.assign(values.begin(), values.end());
+            for (std::uint32_t value : values) narrow_.push_back(static_cast<std::uint16_t>(value));
         else
-            wide_ = values;
+            wide_.assign(values.begin(), values.end());
     }
     IndexArray view() const { return {narrow_, wide_}; }
 
@@ -50,6 +73,8 @@ struct OwnedArrays {
 void reorder(LatticeMesh& lattice, const std::vector<std::uint32_t>& order) {
     std::vector<Triangle> faces;
     std::vector<std::uint32_t> numbers;
+    faces.reserve(order.size());
+    numbers.reserve(order.size());
     for (std::uint32_t face : order) {
         faces.push_back(lattice.faces[face]);
         numbers.push_back(lattice.face_numbers[face]);
@@ -65,50 +90,129 @@ std::vector<std::uint32_t> flattened(const std::vector<Triangle>& faces) {
     return corners;
 }
 
+LatticeMesh snap(const TriangleMesh& mesh, const ExactMapOptions& options) {
+    LatticeMesh lattice = options.centre == CentreChoice::Search
+                              ? snap_around_best_centre(mesh, options.thread_count)
+                              : snap_to_lattice(mesh);
+    if (lattice.faces.empty())
+        throw Error(ErrorCode::InvalidMesh, "no face is larger than a step of the lattice, " +
+                                                std::to_string(lattice.frame.step) +
+                                                ": the mesh is a few specks in a large void");
+    return lattice;
+}
+
+/// Everything of the arrays but the bands.
+void set_surface(const TriangleMesh& mesh, LatticeMesh& lattice, OwnedArrays& arrays) {
+    FaceTree tree = build_face_tree(lattice);
+    reorder(lattice, tree.order);
+    arrays.nodes = std::move(tree.nodes);
+    arrays.border = find_border(lattice);
+    arrays.vertices.clear();
+    for (const LatticePoint& vertex : lattice.vertices) arrays.vertices.emplace_back(vertex);
+    arrays.corners.assign(flattened(lattice.faces), lattice.vertices.size());
+    arrays.face_numbers.assign(lattice.face_numbers, mesh.faces.size());
+}
+
+ExactMapView view_of(const OwnedArrays& arrays, const LatticeMesh& lattice, std::uint32_t divisions,
+                     InsideRule rule) {
+    ExactMapView view;
+    view.centre = lattice.centre;
+    view.radius = lattice.radius;
+    view.divisions = divisions;
+    view.rule = rule;
+    view.band_offsets = arrays.bands.offsets;
+    view.bands = arrays.bands.bands;
+    view.winding_below = arrays.bands.winding_below;
+    view.references = arrays.references.view();
+    view.reference_parts = arrays.bands.reference_parts;
+    view.vertices = arrays.vertices;
+    view.corners = arrays.corners.view();
+    view.face_numbers = arrays.face_numbers.view();
+    view.nodes = arrays.nodes;
+    view.border = arrays.border;
+    return view;
+}
+
+/// Finds the bands for the wished number of cells. Returns the divisions.
+std::uint32_t set_bands(const LatticeMesh& lattice, const ExactMapOptions& options, OwnedArrays& arrays) {
+    const auto find = [&](std::uint32_t divisions, std::span<const BorderEdge> border) {
+        find_bands(lattice, border, OctahedralCells(divisions), options.thread_count, arrays.bands);
+        arrays.references.assign(arrays.bands.references, lattice.faces.size());
+    };
+    std::uint32_t divisions = options.divisions;
+    if (options.byte_budget != 0)
+        divisions = divisions_within(options.byte_budget, lattice.faces.size(), [&](std::uint32_t candidate) {
+            find(candidate, arrays.border);
+            return view_of(arrays, lattice, candidate, options.rule).byte_count();
+        });
+    else if (divisions == 0)
+        divisions = default_divisions(lattice.faces.size());
+    find(divisions, arrays.border);
+    return divisions;
+}
+
+ExactMapStatistics statistics_of(const TriangleMesh& mesh, const LatticeMesh& lattice, const Bands& bands) {
+    ExactMapStatistics statistics;
+    statistics.face_count = static_cast<std::uint32_t>(mesh.faces.size());
+    statistics.dropped_faces = static_cast<std::uint32_t>(mesh.faces.size() - lattice.faces.size());
+    for (std::size_t band = 0; band + 1 < bands.bands.size(); ++band)
+        statistics.longest_list = std::max(statistics.longest_list, bands.bands[band + 1].first_reference -
+                                                                        bands.bands[band].first_reference);
+    const auto band_count = static_cast<float>(bands.bands.size() - 1);
+    statistics.mean_list = band_count > 0 ? static_cast<float>(bands.references.size()) / band_count : 0;
+    statistics.expected_tests = static_cast<float>(expected_tests(bands));
+    double uncertain = 0, uncertain_cells = 0, whole = 0;
+    for (const Bands::Volume& volume : bands.uncertain_volumes) {
+        uncertain += volume.uncertain;
+        uncertain_cells += volume.uncertain > 0 ? volume.whole : 0;
+        whole += volume.whole;
+    }
+    if (whole > 0) {
+        statistics.certain_share = static_cast<float>(1 - uncertain / whole);
+        statistics.uncertain_directions = static_cast<float>(uncertain_cells / whole);
+    }
+    return statistics;
+}
+
 } // namespace
+
+struct ExactMapBuilder::Memory {
+    TriangleMesh mesh;
+    ExactMapOptions options;
+    std::shared_ptr<OwnedArrays> arrays;
+    std::optional<ExactMap> map;
+};
+
+ExactMapBuilder::ExactMapBuilder(std::vector<Triangle> faces, const ExactMapOptions& options)
+    : memory_(std::make_unique<Memory>()) {
+    require_sound(options);
+    memory_->mesh.faces = std::move(faces);
+    memory_->options = options;
+}
+ExactMapBuilder::~ExactMapBuilder() = default;
+ExactMapBuilder::ExactMapBuilder(ExactMapBuilder&&) noexcept = default;
+ExactMapBuilder& ExactMapBuilder::operator=(ExactMapBuilder&&) noexcept = default;
+
+const ExactMap& ExactMapBuilder::rebuild(std::span<const Vec3f> vertices) {
+    auto& [mesh, options, arrays, map] = *memory_;
+    map.reset();
+    if (arrays.use_count() != 1) arrays = std::make_shared<OwnedArrays>(); // somebody reads the old ones
+    mesh.vertices.assign(vertices.begin(), vertices.end());
+    LatticeMesh lattice = snap(mesh, options);
+    set_surface(mesh, lattice, *arrays);
+    const std::uint32_t divisions = set_bands(lattice, options, *arrays);
+    const ExactMapStatistics statistics = statistics_of(mesh, lattice, arrays->bands);
+    arrays->bands.references = {}; // the view has them as narrow as they can be
+    return map.emplace(view_of(*arrays, lattice, divisions, options.rule), statistics, hash_of(mesh, options),
+                       arrays);
+}
 
 ExactMap::ExactMap(const ExactMapView& view, const ExactMapStatistics& statistics, std::uint64_t source_hash,
                    std::shared_ptr<const void> storage)
     : view_(view), statistics_(statistics), source_hash_(source_hash), storage_(std::move(storage)) {}
 
 ExactMap ExactMap::build(const TriangleMesh& mesh, const ExactMapOptions& options) {
-    if (options.divisions > ExactMapOptions::kMaxDivisions)
-        throw Error(ErrorCode::InvalidOptions, "divisions is " + std::to_string(options.divisions) +
-                                                   ", more than " +
-                                                   std::to_string(ExactMapOptions::kMaxDivisions));
-    LatticeMesh lattice = snap_to_lattice(mesh);
-    FaceTree tree = build_face_tree(lattice);
-    reorder(lattice, tree.order);
-    const std::vector<BorderEdge> border = find_border(lattice);
-    const std::uint32_t divisions =
-        options.divisions != 0 ? options.divisions : default_divisions(lattice.faces.size());
-    const OctahedralCells cells(divisions);
-    Bands bands = find_bands(lattice, border, cells, options.thread_count);
-
-    Indices references(bands.references, lattice.faces.size());
-    std::vector<Vec3<std::int32_t>> vertices;
-    for (const LatticePoint& v : lattice.vertices) vertices.emplace_back(v);
-    const auto arrays = std::make_shared<OwnedArrays>(
-        OwnedArrays{std::move(bands), std::move(references), std::move(vertices),
-                    Indices(flattened(lattice.faces), lattice.vertices.size()),
-                    Indices(lattice.face_numbers, mesh.faces.size()), std::move(tree.nodes), border});
-
-    ExactMapView view;
-    view.centre = lattice.centre;
-    view.radius = lattice.radius;
-    view.divisions = divisions;
-    view.rule = options.rule;
-    view.band_offsets = arrays->bands.offsets;
-    view.bands = arrays->bands.bands;
-    view.winding_below = arrays->bands.winding_below;
-    view.references = arrays->references.view();
-    view.reference_parts = arrays->bands.reference_parts;
-    view.vertices = arrays->vertices;
-    view.corners = arrays->corners.view();
-    view.face_numbers = arrays->face_numbers.view();
-    view.nodes = arrays->nodes;
-    view.border = arrays->border;
-    return {view, {}, 0, arrays};
+    return ExactMapBuilder(mesh.faces, options).rebuild(mesh.vertices);
 }
 
 } // namespace echinus

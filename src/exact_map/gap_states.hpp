@@ -13,7 +13,7 @@ namespace echinus {
 
 /// A radial piece of a cell, in which the winding number has one value or none that is certain.
 struct GapPiece {
-    std::uint16_t upper; ///< where it ends, in band units
+    std::uint16_t upper;  ///< where it ends, in band units
     std::int16_t winding; ///< or ExactMapView::kUncertain
 };
 
