@@ -113,6 +113,10 @@ struct ExactMapView {
     static constexpr int kBoxUnit = 32;
     /// Stands for the winding number of a gap that is not constant, for want of a closed surface.
     static constexpr std::int16_t kUncertain = std::numeric_limits<std::int16_t>::min();
+    /// Stands for the winding number between the two halves of a long band that was split: there is no gap.
+    /// The faces of the lower half tell how a ray crosses the surface up to a particle in it, those of the
+    /// upper how it does beyond.
+    static constexpr std::int16_t kSplit = kUncertain + 1;
 
     Vec3f centre;     ///< C, local
     float radius = 0; ///< R: every vertex of the mesh lies within R of C
@@ -122,8 +126,8 @@ struct ExactMapView {
     /// [band_count + 1] by cell, then outwards; the last is a sentinel. A band without faces is possible: it
     /// parts two gaps of an open surface.
     std::span<const Band> bands;
-    /// [band_count] Winding number of the gap between a band and the one below it, or kUncertain. Beyond a
-    /// cell's last band it is 0.
+    /// [band_count] Winding number of the gap between a band and the one below it, or kUncertain or kSplit.
+    /// Beyond a cell's last band it is 0.
     std::span<const std::int16_t> winding_below;
     IndexArray references; ///< [reference_count] faces
     /// [reference_count] Which of the 16 parts of its cell a face touches, a bit each

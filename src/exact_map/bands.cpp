@@ -113,8 +113,8 @@ CellIntervals find_intervals(const LatticeMesh& lattice, const OctahedralCells& 
 
 std::int16_t stored_winding(int winding) {
     if (winding > std::numeric_limits<std::int16_t>::max() ||
-        winding < -std::numeric_limits<std::int16_t>::max())
-        throw Error(ErrorCode::InvalidMesh, "the surface winds around a place more than 32767 times");
+        winding < -std::numeric_limits<std::int16_t>::max() + 1)
+        throw Error(ErrorCode::InvalidMesh, "the surface winds around a place more than 32766 times");
     return static_cast<std::int16_t>(winding);
 }
 
@@ -180,13 +180,15 @@ class BandBuilder {
 
     void append(const MergedBand& band, std::int16_t winding_below) {
         append_limit(band.lower, band.upper, winding_below);
-        for (const Interval& interval : band.intervals) {
-            const auto corners = corners_of(lattice_, interval.face);
-            if (dot(corners[0], cross(corners[1], corners[2])) == 0)
-                continue; // edge-on: no ray meets it, but it does part the inside from the outside
-            result_.references.push_back(interval.face);
-            result_.reference_parts.push_back(interval.parts);
-        }
+        for (const Interval& interval : band.intervals) append_reference(interval);
+    }
+
+    void append_reference(const Interval& interval) {
+        const auto corners = corners_of(lattice_, interval.face);
+        if (dot(corners[0], cross(corners[1], corners[2])) == 0)
+            return; // edge-on: no ray meets it, but it does part the inside from the outside
+        result_.references.push_back(interval.face);
+        result_.reference_parts.push_back(interval.parts);
     }
 
     void append_limit(std::uint16_t lower, std::uint16_t upper, std::int16_t winding_below) {
@@ -195,7 +197,49 @@ class BandBuilder {
     }
 
     void append_closed() {
-        for (const MergedBand& band : merged_) append(band, stored_winding(band.winding_below));
+        for (const MergedBand& band : merged_) {
+            const std::int16_t winding_below = stored_winding(band.winding_below);
+            if (const std::optional<std::uint16_t> limit = split_of(band.intervals))
+                append_split(band, *limit, winding_below);
+            else
+                append(band, winding_below);
+        }
+    }
+
+    /// Where to cut a band in two, so that a query need look only at the faces of its side: those of the lower
+    /// half tell how often the ray crosses the surface before the particle, those of the upper how often
+    /// beyond. Faces on both sides are listed twice.
+    std::optional<std::uint16_t> split_of(std::span<const Interval> intervals) {
+        constexpr std::size_t kLeastFaces = 6;
+        constexpr double kLeastGain = 0.3; // of the cost; for less, memory is better spent on more cells
+        const std::size_t count = intervals.size();
+        if (count < kLeastFaces) return std::nullopt;
+        uppers_.clear();
+        for (const Interval& interval : intervals) uppers_.push_back(interval.upper);
+        std::sort(uppers_.begin(), uppers_.end());
+        std::optional<std::uint16_t> best;
+        double best_cost = (1 - kLeastGain) * static_cast<double>(count * count);
+        std::size_t ended = 0;
+        for (std::size_t below = 1; below < count; ++below) {
+            const std::uint16_t limit = intervals[below].lower;
+            if (limit == intervals[below - 1].lower) continue;
+            while (ended < count && uppers_[ended] <= limit) ++ended;
+            const std::size_t above = count - ended;
+            const auto cost = static_cast<double>(below * below + above * above);
+            if (cost >= best_cost) continue;
+            best_cost = cost;
+            best = limit;
+        }
+        return best;
+    }
+
+    void append_split(const MergedBand& band, std::uint16_t limit, std::int16_t winding_below) {
+        append_limit(band.lower, limit, winding_below);
+        for (const Interval& interval : band.intervals)
+            if (interval.lower < limit) append_reference(interval);
+        append_limit(limit, band.upper, ExactMapView::kSplit);
+        for (const Interval& interval : band.intervals)
+            if (interval.upper > limit) append_reference(interval);
     }
 
     /// The same, with gaps cut into pieces by bands without faces. A band in which crossings do not tell the
@@ -256,6 +300,7 @@ class BandBuilder {
     const GapStates* gap_states_;
     std::vector<MergedBand> merged_;
     std::vector<GapPiece> pieces_;
+    std::vector<std::uint16_t> uppers_;
     double uncertain_ = 0; ///< volume of the cell at hand
     Bands result_;
 };

@@ -250,11 +250,19 @@ void cover_octant(const OctahedralCells& cells, std::uint32_t octant, const Poly
         OctantCover(cells, octant, polygon, plane).add_cells(covers);
         return;
     }
-    const auto cells_per_octant = static_cast<std::uint32_t>(cells.divisions() * cells.divisions());
-    for (std::uint32_t cell = 0; cell < cells_per_octant; ++cell)
-        covers.push_back({octant * cells_per_octant + cell, kAllParts, 0, kNear});
+    const std::size_t first = covers.size();
     const Polygon rest = polygon.clipped([](const Vec3d& p) { return sum_of(p) - kNear / 2; });
     if (!rest.empty()) OctantCover(cells, octant, rest, plane).add_cells(covers);
+    // A cell may list a face but once, or its crossings would count twice.
+    const auto cells_per_octant = static_cast<std::uint32_t>(cells.divisions() * cells.divisions());
+    std::vector<bool> covered(cells_per_octant);
+    for (std::size_t i = first; i < covers.size(); ++i) {
+        covered[covers[i].cell - octant * cells_per_octant] = true;
+        covers[i].parts = kAllParts;
+        covers[i].nearest = 0;
+    }
+    for (std::uint32_t cell = 0; cell < cells_per_octant; ++cell)
+        if (!covered[cell]) covers.push_back({octant * cells_per_octant + cell, kAllParts, 0, kNear});
 }
 
 /// Does the face reach where a coordinate has the sign of `mirror`? A face that only touches the wall does.

@@ -1,7 +1,7 @@
 // Inside or outside, exactly. This scalar code is the specification.
 
 #include "exact_map/border.hpp"
-#include "exact_map/crossing_beyond.hpp"
+#include "exact_map/ray_crossing.hpp"
 #include "exact_map/layout.hpp"
 #include "exact_map/nearest.hpp"
 
@@ -34,9 +34,10 @@ struct Lists {
         return &map.vertices[corners[3 * std::size_t{face} + k]].x;
     }
 
-    /// Signed crossings of a particle's ray beyond the particle, with references [first, last).
+    /// Signed crossings of a particle's ray with references [first, last), on one side of the particle.
     /// @param part  of its cell in which the particle lies
-    int crossings(std::uint32_t first, std::uint32_t last, std::uint32_t part, const LatticePoint& p) const {
+    int crossings(RaySide side, std::uint32_t first, std::uint32_t last, std::uint32_t part,
+                  const LatticePoint& p) const {
         const CrossingFilter filter(p);
         constexpr std::uint32_t kPieceSize = 64;
         std::array<Face, kPieceSize> faces;
@@ -50,18 +51,19 @@ struct Lists {
             }
             for (std::uint32_t i = 0; i < count; ++i) {
                 const std::uint32_t face = faces[i];
-                const auto [crossing, sure] = filter(corner(face, 0), corner(face, 1), corner(face, 2));
-                sum += sure ? crossing : crossing_beyond(face_corners(map, face), p);
+                const auto [crossing, sure] = filter(side, corner(face, 0), corner(face, 1), corner(face, 2));
+                sum += sure ? crossing : crossing_on(side, face_corners(map, face), p);
             }
         }
         return sum;
     }
 };
 
-int crossings_in_band(const ExactMapView& map, std::uint32_t band, std::uint32_t part,
+int crossings_in_band(const ExactMapView& map, RaySide side, std::uint32_t band, std::uint32_t part,
                       const LatticePoint& p) {
     const auto crossings = [&](const auto& lists) {
-        return lists.crossings(map.bands[band].first_reference, map.bands[band + 1].first_reference, part, p);
+        return lists.crossings(side, map.bands[band].first_reference, map.bands[band + 1].first_reference, part,
+                               p);
     };
     const auto with_corners = [&](const auto* references) {
         return map.corners.wide.empty() ? crossings(Lists{map, references, map.corners.narrow.data()})
@@ -76,7 +78,7 @@ std::int64_t generalised_winding(const ExactMapView& map, std::uint32_t innermos
                                  const BandRange& bands, std::uint32_t part, const LatticePoint& p) {
     int crossings = 0;
     for (std::uint32_t band = innermost_band; band < bands.last; ++band)
-        crossings += crossings_in_band(map, band, part, p);
+        crossings += crossings_in_band(map, RaySide::Beyond, band, part, p);
     return std::lrint(crossings + border_part(map.border, map.vertices, p));
 }
 
@@ -88,10 +90,14 @@ Containment containment(const ExactMapView& map, const LatticePoint& p) {
     while (band < bands.last && t >= map.bands[band].upper) ++band;
     if (band == bands.last) return {};
     const bool in_gap = t < map.bands[band].lower;
-    const int winding = in_gap ? map.winding_below[band] : winding_beyond(map, band, bands);
+    int winding = in_gap ? map.winding_below[band] : winding_beyond(map, band, bands);
     if (winding == ExactMapView::kUncertain)
         return {is_inside(map.rule, generalised_winding(map, band, bands, part, p)), false};
-    return {is_inside(map.rule, in_gap ? winding : winding + crossings_in_band(map, band, part, p)), true};
+    if (winding == ExactMapView::kSplit)
+        winding = map.winding_below[band] - crossings_in_band(map, RaySide::Before, band, part, p);
+    else if (!in_gap)
+        winding += crossings_in_band(map, RaySide::Beyond, band, part, p);
+    return {is_inside(map.rule, winding), true};
 }
 
 Containment containment(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local) {

@@ -1,0 +1,113 @@
+#pragma once
+
+#include "directions/crossing.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+
+/// How a face counts for a particle p of the lattice: +1 or -1 if the ray from the origin through p leaves or
+/// enters the solid there, on one side of p, else 0. Particle and ray are perturbed together: p stands for
+/// p + (e, e^2, e^3), as in directions/crossing.hpp.
+namespace echinus {
+
+enum class RaySide : std::uint8_t {
+    Before, ///< between the origin and p
+    Beyond, ///< from p on
+};
+
+/// In integers: the specification.
+inline int crossing_on(RaySide side, const std::array<LatticePoint, 3>& face, const LatticePoint& p) {
+    const auto& [a, b, c] = face;
+    const FaceCone cone(a, b, c);
+    if (cone.edge_on() || !cone.meets(p)) return 0;
+    // The face is crossed beyond p if p and the origin lie on one side of its plane.
+    const LatticePoint normal = cross(b - a, c - a);
+    const std::int64_t before_plane = dot(normal, a - p);
+    const bool beyond = before_plane != 0 ? (before_plane > 0) == cone.outward()
+                                          : (sign_of_perturbation(normal) < 0) == cone.outward();
+    if (beyond != (side == RaySide::Beyond)) return 0;
+    return cone.outward() ? 1 : -1;
+}
+
+/// The same by a filter in double, which decides all but one face in a million, without a branch that a
+/// processor could mispredict.
+///
+/// Corners are projected along p onto the plane across the longest component of p: a point v goes to
+/// v * p_k - p * v_k. These are integers below 2^39.1, exact in double; from there on rounding is bounded.
+class CrossingFilter {
+  public:
+    explicit CrossingFilter(const LatticePoint& p) {
+        const std::array<std::int64_t, 3> c{p.x, p.y, p.z};
+        // Written so that no processor has to guess which component is the longest.
+        std::uint32_t k = std::abs(c[1]) > std::abs(c[0]) ? 1 : 0;
+        k = std::abs(c[2]) > std::abs(c[k]) ? 2 : k;
+        k_axis_ = k;
+        u_axis_ = kNext[k];
+        v_axis_ = kNext[k + 1];
+        pk_ = static_cast<double>(c[k_axis_]);
+        u_per_k_ = static_cast<double>(c[u_axis_]) / pk_;
+        v_per_k_ = static_cast<double>(c[v_axis_]) / pk_;
+        length_ = std::fabs(pk_);
+        sign_ = pk_ > 0 ? 1 : -1;
+    }
+
+    struct Verdict {
+        int crossing; ///< as crossing_on(), if it is sure
+        bool sure;
+    };
+
+    /// @param a, b, c  corners of the face: x, y, z each
+    Verdict operator()(RaySide side, const std::int32_t* a, const std::int32_t* b,
+                       const std::int32_t* c) const {
+        const Sheared pa = shear(a), pb = shear(b), pc = shear(c);
+        // Twice the areas that the ray cuts off at each edge: below 2^42.
+        const double bc = pb.u * pc.v - pb.v * pc.u;
+        const double ca = pc.u * pa.v - pc.v * pa.u;
+        const double ab = pa.u * pb.v - pa.v * pb.u;
+        const double least = std::min(std::min(bc, ca), ab);
+        const double most = std::max(std::max(bc, ca), ab);
+        // & and |, not && and ||: every comparison is made, so that there is nothing to guess.
+        const bool front = least > kAreaError;
+        const bool hit = front | (most < -kAreaError);
+        const bool missed = (most > kAreaError) & (least < -kAreaError);
+        // How far along k the plane is met, counted from p and from the origin, times the areas' sum: both
+        // have its sign if the plane is met beyond p, only the second has if it is met before p, and none if
+        // it is met behind the origin.
+        const double from_p = bc * pa.ahead + ca * pb.ahead + ab * pc.ahead;
+        const double from_origin = from_p + (bc + ca + ab) * length_;
+        const bool beyond = (from_p > 0) == front;
+        const bool forward = (from_origin > 0) == front;
+        const bool counts = hit & forward & (beyond == (side == RaySide::Beyond));
+        const bool sure_of_side = (std::fabs(from_p) > kVolumeError) & (std::fabs(from_origin) > kVolumeError);
+        const int sign = front ? sign_ : -sign_;
+        const bool sure = missed | (hit & sure_of_side);
+        return {sign * int{counts}, sure};
+    }
+
+  private:
+    struct Sheared {
+        double u, v, ahead; ///< ahead: how much farther than p along axis k, in the direction of p
+    };
+
+    Sheared shear(const std::int32_t* corner) const {
+        const double u = corner[u_axis_], v = corner[v_axis_], k = corner[k_axis_];
+        return {u - u_per_k_ * k, v - v_per_k_ * k, (k - pk_) * sign_};
+    }
+
+    // Sheared coordinates, below 2^20, are off by less than 2^-31; so products and areas by less than 2^-9.
+    // Times a difference below 2^20.1, and three of them added: less than 2^13; counted from the
+    // origin, twice that.
+    static constexpr double kAreaError = 0x1p-9;
+    static constexpr double kVolumeError = 0x1p14;
+
+    static constexpr std::array<std::uint32_t, 4> kNext{1, 2, 0, 1}; ///< axis k is followed by these two
+
+    std::uint32_t u_axis_, v_axis_, k_axis_;
+    double u_per_k_, v_per_k_, pk_, length_;
+    int sign_;
+};
+
+} // namespace echinus
