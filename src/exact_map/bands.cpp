@@ -206,9 +206,9 @@ class BandBuilder {
         }
     }
 
-    /// Where to cut a band in two, so that a query need look only at the faces of its side: those of the lower
-    /// half tell how often the ray crosses the surface before the particle, those of the upper how often
-    /// beyond. Faces on both sides are listed twice.
+    /// Where to cut a band in two, so that a query need look only at the faces of its side: those of the
+    /// lower half tell how often the ray crosses the surface before the particle, those of the upper how
+    /// often beyond. Faces on both sides are listed twice.
     std::optional<std::uint16_t> split_of(std::span<const Interval> intervals) {
         constexpr std::size_t kLeastFaces = 6;
         constexpr double kLeastGain = 0.3; // of the cost; for less, memory is better spent on more cells

@@ -1,26 +1,25 @@
 // Inside or outside, exactly. This scalar code is the specification.
 
 #include "exact_map/border.hpp"
-#include "exact_map/ray_crossing.hpp"
 #include "exact_map/layout.hpp"
 #include "exact_map/nearest.hpp"
+#include "exact_map/ray_crossing.hpp"
 
 #include <cassert>
 #include <cmath>
-#include <optional>
 
 namespace echinus {
 
 namespace {
 
-/// A particle on the lattice; none for one that is not finite or lies beyond the mesh's lattice: it is
-/// outside.
-std::optional<LatticePoint> snapped(const LatticeFrame& frame, const Vec3f& point_local) {
-    const Vec3d place = frame.to_lattice(point_local);
+/// A particle on the lattice. One that is not finite or lies beyond the mesh's lattice stands at the
+/// lattice's corner: that is outside.
+LatticePoint snapped(const LatticeFrame& frame, const Vec3f& point_local) {
     constexpr auto kLimit = static_cast<double>(kLatticeExtent);
-    if (!(std::fabs(place.x) <= kLimit && std::fabs(place.y) <= kLimit && std::fabs(place.z) <= kLimit))
-        return std::nullopt;
-    return rounded(place);
+    const Vec3d place = frame.to_lattice(point_local);
+    const bool on_lattice =
+        (std::fabs(place.x) <= kLimit) & (std::fabs(place.y) <= kLimit) & (std::fabs(place.z) <= kLimit);
+    return rounded(on_lattice ? place : Vec3d{kLimit, kLimit, kLimit});
 }
 
 /// The lists of a map with the width of their numbers known.
@@ -62,8 +61,8 @@ struct Lists {
 int crossings_in_band(const ExactMapView& map, RaySide side, std::uint32_t band, std::uint32_t part,
                       const LatticePoint& p) {
     const auto crossings = [&](const auto& lists) {
-        return lists.crossings(side, map.bands[band].first_reference, map.bands[band + 1].first_reference, part,
-                               p);
+        return lists.crossings(side, map.bands[band].first_reference, map.bands[band + 1].first_reference,
+                               part, p);
     };
     const auto with_corners = [&](const auto* references) {
         return map.corners.wide.empty() ? crossings(Lists{map, references, map.corners.narrow.data()})
@@ -101,8 +100,7 @@ Containment containment(const ExactMapView& map, const LatticePoint& p) {
 }
 
 Containment containment(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local) {
-    const std::optional<LatticePoint> p = snapped(frame, point_local);
-    return p ? containment(map, *p) : Containment{};
+    return containment(map, snapped(frame, point_local));
 }
 
 /// In lattice steps: the diameter of the lattice and more.

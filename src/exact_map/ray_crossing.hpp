@@ -81,7 +81,8 @@ class CrossingFilter {
         const bool beyond = (from_p > 0) == front;
         const bool forward = (from_origin > 0) == front;
         const bool counts = hit & forward & (beyond == (side == RaySide::Beyond));
-        const bool sure_of_side = (std::fabs(from_p) > kVolumeError) & (std::fabs(from_origin) > kVolumeError);
+        const bool sure_of_side =
+            (std::fabs(from_p) > kVolumeError) & (std::fabs(from_origin) > kVolumeError);
         const int sign = front ? sign_ : -sign_;
         const bool sure = missed | (hit & sure_of_side);
         return {sign * int{counts}, sure};

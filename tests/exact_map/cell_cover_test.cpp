@@ -91,7 +91,8 @@ TEST(CellCover, ListsAFaceOnceInACell) {
         // Every third face comes within a few steps of the centre.
         const LatticePoint middle = n % 3 == 0 ? LatticePoint{} : random.point(kLatticeExtent / 4);
         std::array<LatticePoint, 3> face;
-        for (LatticePoint& corner : face) corner = middle + random.point(n % 2 == 0 ? 20 : kLatticeExtent / 4);
+        for (LatticePoint& corner : face)
+            corner = middle + random.point(n % 2 == 0 ? 20 : kLatticeExtent / 4);
         std::vector<CellCover> covers;
         cover_cells(OctahedralCells(9), face, covers);
         std::set<std::uint32_t> listed;

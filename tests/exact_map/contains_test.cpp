@@ -1,11 +1,9 @@
 #include "support/random_points.hpp"
 
-#include <echinus/error.hpp>
 #include <echinus/exact_map.hpp>
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -135,18 +133,4 @@ TEST(ExactMapContains, TakesNaNAndInfinityForOutside) {
         for (const Vec3f& p : {Vec3f{bad, 0, 0}, Vec3f{0, bad, 0}, Vec3f{0, 0, bad}})
             EXPECT_FALSE(contains(map, p));
     EXPECT_TRUE(contains(map, map.view().centre));
-}
-
-TEST(ExactMapBuild, GivesTheSameBytesForEveryNumberOfThreads) {
-    const TriangleMesh mesh = make_torus(1, 0.4, 60, 24);
-    const ExactMap one = ExactMap::build(mesh, {.thread_count = 1});
-    const ExactMap many = ExactMap::build(mesh, {.thread_count = 0});
-    EXPECT_TRUE(std::ranges::equal(one.view().band_offsets, many.view().band_offsets));
-    EXPECT_TRUE(std::ranges::equal(one.view().references.narrow, many.view().references.narrow));
-    EXPECT_TRUE(std::ranges::equal(one.view().winding_below, many.view().winding_below));
-}
-
-TEST(ExactMapBuild, RefusesWhatIsNoMeshAndBadOptions) {
-    EXPECT_THROW(ExactMap::build({}), Error);
-    EXPECT_THROW(ExactMap::build(make_box({1, 1, 1}), {.divisions = 513}), Error);
 }

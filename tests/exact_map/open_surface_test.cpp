@@ -1,0 +1,87 @@
+#include "support/random_points.hpp"
+
+#include <echinus/exact_map.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace echinus;
+
+namespace {
+
+TriangleMesh without_faces(TriangleMesh mesh, std::size_t first, std::size_t count) {
+    const auto begin = mesh.faces.begin() + static_cast<std::ptrdiff_t>(first);
+    mesh.faces.erase(begin, begin + static_cast<std::ptrdiff_t>(count));
+    return mesh;
+}
+
+/// The half of a sphere that lies above a height: a bowl.
+TriangleMesh bowl(double height) {
+    TriangleMesh mesh = make_sphere(1, 24, 12);
+    std::erase_if(mesh.faces, [&](const Triangle& face) {
+        return double{mesh.vertices[face[0]].z} + mesh.vertices[face[1]].z + mesh.vertices[face[2]].z <
+               3 * height;
+    });
+    return mesh;
+}
+
+} // namespace
+
+TEST(ExactMapOfAnOpenSurface, AnswersByTheGeneralisedWindingNumber) {
+    test::Random random(3);
+    const TriangleMesh meshes[] = {
+        without_faces(make_box({2, 1, 1}, 3), 5, 1),
+        without_faces(make_torus(1, 0.4, 30, 12), 100, 40),
+        bowl(-0.5),
+        bowl(0.3),
+        without_faces(make_box({1, 1, 1}), 0, 11), // a single triangle
+    };
+    for (const TriangleMesh& mesh : meshes)
+        for (std::uint32_t divisions : {0U, 1U, 12U}) {
+            const ExactMap map = ExactMap::build(mesh, {.divisions = divisions});
+            ASSERT_FALSE(map.view().border.empty());
+            for (int n = 0; n < 3000; ++n) {
+                const Vec3f p = test::in_sphere(random, 1.2F * map.view().radius) + map.view().centre;
+                const double winding = std::fabs(winding_number(mesh, Vec3d(p)));
+                if (std::fabs(winding - 0.5) < 1e-4) continue; // snapping decides
+                if (unsigned_distance(mesh, Vec3d(p)) < 1e-5 * map.view().radius) continue;
+                const Containment found = classify(map, p);
+                ASSERT_EQ(found.inside, winding > 0.5)
+                    << "winding number " << winding << ", certain " << found.certain;
+                ASSERT_EQ(contains(map, p), found.inside);
+                ASSERT_EQ(contact(map, p, 10).certain, found.certain);
+            }
+        }
+}
+
+TEST(ExactMapOfAnOpenSurface, TellsHowMuchOfItIsCertain) {
+    const ExactMap pierced = ExactMap::build(without_faces(make_torus(1, 0.4, 60, 24), 100, 1));
+    EXPECT_LT(pierced.statistics().certain_share, 1);
+    EXPECT_GT(pierced.statistics().certain_share, 0.95F);
+    EXPECT_GT(pierced.statistics().uncertain_directions, 0);
+    EXPECT_LT(pierced.statistics().uncertain_directions, 0.1F);
+
+    test::Random random(4);
+    int certain = 0;
+    constexpr int kCount = 20'000;
+    for (int n = 0; n < kCount; ++n)
+        certain += classify(pierced, test::in_sphere(random, pierced.view().radius)).certain ? 1 : 0;
+    EXPECT_NEAR(double{pierced.statistics().certain_share}, certain / double{kCount}, 0.01);
+}
+
+TEST(ExactMapOfAnOpenSurface, IsCertainEverywhereWhenTheSurfaceIsClosedAfterAll) {
+    // Every face with vertices of its own, as STL files have it: closed in space, though not by number.
+    const TriangleMesh box = make_box({2, 1, 1}, 3);
+    TriangleMesh soup;
+    for (const Triangle& face : box.faces) {
+        const auto first = static_cast<std::uint32_t>(soup.vertices.size());
+        for (std::uint32_t vertex : face) soup.vertices.push_back(box.vertices[vertex]);
+        soup.faces.push_back({first, first + 1, first + 2});
+    }
+    const ExactMap map = ExactMap::build(soup);
+    EXPECT_TRUE(map.view().border.empty());
+    EXPECT_EQ(map.statistics().certain_share, 1);
+    EXPECT_TRUE(classify(map, {0, 0, 0}).inside);
+    EXPECT_TRUE(classify(map, {0, 0, 0}).certain);
+}
