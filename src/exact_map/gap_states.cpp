@@ -19,6 +19,20 @@ double distance_to_segment(const Vec3d& place, const Vec3d& a, const Vec3d& b) {
     return length(place - a - ab * share);
 }
 
+/// How often gaps may be halved so that the distances looked at stay below 3 10^8, some seconds on one core.
+int affordable_depth(std::size_t edge_count, std::size_t cell_count) {
+    constexpr double kMostDistances = 3e8;
+    constexpr double kGapsPerCell = 3;
+    constexpr int kMaxDepth = 5;
+    const double distances_per_piece =
+        kGapsPerCell * static_cast<double>(edge_count) * static_cast<double>(cell_count);
+    int depth = -1;
+    for (double pieces = 1; depth < kMaxDepth && pieces * distances_per_piece <= kMostDistances;
+         pieces = 2 * pieces + 1)
+        ++depth;
+    return depth;
+}
+
 } // namespace
 
 /// A cell between two L1 norms, and a place in it on the ray through the cell's middle.
@@ -39,7 +53,8 @@ struct GapStates::Region {
 
 GapStates::GapStates(const LatticeMesh& lattice, std::span<const BorderEdge> border,
                      const OctahedralCells& cells)
-    : border_(border), cells_(cells), vertices_(lattice.vertices.begin(), lattice.vertices.end()) {
+    : border_(border), cells_(cells), vertices_(lattice.vertices.begin(), lattice.vertices.end()),
+      max_depth_(affordable_depth(border.size(), cells.count())) {
     for (const BorderEdge& edge : border) {
         const Vec3d a(lattice.vertices[edge.a]), b(lattice.vertices[edge.b]);
         edges_.push_back({a, b, std::abs(edge.multiplicity) * length(b - a) / (4 * std::numbers::pi)});
@@ -58,6 +73,7 @@ double GapStates::largest_change(const Vec3d& place, double reach) const {
 }
 
 std::int16_t GapStates::winding_in(const Region& region, int crossings) const {
+    if (max_depth_ < 0) return ExactMapView::kUncertain;
     const double change = largest_change(region.place(), region.reach);
     if (change >= 0.5) return ExactMapView::kUncertain;
     const double winding = crossings + border_part(border_, vertices_, region.direction, region.share);
@@ -74,11 +90,10 @@ void GapStates::append_pieces(std::uint32_t cell, std::int32_t lower, std::int32
 
 void GapStates::append_halves(std::uint32_t cell, std::int32_t lower, std::int32_t upper, int crossings,
                               int depth, std::vector<GapPiece>& pieces) const {
-    constexpr int kMaxDepth = 5;
     const double middle = 0.5 * (lower + upper);
     const Region region(cells_, cell, lower * kUnit, upper * kUnit, middle * kUnit);
     const std::int16_t winding = winding_in(region, crossings);
-    if (winding == ExactMapView::kUncertain && depth < kMaxDepth && upper - lower > 1) {
+    if (winding == ExactMapView::kUncertain && depth < max_depth_ && upper - lower > 1) {
         const std::int32_t half = (lower + upper) / 2;
         append_halves(cell, lower, half, crossings, depth + 1, pieces);
         append_halves(cell, half, upper, crossings, depth + 1, pieces);

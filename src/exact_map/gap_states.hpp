@@ -22,6 +22,9 @@ struct GapPiece {
 /// Between crossings it is a smooth function whose slope the border bounds, edge by edge, by length over
 /// 4 pi distance^2 (the law of Biot and Savart: a solid angle is the potential of a current in its border).
 /// So from its value at one place its range in a convex region follows, if no border edge comes near.
+///
+/// That takes time in proportion to border edges times pieces. What would take more than some seconds is not
+/// looked at: it stays uncertain, as nearly all of a soup of triangles is anyway.
 class GapStates {
   public:
     GapStates(const LatticeMesh& lattice, std::span<const BorderEdge> border, const OctahedralCells& cells);
@@ -52,6 +55,8 @@ class GapStates {
     OctahedralCells cells_;
     std::vector<Vec3<std::int32_t>> vertices_;
     std::vector<Edge> edges_;
+    int max_depth_ =
+        0; ///< how often a gap may be halved; negative when not even the first look can be afforded
 };
 
 } // namespace echinus
