@@ -26,6 +26,7 @@ class Generator {
                                            &Generator::near_edge_on,
                                            &Generator::steps_from_face,
                                            &Generator::steps_from_edge,
+                                           &Generator::near_vertex,
                                            &Generator::near_lattice_vertex,
                                            &Generator::between_lattice_vertices,
                                            &Generator::near_centre};
@@ -152,6 +153,10 @@ class Generator {
         return Vec3f(point_of_face(corners) + unit_normal(corners) * (whole(4) * frame_.step()));
     }
     Vec3f steps_from_edge() { return Vec3f(point_of_edge() + offset(4) * frame_.step()); }
+    Vec3f near_vertex() {
+        const double x = random_.uniform(-1.5, 1.5), y = random_.uniform(-1.5, 1.5);
+        return Vec3f(random_vertex() + Vec3d{x, y, random_.uniform(-1.5, 1.5)} * frame_.step());
+    }
     Vec3f near_lattice_vertex() { return from_lattice(to_lattice(random_vertex()) + offset(2)); }
     Vec3f between_lattice_vertices() {
         const Corners corners = random_face();

@@ -2,6 +2,7 @@
 // tests are skipped.
 
 #include "oracle/exact_judge.hpp"
+#include "oracle/expect_right_map.hpp"
 #include "oracle/wrong_share.hpp"
 #include "support/point_sets.hpp"
 
@@ -51,4 +52,9 @@ TEST_F(DevelopmentMeshes, TheHorseIsSeldomJudgedWrongly) {
     const DistanceMap map = DistanceMap::build(horse, {.correction = VertexCorrection::None});
     EXPECT_LT(test::wrong_share(map, judge, test::uniform_points(horse, 15'000)), 0.15);
     EXPECT_LT(test::wrong_share(map, judge, test::surface_points(horse, 15'000)), 5);
+}
+
+TEST_F(DevelopmentMeshes, ExactMapsAreRight) {
+    for (const auto& file : std::filesystem::directory_iterator(kFolder))
+        if (is_mesh(file)) test::expect_right_map(file.path().stem().string(), read_mesh(file), {}, 20'000);
 }

@@ -179,6 +179,7 @@ const std::vector<std::pair<std::string, Maker>>& makers() {
         {"torus", [] { return make_torus(1, 0.4, 60, 24); }},
         {"boxes", make_aligned_boxes},
         {"needles", make_needles},
+        {"octahedron", [] { return make_sphere(1, 4, 2); }}, // its corners lie at R and on the axes, exactly
         {"star", make_star},
         {"nested", make_nested_spheres},
         {"rings", make_rings},

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "oracle/check_result.hpp"
+
+#include <string>
+
+/// How echinus-check prints what it found.
+namespace echinus::test {
+
+std::string to_json(const CheckResult& result);
+std::string to_text(const CheckResult& result);
+
+} // namespace echinus::test

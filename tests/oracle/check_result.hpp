@@ -1,0 +1,38 @@
+#pragma once
+
+#include "oracle/accuracy.hpp"
+
+#include <string>
+#include <vector>
+
+/// What echinus-check found out about one mesh.
+namespace echinus::test {
+
+/// As on the command line.
+const char* name_of(InsideRule rule);
+
+struct SetResult {
+    std::string name;
+    std::vector<Score> scores; ///< one per rule
+};
+
+struct CheckResult {
+    std::string mesh;
+    std::size_t face_count = 0;
+    bool closed = true;
+    std::uint32_t divisions = 0;
+    std::size_t byte_count = 0;
+    std::uint64_t seed = 0;
+    std::vector<InsideRule> rules;
+    std::vector<SetResult> sets;
+    std::size_t wrong_corners = 0; ///< of the map, not where the mesh's corners snap to
+    std::size_t compared_with_cgal = 0, judges_disagree = 0;
+    double seconds = 0;
+
+    Score total(std::size_t rule) const;
+    /// At least 90 % of the points drawn uniformly are certain, where the surface is open.
+    double certain_share() const;
+    bool holds() const;
+};
+
+} // namespace echinus::test
