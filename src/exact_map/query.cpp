@@ -15,11 +15,12 @@ namespace {
 /// A particle on the lattice. One that is not finite or lies beyond the mesh's lattice stands at the
 /// lattice's corner: that is outside.
 LatticePoint snapped(const LatticeFrame& frame, const Vec3f& point_local) {
-    constexpr auto kLimit = static_cast<double>(kLatticeExtent);
+    constexpr auto kExtent = static_cast<double>(kLatticeExtent);
+    constexpr double kLimit = kExtent + 0.5; // what is rounded into the lattice lies in it
     const Vec3d place = frame.to_lattice(point_local);
     const bool on_lattice =
         (std::fabs(place.x) <= kLimit) & (std::fabs(place.y) <= kLimit) & (std::fabs(place.z) <= kLimit);
-    return rounded(on_lattice ? place : Vec3d{kLimit, kLimit, kLimit});
+    return rounded(on_lattice ? place : Vec3d{kExtent, kExtent, kExtent});
 }
 
 /// The lists of a map with the width of their numbers known.
