@@ -172,6 +172,31 @@ TriangleMesh make_centre_on_face() {
                    translated(make_box({1, 1, 1}, 3), {-0.5F, 0, 0})});
 }
 
+/// Faces a thousand times as long as wide, which fit no grid.
+TriangleMesh make_slivers() {
+    TriangleMesh mesh = make_sphere(1, 3000, 3);
+    for (Vec3f& vertex : mesh.vertices) vertex.y *= 0.3F;
+    return turned(mesh);
+}
+
+/// Tetrahedra that pass through each other anyhow, turned outwards and inwards by chance; every third has a
+/// corner within some forty lattice steps of the centre. The octahedron around all keeps the centre there.
+TriangleMesh make_tetrahedra() {
+    PortableRandom random(6);
+    const auto within = [&](double half_width) {
+        const double x = random.uniform(-half_width, half_width), y = random.uniform(-half_width, half_width);
+        return Vec3f(Vec3d{x, y, random.uniform(-half_width, half_width)});
+    };
+    TriangleMesh whole = make_sphere(1, 4, 2);
+    for (int i = 0; i < 150; ++i) {
+        TriangleMesh part;
+        part.vertices = {within(i % 3 == 0 ? 4e-5 : 0.5), within(0.5), within(0.5), within(0.5)};
+        part.faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+        append(whole, part);
+    }
+    return whole;
+}
+
 using Maker = TriangleMesh (*)();
 
 const std::vector<std::pair<std::string, Maker>>& makers() {
@@ -181,6 +206,16 @@ const std::vector<std::pair<std::string, Maker>>& makers() {
         {"needles", make_needles},
         {"octahedron", [] { return make_sphere(1, 4, 2); }}, // its corners lie at R and on the axes, exactly
         {"star", make_star},
+        {"slivers", make_slivers},
+        {"tetrahedra", make_tetrahedra},
+        {"plate",
+         [] {
+             return make_box({2, 2, 1e-5}, 8);
+         }}, // a few lattice steps thick
+        {"thin-plate",
+         [] {
+             return turned(make_box({2, 2, 1e-6}, 8));
+         }}, // less than one
         {"nested", make_nested_spheres},
         {"rings", make_rings},
         {"million", make_million},
