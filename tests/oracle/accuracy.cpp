@@ -88,7 +88,7 @@ void Score::merge(const Score& later) {
         if (complaints.size() < kMaxComplaints) complaints.push_back(complaint);
 }
 
-bool Score::holds(bool closed) const {
+bool Score::right(bool closed) const {
     const bool sides = closed ? wrong_inside == 0 && wrong_snapped == 0
                               : disagreements_certain == 0 &&
                                     static_cast<double>(agreeing) >= 0.999 * static_cast<double>(far_points);
@@ -180,7 +180,6 @@ void AccuracyJudge::judge_side(const Vec3f& point, const Truth& truth, InsideRul
 
 void AccuracyJudge::judge_open_side(const Vec3f& point, const Truth& truth, bool inside, bool certain,
                                     Score& score) const {
-    score.certain += certain ? 1 : 0;
     if (truth.distance < kAmbiguousSteps * step_) ++score.ambiguous;
     if (truth.distance < kFar * radius_) return;
     ++score.far_points;
@@ -227,6 +226,9 @@ void AccuracyJudge::judge(const Vec3f& point, const Truth& truth, InsideRule rul
     ++score.points;
     if (inside != contact.inside)
         count(score.inconsistent, score, point, "contains() and contact() put it on different sides");
+    score.certain += contact.certain ? 1 : 0;
+    if (closed_ && !contact.certain)
+        count(score.inconsistent, score, point, "called uncertain, though the surface is closed");
     if (closed_)
         judge_side(point, truth, rule, inside, score);
     else

@@ -31,11 +31,12 @@ struct Score {
     static constexpr std::size_t kMaxComplaints = 5;
 
     std::size_t points = 0;
+    std::size_t certain = 0;       ///< called so by the map
     std::size_t ambiguous = 0;     ///< nearer to the surface than 2 lattice steps
     std::size_t wrong_inside = 0;  ///< of the others
     std::size_t wrong_snapped = 0; ///< of all, against snapped mesh and snapped particle
-    /// contains() and contact() disagree, or a contact is missing, or its depth has the wrong sign, or its
-    /// normal has not length one.
+    /// contains() and contact() disagree, or an answer about a closed surface is uncertain, or a contact is
+    /// missing, or its depth has the wrong sign, or its normal has not length one.
     std::size_t inconsistent = 0;
     double worst_distance_error = 0;   ///< of |depth|, in R
     double worst_point_error = 0;      ///< of the contact point from its face and from its depth, in R
@@ -45,13 +46,12 @@ struct Score {
     std::size_t far_points = 0;            ///< at least 1 % R from the surface
     std::size_t agreeing = 0;              ///< of those, with |generalised winding number| > 0.5
     std::size_t disagreements_certain = 0; ///< of those, disagreeing and yet called certain
-    std::size_t certain = 0;               ///< of all points
 
     std::vector<std::string> complaints; ///< the first few faults, each a sentence with the point
 
     void merge(const Score& later);
     /// Are all sides right and all figures within what docs/accuracy.md promises?
-    bool holds(bool closed) const;
+    bool right(bool closed) const;
 };
 
 /// What is true of one particle.

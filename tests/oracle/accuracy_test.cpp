@@ -93,7 +93,7 @@ test::Score score_of_spoilt(const Spoil& spoil, InsideRule rule = InsideRule::No
 TEST(AccuracyJudge, FindsNoFaultInTrueAnswers) {
     for (const InsideRule rule : {InsideRule::Nonzero, InsideRule::Parity}) {
         const test::Score score = score_of_spoilt([](std::uint8_t&, Contact&) {}, rule);
-        EXPECT_TRUE(score.holds(true));
+        EXPECT_TRUE(score.right(true));
         EXPECT_TRUE(score.complaints.empty()) << score.complaints.front();
         EXPECT_LT(score.worst_distance_error, 1e-6);
         EXPECT_LT(score.worst_normal_error_deg, 0.01);
@@ -111,7 +111,7 @@ TEST(AccuracyJudge, CountsAWrongSide) {
     EXPECT_EQ(score.wrong_snapped, 1U);
     EXPECT_EQ(score.inconsistent, 0U);
     EXPECT_EQ(score.complaints.size(), 2U);
-    EXPECT_FALSE(score.holds(true));
+    EXPECT_FALSE(score.right(true));
 }
 
 TEST(AccuracyJudge, CountsQueriesThatDisagree) {
@@ -133,7 +133,7 @@ TEST(AccuracyJudge, MeasuresAWrongDistance) {
         score_of_spoilt([](std::uint8_t&, Contact& contact) { contact.depth *= 1.01F; });
     EXPECT_GT(score.worst_distance_error, 1e-5);
     EXPECT_GT(score.worst_point_error, 1e-5);
-    EXPECT_FALSE(score.holds(true));
+    EXPECT_FALSE(score.right(true));
 }
 
 TEST(AccuracyJudge, MeasuresAContactPointThatIsNotTheNearest) {
@@ -143,7 +143,7 @@ TEST(AccuracyJudge, MeasuresAContactPointThatIsNotTheNearest) {
     });
     EXPECT_LT(score.worst_distance_error, 1e-6);
     EXPECT_GT(score.worst_point_error, 1e-5);
-    EXPECT_FALSE(score.holds(true));
+    EXPECT_FALSE(score.right(true));
 }
 
 TEST(AccuracyJudge, MeasuresAWrongNormal) {
@@ -152,7 +152,7 @@ TEST(AccuracyJudge, MeasuresAWrongNormal) {
     });
     EXPECT_GT(score.worst_normal_error_deg, 0.1);
     EXPECT_LT(score.worst_normal_error_deg, 0.6);
-    EXPECT_FALSE(score.holds(true));
+    EXPECT_FALSE(score.right(true));
 }
 
 TEST(AccuracyJudge, ForgivesOnlyPointsNearTheSurface) {

@@ -21,15 +21,20 @@ Score CheckResult::total(std::size_t rule) const {
 }
 
 double CheckResult::certain_share() const {
+    if (closed) return 1;
     const Score& uniform = sets.front().scores.front();
     return static_cast<double>(uniform.certain) /
            static_cast<double>(std::max<std::size_t>(1, uniform.points));
 }
 
-bool CheckResult::holds() const {
+bool CheckResult::right() const {
     for (std::size_t rule = 0; rule < rules.size(); ++rule)
-        if (!total(rule).holds(closed)) return false;
-    return wrong_corners == 0 && judges_disagree == 0 && (closed || certain_share() >= kCertainShareLimit);
+        if (!total(rule).right(closed)) return false;
+    return wrong_corners == 0 && judges_disagree == 0;
+}
+
+bool CheckResult::holds() const {
+    return right() && certain_share() >= kCertainShareLimit;
 }
 
 } // namespace echinus::test

@@ -30,8 +30,11 @@ struct CheckResult {
     double seconds = 0;
 
     Score total(std::size_t rule) const;
-    /// At least 90 % of the points drawn uniformly are certain, where the surface is open.
+    /// Of the points drawn uniformly; 1 where the surface is closed.
     double certain_share() const;
+    /// No answer is wrong, and all distances and normals are as near as docs/accuracy.md promises.
+    bool right() const;
+    /// All answers are right, and at least 90 % of the bounding sphere is certain.
     bool holds() const;
 };
 

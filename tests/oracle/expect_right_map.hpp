@@ -10,7 +10,7 @@ namespace echinus::test {
 inline void expect_right_map(const std::string& name, const TriangleMesh& mesh, const ExactMapOptions& map,
                              std::size_t points) {
     const CheckResult result = check_mesh(name, mesh, {.points = points, .map = map});
-    EXPECT_TRUE(result.holds()) << name << ", " << result.divisions << " divisions";
+    EXPECT_TRUE(result.right()) << name << ", " << result.divisions << " divisions";
     EXPECT_EQ(result.wrong_corners, 0U) << name;
     EXPECT_EQ(result.judges_disagree, 0U) << name;
     for (std::size_t rule = 0; rule < result.rules.size(); ++rule)
