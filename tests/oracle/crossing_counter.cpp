@@ -22,12 +22,16 @@ using IntegerPoint = CGAL::Simple_cartesian<Integer>::Point_3;
 /// primes, so that rays from whole numbers through whole numbers seldom meet edges.
 constexpr Vec3d kDirectionInUnits{1299709, 1999993, 2750159};
 constexpr int kMaxAttempts = 16;
-/// The end of a ray strays by less than 6 kMaxAttempts units; this is more.
-constexpr double kSlackInUnits = 8 * kMaxAttempts;
+/// More than the end of a ray strays, and than rounding.
+constexpr double kSlackInUnits = 64;
 
-/// The end of the ray. Another attempt is another ray, never twice the same.
+/// The end of the ray. Another attempt is another ray; the ends lie on no common plane, for one of those may
+/// hold a face.
 Vec3d end_of_ray(const Vec3d& start, double unit, int attempt) {
-    const Vec3d jitter{5.0 * attempt, -3.0 * attempt, 2.0 * attempt};
+    const auto scattered = [attempt](int factor, int modulus) {
+        return static_cast<double>(factor * attempt % modulus);
+    };
+    const Vec3d jitter{scattered(7, 31), scattered(11, 29), scattered(13, 23)};
     return start + (kDirectionInUnits + jitter) * unit;
 }
 

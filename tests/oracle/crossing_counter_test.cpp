@@ -71,6 +71,15 @@ TEST(CrossingCounter, DisplacesAlongYWhereXDecidesNothing) {
     EXPECT_EQ(counter.winding({1, 3, 2}), 1);
 }
 
+TEST(CrossingCounter, FindsAnotherRayWhereTheFirstEndsOnThePlaneOfAFace) {
+    constexpr double kRadius = 524288;
+    TriangleMesh octahedron = make_sphere(kRadius, 4, 2);
+    const test::CrossingCounter counter(corners_of(octahedron), 1, test::OnPlane::Displace);
+    // With the first ray's end x + y - z = kRadius, the plane of a face.
+    const double difference = 1299709 + 1999993 - 2750159 - kRadius;
+    EXPECT_EQ(counter.winding({-60000, 30000, difference - 30000}), 1);
+}
+
 TEST(DistanceTree, GivesTheDistancesOfCgalWhateverTheHint) {
     for (const auto& [name, mesh] : test::generated_meshes()) {
         const test::ExactJudge judge(mesh);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace echinus::test {
 
@@ -35,6 +34,11 @@ double face_distance_sq(const Corners& face, const Vec3d& point) {
                      segment_distance_sq(point, c, a)});
 }
 
+bool has_three_corners(const Corners& face) {
+    const auto& [a, b, c] = face;
+    return a != b && b != c && c != a;
+}
+
 double coordinate(const Vec3d& v, std::size_t axis) {
     return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
 }
@@ -50,8 +54,9 @@ double distance_to(const Corners& face, const Vec3d& point) {
     return std::sqrt(face_distance_sq(face, point));
 }
 
-DistanceTree::DistanceTree(std::vector<Corners> faces) : faces_(std::move(faces)), order_(faces_.size()) {
-    std::iota(order_.begin(), order_.end(), 0U);
+DistanceTree::DistanceTree(std::vector<Corners> faces) : faces_(std::move(faces)) {
+    for (std::uint32_t i = 0; i < faces_.size(); ++i)
+        if (has_three_corners(faces_[i])) order_.push_back(i);
     build(0, static_cast<std::uint32_t>(order_.size()));
 }
 
@@ -98,7 +103,8 @@ double DistanceTree::distance(const Vec3d& point, std::uint32_t hint) const {
     };
     Waiting waiting[64]; // one per level, and each level halves the faces
     std::size_t count = 0;
-    double nearest_sq = face_distance_sq(faces_[hint], point);
+    const Corners& first = faces_[has_three_corners(faces_[hint]) ? hint : order_.front()];
+    double nearest_sq = face_distance_sq(first, point);
     waiting[count++] = {0, distance_sq(nodes_[0].box, point)};
     while (count > 0) {
         const Waiting next = waiting[--count];
