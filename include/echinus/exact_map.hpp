@@ -54,8 +54,8 @@ struct ExactMapOptions {
 /// What the build saw. Stored with the map.
 struct ExactMapStatistics {
     std::uint32_t face_count = 0; ///< of the mesh
-    std::uint32_t dropped_faces =
-        0;                          ///< with two corners on one point of the lattice; they have no area there
+    /// With two corners on one point of the lattice: without area there, they count for distances only.
+    std::uint32_t dropped_faces = 0;
     std::uint32_t longest_list = 0; ///< most faces of one band
     float mean_list = 0;            ///< faces of a band, mean over all bands
     /// Faces that a query in a band tests, expected for a particle on the surface: the mean over bands, each

@@ -70,12 +70,11 @@ LatticeMesh snap_around(const TriangleMesh& mesh, const std::vector<bool>& used,
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
         if (used[i]) lattice.vertices[i] = lattice.snap(mesh.vertices[i]);
     for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
-        const Triangle& face = mesh.faces[i];
-        const LatticePoint &a = lattice.vertices[face[0]], &b = lattice.vertices[face[1]],
-                           &c = lattice.vertices[face[2]];
-        if (a == b || b == c || c == a) continue;
-        lattice.faces.push_back(face);
+        lattice.faces.push_back(mesh.faces[i]);
         lattice.face_numbers.push_back(static_cast<std::uint32_t>(i));
+        if (!is_collapsed(lattice.corners(static_cast<std::uint32_t>(lattice.faces.size() - 1)))) continue;
+        lattice.faces.pop_back();
+        lattice.face_numbers.pop_back();
     }
     return lattice;
 }

@@ -3,6 +3,7 @@
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -53,7 +54,16 @@ struct LatticeMesh {
     std::vector<std::uint32_t> face_numbers;
 
     LatticePoint snap(const Vec3f& point_local) const { return rounded(frame.to_lattice(point_local)); }
+    std::array<LatticePoint, 3> corners(std::uint32_t face) const {
+        const Triangle& t = faces[face];
+        return {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+    }
 };
+
+/// Do two corners lie on one point of the lattice?
+inline bool is_collapsed(const std::array<LatticePoint, 3>& corners) {
+    return corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
+}
 
 /// Snaps a mesh around the centre of its bounding sphere. Where that centre lies on a face or on the line of
 /// an edge, so that a ray from it could not be made to miss them by a small turn, it moves by whole lattice

@@ -40,11 +40,6 @@ struct CellIntervals {
     }
 };
 
-std::array<LatticePoint, 3> corners_of(const LatticeMesh& lattice, std::uint32_t face) {
-    const Triangle& t = lattice.faces[face];
-    return {lattice.vertices[t[0]], lattice.vertices[t[1]], lattice.vertices[t[2]]};
-}
-
 Interval interval_of(const CellCover& cover, std::uint32_t face) {
     constexpr double kRounding = 0.01; // lattice steps, far above what the cover rounds
     const auto lower = static_cast<std::int64_t>(std::max(0.0, cover.nearest - kRounding));
@@ -71,8 +66,10 @@ std::vector<FoundCovers> cover_all_faces(const LatticeMesh& lattice, const Octah
         std::vector<CellCover> covers;
         for (std::size_t i = begin; i < end; ++i) {
             const auto face = static_cast<std::uint32_t>(i);
+            const auto corners = lattice.corners(face);
+            if (is_collapsed(corners)) continue;
             covers.clear();
-            cover_cells(cells, corners_of(lattice, face), covers);
+            cover_cells(cells, corners, covers);
             for (const CellCover& cover : covers) {
                 mine.cells.push_back(cover.cell);
                 mine.intervals.push_back(interval_of(cover, face));
@@ -171,7 +168,7 @@ class BandBuilder {
         int sum = 0;
         for (const Interval& interval : intervals) {
             if ((interval.parts >> OctahedralCells::middle_part() & 1) == 0) continue;
-            const auto corners = corners_of(lattice_, interval.face);
+            const auto corners = lattice_.corners(interval.face);
             const FaceCone cone(corners[0], corners[1], corners[2]);
             if (!cone.edge_on() && cone.meets(middle)) sum += cone.outward() ? 1 : -1;
         }
@@ -184,7 +181,7 @@ class BandBuilder {
     }
 
     void append_reference(const Interval& interval) {
-        const auto corners = corners_of(lattice_, interval.face);
+        const auto corners = lattice_.corners(interval.face);
         if (dot(corners[0], cross(corners[1], corners[2])) == 0)
             return; // edge-on: no ray meets it, but it does part the inside from the outside
         result_.references.push_back(interval.face);

@@ -33,12 +33,14 @@ void append_unbalanced(std::uint32_t lower, std::span<HalfEdge> half_edges, std:
 template <typename VertexOf>
 std::vector<BorderEdge> unbalanced_edges(const LatticeMesh& lattice, const VertexOf& vertex_of) {
     const auto for_each_half_edge = [&](const auto& visit) {
-        for (const Triangle& face : lattice.faces)
+        for (std::uint32_t face = 0; face < lattice.faces.size(); ++face) {
+            if (is_collapsed(lattice.corners(face))) continue;
             for (std::size_t k = 0; k < 3; ++k) {
-                const std::uint32_t a = vertex_of(face[k]);
-                const std::uint32_t b = vertex_of(face[(k + 1) % 3]);
+                const std::uint32_t a = vertex_of(lattice.faces[face][k]);
+                const std::uint32_t b = vertex_of(lattice.faces[face][(k + 1) % 3]);
                 visit(std::min(a, b), HalfEdge{std::max(a, b), a < b ? 1 : -1});
             }
+        }
     };
     std::vector<std::uint32_t> next(lattice.vertices.size() + 1);
     for_each_half_edge([&](std::uint32_t lower, HalfEdge) { ++next[lower + 1]; });

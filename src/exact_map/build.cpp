@@ -90,6 +90,18 @@ std::vector<std::uint32_t> flattened(const std::vector<Triangle>& faces) {
     return corners;
 }
 
+/// Faces that shrank to a segment or a point on the lattice take no part in what is inside. But they are
+/// still the nearest surface for who is near them: a needle may consist of them.
+void add_collapsed_faces(const TriangleMesh& mesh, LatticeMesh& lattice) {
+    std::vector<bool> kept(mesh.faces.size());
+    for (std::uint32_t number : lattice.face_numbers) kept[number] = true;
+    for (std::uint32_t number = 0; number < mesh.faces.size(); ++number) {
+        if (kept[number]) continue;
+        lattice.faces.push_back(mesh.faces[number]);
+        lattice.face_numbers.push_back(number);
+    }
+}
+
 LatticeMesh snap(const TriangleMesh& mesh, const ExactMapOptions& options) {
     LatticeMesh lattice = options.centre == CentreChoice::Search
                               ? snap_around_best_centre(mesh, options.thread_count)
@@ -98,6 +110,7 @@ LatticeMesh snap(const TriangleMesh& mesh, const ExactMapOptions& options) {
         throw Error(ErrorCode::InvalidMesh, "no face is larger than a step of the lattice, " +
                                                 std::to_string(lattice.frame.step) +
                                                 ": the mesh is a few specks in a large void");
+    add_collapsed_faces(mesh, lattice);
     return lattice;
 }
 
@@ -146,7 +159,7 @@ std::uint32_t set_bands(const LatticeMesh& lattice, const ExactMapOptions& optio
             return view_of(arrays, lattice, candidate, options.rule).byte_count();
         });
     else if (divisions == 0)
-        divisions = default_divisions(lattice.faces.size());
+        divisions = default_divisions(lattice.faces.size(), !arrays.border.empty());
     find(divisions, arrays.border);
     return divisions;
 }
@@ -154,7 +167,8 @@ std::uint32_t set_bands(const LatticeMesh& lattice, const ExactMapOptions& optio
 ExactMapStatistics statistics_of(const TriangleMesh& mesh, const LatticeMesh& lattice, const Bands& bands) {
     ExactMapStatistics statistics;
     statistics.face_count = static_cast<std::uint32_t>(mesh.faces.size());
-    statistics.dropped_faces = static_cast<std::uint32_t>(mesh.faces.size() - lattice.faces.size());
+    for (std::uint32_t face = 0; face < lattice.faces.size(); ++face)
+        statistics.dropped_faces += is_collapsed(lattice.corners(face)) ? 1 : 0;
     for (std::size_t band = 0; band + 1 < bands.bands.size(); ++band)
         statistics.longest_list = std::max(statistics.longest_list, bands.bands[band + 1].first_reference -
                                                                         bands.bands[band].first_reference);

@@ -34,7 +34,8 @@ double clamp01(double value) {
 
 /// The point of a segment that is nearest to the origin, as a share of the way from a to b.
 double nearest_share(const Vec3d& a, const Vec3d& ab) {
-    return clamp01(-dot(a, ab) / dot(ab, ab));
+    const double length_sq = dot(ab, ab);
+    return length_sq > 0 ? clamp01(-dot(a, ab) / length_sq) : 0; // faces may be segments or points
 }
 
 /// Squared distance of a triangle from the origin, as vector instructions like it: all of the face and its

@@ -8,7 +8,8 @@ namespace echinus {
 
 /// Divisions of each octant that suit a mesh when nothing else is asked for. docs/performance.md has the
 /// sweep behind the rule.
-std::uint32_t default_divisions(std::size_t face_count);
+/// @param open  the surface has a border
+std::uint32_t default_divisions(std::size_t face_count, bool open);
 
 /// The most divisions whose map has at most `byte_budget` bytes, up to where more of them help no longer.
 /// @param byte_count  of the map with so many divisions; asked some ten times

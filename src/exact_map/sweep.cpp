@@ -12,7 +12,8 @@ namespace echinus {
 
 namespace {
 
-constexpr auto kLimit = static_cast<double>(kLatticeExtent);
+/// As far as contains() takes particles to lie on the lattice.
+constexpr double kLimit = static_cast<double>(kLatticeExtent) + 0.5;
 
 /// A segment in lattice steps, and the part of it that lies on the lattice, by its parameters.
 struct Way {

@@ -56,3 +56,18 @@ TEST(ExactMapContact, HasThePseudonormalOnTheSurface) {
     EXPECT_NEAR(length(normal({0.3F, 1, 1}) - Vec3f{0, half, half}), 0, 1e-4F);
     EXPECT_NEAR(length(normal({1, -1, 1}) - Vec3f{third, -third, third}), 0, 1e-4F);
 }
+
+TEST(ExactMapContact, KnowsANeedleThatIsThinnerThanTheLattice) {
+    TriangleMesh mesh = make_box({1, 1, 1}, 2);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    const TriangleMesh needle = make_box({1, 1e-7, 1e-7});
+    for (const Vec3f& v : needle.vertices) mesh.vertices.push_back(v + Vec3f{1.5F, 0, 0});
+    for (const auto& [a, b, c] : needle.faces) mesh.faces.push_back({a + first, b + first, c + first});
+    const ExactMap map = ExactMap::build(mesh);
+    EXPECT_EQ(map.statistics().dropped_faces, needle.faces.size());
+    for (const Vec3f& p : {Vec3f{1.5F, 0.1F, 0}, Vec3f{2.2F, 0, 0.1F}, Vec3f{1.9F, -0.01F, 0.01F}}) {
+        const Contact c = contact(map, p, 1);
+        EXPECT_FALSE(c.inside);
+        EXPECT_NEAR(-c.depth, unsigned_distance(mesh, Vec3d(p)), 1e-5);
+    }
+}
