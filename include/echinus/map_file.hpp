@@ -1,6 +1,6 @@
 #pragma once
 
-#include <echinus/distance_map.hpp>
+#include <echinus/any_map.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -26,28 +26,33 @@ struct MapFileNotes {
 /// Writes to a temporary name beside the target and renames: a failure leaves no partial file and the old one
 /// whole, also for those who have it mapped. The same map and notes give the same bytes.
 /// @throws Error Unwritable; also when the map is larger than the 2 GiB that a map file can hold
-void save(const DistanceMap& map, const std::filesystem::path& path, const MapFileNotes& notes = {});
+void save(const AnyMap& map, const std::filesystem::path& path, const MapFileNotes& notes = {});
 
 /// The bytes that save() writes.
 /// @throws Error Unwritable when the map is larger than the 2 GiB that a map file can hold
-std::vector<std::byte> serialise(const DistanceMap& map, const MapFileNotes& notes = {});
+std::vector<std::byte> serialise(const AnyMap& map, const MapFileNotes& notes = {});
 
 /// Maps the file into memory and reads it in place; the map keeps the mapping. Cost: one pass over the arrays
 /// to check them. The file may be replaced or removed while it is mapped, as save() does, but must not be
 /// overwritten in place.
 /// @throws Error Unreadable, WrongFormat (not a map file), UnsupportedVersion or Damaged; the sentence begins
 /// with the path
-DistanceMap load_distance_map(const std::filesystem::path& path);
+AnyMap load_map(const std::filesystem::path& path);
 
 /// The same from bytes in memory. They must stay unchanged as long as `storage` lives, which the map keeps
 /// alive.
 /// @pre bytes.data() is a multiple of 8
 /// @throws Error as above; the sentence begins with `name`
-DistanceMap load_distance_map(std::span<const std::byte> bytes, std::shared_ptr<const void> storage,
-                              const std::string& name);
+AnyMap load_map(std::span<const std::byte> bytes, std::shared_ptr<const void> storage,
+                const std::string& name);
+
+/// load_map() for those who need this kind.
+/// @throws Error as above, and WrongFormat for a map of another kind
+DistanceMap load_distance_map(const std::filesystem::path& path);
+ExactMap load_exact_map(const std::filesystem::path& path);
 
 /// The notes of a map file.
-/// @throws Error as load_distance_map(), except that it does not look at the map
+/// @throws Error as load_map(), except that it does not look at the map
 MapFileNotes load_map_file_notes(const std::filesystem::path& path);
 
 /// Does the file begin like a map file? False also when it cannot be read.

@@ -1,34 +1,21 @@
 #include "files/mapped_file.hpp"
-#include "map_file/validate.hpp"
+#include "map_file/checker.hpp"
+#include "map_file/distance_map_table.hpp"
+#include "map_file/exact_map_table.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/map_file.hpp>
 
 #include <map_generated.h>
 
-#include <bit>
 #include <cmath>
 #include <fstream>
 #include <string_view>
+#include <utility>
 
 namespace echinus {
 
-static_assert(std::endian::native == std::endian::little, "map files are little-endian and used in place");
-
 namespace {
-
-// The schema's enumerators are those of the public header, so that a value can be taken as it is.
-template <typename Stored, typename Ours>
-constexpr bool same_value(Stored stored, Ours ours) {
-    return static_cast<int>(stored) == static_cast<int>(ours);
-}
-static_assert(same_value(schema::PoleAxis::X, PoleAxis::X) && same_value(schema::PoleAxis::Y, PoleAxis::Y) &&
-              same_value(schema::PoleAxis::Z, PoleAxis::Z));
-static_assert(same_value(schema::EntryFormat::Float32, EntryFormat::Float32) &&
-              same_value(schema::EntryFormat::Unorm16, EntryFormat::Unorm16));
-static_assert(same_value(schema::VertexCorrection::None, VertexCorrection::None) &&
-              same_value(schema::VertexCorrection::Paper, VertexCorrection::Paper) &&
-              same_value(schema::VertexCorrection::Signed, VertexCorrection::Signed));
 
 /// Bytes 0 to 3 tell where the root table lies, 4 to 7 are "ECHM".
 constexpr std::size_t kHeaderSize = sizeof(flatbuffers::uoffset_t) + flatbuffers::kFileIdentifierLength;
@@ -74,65 +61,51 @@ const schema::MapFile& verified_root(std::span<const std::byte> bytes, const std
     return *schema::GetMapFile(bytes.data());
 }
 
-const schema::DistanceMap& require_distance_map(const schema::MapFile& file, const std::string& name) {
-    if (file.map_type() != schema::Map::NONE && file.map_type() != schema::Map::DistanceMap) {
-        throw Error(ErrorCode::UnsupportedVersion, name + ": a map of the unknown kind " +
-                                                       std::to_string(int(file.map_type())) +
-                                                       ", which this library does not read" + kBuildAgain);
-    }
-    const schema::DistanceMap* map = file.map_as_DistanceMap();
-    if (map == nullptr) throw Error(ErrorCode::Damaged, name + ": the file holds no map" + kBuildAgain);
-    return *map;
+/// A kind of map as the command line calls it.
+constexpr const char* name_of(const DistanceMap*) {
+    return "distance";
+}
+constexpr const char* name_of(const ExactMap*) {
+    return "exact";
 }
 
-template <typename T>
-std::span<const T> array_view(const flatbuffers::Vector<T>* array) {
-    if (array == nullptr) return {};
-    return {reinterpret_cast<const T*>(array->Data()), array->size()};
-}
-
-DistanceMapView read_view(const schema::DistanceMap& map) {
-    DistanceMapView view;
-    view.centre = {map.centre()->x(), map.centre()->y(), map.centre()->z()};
-    view.radius = map.radius();
-    view.longitude_count = map.longitude_count();
-    view.colatitude_count = map.colatitude_count();
-    view.pole_axis = PoleAxis(map.pole_axis());
-    view.entry_format = EntryFormat(map.entry_format());
-    view.correction = VertexCorrection(map.vertex_correction());
-    view.centre_inside = map.centre_inside();
-    view.entry_offsets = array_view(map.entry_offsets());
-    view.entries_float32 = array_view(map.entries_float32());
-    view.entries_unorm16 = array_view(map.entries_unorm16());
-    return view;
-}
-
-DistanceMapStatistics read_statistics(const schema::DistanceMapStatistics& stored) {
-    DistanceMapStatistics statistics;
-    statistics.face_count = stored.face_count();
-    statistics.dropped_faces = stored.dropped_faces();
-    statistics.max_entries = stored.max_entries();
-    statistics.corrected_entries = stored.corrected_entries();
-    statistics.clamped_entries = stored.clamped_entries();
-    statistics.wrong_parity_share = stored.wrong_parity_share();
-    return statistics;
+/// The map, if it is of this kind.
+template <typename Kind>
+Kind require_kind(const AnyMap& map, const std::string& name) {
+    if (const Kind* kind = std::get_if<Kind>(&map)) return *kind;
+    const std::string found = std::visit([](const auto& other) { return name_of(&other); }, map);
+    const std::string wanted = name_of(static_cast<const Kind*>(nullptr));
+    throw Error(ErrorCode::WrongFormat, name + ": the map is of the kind " + found + " and not " + wanted +
+                                            "; echinus build --kind " + wanted + " makes one from a mesh");
 }
 
 } // namespace
 
-DistanceMap load_distance_map(std::span<const std::byte> bytes, std::shared_ptr<const void> storage,
-                              const std::string& name) {
+AnyMap load_map(std::span<const std::byte> bytes, std::shared_ptr<const void> storage,
+                const std::string& name) {
     const schema::MapFile& file = verified_root(bytes, name);
-    const schema::DistanceMap& map = require_distance_map(file, name);
-    const DistanceMapView view = read_view(map);
-    const DistanceMapStatistics statistics = read_statistics(*map.statistics());
-    validate(view, statistics, name);
-    return {view, statistics, file.source_hash(), std::move(storage)};
+    if (const auto* map = file.map_as_DistanceMap())
+        return read_table(*map, file.source_hash(), std::move(storage), name);
+    if (const auto* map = file.map_as_ExactMap())
+        return read_table(*map, file.source_hash(), std::move(storage), name);
+    if (file.map_type() > schema::Map::MAX)
+        throw Error(ErrorCode::UnsupportedVersion, name + ": a map of the unknown kind " +
+                                                       std::to_string(int(file.map_type())) +
+                                                       ", which this library does not read" + kBuildAgain);
+    throw Error(ErrorCode::Damaged, name + ": the file holds no map" + kBuildAgain);
+}
+
+AnyMap load_map(const std::filesystem::path& path) {
+    const auto file = std::make_shared<const MappedFile>(path);
+    return load_map(file->bytes(), file, path.string());
 }
 
 DistanceMap load_distance_map(const std::filesystem::path& path) {
-    const auto file = std::make_shared<const MappedFile>(path);
-    return load_distance_map(file->bytes(), file, path.string());
+    return require_kind<DistanceMap>(load_map(path), path.string());
+}
+
+ExactMap load_exact_map(const std::filesystem::path& path) {
+    return require_kind<ExactMap>(load_map(path), path.string());
 }
 
 MapFileNotes load_map_file_notes(const std::filesystem::path& path) {

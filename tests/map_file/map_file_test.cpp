@@ -22,7 +22,7 @@ namespace {
 constexpr EntryFormat kFormats[] = {EntryFormat::Float32, EntryFormat::Unorm16};
 
 DistanceMap load_bytes(const std::vector<std::byte>& bytes) {
-    return load_distance_map(bytes, nullptr, "m");
+    return std::get<DistanceMap>(load_map(bytes, nullptr, "m"));
 }
 
 /// Bit for bit: floats are compared as bytes, so that -0 is not 0.

@@ -111,7 +111,7 @@ RC_GTEST_PROP(DistanceMapProperty, EntriesAscendInTheSphereForEveryCorrection, (
 RC_GTEST_PROP(DistanceMapProperty, AnswersAreTheSameAfterSavingAndLoading, ()) {
     const DistanceMap map = random_map();
     const auto bytes = std::make_shared<const std::vector<std::byte>>(serialise(map));
-    const DistanceMap loaded = load_distance_map(*bytes, bytes, "bytes");
+    const auto loaded = std::get<DistanceMap>(load_map(*bytes, bytes, "bytes"));
     RC_ASSERT(loaded.source_hash() == map.source_hash());
     auto random = random_for_points();
     for (int i = 0; i < kPointCount; ++i) {

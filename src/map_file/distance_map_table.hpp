@@ -1,0 +1,26 @@
+#pragma once
+
+#include <echinus/distance_map.hpp>
+
+#include <map_generated.h>
+
+#include <string>
+
+/// A distance map as a table of a map file.
+namespace echinus {
+
+flatbuffers::Offset<schema::DistanceMap> write_table(flatbuffers::FlatBufferBuilder& builder,
+                                                     const DistanceMap& map);
+
+/// Reads in place, once the meaning is checked.
+/// @pre the table's structure is sound; `storage` keeps it
+/// @throws Error Damaged; the sentence begins with `name` and names the field or the array and the index
+DistanceMap read_table(const schema::DistanceMap& stored, std::uint64_t source_hash,
+                       std::shared_ptr<const void> storage, const std::string& name);
+
+/// Checks what a query relies on: the invariants of DistanceMapView, numbers that are finite, counts within
+/// the limits of DistanceMapOptions, enumerators that exist. For arrays from untrusted bytes; one pass.
+/// @throws Error as read_table()
+void validate(const DistanceMapView& map, const DistanceMapStatistics& statistics, const std::string& name);
+
+} // namespace echinus

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <echinus/geometry.hpp>
+
+#include <map_generated.h>
+
+#include <bit>
+#include <span>
+#include <type_traits>
+
+/// What all kinds of maps have in common between a file and the memory that queries read.
+namespace echinus {
+
+static_assert(std::endian::native == std::endian::little, "map files are little-endian and used in place");
+
+/// The schema's enumerators are those of the public headers, so that a value can be taken as it is.
+template <typename Stored, typename Ours>
+constexpr bool same_value(Stored stored, Ours ours) {
+    return static_cast<int>(stored) == static_cast<int>(ours);
+}
+
+/// How the schema calls the elements of an array of T: numbers by their own name, structs by another.
+template <typename T>
+struct StoredAs {
+    using Type = T;
+};
+
+template <typename T>
+using StoredArray =
+    flatbuffers::Vector<std::conditional_t<std::is_arithmetic_v<T>, T, const typename StoredAs<T>::Type*>>;
+
+template <typename T>
+flatbuffers::Offset<StoredArray<T>> write_array(flatbuffers::FlatBufferBuilder& builder,
+                                                std::span<const T> array) {
+    using Stored = typename StoredAs<T>::Type;
+    static_assert(sizeof(Stored) == sizeof(T) && alignof(Stored) == alignof(T));
+    const auto* first = reinterpret_cast<const Stored*>(array.data());
+    if constexpr (std::is_arithmetic_v<T>)
+        return builder.CreateVector(first, array.size());
+    else
+        return builder.CreateVectorOfStructs(first, array.size());
+}
+
+/// The same for an array that may be absent: an empty one is.
+template <typename T>
+flatbuffers::Offset<StoredArray<T>> write_if_any(flatbuffers::FlatBufferBuilder& builder,
+                                                 std::span<const T> array) {
+    if (array.empty()) return {};
+    return write_array(builder, array);
+}
+
+/// Reads in place. An absent array is empty.
+template <typename T>
+void read_array(const StoredArray<T>* stored, std::span<const T>& array) {
+    if (stored != nullptr) array = {reinterpret_cast<const T*>(stored->Data()), stored->size()};
+}
+
+inline schema::Point to_stored(const Vec3f& point) {
+    return {point.x, point.y, point.z};
+}
+
+inline Vec3f from_stored(const schema::Point& point) {
+    return {point.x(), point.y(), point.z()};
+}
+
+} // namespace echinus
