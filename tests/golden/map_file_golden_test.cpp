@@ -14,7 +14,9 @@ namespace fs = std::filesystem;
 
 // Files of every version of the format, kept forever: what one release wrote, all later ones read.
 //
-// Each holds the map of a box of 2 x 3 x 4 around the origin with 8 x 6 directions.
+// Distance maps are of a box of 2 x 3 x 4 around the origin with 8 x 6 directions, exact maps of the same
+// box, of that box without its last face, and of a torus, with 8 cells each; that of the torus has all
+// indices in 32 bits.
 
 namespace {
 
@@ -38,8 +40,18 @@ const Golden kGoldenUnorm16{"v1_box_unorm16.ech",
                              .entry_format = EntryFormat::Unorm16,
                              .pole_axis = PoleAxis::X}};
 
-fs::path path_of(const Golden& golden) {
-    return fs::path(ECHINUS_GOLDEN_FOLDER) / golden.file;
+const char* const kGoldenExact = "v1_box_exact.ech";
+const char* const kGoldenExactOpen = "v1_open_box_exact.ech";
+const char* const kGoldenExactWide = "v1_torus_exact_wide.ech";
+
+fs::path path_of(const char* file) {
+    return fs::path(ECHINUS_GOLDEN_FOLDER) / file;
+}
+
+TriangleMesh open_box() {
+    TriangleMesh box = make_box(kBoxSize);
+    box.faces.pop_back();
+    return box;
 }
 
 std::vector<std::byte> bytes_of(const fs::path& path) {
@@ -79,18 +91,18 @@ void expect_box(const DistanceMap& map) {
 
 /// A failure leaves the new bytes in the build folder: should the change be meant, they are the next golden
 /// file, beside the old ones.
-void expect_same_bytes(const std::vector<std::byte>& actual, const Golden& golden) {
-    if (actual == bytes_of(path_of(golden))) return;
-    const fs::path copy = fs::current_path() / golden.file;
+void expect_same_bytes(const std::vector<std::byte>& actual, const char* file) {
+    if (actual == bytes_of(path_of(file))) return;
+    const fs::path copy = fs::current_path() / file;
     std::ofstream(copy, std::ios::binary)
         .write(reinterpret_cast<const char*>(actual.data()), static_cast<std::streamsize>(actual.size()));
-    ADD_FAILURE() << golden.file << " is written otherwise today; see " << copy;
+    ADD_FAILURE() << file << " is written otherwise today; see " << copy;
 }
 
 } // namespace
 
 TEST(GoldenMapFile, OfVersion1WithFloatsHoldsTheBox) {
-    const DistanceMap map = load_distance_map(path_of(kGoldenFloat32));
+    const DistanceMap map = load_distance_map(path_of(kGoldenFloat32.file));
     expect_options(map, kGoldenFloat32.options);
     expect_box(map);
     for (std::uint32_t j = 0; j < 6; ++j) {
@@ -101,7 +113,7 @@ TEST(GoldenMapFile, OfVersion1WithFloatsHoldsTheBox) {
 }
 
 TEST(GoldenMapFile, OfVersion1With16BitsHoldsTheBoxOrMore) {
-    const DistanceMap map = load_distance_map(path_of(kGoldenUnorm16));
+    const DistanceMap map = load_distance_map(path_of(kGoldenUnorm16.file));
     expect_options(map, kGoldenUnorm16.options);
     expect_box(map);
     // Poles on x: the grid's x, y, z are the mesh's y, z, x. The correction only pushes outwards here.
@@ -115,17 +127,51 @@ TEST(GoldenMapFile, OfVersion1With16BitsHoldsTheBoxOrMore) {
     EXPECT_GT(map.statistics().corrected_entries, 0u);
 }
 
+TEST(GoldenMapFile, OfVersion1WithAnExactMapHoldsTheBox) {
+    const ExactMap map = load_exact_map(path_of(kGoldenExact));
+    EXPECT_NEAR(map.view().radius, std::sqrt(29.0) / 2, 1e-5);
+    EXPECT_EQ(map.statistics().face_count, 12u);
+    EXPECT_EQ(map.statistics().certain_share, 1);
+    EXPECT_TRUE(contains(map, {0.99F, 1.49F, -1.99F}));
+    EXPECT_FALSE(contains(map, {1.01F, 0, 0}));
+    EXPECT_NEAR(contact(map, {0.75F, 0, 0}).depth, 0.25, 1e-5);
+}
+
+TEST(GoldenMapFile, OfVersion1WithAnExactMapOfAnOpenMeshMarksWhatIsUncertain) {
+    const ExactMap map = load_exact_map(path_of(kGoldenExactOpen));
+    EXPECT_EQ(map.view().rule, InsideRule::Parity);
+    EXPECT_EQ(map.view().border.size(), 3u);
+    EXPECT_LT(map.statistics().certain_share, 1);
+    EXPECT_TRUE(classify(map, {0, 0, 0}).inside);
+    EXPECT_TRUE(classify(map, {0, 0, 0}).certain);
+    EXPECT_FALSE(classify(map, {0.9F, 1.4F, 1.9F}).certain);
+}
+
+TEST(GoldenMapFile, OfVersion1WithAnExactMapInWideIndicesHoldsTheTorus) {
+    const ExactMap map = load_exact_map(path_of(kGoldenExactWide));
+    EXPECT_FALSE(map.view().references.wide.empty());
+    EXPECT_FALSE(map.view().corners.wide.empty());
+    EXPECT_FALSE(map.view().face_numbers.wide.empty());
+    EXPECT_TRUE(contains(map, {1, 0, 0}));
+    EXPECT_FALSE(contains(map, {0, 0, 0}));
+}
+
 TEST(GoldenMapFile, IsWrittenBackByteForByte) {
-    for (const Golden& golden : {kGoldenFloat32, kGoldenUnorm16}) {
-        expect_same_bytes(serialise(load_distance_map(path_of(golden))), golden);
+    for (const char* file :
+         {kGoldenFloat32.file, kGoldenUnorm16.file, kGoldenExact, kGoldenExactOpen, kGoldenExactWide}) {
+        expect_same_bytes(serialise(load_map(path_of(file))), file);
     }
 }
 
 TEST(GoldenMapFile, IsWhatTodaysBuildWritesOnAnyNumberOfThreads) {
-    for (Golden golden : {kGoldenFloat32, kGoldenUnorm16}) {
-        for (const unsigned thread_count : {1u, 3u}) {
+    for (const unsigned thread_count : {1u, 3u}) {
+        for (Golden golden : {kGoldenFloat32, kGoldenUnorm16}) {
             golden.options.thread_count = thread_count;
-            expect_same_bytes(serialise(DistanceMap::build(make_box(kBoxSize), golden.options)), golden);
+            expect_same_bytes(serialise(DistanceMap::build(make_box(kBoxSize), golden.options)), golden.file);
         }
+        ExactMapOptions options{.divisions = 1, .thread_count = thread_count};
+        expect_same_bytes(serialise(ExactMap::build(make_box(kBoxSize), options)), kGoldenExact);
+        options.rule = InsideRule::Parity;
+        expect_same_bytes(serialise(ExactMap::build(open_box(), options)), kGoldenExactOpen);
     }
 }
