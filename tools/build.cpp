@@ -1,3 +1,4 @@
+#include "byte_count_argument.hpp"
 #include "choice.hpp"
 #include "command.hpp"
 #include "grid_argument.hpp"
@@ -6,64 +7,103 @@
 #include "mesh_description.hpp"
 #include "output.hpp"
 
-#include <echinus/distance_map.hpp>
+#include <echinus/any_map.hpp>
 #include <echinus/error.hpp>
 #include <echinus/map_file.hpp>
 
 #include <nlohmann/json.hpp>
 
 #include <chrono>
+#include <cmath>
 #include <memory>
+#include <vector>
 
 using namespace echinus;
 
 namespace {
 
-enum class MapKind { Distance };
+enum class MapKind { Exact, Distance };
 
 struct BuildArguments {
     MeshArgument mesh;
     std::filesystem::path target;
-    MapKind kind = MapKind::Distance;
+    MapKind kind = MapKind::Exact;
+    ExactMapOptions exact;
+    std::uint32_t cells_per_octant = 0;
+    ByteCountArgument budget;
+    DistanceMapOptions distance;
     GridArgument directions{DistanceMapOptions{}.longitude_count, DistanceMapOptions{}.colatitude_count};
-    DistanceMapOptions options;
+    std::vector<const CLI::Option*> exact_only, distance_only; ///< options that belong to one kind
+    unsigned thread_count = 0;
     bool repair = false;
     bool allow_open = false;
     bool json = false;
 };
 
-DistanceMapOptions options_of(const BuildArguments& arguments) {
-    DistanceMapOptions options = arguments.options;
-    options.longitude_count = arguments.directions.first;
-    options.colatitude_count = arguments.directions.second;
+/// An option of the other kind would have no effect, and whoever gives it expects one.
+void refuse_options_of_the_other_kind(const BuildArguments& arguments) {
+    const bool exact = arguments.kind == MapKind::Exact;
+    for (const CLI::Option* option : exact ? arguments.distance_only : arguments.exact_only)
+        if (option->count() > 0)
+            throw CLI::ValidationError(option->get_name(),
+                                       std::string("belongs to --kind ") + (exact ? "distance" : "exact"));
+}
+
+ExactMapOptions exact_options_of(const BuildArguments& arguments) {
+    ExactMapOptions options = arguments.exact;
+    options.divisions = static_cast<std::uint32_t>(std::sqrt(arguments.cells_per_octant));
+    options.byte_budget = arguments.budget.bytes;
+    options.thread_count = arguments.thread_count;
     return options;
 }
 
-/// Behind a hole a map cannot know what is inside, so that wrong answers must be asked for. What has no
-/// volume has no inside, and the correction of a mesh that is inside out would take off where it should add.
-void require_solid(const TriangleMesh& mesh, const BuildArguments& arguments) {
-    const MeshReport report = inspect(mesh);
+DistanceMapOptions distance_options_of(const BuildArguments& arguments) {
+    DistanceMapOptions options = arguments.distance;
+    options.longitude_count = arguments.directions.first;
+    options.colatitude_count = arguments.directions.second;
+    options.thread_count = arguments.thread_count;
+    return options;
+}
+
+/// Behind a hole a distance map does not know what is inside, and an exact map is not certain of it, so that
+/// such answers must be asked for. What has no volume has no inside. The correction of a distance map of a
+/// mesh that is inside out would take off where it should add; an exact map does not care.
+void require_solid(const MeshReport& report, const TriangleMesh& mesh, const BuildArguments& arguments) {
+    const bool exact = arguments.kind == MapKind::Exact;
     const std::string name = arguments.mesh.name();
-    if (report.closed && report.signed_volume == 0)
+    if (report.closed && report.signed_volume == 0 && !(exact && arguments.allow_open))
         throw Error(ErrorCode::InvalidMesh,
                     name + ": the mesh encloses no volume; it is flat, or so far from the origin that its "
                            "vertices round to one place: move it to the origin");
-    if (report.closed && report.signed_volume < 0)
+    if (report.closed && report.signed_volume < 0 && !exact)
         throw Error(ErrorCode::InvalidMesh, name + ": the mesh is inside out, its faces turn clockwise seen "
                                                    "from outside; mend it with --repair");
     if (report.closed || arguments.allow_open) return;
-    const std::string remedy =
-        foresee_repair(mesh).closed_then
-            ? "mend it with --repair"
-            : "mend it elsewhere, or accept wrong answers behind its holes with --allow-open";
+    const std::string remedy = foresee_repair(mesh).closed_then ? "mend it with --repair"
+                               : exact ? "mend it elsewhere, or accept answers that are not certain near its "
+                                         "holes with --allow-open"
+                                       : "mend it elsewhere, or accept wrong answers behind its holes with "
+                                         "--allow-open";
     throw Error(ErrorCode::InvalidMesh,
                 name + ": the mesh is not closed: " + describe_openness(report) + "; " + remedy);
 }
 
+AnyMap build_kind(const TriangleMesh& mesh, const BuildArguments& arguments) {
+    if (arguments.kind == MapKind::Exact) return ExactMap::build(mesh, exact_options_of(arguments));
+    DistanceMap map = DistanceMap::build(mesh, distance_options_of(arguments));
+    if (map.view().entry_count() == 0)
+        throw Error(
+            ErrorCode::InvalidMesh,
+            "no ray from the centre meets the mesh; it is too thin for so few directions, or so far from the "
+            "origin that its vertices round to a few places");
+    return map;
+}
+
 struct BuiltMap {
-    DistanceMap map;
+    AnyMap map;
     MapFileNotes notes;
     RepairReport repairs;
+    bool inside_out = false; ///< the mesh, as the map has it
 };
 
 BuiltMap build_map(TriangleMesh mesh, const BuildArguments& arguments) {
@@ -73,74 +113,109 @@ BuiltMap build_map(TriangleMesh mesh, const BuildArguments& arguments) {
         mesh = std::move(repaired.mesh);
         repairs = std::move(repaired.report);
     }
-    require_solid(mesh, arguments);
+    const MeshReport report = inspect(mesh);
+    require_solid(report, mesh, arguments);
     const auto start = std::chrono::steady_clock::now();
-    DistanceMap map = DistanceMap::build(mesh, options_of(arguments));
+    AnyMap map = build_kind(mesh, arguments);
     const std::chrono::duration<double, std::milli> duration = std::chrono::steady_clock::now() - start;
-    if (map.view().entry_count() == 0)
-        throw Error(
-            ErrorCode::InvalidMesh,
-            "no ray from the centre meets the mesh; it is too thin for so few directions, or so far from the "
-            "origin that its vertices round to a few places");
-    return {std::move(map), {.build_milliseconds = duration.count()}, std::move(repairs)};
+    return {std::move(map),
+            {.build_milliseconds = duration.count()},
+            std::move(repairs),
+            report.closed && report.signed_volume < 0};
 }
 
-void print_result(const MapDescription& description, const RepairReport& repairs,
-                  const BuildArguments& arguments) {
+void print_result(const MapDescription& description, const BuiltMap& built, const BuildArguments& arguments) {
     if (arguments.json) {
         nlohmann::ordered_json object = to_json(description);
-        if (arguments.repair) object["repairs"] = to_json(repairs);
+        if (arguments.repair) object["repairs"] = to_json(built.repairs);
+        if (built.inside_out) object["inside_out"] = true;
         print_json(object);
     } else if (arguments.target != kStandardStream) {
         print(to_text(description, arguments.target.string()));
-        if (arguments.repair) print("\nRepair: " + to_text(repairs) + ".\n");
+        if (arguments.repair) print("\nRepair: " + to_text(built.repairs) + ".\n");
+        if (built.inside_out)
+            print("\nThe mesh is inside out. What it encloses is inside all the same, but the normals of its "
+                  "faces point inwards; --repair turns them round.\n");
     }
 }
 
 void build(const BuildArguments& arguments) {
     require_one_result(arguments.target, arguments.json);
+    refuse_options_of_the_other_kind(arguments);
     const BuiltMap built =
         naming_mesh(arguments.mesh.name(), [&] { return build_map(read_mesh(arguments.mesh), arguments); });
     const std::vector<std::byte> bytes = serialise(built.map, built.notes);
     Output output(arguments.target);
     output.write(bytes.data(), bytes.size());
     output.commit();
-    print_result({built.map, built.notes, bytes.size()}, built.repairs, arguments);
+    print_result({built.map, built.notes, bytes.size()}, built, arguments);
+}
+
+void add_exact_options(CLI::App& command, BuildArguments& arguments) {
+    constexpr std::uint32_t kMostCells = ExactMapOptions::kMaxDivisions * ExactMapOptions::kMaxDivisions;
+    arguments.exact_only = {
+        command
+            .add_option("--cells-per-octant", arguments.cells_per_octant,
+                        "Cells in each eighth of all directions, rounded down to a square number; by the "
+                        "number of faces if not given")
+            ->check(CLI::Range(1U, kMostCells))
+            ->type_name("COUNT"),
+        command
+            .add_option("--budget", arguments.budget,
+                        "The most bytes of the map, as 300KB (units B, KB, MB, KiB, MiB): as many cells as "
+                        "keep within")
+            ->excludes("--cells-per-octant")
+            ->type_name("BYTES"),
+        add_choice<InsideRule>(command, "--rule", arguments.exact.rule,
+                               {{"nonzero", InsideRule::Nonzero}, {"parity", InsideRule::Parity}},
+                               "What counts as inside where parts of the mesh overlap"),
+        add_choice<CentreChoice>(command, "--centre", arguments.exact.centre,
+                                 {{"sphere", CentreChoice::BoundingSphere}, {"search", CentreChoice::Search}},
+                                 "Where the rays start: the bounding sphere's centre, or the place that "
+                                 "promises the fewest tests")};
+}
+
+void add_distance_options(CLI::App& command, BuildArguments& arguments) {
+    DistanceMapOptions& options = arguments.distance;
+    arguments.distance_only = {
+        command.add_option("--directions", arguments.directions, "Samples of longitude and colatitude")
+            ->type_name("COUNTxCOUNT")
+            ->default_str("200x200"),
+        add_choice<VertexCorrection>(command, "--correction", options.correction,
+                                     {{"signed", VertexCorrection::Signed},
+                                      {"paper", VertexCorrection::Paper},
+                                      {"none", VertexCorrection::None}},
+                                     "What to do about vertices between the samples"),
+        add_choice<EntryFormat>(command, "--entries", options.entry_format,
+                                {{"float32", EntryFormat::Float32}, {"unorm16", EntryFormat::Unorm16}},
+                                "How to store a distance"),
+        add_choice<PoleAxis>(command, "--pole", options.pole_axis,
+                             {{"x", PoleAxis::X}, {"y", PoleAxis::Y}, {"z", PoleAxis::Z}},
+                             "Axis of the mesh through the poles of the grid")};
 }
 
 void add_options(CLI::App& command, BuildArguments& arguments) {
-    DistanceMapOptions& options = arguments.options;
     command.add_option("MESH", arguments.mesh.path, "Mesh file (OBJ, PLY, STL, OFF, glTF, GLB, 3DS), or -")
         ->required()
         ->type_name("");
     command.add_option("-o,--output", arguments.target, "Map file to write, or -")
         ->required()
         ->type_name("MAP");
-    add_choice<MapKind>(command, "--kind", arguments.kind, {{"distance", MapKind::Distance}}, "Kind of map");
-    command.add_option("--directions", arguments.directions, "Samples of longitude and colatitude")
-        ->type_name("COUNTxCOUNT")
-        ->default_str("200x200");
-    add_choice<VertexCorrection>(command, "--correction", options.correction,
-                                 {{"signed", VertexCorrection::Signed},
-                                  {"paper", VertexCorrection::Paper},
-                                  {"none", VertexCorrection::None}},
-                                 "What to do about vertices between the samples");
-    add_choice<EntryFormat>(command, "--entries", options.entry_format,
-                            {{"float32", EntryFormat::Float32}, {"unorm16", EntryFormat::Unorm16}},
-                            "How to store a distance");
-    add_choice<PoleAxis>(command, "--pole", options.pole_axis,
-                         {{"x", PoleAxis::X}, {"y", PoleAxis::Y}, {"z", PoleAxis::Z}},
-                         "Axis of the mesh through the poles of the grid");
-    command.add_option("--threads", options.thread_count, "Threads to build on; 0: all cores")
+    add_choice<MapKind>(command, "--kind", arguments.kind,
+                        {{"exact", MapKind::Exact}, {"distance", MapKind::Distance}}, "Kind of map");
+    command.add_option("--threads", arguments.thread_count, "Threads to build on; 0: all cores")
         ->check(CLI::Range(0U, 1024U))
         ->type_name("COUNT")
         ->capture_default_str();
     command.add_flag("--repair", arguments.repair,
                      "Mend the mesh first: drop duplicate faces and doubled patches, turn inside-out parts");
     command.add_flag("--allow-open", arguments.allow_open,
-                     "Build also from a mesh that is not closed; behind its holes answers are wrong");
+                     "Build also from a mesh that is not closed: near its holes answers of an exact map are "
+                     "not certain, behind them those of a distance map are wrong");
     arguments.mesh.add_format_option(command);
     command.add_flag("--json", arguments.json, "Print one JSON object");
+    add_exact_options(*command.add_option_group("Exact maps"), arguments);
+    add_distance_options(*command.add_option_group("Distance maps"), arguments);
 }
 
 } // namespace
@@ -149,7 +224,8 @@ void add_build_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("build", "Build a map from a mesh");
     const auto arguments = std::make_shared<BuildArguments>();
     add_options(*command, *arguments);
-    command->footer(
-        "Example:\n  echinus build torus.obj --directions 200x200 --correction signed -o torus.ech");
+    command->footer("Examples:\n  echinus build torus.obj -o torus.ech\n"
+                    "  echinus build torus.obj --kind distance --directions 200x200 --correction signed -o "
+                    "torus.ech");
     command->callback([arguments] { build(*arguments); });
 }

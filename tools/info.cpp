@@ -22,7 +22,7 @@ struct InfoArguments {
 };
 
 void show_map(const InputFile& file, bool json) {
-    const DistanceMap map = file.read([](const fs::path& path) { return load_distance_map(path); });
+    const AnyMap map = file.read([](const fs::path& path) { return load_map(path); });
     const MapFileNotes notes = file.read(load_map_file_notes);
     const std::uint64_t file_bytes = file.read([](const fs::path& path) { return fs::file_size(path); });
     const MapDescription description{map, notes, file_bytes};

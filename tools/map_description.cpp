@@ -7,7 +7,8 @@
 
 #include <cmath>
 
-using echinus::DistanceMapView;
+using echinus::DistanceMap, echinus::DistanceMapView, echinus::ExactMap, echinus::ExactMapView;
+using nlohmann::ordered_json;
 
 namespace {
 
@@ -24,6 +25,22 @@ const char* name_of(echinus::VertexCorrection correction) {
     if (correction == VertexCorrection::None) return "none";
     return correction == VertexCorrection::Paper ? "paper" : "signed";
 }
+
+const char* name_of(echinus::InsideRule rule) {
+    return rule == echinus::InsideRule::Nonzero ? "nonzero" : "parity";
+}
+
+/// What the bytes of an exact map are spent on.
+struct ExactMapBytes {
+    std::size_t bands, references, mesh, tree;
+
+    explicit ExactMapBytes(const ExactMapView& map)
+        : bands(map.band_offsets.size_bytes() + map.bands.size_bytes() + map.winding_below.size_bytes()),
+          references(map.references.size_bytes() + map.reference_parts.size_bytes()),
+          mesh(map.vertices.size_bytes() + map.corners.size_bytes() + map.face_numbers.size_bytes() +
+               map.border.size_bytes()),
+          tree(map.nodes.size_bytes()) {}
+};
 
 double mean_entries(const DistanceMapView& map) {
     return static_cast<double>(map.entry_count()) / static_cast<double>(map.direction_count());
@@ -45,19 +62,25 @@ std::string histogram_text(const DistanceMapView& map) {
     return text;
 }
 
-std::string bytes_text(const DistanceMapView& map) {
-    return fmt::format("{} ({} offsets, {} entries)", map.byte_count(), map.entry_offsets.size_bytes(),
-                       map.byte_count() - map.entry_offsets.size_bytes());
+// ---- What each kind has of its own ----
+
+const char* name_of(const DistanceMap&) {
+    return "distance";
+}
+const char* name_of(const ExactMap&) {
+    return "exact";
 }
 
-} // namespace
+bool is_centre_inside(const DistanceMap& map) {
+    return map.view().centre_inside;
+}
+bool is_centre_inside(const ExactMap& map) {
+    return classify(map, map.view().centre).inside;
+}
 
-nlohmann::ordered_json to_json(const MapDescription& description) {
-    const DistanceMapView& view = description.map.view();
-    const echinus::DistanceMapStatistics& statistics = description.map.statistics();
-    nlohmann::ordered_json object;
-    object["kind"] = "distance";
-    object["faces"] = statistics.face_count;
+void add_own_keys(ordered_json& object, const DistanceMap& map) {
+    const DistanceMapView& view = map.view();
+    const echinus::DistanceMapStatistics& statistics = map.statistics();
     object["directions"] = view.direction_count();
     object["longitude_count"] = view.longitude_count;
     object["colatitude_count"] = view.colatitude_count;
@@ -68,34 +91,38 @@ nlohmann::ordered_json to_json(const MapDescription& description) {
     object["max_entries"] = statistics.max_entries;
     object["mean_entries"] = mean_entries(view);
     object["entry_histogram"] = echinus::entry_histogram(view);
-    object["bytes"] = view.byte_count();
     object["offset_bytes"] = view.entry_offsets.size_bytes();
     object["entry_bytes"] = view.byte_count() - view.entry_offsets.size_bytes();
-    object["file_bytes"] = description.file_bytes;
-    object["build_ms"] = nullptr;
-    if (description.notes.build_milliseconds) object["build_ms"] = *description.notes.build_milliseconds;
-    object["centre"] = {view.centre.x, view.centre.y, view.centre.z};
-    object["radius"] = view.radius;
-    object["centre_inside"] = view.centre_inside;
     object["wrong_parity_share"] = statistics.wrong_parity_share;
-    object["dropped_faces"] = statistics.dropped_faces;
     object["corrected_entries"] = statistics.corrected_entries;
     object["clamped_entries"] = statistics.clamped_entries;
-    object["source_hash"] = fmt::format("{:016x}", description.map.source_hash());
-    return object;
 }
 
-std::string to_text(const MapDescription& description, const std::string& title) {
-    const DistanceMapView& view = description.map.view();
-    const echinus::DistanceMapStatistics& statistics = description.map.statistics();
-    const auto build_ms = description.notes.build_milliseconds;
-    Table table(title);
-    table.add("kind", "distance map");
-    table.add("faces of the mesh",
-              fmt::format("{} ({} too small to count)", statistics.face_count, statistics.dropped_faces));
-    table.add("bounding sphere", fmt::format("centre ({}, {}, {}), radius {}", view.centre.x, view.centre.y,
-                                             view.centre.z, view.radius));
-    table.add("centre inside", yes_or_no(view.centre_inside));
+void add_own_keys(ordered_json& object, const ExactMap& map) {
+    const ExactMapView& view = map.view();
+    const echinus::ExactMapStatistics& statistics = map.statistics();
+    const ExactMapBytes bytes(view);
+    object["cells"] = view.cell_count();
+    object["divisions"] = view.divisions;
+    object["rule"] = name_of(view.rule);
+    object["bands"] = view.winding_below.size();
+    object["references"] = view.references.size();
+    object["longest_list"] = statistics.longest_list;
+    object["mean_list"] = statistics.mean_list;
+    object["expected_tests"] = statistics.expected_tests;
+    object["certain_share"] = statistics.certain_share;
+    object["uncertain_directions"] = statistics.uncertain_directions;
+    object["border_edges"] = view.border.size();
+    object["band_bytes"] = bytes.bands;
+    object["reference_bytes"] = bytes.references;
+    object["mesh_bytes"] = bytes.mesh;
+    object["tree_bytes"] = bytes.tree;
+}
+
+void add_own_rows(Table& table, const DistanceMap& map) {
+    const DistanceMapView& view = map.view();
+    const echinus::DistanceMapStatistics& statistics = map.statistics();
+    const std::size_t offset_bytes = view.entry_offsets.size_bytes();
     table.add("directions",
               fmt::format("{} x {} = {}, poles on {}", view.longitude_count, view.colatitude_count,
                           view.direction_count(), name_of(view.pole_axis)));
@@ -107,8 +134,84 @@ std::string to_text(const MapDescription& description, const std::string& title)
                           statistics.corrected_entries, statistics.clamped_entries));
     table.add("wrong parity", fmt::format("{:.3f} % of the directions, through holes of the mesh",
                                           statistics.wrong_parity_share * 100));
-    table.add("bytes", bytes_text(view));
+    table.add("bytes", fmt::format("{} ({} offsets, {} entries)", view.byte_count(), offset_bytes,
+                                   view.byte_count() - offset_bytes));
+}
+
+void add_own_rows(Table& table, const ExactMap& map) {
+    const ExactMapView& view = map.view();
+    const echinus::ExactMapStatistics& statistics = map.statistics();
+    const ExactMapBytes bytes(view);
+    table.add("inside",
+              view.rule == echinus::InsideRule::Nonzero ? "winding number not zero" : "winding number odd");
+    table.add("cells", fmt::format("{} = 8 x {} x {}", view.cell_count(), view.divisions, view.divisions));
+    table.add("bands", fmt::format("{} with {} faces; {:.1f} in a list on average, {} at most",
+                                   view.winding_below.size(), view.references.size(), statistics.mean_list,
+                                   statistics.longest_list));
+    table.add("expected tests",
+              fmt::format("{:.1f} faces for a particle on the surface", statistics.expected_tests));
+    table.add("certain",
+              view.border.empty()
+                  ? "everywhere, as the mesh is closed"
+                  : fmt::format("{:.3f} % of the bounding sphere; places that are not lie in {:.3f} % of the "
+                                "directions; {} border edges",
+                                statistics.certain_share * 100, statistics.uncertain_directions * 100,
+                                view.border.size()));
+    table.add("bytes", fmt::format("{} ({} bands, {} lists, {} mesh, {} tree)", view.byte_count(),
+                                   bytes.bands, bytes.references, bytes.mesh, bytes.tree));
+}
+
+std::string own_text(const DistanceMap& map) {
+    return "\n" + histogram_text(map);
+}
+std::string own_text(const ExactMap&) {
+    return {};
+}
+
+// ---- What both have ----
+
+template <typename Map>
+ordered_json to_json(const MapDescription& description, const Map& map) {
+    const auto& view = map.view();
+    ordered_json object;
+    object["kind"] = name_of(map);
+    object["faces"] = map.statistics().face_count;
+    add_own_keys(object, map);
+    object["dropped_faces"] = map.statistics().dropped_faces;
+    object["bytes"] = view.byte_count();
+    object["file_bytes"] = description.file_bytes;
+    object["build_ms"] = nullptr;
+    if (description.notes.build_milliseconds) object["build_ms"] = *description.notes.build_milliseconds;
+    object["centre"] = {view.centre.x, view.centre.y, view.centre.z};
+    object["radius"] = view.radius;
+    object["centre_inside"] = is_centre_inside(map);
+    object["source_hash"] = fmt::format("{:016x}", map.source_hash());
+    return object;
+}
+
+template <typename Map>
+std::string to_text(const MapDescription& description, const std::string& title, const Map& map) {
+    const auto& view = map.view();
+    const auto build_ms = description.notes.build_milliseconds;
+    Table table(title);
+    table.add("kind", fmt::format("{} map", name_of(map)));
+    table.add("faces of the mesh", fmt::format("{} ({} too small to count)", map.statistics().face_count,
+                                               map.statistics().dropped_faces));
+    table.add("bounding sphere", fmt::format("centre ({}, {}, {}), radius {}", view.centre.x, view.centre.y,
+                                             view.centre.z, view.radius));
+    table.add("centre inside", yes_or_no(is_centre_inside(map)));
+    add_own_rows(table, map);
     table.add("bytes of the file", std::to_string(description.file_bytes));
     table.add("build time", build_ms ? fmt::format("{:.1f} ms", *build_ms) : "not noted in the file");
-    return table.text() + "\n" + histogram_text(view);
+    return table.text() + own_text(map);
+}
+
+} // namespace
+
+ordered_json to_json(const MapDescription& description) {
+    return std::visit([&](const auto& map) { return to_json(description, map); }, description.map);
+}
+
+std::string to_text(const MapDescription& description, const std::string& title) {
+    return std::visit([&](const auto& map) { return to_text(description, title, map); }, description.map);
 }

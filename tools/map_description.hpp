@@ -1,6 +1,6 @@
 #pragma once
 
-#include <echinus/distance_map.hpp>
+#include <echinus/any_map.hpp>
 #include <echinus/map_file.hpp>
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,7 +10,7 @@
 
 /// What `build` and `info` say about a map.
 struct MapDescription {
-    const echinus::DistanceMap& map;
+    const echinus::AnyMap& map;
     echinus::MapFileNotes notes;
     std::uint64_t file_bytes = 0;
 };
@@ -18,5 +18,5 @@ struct MapDescription {
 /// The object of --json.
 nlohmann::ordered_json to_json(const MapDescription& description);
 
-/// A table for people, with the histogram of the entries per direction.
+/// A table for people, for a distance map with the histogram of the entries per direction.
 std::string to_text(const MapDescription& description, const std::string& title);

@@ -3,7 +3,6 @@
 #include "input_file.hpp"
 #include "points.hpp"
 
-#include <echinus/distance_map.hpp>
 #include <echinus/map_file.hpp>
 
 #include <nlohmann/json.hpp>
@@ -57,7 +56,7 @@ void count(std::span<const Contact> contacts, QuerySummary& summary) {
     }
 }
 
-QuerySummary answer(const DistanceMap& map, float margin, PointSource& source, AnswerWriter& answers) {
+QuerySummary answer(const AnyMap& map, float margin, PointSource& source, AnswerWriter& answers) {
     constexpr std::size_t kBlock = std::size_t{1} << 16;
     std::vector<Vec3f> points(kBlock);
     std::vector<Contact> contacts(kBlock);
@@ -86,7 +85,7 @@ void print_summary(const QuerySummary& summary, const QueryArguments& arguments)
 void query(const QueryArguments& arguments) {
     require_sound(arguments);
     const InputFile map_file(arguments.map, "ech");
-    const DistanceMap map = map_file.read([](const fs::path& path) { return load_distance_map(path); });
+    const AnyMap map = map_file.read([](const fs::path& path) { return load_map(path); });
     auto input = std::make_unique<Input>(arguments.points);
     const TableFormat format = format_of_points(arguments.points, *input);
     const TableFormat answer_format = format_of_answers(arguments.target, format);
@@ -111,8 +110,8 @@ void add_query_command(CLI::App& app) {
         ->type_name("ANSWERS");
     command
         ->add_option("--margin", arguments->margin,
-                     "Points outside get a contact too when they are at most this far from the surface, "
-                     "measured along their ray from the centre, in the unit of the mesh")
+                     "Points outside get a contact too when they are at most this far from the surface, in "
+                     "the unit of the mesh; with a distance map measured along their ray from the centre")
         ->type_name("DISTANCE")
         ->capture_default_str();
     command->add_flag("--json", arguments->json, "Print one JSON object");

@@ -25,8 +25,8 @@ class BadMesh : public CommandLineTest {
     }
 
     json build(const std::string& name) const {
-        return json::parse(
-            expect_success({"build", name, "--directions", "32x16", "-o", "map.ech", "--json"}));
+        return json::parse(expect_success(
+            {"build", name, "--kind", "distance", "--directions", "32x16", "-o", "map.ech", "--json"}));
     }
     json info(const std::string& name) const { return json::parse(expect_success({"info", name, "--json"})); }
 };
@@ -91,7 +91,8 @@ TEST_F(BadMesh, ThatIsOneFaceIsDescribedButBuiltOnlyWhenTold) {
     write("one.obj", std::string(kTriangle) + "f 1 2 3\n");
     EXPECT_EQ(info("one.obj")["border_edges"], 3);
     expect_failure(1, "not closed", {"build", "one.obj", "-o", "map.ech"});
-    expect_success({"build", "one.obj", "--allow-open", "--directions", "32x16", "-o", "map.ech"});
+    expect_success(
+        {"build", "one.obj", "--allow-open", "--kind", "distance", "--directions", "32x16", "-o", "map.ech"});
 }
 
 TEST_F(BadMesh, ThatIsOnePointIsNeverBuilt) {

@@ -22,11 +22,11 @@ class BuildCommand : public CommandLineTest {
 
     /// The arguments of a small build with some more.
     static std::vector<std::string> small(std::vector<std::string> more) {
-        more.insert(more.begin(), {"build", "box.obj", "--directions", "24x12"});
+        more.insert(more.begin(), {"build", "box.obj", "--kind", "distance", "--directions", "24x12"});
         return more;
     }
     std::vector<std::byte> map_bytes(const std::string& name) const {
-        return serialise(load_distance_map(path(name)));
+        return serialise(load_map(path(name)));
     }
 };
 
@@ -44,8 +44,81 @@ TEST_F(BuildCommand, PrintsWhatItBuilt) {
     EXPECT_GE(built["build_ms"].get<double>(), 0);
 }
 
-TEST_F(BuildCommand, TakesTheOptionsOfThePaperUnlessTold) {
+TEST_F(BuildCommand, BuildsAnExactMapUnlessTold) {
     const json built = json::parse(expect_success({"build", "box.obj", "-o", "box.ech", "--json"}));
+    const ExactMap map = load_exact_map(path("box.ech"));
+    EXPECT_EQ(serialise(map), serialise(ExactMap::build(make_box({2, 3, 4}))));
+    EXPECT_EQ(built["kind"], "exact");
+    EXPECT_EQ(built["faces"], 12);
+    EXPECT_EQ(built["cells"], map.view().cell_count());
+    EXPECT_EQ(built["bands"], map.view().winding_below.size());
+    EXPECT_EQ(built["references"], map.view().references.size());
+    EXPECT_EQ(built["longest_list"], map.statistics().longest_list);
+    EXPECT_EQ(built["bytes"], map.view().byte_count());
+    EXPECT_EQ(built["centre_inside"], true);
+    EXPECT_EQ(built["certain_share"], 1);
+    EXPECT_EQ(built["border_edges"], 0);
+    EXPECT_EQ(built["rule"], "nonzero");
+    EXPECT_GE(built["build_ms"].get<double>(), 0);
+    EXPECT_FALSE(built.contains("inside_out"));
+}
+
+TEST_F(BuildCommand, RoundsTheCellsOfAnOctantDownToASquare) {
+    for (const auto& [cells, divisions] : {std::pair{"1", 1}, {"35", 5}, {"36", 6}, {"262144", 512}}) {
+        const json built = json::parse(
+            expect_success({"build", "box.obj", "--cells-per-octant", cells, "-o", "box.ech", "--json"}));
+        EXPECT_EQ(built["divisions"], divisions);
+        EXPECT_EQ(built["cells"], 8 * divisions * divisions);
+    }
+}
+
+TEST_F(BuildCommand, KeepsWithinABudgetInAnyUnit) {
+    for (const auto& [budget, bytes] : {std::pair{"20000B", 20000},
+                                        {"20KB", 20000},
+                                        {"0.02MB", 20000},
+                                        {"20KiB", 20480},
+                                        {"0.02MiB", 20971}}) {
+        const json built =
+            json::parse(expect_success({"build", "box.obj", "--budget", budget, "-o", "box.ech", "--json"}));
+        EXPECT_LE(built["bytes"], bytes);
+        EXPECT_GT(built["bytes"], bytes / 2);
+    }
+}
+
+TEST_F(BuildCommand, ObeysTheOptionsOfAnExactMap) {
+    TriangleMesh nested = make_box({2, 3, 4});
+    const TriangleMesh inner = make_box({1, 1, 1});
+    for (const Triangle& face : inner.faces) nested.faces.push_back({face[0] + 8, face[1] + 8, face[2] + 8});
+    nested.vertices.insert(nested.vertices.end(), inner.vertices.begin(), inner.vertices.end());
+    write("nested.obj", obj_text(nested));
+    const auto centre_inside = [&](const std::string& rule) {
+        const json built = json::parse(expect_success(
+            {"build", "nested.obj", "--rule", rule, "--centre", "search", "-o", "nested.ech", "--json"}));
+        EXPECT_EQ(built["rule"], rule);
+        return contains(load_exact_map(path("nested.ech")), {0.1F, 0.1F, 0.1F});
+    };
+    EXPECT_TRUE(centre_inside("nonzero"));
+    EXPECT_FALSE(centre_inside("parity"));
+}
+
+TEST_F(BuildCommand, RefusesOptionsOfTheOtherKind) {
+    const auto refuse = [&](const std::string& words, std::vector<std::string> options) {
+        options.insert(options.begin(), {"build", "box.obj", "-o", "box.ech"});
+        expect_failure(2, words, options);
+    };
+    refuse("--directions: belongs to --kind distance", {"--directions", "24x12"});
+    refuse("--correction: belongs to --kind distance", {"--kind", "exact", "--correction", "none"});
+    refuse("--entries", {"--entries", "unorm16"});
+    refuse("--pole", {"--pole", "x"});
+    refuse("--budget: belongs to --kind exact", {"--kind", "distance", "--budget", "1MB"});
+    refuse("--cells-per-octant", {"--kind", "distance", "--cells-per-octant", "9"});
+    refuse("--rule", {"--kind", "distance", "--rule", "parity"});
+    refuse("--centre", {"--kind", "distance", "--centre", "search"});
+}
+
+TEST_F(BuildCommand, TakesTheOptionsOfThePaperUnlessTold) {
+    const json built =
+        json::parse(expect_success({"build", "box.obj", "--kind", "distance", "-o", "box.ech", "--json"}));
     EXPECT_EQ(built["directions"], 200 * 200);
     EXPECT_EQ(built["correction"], "signed");
     EXPECT_EQ(built["entry_format"], "float32");
@@ -53,9 +126,8 @@ TEST_F(BuildCommand, TakesTheOptionsOfThePaperUnlessTold) {
 }
 
 TEST_F(BuildCommand, ObeysItsOptions) {
-    const json built =
-        json::parse(expect_success(small({"--kind", "distance", "--correction", "none", "--entries",
-                                          "unorm16", "--pole", "x", "-o", "box.ech", "--json"})));
+    const json built = json::parse(expect_success(
+        small({"--correction", "none", "--entries", "unorm16", "--pole", "x", "-o", "box.ech", "--json"})));
     EXPECT_EQ(built["correction"], "none");
     EXPECT_EQ(built["entry_format"], "unorm16");
     EXPECT_EQ(built["pole"], "x");
@@ -81,8 +153,9 @@ TEST_F(BuildCommand, GivesTheSameMapOnAnyNumberOfThreads) {
 
 TEST_F(BuildCommand, ReadsAndWritesTheStandardStreams) {
     expect_success(small({"-o", "file.ech"}));
-    write("stream.ech",
-          expect_success({"build", "-", "--format", "obj", "--directions", "24x12", "-o", "-"}, box_text()));
+    write("stream.ech", expect_success({"build", "-", "--format", "obj", "--kind", "distance", "--directions",
+                                        "24x12", "-o", "-"},
+                                       box_text()));
     EXPECT_EQ(map_bytes("stream.ech"), map_bytes("file.ech"));
     expect_failure(2, "--json", small({"-o", "-", "--json"}));
     expect_failure(2, "--format", {"build", "-", "-o", "box.ech"}, box_text());
@@ -93,20 +166,25 @@ TEST_F(BuildCommand, RefusesAnOpenMeshUnlessTold) {
     expect_failure(1, "open.obj: the mesh is not closed: 3 border edges (at faces",
                    {"build", "open.obj", "-o", "open.ech"});
     expect_failure(1, "--allow-open", {"build", "open.obj", "--repair", "-o", "open.ech"});
-    const json built = json::parse(expect_success(
-        {"build", "open.obj", "--allow-open", "--directions", "24x12", "-o", "open.ech", "--json"}));
+    const json built = json::parse(expect_success({"build", "open.obj", "--allow-open", "--kind", "distance",
+                                                   "--directions", "24x12", "-o", "open.ech", "--json"}));
     EXPECT_GT(built["wrong_parity_share"].get<double>(), 0);
+    const json exact =
+        json::parse(expect_success({"build", "open.obj", "--allow-open", "-o", "open.ech", "--json"}));
+    EXPECT_EQ(exact["border_edges"], 3);
+    EXPECT_LT(exact["certain_share"].get<double>(), 1);
+    EXPECT_GT(exact["uncertain_directions"].get<double>(), 0);
 }
 
 TEST_F(BuildCommand, MendsTheMeshOnlyWhenTold) {
     write("doubled.obj", doubled_face_text());
     expect_failure(1, "mend it with --repair", {"build", "doubled.obj", "-o", "map.ech"});
-    const json built = json::parse(expect_success(
-        {"build", "doubled.obj", "--repair", "--directions", "24x12", "-o", "map.ech", "--json"}));
+    const json built = json::parse(expect_success({"build", "doubled.obj", "--repair", "--kind", "distance",
+                                                   "--directions", "24x12", "-o", "map.ech", "--json"}));
     EXPECT_EQ(built["repairs"]["duplicate_faces_dropped"], 1);
     EXPECT_EQ(built["faces"], 12);
-    const std::string text =
-        expect_success({"build", "doubled.obj", "--repair", "--directions", "24x12", "-o", "map.ech"});
+    const std::string text = expect_success(
+        {"build", "doubled.obj", "--repair", "--kind", "distance", "--directions", "24x12", "-o", "map.ech"});
     EXPECT_NE(text.find("Repair: 1 duplicate face dropped."), std::string::npos) << text;
 }
 
@@ -115,14 +193,24 @@ TEST_F(BuildCommand, RefusesOptionsThatMakeNoSense) {
         options.insert(options.begin(), {"build", "box.obj", "-o", "box.ech"});
         expect_failure(2, words, options);
     };
-    refuse("--directions", {"--directions", "200"});
-    refuse("--directions", {"--directions", "20x"});
-    refuse("--directions", {"--directions", "20x30x40"});
-    refuse("--directions", {"--directions", "-20x30"});
-    refuse("--directions", {"--directions", "99999999999x30"});
-    refuse("colatitude_count", {"--directions", "200x3"});
-    refuse("longitude_count", {"--directions", "100000x200"});
-    refuse("--kind: 'exact' is not one of distance", {"--kind", "exact"});
+    refuse("--directions", {"--kind", "distance", "--directions", "200"});
+    refuse("--directions", {"--kind", "distance", "--directions", "20x"});
+    refuse("--directions", {"--kind", "distance", "--directions", "20x30x40"});
+    refuse("--directions", {"--kind", "distance", "--directions", "-20x30"});
+    refuse("--directions", {"--kind", "distance", "--directions", "99999999999x30"});
+    refuse("colatitude_count", {"--kind", "distance", "--directions", "200x3"});
+    refuse("longitude_count", {"--kind", "distance", "--directions", "100000x200"});
+    refuse("--kind: 'grid' is not one of exact|distance", {"--kind", "grid"});
+    refuse("--cells-per-octant", {"--cells-per-octant", "0"});
+    refuse("--cells-per-octant", {"--cells-per-octant", "262145"});
+    refuse("--budget", {"--budget", "300"});
+    refuse("--budget", {"--budget", "300GB"});
+    refuse("--budget", {"--budget", "-1KB"});
+    refuse("--budget", {"--budget", "nanKB"});
+    refuse("coarsest", {"--budget", "100B"});
+    refuse("--budget", {"--budget", "1MB", "--cells-per-octant", "9"});
+    refuse("--rule", {"--rule", "odd"});
+    refuse("--centre", {"--centre", "origin"});
     refuse("--correction: 'some' is not one of signed|paper|none", {"--correction", "some"});
     refuse("--entries", {"--entries", "0"});
     refuse("--pole", {"--pole", "w"});
@@ -147,13 +235,31 @@ TEST_F(BuildCommand, KeepsTheOldMapWhenItFails) {
     EXPECT_EQ(content("box.ech"), old);
 }
 
-TEST_F(BuildCommand, RefusesWhatHasNoInsideOrIsInsideOut) {
-    TriangleMesh box = echinus::make_box({2, 3, 4});
-    for (echinus::Triangle& face : box.faces) std::swap(face[0], face[1]);
+TEST_F(BuildCommand, TakesWhatIsInsideOutForAnExactMapOnly) {
+    TriangleMesh box = make_box({2, 3, 4});
+    for (Triangle& face : box.faces) std::swap(face[0], face[1]);
     write("inside_out.obj", obj_text(box));
-    expect_failure(1, "inside_out.obj: the mesh is inside out", {"build", "inside_out.obj", "-o", "box.ech"});
-    expect_success({"build", "inside_out.obj", "--repair", "-o", "box.ech"});
-    for (echinus::Vec3f& vertex : box.vertices) vertex.z = 0;
+    const std::vector<std::string> distance{"build", "inside_out.obj", "--kind", "distance", "-o", "box.ech"};
+    expect_failure(1, "inside_out.obj: the mesh is inside out", distance);
+    const json built = json::parse(expect_success({"build", "inside_out.obj", "-o", "box.ech", "--json"}));
+    EXPECT_EQ(built["inside_out"], true);
+    EXPECT_EQ(built["centre_inside"], true);
+    const std::string text = expect_success({"build", "inside_out.obj", "-o", "box.ech"});
+    EXPECT_NE(text.find("The mesh is inside out."), std::string::npos) << text;
+    const json mended =
+        json::parse(expect_success({"build", "inside_out.obj", "--repair", "-o", "box.ech", "--json"}));
+    EXPECT_FALSE(mended.contains("inside_out"));
+}
+
+TEST_F(BuildCommand, RefusesWhatHasNoInsideUnlessTold) {
+    TriangleMesh box = make_box({2, 3, 4});
+    for (Vec3f& vertex : box.vertices) vertex.z = 0;
     write("flat.obj", obj_text(box));
-    expect_failure(1, "flat.obj: the mesh encloses no volume", {"build", "flat.obj", "-o", "flat.ech"});
+    for (const char* kind : {"exact", "distance"}) {
+        expect_failure(1, "flat.obj: the mesh encloses no volume",
+                       {"build", "flat.obj", "--kind", kind, "-o", "flat.ech"});
+    }
+    const json built =
+        json::parse(expect_success({"build", "flat.obj", "--allow-open", "-o", "flat.ech", "--json"}));
+    EXPECT_EQ(built["centre_inside"], false);
 }

@@ -63,24 +63,29 @@ TEST_F(InfoCommand, ForetellsWhatRepairWouldDo) {
 
 TEST_F(InfoCommand, DescribesAMapAsTheBuildDid) {
     write("box.obj", box_text());
-    const json built =
-        json::parse(expect_success({"build", "box.obj", "--directions", "24x12", "-o", "box.ech", "--json"}));
-    EXPECT_EQ(info("box.ech"), built);
-    EXPECT_EQ(built["file_bytes"], std::filesystem::file_size(path("box.ech")));
-    const std::string text = expect_success({"build", "box.obj", "--directions", "24x12", "-o", "box.ech"});
-    EXPECT_EQ(expect_success({"info", "box.ech"}), text);
+    for (const char* kind : {"exact", "distance"}) {
+        const std::vector<std::string> build{"build", "box.obj", "--kind", kind, "-o", "box.ech"};
+        std::vector<std::string> build_json = build;
+        build_json.emplace_back("--json");
+        const json built = json::parse(expect_success(build_json));
+        EXPECT_EQ(built["kind"], kind);
+        EXPECT_EQ(info("box.ech"), built);
+        EXPECT_EQ(built["file_bytes"], std::filesystem::file_size(path("box.ech")));
+        const std::string text = expect_success(build);
+        EXPECT_EQ(expect_success({"info", "box.ech"}), text);
+    }
 }
 
 TEST_F(InfoCommand, ShowsTheHistogramOfEntries) {
     write("box.obj", box_text());
-    expect_success({"build", "box.obj", "--directions", "24x12", "-o", "box.ech"});
+    expect_success({"build", "box.obj", "--kind", "distance", "--directions", "24x12", "-o", "box.ech"});
     const std::string text = expect_success({"info", "box.ech"});
     EXPECT_NE(text.find("entries  directions\n        1         288  100.0 %"), std::string::npos) << text;
 }
 
 TEST_F(InfoCommand, ReadsStandardInput) {
     write("box.obj", box_text());
-    expect_success({"build", "box.obj", "--directions", "24x12", "-o", "box.ech"});
+    expect_success({"build", "box.obj", "--kind", "distance", "--directions", "24x12", "-o", "box.ech"});
     EXPECT_EQ(json::parse(expect_success({"info", "-", "--json"}, content("box.ech"))), info("box.ech"));
     EXPECT_EQ(json::parse(expect_success({"info", "-", "--format", "obj", "--json"}, box_text())),
               info("box.obj"));
@@ -90,7 +95,7 @@ TEST_F(InfoCommand, ReadsStandardInput) {
 
 TEST_F(InfoCommand, RefusesADamagedMapByName) {
     write("box.obj", box_text());
-    expect_success({"build", "box.obj", "--directions", "24x12", "-o", "box.ech"});
+    expect_success({"build", "box.obj", "--kind", "distance", "--directions", "24x12", "-o", "box.ech"});
     const std::string map = content("box.ech");
     write("half.ech", map.substr(0, map.size() / 2));
     expect_failure(1, "half.ech: the map file is truncated or damaged", {"info", "half.ech"});

@@ -66,13 +66,14 @@ class QueryCommand : public CommandLineTest {
     void SetUp() override {
         CommandLineTest::SetUp();
         write("box.obj", box_text());
-        expect_success({"build", "box.obj", "--directions", "48x24", "-o", "box.ech"});
+        expect_success({"build", "box.obj", "-o", "exact.ech"});
+        expect_success({"build", "box.obj", "--kind", "distance", "--directions", "48x24", "-o", "box.ech"});
         write("points.npy", npy_text(kPoints));
         write("points.csv", csv_text(kPoints));
     }
 
-    std::vector<Contact> contacts(float margin) const {
-        const DistanceMap map = load_distance_map(path("box.ech"));
+    std::vector<Contact> contacts(const std::string& file, float margin) const {
+        const AnyMap map = load_map(path(file));
         std::vector<Contact> contacts(kPoints.size());
         contacts_batch(map, kPoints, margin, contacts);
         return contacts;
@@ -82,12 +83,29 @@ class QueryCommand : public CommandLineTest {
 } // namespace
 
 TEST_F(QueryCommand, AnswersWhatTheLibraryAnswers) {
-    for (const std::string margin : {"0", "0.25"}) {
-        for (const std::string points : {"points.npy", "points.csv"}) {
-            expect_success({"query", "box.ech", points, "-o", "answers.npy", "--margin", margin});
-            EXPECT_TRUE(content("answers.npy").ends_with(records(contacts(std::stof(margin)))));
+    for (const std::string map : {"box.ech", "exact.ech"}) {
+        for (const std::string margin : {"0", "0.25"}) {
+            for (const std::string points : {"points.npy", "points.csv"}) {
+                expect_success({"query", map, points, "-o", "answers.npy", "--margin", margin});
+                EXPECT_TRUE(content("answers.npy").ends_with(records(contacts(map, std::stof(margin)))));
+            }
         }
     }
+}
+
+TEST_F(QueryCommand, MarksWhatIsNotCertain) {
+    write("open.obj", open_box_text());
+    expect_success({"build", "open.obj", "--allow-open", "-o", "open.ech"});
+    std::string points;
+    for (const char* x : {"-0.95", "-0.5", "0", "0.5", "0.95"})
+        for (const char* y : {"-1.45", "0", "1.45"})
+            for (const char* z : {"-1.95", "0", "1.95"}) points += std::string(x) + ',' + y + ',' + z + '\n';
+    std::istringstream lines(expect_success({"query", "open.ech", "-", "-o", "-"}, points));
+    std::string line;
+    std::getline(lines, line);
+    bool is_certain_met[2] = {};
+    while (std::getline(lines, line)) is_certain_met[line.back() - '0'] = true;
+    EXPECT_TRUE(is_certain_met[0] && is_certain_met[1]);
 }
 
 TEST_F(QueryCommand, KnowsThePointsOfABox) {
