@@ -130,13 +130,35 @@ struct MapPicture : PictureArguments {
     MeshArgument mesh;
 };
 
+/// Of one mesh: all its vertices lie in the map's sphere, and some on it. A mended mesh, or one written with
+/// other digits, still is.
+void require_same_model(const TriangleMesh& mesh, const AnyMap& map, const std::string& map_name) {
+    const auto [centre, radius] =
+        std::visit([](const auto& kind) { return std::pair(kind.view().centre, kind.view().radius); }, map);
+    float reach = 0;
+    for (const Triangle& face : mesh.faces)
+        for (const std::uint32_t vertex : face)
+            reach = std::max(reach, length(mesh.vertices[vertex] - centre));
+    constexpr float kTolerance = 0.01F;
+    if (std::fabs(reach - radius) <= kTolerance * radius) return;
+    throw Error(ErrorCode::InvalidMesh, "not the mesh that " + map_name + " was built from: it reaches " +
+                                            std::to_string(reach) + " from the map's centre, the map " +
+                                            std::to_string(radius));
+}
+
 void render_map(const MapPicture& arguments) {
     const InputFile map_file(arguments.map, "ech");
-    const DistanceMap map = map_file.read([](const fs::path& path) { return load_distance_map(path); });
+    const AnyMap map = map_file.read([](const fs::path& path) { return load_map(path); });
     const TriangleMesh mesh = read_mesh(arguments.mesh);
     ProgressBar bar("drawing");
     const Image image = naming_mesh(arguments.mesh.name(), [&] {
-        return draw_map_figure(mesh, map, arguments.view, with_progress(arguments.options, bar));
+        require_same_model(mesh, map, map_file.name());
+        return std::visit(
+            [&](const auto& kind) {
+                return draw_map_figure(mesh, kind.view(), arguments.view,
+                                       with_progress(arguments.options, bar));
+            },
+            map);
     });
     write_picture(arguments, image);
 }
@@ -144,7 +166,8 @@ void render_map(const MapPicture& arguments) {
 void add_map_picture(CLI::App& app) {
     const auto arguments = std::make_shared<MapPicture>();
     CLI::App& command =
-        *app.add_subcommand("map", "A map beside its model: the surface rebuilt from it, layer by layer");
+        *app.add_subcommand("map", "A map beside its model: the faces of an exact map by the length of their "
+                                   "lists, the surface rebuilt from a distance map layer by layer");
     command.add_option("MAP", arguments->map, "Map file, made by echinus build, or -")
         ->required()
         ->type_name("");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <echinus/distance_map.hpp>
+#include <echinus/exact_map.hpp>
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 
@@ -46,6 +47,11 @@ inline constexpr Colour kLayers[] = {
     Colour::from_hex(0x44AA99), Colour::from_hex(0xDDCC77), Colour::from_hex(0xCC6677),
     Colour::from_hex(0x88CCEE), Colour::from_hex(0xAA4499), Colour::from_hex(0x999933),
     Colour::from_hex(0x332288), Colour::from_hex(0x117733), Colour::from_hex(0x882255),
+};
+/// From little to much, also in grey: five of Paul Tol's "YlOrBr".
+inline constexpr Colour kScale[] = {
+    Colour::from_hex(0xFFF7BC), Colour::from_hex(0xFEC44F), Colour::from_hex(0xFB9A29),
+    Colour::from_hex(0xCC4C02), Colour::from_hex(0x662506),
 };
 } // namespace palette
 
@@ -156,6 +162,13 @@ Image arrange(std::span<const Image> pictures, std::uint32_t column_count);
 /// @param options  width is that of the whole figure
 /// @throws Error as camera_for() and render(), and InvalidMesh when the map has no surface
 Image draw_map_figure(const TriangleMesh& model, const DistanceMapView& map, const View& view,
+                      const RenderOptions& options = {});
+
+/// The model, and beside it the mesh as an exact map holds it: each face in the colour of the longest list
+/// that it is in, which is what a query near it may have to test.
+/// @param options  width is that of the whole figure
+/// @throws Error as camera_for() and render()
+Image draw_map_figure(const TriangleMesh& model, const ExactMapView& map, const View& view,
                       const RenderOptions& options = {});
 
 } // namespace echinus

@@ -1,3 +1,4 @@
+#include "directions/lattice.hpp"
 #include "render/page.hpp"
 
 #include <echinus/error.hpp>
@@ -6,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace echinus {
 
@@ -50,26 +53,28 @@ void draw_caption(Image& image, const std::string& caption) {
               TextAlign::Centre);
 }
 
-/// "entries from the centre" and for each layer a dot and its number.
-void draw_legend(Image& image, std::uint32_t layer_count) {
+/// What a colour stands for.
+struct LegendEntry {
+    Colour colour;
+    std::string label;
+};
+
+/// The title, and for each entry a dot and its label.
+void draw_legend(Image& image, const std::string& title, std::span<const LegendEntry> entries) {
     const Footer footer(image);
-    const std::string title = "entries from the centre outwards";
     const double letter = footer.letter_px;
     const double dot_step = 1.6 * letter;
     const double gap = 1.2 * letter;
     double width = text_width(title, letter);
-    for (std::uint32_t layer = 1; layer <= layer_count; ++layer) {
-        width += gap + dot_step + text_width(std::to_string(layer), letter);
-    }
+    for (const LegendEntry& entry : entries) width += gap + dot_step + text_width(entry.label, letter);
     double x = (image.width - width) / 2;
     draw_text(image, x, footer.second_line, title, letter);
     x += text_width(title, letter);
-    for (std::uint32_t layer = 1; layer <= layer_count; ++layer) {
-        const std::string number = std::to_string(layer);
+    for (const LegendEntry& entry : entries) {
         const PagePoint dot{x + gap + letter / 2, footer.second_line - letter / 2};
-        draw_strokes(image, std::array{PageStroke{dot, dot}}, 1.25 * letter, layer_colour(layer - 1));
-        draw_text(image, x + gap + dot_step, footer.second_line, number, letter);
-        x += gap + dot_step + text_width(number, letter);
+        draw_strokes(image, std::array{PageStroke{dot, dot}}, 1.25 * letter, entry.colour);
+        draw_text(image, x + gap + dot_step, footer.second_line, entry.label, letter);
+        x += gap + dot_step + text_width(entry.label, letter);
     }
 }
 
@@ -83,18 +88,16 @@ RenderOptions half_of(const RenderOptions& options, int half) {
     return result;
 }
 
-} // namespace
+/// The right half of the figure.
+struct MapPicture {
+    RenderedObject object;
+    std::string caption;
+    std::string legend_title;
+    std::vector<LegendEntry> legend;
+};
 
-Image draw_map_figure(const TriangleMesh& model, const DistanceMapView& map, const View& view,
-                      const RenderOptions& options) {
-    const MapSurface surface = reconstruct_surface(map);
-    if (surface.mesh.faces.empty()) {
-        throw Error(
-            ErrorCode::InvalidMesh,
-            "the map has no surface: nowhere do four neighbouring directions have equally many entries; "
-            "build it with more directions");
-    }
-    const std::array objects{model_object(model), map_object(surface)};
+Image draw_figure(const TriangleMesh& model, MapPicture map, const View& view, const RenderOptions& options) {
+    const std::array objects{model_object(model), std::move(map.object)};
     View roomy_view = view;
     roomy_view.footer = std::max(view.footer, kFooter);
     const RenderOptions left = half_of(options, 0);
@@ -107,11 +110,89 @@ Image draw_map_figure(const TriangleMesh& model, const DistanceMapView& map, con
     std::array pictures{render(model_alone, camera, left),
                         render({&objects[1], 1}, camera, half_of(options, 1))};
     draw_caption(pictures[0], "model, " + std::to_string(model.faces.size()) + " faces");
-    draw_caption(pictures[1], "map, " + std::to_string(map.longitude_count) + " x " +
-                                  std::to_string(map.colatitude_count) + " directions, " +
-                                  std::to_string(map.entry_count()) + " entries");
-    draw_legend(pictures[1], 1 + *std::max_element(surface.layer.begin(), surface.layer.end()));
+    draw_caption(pictures[1], map.caption);
+    draw_legend(pictures[1], map.legend_title, map.legend);
     return arrange(pictures, 2);
+}
+
+// ---- An exact map: its faces, coloured by the lists that they are in ----
+
+/// Classes of list lengths: up to 4 faces, up to 8 and so on.
+constexpr std::size_t kClassCount = std::size(palette::kScale);
+
+std::size_t class_of(std::uint32_t list_length) {
+    std::size_t result = 0;
+    while (result + 1 < kClassCount && list_length > (std::uint32_t{4} << result)) ++result;
+    return result;
+}
+
+/// [face_count] The longest list that each face is in; 0 for one that is in none, being seen edge-on.
+std::vector<std::uint32_t> longest_lists(const ExactMapView& map) {
+    std::vector<std::uint32_t> longest(map.face_count());
+    for (std::size_t band = 0; band + 1 < map.bands.size(); ++band) {
+        const std::uint32_t first = map.bands[band].first_reference;
+        const std::uint32_t last = map.bands[band + 1].first_reference;
+        for (std::uint32_t r = first; r < last; ++r) {
+            std::uint32_t& length = longest[map.references[r]];
+            length = std::max(length, last - first);
+        }
+    }
+    return longest;
+}
+
+/// The mesh as the map holds it, on its lattice.
+RenderedObject map_object(const ExactMapView& map) {
+    RenderedObject object;
+    const LatticeFrame frame(map.centre, map.radius);
+    for (const Vec3<std::int32_t>& vertex : map.vertices)
+        object.mesh.vertices.push_back(Vec3f(frame.to_local(Vec3d(vertex))));
+    for (std::size_t face = 0; face < map.face_count(); ++face)
+        object.mesh.faces.push_back(
+            {map.corners[3 * face], map.corners[3 * face + 1], map.corners[3 * face + 2]});
+    for (const std::uint32_t length : longest_lists(map))
+        object.face_colours.push_back(palette::kScale[class_of(length)]);
+    return object;
+}
+
+std::vector<LegendEntry> list_legend() {
+    std::vector<LegendEntry> legend;
+    for (std::size_t i = 0; i + 1 < kClassCount; ++i)
+        legend.push_back({palette::kScale[i], std::to_string(4U << i)});
+    legend.push_back({palette::kScale[kClassCount - 1], "more"});
+    return legend;
+}
+
+} // namespace
+
+Image draw_map_figure(const TriangleMesh& model, const DistanceMapView& map, const View& view,
+                      const RenderOptions& options) {
+    const MapSurface surface = reconstruct_surface(map);
+    if (surface.mesh.faces.empty()) {
+        throw Error(
+            ErrorCode::InvalidMesh,
+            "the map has no surface: nowhere do four neighbouring directions have equally many entries; "
+            "build it with more directions");
+    }
+    MapPicture picture{map_object(surface),
+                       "map, " + std::to_string(map.longitude_count) + " x " +
+                           std::to_string(map.colatitude_count) + " directions, " +
+                           std::to_string(map.entry_count()) + " entries",
+                       "entries from the centre outwards",
+                       {}};
+    const std::uint32_t layer_count = 1 + *std::max_element(surface.layer.begin(), surface.layer.end());
+    for (std::uint32_t layer = 0; layer < layer_count; ++layer)
+        picture.legend.push_back({layer_colour(layer), std::to_string(layer + 1)});
+    return draw_figure(model, std::move(picture), view, options);
+}
+
+Image draw_map_figure(const TriangleMesh& model, const ExactMapView& map, const View& view,
+                      const RenderOptions& options) {
+    return draw_figure(model,
+                       {map_object(map),
+                        "map, " + std::to_string(map.cell_count()) + " cells, " +
+                            std::to_string(map.references.size()) + " faces in lists",
+                        "faces in the longest list, up to", list_legend()},
+                       view, options);
 }
 
 } // namespace echinus

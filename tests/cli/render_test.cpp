@@ -79,6 +79,21 @@ TEST_F(RenderCommand, SeesADifferenceBetweenUpAxesAndBetweenViews) {
     EXPECT_NE(content("z.png"), content("back.png"));
 }
 
+TEST_F(RenderCommand, DrawsAnExactMapBesideItsModel) {
+    expect_success({"build", "box.obj", "-o", "box.ech"});
+    expect_success(render({"map", "box.ech", "box.obj", "-o", "map.png"}));
+    expect_png(content("map.png"), 60, 40);
+}
+
+TEST_F(RenderCommand, RefusesAMapOfAnotherMesh) {
+    write("ball.obj", obj_text(echinus::make_sphere(1, 12, 6)));
+    for (const char* kind : {"exact", "distance"}) {
+        expect_success({"build", "box.obj", "--kind", kind, "-o", "box.ech"});
+        expect_failure(1, "ball.obj: not the mesh that box.ech was built from",
+                       render({"map", "box.ech", "ball.obj", "-o", "map.png"}));
+    }
+}
+
 TEST_F(RenderCommand, DrawsAMapBesideItsModel) {
     expect_success({"build", "box.obj", "--kind", "distance", "--directions", "24x24", "-o", "box.ech"});
     expect_success(render({"map", "box.ech", "box.obj", "-o", "map.png"}));

@@ -48,6 +48,20 @@ TEST(MapFigure, ShowsTheModelInGreyAndTheLayersInTheirColours) {
     EXPECT_GT(count_greenish(figure, 100, 200), 100); // the first layer, the torus seen from its hole
 }
 
+TEST(MapFigure, PaintsTheFacesOfAnExactMapByTheirLists) {
+    const ExactMap map = ExactMap::build(kTorus, {.divisions = 1}); // few cells, so that lists are long
+    const Image figure = draw_map_figure(kTorus, map, View{}, small_options());
+    ASSERT_EQ(figure.width, 200U);
+    int reddish = 0;
+    for (std::uint32_t y = 0; y < figure.height; ++y) {
+        for (std::uint32_t x = 100; x < 200; ++x) {
+            const std::uint8_t* rgb = &figure.rgb[3 * (std::size_t{y} * figure.width + x)];
+            if (rgb[0] > rgb[2] + 60) ++reddish;
+        }
+    }
+    EXPECT_GT(reddish, 100);
+}
+
 TEST(MapFigure, ReportsTheProgressOfBothHalvesAsOne) {
     std::vector<double> shares;
     RenderOptions options = small_options();
