@@ -182,7 +182,7 @@ ExactMapStatistics statistics_of(const TriangleMesh& mesh, const LatticeMesh& la
         whole += volume.whole;
     }
     if (whole > 0) {
-        statistics.certain_share = static_cast<float>(1 - uncertain / whole);
+        statistics.certain_share = static_cast<float>(std::max(0.0, 1 - uncertain / whole));
         statistics.uncertain_directions = static_cast<float>(uncertain_cells / whole);
     }
     return statistics;

@@ -59,6 +59,10 @@ struct Lists {
     }
 };
 
+/// Clang deduces the parameters of an aggregate only if told how.
+template <typename Face, typename Vertex>
+Lists(const ExactMapView&, const Face*, const Vertex*) -> Lists<Face, Vertex>;
+
 int crossings_in_band(const ExactMapView& map, RaySide side, std::uint32_t band, std::uint32_t part,
                       const LatticePoint& p) {
     const auto crossings = [&](const auto& lists) {

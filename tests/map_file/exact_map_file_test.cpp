@@ -165,13 +165,12 @@ TEST(ExactMapFile, NamesWhatContradictsTheMeaning) {
              p.face_numbers.widen();
              p.face_numbers.wide[2] = 0x8000'0000;
              p.statistics.face_count = 0xffff'ffff;
-             p.statistics.dropped_faces = 0xffff'ffff - 80;
          }},
         {"it has no faces", [&](Parts& p) { p.face_numbers.narrow.clear(); }},
         {"corners has 239 elements and not 240", [&](Parts& p) { p.corners.narrow.pop_back(); }},
         {"corners16[5] is 40 and not below 40", [&](Parts& p) { p.corners.narrow[5] = 40; }},
         {"references16 and references32 both", [&](Parts& p) { p.references.wide.push_back(1); }},
-        {"face 1 has two corners on one", [&](Parts& p) { p.corners.narrow[4] = p.corners.narrow[3]; }},
+        {"dropped_faces is", [&](Parts& p) { p.corners.narrow[4] = p.corners.narrow[3]; }},
         {"border[0] names a vertex",
          [&](Parts& p) {
              p.border = {{0, 40, 1}};
@@ -199,6 +198,7 @@ TEST(ExactMapFile, NamesWhatContradictsTheMeaning) {
         {"bands[0] overlaps", [&](Parts& p) { p.bands[0].lower = 65535; }},
         {"bands[0] overlaps", [&](Parts& p) { p.bands[0].upper = p.bands[0].lower - 1; }},
         {"bands[1] overlaps", [&](Parts& p) { p.band_offsets[1] = p.band_offsets[2]; }},
+        {"winding_below[0] makes its band", [&](Parts& p) { p.winding_below[0] = ExactMapView::kSplit; }},
         {"winding_below[4] is uncertain", [&](Parts& p) { p.winding_below[4] = ExactMapView::kUncertain; }},
         {"nodes has no elements", [&](Parts& p) { p.nodes.clear(); }},
         {"is no child of an earlier one", [&](Parts& p) { p.nodes.push_back(p.nodes.back()); }},
