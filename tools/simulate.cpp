@@ -62,11 +62,6 @@ class Samples {
     std::optional<PointCacheWriter> cache_;
 };
 
-TriangleMesh scaled(TriangleMesh mesh, double scale) {
-    for (Vec3f& vertex : mesh.vertices) vertex = Vec3f(Vec3d(vertex) * scale);
-    return mesh;
-}
-
 /// Steps until the cloth rests or the frame limit is reached, saving every so many frames; stops only after a
 /// frame that was saved, so that the last sample is the end.
 std::vector<SavedPose> run(Simulation& simulation, Samples& samples, std::uint32_t frame_limit,
@@ -113,7 +108,7 @@ void simulate(const SimulateArguments& arguments) {
         .scene_name = scene_name,
         .simulation = simulation,
         .model = model_report,
-        .collider_radius = model_report.bounding_sphere.radius * scene.scale,
+        .collider_radius = inspect(scaled(model.mesh, scene.scale)).bounding_sphere.radius,
         .verdict = judge(simulation.positions(), model.mesh, collider, arguments.thread_count),
         .poses = std::move(poses)};
     const nlohmann::ordered_json report = to_json(result);

@@ -12,6 +12,10 @@ struct Verdict {
     double deepest = 0; ///< distance of the deepest of them from the surface, units
 };
 
+/// A mesh stretched along its axes. Where that mirrors it, its faces are turned round, so that what was
+/// inside stays inside.
+echinus::TriangleMesh scaled(echinus::TriangleMesh mesh, const echinus::Vec3d& scale);
+
 /// Judges every particle by its winding number and its distance from the surface, both brute force over all
 /// faces; of the collider only pose and scale enter, not the map.
 /// @param thread_count  0: all cores

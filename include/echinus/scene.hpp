@@ -39,8 +39,8 @@ struct Scene {
     SceneModel model;
     RepairOptions repair; ///< for the mesh, before the map is built
     DistanceMapOptions map;
-    RigidTransform pose; ///< of the collider at the start
-    double scale = 1;    ///< of the collider
+    RigidTransform pose;  ///< of the collider at the start
+    Vec3d scale{1, 1, 1}; ///< of the collider, along the axes of the mesh
     Vec3d linear_velocity;
     Vec3d angular_velocity; ///< radians per second
     ClothOptions cloth;
@@ -67,10 +67,10 @@ TriangleMesh make_mesh(const SphereModel& model);
 TriangleMesh make_mesh(const BoxModel& model);
 
 /// The scene's collider, with a map of the scene's model.
-Collider make_collider(const Scene& scene, const DistanceMap& map);
+Collider make_collider(const Scene& scene, const AnyMap& map);
 
 /// The scene's cloth and collider, ready to step.
 /// @throws Error InvalidOptions
-Simulation make_simulation(const Scene& scene, const DistanceMap& map);
+Simulation make_simulation(const Scene& scene, const AnyMap& map);
 
 } // namespace echinus

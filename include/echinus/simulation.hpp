@@ -105,7 +105,7 @@ class Simulation {
     /// Allocates all that step() needs.
     /// @throws Error InvalidOptions when an option is out of range, the arrays of the deformable do not fit
     /// together, a stick names a particle that does not exist, a number is not finite, or a collider's scale
-    /// is not positive
+    /// is 0
     Simulation(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
 
     /// One frame: Verlet integration with drag, colliders move on along their velocities, then

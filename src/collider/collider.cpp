@@ -25,6 +25,53 @@ void for_each_piece(const FrameChange& frame, const StridedSpan<const Vec3f>& po
     }
 }
 
+/// Contacts of a distance map, to the world in place: most particles have no contact, and copying their
+/// answers would take longer than this.
+class RadialContacts {
+  public:
+    RadialContacts(const FrameChange& frame, const DistanceMap& map, float margin_world)
+        : frame_(frame), map_(map), margin_world_(margin_world) {}
+
+    /// Along no ray is a world length longer in the local frame.
+    float margin_local() const { return static_cast<float>(margin_world_ / frame_.least_scale()); }
+
+    void to_world(Contact& contact, const Vec3f& point_local, const Vec3f& point_world) const {
+        if (contact.found() && !frame_.uniform()) stretch(contact, point_local);
+        if (!contact.found()) {
+            contact.point = point_world;
+            return;
+        }
+        contact.point = frame_.point_to_world(contact.point);
+        contact.normal = frame_.normal_to_world(contact.normal);
+        if (frame_.uniform()) contact.depth = static_cast<float>(contact.depth * frame_.least_scale());
+    }
+
+  private:
+    /// Depth along the ray, and the normal. What lies within the widest local margin may be beyond the
+    /// world's.
+    void stretch(Contact& contact, const Vec3f& point_local) const {
+        const Vec3d from_centre = Vec3d(point_local) - Vec3d(map_.view().centre);
+        const Vec3d ray = from_centre == Vec3d{} ? Vec3d(contact.point) - Vec3d(point_local) : from_centre;
+        contact.depth = static_cast<float>(contact.depth * frame_.stretch_along(ray));
+        contact.normal = frame_.scaled_normal(contact.normal);
+        if (!contact.inside && -contact.depth > margin_world_) contact = {};
+    }
+
+    const FrameChange& frame_;
+    const DistanceMap& map_;
+    float margin_world_;
+};
+
+/// Contacts of an exact map, which knows the stretch itself: only the pose is left to do.
+void exact_to_world(const FrameChange& frame, Contact& contact, const Vec3f& point_world) {
+    if (!contact.found()) {
+        contact.point = point_world;
+        return;
+    }
+    contact.point = frame.point_to_world(contact.point);
+    contact.normal = frame.normal_to_world(contact.normal);
+}
+
 } // namespace
 
 Vec3d velocity_at(const Collider& collider, const Vec3d& point_world) {
@@ -48,9 +95,17 @@ bool contains(const Collider& collider, Vec3f point_world) noexcept {
 
 Contact contact(const Collider& collider, Vec3f point_world, float margin_world) noexcept {
     const FrameChange frame(collider);
-    Contact found =
-        contact(collider.map, frame.point_to_local(point_world), frame.length_to_local(margin_world));
-    frame.contact_to_world(found, point_world);
+    const Vec3f point_local = frame.point_to_local(point_world);
+    Contact found;
+    if (const auto* exact = std::get_if<ExactMap>(&collider.map)) {
+        found = contact(exact->view(), point_local, margin_world, frame.scale());
+        exact_to_world(frame, found, point_world);
+    } else {
+        const auto& map = *std::get_if<DistanceMap>(&collider.map);
+        const RadialContacts radial(frame, map, margin_world);
+        found = contact(map.view(), point_local, radial.margin_local());
+        radial.to_world(found, point_local, point_world);
+    }
     return found;
 }
 
@@ -65,13 +120,39 @@ void contains_batch(const Collider& collider, StridedSpan<const Vec3f> points_wo
 void contacts_batch(const Collider& collider, StridedSpan<const Vec3f> points_world, float margin_world,
                     std::span<Contact> contacts) noexcept {
     const FrameChange frame(collider);
-    const float margin_local = frame.length_to_local(margin_world);
+    if (const auto* exact = std::get_if<ExactMap>(&collider.map)) {
+        for_each_piece(frame, points_world, [&](std::size_t begin, std::span<const Vec3f> points_local) {
+            const std::span<Contact> piece = contacts.subspan(begin, points_local.size());
+            contacts_batch(exact->view(), points_local, margin_world, piece, frame.scale());
+            for (std::size_t i = 0; i < piece.size(); ++i)
+                exact_to_world(frame, piece[i], points_world[begin + i]);
+        });
+        return;
+    }
+    const auto& map = *std::get_if<DistanceMap>(&collider.map);
+    const RadialContacts radial(frame, map, margin_world);
     for_each_piece(frame, points_world, [&](std::size_t begin, std::span<const Vec3f> points_local) {
         const std::span<Contact> piece = contacts.subspan(begin, points_local.size());
-        contacts_batch(collider.map, points_local, margin_local, piece);
+        contacts_batch(map.view(), points_local, radial.margin_local(), piece);
         for (std::size_t i = 0; i < piece.size(); ++i)
-            frame.contact_to_world(piece[i], points_world[begin + i]);
+            radial.to_world(piece[i], points_local[i], points_world[begin + i]);
     });
+}
+
+SweepHit sweep(const Collider& collider, const RigidTransform& previous_pose, Vec3f from_world,
+               Vec3f to_world) noexcept {
+    SweepHit hit;
+    hit.point = to_world;
+    const auto* exact = std::get_if<ExactMap>(&collider.map);
+    if (exact == nullptr) return hit;
+    const FrameChange frame(collider);
+    const Vec3f from_local = FrameChange(previous_pose, collider.scale).point_to_local(from_world);
+    const SweepHit met = sweep(exact->view(), from_local, frame.point_to_local(to_world));
+    if (!met.found()) return hit;
+    hit = met;
+    hit.point = frame.point_to_world(met.point);
+    hit.normal = frame.normal_to_world(frame.scaled_normal(met.normal));
+    return hit;
 }
 
 } // namespace echinus

@@ -2,13 +2,15 @@
 
 #include <echinus/collider.hpp>
 
+#include <algorithm>
+#include <cmath>
+
 namespace echinus {
 
 /// A 3 x 3 matrix by rows.
 struct Matrix3d {
     Vec3d row_x, row_y, row_z;
 
-    Matrix3d operator*(double s) const { return {row_x * s, row_y * s, row_z * s}; }
     Vec3d operator*(const Vec3d& v) const { return {dot(row_x, v), dot(row_y, v), dot(row_z, v)}; }
     Matrix3d transposed() const {
         return {{row_x.x, row_y.x, row_z.x}, {row_x.y, row_y.y, row_z.y}, {row_x.z, row_y.z, row_z.z}};
@@ -20,35 +22,56 @@ inline Matrix3d matrix_of(const Rotation& rotation) {
     return columns.transposed();
 }
 
-/// A collider's pose and scale, ready to be applied to many points: nine products instead of a quaternion.
+inline Vec3d times(const Vec3d& a, const Vec3d& b) {
+    return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+
+/// A pose and a scale, ready to be applied to many points: nine products instead of a quaternion.
 class FrameChange {
   public:
-    explicit FrameChange(const Collider& collider)
-        : rotation_(matrix_of(collider.pose.rotation)),
-          to_local_(rotation_.transposed() * (1 / collider.scale)), translation_(collider.pose.translation),
-          scale_(collider.scale) {}
+    FrameChange(const RigidTransform& pose, const Vec3d& scale)
+        : rotation_(matrix_of(pose.rotation)), translation_(pose.translation),
+          scale_(scale), inverse_scale_{1 / scale.x, 1 / scale.y, 1 / scale.z} {
+        const Matrix3d back = rotation_.transposed();
+        to_local_ = {back.row_x * inverse_scale_.x, back.row_y * inverse_scale_.y,
+                     back.row_z * inverse_scale_.z};
+        const Vec3d sizes{std::fabs(scale.x), std::fabs(scale.y), std::fabs(scale.z)};
+        least_scale_ = std::min({sizes.x, sizes.y, sizes.z});
+        uniform_ = scale.x > 0 && scale.x == scale.y && scale.x == scale.z;
+    }
+    explicit FrameChange(const Collider& collider) : FrameChange(collider.pose, collider.scale) {}
 
     Vec3f point_to_local(const Vec3f& point_world) const {
         return Vec3f(to_local_ * (Vec3d(point_world) - translation_));
     }
-    float length_to_local(float length_world) const { return static_cast<float>(length_world / scale_); }
-
-    /// Takes what the map found for a particle to the world, in place: most particles have no contact, and
-    /// copying their answers would take longer than this.
-    void contact_to_world(Contact& contact, const Vec3f& point_world) const {
-        if (!contact.found()) {
-            contact.point = point_world;
-            return;
-        }
-        contact.point = Vec3f(rotation_ * (Vec3d(contact.point) * scale_) + translation_);
-        contact.normal = Vec3f(rotation_ * Vec3d(contact.normal));
-        contact.depth = static_cast<float>(contact.depth * scale_);
+    Vec3f point_to_world(const Vec3f& point_local) const {
+        return Vec3f(rotation_ * times(Vec3d(point_local), scale_) + translation_);
     }
+    /// A unit normal of the scaled surface, still along the map's axes.
+    Vec3f normal_to_world(const Vec3f& normal) const { return Vec3f(rotation_ * Vec3d(normal)); }
+    /// The scaled surface's normal from the unscaled one's, along the map's axes: by the inverse transpose of
+    /// the scale, which lets normals that point out of the solid do so in its mirror image too.
+    Vec3f scaled_normal(const Vec3f& normal) const {
+        const Vec3d scaled = times(Vec3d(normal), inverse_scale_);
+        const double size = length(scaled);
+        return size > 0 ? Vec3f(scaled * (1 / size)) : Vec3f{};
+    }
+    /// World length of a local step, per unit of length.
+    double stretch_along(const Vec3d& step_local) const {
+        const double size = length(step_local);
+        return size > 0 ? length(times(step_local, scale_)) / size : least_scale_;
+    }
+    /// No step is shortened more than by this.
+    double least_scale() const { return least_scale_; }
+    /// Three positive scales of one size: all lengths change by it, and normals not at all.
+    bool uniform() const { return uniform_; }
+    const Vec3d& scale() const { return scale_; }
 
   private:
     Matrix3d rotation_, to_local_;
-    Vec3d translation_;
-    double scale_;
+    Vec3d translation_, scale_, inverse_scale_;
+    double least_scale_ = 1;
+    bool uniform_ = true;
 };
 
 } // namespace echinus

@@ -3,6 +3,7 @@
 #include <echinus/error.hpp>
 #include <echinus/scene.hpp>
 
+#include <cmath>
 #include <fstream>
 #include <numbers>
 
@@ -113,12 +114,27 @@ RigidTransform read_pose(JsonObject& object) {
     return pose;
 }
 
+/// One number for all axes, or one for each; a negative one mirrors.
+void read_scale(JsonObject& collider, Vec3d& scale) {
+    if (!collider.is_array("scale")) {
+        double size = scale.x;
+        collider.read("scale", size, kLength);
+        scale = {size, size, size};
+        return;
+    }
+    collider.read("scale", scale, {-kLength.most, kLength.most});
+    for (const double size : {scale.x, scale.y, scale.z})
+        if (std::abs(size) < kLength.least)
+            collider.refuse("scale",
+                            "an array of 3, each a number from 1e-9 to 1e+09 or from -1e+09 to -1e-9");
+}
+
 void read_collider(JsonObject& root, Scene& scene) {
     auto collider = root.object("collider");
     if (!collider) return;
     Vec3d degrees_per_second;
     scene.pose = read_pose(*collider);
-    collider->read("scale", scene.scale, kLength);
+    read_scale(*collider, scene.scale);
     collider->read("linear_velocity", scene.linear_velocity, kCoordinate);
     collider->read("angular_velocity", degrees_per_second, {-1e6, 1e6});
     collider->finish();

@@ -29,7 +29,7 @@ TriangleMesh make_mesh(const BoxModel& model) {
     return make_box(model.size, model.segments);
 }
 
-Collider make_collider(const Scene& scene, const DistanceMap& map) {
+Collider make_collider(const Scene& scene, const AnyMap& map) {
     return {.map = map,
             .pose = scene.pose,
             .scale = scene.scale,
@@ -37,7 +37,7 @@ Collider make_collider(const Scene& scene, const DistanceMap& map) {
             .angular_velocity = scene.angular_velocity};
 }
 
-Simulation make_simulation(const Scene& scene, const DistanceMap& map) {
+Simulation make_simulation(const Scene& scene, const AnyMap& map) {
     return Simulation(make_cloth(scene.cloth), {make_collider(scene, map)}, scene.simulation);
 }
 

@@ -69,9 +69,10 @@ void require_valid(const Deformable& deformable) {
 void require_valid(const std::vector<Collider>& colliders) {
     for (std::size_t i = 0; i < colliders.size(); ++i) {
         const Collider& collider = colliders[i];
-        if (!(collider.scale > 0) || !std::isfinite(collider.scale))
-            fail("collider " + std::to_string(i) + " has scale " + std::to_string(collider.scale) +
-                 "; it must be positive and finite");
+        for (const double scale : {collider.scale.x, collider.scale.y, collider.scale.z})
+            if (scale == 0 || !std::isfinite(scale))
+                fail("collider " + std::to_string(i) + " has a scale of " + std::to_string(scale) +
+                     "; it must be finite and not 0");
         if (!is_finite(collider.pose) || !echinus::is_finite(collider.linear_velocity) ||
             !echinus::is_finite(collider.angular_velocity))
             fail("collider " + std::to_string(i) + " has a pose or a velocity that is not finite");

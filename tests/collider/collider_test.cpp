@@ -17,7 +17,9 @@ const DistanceMap& torus_map() {
 }
 
 Collider placed_torus() {
-    return {.map = torus_map(), .pose = {Rotation::about({3, -1, 2}, 1.1), {10, -20, 30}}, .scale = 2.5};
+    return {.map = torus_map(),
+            .pose = {Rotation::about({3, -1, 2}, 1.1), {10, -20, 30}},
+            .scale = {2.5, 2.5, 2.5}};
 }
 
 std::vector<Vec3f> points_around(const Collider& collider, std::size_t count) {
@@ -26,13 +28,13 @@ std::vector<Vec3f> points_around(const Collider& collider, std::size_t count) {
     std::vector<Vec3f> points;
     while (points.size() < count) {
         const Vec3d local{coordinate(engine), coordinate(engine), coordinate(engine)};
-        points.emplace_back(collider.pose.to_world(local * collider.scale));
+        points.emplace_back(collider.pose.to_world(local * collider.scale.x));
     }
     return points;
 }
 
 Vec3f to_local(const Collider& collider, const Vec3f& point_world) {
-    return Vec3f(collider.pose.to_local(Vec3d(point_world)) * (1 / collider.scale));
+    return Vec3f(collider.pose.to_local(Vec3d(point_world)) * (1 / collider.scale.x));
 }
 
 void expect_same(const Contact& a, const Contact& b) {

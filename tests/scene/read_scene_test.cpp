@@ -74,7 +74,7 @@ TEST(Scene, IsReadKeyByKey) {
     EXPECT_EQ(scene.map.pole_axis, PoleAxis::Y);
     EXPECT_EQ(scene.pose.translation, (Vec3d{1, 2, 3}));
     EXPECT_NEAR(length(scene.pose.rotation.apply({1, 0, 0}) - Vec3d{0, 1, 0}), 0, 1e-12);
-    EXPECT_EQ(scene.scale, 2.5);
+    EXPECT_EQ(scene.scale, (Vec3d{2.5, 2.5, 2.5}));
     EXPECT_EQ(scene.linear_velocity, (Vec3d{0.1, 0.2, 0.3}));
     EXPECT_NEAR(scene.angular_velocity.y, std::numbers::pi, 1e-12);
     EXPECT_EQ(scene.cloth.column_count, 20u);
