@@ -84,6 +84,9 @@ struct SimulationOptions {
     /// length of the push, and never reversed. 0 is ice.
     double friction = 0.5;
     RestCondition rest{};
+    /// false: particles that cross the surface of an exact map are counted as lost and left there. Only for
+    /// showing what the sweep after the constraints is good for.
+    bool keep_free = true;
     /// A particle farther than this from the middle of where the deformable began ends the simulation as
     /// diverged, units. 0: 10 000 times the deformable's extent at the start.
     double bound = 0;
@@ -96,7 +99,29 @@ struct SimulationProfile {
     double collision_seconds = 0;    ///< queries, push-out and friction
     std::uint64_t query_count = 0;   ///< particles asked, each iteration and collider counted
     std::uint64_t contact_count = 0; ///< of them, those that were pushed
+    /// Of them, those that took the map to answer; beside an exact map a particle that has hardly moved is
+    /// answered from memory.
+    std::uint64_t map_query_count = 0;
+    /// After the constraints, of all frames, particles and exact maps: those led back to the free side, ...
+    std::uint64_t rescued_count = 0;
+    /// ... and those lost: inside at the end of the frame, or on the other side of a surface, by the chord
+    /// from the last free place to this one as the collider sees it. A particle counts again in each frame
+    /// that it ends inside. One that began inside and was never outside yet does not count.
+    std::uint64_t lost_count = 0;
 };
+
+/// What a simulation remembers of one particle and one collider with an exact map; for its own use.
+struct SurfaceMemory {
+    Vec3f free_local; ///< the last place proven free, in the map's frame: exactly what was tested
+    /// Where the nearest point was asked for, in the collider's frame with its scale applied.
+    Vec3f asked_at;
+    float clearance = -1; ///< no surface within this distance of asked_at; negative before the first answer
+    Vec3f point, normal;  ///< the contact plane in the same frame; normal 0 when nothing was near
+    bool was_free = false;
+    bool lost = false; ///< in this frame
+};
+
+class ExactCollision; // src/simulation
 
 /// A deformable among colliders. The same input gives the same positions bit for bit, on every run and
 /// machine; it runs on one thread. Copies are independent.
@@ -109,7 +134,17 @@ class Simulation {
     Simulation(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
 
     /// One frame: Verlet integration with drag, colliders move on along their velocities, then
-    /// iteration_count times all sticks and then collision of all particles with all colliders.
+    /// iteration_count times all sticks and then collision of all particles with all colliders; at last the
+    /// proof that no particle passed through an exact map. Allocates nothing.
+    ///
+    /// A distance map pushes along its rays (docs/paper.md). An exact map pushes to the thickness over the
+    /// nearest point. Its particles are then swept from where they were proven free last to where they are,
+    /// as the moving collider sees it; one that would cross the surface is put before the crossing, where the
+    /// same sweep finds it free, or goes back to where it was free, carried along. So none is lost, however
+    /// fast it is or thin the model. Three exceptions: pinned particles are left alone; a particle that
+    /// begins inside is pushed to the nearest surface point, and kept outside from then on; one that two
+    /// exact maps squeeze so that it finds no room goes to where the first of them, or else the next, knows
+    /// it to be free, and is counted as lost to the other.
     /// @throws Error Diverged, naming the frame; afterwards only reading is allowed
     void step();
 
@@ -143,13 +178,25 @@ class Simulation {
     static std::vector<WeightedStick> weigh(const Deformable& deformable, const SimulationOptions& options);
     void integrate();
     void relax_sticks();
-    void collide(const Collider& collider, const RigidTransform& previous_pose);
+    void collide(std::size_t collider_index);
+    void collide_radially(const Collider& collider, const RigidTransform& previous_pose);
+    void collide_exactly(std::size_t collider_index);
+    ExactCollision collision_with(std::size_t collider_index) const;
+    void remember_free_places(std::size_t collider_index);
+    void keep_free();
+    void lead_to_free_place(std::uint32_t particle);
+    bool is_free(std::uint32_t particle) const;
+    void count_lost(std::uint32_t particle);
+    void commit_free_places();
     void judge_frame();
     void judge_rest();
 
     Deformable deformable_;
     std::vector<Collider> colliders_;
-    std::vector<RigidTransform> previous_poses_; // of the colliders, one frame ago
+    std::vector<RigidTransform> previous_poses_;       // of the colliders, one frame ago
+    std::vector<std::vector<SurfaceMemory>> memories_; // [collider][particle]; none for a distance map
+    std::vector<std::size_t> exact_;                   // colliders with an exact map
+    std::vector<std::uint32_t> unsettled_;             // particles, in keep_free()
     SimulationOptions options_;
     std::vector<WeightedStick> weighted_sticks_;
     Vec3d start_centre_;

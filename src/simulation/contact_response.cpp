@@ -31,6 +31,12 @@ Vec3f apply_friction(const Vec3f& motion, const Vec3f& normal, float grip) {
     return motion - tangential * (grip / slip);
 }
 
+PushedOut push_out(const Vec3f& motion, const Vec3f& normal, float missing, float friction) {
+    const float approach = std::max(0.0F, -dot(motion, normal));
+    const float back = std::min(missing, approach);
+    return {apply_friction(motion + normal * missing, normal, friction * back), missing - back};
+}
+
 Vec3f respond(const Vec3f& position, const Vec3f& motion, const Contact& contact,
               const ResponseRules& rules) {
     const Vec3f push = granted_push(wanted_push(position, contact, rules.thickness), motion, contact.inside);

@@ -45,6 +45,18 @@ Vec3f granted_push(const Vec3f& wanted, const Vec3f& motion, bool inside);
 /// never reversed. @pre normal has unit length
 Vec3f apply_friction(const Vec3f& motion, const Vec3f& normal, float grip);
 
+/// What an exact contact leaves of a particle's motion, and how much of the push was not a way back but new
+/// motion: the particle is put where it belongs, and its velocity hears nothing of the excess.
+struct PushedOut {
+    Vec3f motion;
+    float excess;
+};
+
+/// Pushes by `missing` along the normal, all at once, since the nearest point is where it seems to be. Then
+/// friction, in proportion to the part of the push that led back.
+/// @param motion  since the last frame, relative to the collider's material
+PushedOut push_out(const Vec3f& motion, const Vec3f& normal, float missing, float friction);
+
 /// The motion that a contact leaves of a particle's motion: push, then friction in proportion to the push.
 Vec3f respond(const Vec3f& position, const Vec3f& motion, const Contact& contact, const ResponseRules& rules);
 

@@ -1,6 +1,8 @@
 #include "collider/frame_change.hpp"
 #include "simulation/contact_response.hpp"
+#include "simulation/exact_collision.hpp"
 #include "simulation/material_motion.hpp"
+#include "simulation/stopwatch.hpp"
 #include "simulation/validation.hpp"
 
 #include <echinus/error.hpp>
@@ -11,28 +13,14 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <variant>
 
 namespace echinus {
 
 namespace {
-
-/// Adds the time of its own life to a sum.
-class Stopwatch {
-  public:
-    explicit Stopwatch(double& sum_seconds) : sum_seconds_(sum_seconds) {}
-    Stopwatch(const Stopwatch&) = delete;
-    Stopwatch& operator=(const Stopwatch&) = delete;
-    ~Stopwatch() { sum_seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
-
-  private:
-    using Clock = std::chrono::steady_clock;
-    double& sum_seconds_;
-    Clock::time_point start_ = Clock::now();
-};
 
 Sphere box_sphere(std::span<const Vec3f> points) {
     Vec3d low(points.front());
@@ -42,6 +30,10 @@ Sphere box_sphere(std::span<const Vec3f> points) {
         high = {std::max(high.x, double{p.x}), std::max(high.y, double{p.y}), std::max(high.z, double{p.z})};
     }
     return {(low + high) * 0.5, length(high - low) / 2};
+}
+
+bool is_exact(const Collider& collider) {
+    return std::holds_alternative<ExactMap>(collider.map);
 }
 
 /// Contacts are asked for in pieces that stay in the first-level cache.
@@ -57,6 +49,10 @@ Simulation::Simulation(Deformable deformable, std::vector<Collider> colliders,
     require_valid(deformable_);
     require_valid(colliders_);
     for (const Collider& collider : colliders_) previous_poses_.push_back(collider.pose);
+    memories_.resize(colliders_.size());
+    for (std::size_t i = 0; i < colliders_.size(); ++i)
+        if (is_exact(colliders_[i])) remember_free_places(i);
+    unsettled_.reserve(exact_.size() * deformable_.particle_count());
     weighted_sticks_ = weigh(deformable_, options_);
     resting_places_ = deformable_.positions;
     const Sphere start = box_sphere(deformable_.positions);
@@ -85,8 +81,9 @@ void Simulation::step() {
     integrate();
     for (std::uint32_t iteration = 0; iteration < options_.iteration_count; ++iteration) {
         relax_sticks();
-        for (std::size_t i = 0; i < colliders_.size(); ++i) collide(colliders_[i], previous_poses_[i]);
+        for (std::size_t i = 0; i < colliders_.size(); ++i) collide(i);
     }
+    keep_free();
     ++frame_;
     judge_frame();
 }
@@ -152,8 +149,16 @@ Vec3f answer(const Collider& collider, const Contact& contact, const Vec3f& posi
 
 } // namespace
 
-void Simulation::collide(const Collider& collider, const RigidTransform& previous_pose) {
+void Simulation::collide(std::size_t collider_index) {
     const Stopwatch stopwatch(profile_.collision_seconds);
+    profile_.query_count += deformable_.particle_count();
+    if (is_exact(colliders_[collider_index]))
+        collide_exactly(collider_index);
+    else
+        collide_radially(colliders_[collider_index], previous_poses_[collider_index]);
+}
+
+void Simulation::collide_radially(const Collider& collider, const RigidTransform& previous_pose) {
     const ResponseRules rules{static_cast<float>(options_.thickness), static_cast<float>(options_.friction)};
     const MaterialMotion material(previous_pose, collider.pose);
     const std::size_t particle_count = deformable_.particle_count();
@@ -172,7 +177,21 @@ void Simulation::collide(const Collider& collider, const RigidTransform& previou
             ++profile_.contact_count;
         }
     }
-    profile_.query_count += particle_count;
+    profile_.map_query_count += particle_count;
+}
+
+void Simulation::collide_exactly(std::size_t collider_index) {
+    const ExactCollision collision = collision_with(collider_index);
+    for (std::size_t i = 0; i < deformable_.particle_count(); ++i) {
+        if (deformable_.inverse_masses[i] == 0) continue;
+        const bool pushed = collision.relax(memories_[collider_index][i], deformable_.positions[i],
+                                            deformable_.previous_positions[i], profile_);
+        profile_.contact_count += pushed ? 1 : 0;
+    }
+}
+
+ExactCollision Simulation::collision_with(std::size_t collider_index) const {
+    return {colliders_[collider_index], previous_poses_[collider_index], options_};
 }
 
 void Simulation::judge_frame() {

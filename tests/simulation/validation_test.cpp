@@ -55,6 +55,23 @@ TEST(SimulationSetUp, NamesTheOptionOutOfRange) {
     expect_names(refusal_of_option([](auto& o) { o.rest.frame_count = 0; }), "rest.frame_count");
 }
 
+TEST(SimulationSetUp, RefusesAColliderWhoseScaleIsZeroOrNoNumber) {
+    const ExactMap map = ExactMap::build(make_box({1, 1, 1}));
+    const auto is_refused = [&](const Vec3d& scale) {
+        try {
+            const Simulation simulation(make_cloth({}), {{.map = map}, {.map = map, .scale = scale}}, {});
+        } catch (const Error& error) {
+            expect_names(error.what(), "collider 1");
+            return error.code() == ErrorCode::InvalidOptions;
+        }
+        return false;
+    };
+    EXPECT_TRUE(is_refused({1, 0, 1}));
+    EXPECT_TRUE(is_refused({1, 1, kNaN}));
+    EXPECT_TRUE(is_refused({1 / 0.0, 1, 1}));
+    EXPECT_FALSE(is_refused({1, -2, 0.5}));
+}
+
 TEST(SimulationSetUp, NamesTheParticleOrStickAtFault) {
     expect_names(refusal([](Deformable& d, auto&) { d.positions[4].x = float(kNaN); }), "particle 4");
     expect_names(refusal([](Deformable& d, auto&) { d.previous_positions[5].z = float(1 / 0.0F); }),

@@ -1,0 +1,278 @@
+// Simulations with exact maps. Whether a particle is lost is judged from outside: by contains() and sweep()
+// of the collider, from where the particle was at the end of one frame to where it is at the end of the next.
+
+#include "support/random_points.hpp"
+
+#include <echinus/simulation.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace echinus;
+
+namespace {
+
+constexpr double kThickness = 0.01;
+
+Deformable sheet_at(double height, double width, std::uint32_t count, const Vec3d& step = {}) {
+    Deformable sheet = make_cloth({.column_count = count,
+                                   .row_count = count,
+                                   .width = width,
+                                   .height = width,
+                                   .pose = {Rotation{}, {0, 0, height}}});
+    for (Vec3f& previous : sheet.previous_positions) previous = Vec3f(Vec3d(previous) - step);
+    return sheet;
+}
+
+Deformable particles_at(const std::vector<Vec3f>& places) {
+    return {.positions = places,
+            .previous_positions = places,
+            .inverse_masses = std::vector<float>(places.size(), 1),
+            .sticks = {},
+            .faces = {}};
+}
+
+void run_to_rest(Simulation& simulation, std::uint32_t frame_limit) {
+    while (!simulation.at_rest() && simulation.frame() < frame_limit) simulation.step();
+    EXPECT_TRUE(simulation.at_rest()) << "speed " << simulation.largest_speed();
+}
+
+/// Steps, and counts the particles that are lost in this frame.
+std::size_t step_and_count_lost(Simulation& simulation) {
+    const std::vector<Vec3f> before(simulation.positions().begin(), simulation.positions().end());
+    const std::vector<Collider> colliders_before = simulation.colliders();
+    simulation.step();
+    std::size_t lost = 0;
+    for (std::size_t c = 0; c < colliders_before.size(); ++c) {
+        const Collider& now = simulation.colliders()[c];
+        for (std::size_t i = 0; i < before.size(); ++i) {
+            if (contains(colliders_before[c], before[i])) continue; // began inside
+            const Vec3f& place = simulation.positions()[i];
+            const bool crossed = sweep(now, colliders_before[c].pose, before[i], place).found();
+            lost += crossed || contains(now, place) ? 1 : 0;
+        }
+    }
+    return lost;
+}
+
+std::size_t lost_in(Simulation& simulation, int frame_count) {
+    std::size_t lost = 0;
+    for (int i = 0; i < frame_count; ++i) lost += step_and_count_lost(simulation);
+    return lost;
+}
+
+/// A plate that comes up and turns over, and a sheet shot down at it.
+///
+///        _____________  sheet, 30 down
+///
+///      ------------- plate, 0.001 thick, 5 up and three turns a second
+Simulation plate_and_sheet(bool keep_free) {
+    constexpr double kStep = 1.0 / 240;
+    const Collider plate{.map = ExactMap::build(make_box({1.5, 1.5, 0.001})),
+                         .linear_velocity = {0.5, 0, 5},
+                         .angular_velocity = {4, 18, 2}};
+    return Simulation(sheet_at(0.7, 1, 25, Vec3d{0, 0, -30} * kStep), {plate},
+                      {.time_step = kStep, .thickness = kThickness, .keep_free = keep_free});
+}
+
+} // namespace
+
+TEST(ThinPlate, ThatMovesAndTurnsFastLosesNoParticleOfAFastSheet) {
+    Simulation simulation = plate_and_sheet(true);
+    EXPECT_EQ(lost_in(simulation, 240), 0u);
+    EXPECT_EQ(simulation.profile().lost_count, 0u);
+    EXPECT_GT(simulation.profile().rescued_count, 0u);
+}
+
+TEST(ThinPlate, WouldLoseParticlesWithoutTheSweepAfterTheConstraints) {
+    Simulation simulation = plate_and_sheet(false);
+    const std::size_t lost = lost_in(simulation, 240);
+    EXPECT_GT(lost, 100u);
+    EXPECT_EQ(simulation.profile().lost_count, lost);
+    EXPECT_EQ(simulation.profile().rescued_count, 0u);
+}
+
+TEST(ExactCollision, LosesNoParticleHoweverFastAmongModelsOfAnyScale) {
+    test::Random random(21);
+    const ExactMap torus = ExactMap::build(make_torus(1, 0.4, 30, 12));
+    const ExactMap plate = ExactMap::build(make_box({2, 2, 0.001}));
+    for (int n = 0; n < 12; ++n) {
+        const Collider collider{.map = n % 2 == 0 ? torus : plate,
+                                .pose = {Rotation::about({1, 2, 3}, n), {1, 2, 3}},
+                                .scale = n % 3 == 0 ? Vec3d{1, 1, 1} : Vec3d{0.5, -1.5, 1},
+                                .linear_velocity = Vec3d(test::in_cube(random, 3)),
+                                .angular_velocity = Vec3d(test::in_cube(random, 20))};
+        std::vector<Vec3f> places;
+        for (int i = 0; i < 200; ++i) places.push_back(test::in_cube(random, 1.5F) + Vec3f{1, 2, 3});
+        Deformable particles = particles_at(places);
+        for (Vec3f& previous : particles.previous_positions) previous += test::in_cube(random, 1);
+        for (std::uint32_t i = 0; i + 1 < 200; ++i)
+            particles.sticks.push_back({i, i + 1, 0.5F, StickKind::Structural});
+        Simulation simulation(particles, {collider}, {.thickness = n % 4 == 0 ? 0 : kThickness});
+        EXPECT_EQ(lost_in(simulation, 60), 0u);
+        EXPECT_EQ(simulation.profile().lost_count, 0u);
+    }
+}
+
+TEST(ExactCollision, FarFromTheOriginLosesNoParticleToTheRoundingOfItsPosition) {
+    // At 1000 units a float resolves 6e-5, thirty steps of the lattice.
+    test::Random random(22);
+    const Vec3f far{1000, -700, 500};
+    const Collider torus{.map = ExactMap::build(make_torus(1, 0.4, 30, 12)),
+                         .pose = {Rotation{}, Vec3d(far)},
+                         .angular_velocity = {1, 5, 2}};
+    std::vector<Vec3f> places;
+    for (int i = 0; i < 300; ++i) places.push_back(far + test::in_cube(random, 1.5F));
+    Deformable particles = particles_at(places);
+    for (Vec3f& previous : particles.previous_positions) previous += test::in_cube(random, 0.1F);
+    Simulation simulation(particles, {torus}, {.gravity = {}});
+    EXPECT_EQ(lost_in(simulation, 100), 0u);
+    EXPECT_EQ(simulation.profile().lost_count, 0u);
+}
+
+TEST(ExactCollision, DoesNotAddToTheSpeedOfAParticle) {
+    test::Random random(23);
+    const Collider torus{.map = ExactMap::build(make_torus(1, 0.4, 30, 12))};
+    std::vector<Vec3f> places;
+    std::vector<Vec3f> steps;
+    for (int i = 0; i < 500; ++i) {
+        places.push_back(test::unit_vector(random) * 2);
+        steps.push_back((test::in_cube(random, 1) - places.back()) * test::uniform(random, 0.001F, 0.5F));
+    }
+    Deformable particles = particles_at(places);
+    for (std::size_t i = 0; i < places.size(); ++i) particles.previous_positions[i] -= steps[i];
+    Simulation simulation(particles, {torus}, {.gravity = {}, .drag = 0, .thickness = kThickness});
+    for (int frame = 0; frame < 100; ++frame) {
+        simulation.step();
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const Deformable& d = simulation.deformable();
+            const Vec3f step = d.positions[i] - d.previous_positions[i];
+            ASSERT_LE(length(step), length(steps[i]) + 1e-5F);
+            steps[i] = step;
+        }
+    }
+    EXPECT_GT(simulation.profile().contact_count, 100u);
+}
+
+TEST(ExactCollision, LaysASheetFlatOnABoxAtItsThickness) {
+    Simulation simulation(sheet_at(0.55, 0.5, 15), {{.map = ExactMap::build(make_box({1, 1, 1}))}},
+                          {.thickness = kThickness});
+    run_to_rest(simulation, 1000);
+    for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(p.z, 0.5 + kThickness, 1e-3);
+}
+
+TEST(ExactCollision, BringsASheetOnASphereToRestOutside) {
+    const TriangleMesh sphere = make_sphere(1, 80, 40);
+    Simulation simulation(sheet_at(1.05, 2, 21), {{.map = ExactMap::build(sphere)}},
+                          {.thickness = kThickness, .friction = 0.8});
+    run_to_rest(simulation, 6000);
+    std::size_t touching = 0;
+    for (const Vec3f& p : simulation.positions()) {
+        EXPECT_LT(winding_number(sphere, Vec3d(p)), 0.5);
+        touching += length(p) < 1 + 2 * kThickness ? 1 : 0;
+    }
+    EXPECT_GT(touching, simulation.positions().size() / 4);
+}
+
+TEST(ExactCollision, HoldsASheetOnASlopeThatFrictionCanHoldAndNotOnASteeperOne) {
+    const ExactMap box = ExactMap::build(make_box({2, 2, 1}));
+    const auto slid = [&](double angle_rad) {
+        const Rotation tilt = Rotation::about({1, 0, 0}, angle_rad);
+        const Deformable sheet = make_cloth({.column_count = 7,
+                                             .row_count = 7,
+                                             .width = 0.3,
+                                             .height = 0.3,
+                                             .pose = {tilt, tilt.apply({0, 0, 0.5 + kThickness})}});
+        Simulation simulation(sheet, {{.map = box, .pose = {tilt, {}}}},
+                              {.thickness = kThickness, .friction = 0.5});
+        const Vec3f before = simulation.positions()[24];
+        for (int i = 0; i < 120; ++i) simulation.step();
+        return length(simulation.positions()[24] - before);
+    };
+    EXPECT_LT(slid(std::atan(0.4)), 0.005);
+    EXPECT_GT(slid(std::atan(0.6)), 0.05);
+}
+
+TEST(ExactCollision, CarriesTurnsAndLiftsASheetAlongWithItsCollider) {
+    const Collider box{.map = ExactMap::build(make_box({2, 2, 1})),
+                       .linear_velocity = {0.2, 0, 0.3},
+                       .angular_velocity = {0, 0, 1}};
+    Simulation simulation(sheet_at(0.5 + kThickness, 0.3, 7), {box},
+                          {.thickness = kThickness, .friction = 0.8});
+    const Vec3f corner = simulation.positions()[0];
+    for (int i = 0; i < 240; ++i) simulation.step();
+    const Vec3d expected = simulation.colliders()[0].pose.to_world(Vec3d(corner));
+    EXPECT_NEAR(length(Vec3d(simulation.positions()[0]) - expected), 0, 0.02);
+}
+
+TEST(ExactCollision, LetsAParticleOutThatBeganInsideAndKeepsItOutsideFromThenOn) {
+    const Collider sphere{.map = ExactMap::build(make_sphere(1, 80, 40))};
+    Simulation simulation(particles_at({{0.1F, 0.05F, 0.8F}, {0, 0, 0}}), {sphere},
+                          {.gravity = {}, .thickness = kThickness});
+    simulation.step();
+    for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(length(p), 1 + kThickness, 5e-3);
+    for (int i = 0; i < 60; ++i) EXPECT_EQ(step_and_count_lost(simulation), 0u);
+    // Pushed, not thrown.
+    for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(length(p), 1 + kThickness, 5e-3);
+    EXPECT_EQ(simulation.profile().lost_count, 0u);
+}
+
+TEST(ExactCollision, LeavesPinnedParticlesAloneEvenInside) {
+    Deformable particle = particles_at({{0, 0, 0.5F}});
+    particle.inverse_masses = {0};
+    Simulation simulation(particle, {{.map = ExactMap::build(make_sphere(1, 80, 40))}},
+                          {.thickness = kThickness});
+    for (int i = 0; i < 10; ++i) simulation.step();
+    EXPECT_EQ(simulation.positions()[0], (Vec3f{0, 0, 0.5F}));
+    EXPECT_EQ(simulation.profile().lost_count, 0u);
+}
+
+TEST(ExactCollision, KeepsAParticleFreeOfTwoCollidersWhileThereIsRoom) {
+    // Two plates that close on a sheet and stop 0.004 apart: nearer than its thickness, but room enough.
+    const ExactMap plate = ExactMap::build(make_box({1, 1, 0.1}));
+    const Collider below{.map = plate, .pose = {Rotation{}, {0, 0, -0.052}}};
+    const Collider above{.map = plate, .pose = {Rotation{}, {0, 0, 0.152}}, .linear_velocity = {0, 0, -1}};
+    Simulation simulation(sheet_at(0.02, 0.5, 8), {below, above}, {.thickness = kThickness});
+    EXPECT_EQ(lost_in(simulation, 24), 0u);
+    simulation.set_velocities(1, {}, {});
+    EXPECT_EQ(lost_in(simulation, 60), 0u);
+    EXPECT_EQ(simulation.profile().lost_count, 0u);
+}
+
+TEST(ExactCollision, CountsWhatTwoCollidersThatOverlapLeaveNoRoomFor) {
+    const ExactMap plate = ExactMap::build(make_box({1, 1, 0.5}));
+    const Collider below{.map = plate, .pose = {Rotation{}, {0, 0, -0.26}}};
+    const Collider above{.map = plate, .pose = {Rotation{}, {0, 0, 0.26}}, .linear_velocity = {0, 0, -0.5}};
+    Simulation simulation(particles_at({{0, 0, 0}}), {below, above}, {.thickness = kThickness});
+    for (int i = 0; i < 48; ++i) simulation.step();
+    EXPECT_GT(simulation.profile().lost_count, 0u);
+    EXPECT_FALSE(contains(simulation.colliders()[0], simulation.positions()[0]));
+}
+
+TEST(ExactCollision, AnswersParticlesThatHardlyMoveFromMemory) {
+    Simulation simulation(sheet_at(0.5 + kThickness, 0.5, 10),
+                          {{.map = ExactMap::build(make_box({1, 1, 1}))}}, {.thickness = kThickness});
+    for (int i = 0; i < 100; ++i) simulation.step();
+    EXPECT_EQ(simulation.profile().query_count, 100u * 100u * 10u);
+    EXPECT_LT(simulation.profile().map_query_count, simulation.profile().query_count / 20);
+}
+
+TEST(ExactCollision, GivesTheSameBitsOnEveryRunAndInEveryCopy) {
+    const auto start = [] {
+        const Collider torus{.map = ExactMap::build(make_torus(1, 0.4, 30, 16)),
+                             .angular_velocity = {0.2, 0.1, 0.5}};
+        return Simulation(sheet_at(0.45, 2, 20), {torus}, {.thickness = kThickness});
+    };
+    Simulation first = start();
+    Simulation second = start();
+    for (int i = 0; i < 100; ++i) first.step();
+    for (int i = 0; i < 50; ++i) second.step();
+    Simulation copy = second;
+    for (int i = 0; i < 50; ++i) second.step();
+    for (int i = 0; i < 50; ++i) copy.step();
+    EXPECT_GT(first.profile().contact_count, 0u);
+    EXPECT_EQ(first.state_hash(), second.state_hash());
+    EXPECT_EQ(first.state_hash(), copy.state_hash());
+}
