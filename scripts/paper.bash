@@ -12,7 +12,7 @@ make_maps() {
 }
 
 drape() { # horse or torus; every fifth of 120 frames a second is kept, as many as a film has
-    "$echinus" simulate "scenes/$1.json" --every 5 -o "$out/$1"
+    "$echinus" simulate "scenes/$1_distance.json" --every 5 -o "$out/$1"
 }
 
 draw_figures() { # FOLDER; after drape: the mended horse, of which the map is, lies beside its cloth

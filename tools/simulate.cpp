@@ -7,7 +7,6 @@
 #include "scene_model.hpp"
 #include "simulation_result.hpp"
 
-#include <echinus/distance_map.hpp>
 #include <echinus/mesh_io.hpp>
 
 #include <fmt/format.h>
@@ -87,10 +86,9 @@ void write_report(const fs::path& path, const nlohmann::ordered_json& report) {
 void simulate(const SimulateArguments& arguments) {
     Scene scene = read_scene(arguments.scene);
     if (arguments.frame_limit) scene.frame_limit = *arguments.frame_limit;
-    scene.map.thread_count = arguments.thread_count;
     OutputFolder folder(arguments.target);
     const RepairedMesh model = load_model(scene, arguments.scene, arguments.model_folders);
-    Simulation simulation = make_simulation(scene, DistanceMap::build(model.mesh, scene.map));
+    Simulation simulation = make_simulation(scene, build_map(model.mesh, scene.map, arguments.thread_count));
     const Deformable& cloth = simulation.deformable();
     write_mesh(folder.path_of("cloth.obj"), {cloth.positions, cloth.faces});
     write_mesh(folder.path_of("collider.obj"), scaled(model.mesh, scene.scale));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 using namespace echinus;
 using nlohmann::ordered_json;
@@ -34,7 +35,7 @@ Strain strain_of(const Deformable& deformable) {
 
 struct Rates {
     double integration_ms, constraints_ms, collision_ms, total_ms;
-    double queries_per_frame, ns_per_query, frames_per_second;
+    double queries_per_frame, map_queries_per_frame, ns_per_query, frames_per_second;
 };
 
 Rates rates_of(const Simulation& simulation) {
@@ -48,8 +49,17 @@ Rates rates_of(const Simulation& simulation) {
             .collision_ms = profile.collision_seconds * 1e3 / frames,
             .total_ms = seconds * 1e3 / frames,
             .queries_per_frame = queries / frames,
+            .map_queries_per_frame = static_cast<double>(profile.map_query_count) / frames,
             .ns_per_query = queries > 0 ? profile.collision_seconds * 1e9 / queries : 0,
             .frames_per_second = seconds > 0 ? frames / seconds : 0};
+}
+
+bool is_exact(const Simulation& simulation) {
+    return std::holds_alternative<ExactMap>(simulation.colliders().front().map);
+}
+
+const char* kind_of(const Simulation& simulation) {
+    return is_exact(simulation) ? "exact" : "distance";
 }
 
 ordered_json to_json(const Vec3d& v) {
@@ -97,7 +107,11 @@ ordered_json to_json(const SimulationResult& result) {
           {"total", rates.total_ms}}},
         {"queries_per_frame", rates.queries_per_frame},
         {"ns_per_query", rates.ns_per_query},
+        {"map_queries_per_frame", rates.map_queries_per_frame},
         {"frames_per_second", rates.frames_per_second},
+        {"map_kind", kind_of(simulation)},
+        {"lost_count", simulation.profile().lost_count},
+        {"rescued_count", simulation.profile().rescued_count},
         {"inside_at_rest", result.verdict.inside_count},
         {"deepest", {{"absolute", result.verdict.deepest}, {"in_radii", result.verdict.deepest / radius}}},
         {"strain", {{"mean", strain.mean}, {"largest", strain.largest}}},
@@ -129,8 +143,12 @@ std::string to_text(const SimulationResult& result) {
         fmt::format("{:.2f} = {:.2f} integration + {:.2f} constraints + {:.2f} collision", rates.total_ms,
                     rates.integration_ms, rates.constraints_ms, rates.collision_ms));
     add("frames per second", fmt::format("{:.0f}, on one core", rates.frames_per_second));
-    add("queries",
-        fmt::format("{:.0f} per frame, {:.1f} ns each", rates.queries_per_frame, rates.ns_per_query));
+    add("queries", fmt::format("{:.0f} per frame, {:.1f} ns each; {:.0f} took the map to answer",
+                               rates.queries_per_frame, rates.ns_per_query, rates.map_queries_per_frame));
+    if (is_exact(simulation))
+        add("particles lost",
+            fmt::format("{}; {} times led back to the free side", simulation.profile().lost_count,
+                        simulation.profile().rescued_count));
     add("particles inside", fmt::format("{} ({}), by winding number", result.verdict.inside_count,
                                         percent(static_cast<double>(result.verdict.inside_count) /
                                                 static_cast<double>(particle_count))));

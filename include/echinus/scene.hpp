@@ -1,6 +1,6 @@
 #pragma once
 
-#include <echinus/distance_map.hpp>
+#include <echinus/any_map.hpp>
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 #include <echinus/simulation.hpp>
@@ -31,6 +31,9 @@ struct BoxModel { ///< arguments of make_box()
     Vec3d size{1, 1, 1};
     std::uint32_t segments = 1;
 };
+/// How the map is built, and thereby its kind. The default is an exact map.
+using MapOptions = std::variant<ExactMapOptions, DistanceMapOptions>;
+
 using SceneModel = std::variant<ModelFile, TorusModel, SphereModel, BoxModel>;
 
 /// Everything that a simulation starts from. A scene that was read is complete and each number in its
@@ -38,12 +41,13 @@ using SceneModel = std::variant<ModelFile, TorusModel, SphereModel, BoxModel>;
 struct Scene {
     SceneModel model;
     RepairOptions repair; ///< for the mesh, before the map is built
-    DistanceMapOptions map;
+    MapOptions map;
     RigidTransform pose;  ///< of the collider at the start
     Vec3d scale{1, 1, 1}; ///< of the collider, along the axes of the mesh
     Vec3d linear_velocity;
     Vec3d angular_velocity; ///< radians per second
     ClothOptions cloth;
+    Vec3d cloth_velocity; ///< of all particles at the start that are not pinned
     SimulationOptions simulation;
     std::uint32_t frame_limit = 3000; ///< the simulation ends here when it has not come to rest
 };
@@ -65,6 +69,11 @@ std::filesystem::path find_model(const ModelFile& model, std::span<const std::fi
 TriangleMesh make_mesh(const TorusModel& model);
 TriangleMesh make_mesh(const SphereModel& model);
 TriangleMesh make_mesh(const BoxModel& model);
+
+/// A map of the kind that the options are of.
+/// @param thread_count  0: all cores; stands in place of the one in the options
+/// @throws Error as the map's build() does
+AnyMap build_map(const TriangleMesh& mesh, const MapOptions& options, unsigned thread_count = 0);
 
 /// The scene's collider, with a map of the scene's model.
 Collider make_collider(const Scene& scene, const AnyMap& map);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <initializer_list>
 #include <numbers>
 
 namespace echinus {
@@ -78,21 +79,57 @@ RepairOptions read_repair(JsonObject& scene) {
     return options;
 }
 
-DistanceMapOptions read_map(JsonObject& scene) {
+DistanceMapOptions read_distance_map(JsonObject& map) {
     DistanceMapOptions options;
-    auto map = scene.object("map");
-    if (!map) return options;
     Counts directions{options.longitude_count, options.colatitude_count};
-    map->read("directions", directions,
-              {DistanceMapOptions::kMinSampleCount, DistanceMapOptions::kMaxSampleCount});
+    map.read("directions", directions,
+             {DistanceMapOptions::kMinSampleCount, DistanceMapOptions::kMaxSampleCount});
     options.longitude_count = directions[0];
     options.colatitude_count = directions[1];
-    if (auto word = map->read_word("correction", {"none", "paper", "signed"}))
+    if (auto word = map.read_word("correction", {"none", "paper", "signed"}))
         options.correction = static_cast<VertexCorrection>(*word);
-    if (auto word = map->read_word("entries", {"float32", "unorm16"}))
+    if (auto word = map.read_word("entries", {"float32", "unorm16"}))
         options.entry_format = static_cast<EntryFormat>(*word);
-    if (auto word = map->read_word("pole_axis", {"x", "y", "z"}))
+    if (auto word = map.read_word("pole_axis", {"x", "y", "z"}))
         options.pole_axis = static_cast<PoleAxis>(*word);
+    return options;
+}
+
+ExactMapOptions read_exact_map(JsonObject& map) {
+    ExactMapOptions options;
+    constexpr double kMostCells = double{ExactMapOptions::kMaxDivisions} * ExactMapOptions::kMaxDivisions;
+    std::uint32_t cells = 0;
+    std::uint32_t budget = 0;
+    map.read("cells_per_octant", cells, {1, kMostCells});
+    map.read("budget", budget, {1, 4e9});
+    if (cells != 0 && budget != 0) map.refuse("budget", "left out where map.cells_per_octant is given");
+    options.divisions = static_cast<std::uint32_t>(std::lround(std::sqrt(cells)));
+    options.byte_budget = budget;
+    if (auto word = map.read_word("rule", {"nonzero", "parity"}))
+        options.rule = static_cast<InsideRule>(*word);
+    if (auto word = map.read_word("centre", {"sphere", "search"}))
+        options.centre = static_cast<CentreChoice>(*word);
+    return options;
+}
+
+/// A key that is right for the other kind of map is no misspelling: the sentence says what it needs.
+void refuse_keys_of_other_kind(const JsonObject& map, std::initializer_list<const char*> keys,
+                               const std::string& kind) {
+    for (const char* key : keys)
+        if (map.has(key)) map.refuse(key, "left out, or \"map.kind\" must be \"" + kind + "\"");
+}
+
+MapOptions read_map(JsonObject& scene) {
+    auto map = scene.object("map");
+    if (!map) return {};
+    MapOptions options;
+    if (map->read_word("kind", {"exact", "distance"}).value_or(0) == 0) {
+        refuse_keys_of_other_kind(*map, {"directions", "correction", "entries", "pole_axis"}, "distance");
+        options = read_exact_map(*map);
+    } else {
+        refuse_keys_of_other_kind(*map, {"cells_per_octant", "budget", "rule", "centre"}, "exact");
+        options = read_distance_map(*map);
+    }
     map->finish();
     return options;
 }
@@ -160,6 +197,7 @@ void read_cloth(JsonObject& root, Scene& scene) {
     cloth->require("size");
     cloth->read("particles", particles, {2, 4096});
     cloth->read("size", size, kLength);
+    cloth->read("velocity", scene.cloth_velocity, kCoordinate);
     cloth->read("thickness", scene.simulation.thickness, {0, 1e9});
     options.column_count = particles[0];
     options.row_count = particles[1];

@@ -1,6 +1,8 @@
 #include <echinus/error.hpp>
 #include <echinus/scene.hpp>
 
+#include <utility>
+
 namespace echinus {
 
 namespace fs = std::filesystem;
@@ -29,6 +31,17 @@ TriangleMesh make_mesh(const BoxModel& model) {
     return make_box(model.size, model.segments);
 }
 
+AnyMap build_map(const TriangleMesh& mesh, const MapOptions& options, unsigned thread_count) {
+    if (const auto* exact = std::get_if<ExactMapOptions>(&options)) {
+        ExactMapOptions with_threads = *exact;
+        with_threads.thread_count = thread_count;
+        return ExactMap::build(mesh, with_threads);
+    }
+    DistanceMapOptions with_threads = std::get<DistanceMapOptions>(options);
+    with_threads.thread_count = thread_count;
+    return DistanceMap::build(mesh, with_threads);
+}
+
 Collider make_collider(const Scene& scene, const AnyMap& map) {
     return {.map = map,
             .pose = scene.pose,
@@ -38,7 +51,12 @@ Collider make_collider(const Scene& scene, const AnyMap& map) {
 }
 
 Simulation make_simulation(const Scene& scene, const AnyMap& map) {
-    return Simulation(make_cloth(scene.cloth), {make_collider(scene, map)}, scene.simulation);
+    Deformable cloth = make_cloth(scene.cloth);
+    const Vec3d way = scene.cloth_velocity * scene.simulation.time_step;
+    for (std::size_t i = 0; i < cloth.particle_count(); ++i)
+        if (cloth.inverse_masses[i] != 0)
+            cloth.previous_positions[i] = Vec3f(Vec3d(cloth.positions[i]) - way);
+    return Simulation(std::move(cloth), {make_collider(scene, map)}, scene.simulation);
 }
 
 } // namespace echinus

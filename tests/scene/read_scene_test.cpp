@@ -17,11 +17,11 @@ namespace {
 const char* const kFullScene = R"({
     "model": "horse.3ds",
     "repair": ["doubled_patches", "inside_out"],
-    "map": {"directions": [128, 64], "correction": "paper", "entries": "unorm16", "pole_axis": "y"},
+    "map": {"kind": "distance", "directions": [128, 64], "correction": "paper", "entries": "unorm16", "pole_axis": "y"},
     "collider": {"position": [1, 2, 3], "rotation": {"axis": [0, 0, 2], "degrees": 90}, "scale": 2.5,
                  "linear_velocity": [0.1, 0.2, 0.3], "angular_velocity": [0, 180, 0]},
     "cloth": {"particles": [20, 30], "size": [1.5, 2], "position": [4, 5, 6],
-              "rotation": {"axis": [1, 0, 0], "degrees": -90}, "thickness": 0.02, "pins": [[0, 0], [19, 29]]},
+              "rotation": {"axis": [1, 0, 0], "degrees": -90}, "velocity": [1, 2, -3], "thickness": 0.02, "pins": [[0, 0], [19, 29]]},
     "material": {"structural": 1.1, "shear": 0.9, "bending": 0.2, "friction": 0.7, "drag": 0.003},
     "gravity": [0, -9.8, 0], "time_step": 0.01, "iterations": 12,
     "frame_limit": 500, "at_rest": {"distance": 0.02, "frames": 25}
@@ -67,11 +67,12 @@ TEST(Scene, IsReadKeyByKey) {
     EXPECT_FALSE(scene.repair.drop_duplicate_faces);
     EXPECT_TRUE(scene.repair.drop_doubled_patches);
     EXPECT_TRUE(scene.repair.flip_inside_out);
-    EXPECT_EQ(scene.map.longitude_count, 128u);
-    EXPECT_EQ(scene.map.colatitude_count, 64u);
-    EXPECT_EQ(scene.map.correction, VertexCorrection::Paper);
-    EXPECT_EQ(scene.map.entry_format, EntryFormat::Unorm16);
-    EXPECT_EQ(scene.map.pole_axis, PoleAxis::Y);
+    const auto& map = std::get<DistanceMapOptions>(scene.map);
+    EXPECT_EQ(map.longitude_count, 128u);
+    EXPECT_EQ(map.colatitude_count, 64u);
+    EXPECT_EQ(map.correction, VertexCorrection::Paper);
+    EXPECT_EQ(map.entry_format, EntryFormat::Unorm16);
+    EXPECT_EQ(map.pole_axis, PoleAxis::Y);
     EXPECT_EQ(scene.pose.translation, (Vec3d{1, 2, 3}));
     EXPECT_NEAR(length(scene.pose.rotation.apply({1, 0, 0}) - Vec3d{0, 1, 0}), 0, 1e-12);
     EXPECT_EQ(scene.scale, (Vec3d{2.5, 2.5, 2.5}));
@@ -83,6 +84,7 @@ TEST(Scene, IsReadKeyByKey) {
     EXPECT_EQ(scene.cloth.height, 2);
     EXPECT_EQ(scene.cloth.pose.translation, (Vec3d{4, 5, 6}));
     EXPECT_NEAR(length(scene.cloth.pose.rotation.apply({0, 0, 1}) - Vec3d{0, 1, 0}), 0, 1e-12);
+    EXPECT_EQ(scene.cloth_velocity, (Vec3d{1, 2, -3}));
     EXPECT_EQ(scene.cloth.pins, (std::vector<std::uint32_t>{0, 29 * 20 + 19}));
     EXPECT_EQ(scene.simulation.thickness, 0.02);
     EXPECT_EQ(scene.simulation.stiffness, (std::array{1.1, 0.9, 0.2}));
@@ -104,6 +106,65 @@ TEST(Scene, NeedsOnlyAModelAndTheSizeOfTheCloth) {
     EXPECT_EQ(refusal(R"({"cloth": {"size": [2, 2]}})"), "a.json: the key model is missing");
     EXPECT_EQ(refusal(R"({"model": {"torus": {}}})"), "a.json: the key cloth is missing");
     EXPECT_EQ(refusal(R"({"model": {"torus": {}}, "cloth": {}})"), "a.json: the key cloth.size is missing");
+}
+
+TEST(Scene, UsesAnExactMapUnlessItSaysOtherwise) {
+    const auto map_of = [](const std::string& map) {
+        return parse_scene(R"({"model": "a", "cloth": {"size": [1, 1]}, "map": )" + map + "}", "a.json").map;
+    };
+    EXPECT_TRUE(std::holds_alternative<ExactMapOptions>(
+        parse_scene(R"({"model": "a", "cloth": {"size": [1, 1]}})", "a.json").map));
+    EXPECT_TRUE(std::holds_alternative<DistanceMapOptions>(map_of(R"({"kind": "distance"})")));
+    const auto given = std::get<ExactMapOptions>(
+        map_of(R"({"cells_per_octant": 900, "rule": "parity", "centre": "search"})"));
+    EXPECT_EQ(given.divisions, 30u);
+    EXPECT_EQ(given.byte_budget, 0u);
+    EXPECT_EQ(given.rule, InsideRule::Parity);
+    EXPECT_EQ(given.centre, CentreChoice::Search);
+    const auto budgeted = std::get<ExactMapOptions>(map_of(R"({"kind": "exact", "budget": 300000})"));
+    EXPECT_EQ(budgeted.divisions, 0u);
+    EXPECT_EQ(budgeted.byte_budget, 300'000u);
+    const TriangleMesh box = make_box({1, 1, 1});
+    EXPECT_TRUE(std::holds_alternative<ExactMap>(build_map(box, given)));
+    EXPECT_TRUE(std::holds_alternative<DistanceMap>(build_map(box, DistanceMapOptions{})));
+}
+
+TEST(Scene, RefusesTheKeysOfTheOtherKindOfMap) {
+    const auto refusal_of_map = [](const std::string& map) {
+        return refusal(R"({"model": "a", "cloth": {"size": [1, 1]}, "map": )" + map + "}");
+    };
+    EXPECT_EQ(refusal_of_map(R"({"pole_axis": "y"})"),
+              R"(a.json: map.pole_axis is "y"; it must be left out, or "map.kind" must be "distance")");
+    EXPECT_EQ(refusal_of_map(R"({"kind": "exact", "directions": [8, 8]})"),
+              R"(a.json: map.directions is [8,8]; it must be left out, or "map.kind" must be "distance")");
+    EXPECT_EQ(refusal_of_map(R"({"kind": "distance", "budget": 9})"),
+              R"(a.json: map.budget is 9; it must be left out, or "map.kind" must be "exact")");
+    EXPECT_EQ(refusal_of_map(R"({"budget": 300000, "cells_per_octant": 9})"),
+              "a.json: map.budget is 300000; it must be left out where map.cells_per_octant is given");
+    EXPECT_NE(refusal_of_map(R"({"kind": "radial"})"), "");
+    EXPECT_NE(refusal_of_map(R"({"budgets": 9})"), "");
+}
+
+TEST(Scene, ScalesTheColliderByOneNumberOrThree) {
+    const auto scale_of = [](const std::string& scale) {
+        return R"({"model": "a", "cloth": {"size": [1, 1]}, "collider": {"scale": )" + scale + "}}";
+    };
+    EXPECT_EQ(parse_scene(scale_of("2"), "a").scale, (Vec3d{2, 2, 2}));
+    EXPECT_EQ(parse_scene(scale_of("[1, -2, 0.5]"), "a").scale, (Vec3d{1, -2, 0.5}));
+    for (const char* wrong : {"0", "-1", "[1, 0, 1]", "[1, 1]", "[1, 1, 1e10]", "\"2\""})
+        EXPECT_EQ(refusal(scale_of(wrong)).rfind("a.json: collider.scale is ", 0), 0u) << wrong;
+}
+
+TEST(Scene, ThrowsTheClothAtItsVelocityButForThePins) {
+    const Scene scene = parse_scene(R"({"model": {"box": {}}, "time_step": 0.01, "gravity": [0, 0, 0],
+        "material": {"drag": 0}, "cloth": {"size": [1, 1], "particles": [2, 2], "position": [0, 0, 5],
+        "velocity": [0, 0, 3], "pins": [[0, 0]]}})",
+                                    "a.json");
+    const Simulation simulation = make_simulation(scene, build_map(make_mesh(BoxModel{}), scene.map));
+    const Deformable& cloth = simulation.deformable();
+    EXPECT_EQ(cloth.positions[0], cloth.previous_positions[0]);
+    for (std::size_t i = 1; i < 4; ++i)
+        EXPECT_NEAR(cloth.positions[i].z - cloth.previous_positions[i].z, 0.03, 1e-6);
 }
 
 TEST(Scene, MakesTheShapesThatItNames) {
