@@ -103,7 +103,7 @@ ExactMapOptions read_exact_map(JsonObject& map) {
     map.read("cells_per_octant", cells, {1, kMostCells});
     map.read("budget", budget, {1, 4e9});
     if (cells != 0 && budget != 0) map.refuse("budget", "left out where map.cells_per_octant is given");
-    options.divisions = static_cast<std::uint32_t>(std::lround(std::sqrt(cells)));
+    options.divisions = static_cast<std::uint32_t>(std::sqrt(cells));
     options.byte_budget = budget;
     if (auto word = map.read_word("rule", {"nonzero", "parity"}))
         options.rule = static_cast<InsideRule>(*word);
