@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+/// Processor time of the calling thread: other programs on the machine prolong it little. What they still
+/// add, through shared caches and the clock rate, the shortest of several repetitions is free of.
+double thread_seconds();
+
+/// Processor time of the shortest of several calls.
+double shortest_seconds(int repetitions, const std::function<void()>& body);
+
+/// Does its work for items [begin, end).
+using Contestant = std::function<void(std::size_t begin, std::size_t end)>;
+
+/// Nanoseconds per item for each contestant. They take turns at blocks of items, several times over; of a
+/// block's times the shortest counts, so that all of them meet the same machine.
+std::vector<double> race(std::size_t item_count, int repetitions, std::span<const Contestant> contestants);

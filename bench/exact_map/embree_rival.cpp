@@ -1,0 +1,146 @@
+#include "embree_rival.hpp"
+
+#include "stopwatch.hpp"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+using namespace echinus;
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+/// Not along an axis, where meshes like to have their edges.
+constexpr Vec3f kDirection{0.3F, 0.5F, 0.81F};
+
+/// The nearest point of a triangle: the region of Voronoi in which p lies, by inner products (Ericson,
+/// Real-Time Collision Detection, 5.1.5).
+Vec3f nearest_on_triangle(const Vec3f& p, const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+    const Vec3f ab = b - a, ac = c - a, ap = p - a;
+    const float d1 = dot(ab, ap), d2 = dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return a;
+    const Vec3f bp = p - b;
+    const float d3 = dot(ab, bp), d4 = dot(ac, bp);
+    if (d3 >= 0 && d4 <= d3) return b;
+    const Vec3f cp = p - c;
+    const float d5 = dot(ab, cp), d6 = dot(ac, cp);
+    if (d6 >= 0 && d5 <= d6) return c;
+    const float vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return a + ab * (d1 / (d1 - d3));
+    const float vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return a + ac * (d2 / (d2 - d6));
+    const float va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 >= d3 && d5 >= d6) return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    const float scale = 1 / (va + vb + vc);
+    return a + ab * (vb * scale) + ac * (vc * scale);
+}
+
+struct NearestSoFar {
+    const TriangleMesh& mesh;
+    float distance = kInfinity;
+};
+
+bool visit_face(RTCPointQueryFunctionArguments* arguments) {
+    auto& nearest = *static_cast<NearestSoFar*>(arguments->userPtr);
+    const Triangle& face = nearest.mesh.faces[arguments->primID];
+    const std::vector<Vec3f>& vertices = nearest.mesh.vertices;
+    const Vec3f p{arguments->query->x, arguments->query->y, arguments->query->z};
+    const Vec3f offset = p - nearest_on_triangle(p, vertices[face[0]], vertices[face[1]], vertices[face[2]]);
+    const float distance = std::sqrt(dot(offset, offset));
+    if (distance >= arguments->query->radius) return false;
+    arguments->query->radius = nearest.distance = distance;
+    return true;
+}
+
+RTCRayHit first_hit(RTCScene scene, const Vec3f& origin, const Vec3f& direction, float farthest) {
+    RTCRayHit result{};
+    result.ray.org_x = origin.x;
+    result.ray.org_y = origin.y;
+    result.ray.org_z = origin.z;
+    result.ray.dir_x = direction.x;
+    result.ray.dir_y = direction.y;
+    result.ray.dir_z = direction.z;
+    result.ray.tfar = farthest;
+    result.ray.mask = ~0U;
+    result.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene, &context, &result);
+    return result;
+}
+
+bool count_bytes(void* counter, ssize_t bytes, bool /*after_the_fact*/) {
+    *static_cast<std::atomic<std::ptrdiff_t>*>(counter) += bytes;
+    return true;
+}
+
+} // namespace
+
+struct EmbreeRival::Impl {
+    const TriangleMesh& mesh;
+    std::atomic<std::ptrdiff_t> bytes = 0;
+    double build_seconds = 0;
+    RTCDevice device = rtcNewDevice("threads=1");
+    RTCScene scene = nullptr;
+
+    explicit Impl(const TriangleMesh& mesh_) : mesh(mesh_) {
+        rtcSetDeviceMemoryMonitorFunction(device, count_bytes, &bytes);
+        const double start = thread_seconds();
+        scene = rtcNewScene(device);
+        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+        const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        std::ranges::copy(mesh.vertices, static_cast<Vec3f*>(rtcSetNewGeometryBuffer(
+                                             geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                             sizeof(Vec3f), mesh.vertices.size())));
+        std::ranges::copy(mesh.faces, static_cast<Triangle*>(rtcSetNewGeometryBuffer(
+                                          geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                          sizeof(Triangle), mesh.faces.size())));
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene, geometry);
+        rtcReleaseGeometry(geometry);
+        rtcCommitScene(scene);
+        build_seconds = thread_seconds() - start;
+    }
+    Impl(const Impl&) = delete;
+    Impl& operator=(const Impl&) = delete;
+    ~Impl() {
+        rtcReleaseScene(scene);
+        rtcReleaseDevice(device);
+    }
+};
+
+EmbreeRival::EmbreeRival(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>(mesh)) {}
+
+EmbreeRival::~EmbreeRival() = default;
+
+bool EmbreeRival::inside(const Vec3f& point) const {
+    const RTCRayHit found = first_hit(impl_->scene, point, kDirection, kInfinity);
+    return found.hit.geomID != RTC_INVALID_GEOMETRY_ID &&
+           dot(Vec3f{found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z}, kDirection) > 0;
+}
+
+float EmbreeRival::distance(const Vec3f& point) const {
+    RTCPointQuery query{point.x, point.y, point.z, 0, kInfinity};
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    NearestSoFar nearest{impl_->mesh};
+    rtcPointQuery(impl_->scene, &query, &context, visit_face, &nearest);
+    return nearest.distance;
+}
+
+bool EmbreeRival::crossed(const Vec3f& from, const Vec3f& to) const {
+    return first_hit(impl_->scene, from, to - from, 1).hit.geomID != RTC_INVALID_GEOMETRY_ID;
+}
+
+std::size_t EmbreeRival::byte_count() const {
+    return static_cast<std::size_t>(impl_->bytes.load());
+}
+
+double EmbreeRival::build_seconds() const {
+    return impl_->build_seconds;
+}
