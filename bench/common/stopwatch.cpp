@@ -29,8 +29,10 @@ std::vector<double> race(std::size_t item_count, int repetitions, std::span<cons
         const std::size_t end = std::min(begin + kBlockSize, item_count);
         std::vector<double> shortest(contestants.size(), std::numeric_limits<double>::infinity());
         for (int i = 0; i < repetitions; ++i)
-            for (std::size_t k = 0; k < contestants.size(); ++k)
+            for (std::size_t turn = 0; turn < contestants.size(); ++turn) {
+                const std::size_t k = i % 2 == 0 ? turn : contestants.size() - 1 - turn;
                 shortest[k] = std::min(shortest[k], shortest_seconds(1, [&] { contestants[k](begin, end); }));
+            }
         for (std::size_t k = 0; k < contestants.size(); ++k) seconds[k] += shortest[k];
     }
     for (double& s : seconds) s *= 1e9 / static_cast<double>(std::max<std::size_t>(item_count, 1));
