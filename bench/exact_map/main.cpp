@@ -40,7 +40,7 @@ void run(const Arguments& arguments) {
                           .images = arguments.images,
                           .point_count = arguments.quick ? 20'000U : 1'000'000U,
                           .repetitions = arguments.quick ? 2 : 5,
-                          .most_faces = arguments.quick ? 64'000U : 4'000'000U};
+                          .most_faces = arguments.quick ? 64'000U : 4'100'000U};
     Values values;
     values["machine"] = describe_machine();
     values["points"] = fmt::format("{}", setting.point_count);
