@@ -1,5 +1,4 @@
 #include "contestants.hpp"
-#include "exact_map/resolution.hpp"
 #include "files/atomic_file.hpp"
 #include "measurements.hpp"
 #include "plot.hpp"
@@ -53,7 +52,7 @@ Curves sweep_divisions(const Model& model, const char* colour, const Setting& se
                        std::vector<std::vector<std::string>>& rows) {
     const std::vector<Vec3f> points = test::surface_points(model.mesh, setting.few_points());
     const EmbreeRival embree(model.mesh);
-    const std::uint32_t by_default = default_divisions(model.mesh.faces.size());
+    const std::uint32_t by_default = ExactMap::build(model.mesh, one_thread()).view().divisions;
     Curves curves{{.name = model.name + ", exact map", .points = {}, .colour = colour},
                   {.name = model.name + ", Embree", .points = {}, .colour = colour, .dashed = true}};
     double embree_ns = 1e9;
