@@ -13,6 +13,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -71,7 +72,7 @@ DistanceMapOptions distance_options_of(const BuildArguments& arguments) {
 void require_solid(const MeshReport& report, const TriangleMesh& mesh, const BuildArguments& arguments) {
     const bool exact = arguments.kind == MapKind::Exact;
     const std::string name = arguments.mesh.name();
-    if (report.closed && report.signed_volume == 0 && !(exact && arguments.allow_open))
+    if (report.closed && report.signed_volume == 0 && !exact)
         throw Error(ErrorCode::InvalidMesh,
                     name + ": the mesh encloses no volume; it is flat, or so far from the origin that its "
                            "vertices round to one place: move it to the origin");
@@ -88,8 +89,23 @@ void require_solid(const MeshReport& report, const TriangleMesh& mesh, const Bui
                 name + ": the mesh is not closed: " + describe_openness(report) + "; " + remedy);
 }
 
+/// Around a closed surface the winding number is 0 everywhere; it may have a volume all the same, with two
+/// signs.
+bool encloses_nothing(const ExactMapView& map) {
+    return map.border.empty() &&
+           std::ranges::all_of(map.winding_below, [](std::int16_t w) { return w == 0; });
+}
+
 AnyMap build_kind(const TriangleMesh& mesh, const BuildArguments& arguments) {
-    if (arguments.kind == MapKind::Exact) return ExactMap::build(mesh, exact_options_of(arguments));
+    if (arguments.kind == MapKind::Exact) {
+        ExactMap map = ExactMap::build(mesh, exact_options_of(arguments));
+        if (encloses_nothing(map) && !arguments.allow_open)
+            throw Error(
+                ErrorCode::InvalidMesh,
+                "the mesh encloses nothing: it is flat, or its parts cancel each other, or it is so far from "
+                "the origin that its vertices round to one place; build it all the same with --allow-open");
+        return map;
+    }
     DistanceMap map = DistanceMap::build(mesh, distance_options_of(arguments));
     if (map.view().entry_count() == 0)
         throw Error(
@@ -133,9 +149,7 @@ void print_result(const MapDescription& description, const BuiltMap& built, cons
     } else if (arguments.target != kStandardStream) {
         print(to_text(description, arguments.target.string()));
         if (arguments.repair) print("\nRepair: " + to_text(built.repairs) + ".\n");
-        if (built.inside_out)
-            print("\nThe mesh is inside out. What it encloses is inside all the same, but the normals of its "
-                  "faces point inwards; --repair turns them round.\n");
+        if (built.inside_out) print("\nThe mesh is inside out. What it encloses is inside all the same.\n");
     }
 }
 

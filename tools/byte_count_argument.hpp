@@ -19,15 +19,19 @@ inline bool lexical_cast(const std::string& text, ByteCountArgument& count) {
         {"B", 1}, {"KB", 1e3}, {"MB", 1e6}, {"KiB", 1024}, {"MiB", 1024 * 1024}};
     double number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc{}) return false;
+    const CLI::ValidationError wrong("--budget",
+                                     "must be a number with one of the units B, KB, MB, KiB and MiB, such as "
+                                     "300KB, not " +
+                                         text);
+    if (error != std::errc{}) throw wrong;
     const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
     for (const auto& [name, size] : kUnits) {
         if (name != unit) continue;
         constexpr double kMost = 1e15; // so that it is a number of bytes
         const double bytes = number * size;
-        if (!(bytes >= 1 && bytes <= kMost)) return false;
+        if (!(bytes >= 1 && bytes <= kMost)) throw wrong;
         count.bytes = static_cast<std::size_t>(bytes);
         return true;
     }
-    return false;
+    throw wrong;
 }

@@ -83,12 +83,22 @@ void write_report(const fs::path& path, const nlohmann::ordered_json& report) {
     write_file(path, report.dump(2, ' ', false, kReplace) + "\n");
 }
 
+/// What is wrong with the options of a scene's map is wrong with the scene.
+AnyMap map_of_scene(const Scene& scene, const TriangleMesh& mesh, const SimulateArguments& arguments) {
+    try {
+        return build_map(mesh, scene.map, arguments.thread_count);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::InvalidOptions) throw;
+        throw Error(ErrorCode::InvalidScene, arguments.scene.string() + ": \"map\": " + error.what());
+    }
+}
+
 void simulate(const SimulateArguments& arguments) {
     Scene scene = read_scene(arguments.scene);
     if (arguments.frame_limit) scene.frame_limit = *arguments.frame_limit;
     OutputFolder folder(arguments.target);
     const RepairedMesh model = load_model(scene, arguments.scene, arguments.model_folders);
-    Simulation simulation = make_simulation(scene, build_map(model.mesh, scene.map, arguments.thread_count));
+    Simulation simulation = make_simulation(scene, map_of_scene(scene, model.mesh, arguments));
     const Deformable& cloth = simulation.deformable();
     write_mesh(folder.path_of("cloth.obj"), {cloth.positions, cloth.faces});
     write_mesh(folder.path_of("collider.obj"), scaled(model.mesh, scene.scale));

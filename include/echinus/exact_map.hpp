@@ -25,8 +25,11 @@ namespace echinus {
 /// Which places are inside, told by the winding number of the surface around them. The rules differ only
 /// where parts of the surface overlap, are nested, inverted or doubled.
 enum class InsideRule : std::uint8_t {
-    Nonzero, ///< the union of all parts, whichever way they are turned
-    Parity,  ///< an odd winding number: a part within a part is a hole
+    /// Every winding number but 0: the union of parts that are turned alike, or do not overlap. Where parts
+    /// that are
+    /// turned oppositely overlap, their numbers cancel.
+    Nonzero,
+    Parity, ///< an odd winding number: a part within a part is a hole
 };
 
 /// Where the rays start. Any centre gives the same answers; one that sees little of the surface edge-on gives
@@ -225,7 +228,8 @@ bool contains(const ExactMapView& map, Vec3f point_local) noexcept;
 Containment classify(const ExactMapView& map, Vec3f point_local) noexcept;
 
 /// Inside?, the nearest point of the whole surface, and its distance: the global minimum, by a branch and
-/// bound search.
+/// bound search. Where parts overlap or lie within each other, that may be a place inside the solid: faces
+/// that do not bound it count as surface too.
 ///
 /// The normal is the direction from the surface point to a particle outside, or from a particle inside to the
 /// surface point. For a particle within two lattice steps of the surface, where snapping would leave this to
@@ -251,9 +255,10 @@ void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 struct SweepHit {
     float parameter = 1; ///< along the way: 0 at `from`, 1 at `to`; 1 when nothing is met
     Vec3f point;         ///< from + parameter (to - from), local; `to` when nothing is met
-    Vec3f normal;        ///< unit normal of the face, out of the solid; 0 when nothing is met
+    Vec3f normal; ///< unit normal of the face, out of the solid; 0 when nothing is met. Of a face with solid
+                  ///< on both sides, or on none, out of its front
     std::int32_t face = Contact::kUnknownFace; ///< the mesh's number
-    bool entering = false;                     ///< from the face's front to its back
+    bool entering = false;                     ///< from outside the solid to its inside
 
     bool found() const { return face != Contact::kUnknownFace; }
 };

@@ -9,6 +9,7 @@
 #include <echinus/error.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <mutex>
 #include <numeric>
@@ -48,6 +49,15 @@ Interval interval_of(const CellCover& cover, std::uint32_t face) {
             static_cast<std::uint16_t>(band_unit_of(upper) + 1), face, cover.parts};
 }
 
+/// Asked while faces are covered, before their number fills the memory.
+void require_manageable(std::size_t total) {
+    constexpr std::size_t kMost = std::size_t{1} << 29; // 16 bytes each, for the moment
+    if (total <= kMost) return;
+    throw Error(ErrorCode::InvalidMesh, "the faces pass through cells more than " + std::to_string(kMost) +
+                                            " times, which is more than a map can hold; take fewer cells, or "
+                                            "drop faces that lie on each other");
+}
+
 /// What one thread found, in the order of its faces.
 struct FoundCovers {
     std::size_t first_face;
@@ -59,6 +69,7 @@ std::vector<FoundCovers> cover_all_faces(const LatticeMesh& lattice, const Octah
                                          unsigned thread_count) {
     std::vector<FoundCovers> found;
     std::mutex mutex;
+    std::atomic<std::size_t> total = 0;
     parallel_for(lattice.faces.size(), thread_count, [&](std::size_t begin, std::size_t end) {
         FoundCovers mine{begin, {}, {}};
         mine.cells.reserve(6 * (end - begin));
@@ -70,6 +81,7 @@ std::vector<FoundCovers> cover_all_faces(const LatticeMesh& lattice, const Octah
             if (is_collapsed(corners)) continue;
             covers.clear();
             cover_cells(cells, corners, covers);
+            require_manageable(total += covers.size());
             for (const CellCover& cover : covers) {
                 mine.cells.push_back(cover.cell);
                 mine.intervals.push_back(interval_of(cover, face));
@@ -86,9 +98,6 @@ CellIntervals find_intervals(const LatticeMesh& lattice, const OctahedralCells& 
     const std::vector<FoundCovers> found = cover_all_faces(lattice, cells, thread_count);
     std::size_t total = 0;
     for (const FoundCovers& part : found) total += part.cells.size();
-    if (total > std::numeric_limits<std::uint32_t>::max())
-        throw Error(ErrorCode::InvalidMesh, "the faces pass through cells " + std::to_string(total) +
-                                                " times, more than a map can hold; take fewer cells");
     CellIntervals result;
     result.offsets.resize(cells.count() + 1);
     for (const FoundCovers& part : found)
@@ -114,9 +123,6 @@ std::int16_t stored_winding(int winding) {
         throw Error(ErrorCode::InvalidMesh, "the surface winds around a place more than 32766 times");
     return static_cast<std::int16_t>(winding);
 }
-
-/// Beyond the lattice's largest L1 norm.
-constexpr std::uint16_t kEverBeyond = std::numeric_limits<std::uint16_t>::max();
 
 /// Appends the bands of consecutive cells.
 class BandBuilder {
@@ -257,8 +263,8 @@ class BandBuilder {
         }
         constexpr double kBeyondOtherRays = 1.05; // the middle's is not the longest way to the sphere
         const auto end = static_cast<std::uint16_t>(kBeyondOtherRays * whole / ExactMapView::kBandUnit);
-        const std::int16_t last = append_gap(cell, lower, std::max(end, lower), 0);
-        if (last != 0) append_limit(kEverBeyond, kEverBeyond, last);
+        const std::uint16_t limit = std::max(end, lower);
+        append_limit(limit, limit, append_gap(cell, lower, limit, 0)); // beyond it nobody looked
         result_.uncertain_volumes.push_back({uncertain_, whole * whole * whole});
     }
 

@@ -154,10 +154,11 @@ std::uint32_t set_bands(const LatticeMesh& lattice, const ExactMapOptions& optio
     };
     std::uint32_t divisions = options.divisions;
     if (options.byte_budget != 0)
-        divisions = divisions_within(options.byte_budget, lattice.faces.size(), [&](std::uint32_t candidate) {
-            find(candidate, arrays.border);
-            return view_of(arrays, lattice, candidate, options.rule).byte_count();
-        });
+        divisions = divisions_within(
+            options.byte_budget, lattice.faces.size(), !arrays.border.empty(), [&](std::uint32_t candidate) {
+                find(candidate, arrays.border);
+                return view_of(arrays, lattice, candidate, options.rule).byte_count();
+            });
     else if (divisions == 0)
         divisions = default_divisions(lattice.faces.size(), !arrays.border.empty());
     find(divisions, arrays.border);

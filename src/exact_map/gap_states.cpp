@@ -79,7 +79,9 @@ std::int16_t GapStates::winding_in(const Region& region, int crossings) const {
     const double winding = crossings + border_part(border_, vertices_, region.direction, region.share);
     const double whole = std::round(winding);
     constexpr double kRounding = 1e-6;
-    const bool certain = std::fabs(winding - whole) + change < 0.5 - kRounding;
+    constexpr double kMostStored = 32'000;
+    const bool certain =
+        std::fabs(winding - whole) + change < 0.5 - kRounding && std::fabs(whole) < kMostStored;
     return certain ? static_cast<std::int16_t>(whole) : ExactMapView::kUncertain;
 }
 

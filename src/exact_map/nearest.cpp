@@ -122,10 +122,10 @@ class BoxDistances {
     Vec3f place_, stretch_;
 };
 
-/// The smallest float that is not below a double, infinity kept out: what has no child is at infinity.
+/// A float a little above a double: by more than box distances are rounded. Infinity is kept out, since what
+/// has no child is at infinity.
 float rounded_up(double value) {
-    const float f = static_cast<float>(std::min(value, 1e37)) * (1 + 1e-6F);
-    return f;
+    return static_cast<float>(std::min(value, 1e37)) * (1 + 1e-6F);
 }
 
 /// Where on a triangle the nearest point to the origin lies, relative to it, and what of the triangle that
@@ -154,6 +154,15 @@ NearestPoint nearest_on_triangle(const Corners& corners) {
     }
     nearest.distance = length(nearest.point);
     return nearest;
+}
+
+/// Of the stretched face, out of its front; 0 of one without area.
+Vec3d unit_normal(const ExactMapView& map, std::uint32_t face, const Vec3d& place, const Vec3d& stretch) {
+    const Corners corners = corners_around(map, face, place, stretch);
+    const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const double area = length(normal);
+    const double mirror = stretch.x * stretch.y * stretch.z < 0 ? -1 : 1;
+    return area > 0 ? normal * (mirror / area) : Vec3d{};
 }
 
 /// The angle between two vectors.
@@ -200,20 +209,21 @@ std::optional<NearestPoint> nearest_point(const ExactMapView& map, const Vec3d& 
     return nearest;
 }
 
-Vec3f pseudonormal(const ExactMapView& map, const Vec3d& point, const Vec3d& stretch, double reach) noexcept {
-    const double mirror = stretch.x * stretch.y * stretch.z < 0 ? -1 : 1;
+Vec3f pseudonormal(const ExactMapView& map, const NearestPoint& nearest, const Vec3d& stretch,
+                   double reach) noexcept {
+    constexpr Vec3d kUnstretched{1, 1, 1};
+    const Vec3d& point = nearest.point;
     const float bound = rounded_up(reach * reach);
     Vec3d sum;
-    walk_near_leaves(map, bound, BoxDistances(point, stretch), [&](const LeafFaces& faces) {
+    walk_near_leaves(map, bound, BoxDistances(point, kUnstretched), [&](const LeafFaces& faces) {
         for (std::uint32_t face = faces.first; face < faces.last; ++face) {
-            const Corners corners = corners_around(map, face, point, stretch);
+            const Corners corners = corners_around(map, face, point, kUnstretched);
             if (nearest_on_triangle(corners).distance > reach) continue;
-            const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-            const double area = length(normal);
-            if (area > 0)
-                sum += normal * (mirror * static_cast<double>(spanned_angle(corners, reach)) / area);
+            sum += unit_normal(map, face, point, stretch) * double{spanned_angle(corners, reach)};
         }
     });
+    constexpr double kCancelled = 1e-6;
+    if (length(sum) < kCancelled) sum = unit_normal(map, nearest.face, point, stretch);
     const double l = length(sum);
     return l > 0 ? Vec3f(sum * (1 / l)) : Vec3f{0, 0, 1};
 }

@@ -21,9 +21,11 @@ struct NearestPoint {
 std::optional<NearestPoint> nearest_point(const ExactMapView& map, const Vec3d& place, const Vec3d& stretch,
                                           double farthest) noexcept;
 
-/// Unit normal of the stretched surface at a point of it: the sum of the normals of the faces within `reach`
-/// of it, each weighed by the angle that the face spans there (a full turn inside a face, half a turn on its
-/// edge). Baerentzen and Aanaes 2005.
-Vec3f pseudonormal(const ExactMapView& map, const Vec3d& point, const Vec3d& stretch, double reach) noexcept;
+/// Unit normal of the stretched surface at its nearest point: the sum of the normals of the faces within
+/// `reach` lattice steps of it, each weighed by the angle that the face spans there (a full turn inside a
+/// face, half a turn on its edge). Baerentzen and Aanaes 2005. Where they cancel, as on a plate without
+/// thickness, that of the nearest face; 0, 0, 1 where that has no area.
+Vec3f pseudonormal(const ExactMapView& map, const NearestPoint& nearest, const Vec3d& stretch,
+                   double reach) noexcept;
 
 } // namespace echinus

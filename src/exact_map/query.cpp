@@ -1,10 +1,10 @@
-// Inside or outside, exactly. This scalar code is the specification.
+// What is inside, and the nearest way out.
 
-#include "exact_map/border.hpp"
 #include "exact_map/layout.hpp"
 #include "exact_map/nearest.hpp"
-#include "exact_map/ray_crossing.hpp"
+#include "exact_map/winding.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -12,100 +12,9 @@ namespace echinus {
 
 namespace {
 
-/// A particle on the lattice. One that is not finite or lies beyond the mesh's lattice stands at the
-/// lattice's corner: that is outside.
-LatticePoint snapped(const LatticeFrame& frame, const Vec3f& point_local) {
-    constexpr auto kExtent = static_cast<double>(kLatticeExtent);
-    constexpr double kLimit = kExtent + 0.5; // what is rounded into the lattice lies in it
-    const Vec3d place = frame.to_lattice(point_local);
-    const bool on_lattice =
-        (std::fabs(place.x) <= kLimit) & (std::fabs(place.y) <= kLimit) & (std::fabs(place.z) <= kLimit);
-    return rounded(on_lattice ? place : Vec3d{kExtent, kExtent, kExtent});
-}
-
-/// The lists of a map with the width of their numbers known.
-template <typename Face, typename Vertex>
-struct Lists {
-    const ExactMapView& map;
-    const Face* references;
-    const Vertex* corners;
-
-    const std::int32_t* corner(std::uint32_t face, std::size_t k) const {
-        return &map.vertices[corners[3 * std::size_t{face} + k]].x;
-    }
-
-    /// Signed crossings of a particle's ray with references [first, last), on one side of the particle.
-    /// @param part  of its cell in which the particle lies
-    int crossings(RaySide side, std::uint32_t first, std::uint32_t last, std::uint32_t part,
-                  const LatticePoint& p) const {
-        const CrossingFilter filter(p);
-        constexpr std::uint32_t kPieceSize = 64;
-        std::array<Face, kPieceSize> faces;
-        int sum = 0;
-        for (std::uint32_t begin = first; begin < last; begin += kPieceSize) {
-            const std::uint32_t end = std::min(begin + kPieceSize, last);
-            std::uint32_t count = 0; // of the faces that touch the part; listed without a branch
-            for (std::uint32_t r = begin; r < end; ++r) {
-                faces[count] = references[r];
-                count += std::uint32_t{map.reference_parts[r]} >> part & 1U;
-            }
-            for (std::uint32_t i = 0; i < count; ++i) {
-                const std::uint32_t face = faces[i];
-                const auto [crossing, sure] = filter(side, corner(face, 0), corner(face, 1), corner(face, 2));
-                sum += sure ? crossing : crossing_on(side, face_corners(map, face), p);
-            }
-        }
-        return sum;
-    }
-};
-
-/// Clang deduces the parameters of an aggregate only if told how.
-template <typename Face, typename Vertex>
-Lists(const ExactMapView&, const Face*, const Vertex*) -> Lists<Face, Vertex>;
-
-int crossings_in_band(const ExactMapView& map, RaySide side, std::uint32_t band, std::uint32_t part,
-                      const LatticePoint& p) {
-    const auto crossings = [&](const auto& lists) {
-        return lists.crossings(side, map.bands[band].first_reference, map.bands[band + 1].first_reference,
-                               part, p);
-    };
-    const auto with_corners = [&](const auto* references) {
-        return map.corners.wide.empty() ? crossings(Lists{map, references, map.corners.narrow.data()})
-                                        : crossings(Lists{map, references, map.corners.wide.data()});
-    };
-    return map.references.wide.empty() ? with_corners(map.references.narrow.data())
-                                       : with_corners(map.references.wide.data());
-}
-
-/// The generalised winding number, rounded: in the open, where no gap's number is known.
-std::int64_t generalised_winding(const ExactMapView& map, std::uint32_t innermost_band,
-                                 const BandRange& bands, std::uint32_t part, const LatticePoint& p) {
-    int crossings = 0;
-    for (std::uint32_t band = innermost_band; band < bands.last; ++band)
-        crossings += crossings_in_band(map, RaySide::Beyond, band, part, p);
-    return std::lrint(crossings + border_part(map.border, map.vertices, p));
-}
-
-Containment containment(const ExactMapView& map, const LatticePoint& p) {
-    const auto [cell, part] = OctahedralCells(map.divisions).locate(p);
-    const BandRange bands = bands_of_cell(map, cell);
-    const std::int64_t t = band_unit_of(l1_norm(p));
-    std::uint32_t band = bands.first;
-    while (band < bands.last && t >= map.bands[band].upper) ++band;
-    if (band == bands.last) return {};
-    const bool in_gap = t < map.bands[band].lower;
-    int winding = in_gap ? map.winding_below[band] : winding_beyond(map, band, bands);
-    if (winding == ExactMapView::kUncertain)
-        return {is_inside(map.rule, generalised_winding(map, band, bands, part, p)), false};
-    if (winding == ExactMapView::kSplit)
-        winding = map.winding_below[band] - crossings_in_band(map, RaySide::Before, band, part, p);
-    else if (!in_gap)
-        winding += crossings_in_band(map, RaySide::Beyond, band, part, p);
-    return {is_inside(map.rule, winding), true};
-}
-
 Containment containment(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local) {
-    return containment(map, snapped(frame, point_local));
+    const Winding winding = winding_at(map, frame, point_local);
+    return {is_inside(map.rule, winding.number), winding.certain};
 }
 
 /// In lattice steps: the diameter of the lattice and more.
@@ -145,10 +54,23 @@ class ContactSearch {
 
   private:
     Vec3f outward_normal(const NearestPoint& nearest, const Vec3d& place, bool inside) const {
-        if (nearest.distance <= kSnapping) return pseudonormal(map_, nearest.point, stretch_, kSnapping);
         const Vec3d offset = nearest.point - place;
+        if (length(offset) <= kSnapping)
+            return outward(nearest.point, pseudonormal(map_, nearest, stretch_, kSnapping));
         const Vec3d in_world{offset.x * stretch_.x, offset.y * stretch_.y, offset.z * stretch_.z};
         return Vec3f(in_world * ((inside ? 1 : -1) / nearest.distance));
+    }
+
+    /// Turns a normal of the faces to where it leads out of the solid: faces may be turned the other way.
+    Vec3f outward(const Vec3d& point, const Vec3f& normal) const {
+        const auto inside_at = [&](double steps) {
+            const Vec3d side{steps * double{normal.x} / stretch_.x, steps * double{normal.y} / stretch_.y,
+                             steps * double{normal.z} / stretch_.z};
+            const Vec3d place = point + side * (1 / length(side) * std::fabs(steps));
+            return containment(map_, frame_, Vec3f(frame_.to_local(place))).inside;
+        };
+        constexpr double kClear = 2 * kSnapping;
+        return inside_at(kClear) && !inside_at(-kClear) ? -normal : normal;
     }
 
     const ExactMapView& map_;

@@ -20,7 +20,7 @@ std::uint32_t default_divisions(std::size_t face_count, bool open) {
                       ExactMapOptions::kMaxDivisions);
 }
 
-std::uint32_t divisions_within(std::size_t byte_budget, std::size_t face_count,
+std::uint32_t divisions_within(std::size_t byte_budget, std::size_t face_count, bool open,
                                const std::function<std::size_t(std::uint32_t divisions)>& byte_count) {
     const std::size_t least = byte_count(1);
     if (least > byte_budget)
@@ -28,7 +28,8 @@ std::uint32_t divisions_within(std::size_t byte_budget, std::size_t face_count,
                     "the budget of " + std::to_string(byte_budget) +
                         " bytes is less than the coarsest map needs: " + std::to_string(least));
     // Sixteen times as many cells as by default: nearly every band holds two or three faces.
-    std::uint32_t most = std::min(4 * default_divisions(face_count, false), ExactMapOptions::kMaxDivisions);
+    const std::uint32_t usual = default_divisions(face_count, open);
+    std::uint32_t most = open ? usual : std::min(4 * usual, ExactMapOptions::kMaxDivisions);
     std::uint32_t fitting = 1;
     while (fitting < most) {
         const std::uint32_t middle = fitting + (most - fitting + 1) / 2;

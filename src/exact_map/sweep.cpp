@@ -4,6 +4,7 @@
 #include "exact_map/face_tree_walk.hpp"
 #include "exact_map/layout.hpp"
 #include "exact_map/segment_crossing.hpp"
+#include "exact_map/winding.hpp"
 
 #include <cmath>
 #include <limits>
@@ -15,33 +16,21 @@ namespace {
 /// As far as contains() takes particles to lie on the lattice.
 constexpr double kLimit = static_cast<double>(kLatticeExtent) + 0.5;
 
-/// A segment in lattice steps, and the part of it that lies on the lattice, by its parameters.
-struct Way {
-    Vec3d from, to;
-    double first = 0, last = 1;
-
-    Vec3d at(double parameter) const { return from + (to - from) * parameter; }
-    bool empty() const { return first > last; }
-
-    /// Cuts off what lies beyond the lattice, where there is no surface.
-    void clip() {
-        for (double Vec3d::*c : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
-            clip_below(kLimit - from.*c, to.*c - from.*c);
-            clip_below(kLimit + from.*c, from.*c - to.*c);
-        }
+/// Moves one end of a segment towards the other, to where the lattice begins: beyond there is no surface.
+/// Measured from the other end, so that one that lies on the lattice leaves the cut exact, however far away
+/// this one is.
+/// @return false when the whole segment lies beyond
+bool cut_to_lattice(Vec3d& end, const Vec3d& other) {
+    double share = 1;
+    for (double Vec3d::*c : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
+        if (std::fabs(end.*c) <= kLimit) continue;
+        const double limit = end.*c > 0 ? kLimit : -kLimit;
+        if (end.*c > 0 ? other.*c > limit : other.*c < limit) return false;
+        share = std::min(share, (limit - other.*c) / (end.*c - other.*c));
     }
-
-  private:
-    /// Keeps the parameters where parameter * slope <= room.
-    void clip_below(double room, double slope) {
-        if (slope > 0)
-            last = std::min(last, room / slope);
-        else if (slope < 0)
-            first = std::max(first, room / slope);
-        else if (room < 0)
-            last = -1;
-    }
-};
+    if (share < 1) end = other + (end - other) * share;
+    return true;
+}
 
 LatticePoint clamped(const LatticePoint& p) {
     const auto clamp = [](std::int64_t c) { return std::clamp(c, -kLatticeExtent, kLatticeExtent); };
@@ -133,22 +122,29 @@ SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexce
     hit.point = to_local;
     if (!is_finite(from_local) || !is_finite(to_local)) return hit;
     const LatticeFrame frame = frame_of(map);
-    Way way{frame.to_lattice(from_local), frame.to_lattice(to_local)};
-    way.clip();
-    if (way.empty()) return hit;
-    const LatticePoint from = clamped(rounded(way.at(way.first)));
-    const LatticePoint to = clamped(rounded(way.at(way.last)));
+    const Vec3d from_place = frame.to_lattice(from_local), to_place = frame.to_lattice(to_local);
+    Vec3d start = from_place, end = to_place;
+    if (!cut_to_lattice(start, end) || !cut_to_lattice(end, start)) return hit;
+    const LatticePoint from = clamped(rounded(start));
+    const LatticePoint to = clamped(rounded(end));
     if (from == to || stays_in_gap(map, from, to)) return hit;
     const std::optional<FaceCrossing> first = first_crossing(map, from, to);
     if (!first) return hit;
     const double share = std::clamp(first->crossing.parameter(), 0.0, 1.0);
-    const double parameter = way.first + (way.last - way.first) * share;
-    const Vec3d normal(first->crossing.normal);
+    const Vec3d place = start + (end - start) * share;
+    const double parameter = std::min(1.0, length(place - from_place) / length(to_place - from_place));
+    // Faces may be turned the other way: what counts is which side of this one is solid.
+    const std::int64_t before = winding_at(map, from).number;
+    const std::int64_t after = before + (first->crossing.entering() ? 1 : -1);
+    const bool inside_before = is_inside(map.rule, before), inside_after = is_inside(map.rule, after);
+    const bool turned =
+        first->crossing.entering() ? inside_before && !inside_after : inside_after && !inside_before;
+    const Vec3d normal = Vec3d(first->crossing.normal) * (turned ? -1.0 : 1.0);
     hit.parameter = static_cast<float>(parameter);
-    hit.point = Vec3f(frame.to_local(way.at(parameter)));
+    hit.point = Vec3f(frame.to_local(place));
     hit.normal = Vec3f(normal * (1 / length(normal)));
     hit.face = static_cast<std::int32_t>(map.face_numbers[first->face]);
-    hit.entering = first->crossing.entering();
+    hit.entering = inside_after && !inside_before;
     return hit;
 }
 

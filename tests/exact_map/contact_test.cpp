@@ -71,3 +71,31 @@ TEST(ExactMapContact, KnowsANeedleThatIsThinnerThanTheLattice) {
         EXPECT_NEAR(-c.depth, unsigned_distance(mesh, Vec3d(p)), 1e-5);
     }
 }
+
+TEST(ExactMapContact, HasANormalOutOfTheSolidWhicheverWayTheFacesAreTurned) {
+    TriangleMesh mesh = make_box({2, 2, 2});
+    for (Triangle& face : mesh.faces) std::swap(face[1], face[2]);
+    const ExactMap map = ExactMap::build(mesh);
+    for (float x : {0.9F, 0.999999F, 1.0F, 1.000001F, 1.05F})
+        EXPECT_NEAR(length(contact(map, {x, 0.2F, 0.1F}, 0.1F).normal - Vec3f{1, 0, 0}), 0, 1e-4F) << x;
+    const SweepHit in = sweep(map, {1.5F, 0.2F, 0.1F}, {0.5F, 0.2F, 0.1F});
+    EXPECT_TRUE(in.entering);
+    EXPECT_EQ(in.normal, (Vec3f{1, 0, 0}));
+    const SweepHit out = sweep(map, {0.5F, 0.2F, 0.1F}, {1.5F, 0.2F, 0.1F});
+    EXPECT_FALSE(out.entering);
+    EXPECT_EQ(out.normal, (Vec3f{1, 0, 0}));
+}
+
+TEST(ExactMapContact, HasTheNormalOfTheNearestFaceOnAPlateWithoutThickness) {
+    TriangleMesh plate{{{0, -1, -1}, {0, 1, -1}, {0, 1, 1}, {0, -1, 1}},
+                       {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {3, 2, 0}}};
+    const ExactMap map = ExactMap::build(plate);
+    EXPECT_EQ(std::fabs(contact(map, {1e-6F, 0.1F, 0.2F}, 0.1F).normal.x), 1);
+}
+
+TEST(ExactMapContact, LeadsOutOfAWorldThatIsStretchedOutOfShape) {
+    const ExactMap map = ExactMap::build(make_box({1, 1, 1}));
+    const Contact c = contact(map, {0.1F, 0.2F, -0.4F}, 0, {1, 1, 1e-7});
+    EXPECT_NEAR(c.point.z, -0.5F, 1e-4F);
+    EXPECT_NEAR(c.normal.z, -1, 1e-4F);
+}

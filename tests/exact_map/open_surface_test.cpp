@@ -85,3 +85,40 @@ TEST(ExactMapOfAnOpenSurface, IsCertainEverywhereWhenTheSurfaceIsClosedAfterAll)
     EXPECT_TRUE(classify(map, {0, 0, 0}).inside);
     EXPECT_TRUE(classify(map, {0, 0, 0}).certain);
 }
+
+TEST(ExactMapOfAnOpenSurface, IsRightOnRaysThroughTheBordersVerticesAndAlongItsEdges) {
+    // Diagonals and axes of the boxes run through vertices of the border; so do the middles of many cells.
+    for (const TriangleMesh& mesh :
+         {without_faces(make_box({1, 1, 1}), 0, 1), without_faces(make_box({1, 1, 1}), 1, 2),
+          without_faces(make_box({2, 2, 2}, 4), 0, 32)})
+        for (std::uint32_t divisions : {0U, 1U, 4U, 5U}) {
+            const ExactMap map = ExactMap::build(mesh, {.divisions = divisions});
+            for (int x = -9; x <= 9; ++x)
+                for (int y = -9; y <= 9; ++y)
+                    for (int z = -9; z <= 9; ++z) {
+                        const Vec3d p = Vec3d{double(x), double(y), double(z)} * 0.11;
+                        const double winding = winding_number(mesh, Vec3d(Vec3f(p)));
+                        if (std::fabs(std::fabs(winding) - 0.5) < 1e-4) continue;
+                        if (unsigned_distance(mesh, p) < 1e-4) continue;
+                        ASSERT_EQ(contains(map, Vec3f(p)), std::fabs(winding) > 0.5)
+                            << x << " " << y << " " << z << ", winding number " << winding;
+                    }
+        }
+}
+
+TEST(ExactMapOfAnOpenSurface, LooksBeyondTheBoundingSphereToo) {
+    TriangleMesh sheets; // forty squares in one place
+    for (std::uint32_t n = 0; n < 40; ++n) {
+        for (const Vec3f& v : {Vec3f{-1, -1, 0}, Vec3f{1, -1, 0}, Vec3f{1, 1, 0}, Vec3f{-1, 1, 0}})
+            sheets.vertices.push_back(v);
+        sheets.faces.push_back({4 * n, 4 * n + 1, 4 * n + 2});
+        sheets.faces.push_back({4 * n, 4 * n + 2, 4 * n + 3});
+    }
+    const ExactMap map = ExactMap::build(sheets);
+    for (float z : {-0.3F, -1.2F, -1.5F, -3.0F, -5.0F, -60.0F}) {
+        const double winding = winding_number(sheets, {0.01, 0.02, double{z}});
+        const Containment found = classify(map, {0.01F, 0.02F, z});
+        EXPECT_EQ(found.inside, std::fabs(winding) > 0.5) << z << " " << winding;
+        EXPECT_FALSE(found.certain);
+    }
+}

@@ -118,3 +118,14 @@ TEST(ExactMapSweep, MeetsNothingFromNowhere) {
     EXPECT_FALSE(sweep(map, {0, 0, 0}, {0, std::numeric_limits<float>::infinity(), 0}).found());
     EXPECT_FALSE(sweep(map, {0, 0, 0}, {0, 0, 0}).found());
 }
+
+TEST(ExactMapSweep, EndsWhereContainsSeesTheParticleHoweverFarItCameFrom) {
+    const ExactMap map = ExactMap::build(make_box({1, 1, 1}));
+    test::Random random(9);
+    for (int n = 0; n < 2000; ++n) {
+        const float far = std::pow(10.0F, static_cast<float>(n % 18));
+        const Vec3f from = test::in_sphere(random, far) + Vec3f{2 * far, 0, 0};
+        const Vec3f to = test::in_sphere(random, 0.7F);
+        if (contains(map, from) != contains(map, to)) ASSERT_TRUE(sweep(map, from, to).found());
+    }
+}

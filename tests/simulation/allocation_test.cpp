@@ -14,6 +14,9 @@ std::atomic<std::size_t> allocation_count{0};
 
 } // namespace
 
+// Under a sanitizer, which has an operator new of its own, GCC does not see that these two belong together.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
+
 void* operator new(std::size_t size) {
     ++allocation_count;
     if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;

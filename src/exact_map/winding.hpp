@@ -1,0 +1,24 @@
+#pragma once
+
+#include "directions/lattice.hpp"
+
+#include <echinus/exact_map.hpp>
+
+#include <cstdint>
+
+namespace echinus {
+
+/// How often the surface goes around a place.
+struct Winding {
+    std::int64_t number = 0; ///< of an open surface the generalised winding number, rounded
+    bool certain = true;     ///< false where an open surface's had to be computed
+};
+
+/// The winding number around a particle. This scalar code is the specification of all that is inside or
+/// outside.
+Winding winding_at(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local) noexcept;
+
+/// The same for a place on the lattice. @pre components within kLatticeExtent
+Winding winding_at(const ExactMapView& map, const LatticePoint& p) noexcept;
+
+} // namespace echinus
