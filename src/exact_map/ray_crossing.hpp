@@ -35,8 +35,9 @@ inline int crossing_on(RaySide side, const std::array<LatticePoint, 3>& face, co
 /// The same by a filter in double, which decides all but one face in a million, without a branch that a
 /// processor could mispredict.
 ///
-/// Corners are projected along p onto the plane across the longest component of p: a point v goes to
-/// v * p_k - p * v_k. These are integers below 2^39.1, exact in double; from there on rounding is bounded.
+/// Corners are sheared along p until p lies on its longest axis k: a point v goes to v - p * (v_k / p_k), and
+/// the ray's way past an edge is an area in the plane across k (as in Woop, Benthin and Wald, "Watertight
+/// Ray/Triangle Intersection", 2013). Rounding is bounded throughout.
 class CrossingFilter {
   public:
     explicit CrossingFilter(const LatticePoint& p) {

@@ -13,8 +13,10 @@ namespace echinus {
 
 namespace {
 
-/// As far as contains() takes particles to lie on the lattice.
-constexpr double kLimit = static_cast<double>(kLatticeExtent) + 0.5;
+/// A step beyond the lattice: an end that is cut off there is outside, and what contains() takes to lie on
+/// the lattice is not cut off.
+constexpr std::int64_t kLatticeLimit = kLatticeExtent + 1;
+constexpr auto kLimit = static_cast<double>(kLatticeLimit);
 
 /// Moves one end of a segment towards the other, to where the lattice begins: beyond there is no surface.
 /// Measured from the other end, so that one that lies on the lattice leaves the cut exact, however far away
@@ -33,7 +35,7 @@ bool cut_to_lattice(Vec3d& end, const Vec3d& other) {
 }
 
 LatticePoint clamped(const LatticePoint& p) {
-    const auto clamp = [](std::int64_t c) { return std::clamp(c, -kLatticeExtent, kLatticeExtent); };
+    const auto clamp = [](std::int64_t c) { return std::clamp(c, -kLatticeLimit, kLatticeLimit); };
     return {clamp(p.x), clamp(p.y), clamp(p.z)};
 }
 
