@@ -51,7 +51,7 @@ Interval interval_of(const CellCover& cover, std::uint32_t face) {
 
 /// Asked while faces are covered, before their number fills the memory.
 void require_manageable(std::size_t total) {
-    constexpr std::size_t kMost = std::size_t{1} << 29; // 16 bytes each, for the moment
+    constexpr std::size_t kMost = std::size_t{1} << 28; // 16 bytes each, for the moment
     if (total <= kMost) return;
     throw Error(ErrorCode::InvalidMesh, "the faces pass through cells more than " + std::to_string(kMost) +
                                             " times, which is more than a map can hold; take fewer cells, or "
