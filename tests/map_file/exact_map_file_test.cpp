@@ -232,7 +232,8 @@ TEST(ExactMapFile, NamesWhatContradictsTheMeaning) {
 TEST(ExactMapFile, HoldsWhatIsCertainOfAnOpenSurface) {
     const ExactMap map = open_box_parts().map();
     ASSERT_FALSE(map.view().border.empty());
-    const ExactMap loaded = load_bytes(serialise(map));
+    const std::vector<std::byte> bytes = serialise(map); // read in place
+    const ExactMap loaded = load_bytes(bytes);
     for (const Vec3f& point : telling_points(map.view())) {
         EXPECT_EQ(classify(loaded, point).inside, classify(map, point).inside);
         EXPECT_EQ(classify(loaded, point).certain, classify(map, point).certain);
