@@ -148,20 +148,20 @@ ExactMapView view_of(const OwnedArrays& arrays, const LatticeMesh& lattice, std:
 
 /// Finds the bands for the wished number of cells. Returns the divisions.
 std::uint32_t set_bands(const LatticeMesh& lattice, const ExactMapOptions& options, OwnedArrays& arrays) {
-    const auto find = [&](std::uint32_t divisions, std::span<const BorderEdge> border) {
-        find_bands(lattice, border, OctahedralCells(divisions), options.thread_count, arrays.bands);
+    const auto find = [&](std::uint32_t candidate) {
+        find_bands(lattice, arrays.border, OctahedralCells(candidate), options.thread_count, arrays.bands);
         arrays.references.assign(arrays.bands.references, lattice.faces.size());
     };
     std::uint32_t divisions = options.divisions;
     if (options.byte_budget != 0)
         divisions = divisions_within(
             options.byte_budget, lattice.faces.size(), !arrays.border.empty(), [&](std::uint32_t candidate) {
-                find(candidate, arrays.border);
+                find(candidate);
                 return view_of(arrays, lattice, candidate, options.rule).byte_count();
             });
     else if (divisions == 0)
         divisions = default_divisions(lattice.faces.size(), !arrays.border.empty());
-    find(divisions, arrays.border);
+    find(divisions);
     return divisions;
 }
 

@@ -63,14 +63,13 @@ class ContactSearch {
 
     /// Turns a normal of the faces to where it leads out of the solid: faces may be turned the other way.
     Vec3f outward(const Vec3d& point, const Vec3f& normal) const {
-        const auto inside_at = [&](double steps) {
-            const Vec3d side{steps * double{normal.x} / stretch_.x, steps * double{normal.y} / stretch_.y,
-                             steps * double{normal.z} / stretch_.z};
-            const Vec3d place = point + side * (1 / length(side) * std::fabs(steps));
-            return containment(map_, frame_, Vec3f(frame_.to_local(place))).inside;
-        };
         constexpr double kClear = 2 * kSnapping;
-        return inside_at(kClear) && !inside_at(-kClear) ? -normal : normal;
+        const Vec3d along{normal.x / stretch_.x, normal.y / stretch_.y, normal.z / stretch_.z};
+        const Vec3d clear = along * (kClear / length(along));
+        const auto inside_at = [&](const Vec3d& place) {
+            return is_inside(map_.rule, winding_at(map_, rounded(place)).number);
+        };
+        return inside_at(point + clear) && !inside_at(point - clear) ? -normal : normal;
     }
 
     const ExactMapView& map_;

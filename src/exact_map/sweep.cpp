@@ -6,8 +6,8 @@
 #include "exact_map/segment_crossing.hpp"
 #include "exact_map/winding.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace echinus {
 

@@ -18,7 +18,7 @@ struct Winding {
 /// outside.
 Winding winding_at(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local) noexcept;
 
-/// The same for a place on the lattice. @pre components within kLatticeExtent
+/// The same for a place of the lattice, or a few steps beyond it
 Winding winding_at(const ExactMapView& map, const LatticePoint& p) noexcept;
 
 } // namespace echinus

@@ -1,29 +1,13 @@
 #include "directions/crossings.hpp"
-
-#include <echinus/mesh.hpp>
+#include "support/mesh_assembly.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 using namespace echinus;
-
-namespace {
-
-TriangleMesh translated(TriangleMesh mesh, const Vec3f& offset) {
-    for (Vec3f& vertex : mesh.vertices) vertex += offset;
-    return mesh;
-}
-
-TriangleMesh joined(TriangleMesh a, const TriangleMesh& b) {
-    const auto offset = static_cast<std::uint32_t>(a.vertices.size());
-    a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
-    for (const Triangle& face : b.faces)
-        a.faces.push_back({face[0] + offset, face[1] + offset, face[2] + offset});
-    return a;
-}
-
-} // namespace
+using test::joined;
+using test::translated;
 
 TEST(Crossings, HaveTheParityOfTheCentreOnEveryRayOfAClosedMesh) {
     // Meshes and grids share planes of symmetry, so that many rays meet edges and vertices.
@@ -34,8 +18,9 @@ TEST(Crossings, HaveTheParityOfTheCentreOnEveryRayOfAClosedMesh) {
         {make_box({2, 2, 2}, 4), 1},
         {make_sphere(1, 40, 20), 1},
         {make_torus(1, 0.4, 60, 24), 0},
-        {joined(make_box({4, 4, 4}, 2), make_box({1, 1, 1}, 2)), 0},
-        {joined(translated(make_box({1, 1, 1}), {2, 0, 0}), translated(make_box({1, 1, 1}), {-2, 0, 0})), 0},
+        {joined({make_box({4, 4, 4}, 2), make_box({1, 1, 1}, 2)}), 0},
+        {joined({translated(make_box({1, 1, 1}), {2, 0, 0}), translated(make_box({1, 1, 1}), {-2, 0, 0})}),
+         0},
     };
     for (const auto& [mesh, parity] : cases)
         for (PoleAxis axis : {PoleAxis::X, PoleAxis::Y, PoleAxis::Z}) {

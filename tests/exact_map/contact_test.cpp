@@ -1,3 +1,4 @@
+#include "support/mesh_assembly.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -58,11 +59,8 @@ TEST(ExactMapContact, HasThePseudonormalOnTheSurface) {
 }
 
 TEST(ExactMapContact, KnowsANeedleThatIsThinnerThanTheLattice) {
-    TriangleMesh mesh = make_box({1, 1, 1}, 2);
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     const TriangleMesh needle = make_box({1, 1e-7, 1e-7});
-    for (const Vec3f& v : needle.vertices) mesh.vertices.push_back(v + Vec3f{1.5F, 0, 0});
-    for (const auto& [a, b, c] : needle.faces) mesh.faces.push_back({a + first, b + first, c + first});
+    const TriangleMesh mesh = test::joined({make_box({1, 1, 1}, 2), test::translated(needle, {1.5F, 0, 0})});
     const ExactMap map = ExactMap::build(mesh);
     EXPECT_EQ(map.statistics().dropped_faces, needle.faces.size());
     for (const Vec3f& p : {Vec3f{1.5F, 0.1F, 0}, Vec3f{2.2F, 0, 0.1F}, Vec3f{1.9F, -0.01F, 0.01F}}) {
@@ -73,9 +71,7 @@ TEST(ExactMapContact, KnowsANeedleThatIsThinnerThanTheLattice) {
 }
 
 TEST(ExactMapContact, HasANormalOutOfTheSolidWhicheverWayTheFacesAreTurned) {
-    TriangleMesh mesh = make_box({2, 2, 2});
-    for (Triangle& face : mesh.faces) std::swap(face[1], face[2]);
-    const ExactMap map = ExactMap::build(mesh);
+    const ExactMap map = ExactMap::build(test::turned_inside_out(make_box({2, 2, 2})));
     for (float x : {0.9F, 0.999999F, 1.0F, 1.000001F, 1.05F})
         EXPECT_NEAR(length(contact(map, {x, 0.2F, 0.1F}, 0.1F).normal - Vec3f{1, 0, 0}), 0, 1e-4F) << x;
     const SweepHit in = sweep(map, {1.5F, 0.2F, 0.1F}, {0.5F, 0.2F, 0.1F});

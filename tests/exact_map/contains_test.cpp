@@ -1,3 +1,4 @@
+#include "support/mesh_assembly.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -8,26 +9,11 @@
 #include <limits>
 
 using namespace echinus;
+using test::joined;
+using test::translated;
+using test::turned_inside_out;
 
 namespace {
-
-TriangleMesh translated(TriangleMesh mesh, const Vec3f& offset) {
-    for (Vec3f& vertex : mesh.vertices) vertex += offset;
-    return mesh;
-}
-
-TriangleMesh joined(TriangleMesh a, const TriangleMesh& b) {
-    const auto offset = static_cast<std::uint32_t>(a.vertices.size());
-    a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
-    for (const Triangle& face : b.faces)
-        a.faces.push_back({face[0] + offset, face[1] + offset, face[2] + offset});
-    return a;
-}
-
-TriangleMesh inverted(TriangleMesh mesh) {
-    for (Triangle& face : mesh.faces) std::swap(face[1], face[2]);
-    return mesh;
-}
 
 /// |x| + |y| + |z| = 2^19: its bounding radius makes the lattice's step 1, so that whole numbers are lattice
 /// points.
@@ -72,12 +58,12 @@ TEST(ExactMapContains, AgreesWithTheWindingNumber) {
     const TriangleMesh meshes[] = {
         make_torus(1, 0.4, 30, 12),
         make_box({2, 1, 0.5}, 3),
-        joined(sphere, small),                               // nested
-        joined(sphere, inverted(small)),                     // a cavity
-        joined(box, translated(box, {0.5F, 0.25F, 0.125F})), // overlapping
-        joined(translated(box, {3, 0, 0}), translated(box, {-3, 0, 0})),
-        inverted(sphere),
-        joined(box, box),
+        joined({sphere, small}),                               // nested
+        joined({sphere, turned_inside_out(small)}),            // a cavity
+        joined({box, translated(box, {0.5F, 0.25F, 0.125F})}), // overlapping
+        joined({translated(box, {3, 0, 0}), translated(box, {-3, 0, 0})}),
+        turned_inside_out(sphere),
+        joined({box, box}),
         make_box({1, 1e-4, 1e-4}),
     };
     test::Random random(1);
@@ -98,7 +84,7 @@ TEST(ExactMapContains, AgreesWithTheWindingNumber) {
 TEST(ExactMapContains, AnswersTheSameForEveryResolution) {
     // Points on the lattice of the mesh's own coordinates: many lie on faces, edges, vertices and walls of
     // cells.
-    const TriangleMesh mesh = joined(make_box({2, 2, 2}, 4), translated(make_box({2, 2, 2}, 2), {1, 1, 1}));
+    const TriangleMesh mesh = joined({make_box({2, 2, 2}, 4), translated(make_box({2, 2, 2}, 2), {1, 1, 1})});
     const ExactMap coarse = ExactMap::build(mesh, {.divisions = 1});
     for (std::uint32_t divisions : {2U, 5U, 32U}) {
         const ExactMap fine = ExactMap::build(mesh, {.divisions = divisions});
@@ -115,7 +101,7 @@ TEST(ExactMapContains, IsRightWhereTheCentreLiesOnTheSurface) {
     // Two boxes that touch at the centre of their bounding sphere: with a corner, along an edge, with a side.
     const TriangleMesh box = make_box({2, 2, 2});
     for (const Vec3f& offset : {Vec3f{1, 1, 1}, Vec3f{1, 1, 0}, Vec3f{1, 0, 0}}) {
-        const TriangleMesh mesh = joined(translated(box, offset), translated(box, -offset));
+        const TriangleMesh mesh = joined({translated(box, offset), translated(box, -offset)});
         const ExactMap map = ExactMap::build(mesh);
         test::Random random(2);
         for (int n = 0; n < 5000; ++n) {

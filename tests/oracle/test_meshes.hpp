@@ -1,8 +1,7 @@
 #pragma once
 
-#include <echinus/mesh.hpp>
+#include "support/mesh_assembly.hpp"
 
-#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -14,30 +13,10 @@ struct NamedMesh {
     TriangleMesh mesh;
 };
 
-inline TriangleMesh translated(TriangleMesh mesh, const Vec3f& offset) {
-    for (Vec3f& vertex : mesh.vertices) vertex += offset;
-    return mesh;
-}
-
-inline TriangleMesh joined(std::initializer_list<TriangleMesh> parts) {
-    TriangleMesh whole;
-    for (const TriangleMesh& part : parts) {
-        const auto offset = static_cast<std::uint32_t>(whole.vertices.size());
-        whole.vertices.insert(whole.vertices.end(), part.vertices.begin(), part.vertices.end());
-        for (const auto& [a, b, c] : part.faces) whole.faces.push_back({a + offset, b + offset, c + offset});
-    }
-    return whole;
-}
-
 /// Turned by an angle that fits no grid.
 inline TriangleMesh turned(TriangleMesh mesh) {
     const Rotation rotation = Rotation::about({1, 2, 3}, 0.7);
     for (Vec3f& vertex : mesh.vertices) vertex = Vec3f(rotation.apply(Vec3d(vertex)));
-    return mesh;
-}
-
-inline TriangleMesh turned_inside_out(TriangleMesh mesh) {
-    for (Triangle& face : mesh.faces) std::swap(face[1], face[2]);
     return mesh;
 }
 
