@@ -9,6 +9,7 @@ get_property(echinus_libraries GLOBAL PROPERTY ECHINUS_LIBRARIES)
 # what it links privately, a shared one does not.
 function(echinus_dependencies target out)
   set(package_of_TBB::tbb "TBB")
+  set(package_of_hwy::hwy "hwy")
   set(package_of_assimp::assimp "assimp")
   set(package_of_embree "embree 3")
   set(package_of_PNG::PNG "PNG")

@@ -11,6 +11,7 @@
 #include <echinus/error.hpp>
 #include <echinus/exact_map.hpp>
 #include <echinus/geometry.hpp>
+#include <echinus/instruction_set.hpp>
 #include <echinus/map_file.hpp>
 #include <echinus/mesh.hpp>
 #include <echinus/simulation.hpp>

@@ -1,0 +1,29 @@
+#include "support/instruction_sets.hpp"
+
+#include <echinus/error.hpp>
+
+#include <gtest/gtest.h>
+
+using namespace echinus;
+
+TEST(InstructionSet, EndsTheListWithTheReference) {
+    ASSERT_FALSE(available_instruction_sets().empty());
+    EXPECT_EQ(available_instruction_sets().back(), "scalar");
+}
+
+TEST(InstructionSet, IsTheOneThatWasAskedFor) {
+    test::under_each_instruction_set([](std::string_view name) { EXPECT_EQ(instruction_set(), name); });
+}
+
+TEST(InstructionSet, RefusesAnUnknownNameAndTellsWhatThereIs) {
+    const std::string_view before = instruction_set();
+    try {
+        use_instruction_set("abacus");
+        FAIL() << "expected an error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::InvalidOptions);
+        EXPECT_NE(std::string(error.what()).find("'abacus'"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("scalar"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(instruction_set(), before);
+}
