@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -110,19 +111,6 @@ struct SimulationProfile {
     std::uint64_t lost_count = 0;
 };
 
-/// What a simulation remembers of one particle and one collider with an exact map; for its own use.
-struct SurfaceMemory {
-    Vec3f free_local; ///< the last place proven free, in the map's frame: exactly what was tested
-    /// Where the nearest point was asked for, in the collider's frame with its scale applied.
-    Vec3f asked_at;
-    float clearance = -1; ///< no surface within this distance of asked_at; negative before the first answer
-    Vec3f point, normal;  ///< the contact plane in the same frame; normal 0 when nothing was near
-    bool was_free = false;
-    bool lost = false; ///< in this frame
-};
-
-class ExactCollision; // src/simulation
-
 /// A deformable among colliders. The same input gives the same positions bit for bit, on every run and
 /// machine; it runs on one thread. Copies are independent.
 class Simulation {
@@ -132,6 +120,11 @@ class Simulation {
     /// together, a stick names a particle that does not exist, a number is not finite, or a collider's scale
     /// is 0
     Simulation(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
+    ~Simulation();
+    Simulation(const Simulation& other);
+    Simulation& operator=(const Simulation& other);
+    Simulation(Simulation&& other) noexcept;
+    Simulation& operator=(Simulation&& other) noexcept;
 
     /// One frame: Verlet integration with drag, colliders move on along their velocities, then
     /// iteration_count times all sticks and then collision of all particles with all colliders; at last the
@@ -148,17 +141,17 @@ class Simulation {
     /// @throws Error Diverged, naming the frame; afterwards only reading is allowed
     void step();
 
-    const Deformable& deformable() const { return deformable_; }
-    std::span<const Vec3f> positions() const { return deformable_.positions; }
-    const std::vector<Collider>& colliders() const { return colliders_; }
-    const SimulationOptions& options() const { return options_; }
+    const Deformable& deformable() const;
+    std::span<const Vec3f> positions() const { return deformable().positions; }
+    const std::vector<Collider>& colliders() const;
+    const SimulationOptions& options() const;
     /// Frames computed so far.
-    std::uint32_t frame() const { return frame_; }
+    std::uint32_t frame() const;
     /// Speed of the fastest particle in the last frame, units per second; infinite before the first.
-    double largest_speed() const { return largest_speed_; }
+    double largest_speed() const;
     /// Has the rest condition held for as many frames as it asks?
-    bool at_rest() const { return quiet_frame_count_ >= options_.rest.frame_count; }
-    const SimulationProfile& profile() const { return profile_; }
+    bool at_rest() const;
+    const SimulationProfile& profile() const;
     /// XXH64 of the bits of all positions and previous positions.
     std::uint64_t state_hash() const;
 
@@ -167,45 +160,8 @@ class Simulation {
     void set_velocities(std::size_t collider_index, const Vec3d& linear, const Vec3d& angular);
 
   private:
-    /// A stick with what relaxation needs: how the two particles share the correction, by their masses and
-    /// the stiffness.
-    struct WeightedStick {
-        std::uint32_t a, b;
-        float rest_length;
-        float share_a, share_b;
-    };
-
-    static std::vector<WeightedStick> weigh(const Deformable& deformable, const SimulationOptions& options);
-    void integrate();
-    void relax_sticks();
-    void collide(std::size_t collider_index);
-    void collide_radially(const Collider& collider, const RigidTransform& previous_pose);
-    void collide_exactly(std::size_t collider_index);
-    ExactCollision collision_with(std::size_t collider_index) const;
-    void remember_free_places(std::size_t collider_index);
-    void keep_free();
-    void lead_to_free_place(std::uint32_t particle);
-    bool is_free(std::uint32_t particle) const;
-    void count_lost(std::uint32_t particle);
-    void commit_free_places();
-    void judge_frame();
-    void judge_rest();
-
-    Deformable deformable_;
-    std::vector<Collider> colliders_;
-    std::vector<RigidTransform> previous_poses_;       // of the colliders, one frame ago
-    std::vector<std::vector<SurfaceMemory>> memories_; // [collider][particle]; none for a distance map
-    std::vector<std::size_t> exact_;                   // colliders with an exact map
-    std::vector<std::uint32_t> unsettled_;             // particles, in keep_free()
-    SimulationOptions options_;
-    std::vector<WeightedStick> weighted_sticks_;
-    Vec3d start_centre_;
-    double bound_ = 0;
-    std::uint32_t frame_ = 0;
-    std::vector<Vec3f> resting_places_; // where each particle was, quiet_frame_count_ frames ago
-    std::uint32_t quiet_frame_count_ = 0;
-    double largest_speed_;
-    SimulationProfile profile_;
+    class Solver; // src/simulation/solver.hpp
+    std::unique_ptr<Solver> solver_;
 };
 
 } // namespace echinus

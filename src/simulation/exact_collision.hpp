@@ -2,6 +2,7 @@
 
 #include "collider/frame_change.hpp"
 #include "simulation/material_motion.hpp"
+#include "simulation/surface_memory.hpp"
 
 #include <echinus/simulation.hpp>
 

@@ -2,6 +2,7 @@
 #include "simulation/contact_response.hpp"
 #include "simulation/exact_collision.hpp"
 #include "simulation/material_motion.hpp"
+#include "simulation/solver.hpp"
 #include "simulation/stopwatch.hpp"
 #include "simulation/validation.hpp"
 
@@ -41,91 +42,75 @@ constexpr std::size_t kPieceSize = 256;
 
 } // namespace
 
-Simulation::Simulation(Deformable deformable, std::vector<Collider> colliders,
-                       const SimulationOptions& options)
-    : deformable_(std::move(deformable)), colliders_(std::move(colliders)), options_(options),
-      largest_speed_(std::numeric_limits<double>::infinity()) {
-    require_valid(options_);
-    require_valid(deformable_);
-    require_valid(colliders_);
-    for (const Collider& collider : colliders_) previous_poses_.push_back(collider.pose);
-    memories_.resize(colliders_.size());
-    for (std::size_t i = 0; i < colliders_.size(); ++i)
-        if (is_exact(colliders_[i])) remember_free_places(i);
-    unsettled_.reserve(exact_.size() * deformable_.particle_count());
-    weighted_sticks_ = weigh(deformable_, options_);
-    resting_places_ = deformable_.positions;
-    const Sphere start = box_sphere(deformable_.positions);
+Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colliders_in,
+                           const SimulationOptions& options_in)
+    : deformable((require_valid(options_in), require_valid(deformable_in), require_valid(colliders_in),
+                  std::move(deformable_in))),
+      colliders(std::move(colliders_in)), options(options_in),
+      largest_speed(std::numeric_limits<double>::infinity()), particles_(deformable),
+      sticks_(stiff_sticks(deformable, options)) {
+    for (const Collider& collider : colliders) previous_poses_.push_back(collider.pose);
+    memories_.resize(colliders.size());
+    for (std::size_t i = 0; i < colliders.size(); ++i)
+        if (is_exact(colliders[i])) remember_free_places(i);
+    unsettled_.reserve(exact_.size() * deformable.particle_count());
+    resting_places_ = deformable.positions;
+    const Sphere start = box_sphere(deformable.positions);
     start_centre_ = start.centre;
     // A single particle has no extent; its bound is then in the caller's unit.
-    bound_ = options_.bound > 0 ? options_.bound : 1e4 * (start.radius > 0 ? 2 * start.radius : 1);
+    bound_ = options.bound > 0 ? options.bound : 1e4 * (start.radius > 0 ? 2 * start.radius : 1);
 }
 
-std::vector<Simulation::WeightedStick> Simulation::weigh(const Deformable& deformable,
-                                                         const SimulationOptions& options) {
-    std::vector<WeightedStick> weighted;
-    weighted.reserve(deformable.sticks.size());
-    for (const Stick& stick : deformable.sticks) {
-        const double mass_a = deformable.inverse_masses[stick.a];
-        const double mass_b = deformable.inverse_masses[stick.b];
-        if (mass_a + mass_b == 0) continue; // both pinned
-        const double stiffness = options.stiffness[static_cast<std::size_t>(stick.kind)];
-        weighted.push_back({stick.a, stick.b, stick.rest_length,
-                            static_cast<float>(stiffness * mass_a / (mass_a + mass_b)),
-                            static_cast<float>(stiffness * mass_b / (mass_a + mass_b))});
-    }
-    return weighted;
-}
-
-void Simulation::step() {
+void Simulation::Solver::step() {
     integrate();
-    for (std::uint32_t iteration = 0; iteration < options_.iteration_count; ++iteration) {
+    move_colliders();
+    for (std::uint32_t iteration = 0; iteration < options.iteration_count; ++iteration) {
         relax_sticks();
-        for (std::size_t i = 0; i < colliders_.size(); ++i) collide(i);
+        for (std::size_t i = 0; i < colliders.size(); ++i) collide(i);
     }
     keep_free();
-    ++frame_;
+    publish();
+    ++frame;
     judge_frame();
 }
 
-void Simulation::set_velocities(std::size_t collider_index, const Vec3d& linear, const Vec3d& angular) {
-    colliders_[collider_index].linear_velocity = linear;
-    colliders_[collider_index].angular_velocity = angular;
-}
+namespace {
 
-/// x' = x + (1 - drag) (x - x_previous) + a dt^2 (Jakobsen 2001, section 2).
-void Simulation::integrate() {
-    const Stopwatch stopwatch(profile_.integration_seconds);
-    const double step = options_.time_step;
-    const Vec3f fall(options_.gravity * (step * step));
-    const auto keep = static_cast<float>(1 - options_.drag);
-    for (std::size_t i = 0; i < deformable_.particle_count(); ++i) {
-        if (deformable_.inverse_masses[i] == 0) continue;
-        Vec3f& position = deformable_.positions[i];
-        Vec3f& previous = deformable_.previous_positions[i];
-        const Vec3f next = position + (position - previous) * keep + fall;
-        previous = position;
-        position = next;
-    }
-    for (std::size_t i = 0; i < colliders_.size(); ++i) {
-        previous_poses_[i] = colliders_[i].pose;
-        colliders_[i].pose = pose_after(colliders_[i], step);
+/// x' = x + (1 - drag) (x - x_previous) + a dt^2 (Jakobsen 2001, section 2), of one coordinate.
+void integrate(std::vector<float>& positions, std::vector<float>& previous,
+               const std::vector<float>& inverse_masses, float keep, float fall) {
+    for (std::size_t i = 0; i < inverse_masses.size(); ++i) {
+        const float position = positions[i];
+        const float next = position + (position - previous[i]) * keep + fall;
+        const bool pinned = inverse_masses[i] == 0;
+        previous[i] = pinned ? previous[i] : position;
+        positions[i] = pinned ? position : next;
     }
 }
 
-void Simulation::relax_sticks() {
-    const Stopwatch stopwatch(profile_.constraint_seconds);
-    Vec3f* const positions = deformable_.positions.data();
-    for (const WeightedStick& stick : weighted_sticks_) {
-        Vec3f& a = positions[stick.a];
-        Vec3f& b = positions[stick.b];
-        const Vec3f across = b - a;
-        // The smallest float keeps particles at one place from dividing by zero and is lost in all else.
-        const float distance = std::sqrt(dot(across, across) + std::numeric_limits<float>::min());
-        const Vec3f correction = across * (1 - stick.rest_length / distance);
-        a += correction * stick.share_a;
-        b -= correction * stick.share_b;
+} // namespace
+
+void Simulation::Solver::integrate() {
+    const Stopwatch stopwatch(profile.integration_seconds);
+    const Vec3f fall(options.gravity * (options.time_step * options.time_step));
+    const auto keep = static_cast<float>(1 - options.drag);
+    PointArrays& now = particles_.positions;
+    PointArrays& before = particles_.previous;
+    echinus::integrate(now.x, before.x, particles_.inverse_masses, keep, fall.x);
+    echinus::integrate(now.y, before.y, particles_.inverse_masses, keep, fall.y);
+    echinus::integrate(now.z, before.z, particles_.inverse_masses, keep, fall.z);
+}
+
+void Simulation::Solver::move_colliders() {
+    for (std::size_t i = 0; i < colliders.size(); ++i) {
+        previous_poses_[i] = colliders[i].pose;
+        colliders[i].pose = pose_after(colliders[i], options.time_step);
     }
+}
+
+void Simulation::Solver::relax_sticks() {
+    const Stopwatch stopwatch(profile.constraint_seconds);
+    relax(sticks_, particles_.positions);
 }
 
 namespace {
@@ -149,73 +134,83 @@ Vec3f answer(const Collider& collider, const Contact& contact, const Vec3f& posi
 
 } // namespace
 
-void Simulation::collide(std::size_t collider_index) {
-    const Stopwatch stopwatch(profile_.collision_seconds);
-    profile_.query_count += deformable_.particle_count();
-    if (is_exact(colliders_[collider_index]))
+void Simulation::Solver::collide(std::size_t collider_index) {
+    const Stopwatch stopwatch(profile.collision_seconds);
+    profile.query_count += deformable.particle_count();
+    if (is_exact(colliders[collider_index]))
         collide_exactly(collider_index);
     else
-        collide_radially(colliders_[collider_index], previous_poses_[collider_index]);
+        collide_radially(colliders[collider_index], previous_poses_[collider_index]);
 }
 
-void Simulation::collide_radially(const Collider& collider, const RigidTransform& previous_pose) {
-    const ResponseRules rules{static_cast<float>(options_.thickness), static_cast<float>(options_.friction)};
+void Simulation::Solver::collide_radially(const Collider& collider, const RigidTransform& previous_pose) {
+    const ResponseRules rules{static_cast<float>(options.thickness), static_cast<float>(options.friction)};
     const MaterialMotion material(previous_pose, collider.pose);
-    const std::size_t particle_count = deformable_.particle_count();
+    const std::size_t particle_count = deformable.particle_count();
     std::array<Contact, kPieceSize> contacts;
+    std::array<Vec3f, kPieceSize> places;
     for (std::size_t begin = 0; begin < particle_count; begin += kPieceSize) {
         const std::size_t end = std::min(begin + kPieceSize, particle_count);
-        contacts_batch(collider, StridedSpan<const Vec3f>(&deformable_.positions[begin], end - begin),
+        for (std::size_t i = begin; i < end; ++i) places[i - begin] = particles_.positions[i];
+        contacts_batch(collider, std::span<const Vec3f>(places).first(end - begin),
                        kReachInThicknesses * rules.thickness, std::span(contacts).first(end - begin));
         for (std::size_t i = begin; i < end; ++i) {
             const Contact& contact = contacts[i - begin];
-            Vec3f& position = deformable_.positions[i];
+            const Vec3f& position = places[i - begin];
             if (!needs_response(position, contact, rules.thickness)) continue;
-            if (deformable_.inverse_masses[i] == 0) continue;
-            const Vec3f start = deformable_.previous_positions[i] + material.at(position);
-            position = answer(collider, contact, position, start, rules);
-            ++profile_.contact_count;
+            if (particles_.pinned(i)) continue;
+            const Vec3f start = particles_.previous[i] + material.at(position);
+            particles_.positions.set(i, answer(collider, contact, position, start, rules));
+            ++profile.contact_count;
         }
     }
-    profile_.map_query_count += particle_count;
+    profile.map_query_count += particle_count;
 }
 
-void Simulation::collide_exactly(std::size_t collider_index) {
+void Simulation::Solver::collide_exactly(std::size_t collider_index) {
     const ExactCollision collision = collision_with(collider_index);
-    for (std::size_t i = 0; i < deformable_.particle_count(); ++i) {
-        if (deformable_.inverse_masses[i] == 0) continue;
-        const bool pushed = collision.relax(memories_[collider_index][i], deformable_.positions[i],
-                                            deformable_.previous_positions[i], profile_);
-        profile_.contact_count += pushed ? 1 : 0;
+    for (std::size_t i = 0; i < deformable.particle_count(); ++i) {
+        if (particles_.pinned(i)) continue;
+        Vec3f position = particles_.positions[i], previous = particles_.previous[i];
+        if (!collision.relax(memories_[collider_index][i], position, previous, profile)) continue;
+        particles_.positions.set(i, position);
+        particles_.previous.set(i, previous);
+        ++profile.contact_count;
     }
 }
 
-ExactCollision Simulation::collision_with(std::size_t collider_index) const {
-    return {colliders_[collider_index], previous_poses_[collider_index], options_};
+ExactCollision Simulation::Solver::collision_with(std::size_t collider_index) const {
+    return {colliders[collider_index], previous_poses_[collider_index], options};
 }
 
-void Simulation::judge_frame() {
-    const Stopwatch stopwatch(profile_.integration_seconds);
+void Simulation::Solver::publish() {
+    const Stopwatch stopwatch(profile.integration_seconds);
+    particles_.positions.store(deformable.positions);
+    particles_.previous.store(deformable.previous_positions);
+}
+
+void Simulation::Solver::judge_frame() {
+    const Stopwatch stopwatch(profile.integration_seconds);
     const double bound_sq = bound_ * bound_;
     float largest_motion_sq = 0;
-    for (std::size_t i = 0; i < deformable_.particle_count(); ++i) {
-        const Vec3f& position = deformable_.positions[i];
+    for (std::size_t i = 0; i < deformable.particle_count(); ++i) {
+        const Vec3f& position = deformable.positions[i];
         const Vec3d from_start = Vec3d(position) - start_centre_;
         // Written so that NaN fails it.
         if (!(dot(from_start, from_start) <= bound_sq))
-            throw Error(ErrorCode::Diverged, "the simulation diverged in frame " + std::to_string(frame_) +
+            throw Error(ErrorCode::Diverged, "the simulation diverged in frame " + std::to_string(frame) +
                                                  ": particle " + std::to_string(i) +
                                                  " left all bounds; try a smaller time step or stiffness");
-        const Vec3f motion = position - deformable_.previous_positions[i];
+        const Vec3f motion = position - deformable.previous_positions[i];
         largest_motion_sq = std::max(largest_motion_sq, dot(motion, motion));
     }
-    largest_speed_ = std::sqrt(double{largest_motion_sq}) / options_.time_step;
+    largest_speed = std::sqrt(double{largest_motion_sq}) / options.time_step;
     judge_rest();
 }
 
-void Simulation::judge_rest() {
-    const auto distance_sq = static_cast<float>(options_.rest.distance * options_.rest.distance);
-    const std::vector<Vec3f>& positions = deformable_.positions;
+void Simulation::Solver::judge_rest() {
+    const auto distance_sq = static_cast<float>(options.rest.distance * options.rest.distance);
+    const std::vector<Vec3f>& positions = deformable.positions;
     bool all_stay = true;
     for (std::size_t i = 0; i < positions.size() && all_stay; ++i) {
         const Vec3f away = positions[i] - resting_places_[i];
@@ -225,11 +220,54 @@ void Simulation::judge_rest() {
     if (!all_stay) resting_places_ = positions;
 }
 
+Simulation::Simulation(Deformable deformable, std::vector<Collider> colliders,
+                       const SimulationOptions& options)
+    : solver_(std::make_unique<Solver>(std::move(deformable), std::move(colliders), options)) {}
+Simulation::~Simulation() = default;
+Simulation::Simulation(const Simulation& other) : solver_(std::make_unique<Solver>(*other.solver_)) {}
+Simulation& Simulation::operator=(const Simulation& other) {
+    if (this != &other) solver_ = std::make_unique<Solver>(*other.solver_);
+    return *this;
+}
+Simulation::Simulation(Simulation&& other) noexcept = default;
+Simulation& Simulation::operator=(Simulation&& other) noexcept = default;
+
+void Simulation::step() {
+    solver_->step();
+}
+
+const Deformable& Simulation::deformable() const {
+    return solver_->deformable;
+}
+const std::vector<Collider>& Simulation::colliders() const {
+    return solver_->colliders;
+}
+const SimulationOptions& Simulation::options() const {
+    return solver_->options;
+}
+std::uint32_t Simulation::frame() const {
+    return solver_->frame;
+}
+double Simulation::largest_speed() const {
+    return solver_->largest_speed;
+}
+bool Simulation::at_rest() const {
+    return solver_->at_rest();
+}
+const SimulationProfile& Simulation::profile() const {
+    return solver_->profile;
+}
+
+void Simulation::set_velocities(std::size_t collider_index, const Vec3d& linear, const Vec3d& angular) {
+    solver_->colliders[collider_index].linear_velocity = linear;
+    solver_->colliders[collider_index].angular_velocity = angular;
+}
+
 std::uint64_t Simulation::state_hash() const {
     const auto hash_of = [](const std::vector<Vec3f>& points, std::uint64_t seed) {
         return XXH64(points.data(), points.size() * sizeof(Vec3f), seed);
     };
-    return hash_of(deformable_.previous_positions, hash_of(deformable_.positions, 0));
+    return hash_of(deformable().previous_positions, hash_of(deformable().positions, 0));
 }
 
 } // namespace echinus

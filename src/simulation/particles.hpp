@@ -1,0 +1,51 @@
+#pragma once
+
+#include <echinus/geometry.hpp>
+#include <echinus/simulation.hpp>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace echinus {
+
+/// Points as a structure of arrays: what one instruction does to many of them lies side by side.
+struct PointArrays {
+    /// Floats after the last one, which a kernel may read and write back unchanged.
+    static constexpr std::size_t kPadding = 64;
+
+    std::vector<float> x, y, z; ///< [count + kPadding]
+
+    void resize(std::size_t count) {
+        for (std::vector<float>* c : {&x, &y, &z}) c->resize(count + kPadding);
+    }
+    Vec3f operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+    void set(std::size_t i, const Vec3f& p) {
+        x[i] = p.x;
+        y[i] = p.y;
+        z[i] = p.z;
+    }
+    void load(std::span<const Vec3f> points) {
+        resize(points.size());
+        for (std::size_t i = 0; i < points.size(); ++i) set(i, points[i]);
+    }
+    void store(std::span<Vec3f> points) const {
+        for (std::size_t i = 0; i < points.size(); ++i) points[i] = (*this)[i];
+    }
+};
+
+/// The particles of a deformable while a frame is computed.
+struct Particles {
+    PointArrays positions;
+    PointArrays previous; ///< one substep ago
+    std::vector<float> inverse_masses;
+
+    explicit Particles(const Deformable& deformable) : inverse_masses(deformable.inverse_masses) {
+        positions.load(deformable.positions);
+        previous.load(deformable.previous_positions);
+    }
+    std::size_t count() const { return inverse_masses.size(); }
+    bool pinned(std::size_t i) const { return inverse_masses[i] == 0; }
+};
+
+} // namespace echinus

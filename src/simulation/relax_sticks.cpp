@@ -1,0 +1,205 @@
+// The relaxation of sticks: the plain loop, which is the specification, and a kernel that takes as many
+// sticks at once as the instruction set has lanes.
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simulation/relax_sticks.cpp"
+#include <hwy/foreach_target.h>
+
+// After foreach_target.h, which includes this file once for each instruction set.
+#include "simd/dispatch.hpp"
+#include "simulation/sticks.hpp"
+
+#include <hwy/highway.h>
+
+#include <cmath>
+#include <limits>
+
+HWY_BEFORE_NAMESPACE();
+namespace echinus {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Tag = hn::ScalableTag<float>;
+using Lanes = hn::Vec<Tag>;
+using Mask = hn::Mask<Tag>;
+
+struct LanePoints {
+    Lanes x, y, z;
+};
+
+/// What a run's sticks have in common.
+class LaneStick {
+  public:
+    explicit LaneStick(const StickRun& run)
+        : share_a_(hn::Set(Tag(), run.share_a)), share_b_(hn::Set(Tag(), run.share_b)) {}
+
+    /// Operation by operation what relax_one() does.
+    void operator()(LanePoints& a, LanePoints& b, const float* rest_lengths) const {
+        const Tag d;
+        const Lanes x = b.x - a.x, y = b.y - a.y, z = b.z - a.z;
+        const Lanes least = hn::Set(d, std::numeric_limits<float>::min());
+        const Lanes distance = hn::Sqrt(x * x + y * y + z * z + least);
+        const Lanes factor = hn::Set(d, 1.0F) - hn::LoadU(d, rest_lengths) / distance;
+        const LanePoints correction{x * factor, y * factor, z * factor};
+        a.x = a.x + correction.x * share_a_;
+        a.y = a.y + correction.y * share_a_;
+        a.z = a.z + correction.z * share_a_;
+        b.x = b.x - correction.x * share_b_;
+        b.y = b.y - correction.y * share_b_;
+        b.z = b.z - correction.z * share_b_;
+    }
+
+  private:
+    Lanes share_a_, share_b_;
+};
+
+/// Particles that follow each other.
+struct Row {
+    static LanePoints load(const PointArrays& p, std::size_t i) {
+        const Tag d;
+        return {hn::LoadU(d, &p.x[i]), hn::LoadU(d, &p.y[i]), hn::LoadU(d, &p.z[i])};
+    }
+    static void store(const LanePoints& points, PointArrays& p, std::size_t i) {
+        const Tag d;
+        hn::StoreU(points.x, d, &p.x[i]);
+        hn::StoreU(points.y, d, &p.y[i]);
+        hn::StoreU(points.z, d, &p.z[i]);
+    }
+    static void store(const LanePoints& points, const Mask& mask, PointArrays& p, std::size_t i) {
+        const Tag d;
+        hn::BlendedStore(points.x, mask, d, &p.x[i]);
+        hn::BlendedStore(points.y, mask, d, &p.y[i]);
+        hn::BlendedStore(points.z, mask, d, &p.z[i]);
+    }
+};
+
+void relax_side_by_side(const StickRun& run, const float* rest_lengths, PointArrays& p) {
+    const Tag d;
+    const LaneStick stick(run);
+    const std::size_t lanes = hn::Lanes(d);
+    std::size_t i = 0;
+    for (; i + lanes <= run.count; i += lanes) {
+        LanePoints a = Row::load(p, run.a + i), b = Row::load(p, run.b + i);
+        stick(a, b, rest_lengths + i);
+        Row::store(a, p, run.a + i);
+        Row::store(b, p, run.b + i);
+    }
+    if (i == run.count) return;
+    const Mask rest = hn::FirstN(d, run.count - i);
+    LanePoints a = Row::load(p, run.a + i), b = Row::load(p, run.b + i);
+    stick(a, b, rest_lengths + i);
+    Row::store(a, rest, p, run.a + i);
+    Row::store(b, rest, p, run.b + i);
+}
+
+/// Elements of kWidth floats each, in turn those of ends a and ends b.
+template <typename Element>
+struct Alternating {
+    using ElementTag = hn::Repartition<Element, Tag>;
+
+    static void load(const float* from, Lanes& a, Lanes& b) {
+        const ElementTag d;
+        hn::Vec<ElementTag> elements_a, elements_b;
+        hn::LoadInterleaved2(d, reinterpret_cast<const Element*>(from), elements_a, elements_b);
+        a = hn::BitCast(Tag(), elements_a);
+        b = hn::BitCast(Tag(), elements_b);
+    }
+    static void store(const Lanes& a, const Lanes& b, float* to) {
+        const ElementTag d;
+        hn::StoreInterleaved2(hn::BitCast(d, a), hn::BitCast(d, b), d, reinterpret_cast<Element*>(to));
+    }
+    static void load(const PointArrays& p, std::size_t i, LanePoints& a, LanePoints& b) {
+        load(&p.x[i], a.x, b.x);
+        load(&p.y[i], a.y, b.y);
+        load(&p.z[i], a.z, b.z);
+    }
+    static void store(const LanePoints& a, const LanePoints& b, PointArrays& p, std::size_t i) {
+        store(a.x, b.x, &p.x[i]);
+        store(a.y, b.y, &p.y[i]);
+        store(a.z, b.z, &p.z[i]);
+    }
+};
+
+LanePoints chosen(const Mask& mask, const LanePoints& yes, const LanePoints& no) {
+    return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y),
+            hn::IfThenElse(mask, yes.z, no.z)};
+}
+
+template <typename Element>
+void relax_alternating(const StickRun& run, const float* rest_lengths, PointArrays& p) {
+    using Ends = Alternating<Element>;
+    const Tag d;
+    const LaneStick stick(run);
+    const std::size_t lanes = hn::Lanes(d);
+    for (std::size_t i = 0; i < run.count; i += lanes) {
+        LanePoints a, b;
+        Ends::load(p, run.a + 2 * i, a, b);
+        LanePoints new_a = a, new_b = b;
+        stick(new_a, new_b, rest_lengths + i);
+        if (i + lanes > run.count) {
+            const Mask rest = hn::FirstN(d, run.count - i);
+            new_a = chosen(rest, new_a, a);
+            new_b = chosen(rest, new_b, b);
+        }
+        Ends::store(new_a, new_b, p, run.a + 2 * i);
+    }
+}
+
+void relax_run(const StickRun& run, const StickArrays& sticks, PointArrays& positions) {
+    const float* rest_lengths = &sticks.rest_lengths[run.first];
+    switch (run.shape) {
+    case RunShape::SideBySide:
+        return relax_side_by_side(run, rest_lengths, positions);
+    case RunShape::Neighbours:
+        return relax_alternating<float>(run, rest_lengths, positions);
+    case RunShape::EverySecond:
+#if HWY_TARGET != HWY_SCALAR // compiled by Highway, never chosen by dispatch.hpp, and too narrow for a pair
+        return relax_alternating<double>(run, rest_lengths, positions);
+#endif
+    case RunShape::Scattered:
+        break;
+    }
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace echinus
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace echinus {
+
+namespace {
+
+HWY_EXPORT(relax_run);
+
+void relax_one(const StickArrays& sticks, std::size_t i, PointArrays& positions) {
+    const Vec3f a = positions[sticks.a[i]];
+    const Vec3f b = positions[sticks.b[i]];
+    const Vec3f across = b - a;
+    // The smallest float keeps particles at one place from dividing by zero and is lost in all else.
+    const float distance = std::sqrt(dot(across, across) + std::numeric_limits<float>::min());
+    const Vec3f correction = across * (1 - sticks.rest_lengths[i] / distance);
+    positions.set(sticks.a[i], a + correction * sticks.share_a[i]);
+    positions.set(sticks.b[i], b - correction * sticks.share_b[i]);
+}
+
+void relax_one_by_one(const StickArrays& sticks, std::size_t first, std::size_t count,
+                      PointArrays& positions) {
+    for (std::size_t i = first; i < first + count; ++i) relax_one(sticks, i, positions);
+}
+
+} // namespace
+
+void relax(const StickArrays& sticks, PointArrays& positions) noexcept {
+    if (!use_kernels()) return relax_one_by_one(sticks, 0, sticks.count(), positions);
+    for (const StickRun& run : sticks.runs) {
+        if (run.shape == RunShape::Scattered)
+            relax_one_by_one(sticks, run.first, run.count, positions);
+        else
+            ECHINUS_DISPATCH(relax_run)(run, sticks, positions);
+    }
+}
+
+} // namespace echinus
+#endif // HWY_ONCE

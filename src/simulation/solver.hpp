@@ -1,0 +1,63 @@
+#pragma once
+
+#include "simulation/particles.hpp"
+#include "simulation/sticks.hpp"
+#include "simulation/surface_memory.hpp"
+
+#include <echinus/simulation.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace echinus {
+
+class ExactCollision;
+
+/// What a simulation is made of. `deformable` is what the user sees: it changes when a frame is complete.
+class Simulation::Solver {
+  public:
+    Solver(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
+
+    void step();
+    bool at_rest() const { return quiet_frame_count_ >= options.rest.frame_count; }
+
+    Deformable deformable;
+    std::vector<Collider> colliders;
+    SimulationOptions options;
+    std::uint32_t frame = 0;
+    double largest_speed;
+    SimulationProfile profile;
+
+  private:
+    void integrate();
+    void move_colliders();
+    void relax_sticks();
+    void collide(std::size_t collider_index);
+    void collide_radially(const Collider& collider, const RigidTransform& previous_pose);
+    void collide_exactly(std::size_t collider_index);
+    ExactCollision collision_with(std::size_t collider_index) const;
+    void remember_free_places(std::size_t collider_index);
+    void keep_free();
+    void lead_to_free_place(std::uint32_t particle);
+    void find_free_place(std::uint32_t particle, Vec3f& position, Vec3f& previous);
+    bool is_free(std::uint32_t particle, const Vec3f& position) const;
+    void count_lost(std::uint32_t particle);
+    void commit_free_places();
+    void publish();
+    void judge_frame();
+    void judge_rest();
+
+    Particles particles_;
+    StickArrays sticks_;
+    std::vector<RigidTransform> previous_poses_;       // of the colliders, one frame ago
+    std::vector<std::vector<SurfaceMemory>> memories_; // [collider][particle]; none for a distance map
+    std::vector<std::size_t> exact_;                   // colliders with an exact map
+    std::vector<std::uint32_t> unsettled_;             // particles, in keep_free()
+    Vec3d start_centre_;
+    double bound_ = 0;
+    std::vector<Vec3f> resting_places_; // where each particle was, quiet_frame_count_ frames ago
+    std::uint32_t quiet_frame_count_ = 0;
+};
+
+} // namespace echinus

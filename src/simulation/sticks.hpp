@@ -1,0 +1,48 @@
+#pragma once
+
+#include "simulation/particles.hpp"
+
+#include <echinus/simulation.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace echinus {
+
+/// How the particles of consecutive sticks lie in their arrays.
+///
+///     SideBySide   a, a+1, a+2 ... and b, b+1, b+2 ...            two rows of a cloth
+///     Neighbours   (a, a+1), (a+2, a+3) ...                       every second stick along a row
+///     EverySecond  (a, a+2), (a+1, a+3), (a+4, a+6), (a+5, a+7)   every second bending stick along a row
+///     Scattered    anyhow
+enum class RunShape : std::uint8_t { SideBySide, Neighbours, EverySecond, Scattered };
+
+/// Consecutive sticks of one shape. But for scattered ones no two share a particle, so that relaxing many at
+/// once gives the same bits as one after the other; and all share their corrections alike.
+struct StickRun {
+    RunShape shape = RunShape::Scattered;
+    std::uint32_t a = 0, b = 0; ///< particles of the first stick
+    std::size_t first = 0, count = 0;
+    float share_a = 0, share_b = 0; ///< of the first stick
+};
+
+/// All sticks with what their relaxation needs, in the order in which they are relaxed.
+struct StickArrays {
+    std::vector<std::uint32_t> a, b; ///< [count]
+    /// [count] Parts of a stick's error that its two ends take: by their masses, and by the stiffness or the
+    /// compliance.
+    std::vector<float> share_a, share_b;
+    std::vector<float> rest_lengths; ///< [count + PointArrays::kPadding]
+    std::vector<StickRun> runs;
+
+    std::size_t count() const { return a.size(); }
+};
+
+/// Sticks with a stiffness (Jakobsen 2001, section 4), in the deformable's order.
+StickArrays stiff_sticks(const Deformable& deformable, const SimulationOptions& options);
+
+/// One relaxation of all sticks, in order. The same bits under every instruction set.
+void relax(const StickArrays& sticks, PointArrays& positions) noexcept;
+
+} // namespace echinus

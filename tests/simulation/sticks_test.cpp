@@ -1,0 +1,95 @@
+#include "simulation/sticks.hpp"
+#include "support/instruction_sets.hpp"
+#include "support/random_points.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+using namespace echinus;
+
+namespace {
+
+/// A sheet whose sticks are all off their length.
+Deformable rumpled_cloth(std::uint32_t column_count, std::uint32_t row_count,
+                         std::vector<std::uint32_t> pins = {}) {
+    Deformable cloth =
+        make_cloth({.column_count = column_count, .row_count = row_count, .pins = std::move(pins)});
+    test::Random random(column_count * 100 + row_count);
+    for (Vec3f& p : cloth.positions) p += test::in_cube(random, 0.1F);
+    return cloth;
+}
+
+/// Three relaxations under each instruction set must give the same bits.
+void expect_same_bits_under_each_instruction_set(const Deformable& cloth) {
+    const StickArrays sticks = stiff_sticks(cloth, {});
+    std::vector<std::vector<Vec3f>> results;
+    test::under_each_instruction_set([&](std::string_view) {
+        PointArrays positions;
+        positions.load(cloth.positions);
+        for (int i = 0; i < 3; ++i) relax(sticks, positions);
+        std::vector<Vec3f> result(cloth.particle_count());
+        positions.store(result);
+        results.push_back(result);
+    });
+    for (const auto& result : results) EXPECT_EQ(result, results.front());
+    EXPECT_NE(results.front(), cloth.positions);
+}
+
+std::size_t scattered_count(const StickArrays& sticks) {
+    std::size_t count = 0;
+    for (const StickRun& run : sticks.runs) count += run.shape == RunShape::Scattered ? run.count : 0;
+    return count;
+}
+
+} // namespace
+
+TEST(Sticks, RelaxToTheSameBitsUnderEachInstructionSetInSheetsOfAnySize) {
+    for (std::uint32_t columns = 2; columns < 40; ++columns)
+        expect_same_bits_under_each_instruction_set(rumpled_cloth(columns, 3 + columns % 4));
+}
+
+TEST(Sticks, RelaxToTheSameBitsUnderEachInstructionSetWithPinsAndUnequalMasses) {
+    expect_same_bits_under_each_instruction_set(rumpled_cloth(37, 9, {0, 3, 40, 41, 300}));
+    Deformable uneven = rumpled_cloth(20, 20);
+    for (std::size_t i = 0; i < uneven.particle_count(); ++i)
+        uneven.inverse_masses[i] = 1.0F / static_cast<float>(1 + i / 100);
+    expect_same_bits_under_each_instruction_set(uneven);
+}
+
+TEST(Sticks, RelaxToTheSameBitsUnderEachInstructionSetInAnyOrder) {
+    Deformable cloth = rumpled_cloth(17, 11);
+    test::Random random(5);
+    std::shuffle(cloth.sticks.begin(), cloth.sticks.end(), random);
+    expect_same_bits_under_each_instruction_set(cloth);
+}
+
+TEST(Sticks, StandInRunsThatFollowEachOtherAndShareNoParticle) {
+    for (const Deformable& cloth : {rumpled_cloth(2, 2), rumpled_cloth(33, 7), rumpled_cloth(24, 24, {30})}) {
+        const StickArrays sticks = stiff_sticks(cloth, {});
+        std::size_t next = 0;
+        for (const StickRun& run : sticks.runs) {
+            EXPECT_EQ(run.first, next);
+            next += run.count;
+            if (run.shape == RunShape::Scattered) continue;
+            std::set<std::uint32_t> particles;
+            for (std::size_t i = run.first; i < next; ++i) {
+                EXPECT_TRUE(particles.insert(sticks.a[i]).second);
+                EXPECT_TRUE(particles.insert(sticks.b[i]).second);
+                EXPECT_EQ(sticks.share_a[i], run.share_a);
+                EXPECT_EQ(sticks.share_b[i], run.share_b);
+            }
+        }
+        EXPECT_EQ(next, sticks.count());
+    }
+}
+
+TEST(Sticks, OfAClothStandInLongRuns) {
+    EXPECT_EQ(scattered_count(stiff_sticks(rumpled_cloth(100, 20), {})), 0u);
+}
+
+TEST(Sticks, BetweenPinnedParticlesAreLeftOut) {
+    const Deformable cloth = rumpled_cloth(6, 4, {0, 1});
+    EXPECT_EQ(stiff_sticks(cloth, {}).count(), cloth.sticks.size() - 1);
+}
