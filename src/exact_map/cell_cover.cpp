@@ -1,8 +1,11 @@
 #include "exact_map/cell_cover.hpp"
 
+#include "exact_map/part_tables.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace echinus {
 
@@ -54,37 +57,11 @@ struct Affine {
     double along_x, along_y, at_origin;
 
     double operator()(double x, double y) const { return along_x * x + along_y * y + at_origin; }
-    /// Least and most over a triangle (0, 0), (side, 0), (0, side), less the value at its origin.
-    double least_over(double side) const { return side * std::min({0.0, along_x, along_y}); }
-    double most_over(double side) const { return side * std::max({0.0, along_x, along_y}); }
-    /// The same function seen from a cell: with the origin at the cell's corner, for a cell that is turned by
-    /// half a turn with both axes turned too.
-    Affine seen_from(std::int32_t i, std::int32_t j, bool down) const {
-        const double x = kPartsPerSide * (down ? i + 1 : i), y = kPartsPerSide * (down ? j + 1 : j);
-        return down ? Affine{-along_x, -along_y, (*this)(x, y)} : Affine{along_x, along_y, (*this)(x, y)};
-    }
+    /// Least and most over a part that is not turned, less the value at its origin. A turned part is that
+    /// part mirrored in its origin.
+    double least_in_part() const { return std::min(0.0, std::min(along_x, along_y)); }
+    double most_in_part() const { return std::max(0.0, std::max(along_x, along_y)); }
 };
-
-/// Calls visit(part, value at the part's origin, is the part turned) for the 16 parts of a cell.
-template <typename Visit>
-void for_each_part(const Affine& in_cell, const Visit& visit) {
-    std::uint32_t part = 0;
-    for (std::int32_t i = 0; i < kPartsPerSide; ++i)
-        for (std::int32_t j = 0; j < kPartsPerSide - i; ++j) {
-            visit(part++, in_cell(i, j), false);
-            if (i + j < kPartsPerSide - 1) visit(part++, in_cell(i + 1, j + 1), true);
-        }
-}
-
-/// Parts of a cell in which a function is somewhere not negative.
-std::uint32_t parts_reached(const Affine& in_cell) {
-    const double up_most = in_cell.most_over(1), down_most = -in_cell.least_over(1);
-    std::uint32_t parts = 0;
-    for_each_part(in_cell, [&](std::uint32_t part, double value, bool down) {
-        parts |= static_cast<std::uint32_t>(value + (down ? down_most : up_most) >= 0) << part;
-    });
-    return parts;
-}
 
 struct Range {
     double low, high;
@@ -98,51 +75,44 @@ struct Range {
 constexpr Range kEmptyRange{std::numeric_limits<double>::infinity(),
                             -std::numeric_limits<double>::infinity()};
 
-/// Extremes of a function over some parts of a cell.
-Range range_over(const Affine& in_cell, std::uint32_t parts) {
-    const double least = in_cell.least_over(1), most = in_cell.most_over(1);
-    Range range = kEmptyRange;
-    for_each_part(in_cell, [&](std::uint32_t part, double value, bool down) {
-        if ((parts >> part & 1U) == 0) return;
-        range.add(value + (down ? -most : least));
-        range.add(value + (down ? -least : most));
-    });
-    return range;
-}
-
-/// A face's plane, normal . p = height; exact.
+/// A face's plane, normal . p = height.
 struct Plane {
-    Vec3d normal;
-    double height;
+    Vec3d normal;  ///< exact
+    double height; ///< 0 only if it is
 };
 
+/// Bits first to last of a word; those of them that a word has.
+std::uint64_t ones(std::int32_t first, std::int32_t last) {
+    first = std::max(first, 0);
+    last = std::min(last, 63);
+    return first > last ? 0 : ~std::uint64_t{0} >> (63 - last) & ~std::uint64_t{0} << first;
+}
+
 /// A face's directions in one octant, mirrored to where all coordinates are positive.
+///
+/// Row i of the octant, x from i to i + 1 in widths of a part, is a strip of triangles, 2 j for the part of
+/// square j that is not turned and 2 j + 1 for the one that is. A half-plane whose bounding line crosses the
+/// row touches a triangle and all that follow it, or all that come before it. So what the polygon touches of
+/// the row runs from a first triangle to a last.
 class OctantCover {
   public:
-    OctantCover(const OctahedralCells& cells, std::uint32_t octant, const Polygon& polygon,
+    OctantCover(const OctahedralCells& cells, std::uint32_t octant, std::span<const Vec3d> polygon,
                 const Plane& plane)
-        : cells_(cells), octant_(octant) {
-        const double fine_n = kPartsPerSide * cells.divisions();
+        : cells_(cells), octant_(octant), fine_n_(kPartsPerSide * cells.divisions()) {
         for (const Vec3d& p : polygon) {
             const double sum = sum_of(p);
-            corners_[size_++] = {p.x / sum * fine_n, p.y / sum * fine_n};
+            const double scale = fine_n_ / sum;
+            corners_[size_++] = {p.x * scale, p.y * scale};
             l1_.add(sum);
         }
-        add_ranges();
+        set_ranges();
         add_sides();
-        set_reciprocal(plane, fine_n);
+        set_reciprocal(plane);
     }
 
     void add_cells(std::vector<CellCover>& covers) const {
-        const std::int32_t n = cells_.divisions();
-        const std::int32_t last_i = cell_of(x_.high + kSlack);
-        for (std::int32_t i = cell_of(x_.low - kSlack); i <= last_i; ++i) {
-            const std::int32_t last_j = std::min(cell_of(y_.high + kSlack), n - 1 - i);
-            for (std::int32_t j = cell_of(y_.low - kSlack); j <= last_j; ++j) {
-                add_cell(i, j, false, covers);
-                if (i + j < n - 1) add_cell(i, j, true, covers);
-            }
-        }
+        for (std::int32_t i = rows_.first / kPartsPerSide; i <= rows_.last / kPartsPerSide; ++i)
+            add_row_of_cells(i, covers);
     }
 
   private:
@@ -150,28 +120,40 @@ class OctantCover {
         double x, y;
     };
 
-    std::int32_t cell_of(double coordinate) const {
-        return std::clamp(static_cast<std::int32_t>(std::floor(coordinate / kPartsPerSide)), 0,
-                          cells_.divisions() - 1);
-    }
+    /// Whole numbers, closed; empty where first > last.
+    struct Run {
+        std::int32_t first, last;
+    };
 
-    /// Keeps what lies on the positive side.
-    void add_half_plane(const Affine& f) { half_planes_[half_plane_count_++] = f; }
+    /// A side of the polygon as a half-plane.
+    struct Side {
+        Affine inner; ///< not negative on the polygon's side of the line, and `slack` beyond
+        double slack;
+    };
+
+    /// Where a side's line crosses row i: the outermost square of which the half-plane touches the part that
+    /// is not turned is slope i + upright, rounded to the inside; of which it touches the turned part, slope
+    /// i + turned.
+    struct Crossing {
+        double slope, upright, turned;
+    };
+
+    /// @pre -2 <= value < 2^30
+    static std::int32_t floor_of(double value) { return static_cast<std::int32_t>(value + 2) - 2; }
 
     /// Sides of cells and parts as separating lines.
-    void add_ranges() {
-        Range diagonal = kEmptyRange;
+    void set_ranges() {
+        Range x = kEmptyRange, y = kEmptyRange, diagonal = kEmptyRange;
         for (std::size_t k = 0; k < size_; ++k) {
-            x_.add(corners_[k].x);
-            y_.add(corners_[k].y);
+            x.add(corners_[k].x);
+            y.add(corners_[k].y);
             diagonal.add(corners_[k].x + corners_[k].y);
         }
-        add_half_plane({1, 0, kSlack - x_.low});
-        add_half_plane({-1, 0, kSlack + x_.high});
-        add_half_plane({0, 1, kSlack - y_.low});
-        add_half_plane({0, -1, kSlack + y_.high});
-        add_half_plane({1, 1, 2 * kSlack - diagonal.low});
-        add_half_plane({-1, -1, 2 * kSlack + diagonal.high});
+        const std::int32_t end = fine_n_ - 1;
+        rows_ = {std::max(floor_of(x.low - kSlack), 0), std::min(floor_of(x.high + kSlack), end)};
+        squares_ = {std::max(floor_of(y.low - kSlack), 0), std::min(floor_of(y.high + kSlack), end)};
+        diagonals_ = {floor_of(diagonal.low - 2 * kSlack),
+                      std::min(floor_of(diagonal.high + 2 * kSlack), end)};
     }
 
     /// The polygon's own sides as separating lines.
@@ -186,55 +168,181 @@ class OctantCover {
         for (std::size_t k = 0; k < size_; ++k) {
             const Point &a = corners_[k], &b = corners_[k + 1 < size_ ? k + 1 : 0];
             const double along_x = sign * (a.y - b.y), along_y = sign * (b.x - a.x);
-            const double side_length = std::fabs(along_x) + std::fabs(along_y);
-            if (side_length < kSlack) continue; // its direction is lost in rounding
-            add_half_plane({along_x, along_y, kSlack * side_length - along_x * a.x - along_y * a.y});
+            const double length = std::fabs(along_x) + std::fabs(along_y);
+            if (length < kSlack) {
+                lacks_sides_ = true; // their direction is lost in rounding
+                continue;
+            }
+            const double slack = kSlack * length;
+            add_side({{along_x, along_y, slack - along_x * a.x - along_y * a.y}, slack});
         }
+    }
+
+    void add_side(const Side& side) {
+        sides_[side_count_++] = side;
+        const Affine& inner = side.inner;
+        constexpr double kParallel = 1e-9; // to the rows: then the range of rows says the same
+        if (std::fabs(inner.along_y) < kParallel * std::fabs(inner.along_x)) return;
+        const double scale = -1 / inner.along_y;
+        const double slope = inner.along_x * scale;
+        const Crossing crossing{slope, (inner.at_origin + inner.most_in_part()) * scale,
+                                slope - 1 + (inner.at_origin - inner.least_in_part()) * scale};
+        if (inner.along_y > 0)
+            firsts_[first_count_++] = crossing;
+        else
+            lasts_[last_count_++] = crossing;
     }
 
     /// 1 / L1 norm over the face's plane: (normal . u) / height for a direction u with |u|_1 = 1.
-    void set_reciprocal(const Plane& plane, double fine_n) {
+    void set_reciprocal(const Plane& plane) {
         const auto& [normal, height] = plane;
-        const double scale = 1 / (fine_n * height);
+        const double scale = 1 / (fine_n_ * height);
         reciprocal_ = {(normal.x - normal.z) * scale, (normal.y - normal.z) * scale,
-                       normal.z * fine_n * scale};
+                       normal.z * fine_n_ * scale};
         const double size = std::fabs(normal.x) + std::fabs(normal.y) + std::fabs(normal.z);
         reciprocal_error_ = size / std::fabs(height) * 0x1p-46;
+        const double least = reciprocal_.least_in_part(), most = reciprocal_.most_in_part();
+        for (std::size_t part = 0; part < OctahedralCells::kPartCount; ++part) {
+            const double at_origin =
+                reciprocal_.along_x * kPartPlaces.x[part] + reciprocal_.along_y * kPartPlaces.y[part];
+            const double upright = kPartPlaces.upright[part], turned = kPartPlaces.turned[part];
+            part_lows_[part] = at_origin + upright * least - turned * most;
+            part_highs_[part] = at_origin + upright * most - turned * least;
+        }
+        part_lows_[kNoPart] = kEmptyRange.low;
+        part_highs_[kNoPart] = kEmptyRange.high;
     }
 
-    void add_cell(std::int32_t i, std::int32_t j, bool down, std::vector<CellCover>& covers) const {
-        std::uint32_t parts = kAllParts;
-        for (std::size_t k = 0; k < half_plane_count_ && parts != 0; ++k) {
-            const Affine in_cell = half_planes_[k].seen_from(i, j, down);
-            if (in_cell.at_origin + in_cell.least_over(kPartsPerSide) >= 0) continue;
-            parts &= parts_reached(in_cell);
+    /// The triangles of row i that the polygon touches.
+    Run strip(std::int32_t i) const {
+        if (i < rows_.first || i > rows_.last) return {1, 0};
+        Run run{std::max(2 * squares_.first, 2 * (diagonals_.first - i) - 1),
+                std::min(2 * squares_.last + 1, 2 * (diagonals_.last - i))};
+        for (std::size_t k = 0; k < first_count_; ++k) {
+            const auto [upright, turned] = squares_at(firsts_[k], i);
+            run.first = std::max(run.first, std::min(2 * ceil_of(upright), 2 * ceil_of(turned) + 1));
         }
-        if (parts == 0) return;
-        const Range l1 = l1_range(reciprocal_.seen_from(i, j, down), parts);
-        covers.push_back(
-            {cells_.index(octant_, i, j, down), static_cast<std::uint16_t>(parts), l1.low, l1.high});
+        for (std::size_t k = 0; k < last_count_; ++k) {
+            const auto [upright, turned] = squares_at(lasts_[k], i);
+            run.last = std::min(run.last, std::max(2 * floor_of(upright), 2 * floor_of(turned) + 1));
+        }
+        return run;
+    }
+
+    struct SquaresAt {
+        double upright, turned;
+    };
+
+    SquaresAt squares_at(const Crossing& crossing, std::int32_t i) const {
+        const auto within_row = [&](double square) {
+            return std::min(std::max(square, -1.0), fine_n_ + 1.0);
+        };
+        return {within_row(crossing.slope * i + crossing.upright),
+                within_row(crossing.slope * i + crossing.turned)};
+    }
+
+    /// @pre -1 <= value <= fine_n + 1
+    std::int32_t ceil_of(double value) const {
+        const std::int32_t far = fine_n_ + 2;
+        return far - static_cast<std::int32_t>(far - value);
+    }
+
+    void add_row_of_cells(std::int32_t i, std::vector<CellCover>& covers) const {
+        std::array<Run, kPartRows> strips;
+        Run hull{std::numeric_limits<std::int32_t>::max(), -1};
+        for (std::size_t row = 0; row < kPartRows; ++row) {
+            strips[row] = strip(kPartsPerSide * i + static_cast<std::int32_t>(row));
+            if (strips[row].first > strips[row].last) continue;
+            hull = {std::min(hull.first, strips[row].first), std::max(hull.last, strips[row].last)};
+        }
+        if (hull.last < 0) return;
+        const Run squares{std::max(hull.first, 0) / kStripLength, hull.last / kStripLength};
+        for (std::int32_t j = squares.first; j <= squares.last; j += kSquaresPerWord)
+            add_squares(i, {j, std::min(squares.last, j + kSquaresPerWord - 1)}, strips, covers);
+    }
+
+    /// Adds cells of some squares in a row of cells, whose strips are bytes of four words.
+    void add_squares(std::int32_t i, const Run& squares, const std::array<Run, kPartRows>& strips,
+                     std::vector<CellCover>& covers) const {
+        std::array<std::uint64_t, kPartRows> words;
+        const std::int32_t begin = squares.first * kStripLength;
+        for (std::size_t row = 0; row < kPartRows; ++row)
+            words[row] = ones(strips[row].first - begin, strips[row].last - begin);
+        for (std::int32_t j = squares.first; j <= squares.last; ++j) {
+            std::uint32_t parts = 0;
+            for (std::size_t row = 0; row < kPartRows; ++row) {
+                parts |= kPartsOfStrip[row][words[row] & 0xFF];
+                words[row] >>= kStripLength;
+            }
+            if (const std::uint32_t up = parts & 0xFFFF; up != 0) add_cell(i, j, false, up, covers);
+            if (const std::uint32_t down = parts >> 16; down != 0) add_cell(i, j, true, down, covers);
+        }
+    }
+
+    void add_cell(std::int32_t i, std::int32_t j, bool down, std::uint32_t parts,
+                  std::vector<CellCover>& covers) const {
+        const Range l1 = l1_range(i, j, down, parts);
+        const bool at_middle = (parts >> OctahedralCells::middle_part() & 1U) != 0;
+        covers.push_back({cells_.index(octant_, i, j, down), static_cast<std::uint16_t>(parts),
+                          at_middle ? middle_ray(i, j, down) : MiddleRay::Misses, l1.low, l1.high});
     }
 
     /// What the plane has over the parts, where that is better than what the polygon has as a whole.
-    Range l1_range(const Affine& reciprocal, std::uint32_t parts) const {
+    Range l1_range(std::int32_t i, std::int32_t j, bool down, std::uint32_t parts) const {
         if (!std::isfinite(reciprocal_error_)) return l1_; // edge-on
-        const Range range = range_over(reciprocal, parts);
-        const double low = range.low - reciprocal_error_, high = range.high + reciprocal_error_;
+        const Range in_cell = range_over(parts);
+        // A down cell is seen with its axes turned.
+        const std::int32_t turn = down ? 1 : 0;
+        const double at_origin = reciprocal_(kPartsPerSide * (i + turn), kPartsPerSide * (j + turn));
+        const double low = at_origin + (down ? -in_cell.high : in_cell.low) - reciprocal_error_;
+        const double high = at_origin + (down ? -in_cell.low : in_cell.high) + reciprocal_error_;
         // A plane that is steep against the rays goes through infinity; only where it is in front does it
         // count.
         return {high > 0 ? std::max(l1_.low, 1 / high) : l1_.low,
                 low > 0 ? std::min(l1_.high, 1 / low) : l1_.high};
     }
 
+    /// Extremes of the reciprocal over parts of a cell, less its value at the cell's origin. It ascends or
+    /// descends along every strip, so that they lie at ends of rows.
+    Range range_over(std::uint32_t parts) const {
+        const std::size_t low_end = reciprocal_.along_y >= 0 ? 0 : 1;
+        const auto lows = kRowEnds.of(parts, low_end), highs = kRowEnds.of(parts, 1 - low_end);
+        return {std::min(std::min(part_lows_[lows[0]], part_lows_[lows[1]]),
+                         std::min(part_lows_[lows[2]], part_lows_[lows[3]])),
+                std::max(std::max(part_highs_[highs[0]], part_highs_[highs[1]]),
+                         std::max(part_highs_[highs[2]], part_highs_[highs[3]]))};
+    }
+
+    MiddleRay middle_ray(std::int32_t i, std::int32_t j, bool down) const {
+        constexpr double kThird = kPartsPerSide / 3.0;
+        const double offset = down ? 2 * kThird : kThird;
+        const double x = kPartsPerSide * i + offset, y = kPartsPerSide * j + offset;
+        bool sure = !lacks_sides_;
+        for (std::size_t k = 0; k < side_count_; ++k) {
+            const double value = sides_[k].inner(x, y);
+            if (value < 0) return MiddleRay::Misses;
+            sure = sure && value > 2 * sides_[k].slack;
+        }
+        return sure ? MiddleRay::Meets : MiddleRay::Unsure;
+    }
+
+    static constexpr std::int32_t kSquaresPerWord = 64 / kStripLength;
+
     const OctahedralCells& cells_;
     std::uint32_t octant_;
+    std::int32_t fine_n_; ///< rows of parts in the octant
     std::array<Point, 8> corners_;
     std::size_t size_ = 0;
-    Range x_ = kEmptyRange, y_ = kEmptyRange, l1_ = kEmptyRange;
-    std::array<Affine, 6 + 8> half_planes_;
-    std::size_t half_plane_count_ = 0;
-    Affine reciprocal_{};
-    double reciprocal_error_ = 0;
+    Run rows_, squares_, diagonals_; ///< that the polygon touches; diagonals: x + y
+    Range l1_ = kEmptyRange;
+    std::array<Side, 8> sides_;
+    std::size_t side_count_ = 0;
+    bool lacks_sides_ = false;
+    std::array<Crossing, 8> firsts_, lasts_; ///< where half-planes begin and end along the rows
+    std::size_t first_count_ = 0, last_count_ = 0;
+    Affine reciprocal_;
+    double reciprocal_error_;
+    std::array<double, kNoPart + 1> part_lows_, part_highs_; ///< of the reciprocal, as range_over() says
 };
 
 /// Nearer to the origin than this many lattice steps, directions of cut corners cannot be told apart in
@@ -242,14 +350,8 @@ class OctantCover {
 /// seldom that close to a surface.
 constexpr double kNear = 8;
 
-void cover_octant(const OctahedralCells& cells, std::uint32_t octant, const Polygon& polygon,
-                  const Plane& plane, std::vector<CellCover>& covers) {
-    const bool comes_near =
-        std::any_of(polygon.begin(), polygon.end(), [](const Vec3d& p) { return sum_of(p) < kNear; });
-    if (!comes_near) {
-        OctantCover(cells, octant, polygon, plane).add_cells(covers);
-        return;
-    }
+void cover_near_octant(const OctahedralCells& cells, std::uint32_t octant, const Polygon& polygon,
+                       const Plane& plane, std::vector<CellCover>& covers) {
     const std::size_t first = covers.size();
     const Polygon rest = polygon.clipped([](const Vec3d& p) { return sum_of(p) - kNear / 2; });
     if (!rest.empty()) OctantCover(cells, octant, rest, plane).add_cells(covers);
@@ -259,15 +361,25 @@ void cover_octant(const OctahedralCells& cells, std::uint32_t octant, const Poly
     for (std::size_t i = first; i < covers.size(); ++i) {
         covered[covers[i].cell - octant * cells_per_octant] = true;
         covers[i].parts = kAllParts;
+        covers[i].middle = MiddleRay::Unsure;
         covers[i].nearest = 0;
     }
     for (std::uint32_t cell = 0; cell < cells_per_octant; ++cell)
-        if (!covered[cell]) covers.push_back({octant * cells_per_octant + cell, kAllParts, 0, kNear});
+        if (!covered[cell])
+            covers.push_back({octant * cells_per_octant + cell, kAllParts, MiddleRay::Unsure, 0, kNear});
+}
+
+void cover_octant(const OctahedralCells& cells, std::uint32_t octant, const Polygon& polygon,
+                  const Plane& plane, std::vector<CellCover>& covers) {
+    if (std::any_of(polygon.begin(), polygon.end(), [](const Vec3d& p) { return sum_of(p) < kNear; }))
+        cover_near_octant(cells, octant, polygon, plane, covers);
+    else
+        OctantCover(cells, octant, polygon, plane).add_cells(covers);
 }
 
 /// Does the face reach where a coordinate has the sign of `mirror`? A face that only touches the wall does.
 bool reaches(const std::array<Vec3d, 3>& corners, double Vec3d::*c, double mirror) {
-    return std::any_of(corners.begin(), corners.end(), [&](const Vec3d& p) { return p.*c * mirror >= 0; });
+    return std::max(std::max(corners[0].*c * mirror, corners[1].*c * mirror), corners[2].*c * mirror) >= 0;
 }
 
 } // namespace

@@ -10,10 +10,18 @@
 
 namespace echinus {
 
+/// What a face does to the ray through a cell's middle.
+enum class MiddleRay : std::uint8_t {
+    Misses,
+    Meets,  ///< meets its directions, that is; of a face seen edge-on nothing is said
+    Unsure, ///< rounding might decide
+};
+
 /// Where a face passes through a cell's cone.
 struct CellCover {
     std::uint32_t cell;
-    std::uint16_t parts;      ///< of the cell that the face touches, a bit each
+    std::uint16_t parts; ///< of the cell that the face touches, a bit each
+    MiddleRay middle;
     double nearest, farthest; ///< range of the L1 norm, in lattice steps
 };
 
@@ -22,8 +30,9 @@ struct CellCover {
 ///
 /// The face is cut at the octants' walls. In an octant its directions are a convex polygon of the plane
 /// x + y + z = 1, and a cell or part is touched unless a side of it or of the polygon lies between them (the
-/// separating axis theorem). Over that plane the reciprocal of the L1 norm is an affine function, so its
-/// extremes lie at the corners of the parts touched.
+/// separating axis theorem). So the polygon touches a run of neighbours in each row of parts, and is drawn
+/// row by row, as a rasteriser would. Over that plane the reciprocal of the L1 norm is an affine function, so
+/// its extremes lie at the corners of the parts touched.
 void cover_cells(const OctahedralCells& cells, const std::array<LatticePoint, 3>& face,
                  std::vector<CellCover>& covers);
 
