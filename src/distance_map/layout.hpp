@@ -14,6 +14,11 @@ inline SphericalGrid grid_of(const DistanceMapView& map) {
     return {map.longitude_count, map.colatitude_count, map.pole_axis};
 }
 
+/// Rays from the centre that are shorter than this are lengthened: far above where squares leave the range of
+/// float.
+inline constexpr float kShortRay = 0x1p-50F;
+inline constexpr float kRayLengthening = 0x1p100F;
+
 inline constexpr float kUnormSteps = 65535;
 
 inline std::uint16_t to_unorm16(float entry, float radius) {

@@ -5,6 +5,8 @@
 // theta_d) its angles, S an interpolated distance.
 
 #include "distance_map/interpolation.hpp"
+#include "distance_map/query_kernels.hpp"
+#include "simd/dispatch.hpp"
 
 #include <algorithm>
 #include <array>
@@ -25,8 +27,7 @@ struct Ray {
 /// Free of branches: the compiler turns loops over it into vector instructions.
 Ray ray_along(const SphericalGrid& grid, const Vec3f& d_grid) {
     const float d_length = length(d_grid);
-    constexpr float kShort = 0x1p-50F; // far above where squares leave the range of float
-    const Vec3f along = d_grid * (d_length < kShort ? 0x1p100F : 1);
+    const Vec3f along = d_grid * (d_length < kShortRay ? kRayLengthening : 1);
     return {along, d_length, grid.coordinates_of(along)};
 }
 
@@ -159,51 +160,6 @@ float usable_margin(float margin) {
     return margin > 0 ? margin : 0;
 }
 
-/// The rays to some points of a batch, each number in an array of its own, as vector instructions want them.
-class RayPiece {
-  public:
-    static constexpr std::size_t kSize = 128; // these arrays stay in the first-level cache
-
-    void aim(const DistanceMapView& map, const SphericalGrid& grid,
-             const StridedSpan<const Vec3f>& points_local, std::size_t begin, std::size_t count) {
-        for (std::size_t i = 0; i < count; ++i) {
-            const Vec3f d = grid.to_grid(points_local[begin + i] - map.centre);
-            x_[i] = d.x;
-            y_[i] = d.y;
-            z_[i] = d.z;
-        }
-        for (std::size_t i = 0; i < count; ++i) {
-            const Ray ray = ray_along(grid, {x_[i], y_[i], z_[i]});
-            x_[i] = ray.along.x;
-            y_[i] = ray.along.y;
-            z_[i] = ray.along.z;
-            length_[i] = ray.length;
-            along_phi_[i] = ray.at.along_phi;
-            along_theta_[i] = ray.at.along_theta;
-        }
-    }
-
-    Ray operator[](std::size_t i) const {
-        return {{x_[i], y_[i], z_[i]}, length_[i], {along_phi_[i], along_theta_[i]}};
-    }
-
-  private:
-    using Numbers = std::array<float, kSize>;
-    Numbers x_, y_, z_, length_, along_phi_, along_theta_;
-};
-
-/// Calls `answer(i, ray)` for the rays to all points of a batch.
-template <typename Answer>
-void for_each_ray(const DistanceMapView& map, const SphericalGrid& grid,
-                  const StridedSpan<const Vec3f>& points_local, const Answer& answer) {
-    RayPiece piece;
-    for (std::size_t begin = 0; begin < points_local.size(); begin += RayPiece::kSize) {
-        const std::size_t count = std::min(RayPiece::kSize, points_local.size() - begin);
-        piece.aim(map, grid, points_local, begin, count);
-        for (std::size_t i = 0; i < count; ++i) answer(begin + i, piece[i]);
-    }
-}
-
 } // namespace
 
 bool contains(const DistanceMapView& map, Vec3f point_local) noexcept {
@@ -219,19 +175,16 @@ Contact contact(const DistanceMapView& map, Vec3f point_local, float margin) noe
 void contains_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local,
                     std::span<std::uint8_t> inside) noexcept {
     assert(points_local.size() == inside.size());
-    const SphericalGrid grid = grid_of(map);
-    for_each_ray(map, grid, points_local,
-                 [&](std::size_t i, const Ray& ray) { inside[i] = contains(map, grid, ray) ? 1 : 0; });
+    if (use_kernels() && kernels_read(map)) return contains_by_kernel(map, points_local, inside);
+    for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = contains(map, points_local[i]) ? 1 : 0;
 }
 
 void contacts_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local, float margin,
                     std::span<Contact> contacts) noexcept {
     assert(points_local.size() == contacts.size());
-    const SphericalGrid grid = grid_of(map);
-    const float usable = usable_margin(margin);
-    for_each_ray(map, grid, points_local, [&](std::size_t i, const Ray& ray) {
-        contacts[i] = contact(map, grid, ray, points_local[i], usable);
-    });
+    if (use_kernels() && kernels_read(map))
+        return contacts_by_kernel(map, points_local, usable_margin(margin), contacts);
+    for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = contact(map, points_local[i], margin);
 }
 
 int usable_sample_count(const DistanceMapView& map, Vec3f point_local) noexcept {

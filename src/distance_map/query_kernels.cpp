@@ -1,0 +1,626 @@
+// The queries of query.cpp on vectors of particles: the same operations in the same order, hence the same
+// bits.
+//
+// Most particles are easy: the four samples around them have one number of entries, which is 0, 1 or 2. The
+// corners of such a cell lie in two rows of two neighbours, and so do their entries, so that two loads of
+// four numbers give the offsets of all four samples and two more give their entries. The other particles (at
+// silhouettes, under several layers, at the seam and the poles) are put on a list, which is then worked off
+// by gathers, with all lanes full.
+
+#include "distance_map/query_kernels.hpp"
+
+#include "distance_map/layout.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "distance_map/query_kernels.cpp"
+#include <hwy/foreach_target.h>
+
+// After foreach_target.h, which includes this file once for each instruction set.
+#include "distance_map/spherical_lanes-inl.hpp"
+#include "simd/dispatch.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace echinus {
+namespace HWY_NAMESPACE {
+
+#if HWY_TARGET == HWY_SCALAR // one lane is the reference
+
+void contains_lanes(const DistanceMapView& map, const StridedSpan<const Vec3f>& points,
+                    std::uint8_t* inside) {
+    for (std::size_t i = 0; i < points.size(); ++i) inside[i] = contains(map, points[i]) ? 1 : 0;
+}
+
+void contacts_lanes(const DistanceMapView& map, const StridedSpan<const Vec3f>& points, float margin,
+                    Contact* contacts) {
+    for (std::size_t i = 0; i < points.size(); ++i) contacts[i] = contact(map, points[i], margin);
+}
+
+#else
+
+namespace {
+
+using FourFloats = hn::FixedTag<float, 4>;
+
+// ---- Entries in their two formats
+
+class FloatEntries {
+  public:
+    explicit FloatEntries(const DistanceMapView& map) : entries_(map.entries_float32.data()) {}
+
+    HWY_INLINE hn::Vec<FourFloats> operator()(std::int32_t position) const {
+        return hn::LoadU(FourFloats(), entries_ + position);
+    }
+    /// What a row holds, as a distance.
+    HWY_INLINE Floats distance_of(Floats loaded) const { return loaded; }
+    HWY_INLINE Floats gather(Ints positions) const { return hn::GatherIndex(kFloat, entries_, positions); }
+
+  private:
+    const float* entries_;
+};
+
+class UnormEntries {
+  public:
+    explicit UnormEntries(const DistanceMapView& map)
+        : entries_(map.entries_unorm16.data()), step_(map.radius / kUnormSteps) {}
+
+    HWY_INLINE hn::Vec<FourFloats> operator()(std::int32_t position) const {
+        const auto narrow = hn::LoadU(hn::FixedTag<std::uint16_t, 4>(), entries_ + position);
+        return hn::BitCast(FourFloats(), hn::PromoteTo(hn::FixedTag<std::uint32_t, 4>(), narrow));
+    }
+    HWY_INLINE Floats distance_of(Floats loaded) const {
+        return hn::Mul(hn::ConvertTo(kFloat, hn::BitCast(kInt, loaded)), splat(step_));
+    }
+    /// Gathers pairs, each with the entry before, so that nothing beyond the last is read.
+    HWY_INLINE Floats gather(Ints positions) const {
+        const Ints before = hn::Max(hn::Sub(positions, splat_int(1)), hn::Zero(kInt));
+        const auto* pairs = reinterpret_cast<const std::int32_t*>(entries_);
+        const Ints pair = hn::GatherOffset(kInt, pairs, hn::Add(before, before));
+        const Mask is_first = as_mask(hn::Eq(positions, hn::Zero(kInt)));
+        const Ints first = hn::And(pair, splat_int(0xFFFF));
+        const Ints second = hn::And(hn::ShiftRight<16>(pair), splat_int(0xFFFF));
+        return distance_of(hn::BitCast(kFloat, choose(is_first, first, second)));
+    }
+
+  private:
+    const std::uint16_t* entries_;
+    float step_;
+};
+
+struct OffsetRows {
+    const std::uint32_t* offsets;
+
+    HWY_INLINE hn::Vec<FourFloats> operator()(std::int32_t position) const {
+        const hn::FixedTag<std::uint32_t, 4> four;
+        return hn::BitCast(FourFloats(), hn::LoadU(four, offsets + position));
+    }
+};
+
+// ---- What is known of a vector of particles, step by step
+
+template <typename Grid>
+struct Rays {
+    Vectors along;
+    Floats length;
+    typename Grid::Coordinates at;
+};
+
+/// Interpolation of interpolation.hpp.
+template <typename Grid>
+struct Samples {
+    typename Grid::Cell cell;
+    std::array<Floats, 4> weight;
+    std::array<Mask, 4> usable;
+    Floats weight_sum;
+    Ints entry_count;
+};
+
+struct Intervals {
+    Ints number;
+    Floats below, above;
+};
+
+struct Ends {
+    Mask exist;
+    Ints k;
+    Floats distance;
+};
+
+struct Contacts {
+    Vectors point, normal;
+    Floats depth;
+    Mask inside;
+};
+
+/// The entries of an easy cell: at[k][corner].
+struct EasyEntries {
+    std::array<std::array<Floats, 4>, 2> at;
+
+    HWY_INLINE std::array<Floats, 4> operator()(Ints k) const {
+        const Mask second = as_mask(hn::Eq(k, splat_int(1)));
+        std::array<Floats, 4> chosen;
+        for (std::size_t corner = 0; corner < 4; ++corner)
+            chosen[corner] = choose(second, at[1][corner], at[0][corner]);
+        return chosen;
+    }
+};
+
+/// The entries of any cell.
+template <typename Entries>
+struct GatheredEntries {
+    const Entries& entries;
+    std::array<Ints, 4> first;
+    Ints count;
+
+    HWY_INLINE std::array<Floats, 4> operator()(Ints k) const {
+        const Mask exists = as_mask(hn::Lt(k, count));
+        std::array<Floats, 4> gathered;
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            const Ints position = hn::Add(first[corner], k);
+            gathered[corner] = entries.gather(hn::IfThenElseZero(as_int_mask(exists), position));
+        }
+        return gathered;
+    }
+};
+
+template <typename Grid, typename Entries>
+class Kernel {
+  public:
+    explicit Kernel(const DistanceMapView& map)
+        : map_(map), grid_(map), entries_(map),
+          direction_count_(static_cast<std::int32_t>(map.direction_count())),
+          entry_count_(static_cast<std::int32_t>(map.entry_count())),
+          centre_inside_(splat_mask(map.centre_inside)) {}
+
+    /// Answers a vector of neighbouring particles as far as they are easy.
+    /// @return the others
+    HWY_INLINE Mask contains_easy(const Vec3f* points, std::uint8_t* inside) const {
+        const Rays<Grid> rays = aim(load(points));
+        const Mask reaches = hn::Le(rays.length, splat(map_.radius));
+        const Easy easy = look_at_easy(rays, reaches);
+        store(hn::And(easy.settled, is_inside(easy.intervals.number)), inside);
+        return hn::AndNot(easy.settled, reaches);
+    }
+
+    HWY_INLINE Mask contacts_easy(const Vec3f* points, float margin, Contact* contacts) const {
+        const Vectors point = load(points);
+        const Rays<Grid> rays = aim(point);
+        const Mask reaches = reaches_sphere(rays, margin);
+        const Easy easy = look_at_easy(rays, reaches);
+        store(contacts_of(point, rays, easy.samples, easy.intervals, easy.entries, easy.settled, margin),
+              contacts);
+        return hn::AndNot(easy.settled, reaches);
+    }
+
+    /// Answers any vector of particles.
+    HWY_INLINE void contains_any(const Vec3f* points, std::uint8_t* inside) const {
+        const Rays<Grid> rays = aim(load(points));
+        const Mask reaches = hn::Le(rays.length, splat(map_.radius));
+        std::array<Ints, 4> first;
+        const Samples<Grid> samples = look_at(rays, reaches, first);
+        const GatheredEntries<Entries> entries{entries_, first, samples.entry_count};
+        const Intervals intervals = intervals_of(rays, samples, entries, reaches);
+        store(hn::And(reaches, is_inside(intervals.number)), inside);
+    }
+
+    HWY_INLINE void contacts_any(const Vec3f* points, float margin, Contact* contacts) const {
+        const Vectors point = load(points);
+        const Rays<Grid> rays = aim(point);
+        const Mask reaches = reaches_sphere(rays, margin);
+        std::array<Ints, 4> first;
+        const Samples<Grid> samples = look_at(rays, reaches, first);
+        const GatheredEntries<Entries> entries{entries_, first, samples.entry_count};
+        const Intervals intervals = intervals_of(rays, samples, entries, reaches);
+        store(contacts_of(point, rays, samples, intervals, entries, reaches, margin), contacts);
+    }
+
+  private:
+    struct Easy {
+        Samples<Grid> samples;
+        Intervals intervals;
+        EasyEntries entries;
+        Mask settled;
+    };
+
+    static HWY_INLINE Vectors load(const Vec3f* points) {
+        Vectors result;
+        hn::LoadInterleaved3(kFloat, &points->x, result.x, result.y, result.z);
+        return result;
+    }
+
+    static HWY_INLINE void store(Mask inside, std::uint8_t* bytes) {
+        const Ints ones = hn::IfThenElseZero(as_int_mask(inside), splat_int(1));
+        const hn::Rebind<std::uint8_t, IntTag> narrow;
+        hn::StoreU(hn::DemoteTo(narrow, ones), narrow, bytes);
+    }
+
+    HWY_INLINE Rays<Grid> aim(const Vectors& point) const {
+        const Vectors d =
+            grid_.to_grid({hn::Sub(point.x, splat(map_.centre.x)), hn::Sub(point.y, splat(map_.centre.y)),
+                           hn::Sub(point.z, splat(map_.centre.z))});
+        const Floats d_length = length(d);
+        const Mask is_short = hn::Lt(d_length, splat(kShortRay));
+        const Vectors along = scaled(d, choose(is_short, splat(kRayLengthening), splat(1)));
+        return {along, d_length, grid_.coordinates_of(along)};
+    }
+
+    HWY_INLINE Mask reaches_sphere(const Rays<Grid>& rays, float margin) const {
+        return hn::And(hn::Le(rays.length, splat(map_.radius + margin)),
+                       hn::Lt(rays.length, splat(std::numeric_limits<float>::infinity())));
+    }
+
+    HWY_INLINE Mask is_inside(Ints interval) const { return hn::Xor(is_odd(interval), centre_inside_); }
+
+    /// The samples around the rays and the intervals of the particles, where that is easy.
+    HWY_INLINE Easy look_at_easy(const Rays<Grid>& rays, Mask reaches) const {
+        Easy easy;
+        easy.samples.cell = grid_.cell_at(rays.at, reaches);
+        easy.samples.weight = grid_.weights(easy.samples.cell);
+        easy.samples.weight_sum = hn::Zero(kFloat);
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            easy.samples.usable[corner] = reaches;
+            easy.samples.weight_sum = hn::Add(easy.samples.weight_sum, easy.samples.weight[corner]);
+        }
+
+        // A row of offsets is the beginnings of three directions and one more number.
+        const typename Grid::CornerRows rows = grid_.corner_rows(easy.samples.cell);
+        const IntMask offsets_end = hn::Gt(rows.upper, splat_int(direction_count_ - 3));
+        const Mask has_offsets = hn::And(hn::And(reaches, rows.exist), none_of(as_mask(offsets_end)));
+        const OffsetRows offsets{map_.entry_offsets.data()};
+        const Rows lower = load_rows(offsets, hn::IfThenElseZero(as_int_mask(has_offsets), rows.lower));
+        const Rows upper = load_rows(offsets, hn::IfThenElseZero(as_int_mask(has_offsets), rows.upper));
+        const Ints lower_first = hn::BitCast(kInt, lower.at[0]);
+        const Ints upper_first = hn::BitCast(kInt, upper.at[0]);
+        const Ints count = hn::Sub(hn::BitCast(kInt, lower.at[1]), lower_first);
+        const IntMask same = hn::And(
+            hn::And(hn::Eq(hn::BitCast(kInt, lower.at[2]), hn::Add(hn::BitCast(kInt, lower.at[1]), count)),
+                    hn::Eq(hn::BitCast(kInt, upper.at[1]), hn::Add(upper_first, count))),
+            hn::And(hn::Eq(hn::BitCast(kInt, upper.at[2]), hn::Add(hn::BitCast(kInt, upper.at[1]), count)),
+                    hn::Lt(count, splat_int(3))));
+        const IntMask entries_end = hn::Gt(upper_first, splat_int(entry_count_ - 4));
+        easy.settled = hn::And(has_offsets, as_mask(hn::AndNot(entries_end, same)));
+        easy.samples.entry_count = hn::IfThenElseZero(as_int_mask(easy.settled), count);
+
+        // A row of entries is those of two directions one after the other: one or two each.
+        const Mask two = as_mask(hn::Gt(easy.samples.entry_count, splat_int(1)));
+        const Rows lower_entries =
+            load_rows(entries_, hn::IfThenElseZero(as_int_mask(easy.settled), lower_first));
+        const Rows upper_entries =
+            load_rows(entries_, hn::IfThenElseZero(as_int_mask(easy.settled), upper_first));
+        take_apart(lower_entries, two, 0, easy.entries);
+        take_apart(upper_entries, two, 2, easy.entries);
+        easy.intervals = easy_intervals(rays, easy);
+        return easy;
+    }
+
+    HWY_INLINE void take_apart(const Rows& row, Mask two, std::size_t corner, EasyEntries& entries) const {
+        entries.at[0][corner] = entries_.distance_of(row.at[0]);
+        entries.at[0][corner + 1] = entries_.distance_of(choose(two, row.at[2], row.at[1]));
+        entries.at[1][corner] = entries_.distance_of(row.at[1]);
+        entries.at[1][corner + 1] = entries_.distance_of(row.at[3]);
+    }
+
+    HWY_INLINE Intervals easy_intervals(const Rays<Grid>& rays, const Easy& easy) const {
+        const Ints zero = hn::Zero(kInt);
+        const Ints count = easy.samples.entry_count;
+        const Floats first = interpolated(rays, easy.samples, easy.entries.at[0]);
+        const Mask has_first = as_mask(hn::Gt(count, zero));
+        const Mask beyond_first = hn::AndNot(hn::Gt(first, rays.length), has_first);
+        Intervals intervals{hn::IfThenElseZero(as_int_mask(beyond_first), splat_int(1)),
+                            hn::IfThenElseZero(beyond_first, first),
+                            choose(hn::AndNot(beyond_first, has_first), first, splat(map_.radius))};
+        const Mask look_on = hn::And(beyond_first, as_mask(hn::Gt(count, splat_int(1))));
+        if (hn::AllFalse(kFloat, look_on)) return intervals;
+        const Floats second = interpolated(rays, easy.samples, easy.entries.at[1]);
+        const Mask beyond_second = hn::AndNot(hn::Gt(second, rays.length), look_on);
+        intervals.number = choose(beyond_second, splat_int(2), intervals.number);
+        intervals.below = choose(beyond_second, second, intervals.below);
+        intervals.above = choose(hn::AndNot(beyond_second, look_on), second, intervals.above);
+        return intervals;
+    }
+
+    /// interpolation_at() of interpolation.hpp.
+    /// @param first  out: where the entries of each sample begin
+    HWY_INLINE Samples<Grid> look_at(const Rays<Grid>& rays, Mask reaches, std::array<Ints, 4>& first) const {
+        Samples<Grid> samples;
+        samples.cell = grid_.cell_at(rays.at, reaches);
+        const std::array<Ints, 4> corners = grid_.corners(samples.cell);
+        const std::array<Floats, 4> weights = grid_.weights(samples.cell);
+        std::array<Ints, 4> count;
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            const auto* offsets = reinterpret_cast<const std::int32_t*>(map_.entry_offsets.data());
+            first[corner] = hn::GatherIndex(kInt, offsets, corners[corner]);
+            count[corner] = hn::Sub(hn::GatherIndex(kInt, offsets + 1, corners[corner]), first[corner]);
+        }
+        samples.entry_count = grid_.of_reference(samples.cell, count);
+        const Ints first_of_reference = grid_.of_reference(samples.cell, first);
+        samples.weight_sum = hn::Zero(kFloat);
+        Mask all = splat_mask(true);
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            const Mask usable = as_mask(hn::Eq(count[corner], samples.entry_count));
+            samples.usable[corner] = usable;
+            first[corner] = choose(usable, first[corner], first_of_reference);
+            samples.weight[corner] = hn::IfThenElseZero(usable, weights[corner]);
+            samples.weight_sum = hn::Add(samples.weight_sum, samples.weight[corner]);
+            all = hn::And(all, usable);
+        }
+        for (Floats& weight : samples.weight)
+            weight = choose(all, weight, hn::Div(weight, samples.weight_sum));
+        return samples;
+    }
+
+    template <typename EntriesAt>
+    HWY_INLINE Intervals intervals_of(const Rays<Grid>& rays, const Samples<Grid>& samples,
+                                      const EntriesAt& entries_at, Mask reaches) const {
+        Intervals intervals{hn::Zero(kInt), hn::Zero(kFloat), splat(map_.radius)};
+        Ints k = hn::Zero(kInt);
+        Mask looking = hn::And(reaches, as_mask(hn::Gt(samples.entry_count, k)));
+        while (!hn::AllFalse(kFloat, looking)) {
+            const Floats distance = interpolated(rays, samples, entries_at(k));
+            const Mask beyond = hn::AndNot(hn::Gt(distance, rays.length), looking);
+            intervals.above = choose(hn::AndNot(beyond, looking), distance, intervals.above);
+            intervals.below = choose(beyond, distance, intervals.below);
+            k = hn::Add(k, splat_int(1));
+            intervals.number = choose(beyond, k, intervals.number);
+            looking = hn::And(beyond, as_mask(hn::Gt(samples.entry_count, k)));
+        }
+        return intervals;
+    }
+
+    /// interpolated_entry() of interpolation.hpp.
+    HWY_INLINE Floats interpolated(const Rays<Grid>&, const Samples<Grid>& samples,
+                                   const std::array<Floats, 4>& entries) const {
+        Floats sum = hn::Zero(kFloat);
+        for (std::size_t corner = 0; corner < 4; ++corner)
+            sum = hn::Add(sum, hn::Mul(samples.weight[corner], entries[corner]));
+        return sum;
+    }
+
+    /// nearest_end() of query.cpp.
+    HWY_INLINE Ends nearest_ends(const Samples<Grid>& samples, const Intervals& intervals,
+                                 Floats d_length) const {
+        const Mask has_below = as_mask(hn::Gt(intervals.number, hn::Zero(kInt)));
+        const Mask has_above =
+            hn::Or(as_mask(hn::Lt(intervals.number, samples.entry_count)), is_inside(intervals.number));
+        const Mask below_is_nearer =
+            hn::Lt(hn::Sub(d_length, intervals.below), hn::Sub(intervals.above, d_length));
+        const Mask below = hn::And(has_below, hn::Or(none_of(has_above), below_is_nearer));
+        return {hn::Or(has_below, has_above),
+                choose(below, hn::Sub(intervals.number, splat_int(1)), intervals.number),
+                choose(below, intervals.below, intervals.above)};
+    }
+
+    /// direction_of() of query.cpp.
+    static HWY_INLINE Vectors direction_of(const Vectors& along) {
+        const Floats l = length(along);
+        const Vectors z{hn::Zero(kFloat), hn::Zero(kFloat), splat(1)};
+        return choose(hn::Gt(l, hn::Zero(kFloat)), scaled(along, hn::Div(splat(1), l)), z);
+    }
+
+    /// surface_normal() of query.cpp.
+    HWY_INLINE Vectors surface_normals(const Rays<Grid>& rays, const Samples<Grid>& samples,
+                                       const std::array<Floats, 4>& entries, const Vectors& e_r,
+                                       const Ends& ends) const {
+        const typename Grid::Derivatives derivative = grid_.weight_derivatives(samples.cell);
+        const Floats value = interpolated(rays, samples, entries);
+        Floats slope_u = hn::Zero(kFloat);
+        Floats slope_v = hn::Zero(kFloat);
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            const Floats excess = hn::IfThenElseZero(samples.usable[corner], hn::Sub(entries[corner], value));
+            slope_u = hn::Add(slope_u, hn::Mul(derivative.along_u[corner], excess));
+            slope_v = hn::Add(slope_v, hn::Mul(derivative.along_v[corner], excess));
+        }
+        const Vectors gradient = grid_.surface_gradient(
+            e_r, ends.distance, hn::Div(slope_u, samples.weight_sum), hn::Div(slope_v, samples.weight_sum));
+        const Floats steepness = length(gradient);
+        const Mask finite = hn::Lt(steepness, splat(std::numeric_limits<float>::infinity()));
+        const Vectors unit = choose(finite, scaled(gradient, hn::Div(splat(1), steepness)), e_r);
+        const Mask on_sphere = as_mask(hn::Eq(ends.k, samples.entry_count));
+        const Mask inward = hn::AndNot(on_sphere, none_of(is_inside(ends.k)));
+        return grid_.from_grid(choose(inward, negated(unit), choose(on_sphere, e_r, unit)));
+    }
+
+    /// contact() of query.cpp, for the lanes that are wanted; the others get none.
+    template <typename EntriesAt>
+    HWY_INLINE Contacts contacts_of(const Vectors& point, const Rays<Grid>& rays,
+                                    const Samples<Grid>& samples, const Intervals& intervals,
+                                    const EntriesAt& entries_at, Mask wanted, float margin) const {
+        const Floats zero = hn::Zero(kFloat);
+        const Ends ends = nearest_ends(samples, intervals, rays.length);
+        const Mask inside = hn::And(hn::Le(rays.length, splat(map_.radius)), is_inside(intervals.number));
+        const Floats distance = hn::Abs(hn::Sub(ends.distance, rays.length));
+        const Mask near = hn::Or(inside, hn::Le(distance, splat(margin)));
+        const Mask found = hn::And(hn::And(wanted, ends.exist), near);
+        if (hn::AllFalse(kFloat, found)) return {point, {zero, zero, zero}, zero, found};
+
+        const Vectors e_r = direction_of(rays.along);
+        const Vectors normal = surface_normals(rays, samples, entries_at(ends.k), e_r, ends);
+        const Vectors offset = scaled(grid_.from_grid(e_r), ends.distance);
+        const Vectors end_point{hn::Add(splat(map_.centre.x), offset.x),
+                                hn::Add(splat(map_.centre.y), offset.y),
+                                hn::Add(splat(map_.centre.z), offset.z)};
+        return {choose(found, end_point, point), choose(found, normal, {zero, zero, zero}),
+                hn::IfThenElseZero(found, choose(inside, distance, hn::Neg(distance))),
+                hn::And(found, inside)};
+    }
+
+    static HWY_INLINE void store(const Contacts& from, Contact* contacts) {
+        static_assert(sizeof(Contact) == 36 && offsetof(Contact, normal) == 12 &&
+                      offsetof(Contact, depth) == 24 && offsetof(Contact, face) == 28 &&
+                      offsetof(Contact, inside) == 32 && offsetof(Contact, certain) == 33 &&
+                      offsetof(Contact, feature) == 34);
+        const Floats no_face = hn::BitCast(kFloat, splat_int(Contact::kUnknownFace));
+        HWY_ALIGN float head[4 * kLanes];
+        HWY_ALIGN float body[4 * kLanes];
+        hn::StoreInterleaved4(from.point.x, from.point.y, from.point.z, from.normal.x, kFloat, head);
+        hn::StoreInterleaved4(from.normal.y, from.normal.z, from.depth, no_face, kFloat, body);
+        // The three flags are bytes, the first in the lowest of a word; what follows them is padding.
+        HWY_ALIGN std::int32_t flags[kLanes];
+        constexpr std::int32_t kCertain = 0x100;
+        hn::Store(hn::Add(splat_int(kCertain), hn::IfThenElseZero(as_int_mask(from.inside), splat_int(1))),
+                  kInt, flags);
+        auto* bytes = reinterpret_cast<std::byte*>(contacts);
+        for (std::size_t lane = 0; lane < kLanes; ++lane, bytes += sizeof(Contact)) {
+            std::memcpy(bytes, head + 4 * lane, 16);
+            std::memcpy(bytes + 16, body + 4 * lane, 16);
+            std::memcpy(bytes + 32, flags + lane, 4);
+        }
+    }
+
+    const DistanceMapView& map_;
+    Grid grid_;
+    Entries entries_;
+    std::int32_t direction_count_, entry_count_;
+    Mask centre_inside_;
+};
+
+// ---- Batches
+
+/// The two kinds of answers: which function of a kernel gives them, and where they go.
+struct InsideAnswers {
+    using Answer = std::uint8_t;
+    std::uint8_t* answers;
+
+    template <typename Kernel>
+    HWY_INLINE Mask easy(const Kernel& kernel, const Vec3f* points, std::size_t first) const {
+        return kernel.contains_easy(points, answers + first);
+    }
+    template <typename Kernel>
+    HWY_INLINE void any(const Kernel& kernel, const Vec3f* points, Answer* result) const {
+        kernel.contains_any(points, result);
+    }
+};
+
+struct ContactAnswers {
+    using Answer = Contact;
+    Contact* answers;
+    float margin;
+
+    template <typename Kernel>
+    HWY_INLINE Mask easy(const Kernel& kernel, const Vec3f* points, std::size_t first) const {
+        return kernel.contacts_easy(points, margin, answers + first);
+    }
+    template <typename Kernel>
+    HWY_INLINE void any(const Kernel& kernel, const Vec3f* points, Answer* result) const {
+        kernel.contacts_any(points, margin, result);
+    }
+};
+
+/// Particles of a piece of a batch that are left for later, by their number in the batch.
+class Leftovers {
+  public:
+    static constexpr std::size_t kMost = 256;
+
+    HWY_INLINE void add(Mask mask, std::size_t first) {
+        if (hn::AllFalse(kFloat, mask)) return;
+        const Ints numbers = hn::Iota(kInt, static_cast<std::int32_t>(first));
+        hn::StoreU(hn::Compress(numbers, as_int_mask(mask)), kInt, numbers_ + count_);
+        count_ += hn::CountTrue(kFloat, mask);
+    }
+    void add_one(std::size_t number) { numbers_[count_++] = static_cast<std::int32_t>(number); }
+
+    template <typename Kernel, typename Answers>
+    HWY_INLINE void work_off(const Kernel& kernel, const Vec3f* points, const Answers& answers) {
+        Vec3f some[kLanes];
+        typename Answers::Answer results[kLanes];
+        for (std::size_t begin = 0; begin < count_; begin += kLanes) {
+            const std::size_t count = std::min(kLanes, count_ - begin);
+            for (std::size_t lane = 0; lane < kLanes; ++lane)
+                some[lane] = points[numbers_[begin + std::min(lane, count - 1)]];
+            answers.any(kernel, some, results);
+            for (std::size_t lane = 0; lane < count; ++lane)
+                answers.answers[numbers_[begin + lane]] = results[lane];
+        }
+        count_ = 0;
+    }
+
+  private:
+    std::int32_t numbers_[kMost + kLanes];
+    std::size_t count_ = 0;
+};
+
+/// @param points  [count] one after the other
+template <typename Kernel, typename Answers>
+void answer_piece(const Kernel& kernel, const Vec3f* points, std::size_t count, const Answers& answers) {
+    Leftovers leftovers;
+    std::size_t i = 0;
+    for (; i + kLanes <= count; i += kLanes) leftovers.add(answers.easy(kernel, points + i, i), i);
+    for (; i < count; ++i) leftovers.add_one(i);
+    leftovers.work_off(kernel, points, answers);
+}
+
+bool is_contiguous(const StridedSpan<const Vec3f>& points) {
+    return points.size() < 2 || &points[1] == &points[0] + 1;
+}
+
+template <typename Kernel, typename Answers>
+void answer_all(const Kernel& kernel, const StridedSpan<const Vec3f>& points, Answers answers) {
+    const bool contiguous = is_contiguous(points);
+    Vec3f copies[Leftovers::kMost];
+    for (std::size_t begin = 0; begin < points.size(); begin += Leftovers::kMost) {
+        const std::size_t count = std::min(Leftovers::kMost, points.size() - begin);
+        if (!contiguous)
+            for (std::size_t i = 0; i < count; ++i) copies[i] = points[begin + i];
+        answer_piece(kernel, contiguous ? &points[begin] : copies, count, answers);
+        answers.answers += count;
+    }
+}
+
+template <typename Answers>
+void answer_in_format(const DistanceMapView& map, const StridedSpan<const Vec3f>& points,
+                      const Answers& answers) {
+    if (map.entry_format == EntryFormat::Float32)
+        answer_all(Kernel<SphericalLanes, FloatEntries>(map), points, answers);
+    else
+        answer_all(Kernel<SphericalLanes, UnormEntries>(map), points, answers);
+}
+
+} // namespace
+
+void contains_lanes(const DistanceMapView& map, const StridedSpan<const Vec3f>& points,
+                    std::uint8_t* inside) {
+    answer_in_format(map, points, InsideAnswers{inside});
+}
+
+void contacts_lanes(const DistanceMapView& map, const StridedSpan<const Vec3f>& points, float margin,
+                    Contact* contacts) {
+    answer_in_format(map, points, ContactAnswers{contacts, margin});
+}
+
+#endif
+
+} // namespace HWY_NAMESPACE
+} // namespace echinus
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace echinus {
+
+namespace {
+
+HWY_EXPORT(contains_lanes);
+HWY_EXPORT(contacts_lanes);
+
+} // namespace
+
+bool kernels_read(const DistanceMapView& map) noexcept {
+    constexpr std::size_t kFewest = 4;                  // a row
+    constexpr std::size_t kMost = std::size_t{1} << 30; // offsets in bytes of 16-bit entries have 31 bits
+    return map.entry_count() >= kFewest && map.entry_count() < kMost;
+}
+
+void contains_by_kernel(const DistanceMapView& map, const StridedSpan<const Vec3f>& points_local,
+                        std::span<std::uint8_t> inside) noexcept {
+    ECHINUS_DISPATCH(contains_lanes)(map, points_local, inside.data());
+}
+
+void contacts_by_kernel(const DistanceMapView& map, const StridedSpan<const Vec3f>& points_local,
+                        float margin, std::span<Contact> contacts) noexcept {
+    ECHINUS_DISPATCH(contacts_lanes)(map, points_local, margin, contacts.data());
+}
+
+} // namespace echinus
+#endif
