@@ -1,0 +1,15 @@
+#pragma once
+
+#include "baselines/classified_grid/layout.hpp"
+
+#include <echinus/contact.hpp>
+
+#include <span>
+
+/// The batch queries in vector instructions; simd/dispatch.hpp chooses which.
+namespace echinus::baselines {
+
+void contains_kernel(const GridArrays& grid, std::span<const Vec3f> points_local,
+                     std::span<std::uint8_t> inside);
+
+} // namespace echinus::baselines

@@ -1,0 +1,211 @@
+// Compiled once per instruction set, hence the guard that toggles: which cell particles lie in, and the
+// corners of faces, several at a time.
+
+#if defined(ECHINUS_CLASSIFIED_GRID_LOOKUP_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef ECHINUS_CLASSIFIED_GRID_LOOKUP_INL
+#undef ECHINUS_CLASSIFIED_GRID_LOOKUP_INL
+#else
+#define ECHINUS_CLASSIFIED_GRID_LOOKUP_INL
+#endif
+
+#include "baselines/classified_grid/layout.hpp"
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+#if HWY_TARGET != HWY_SCALAR // the reference stands for it
+namespace echinus::baselines::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::CappedTag<float, 16>;
+using Ints = hn::Rebind<std::int32_t, Floats>;
+
+template <class V>
+struct Vectors {
+    V x, y, z;
+};
+using FloatVectors = Vectors<hn::VFromD<Floats>>;
+using IntVectors = Vectors<hn::VFromD<Ints>>;
+
+template <class V>
+HWY_ATTR HWY_INLINE Vectors<V> sub(const Vectors<V>& a, const Vectors<V>& b) {
+    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+template <class V>
+HWY_ATTR HWY_INLINE Vectors<V> scaled(const Vectors<V>& a, const V s) {
+    return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
+}
+template <class V>
+HWY_ATTR HWY_INLINE Vectors<V> cross(const Vectors<V>& a, const Vectors<V>& b) {
+    return {hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y)), hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z)),
+            hn::MulSub(a.x, b.y, hn::Mul(a.y, b.x))};
+}
+template <class V>
+HWY_ATTR HWY_INLINE V dot(const Vectors<V>& a, const Vectors<V>& b) {
+    return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+/// The longest component.
+template <class V>
+HWY_ATTR HWY_INLINE V longest(const Vectors<V>& a) {
+    return hn::Max(hn::Max(hn::Abs(a.x), hn::Abs(a.y)), hn::Abs(a.z));
+}
+HWY_ATTR HWY_INLINE hn::MFromD<Floats> is_zero(const FloatVectors& a) {
+    return hn::Eq(longest(a), hn::Zero(Floats()));
+}
+
+HWY_ATTR HWY_INLINE hn::VFromD<Ints> mul_add(hn::VFromD<Ints> a, std::int32_t factor, hn::VFromD<Ints> b) {
+    return hn::Add(hn::Mul(a, hn::Set(Ints(), factor)), b);
+}
+
+/// Numbers of Indices, 16 at a time. @pre one element more than is asked for can be read
+class IndexGather {
+  public:
+    explicit IndexGather(const Indices& indices)
+        : base_(indices.wide.empty() ? reinterpret_cast<const std::int32_t*>(indices.narrow.data())
+                                     : reinterpret_cast<const std::int32_t*>(indices.wide.data())),
+          narrow_(indices.wide.empty()) {}
+
+    HWY_ATTR HWY_INLINE hn::VFromD<Ints> operator()(hn::VFromD<Ints> i) const {
+        const Ints di;
+        if (narrow_) return hn::And(hn::GatherOffset(di, base_, hn::ShiftLeft<1>(i)), hn::Set(di, 0xFFFF));
+        return hn::GatherIndex(di, base_, i);
+    }
+
+  private:
+    const std::int32_t* base_;
+    bool narrow_;
+};
+
+/// Where particles are in the grid. Rounds as GridFrame::in_cells() does.
+class CellLookup {
+  public:
+    HWY_ATTR explicit CellLookup(const GridArrays& grid)
+        : frame_(grid.frame), numbers_(grid.brick_numbers),
+          bricks_(reinterpret_cast<const std::int32_t*>(grid.bricks.data())) {}
+
+    struct Found {
+        hn::VFromD<Ints> state; ///< CellState; 0 beyond the grid
+        hn::VFromD<Ints> cell;  ///< number of the brick << 6 | number in the brick
+    };
+
+    HWY_ATTR HWY_INLINE Found operator()(hn::VFromD<Floats> x, hn::VFromD<Floats> y,
+                                         hn::VFromD<Floats> z) const {
+        const Floats df;
+        const Ints di;
+        const FloatVectors g = in_cells(x, y, z);
+        const auto within =
+            hn::And(hn::And(is_within(g.x, frame_.cell_limits.x), is_within(g.y, frame_.cell_limits.y)),
+                    is_within(g.z, frame_.cell_limits.z));
+        const auto whole = [&](hn::VFromD<Floats> v)
+                               HWY_ATTR { return hn::ConvertTo(di, hn::IfThenElseZero(within, v)); };
+        const auto cx = whole(g.x), cy = whole(g.y), cz = whole(g.z);
+        const auto row = mul_add(hn::ShiftRight<2>(cz), frame_.brick_counts[1], hn::ShiftRight<2>(cy));
+        const auto place = mul_add(row, frame_.brick_counts[0], hn::ShiftRight<2>(cx));
+        const auto number = numbers_(place);
+        const auto three = hn::Set(di, 3);
+        const auto layer = hn::And(cz, three);
+        const auto in_layer = hn::Or(hn::And(cx, three), hn::ShiftLeft<2>(hn::And(cy, three)));
+        static_assert(sizeof(Brick) == 6 * sizeof(std::int32_t));
+        const auto states = hn::GatherIndex(di, bricks_, mul_add(number, 6, layer));
+        const hn::Rebind<std::uint32_t, Floats> du;
+        const auto state = hn::Shr(hn::BitCast(du, states), hn::BitCast(du, hn::Add(in_layer, in_layer)));
+        return {hn::IfThenElseZero(hn::RebindMask(di, within), hn::And(hn::BitCast(di, state), three)),
+                hn::Or(hn::ShiftLeft<6>(number), hn::Or(hn::ShiftLeft<4>(layer), in_layer))};
+    }
+
+    /// Snapped particles, counted from the centres of their cells. @pre within the grid
+    HWY_ATTR HWY_INLINE FloatVectors from_centre(hn::VFromD<Floats> x, hn::VFromD<Floats> y,
+                                                 hn::VFromD<Floats> z) const {
+        const FloatVectors g = in_cells(x, y, z);
+        return {from_centre(x, g.x, frame_.lattice.centre.x, frame_.origin.x),
+                from_centre(y, g.y, frame_.lattice.centre.y, frame_.origin.y),
+                from_centre(z, g.z, frame_.lattice.centre.z, frame_.origin.z)};
+    }
+
+    HWY_ATTR HWY_INLINE FloatVectors in_cells(hn::VFromD<Floats> x, hn::VFromD<Floats> y,
+                                              hn::VFromD<Floats> z) const {
+        const Floats df;
+        const auto scale = hn::Set(df, frame_.cells_per_unit);
+        const auto along = [&](hn::VFromD<Floats> v, float centre, float shift) HWY_ATTR {
+            return hn::Add(hn::Mul(hn::Sub(v, hn::Set(df, centre)), scale), hn::Set(df, shift));
+        };
+        return {along(x, frame_.centre.x, frame_.shift.x), along(y, frame_.centre.y, frame_.shift.y),
+                along(z, frame_.centre.z, frame_.shift.z)};
+    }
+
+  private:
+    HWY_ATTR HWY_INLINE static hn::MFromD<Floats> is_within(hn::VFromD<Floats> g, float limit) {
+        const Floats df;
+        return hn::And(hn::Ge(g, hn::Zero(df)), hn::Lt(g, hn::Set(df, limit)));
+    }
+
+    HWY_ATTR HWY_INLINE hn::VFromD<Floats> from_centre(hn::VFromD<Floats> v, hn::VFromD<Floats> in_cells,
+                                                       double centre, std::int32_t origin) const {
+        const Floats df;
+        const Ints di;
+        const hn::Half<Floats> df_half;
+        const hn::Rebind<double, hn::Half<Floats>> dd;
+        const auto snapped = [&](hn::VFromD<hn::Half<Floats>> part) HWY_ATTR {
+            const auto place = hn::Mul(hn::Sub(hn::PromoteTo(dd, part), hn::Set(dd, centre)),
+                                       hn::Set(dd, frame_.lattice.inverse_step));
+            return hn::DemoteTo(df_half, hn::Round(place)); // whole and below 2^20: exact
+        };
+        const auto lattice = hn::ConvertTo(
+            di, hn::Combine(df, snapped(hn::UpperHalf(df_half, v)), snapped(hn::LowerHalf(df_half, v))));
+        const auto cell = hn::ConvertTo(di, in_cells);
+        const auto middle = mul_add(cell, frame_.cell_steps, hn::Set(di, origin + frame_.cell_steps / 2));
+        return hn::ConvertTo(df, hn::Sub(lattice, middle));
+    }
+
+    const GridFrame& frame_;
+    IndexGather numbers_;
+    const std::int32_t* bricks_;
+};
+
+struct FaceVectors {
+    FloatVectors a, b, c;
+};
+
+/// Corners of faces, counted from a centre each: whole numbers below 2^22, exact as floats.
+class FaceGather {
+  public:
+    HWY_ATTR explicit FaceGather(const GridArrays& grid)
+        : corners_(grid.corners), vertices_(reinterpret_cast<const std::int32_t*>(grid.vertices.data())) {}
+
+    HWY_ATTR HWY_INLINE FaceVectors operator()(hn::VFromD<Ints> faces, hn::VFromD<Ints> centre_x,
+                                               hn::VFromD<Ints> centre_y, hn::VFromD<Ints> centre_z) const {
+        const Ints di;
+        const auto first = hn::Add(faces, hn::Add(faces, faces));
+        const IntVectors centre{centre_x, centre_y, centre_z};
+        const auto corner = [&](std::int32_t k)
+                                HWY_ATTR { return place(corners_(hn::Add(first, hn::Set(di, k))), centre); };
+        return {corner(0), corner(1), corner(2)};
+    }
+
+  private:
+    HWY_ATTR HWY_INLINE FloatVectors place(hn::VFromD<Ints> vertex, const IntVectors& centre) const {
+        const Floats df;
+        const Ints di;
+        const hn::Rebind<std::uint32_t, Floats> du;
+        const auto twice = hn::Add(vertex, vertex);
+        const auto low = hn::GatherIndex(di, vertices_, twice);
+        const auto high = hn::GatherIndex(di, vertices_ + 1, twice);
+        // As unpacked() does.
+        const auto x = hn::ShiftRight<11>(hn::ShiftLeft<11>(low));
+        const auto y = hn::Or(hn::ShiftRight<11>(hn::ShiftLeft<22>(high)),
+                              hn::BitCast(di, hn::ShiftRight<21>(hn::BitCast(du, low))));
+        const auto z = hn::ShiftRight<11>(high);
+        return {hn::ConvertTo(df, hn::Sub(x, centre.x)), hn::ConvertTo(df, hn::Sub(y, centre.y)),
+                hn::ConvertTo(df, hn::Sub(z, centre.z))};
+    }
+
+    IndexGather corners_;
+    const std::int32_t* vertices_;
+};
+
+} // namespace echinus::baselines::HWY_NAMESPACE
+#endif
+HWY_AFTER_NAMESPACE();
+
+#endif

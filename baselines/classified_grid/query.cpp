@@ -1,0 +1,73 @@
+// One particle at a time, exactly: what the kernels are compared with.
+
+#include "baselines/classified_grid/classified_grid.hpp"
+#include "baselines/classified_grid/kernels.hpp"
+#include "baselines/classified_grid/layout.hpp"
+#include "baselines/classified_grid/nearest.hpp"
+#include "exact_map/segment_crossing.hpp"
+#include "simd/dispatch.hpp"
+
+#include <cassert>
+
+namespace echinus::baselines {
+
+int winding_in_cell(const GridArrays& grid, const CellList& list, int winding_of_centre,
+                    const LatticePoint& centre, const LatticePoint& particle) {
+    int winding = winding_of_centre;
+    for (std::uint32_t r = list.first; r < list.last; ++r)
+        if (const auto crossing = crossing_with_face(grid.face(grid.references[r]), centre, particle))
+            winding += crossing->entering() ? 1 : -1;
+    return winding;
+}
+
+bool is_in_front(const std::array<LatticePoint, 3>& face, const LatticePoint& point) {
+    const LatticePoint normal = cross(face[1] - face[0], face[2] - face[0]);
+    const std::int64_t distance = dot(normal, point - face[0]);
+    return distance != 0 ? distance > 0 : sign_of_perturbation(normal) > 0;
+}
+
+bool is_inside(const GridArrays& grid, const Vec3f& point_local) {
+    const Vec3f in_cells = grid.frame.in_cells(point_local);
+    if (!grid.frame.is_within(in_cells)) return false;
+    const CellPlace cell = cell_at(in_cells);
+    const Brick& brick = grid.brick(cell);
+    const std::uint32_t in_brick = cell_in_brick(cell);
+    const std::uint32_t state = state_of(brick, in_brick);
+    if (!(state & kSurfaceBit)) return state != 0;
+    const CellList list = list_of(grid, brick, in_brick);
+    const LatticePoint particle = rounded(grid.frame.lattice.to_lattice(point_local));
+    return winding_in_cell(grid, list, winding_of_centre(grid, list.number, state),
+                           LatticePoint(grid.frame.centre_of(cell)), particle) != 0;
+}
+
+bool ClassifiedGrid::contains(const Vec3f& point_local) const noexcept {
+    return is_inside(*arrays_, point_local);
+}
+
+Contact ClassifiedGrid::contact(const Vec3f& point_local, float margin) const noexcept {
+    Contact none;
+    none.point = point_local;
+    if (!is_finite(point_local)) return none;
+    const bool inside = is_inside(*arrays_, point_local);
+    if (!inside && !(margin > 0)) return none;
+    const LatticeFrame& lattice = arrays_->frame.lattice;
+    constexpr double kEverything = 4 * static_cast<double>(kLatticeExtent);
+    const double farthest = inside ? kEverything : double{margin} * lattice.inverse_step;
+    const auto nearest = nearest_place(*arrays_, lattice.to_lattice(point_local), farthest);
+    return nearest ? contact_at(*arrays_, point_local, inside, *nearest) : none;
+}
+
+void ClassifiedGrid::contains_batch(std::span<const Vec3f> points_local,
+                                    std::span<std::uint8_t> inside) const {
+    assert(points_local.size() == inside.size());
+    if (use_kernels()) return contains_kernel(*arrays_, points_local, inside);
+    for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = contains(points_local[i]) ? 1 : 0;
+}
+
+void ClassifiedGrid::contacts_batch(std::span<const Vec3f> points_local, float margin,
+                                    std::span<Contact> contacts) const {
+    assert(points_local.size() == contacts.size());
+    for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = contact(points_local[i], margin);
+}
+
+} // namespace echinus::baselines
