@@ -4,6 +4,7 @@
 #include "exact_map/border.hpp"
 #include "exact_map/centre_search.hpp"
 #include "exact_map/face_tree.hpp"
+#include "exact_map/index_storage.hpp"
 #include "exact_map/layout.hpp"
 #include "exact_map/resolution.hpp"
 #include "mesh/mesh_hash.hpp"
@@ -40,32 +41,11 @@ std::uint64_t hash_of(const TriangleMesh& mesh, const ExactMapOptions& options) 
     return mesh_hash(mesh, XXH64(fields.data(), sizeof fields, 0));
 }
 
-/// An IndexArray's storage.
-class Indices {
-  public:
-    /// @param bound  above all values
-    template <typename Values>
-    void assign(const Values& values, std::size_t bound) {
-        narrow_.clear();
-        wide_.clear();
-        if (bound <= 65536)
-            for (std::uint32_t value : values) narrow_.push_back(static_cast<std::uint16_t>(value));
-        else
-            wide_.assign(values.begin(), values.end());
-    }
-    IndexArray view() const { return {narrow_, wide_}; }
-
-  private:
-    std::vector<std::uint16_t> narrow_;
-    std::vector<std::uint32_t> wide_;
-};
-
 struct OwnedArrays {
     Bands bands;
-    Indices references;
     std::vector<Vec3<std::int32_t>> vertices;
-    Indices corners;
-    Indices face_numbers;
+    IndexStorage corners;
+    IndexStorage face_numbers;
     std::vector<TreeNode> nodes;
     std::vector<BorderEdge> border;
 };
@@ -83,11 +63,20 @@ void reorder(LatticeMesh& lattice, const std::vector<std::uint32_t>& order) {
     lattice.face_numbers = std::move(numbers);
 }
 
-std::vector<std::uint32_t> flattened(const std::vector<Triangle>& faces) {
-    std::vector<std::uint32_t> corners;
-    corners.reserve(3 * faces.size());
-    for (const Triangle& face : faces) corners.insert(corners.end(), face.begin(), face.end());
-    return corners;
+void set_numbers(IndexStorage& storage, std::size_t bound, const std::vector<std::uint32_t>& values) {
+    storage.reset(values.size(), bound);
+    storage.with_numbers([&]<typename Number>(Number* numbers) {
+        std::transform(values.begin(), values.end(), numbers,
+                       [](std::uint32_t value) { return static_cast<Number>(value); });
+    });
+}
+
+void set_corners(IndexStorage& storage, std::size_t bound, const std::vector<Triangle>& faces) {
+    storage.reset(3 * faces.size(), bound);
+    storage.with_numbers([&]<typename Number>(Number* numbers) {
+        for (const Triangle& face : faces)
+            for (std::uint32_t vertex : face) *numbers++ = static_cast<Number>(vertex);
+    });
 }
 
 /// Faces that shrank to a segment or a point on the lattice take no part in what is inside. But they are
@@ -102,9 +91,9 @@ void add_collapsed_faces(const TriangleMesh& mesh, LatticeMesh& lattice) {
     }
 }
 
-LatticeMesh snap(const TriangleMesh& mesh, const ExactMapOptions& options) {
+LatticeMesh snap(const TriangleMesh& mesh, const ExactMapOptions& options, BandFinder& finder) {
     LatticeMesh lattice = options.centre == CentreChoice::Search
-                              ? snap_around_best_centre(mesh, options.thread_count)
+                              ? snap_around_best_centre(mesh, options.thread_count, finder)
                               : snap_to_lattice(mesh);
     if (lattice.faces.empty())
         throw Error(ErrorCode::InvalidMesh, "no face is larger than a step of the lattice, " +
@@ -122,8 +111,8 @@ void set_surface(const TriangleMesh& mesh, LatticeMesh& lattice, OwnedArrays& ar
     arrays.border = find_border(lattice);
     arrays.vertices.clear();
     for (const LatticePoint& vertex : lattice.vertices) arrays.vertices.emplace_back(vertex);
-    arrays.corners.assign(flattened(lattice.faces), lattice.vertices.size());
-    arrays.face_numbers.assign(lattice.face_numbers, mesh.faces.size());
+    set_corners(arrays.corners, lattice.vertices.size(), lattice.faces);
+    set_numbers(arrays.face_numbers, mesh.faces.size(), lattice.face_numbers);
 }
 
 ExactMapView view_of(const OwnedArrays& arrays, const LatticeMesh& lattice, std::uint32_t divisions,
@@ -136,7 +125,7 @@ ExactMapView view_of(const OwnedArrays& arrays, const LatticeMesh& lattice, std:
     view.band_offsets = arrays.bands.offsets;
     view.bands = arrays.bands.bands;
     view.winding_below = arrays.bands.winding_below;
-    view.references = arrays.references.view();
+    view.references = arrays.bands.references.view();
     view.reference_parts = arrays.bands.reference_parts;
     view.vertices = arrays.vertices;
     view.corners = arrays.corners.view();
@@ -147,10 +136,10 @@ ExactMapView view_of(const OwnedArrays& arrays, const LatticeMesh& lattice, std:
 }
 
 /// Finds the bands for the wished number of cells. Returns the divisions.
-std::uint32_t set_bands(const LatticeMesh& lattice, const ExactMapOptions& options, OwnedArrays& arrays) {
+std::uint32_t set_bands(const LatticeMesh& lattice, const ExactMapOptions& options, BandFinder& finder,
+                        OwnedArrays& arrays) {
     const auto find = [&](std::uint32_t candidate) {
-        find_bands(lattice, arrays.border, OctahedralCells(candidate), options.thread_count, arrays.bands);
-        arrays.references.assign(arrays.bands.references, lattice.faces.size());
+        finder.find(lattice, arrays.border, OctahedralCells(candidate), options.thread_count, arrays.bands);
     };
     std::uint32_t divisions = options.divisions;
     if (options.byte_budget != 0)
@@ -177,7 +166,7 @@ ExactMapStatistics statistics_of(const TriangleMesh& mesh, const LatticeMesh& la
     statistics.mean_list = band_count > 0 ? static_cast<float>(bands.references.size()) / band_count : 0;
     statistics.expected_tests = static_cast<float>(expected_tests(bands));
     double uncertain = 0, uncertain_cells = 0, whole = 0;
-    for (const Bands::Volume& volume : bands.uncertain_volumes) {
+    for (const CellVolume& volume : bands.volumes) {
         uncertain += volume.uncertain;
         uncertain_cells += volume.uncertain > 0 ? volume.whole : 0;
         whole += volume.whole;
@@ -194,6 +183,7 @@ ExactMapStatistics statistics_of(const TriangleMesh& mesh, const LatticeMesh& la
 struct ExactMapBuilder::Memory {
     TriangleMesh mesh;
     ExactMapOptions options;
+    BandFinder finder;
     std::shared_ptr<OwnedArrays> arrays;
     std::optional<ExactMap> map;
 };
@@ -209,15 +199,14 @@ ExactMapBuilder::ExactMapBuilder(ExactMapBuilder&&) noexcept = default;
 ExactMapBuilder& ExactMapBuilder::operator=(ExactMapBuilder&&) noexcept = default;
 
 const ExactMap& ExactMapBuilder::rebuild(std::span<const Vec3f> vertices) {
-    auto& [mesh, options, arrays, map] = *memory_;
+    auto& [mesh, options, finder, arrays, map] = *memory_;
     map.reset();
     if (arrays.use_count() != 1) arrays = std::make_shared<OwnedArrays>(); // somebody reads the old ones
     mesh.vertices.assign(vertices.begin(), vertices.end());
-    LatticeMesh lattice = snap(mesh, options);
+    LatticeMesh lattice = snap(mesh, options, finder);
     set_surface(mesh, lattice, *arrays);
-    const std::uint32_t divisions = set_bands(lattice, options, *arrays);
+    const std::uint32_t divisions = set_bands(lattice, options, finder, *arrays);
     const ExactMapStatistics statistics = statistics_of(mesh, lattice, arrays->bands);
-    arrays->bands.references = {}; // the view has them as narrow as they can be
     return map.emplace(view_of(*arrays, lattice, divisions, options.rule), statistics, hash_of(mesh, options),
                        arrays);
 }

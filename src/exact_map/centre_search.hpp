@@ -1,6 +1,7 @@
 #pragma once
 
 #include "directions/lattice.hpp"
+#include "exact_map/bands.hpp"
 
 #include <echinus/mesh.hpp>
 
@@ -10,6 +11,6 @@ namespace echinus {
 /// from the bounding sphere's centre (Hooke and Jeeves 1961), on maps of few cells. Some twenty coarse
 /// builds.
 /// @throws Error as snap_to_lattice()
-LatticeMesh snap_around_best_centre(const TriangleMesh& mesh, unsigned thread_count);
+LatticeMesh snap_around_best_centre(const TriangleMesh& mesh, unsigned thread_count, BandFinder& finder);
 
 } // namespace echinus

@@ -11,4 +11,18 @@ namespace echinus {
 void parallel_for(std::size_t count, unsigned thread_count,
                   const std::function<void(std::size_t begin, std::size_t end)>& body);
 
+/// How many workers parallel_for_workers() has with so many threads.
+std::size_t worker_count(unsigned thread_count);
+
+/// parallel_for() whose body learns which worker runs it, a number below worker_count(thread_count). No two
+/// calls with one number overlap in time, so each worker can have memory of its own. Which worker gets which
+/// ranges is left to chance. @pre the body starts no parallel loop itself
+void parallel_for_workers(
+    std::size_t count, unsigned thread_count,
+    const std::function<void(std::size_t worker, std::size_t begin, std::size_t end)>& body);
+
+/// Calls both, at the same time if there are two threads for it. Exceptions reach the caller.
+void parallel_invoke(unsigned thread_count, const std::function<void()>& first,
+                     const std::function<void()>& second);
+
 } // namespace echinus

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "geometry/arena.hpp"
+
+#include <echinus/exact_map.hpp>
+
+#include <cstddef>
+#include <cstdint>
+
+namespace echinus {
+
+/// What an IndexArray looks at. Keeps its memory.
+class IndexStorage {
+  public:
+    /// Makes room for so many numbers, all below `bound`; what they are is arbitrary until set.
+    void reset(std::size_t size, std::size_t bound) {
+        const bool narrow = bound <= 65536;
+        narrow_.reset(narrow ? size : 0);
+        wide_.reset(narrow ? 0 : size);
+        is_narrow_ = narrow;
+    }
+
+    /// Calls visit(pointer to the numbers), of the type that they are stored in.
+    template <typename Visit>
+    void with_numbers(const Visit& visit) {
+        if (is_narrow_)
+            visit(narrow_.data());
+        else
+            visit(wide_.data());
+    }
+
+    std::size_t size() const { return narrow_.size() + wide_.size(); }
+    IndexArray view() const { return {narrow_, wide_}; }
+
+  private:
+    Arena<std::uint16_t> narrow_;
+    Arena<std::uint32_t> wide_;
+    bool is_narrow_ = true;
+};
+
+} // namespace echinus

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <type_traits>
+
+namespace echinus {
+
+/// A growing array of plain values whose memory is kept from one use to the next and never filled for
+/// nothing: what std::vector would set to zero stays unwritten, so that the thread that writes a page first
+/// is the one that needs it.
+template <typename T>
+class Arena {
+    static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+
+  public:
+    std::size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
+    T* data() { return data_.get(); }
+    const T* data() const { return data_.get(); }
+    T* begin() { return data(); }
+    T* end() { return data() + size_; }
+    const T* begin() const { return data(); }
+    const T* end() const { return data() + size_; }
+    T& operator[](std::size_t i) { return data_[i]; }
+    const T& operator[](std::size_t i) const { return data_[i]; }
+    T& back() { return data_[size_ - 1]; }
+    operator std::span<const T>() const { return {data(), size_}; }
+    operator std::span<T>() { return {data(), size_}; }
+
+    /// Keeps the memory.
+    void clear() { size_ = 0; }
+
+    /// Makes the array so long; what it held is lost, what it holds is arbitrary.
+    void reset(std::size_t size) {
+        if (size > capacity_) {
+            data_.reset();
+            data_ = std::make_unique_for_overwrite<T[]>(size);
+            capacity_ = size;
+        }
+        size_ = size;
+    }
+
+    /// Where the next `count` values go. They count from extend() on.
+    T* room_for(std::size_t count) {
+        if (size_ + count > capacity_) grow(size_ + count);
+        return data() + size_;
+    }
+
+    /// @pre `count` values were written to what room_for() gave, which was no less
+    void extend(std::size_t count) { size_ += count; }
+
+    void push_back(const T& value) {
+        *room_for(1) = value;
+        extend(1);
+    }
+
+  private:
+    void grow(std::size_t least) {
+        const std::size_t capacity = std::max(least, 2 * capacity_);
+        auto data = std::make_unique_for_overwrite<T[]>(capacity);
+        std::copy_n(data_.get(), size_, data.get());
+        data_ = std::move(data);
+        capacity_ = capacity;
+    }
+
+    std::unique_ptr<T[]> data_;
+    std::size_t size_ = 0, capacity_ = 0;
+};
+
+} // namespace echinus
