@@ -104,10 +104,11 @@ LatticeMesh snap(const TriangleMesh& mesh, const ExactMapOptions& options, BandF
 }
 
 /// Everything of the arrays but the bands.
-void set_surface(const TriangleMesh& mesh, LatticeMesh& lattice, OwnedArrays& arrays) {
-    FaceTree tree = build_face_tree(lattice);
+void set_surface(const TriangleMesh& mesh, LatticeMesh& lattice, unsigned thread_count, FaceTree& tree,
+                 OwnedArrays& arrays) {
+    build_face_tree(lattice, thread_count, tree);
     reorder(lattice, tree.order);
-    arrays.nodes = std::move(tree.nodes);
+    arrays.nodes = tree.nodes;
     arrays.border = find_border(lattice);
     arrays.vertices.clear();
     for (const LatticePoint& vertex : lattice.vertices) arrays.vertices.emplace_back(vertex);
@@ -183,6 +184,7 @@ ExactMapStatistics statistics_of(const TriangleMesh& mesh, const LatticeMesh& la
 struct ExactMapBuilder::Memory {
     TriangleMesh mesh;
     ExactMapOptions options;
+    FaceTree tree; ///< its order: of the map before
     BandFinder finder;
     std::shared_ptr<OwnedArrays> arrays;
     std::optional<ExactMap> map;
@@ -199,12 +201,12 @@ ExactMapBuilder::ExactMapBuilder(ExactMapBuilder&&) noexcept = default;
 ExactMapBuilder& ExactMapBuilder::operator=(ExactMapBuilder&&) noexcept = default;
 
 const ExactMap& ExactMapBuilder::rebuild(std::span<const Vec3f> vertices) {
-    auto& [mesh, options, finder, arrays, map] = *memory_;
+    auto& [mesh, options, tree, finder, arrays, map] = *memory_;
     map.reset();
     if (arrays.use_count() != 1) arrays = std::make_shared<OwnedArrays>(); // somebody reads the old ones
     mesh.vertices.assign(vertices.begin(), vertices.end());
     LatticeMesh lattice = snap(mesh, options, finder);
-    set_surface(mesh, lattice, *arrays);
+    set_surface(mesh, lattice, options.thread_count, tree, *arrays);
     const std::uint32_t divisions = set_bands(lattice, options, finder, *arrays);
     const ExactMapStatistics statistics = statistics_of(mesh, lattice, arrays->bands);
     return map.emplace(view_of(*arrays, lattice, divisions, options.rule), statistics, hash_of(mesh, options),
