@@ -6,24 +6,31 @@
 
 namespace echinus {
 
-/// How far the material of a moving collider went since the previous frame, at any point that it occupies
+/// How far the material of a moving collider went since the previous substep, at any point that it occupies
 /// now: p - previous_pose(pose^-1(p)), an affine function of p. Not velocity times time, whose error for a
 /// rotation would push particles outwards a little in every frame.
-class MaterialMotion {
-  public:
+struct MaterialMotion {
+    Vec3f turn_x, turn_y, turn_z; ///< rows of a matrix; 0 of a collider that stands still
+    Vec3f centre, shift;
+
+    MaterialMotion() = default;
     MaterialMotion(const RigidTransform& previous_pose, const RigidTransform& pose)
-        : centre_(pose.translation), shift_(pose.translation - previous_pose.translation) {
+        : centre(pose.translation) {
         const Matrix3d back = matrix_of(previous_pose.rotation * pose.rotation.inverse());
-        turn_ = {Vec3d{1, 0, 0} - back.row_x, Vec3d{0, 1, 0} - back.row_y, Vec3d{0, 0, 1} - back.row_z};
+        const Matrix3d turn{Vec3d{1, 0, 0} - back.row_x, Vec3d{0, 1, 0} - back.row_y,
+                            Vec3d{0, 0, 1} - back.row_z};
+        turn_x = Vec3f(turn.row_x);
+        turn_y = Vec3f(turn.row_y);
+        turn_z = Vec3f(turn.row_z);
+        // The centre was rounded to single precision; the shift makes up for it.
+        shift =
+            Vec3f(turn * (Vec3d(centre) - pose.translation) + pose.translation - previous_pose.translation);
     }
 
     Vec3f at(const Vec3f& point_world) const {
-        return Vec3f(turn_ * (Vec3d(point_world) - centre_) + shift_);
+        const Vec3f from_centre = point_world - centre;
+        return Vec3f{dot(turn_x, from_centre), dot(turn_y, from_centre), dot(turn_z, from_centre)} + shift;
     }
-
-  private:
-    Matrix3d turn_;
-    Vec3d centre_, shift_;
 };
 
 } // namespace echinus

@@ -37,12 +37,14 @@ struct PointArrays {
 /// The particles of a deformable while a frame is computed.
 struct Particles {
     PointArrays positions;
-    PointArrays previous; ///< one substep ago
+    PointArrays previous;    ///< one substep ago
+    PointArrays frame_start; ///< where they were when the frame began
     std::vector<float> inverse_masses;
 
     explicit Particles(const Deformable& deformable) : inverse_masses(deformable.inverse_masses) {
         positions.load(deformable.positions);
         previous.load(deformable.previous_positions);
+        frame_start = positions;
     }
     std::size_t count() const { return inverse_masses.size(); }
     bool pinned(std::size_t i) const { return inverse_masses[i] == 0; }

@@ -121,7 +121,7 @@ struct Alternating {
     }
 };
 
-LanePoints chosen(const Mask& mask, const LanePoints& yes, const LanePoints& no) {
+HWY_INLINE LanePoints chosen(const Mask& mask, const LanePoints& yes, const LanePoints& no) {
     return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y),
             hn::IfThenElse(mask, yes.z, no.z)};
 }

@@ -50,9 +50,8 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
       largest_speed(std::numeric_limits<double>::infinity()), particles_(deformable),
       sticks_(stiff_sticks(deformable, options)) {
     for (const Collider& collider : colliders) previous_poses_.push_back(collider.pose);
-    memories_.resize(colliders.size());
-    for (std::size_t i = 0; i < colliders.size(); ++i)
-        if (is_exact(colliders[i])) remember_free_places(i);
+    for (const Collider& collider : colliders)
+        if (is_exact(collider)) exact_.emplace_back(collider, particles_, options);
     unsettled_.reserve(exact_.size() * deformable.particle_count());
     resting_places_ = deformable.positions;
     const Sphere start = box_sphere(deformable.positions);
@@ -62,16 +61,25 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
 }
 
 void Simulation::Solver::step() {
+    begin_frame();
     integrate();
     move_colliders();
     for (std::uint32_t iteration = 0; iteration < options.iteration_count; ++iteration) {
         relax_sticks();
-        for (std::size_t i = 0; i < colliders.size(); ++i) collide(i);
+        collide();
     }
     keep_free();
     publish();
     ++frame;
     judge_frame();
+}
+
+void Simulation::Solver::begin_frame() {
+    const Stopwatch stopwatch(profile.integration_seconds);
+    particles_.frame_start = particles_.positions;
+    std::size_t exact = 0;
+    for (const Collider& collider : colliders)
+        if (is_exact(collider)) exact_[exact++].begin_frame(collider);
 }
 
 namespace {
@@ -102,9 +110,12 @@ void Simulation::Solver::integrate() {
 }
 
 void Simulation::Solver::move_colliders() {
+    const Stopwatch stopwatch(profile.collision_seconds);
+    std::size_t exact = 0;
     for (std::size_t i = 0; i < colliders.size(); ++i) {
         previous_poses_[i] = colliders[i].pose;
         colliders[i].pose = pose_after(colliders[i], options.time_step);
+        if (is_exact(colliders[i])) exact_[exact++].begin_substep(colliders[i], previous_poses_[i], options);
     }
 }
 
@@ -134,13 +145,16 @@ Vec3f answer(const Collider& collider, const Contact& contact, const Vec3f& posi
 
 } // namespace
 
-void Simulation::Solver::collide(std::size_t collider_index) {
+void Simulation::Solver::collide() {
     const Stopwatch stopwatch(profile.collision_seconds);
-    profile.query_count += deformable.particle_count();
-    if (is_exact(colliders[collider_index]))
-        collide_exactly(collider_index);
-    else
-        collide_radially(colliders[collider_index], previous_poses_[collider_index]);
+    std::size_t exact = 0;
+    for (std::size_t i = 0; i < colliders.size(); ++i) {
+        profile.query_count += particles_.count();
+        if (is_exact(colliders[i]))
+            exact_[exact++].relax(particles_, profile);
+        else
+            collide_radially(colliders[i], previous_poses_[i]);
+    }
 }
 
 void Simulation::Solver::collide_radially(const Collider& collider, const RigidTransform& previous_pose) {
@@ -165,22 +179,6 @@ void Simulation::Solver::collide_radially(const Collider& collider, const RigidT
         }
     }
     profile.map_query_count += particle_count;
-}
-
-void Simulation::Solver::collide_exactly(std::size_t collider_index) {
-    const ExactCollision collision = collision_with(collider_index);
-    for (std::size_t i = 0; i < deformable.particle_count(); ++i) {
-        if (particles_.pinned(i)) continue;
-        Vec3f position = particles_.positions[i], previous = particles_.previous[i];
-        if (!collision.relax(memories_[collider_index][i], position, previous, profile)) continue;
-        particles_.positions.set(i, position);
-        particles_.previous.set(i, previous);
-        ++profile.contact_count;
-    }
-}
-
-ExactCollision Simulation::Solver::collision_with(std::size_t collider_index) const {
-    return {colliders[collider_index], previous_poses_[collider_index], options};
 }
 
 void Simulation::Solver::publish() {

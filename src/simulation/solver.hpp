@@ -1,8 +1,8 @@
 #pragma once
 
+#include "simulation/exact_collision.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/sticks.hpp"
-#include "simulation/surface_memory.hpp"
 
 #include <echinus/simulation.hpp>
 
@@ -11,8 +11,6 @@
 #include <vector>
 
 namespace echinus {
-
-class ExactCollision;
 
 /// What a simulation is made of. `deformable` is what the user sees: it changes when a frame is complete.
 class Simulation::Solver {
@@ -30,30 +28,25 @@ class Simulation::Solver {
     SimulationProfile profile;
 
   private:
+    void begin_frame();
     void integrate();
     void move_colliders();
     void relax_sticks();
-    void collide(std::size_t collider_index);
+    void collide();
     void collide_radially(const Collider& collider, const RigidTransform& previous_pose);
-    void collide_exactly(std::size_t collider_index);
-    ExactCollision collision_with(std::size_t collider_index) const;
-    void remember_free_places(std::size_t collider_index);
     void keep_free();
     void lead_to_free_place(std::uint32_t particle);
-    void find_free_place(std::uint32_t particle, Vec3f& position, Vec3f& previous);
-    bool is_free(std::uint32_t particle, const Vec3f& position) const;
+    bool is_free(std::uint32_t particle) const;
     void count_lost(std::uint32_t particle);
-    void commit_free_places();
     void publish();
     void judge_frame();
     void judge_rest();
 
     Particles particles_;
     StickArrays sticks_;
-    std::vector<RigidTransform> previous_poses_;       // of the colliders, one frame ago
-    std::vector<std::vector<SurfaceMemory>> memories_; // [collider][particle]; none for a distance map
-    std::vector<std::size_t> exact_;                   // colliders with an exact map
-    std::vector<std::uint32_t> unsettled_;             // particles, in keep_free()
+    std::vector<RigidTransform> previous_poses_; // of the colliders, one substep ago
+    std::vector<ExactCollision> exact_;          // with each exact map, in the order of the colliders
+    std::vector<std::uint32_t> unsettled_;       // particles, in keep_free()
     Vec3d start_centre_;
     double bound_ = 0;
     std::vector<Vec3f> resting_places_; // where each particle was, quiet_frame_count_ frames ago

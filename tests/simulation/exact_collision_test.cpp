@@ -1,6 +1,7 @@
 // Simulations with exact maps. Whether a particle is lost is judged from outside: by contains() and sweep()
 // of the collider, from where the particle was at the end of one frame to where it is at the end of the next.
 
+#include "support/instruction_sets.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/simulation.hpp>
@@ -275,4 +276,19 @@ TEST(ExactCollision, GivesTheSameBitsOnEveryRunAndInEveryCopy) {
     EXPECT_GT(first.profile().contact_count, 0u);
     EXPECT_EQ(first.state_hash(), second.state_hash());
     EXPECT_EQ(first.state_hash(), copy.state_hash());
+}
+
+TEST(ExactCollision, GivesTheSameBitsUnderEachInstructionSet) {
+    const ExactMap torus = ExactMap::build(make_torus(1, 0.4, 30, 16));
+    std::vector<std::uint64_t> hashes;
+    test::under_each_instruction_set([&](std::string_view) {
+        const Collider turning{
+            .map = torus, .linear_velocity = {0, 0, 0.4}, .angular_velocity = {0.2, 0.1, 2}};
+        const Collider still{.map = torus, .pose = {Rotation::about({1, 2, 3}, 1), {0.3, 0.2, -1}}};
+        Simulation simulation(sheet_at(0.45, 2, 23), {turning, still}, {.thickness = kThickness});
+        for (int i = 0; i < 100; ++i) simulation.step();
+        EXPECT_GT(simulation.profile().contact_count, 0u);
+        hashes.push_back(simulation.state_hash());
+    });
+    for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes.front());
 }

@@ -1,0 +1,33 @@
+#include "simulation/collider_now.hpp"
+
+#include "directions/lattice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+namespace echinus {
+
+namespace {
+
+/// In lattice steps. The lattice itself is off by one step, a mesh judged without it by as much.
+constexpr float kGuard = 8;
+
+float largest(const Vec3d& scale) {
+    return static_cast<float>(std::max({std::fabs(scale.x), std::fabs(scale.y), std::fabs(scale.z)}));
+}
+
+} // namespace
+
+ColliderNow::ColliderNow(const Collider& collider, const RigidTransform& previous_pose,
+                         const SimulationOptions& options)
+    : map(std::get_if<ExactMap>(&collider.map)->view()), scale(collider.scale), local(collider),
+      body(collider.pose, {1, 1, 1}), material(previous_pose, collider.pose),
+      step(map.radius / static_cast<float>(kLatticeExtent) * largest(collider.scale)), guard(kGuard * step),
+      thickness(std::max(static_cast<float>(options.thickness), 2 * guard)),
+      friction(static_cast<float>(options.friction)),
+      coordinate_sum(static_cast<float>(std::fabs(collider.pose.translation.x) +
+                                        std::fabs(collider.pose.translation.y) +
+                                        std::fabs(collider.pose.translation.z))) {}
+
+} // namespace echinus

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "collider/frame_change.hpp"
+#include "simulation/material_motion.hpp"
+
+#include <echinus/collider.hpp>
+#include <echinus/exact_map.hpp>
+#include <echinus/simulation.hpp>
+
+namespace echinus {
+
+/// A collider with an exact map as it stands in one substep, and what keeping particles off it needs.
+///
+/// Lengths are those of the world in the *body frame*: the collider's frame with its scale applied. The map
+/// is asked in its own frame, *local*.
+struct ColliderNow {
+    ExactMapView map;
+    Vec3d scale;
+    FrameChange local, body;
+    MaterialMotion material;
+    float step;      ///< of the lattice, in world units
+    float guard;     ///< nearer to the surface no particle is left
+    float thickness; ///< at least two guards
+    float friction;
+    float coordinate_sum; ///< of where the collider stands: what rounding is judged by
+
+    ColliderNow(const Collider& collider, const RigidTransform& previous_pose,
+                const SimulationOptions& options);
+
+    Vec3f to_body(const Vec3f& point_local) const { return Vec3f(times(Vec3d(point_local), scale)); }
+    /// Outside? Whatever way the particle came.
+    bool outside(const Vec3f& position) const { return !contains(map, local.point_to_local(position)); }
+};
+
+} // namespace echinus

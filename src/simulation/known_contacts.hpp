@@ -1,0 +1,73 @@
+#pragma once
+
+#include "simulation/collider_now.hpp"
+#include "simulation/particles.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace echinus {
+
+/// What is known of the surface around each particle since the map was asked last: a ball without surface,
+/// and a contact plane where one was near. As long as a particle stays in the ball, at its distance from the
+/// surface, nobody need ask again: the distance changes by no more than the particle moves.
+///
+/// Kept in the body frame, and for the present substep in the world.
+struct KnownContacts {
+    /// Stands for no plane.
+    static constexpr float kNoPlane = std::numeric_limits<float>::infinity();
+    /// A pinned particle has this clearance: nobody asks. Its square is finite.
+    static constexpr float kNeverAsk = 1e18F;
+
+    PointArrays asked_at_body, asked_at; ///< where the particle was when the map was asked
+    /// [count + PointArrays::kPadding] No surface within this distance of there; negative before the first
+    /// answer.
+    std::vector<float> clearance;
+    PointArrays normal_body, normal; ///< of the contact plane, towards where the particle has to be
+    std::vector<float> height; ///< [count + PointArrays::kPadding] of asked_at over the plane, or kNoPlane
+
+    explicit KnownContacts(const Particles& particles);
+
+    /// Moves along with the collider, which has moved.
+    void follow(const ColliderNow& collider);
+    void remember(std::size_t i, const ColliderNow& collider, const Vec3f& position, float clearance_now);
+    void remember_plane(std::size_t i, const ColliderNow& collider, const Vec3f& normal_in_body,
+                        float height_now);
+};
+
+/// A contact plane is used until the particle has moved by this share of the thickness.
+inline constexpr float kPlaneReuse = 1.0F / 16;
+
+/// A list of particles with room for all of them and a vector more.
+struct ParticleList {
+    std::vector<std::uint32_t> particles;
+    std::size_t count = 0;
+
+    explicit ParticleList(std::size_t most) : particles(most + PointArrays::kPadding) {}
+    void add(std::uint32_t particle) { particles[count++] = particle; }
+    std::span<const std::uint32_t> all() const { return {particles.data(), count}; }
+};
+
+/// One relaxation: puts the particles that are known to be below the thickness over their contact plane,
+/// with friction. Lists those for which the map has to be asked, in order.
+/// @return how many were pushed. The same bits under every instruction set.
+std::size_t push_known(const KnownContacts& known, const ColliderNow& collider, Particles& particles,
+                       ParticleList& to_ask) noexcept;
+
+/// The same for one particle, by the plane that was just found. @return whether it was pushed
+bool push_one(const KnownContacts& known, const ColliderNow& collider, std::size_t i,
+              Particles& particles) noexcept;
+
+/// Lists the particles of which it is not known that they are free: those for which not both the place where
+/// they are and the one that was proven free last lie in the ball without surface, which is convex.
+/// @param free_places  in the world, carried along with the collider
+void list_unproven(const KnownContacts& known, const ColliderNow& collider, const PointArrays& positions,
+                   const PointArrays& free_places, ParticleList& unproven) noexcept;
+
+/// list_unproven() for one particle.
+bool proven(const KnownContacts& known, const ColliderNow& collider, std::size_t i, const Vec3f& position,
+            const Vec3f& free_place) noexcept;
+
+} // namespace echinus

@@ -1,0 +1,228 @@
+// Particles against what is known of the surface around them: the plain functions, which are the
+// specification, and kernels that take as many particles at once as the instruction set has lanes.
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simulation/push_known.cpp"
+#include <hwy/foreach_target.h>
+
+// After foreach_target.h, which includes this file once for each instruction set.
+#include "simd/dispatch.hpp"
+#include "simulation/contact_response.hpp"
+#include "simulation/known_contacts.hpp"
+
+#include <hwy/highway.h>
+
+#include <cmath>
+
+#ifndef ECHINUS_SIMULATION_PUSH_KNOWN_RULES
+#define ECHINUS_SIMULATION_PUSH_KNOWN_RULES
+namespace echinus {
+namespace {
+
+/// Of lengths and coordinates: what a distance between two places in the world may be off by, since both were
+/// rounded to single precision in two frames, and their distance was computed in it: less than 12 x 2^-24.
+constexpr float kRounding = 1.0F / (1 << 20);
+
+} // namespace
+} // namespace echinus
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace echinus {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Tag = hn::ScalableTag<float>;
+using Lanes = hn::Vec<Tag>;
+using Mask = hn::Mask<Tag>;
+
+HWY_INLINE Lanes all(float value) {
+    return hn::Set(Tag(), value);
+}
+HWY_INLINE Lanes load(const float* from) {
+    return hn::LoadU(Tag(), from);
+}
+
+struct LanePoints {
+    Lanes x, y, z;
+
+    explicit LanePoints(const Vec3f& point) : x(all(point.x)), y(all(point.y)), z(all(point.z)) {}
+    LanePoints(const PointArrays& points, std::size_t i)
+        : x(load(&points.x[i])), y(load(&points.y[i])), z(load(&points.z[i])) {}
+    LanePoints(const Lanes& x_in, const Lanes& y_in, const Lanes& z_in) : x(x_in), y(y_in), z(z_in) {}
+
+    void store(const Mask& mask, PointArrays& points, std::size_t i) const {
+        hn::BlendedStore(x, mask, Tag(), &points.x[i]);
+        hn::BlendedStore(y, mask, Tag(), &points.y[i]);
+        hn::BlendedStore(z, mask, Tag(), &points.z[i]);
+    }
+};
+
+HWY_INLINE LanePoints operator+(const LanePoints& a, const LanePoints& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+HWY_INLINE LanePoints operator-(const LanePoints& a, const LanePoints& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+HWY_INLINE LanePoints operator*(const LanePoints& a, const Lanes& s) {
+    return {a.x * s, a.y * s, a.z * s};
+}
+HWY_INLINE Lanes dot(const LanePoints& a, const LanePoints& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/// Adds the chosen ones of the particles i, i + 1 ... to a list.
+HWY_INLINE void add(const Mask& chosen, std::size_t i, ParticleList& list) {
+    const hn::RebindToUnsigned<Tag> d;
+    const auto particles = hn::Iota(d, static_cast<std::uint32_t>(i));
+    list.count += hn::CompressStore(particles, hn::RebindMask(d, chosen), d, &list.particles[list.count]);
+}
+
+/// MaterialMotion::at().
+HWY_INLINE LanePoints motion_at(const MaterialMotion& material, const LanePoints& place) {
+    const LanePoints from_centre = place - LanePoints(material.centre);
+    return LanePoints(dot(LanePoints(material.turn_x), from_centre),
+                      dot(LanePoints(material.turn_y), from_centre),
+                      dot(LanePoints(material.turn_z), from_centre)) +
+           LanePoints(material.shift);
+}
+
+/// push_out(), and what comes of it.
+HWY_INLINE void push(const Mask& below, const Lanes& missing, const LanePoints& normal,
+                     const ColliderNow& collider, std::size_t i, Particles& particles) {
+    const Lanes zero = all(0);
+    const LanePoints position(particles.positions, i), previous(particles.previous, i);
+    const LanePoints start = previous + motion_at(collider.material, position);
+    const LanePoints motion = position - start;
+    const Lanes toward = zero - dot(motion, normal);
+    const Lanes approach = hn::IfThenElse(zero < toward, toward, zero);
+    const Lanes back = hn::IfThenElse(approach < missing, approach, missing);
+    const LanePoints pushed = motion + normal * missing;
+    const LanePoints tangential = pushed - normal * dot(pushed, normal);
+    const Lanes slip = hn::Sqrt(dot(tangential, tangential));
+    const Lanes grip = all(collider.friction) * back;
+    const Lanes share = hn::IfThenElse(slip <= grip, all(1), grip / slip);
+    (start + (pushed - tangential * share)).store(below, particles.positions, i);
+    (previous + normal * (missing - back)).store(below, particles.previous, i);
+}
+
+std::size_t push_lanes(const KnownContacts& known, const ColliderNow& collider, Particles& particles,
+                       ParticleList& to_ask) {
+    const Lanes thickness = all(collider.thickness);
+    const Lanes reuse = all(kPlaneReuse * collider.thickness);
+    std::size_t pushed_count = 0;
+    for (std::size_t i = 0; i < particles.count(); i += hn::Lanes(Tag())) {
+        const LanePoints moved = LanePoints(particles.positions, i) - LanePoints(known.asked_at, i);
+        const Lanes moved_sq = dot(moved, moved);
+        const Lanes quiet = load(&known.clearance[i]) - thickness;
+        const Mask far = moved_sq < quiet * hn::Abs(quiet);
+        if (hn::AllTrue(Tag(), far)) continue;
+        const Lanes height = load(&known.height[i]);
+        const Mask usable = hn::And(moved_sq <= reuse * reuse, height < all(KnownContacts::kNoPlane));
+        const Mask unknown = hn::Not(hn::Or(far, usable));
+        if (!hn::AllFalse(Tag(), unknown)) add(unknown, i, to_ask);
+        const LanePoints normal(known.normal, i);
+        const Lanes missing = thickness - (height + dot(moved, normal));
+        const Mask below = hn::And(hn::AndNot(far, usable), missing > all(0));
+        if (hn::AllFalse(Tag(), below)) continue;
+        push(below, missing, normal, collider, i, particles);
+        pushed_count += hn::CountTrue(Tag(), below);
+    }
+    return pushed_count;
+}
+
+void list_unproven_lanes(const KnownContacts& known, const ColliderNow& collider,
+                         const PointArrays& positions, const PointArrays& free_places,
+                         std::size_t particle_count, ParticleList& unproven) {
+    for (std::size_t i = 0; i < particle_count; i += hn::Lanes(Tag())) {
+        const LanePoints position(positions, i), asked_at(known.asked_at, i);
+        const LanePoints moved = position - asked_at;
+        const LanePoints free_moved = LanePoints(free_places, i) - asked_at;
+        const Lanes clearance = load(&known.clearance[i]);
+        const Lanes size = hn::Abs(position.x) + hn::Abs(position.y) + hn::Abs(position.z) +
+                           all(collider.coordinate_sum) + clearance;
+        const Lanes radius = clearance - all(collider.guard) - size * all(kRounding);
+        const Lanes radius_sq = radius * hn::Abs(radius);
+        const Mask in_ball = hn::And(dot(moved, moved) < radius_sq, dot(free_moved, free_moved) < radius_sq);
+        if (!hn::AllTrue(Tag(), in_ball)) add(hn::Not(in_ball), i, unproven);
+    }
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace echinus
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace echinus {
+
+namespace {
+
+HWY_EXPORT(push_lanes);
+HWY_EXPORT(list_unproven_lanes);
+
+std::size_t push_one_by_one(const KnownContacts& known, const ColliderNow& collider, Particles& particles,
+                            ParticleList& to_ask) {
+    const float reuse = kPlaneReuse * collider.thickness;
+    std::size_t pushed_count = 0;
+    for (std::uint32_t i = 0; i < particles.count(); ++i) {
+        const Vec3f moved = particles.positions[i] - known.asked_at[i];
+        const float moved_sq = dot(moved, moved);
+        const float quiet = known.clearance[i] - collider.thickness;
+        if (moved_sq < quiet * std::fabs(quiet)) continue;
+        const bool usable = moved_sq <= reuse * reuse && known.height[i] < KnownContacts::kNoPlane;
+        if (!usable)
+            to_ask.add(i);
+        else
+            pushed_count += push_one(known, collider, i, particles) ? 1 : 0;
+    }
+    return pushed_count;
+}
+
+} // namespace
+
+bool push_one(const KnownContacts& known, const ColliderNow& collider, std::size_t i,
+              Particles& particles) noexcept {
+    const Vec3f position = particles.positions[i], previous = particles.previous[i];
+    const Vec3f normal = known.normal[i];
+    const float missing = collider.thickness - (known.height[i] + dot(position - known.asked_at[i], normal));
+    if (!(missing > 0)) return false;
+    const Vec3f start = previous + collider.material.at(position);
+    const auto [motion, excess] = push_out(position - start, normal, missing, collider.friction);
+    particles.positions.set(i, start + motion);
+    particles.previous.set(i, previous + normal * excess);
+    return true;
+}
+
+std::size_t push_known(const KnownContacts& known, const ColliderNow& collider, Particles& particles,
+                       ParticleList& to_ask) noexcept {
+    if (!use_kernels()) return push_one_by_one(known, collider, particles, to_ask);
+    return ECHINUS_DISPATCH(push_lanes)(known, collider, particles, to_ask);
+}
+
+bool proven(const KnownContacts& known, const ColliderNow& collider, std::size_t i, const Vec3f& position,
+            const Vec3f& free_place) noexcept {
+    const Vec3f moved = position - known.asked_at[i];
+    const Vec3f free_moved = free_place - known.asked_at[i];
+    const float clearance = known.clearance[i];
+    const float size = std::fabs(position.x) + std::fabs(position.y) + std::fabs(position.z) +
+                       collider.coordinate_sum + clearance;
+    const float radius = clearance - collider.guard - size * kRounding;
+    const float radius_sq = radius * std::fabs(radius);
+    return dot(moved, moved) < radius_sq && dot(free_moved, free_moved) < radius_sq;
+}
+
+void list_unproven(const KnownContacts& known, const ColliderNow& collider, const PointArrays& positions,
+                   const PointArrays& free_places, ParticleList& unproven) noexcept {
+    const std::size_t particle_count = known.clearance.size() - PointArrays::kPadding;
+    if (use_kernels()) {
+        ECHINUS_DISPATCH(list_unproven_lanes)
+        (known, collider, positions, free_places, particle_count, unproven);
+        return;
+    }
+    for (std::uint32_t i = 0; i < particle_count; ++i)
+        if (!proven(known, collider, i, positions[i], free_places[i])) unproven.add(i);
+}
+
+} // namespace echinus
+#endif // HWY_ONCE
