@@ -114,13 +114,20 @@ class CellLookup {
                 hn::Or(hn::ShiftLeft<6>(number), hn::Or(hn::ShiftLeft<4>(layer), in_layer))};
     }
 
-    /// Snapped particles, counted from the centres of their cells. @pre within the grid
-    HWY_ATTR HWY_INLINE FloatVectors from_centre(hn::VFromD<Floats> x, hn::VFromD<Floats> y,
-                                                 hn::VFromD<Floats> z) const {
+    struct InCell {
+        FloatVectors place; ///< from the centre of the cell, snapped: whole numbers
+        IntVectors centre;
+    };
+
+    /// @pre within the grid
+    HWY_ATTR HWY_INLINE InCell from_centre(hn::VFromD<Floats> x, hn::VFromD<Floats> y,
+                                           hn::VFromD<Floats> z) const {
         const FloatVectors g = in_cells(x, y, z);
-        return {from_centre(x, g.x, frame_.lattice.centre.x, frame_.origin.x),
-                from_centre(y, g.y, frame_.lattice.centre.y, frame_.origin.y),
-                from_centre(z, g.z, frame_.lattice.centre.z, frame_.origin.z)};
+        const Vec3d& c = frame_.lattice.centre;
+        const IntVectors centre{centre_of(g.x, frame_.origin.x), centre_of(g.y, frame_.origin.y),
+                                centre_of(g.z, frame_.origin.z)};
+        return {{from_centre(x, c.x, centre.x), from_centre(y, c.y, centre.y), from_centre(z, c.z, centre.z)},
+                centre};
     }
 
     HWY_ATTR HWY_INLINE FloatVectors in_cells(hn::VFromD<Floats> x, hn::VFromD<Floats> y,
@@ -140,22 +147,26 @@ class CellLookup {
         return hn::And(hn::Ge(g, hn::Zero(df)), hn::Lt(g, hn::Set(df, limit)));
     }
 
-    HWY_ATTR HWY_INLINE hn::VFromD<Floats> from_centre(hn::VFromD<Floats> v, hn::VFromD<Floats> in_cells,
-                                                       double centre, std::int32_t origin) const {
+    HWY_ATTR HWY_INLINE hn::VFromD<Ints> centre_of(hn::VFromD<Floats> in_cells, std::int32_t origin) const {
+        const Ints di;
+        return mul_add(hn::ConvertTo(di, in_cells), frame_.cell_steps,
+                       hn::Set(di, origin + frame_.cell_steps / 2));
+    }
+
+    HWY_ATTR HWY_INLINE hn::VFromD<Floats> from_centre(hn::VFromD<Floats> v, double lattice_centre,
+                                                       hn::VFromD<Ints> centre) const {
         const Floats df;
         const Ints di;
         const hn::Half<Floats> df_half;
         const hn::Rebind<double, hn::Half<Floats>> dd;
         const auto snapped = [&](hn::VFromD<hn::Half<Floats>> part) HWY_ATTR {
-            const auto place = hn::Mul(hn::Sub(hn::PromoteTo(dd, part), hn::Set(dd, centre)),
+            const auto place = hn::Mul(hn::Sub(hn::PromoteTo(dd, part), hn::Set(dd, lattice_centre)),
                                        hn::Set(dd, frame_.lattice.inverse_step));
             return hn::DemoteTo(df_half, hn::Round(place)); // whole and below 2^20: exact
         };
-        const auto lattice = hn::ConvertTo(
-            di, hn::Combine(df, snapped(hn::UpperHalf(df_half, v)), snapped(hn::LowerHalf(df_half, v))));
-        const auto cell = hn::ConvertTo(di, in_cells);
-        const auto middle = mul_add(cell, frame_.cell_steps, hn::Set(di, origin + frame_.cell_steps / 2));
-        return hn::ConvertTo(df, hn::Sub(lattice, middle));
+        const auto lattice =
+            hn::Combine(df, snapped(hn::UpperHalf(df_half, v)), snapped(hn::LowerHalf(df_half, v)));
+        return hn::ConvertTo(df, hn::Sub(hn::ConvertTo(di, lattice), centre));
     }
 
     const GridFrame& frame_;
@@ -171,16 +182,26 @@ struct FaceVectors {
 class FaceGather {
   public:
     HWY_ATTR explicit FaceGather(const GridArrays& grid)
-        : corners_(grid.corners), vertices_(reinterpret_cast<const std::int32_t*>(grid.vertices.data())) {}
+        : narrow_(grid.corners.narrow.data()), wide_(grid.corners.wide.data()),
+          vertices_(reinterpret_cast<const std::int32_t*>(grid.vertices.data())) {}
 
-    HWY_ATTR HWY_INLINE FaceVectors operator()(hn::VFromD<Ints> faces, hn::VFromD<Ints> centre_x,
-                                               hn::VFromD<Ints> centre_y, hn::VFromD<Ints> centre_z) const {
+    HWY_ATTR HWY_INLINE FaceVectors operator()(hn::VFromD<Ints> faces, const IntVectors& centre) const {
         const Ints di;
         const auto first = hn::Add(faces, hn::Add(faces, faces));
-        const IntVectors centre{centre_x, centre_y, centre_z};
-        const auto corner = [&](std::int32_t k)
-                                HWY_ATTR { return place(corners_(hn::Add(first, hn::Set(di, k))), centre); };
-        return {corner(0), corner(1), corner(2)};
+        if (wide_ != nullptr) {
+            const auto* base = reinterpret_cast<const std::int32_t*>(wide_);
+            return {place(hn::GatherIndex(di, base, first), centre),
+                    place(hn::GatherIndex(di, base + 1, first), centre),
+                    place(hn::GatherIndex(di, base + 2, first), centre)};
+        }
+        // Two numbers at once.
+        const auto* base = reinterpret_cast<const std::int32_t*>(narrow_);
+        const auto offset = hn::Add(first, first);
+        const auto mask = hn::Set(di, 0xFFFF);
+        const auto a_and_b = hn::GatherOffset(di, base, offset);
+        const auto c = hn::GatherOffset(di, base, hn::Add(offset, hn::Set(di, 4)));
+        return {place(hn::And(a_and_b, mask), centre),
+                place(hn::And(hn::ShiftRight<16>(a_and_b), mask), centre), place(hn::And(c, mask), centre)};
     }
 
   private:
@@ -200,7 +221,8 @@ class FaceGather {
                 hn::ConvertTo(df, hn::Sub(z, centre.z))};
     }
 
-    IndexGather corners_;
+    const std::uint16_t* narrow_;
+    const std::uint32_t* wide_; ///< null where the other is used
     const std::int32_t* vertices_;
 };
 

@@ -30,11 +30,8 @@ Contact contact_at(const GridArrays& grid, const Vec3f& point_local, bool inside
 /// Is the snapped particle inside? Decided with exact integers.
 bool is_inside(const GridArrays& grid, const Vec3f& point_local);
 
-/// Is a lattice point in front of a face's plane, perturbed as everything is?
-bool is_in_front(const std::array<LatticePoint, 3>& face, const LatticePoint& point);
-
-/// Winding number of a particle in a cell on the surface, exactly: that of the centre and the faces between.
-int winding_in_cell(const GridArrays& grid, const CellList& list, int winding_of_centre,
-                    const LatticePoint& centre, const LatticePoint& particle);
+/// What a face adds to the winding number on the way between two lattice points, exactly.
+int crossing_between(const GridArrays& grid, std::uint32_t face, const LatticePoint& from,
+                     const LatticePoint& to);
 
 } // namespace echinus::baselines

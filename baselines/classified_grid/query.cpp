@@ -11,19 +11,10 @@
 
 namespace echinus::baselines {
 
-int winding_in_cell(const GridArrays& grid, const CellList& list, int winding_of_centre,
-                    const LatticePoint& centre, const LatticePoint& particle) {
-    int winding = winding_of_centre;
-    for (std::uint32_t r = list.first; r < list.last; ++r)
-        if (const auto crossing = crossing_with_face(grid.face(grid.references[r]), centre, particle))
-            winding += crossing->entering() ? 1 : -1;
-    return winding;
-}
-
-bool is_in_front(const std::array<LatticePoint, 3>& face, const LatticePoint& point) {
-    const LatticePoint normal = cross(face[1] - face[0], face[2] - face[0]);
-    const std::int64_t distance = dot(normal, point - face[0]);
-    return distance != 0 ? distance > 0 : sign_of_perturbation(normal) > 0;
+int crossing_between(const GridArrays& grid, std::uint32_t face, const LatticePoint& from,
+                     const LatticePoint& to) {
+    const auto crossing = crossing_with_face(grid.face(face), from, to);
+    return !crossing ? 0 : crossing->entering() ? 1 : -1;
 }
 
 bool is_inside(const GridArrays& grid, const Vec3f& point_local) {
@@ -35,9 +26,12 @@ bool is_inside(const GridArrays& grid, const Vec3f& point_local) {
     const std::uint32_t state = state_of(brick, in_brick);
     if (!(state & kSurfaceBit)) return state != 0;
     const CellList list = list_of(grid, brick, in_brick);
+    const LatticePoint centre(grid.frame.centre_of(cell));
     const LatticePoint particle = rounded(grid.frame.lattice.to_lattice(point_local));
-    return winding_in_cell(grid, list, winding_of_centre(grid, list.number, state),
-                           LatticePoint(grid.frame.centre_of(cell)), particle) != 0;
+    int winding = winding_of_centre(grid, list.number, state);
+    for (std::uint32_t r = list.first; r < list.last; ++r)
+        winding += crossing_between(grid, grid.references[r], centre, particle);
+    return winding != 0;
 }
 
 bool ClassifiedGrid::contains(const Vec3f& point_local) const noexcept {
