@@ -12,4 +12,7 @@ namespace echinus::baselines {
 void contains_kernel(const GridArrays& grid, std::span<const Vec3f> points_local,
                      std::span<std::uint8_t> inside);
 
+void contacts_kernel(const GridArrays& grid, std::span<const Vec3f> points_local, float margin,
+                     std::span<Contact> contacts);
+
 } // namespace echinus::baselines

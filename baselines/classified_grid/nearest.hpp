@@ -27,6 +27,9 @@ std::optional<NearestPlace> nearest_place(const GridArrays& grid, const Vec3d& p
 Contact contact_at(const GridArrays& grid, const Vec3f& point_local, bool inside,
                    const NearestPlace& nearest);
 
+/// The whole answer for a particle that is inside or not.
+Contact contact(const GridArrays& grid, const Vec3f& point_local, bool inside, float margin);
+
 /// Is the snapped particle inside? Decided with exact integers.
 bool is_inside(const GridArrays& grid, const Vec3f& point_local);
 

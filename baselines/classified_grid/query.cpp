@@ -38,17 +38,19 @@ bool ClassifiedGrid::contains(const Vec3f& point_local) const noexcept {
     return is_inside(*arrays_, point_local);
 }
 
-Contact ClassifiedGrid::contact(const Vec3f& point_local, float margin) const noexcept {
+Contact contact(const GridArrays& grid, const Vec3f& point_local, bool inside, float margin) {
     Contact none;
     none.point = point_local;
-    if (!is_finite(point_local)) return none;
-    const bool inside = is_inside(*arrays_, point_local);
-    if (!inside && !(margin > 0)) return none;
-    const LatticeFrame& lattice = arrays_->frame.lattice;
+    if (!is_finite(point_local) || (!inside && !(margin > 0))) return none;
+    const LatticeFrame& lattice = grid.frame.lattice;
     constexpr double kEverything = 4 * static_cast<double>(kLatticeExtent);
     const double farthest = inside ? kEverything : double{margin} * lattice.inverse_step;
-    const auto nearest = nearest_place(*arrays_, lattice.to_lattice(point_local), farthest);
-    return nearest ? contact_at(*arrays_, point_local, inside, *nearest) : none;
+    const auto nearest = nearest_place(grid, lattice.to_lattice(point_local), farthest);
+    return nearest ? contact_at(grid, point_local, inside, *nearest) : none;
+}
+
+Contact ClassifiedGrid::contact(const Vec3f& point_local, float margin) const noexcept {
+    return baselines::contact(*arrays_, point_local, is_inside(*arrays_, point_local), margin);
 }
 
 void ClassifiedGrid::contains_batch(std::span<const Vec3f> points_local,
@@ -61,6 +63,7 @@ void ClassifiedGrid::contains_batch(std::span<const Vec3f> points_local,
 void ClassifiedGrid::contacts_batch(std::span<const Vec3f> points_local, float margin,
                                     std::span<Contact> contacts) const {
     assert(points_local.size() == contacts.size());
+    if (use_kernels()) return contacts_kernel(*arrays_, points_local, margin, contacts);
     for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = contact(points_local[i], margin);
 }
 
