@@ -1,6 +1,6 @@
 #pragma once
 
-#include "embree_rival.hpp"
+#include "rivals/embree.hpp"
 #include "stopwatch.hpp"
 
 #include <echinus/distance_map.hpp>

@@ -1,0 +1,118 @@
+#include "comparison.hpp"
+
+#include <fmt/format.h>
+#include <time.h>
+
+#include <algorithm>
+
+using namespace echinus;
+
+namespace {
+
+constexpr std::size_t kBatch = 10'000;
+
+const char* name_of(Role role) {
+    switch (role) {
+    case Role::Ours:
+        return "ours";
+    case Role::Rival:
+        return "rival";
+    case Role::Floor:
+        return "floor";
+    }
+    return "";
+}
+
+/// The particles that a racer was timed with.
+std::vector<std::uint32_t> asked_of(const Racer& racer, std::size_t count, std::size_t block_size) {
+    std::vector<std::uint32_t> asked;
+    for (std::size_t begin = 0; begin < count; begin += block_size) {
+        const std::size_t block = std::min(block_size, count - begin);
+        for (std::size_t i = begin; i < begin + std::min(racer.block_share, block); ++i)
+            asked.push_back(static_cast<std::uint32_t>(i));
+    }
+    return asked;
+}
+
+ErrorSummary judge(const Comparison& comparison, const Subject& subject, const Truth& truth,
+                   const Competitor& competitor, const std::vector<std::uint32_t>& asked) {
+    std::vector<std::uint8_t> inside;
+    std::vector<float> depth;
+    for (const std::uint32_t i : asked) {
+        const DepthNormal answer = competitor.answered(i);
+        inside.push_back(answer.depth > 0 ? 1 : 0);
+        if (comparison.has_depth) depth.push_back(answer.depth);
+    }
+    return errors_of(truth, subject.radius, asked, inside, depth);
+}
+
+std::string digits(double value) {
+    return fmt::format("{:.4g}", value);
+}
+
+} // namespace
+
+double process_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+Records comparison_records() {
+    return Records({"task", "mesh", "faces", "set", "particles", "system", "way", "role", "ns", "spread",
+                    "bytes", "build_ms", "asked", "wrong_share", "farthest_wrong", "depth_mean", "depth_99",
+                    "depth_worst"});
+}
+
+void compare(const Comparison& comparison, const Subject& subject, const ParticleSet& set,
+             const std::vector<Competitor>& competitors, Records& records) {
+    const Truth truth = truth_of(subject, set, comparison.truth_cache);
+    const std::size_t count = set.points.size();
+    const bool is_batch = count <= kBatch;
+    TurnOptions options;
+    options.passes = is_batch ? 3 * comparison.effort.passes : comparison.effort.passes;
+    if (is_batch) options.block_size = options.warm_up = kBatch;
+    options.report_progress = [&](double fraction) {
+        comparison.report_progress(fmt::format("{} {} {}", comparison.task, subject.name, set.name),
+                                   fraction);
+    };
+
+    std::vector<Racer> racers;
+    for (const Competitor& competitor : competitors) {
+        Racer racer{[&](std::size_t begin, std::size_t end) {
+            competitor.answer(std::span(set.points).subspan(begin, end - begin), begin);
+        }};
+        racer.block_share = share_for(racer, count, comparison.effort.seconds_per_block);
+        racers.push_back(std::move(racer));
+    }
+    const std::vector<Pace> paces = take_turns(count, racers, options);
+
+    for (std::size_t k = 0; k < competitors.size(); ++k) {
+        const Competitor& competitor = competitors[k];
+        const std::vector<std::uint32_t> asked = asked_of(racers[k], count, options.block_size);
+        Records::Record record{{"task", comparison.task},
+                               {"mesh", subject.name},
+                               {"faces", fmt::format("{}", subject.mesh.faces.size())},
+                               {"set", set.name},
+                               {"particles", fmt::format("{}", count)},
+                               {"system", competitor.system},
+                               {"way", competitor.way},
+                               {"role", name_of(competitor.role)},
+                               {"ns", digits(paces[k].ns)},
+                               {"spread", digits(paces[k].spread)},
+                               {"bytes", fmt::format("{}", competitor.bytes)},
+                               {"build_ms", digits(competitor.build_ms)},
+                               {"asked", fmt::format("{}", asked.size())}};
+        if (competitor.role != Role::Floor) {
+            const ErrorSummary errors = judge(comparison, subject, truth, competitor, asked);
+            record["wrong_share"] = digits(errors.wrong_share);
+            record["farthest_wrong"] = digits(errors.farthest_wrong);
+            if (comparison.has_depth) {
+                record["depth_mean"] = digits(errors.depth_mean);
+                record["depth_99"] = digits(errors.depth_99);
+                record["depth_worst"] = digits(errors.depth_worst);
+            }
+        }
+        records.add(std::move(record));
+    }
+}

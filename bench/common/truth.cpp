@@ -1,0 +1,109 @@
+#include "common/truth.hpp"
+
+#include "common/pinning.hpp"
+#include "files/atomic_file.hpp"
+#include "mesh/mesh_hash.hpp"
+#include "oracle/distance_tree.hpp"
+#include "oracle/exact_judge.hpp"
+
+#include <fmt/format.h>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <fstream>
+#include <thread>
+
+using namespace echinus;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::uint64_t hash_of(const Subject& subject, const ParticleSet& set) {
+    return XXH64(set.points.data(), set.points.size() * sizeof(Vec3f), mesh_hash(subject.mesh, 1));
+}
+
+bool read_cached(const fs::path& path, Truth& truth) {
+    std::ifstream file(path, std::ios::binary);
+    file.read(reinterpret_cast<char*>(truth.inside.data()), std::ssize(truth.inside));
+    file.read(reinterpret_cast<char*>(truth.distance.data()),
+              std::ssize(truth.distance) * std::ptrdiff_t{sizeof(float)});
+    return file.good() && file.peek() == std::ifstream::traits_type::eof();
+}
+
+void write_cached(const fs::path& path, const Truth& truth) {
+    fs::create_directories(path.parent_path());
+    AtomicFile file(path);
+    file.write(truth.inside.data(), truth.inside.size());
+    file.write(truth.distance.data(), truth.distance.size() * sizeof(float));
+    file.commit();
+}
+
+std::vector<test::Corners> corners_of(const TriangleMesh& mesh) {
+    std::vector<test::Corners> corners;
+    for (const Triangle& face : mesh.faces)
+        corners.push_back(
+            {Vec3d(mesh.vertices[face[0]]), Vec3d(mesh.vertices[face[1]]), Vec3d(mesh.vertices[face[2]])});
+    return corners;
+}
+
+void judge(const Subject& subject, const ParticleSet& set, Truth& truth) {
+    const test::ExactJudge judge(subject.mesh);
+    const test::DistanceTree tree(corners_of(subject.mesh));
+    constexpr std::size_t kBatch = 4096;
+    std::atomic<std::size_t> next{0};
+    const auto work = [&] {
+        for (std::size_t begin = next.fetch_add(kBatch); begin < set.points.size();
+             begin = next.fetch_add(kBatch))
+            for (std::size_t i = begin; i < std::min(begin + kBatch, set.points.size()); ++i) {
+                truth.inside[i] = judge.inside(set.points[i]) ? 1 : 0;
+                truth.distance[i] = static_cast<float>(tree.distance(Vec3d(set.points[i])));
+            }
+    };
+    std::vector<std::jthread> helpers;
+    for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) helpers.emplace_back(work);
+    work();
+}
+
+} // namespace
+
+Truth truth_of(const Subject& subject, const ParticleSet& set, const fs::path& cache) {
+    const fs::path path =
+        cache / fmt::format("{}_{}_{:016x}.truth", subject.name, set.name, hash_of(subject, set));
+    Truth truth{std::vector<std::uint8_t>(set.points.size()), std::vector<float>(set.points.size())};
+    if (read_cached(path, truth)) return truth;
+    unpin();
+    judge(subject, set, truth);
+    pin_to_one_core();
+    write_cached(path, truth);
+    return truth;
+}
+
+ErrorSummary errors_of(const Truth& truth, double radius, std::span<const std::uint32_t> asked,
+                       std::span<const std::uint8_t> inside, std::span<const float> depth) {
+    ErrorSummary summary;
+    std::size_t wrong = 0;
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+        const bool truly_inside = truth.inside[asked[i]] != 0;
+        const double distance = double{truth.distance[asked[i]]} / radius;
+        if ((inside[i] != 0) != truly_inside) {
+            ++wrong;
+            summary.farthest_wrong = std::max(summary.farthest_wrong, distance);
+        }
+        if (depth.empty() || !truly_inside) continue;
+        const double answered = inside[i] != 0 ? double{depth[i]} / radius : 0;
+        errors.push_back(std::fabs(answered - distance));
+    }
+    summary.wrong_share =
+        static_cast<double>(wrong) / static_cast<double>(std::max<std::size_t>(asked.size(), 1));
+    if (errors.empty()) return summary;
+    std::ranges::sort(errors);
+    for (const double error : errors) summary.depth_mean += error / static_cast<double>(errors.size());
+    summary.depth_99 = errors[static_cast<std::size_t>(0.99 * static_cast<double>(errors.size() - 1))];
+    summary.depth_worst = errors.back();
+    return summary;
+}

@@ -1,0 +1,52 @@
+#include "contacts/contact_way.hpp"
+
+#include <echinus/distance_map.hpp>
+#include <echinus/instruction_set.hpp>
+
+#include <optional>
+
+using namespace echinus;
+
+namespace {
+
+class DistanceMapContacts : public ContactsSystem {
+  public:
+    /// @param sample_count  along each of the two angles
+    explicit DistanceMapContacts(std::uint32_t sample_count) {
+        options_.longitude_count = options_.colatitude_count = sample_count;
+        options_.thread_count = 1;
+    }
+    void build(const TriangleMesh& mesh) override { map_ = DistanceMap::build(mesh, options_); }
+    std::size_t byte_count() const override { return map_->view().byte_count(); }
+
+    std::vector<ContactsWay> ways(std::size_t point_count) override {
+        std::vector<ContactsWay> ways;
+        for (const std::string_view set : available_instruction_sets())
+            ways.push_back(contact_way("batch " + std::string(set), point_count,
+                                       [this, set](auto points, auto contacts) {
+                                           use_instruction_set(set);
+                                           contacts_batch(map_->view(), points, 0, contacts);
+                                       }));
+        ways.push_back(contact_way("one by one", point_count, [this](auto points, auto contacts) {
+            for (std::size_t i = 0; i < points.size(); ++i) contacts[i] = contact(map_->view(), points[i]);
+        }));
+        return ways;
+    }
+
+  private:
+    DistanceMapOptions options_;
+    std::optional<DistanceMap> map_;
+};
+
+} // namespace
+
+void list_distance_map(ContactsList& list) {
+    list.push_back(listed<DistanceMapContacts, ContactsSystem>("distance map", Role::Ours, true,
+                                                               DistanceMapOptions{}.longitude_count));
+}
+
+void list_sizes_of_distance_map(ContactsList& list) {
+    for (const std::uint32_t sample_count : {50U, 100U, 200U, 400U, 800U})
+        list.push_back(
+            listed<DistanceMapContacts, ContactsSystem>("distance map", Role::Ours, true, sample_count));
+}

@@ -1,0 +1,28 @@
+#include "contains/system.hpp"
+
+void list_contains_rivals(ContainsList& list) {
+#ifdef ECHINUS_BENCH_CLASSIFIED_GRID
+    list_classified_grid(list);
+#endif
+    list_dense_grid(list);
+#ifdef ECHINUS_BENCH_VDB
+    list_nanovdb(list);
+    list_openvdb(list);
+#endif
+    list_embree(list);
+    list_cgal(list);
+#ifdef ECHINUS_BENCH_BULLET
+    list_bullet(list);
+#endif
+#ifdef ECHINUS_BENCH_FCL
+    list_fcl(list);
+#endif
+    list_floors(list);
+}
+
+void list_sizes_of_contains_rivals(ContainsList& list) {
+    list_sizes_of_dense_grid(list);
+#ifdef ECHINUS_BENCH_CLASSIFIED_GRID
+    list_sizes_of_classified_grid(list);
+#endif
+}

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "common/comparison.hpp"
+
+/// What a task is measured with.
+struct Setting {
+    std::filesystem::path meshes, debian_horse, scenes, truth_cache;
+    Effort effort;
+    std::function<void(const std::string& what, double fraction)> report_progress;
+};
+
+// One function a task; each returns the records of its CSV file.
+
+/// The sign of every particle, all systems on all meshes and sets.
+Records measure_contains(const Setting& setting);
+
+/// Signs, depths and normals, all systems on all meshes and sets.
+Records measure_contacts(const Setting& setting);
+
+/// Build times, against the number of faces too, and what a second core brings to builds and batches.
+Records measure_build(const Setting& setting);
+
+/// Times, errors and bytes over sizes of each structure.
+Records measure_bytes(const Setting& setting);
+
+/// Frames of the cloth that falls on the horse.
+Records measure_cloth(const Setting& setting);
