@@ -131,12 +131,20 @@ class OctantCover {
         double slack;
     };
 
-    /// Where a side's line crosses row i: the outermost square of which the half-plane touches the part that
-    /// is not turned is slope i + upright, rounded to the inside; of which it touches the turned part, slope
-    /// i + turned.
+    /// Where a side's line crosses row i. Of the triangles that are not turned, the half-plane's first or last
+    /// is slope i + upright, rounded to the next even number; of the turned ones it is one more than slope i +
+    /// turned, rounded likewise.
     struct Crossing {
         double slope, upright, turned;
     };
+
+    using Row = std::array<double, kPartRows>; ///< of cells: a number for each row of parts
+
+    /// The next even number; of two that are equally near, either. In vector instructions of any age.
+    static double even(double value) {
+        constexpr double kShift = 0x1.8p53; // doubles that large are even
+        return (value + kShift) - kShift;
+    }
 
     /// @pre -2 <= value < 2^30
     static std::int32_t floor_of(double value) { return static_cast<std::int32_t>(value + 2) - 2; }
@@ -183,14 +191,15 @@ class OctantCover {
         const Affine& inner = side.inner;
         constexpr double kParallel = 1e-9; // to the rows: then the range of rows says the same
         if (std::fabs(inner.along_y) < kParallel * std::fabs(inner.along_x)) return;
-        const double scale = -1 / inner.along_y;
+        const double scale = -2 / inner.along_y;
         const double slope = inner.along_x * scale;
-        const Crossing crossing{slope, (inner.at_origin + inner.most_in_part()) * scale,
-                                slope - 1 + (inner.at_origin - inner.least_in_part()) * scale};
+        const double upright = (inner.at_origin + inner.most_in_part()) * scale;
+        const double turned = slope - 2 + (inner.at_origin - inner.least_in_part()) * scale;
+        // Rounded up where the half-plane begins and down where it ends.
         if (inner.along_y > 0)
-            firsts_[first_count_++] = crossing;
+            firsts_[first_count_++] = {slope, upright + 1, turned + 1};
         else
-            lasts_[last_count_++] = crossing;
+            lasts_[last_count_++] = {slope, upright - 1, turned - 1};
     }
 
     /// 1 / L1 norm over the face's plane: (normal . u) / height for a direction u with |u|_1 = 1.
@@ -213,52 +222,56 @@ class OctantCover {
         part_highs_[kNoPart] = kEmptyRange.high;
     }
 
-    /// The triangles of row i that the polygon touches.
-    Run strip(std::int32_t i) const {
-        if (i < rows_.first || i > rows_.last) return {1, 0};
-        Run run{std::max(2 * squares_.first, 2 * (diagonals_.first - i) - 1),
-                std::min(2 * squares_.last + 1, 2 * (diagonals_.last - i))};
-        for (std::size_t k = 0; k < first_count_; ++k) {
-            const auto [upright, turned] = squares_at(firsts_[k], i);
-            run.first = std::max(run.first, std::min(2 * ceil_of(upright), 2 * ceil_of(turned) + 1));
+    /// The triangles that the polygon touches in the rows of parts of a row of cells.
+    std::array<Run, kPartRows> strips(std::int32_t i) const {
+        Row first, last;
+        for (std::size_t row = 0; row < kPartRows; ++row) {
+            const double at = kPartsPerSide * i + static_cast<double>(row);
+            first[row] = std::max(2.0 * squares_.first, 2 * (diagonals_.first - at) - 1);
+            last[row] = std::min(2.0 * squares_.last + 1, 2 * (diagonals_.last - at));
         }
-        for (std::size_t k = 0; k < last_count_; ++k) {
-            const auto [upright, turned] = squares_at(lasts_[k], i);
-            run.last = std::min(run.last, std::max(2 * floor_of(upright), 2 * floor_of(turned) + 1));
-        }
-        return run;
+        for (std::size_t k = 0; k < first_count_; ++k)
+            for (std::size_t row = 0; row < kPartRows; ++row) {
+                const auto [upright, turned] = triangles_at(firsts_[k], i, row);
+                first[row] = std::max(first[row], std::min(upright, turned));
+            }
+        for (std::size_t k = 0; k < last_count_; ++k)
+            for (std::size_t row = 0; row < kPartRows; ++row) {
+                const auto [upright, turned] = triangles_at(lasts_[k], i, row);
+                last[row] = std::min(last[row], std::max(upright, turned));
+            }
+        std::array<Run, kPartRows> runs;
+        const double end = 2 * fine_n_;
+        for (std::size_t row = 0; row < kPartRows; ++row)
+            runs[row] = {static_cast<std::int32_t>(std::min(first[row], end)),
+                         static_cast<std::int32_t>(std::max(last[row], -1.0))};
+        const std::int32_t begin = kPartsPerSide * i;
+        for (std::int32_t row = 0; row < kPartsPerSide; ++row)
+            if (begin + row < rows_.first || begin + row > rows_.last)
+                runs[static_cast<std::size_t>(row)] = {1, 0};
+        return runs;
     }
 
-    struct SquaresAt {
+    struct TrianglesAt {
         double upright, turned;
     };
 
-    SquaresAt squares_at(const Crossing& crossing, std::int32_t i) const {
-        const auto within_row = [&](double square) {
-            return std::min(std::max(square, -1.0), fine_n_ + 1.0);
-        };
-        return {within_row(crossing.slope * i + crossing.upright),
-                within_row(crossing.slope * i + crossing.turned)};
-    }
-
-    /// @pre -1 <= value <= fine_n + 1
-    std::int32_t ceil_of(double value) const {
-        const std::int32_t far = fine_n_ + 2;
-        return far - static_cast<std::int32_t>(far - value);
+    static TrianglesAt triangles_at(const Crossing& crossing, std::int32_t i, std::size_t row) {
+        const double at = crossing.slope * (kPartsPerSide * i + static_cast<double>(row));
+        return {even(at + crossing.upright), even(at + crossing.turned) + 1};
     }
 
     void add_row_of_cells(std::int32_t i, std::vector<CellCover>& covers) const {
-        std::array<Run, kPartRows> strips;
+        const std::array<Run, kPartRows> runs = strips(i);
         Run hull{std::numeric_limits<std::int32_t>::max(), -1};
-        for (std::size_t row = 0; row < kPartRows; ++row) {
-            strips[row] = strip(kPartsPerSide * i + static_cast<std::int32_t>(row));
-            if (strips[row].first > strips[row].last) continue;
-            hull = {std::min(hull.first, strips[row].first), std::max(hull.last, strips[row].last)};
+        for (const Run& run : runs) {
+            if (run.first > run.last) continue;
+            hull = {std::min(hull.first, run.first), std::max(hull.last, run.last)};
         }
         if (hull.last < 0) return;
         const Run squares{std::max(hull.first, 0) / kStripLength, hull.last / kStripLength};
         for (std::int32_t j = squares.first; j <= squares.last; j += kSquaresPerWord)
-            add_squares(i, {j, std::min(squares.last, j + kSquaresPerWord - 1)}, strips, covers);
+            add_squares(i, {j, std::min(squares.last, j + kSquaresPerWord - 1)}, runs, covers);
     }
 
     /// Adds cells of some squares in a row of cells, whose strips are bytes of four words.
@@ -377,33 +390,38 @@ void cover_octant(const OctahedralCells& cells, std::uint32_t octant, const Poly
         OctantCover(cells, octant, polygon, plane).add_cells(covers);
 }
 
-/// Does the face reach where a coordinate has the sign of `mirror`? A face that only touches the wall does.
-bool reaches(const std::array<Vec3d, 3>& corners, double Vec3d::*c, double mirror) {
-    return std::max(std::max(corners[0].*c * mirror, corners[1].*c * mirror), corners[2].*c * mirror) >= 0;
+/// Bit k: has some corner a coordinate k that is not negative? A face that only touches a wall counts.
+std::uint32_t reached_sides(const std::array<LatticePoint, 3>& face) {
+    const auto reaches = [&](std::int64_t LatticePoint::*c) {
+        return std::uint32_t{std::max(std::max(face[0].*c, face[1].*c), face[2].*c) >= 0};
+    };
+    return reaches(&LatticePoint::x) | reaches(&LatticePoint::y) << 1 | reaches(&LatticePoint::z) << 2;
+}
+
+Vec3d mirrored(const Vec3d& v, std::uint32_t octant) {
+    return {octant & 1U ? -v.x : v.x, octant & 2U ? -v.y : v.y, octant & 4U ? -v.z : v.z};
 }
 
 } // namespace
 
 void cover_cells(const OctahedralCells& cells, const std::array<LatticePoint, 3>& face,
                  std::vector<CellCover>& covers) {
-    const std::array<Vec3d, 3> corners{Vec3d(face[0]), Vec3d(face[1]), Vec3d(face[2])};
     const LatticePoint normal = cross(face[1] - face[0], face[2] - face[0]);
     const auto height = static_cast<double>(dot(normal, face[0]));
-    const auto mirrored = [](const Vec3d& v, const Vec3d& mirror) {
-        return Vec3d{v.x * mirror.x, v.y * mirror.y, v.z * mirror.z};
-    };
+    const std::uint32_t positive = reached_sides(face);
+    const std::uint32_t negative = reached_sides({-face[0], -face[1], -face[2]});
+    const std::uint32_t both = positive & negative;
     for (std::uint32_t octant = 0; octant < 8; ++octant) {
-        const Vec3d mirror{octant & 1U ? -1.0 : 1.0, octant & 2U ? -1.0 : 1.0, octant & 4U ? -1.0 : 1.0};
-        if (!reaches(corners, &Vec3d::x, mirror.x) || !reaches(corners, &Vec3d::y, mirror.y) ||
-            !reaches(corners, &Vec3d::z, mirror.z))
-            continue;
+        if (((octant ^ negative) & ~both) != 0) continue;
         Polygon polygon;
-        for (const Vec3d& corner : corners) polygon.add(mirrored(corner, mirror));
-        for (double Vec3d::*c : {&Vec3d::x, &Vec3d::y, &Vec3d::z})
-            if (reaches(corners, c, -(mirror.*c)))
-                polygon = polygon.clipped([&](const Vec3d& p) { return p.*c; });
+        for (const LatticePoint& corner : face) polygon.add(mirrored(Vec3d(corner), octant));
+        std::uint32_t axis = 1;
+        for (double Vec3d::*c : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
+            if ((both & axis) != 0) polygon = polygon.clipped([&](const Vec3d& p) { return p.*c; });
+            axis <<= 1;
+        }
         if (!polygon.empty())
-            cover_octant(cells, octant, polygon, {mirrored(Vec3d(normal), mirror), height}, covers);
+            cover_octant(cells, octant, polygon, {mirrored(Vec3d(normal), octant), height}, covers);
     }
 }
 
