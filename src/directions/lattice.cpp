@@ -1,7 +1,6 @@
 #include "directions/lattice.hpp"
 
 #include "directions/crossing.hpp"
-#include "mesh/used_vertices.hpp"
 
 #include <echinus/error.hpp>
 
@@ -15,7 +14,7 @@ namespace echinus {
 namespace {
 
 /// The smallest float that is not below the distance of any point from the centre.
-float enclosing_radius(const std::vector<Vec3f>& points, const Vec3f& centre) {
+float enclosing_radius(std::span<const Vec3f> points, const Vec3f& centre) {
     double radius_sq = 0;
     for (const Vec3f& point : points) {
         const Vec3d d = Vec3d(point) - Vec3d(centre);
@@ -42,12 +41,12 @@ void require_usable(float radius) {
 
 /// Does the origin lie on the line of one of the face's edges, or on the face itself?
 bool touches_origin(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c) {
-    const LatticePoint ab = cross(a, b);
     const LatticePoint bc = cross(b, c);
+    if (dot(a, bc) != 0) return false; // neither its plane does, nor any line in that
+    const LatticePoint ab = cross(a, b);
     const LatticePoint ca = cross(c, a);
     const LatticePoint zero{};
     if (ab == zero || bc == zero || ca == zero) return true;
-    if (dot(a, bc) != 0) return false;
     // In the face's plane the three normals are parallel; they agree in direction exactly around the inside.
     const int sign = sign_of_perturbation(ab);
     return sign_of_perturbation(bc) == sign && sign_of_perturbation(ca) == sign;
@@ -58,25 +57,6 @@ bool touches_origin(const LatticeMesh& lattice) {
         return touches_origin(lattice.vertices[face[0]], lattice.vertices[face[1]],
                               lattice.vertices[face[2]]);
     });
-}
-
-LatticeMesh snap_around(const TriangleMesh& mesh, const std::vector<bool>& used, const Vec3f& centre,
-                        float radius) {
-    LatticeMesh lattice;
-    lattice.centre = centre;
-    lattice.radius = radius;
-    lattice.frame = LatticeFrame(centre, radius);
-    lattice.vertices.resize(mesh.vertices.size());
-    for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-        if (used[i]) lattice.vertices[i] = lattice.snap(mesh.vertices[i]);
-    for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
-        lattice.faces.push_back(mesh.faces[i]);
-        lattice.face_numbers.push_back(static_cast<std::uint32_t>(i));
-        if (!is_collapsed(lattice.corners(static_cast<std::uint32_t>(lattice.faces.size() - 1)))) continue;
-        lattice.faces.pop_back();
-        lattice.face_numbers.pop_back();
-    }
-    return lattice;
 }
 
 /// A step that moves the centre's float coordinates: a lattice step, or more where float is coarser than the
@@ -95,25 +75,67 @@ LatticePoint lattice_direction(const Vec3d& unit) {
     return rounded(d);
 }
 
-LatticeMesh snap_to_lattice(const TriangleMesh& mesh) {
-    require_valid(mesh);
-    return snap_to_lattice(mesh, Vec3f(smallest_enclosing_sphere(used_positions(mesh)).centre));
+void LatticeSnapper::require_valid(std::span<const Vec3f> vertices) {
+    if (used_.vertex_count() != vertices.size()) used_ = UsedVertices(faces_, vertices.size());
+    used_.require_valid(vertices, faces_);
 }
 
-LatticeMesh snap_to_lattice(const TriangleMesh& mesh, const Vec3f& wanted_centre) {
-    require_valid(mesh);
-    const std::vector<bool> used = is_vertex_used(mesh);
-    const std::vector<Vec3f> points = used_positions(mesh);
+void LatticeSnapper::snap(std::span<const Vec3f> vertices, LatticeMesh& result) {
+    require_valid(vertices);
+    snap_valid(vertices, Vec3f(smallest_enclosing_sphere(used_.positions(vertices, positions_)).centre),
+               result);
+}
+
+void LatticeSnapper::snap(std::span<const Vec3f> vertices, const Vec3f& centre, LatticeMesh& result) {
+    require_valid(vertices);
+    snap_valid(vertices, centre, result);
+}
+
+void LatticeSnapper::snap_valid(std::span<const Vec3f> vertices, const Vec3f& wanted_centre,
+                                LatticeMesh& result) {
+    const std::span<const Vec3f> points = used_.positions(vertices, positions_);
     const float radius = enclosing_radius(points, wanted_centre);
     require_usable(radius);
-    LatticeMesh lattice = snap_around(mesh, used, wanted_centre, radius);
-    const double step = centre_step(lattice);
+    snap_around(vertices, wanted_centre, radius, result);
+    const double step = centre_step(result);
     // Along the curve (t, t^2, t^3) a plane excludes at most three places and a line no more, so this ends;
     // the first try nearly always holds.
-    for (double t = 1; touches_origin(lattice); ++t) {
+    for (double t = 1; touches_origin(result); ++t) {
         const Vec3f centre(Vec3d(wanted_centre) + Vec3d{t, t * t, t * t * t} * step);
-        lattice = snap_around(mesh, used, centre, enclosing_radius(points, centre));
+        snap_around(vertices, centre, enclosing_radius(points, centre), result);
     }
+}
+
+void LatticeSnapper::snap_around(std::span<const Vec3f> vertices, const Vec3f& centre, float radius,
+                                 LatticeMesh& result) const {
+    result.centre = centre;
+    result.radius = radius;
+    result.frame = LatticeFrame(centre, radius);
+    result.vertices.resize(vertices.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        result.vertices[i] = used_[i] ? result.snap(vertices[i]) : LatticePoint{};
+    result.faces.resize(faces_.size());
+    result.face_numbers.resize(faces_.size());
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+        const Triangle face = faces_[i];
+        result.faces[kept] = face;
+        result.face_numbers[kept] = static_cast<std::uint32_t>(i);
+        kept += is_collapsed(result.corners(static_cast<std::uint32_t>(kept))) ? 0 : 1;
+    }
+    result.faces.resize(kept);
+    result.face_numbers.resize(kept);
+}
+
+LatticeMesh snap_to_lattice(const TriangleMesh& mesh) {
+    LatticeMesh lattice;
+    LatticeSnapper(mesh.faces).snap(mesh.vertices, lattice);
+    return lattice;
+}
+
+LatticeMesh snap_to_lattice(const TriangleMesh& mesh, const Vec3f& centre) {
+    LatticeMesh lattice;
+    LatticeSnapper(mesh.faces).snap(mesh.vertices, centre, lattice);
     return lattice;
 }
 

@@ -1,11 +1,14 @@
 #pragma once
 
+#include "mesh/used_vertices.hpp"
+
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace echinus {
@@ -65,13 +68,36 @@ inline bool is_collapsed(const std::array<LatticePoint, 3>& corners) {
     return corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
 }
 
-/// Snaps a mesh around the centre of its bounding sphere. Where that centre lies on a face or on the line of
-/// an edge, so that a ray from it could not be made to miss them by a small turn, it moves by whole lattice
-/// steps until it does not.
-/// @throws Error InvalidMesh as inspect() does, or when the bounding radius is 0 or outside [1e-15, 1e15]
-LatticeMesh snap_to_lattice(const TriangleMesh& mesh);
+/// Snaps moments of a mesh, whose vertices move while its faces stay, to lattices; keeps what it knows of the
+/// faces, and memory, from one to the next.
+class LatticeSnapper {
+  public:
+    /// @param faces  are to stay in place
+    explicit LatticeSnapper(std::span<const Triangle> faces) : faces_(faces) {}
 
-/// The same around another centre; the radius grows until it holds every vertex.
+    /// Snaps the mesh around the centre of its bounding sphere. Where that centre lies on a face or on the
+    /// line of an edge, so that a ray from it could not be made to miss them by a small turn, it moves by
+    /// whole lattice steps until it does not.
+    /// @param result  becomes the lattice mesh
+    /// @throws Error InvalidMesh as inspect() does, or when the bounding radius is 0 or outside [1e-15, 1e15]
+    void snap(std::span<const Vec3f> vertices, LatticeMesh& result);
+
+    /// The same around another centre; the radius grows until it holds every vertex.
+    void snap(std::span<const Vec3f> vertices, const Vec3f& centre, LatticeMesh& result);
+
+  private:
+    void require_valid(std::span<const Vec3f> vertices);
+    void snap_valid(std::span<const Vec3f> vertices, const Vec3f& wanted_centre, LatticeMesh& result);
+    void snap_around(std::span<const Vec3f> vertices, const Vec3f& centre, float radius,
+                     LatticeMesh& result) const;
+
+    std::span<const Triangle> faces_;
+    UsedVertices used_;
+    std::vector<Vec3f> positions_;
+};
+
+/// LatticeSnapper::snap() of one moment.
+LatticeMesh snap_to_lattice(const TriangleMesh& mesh);
 LatticeMesh snap_to_lattice(const TriangleMesh& mesh, const Vec3f& centre);
 
 } // namespace echinus

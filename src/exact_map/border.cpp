@@ -29,15 +29,31 @@ void append_unbalanced(std::uint32_t lower, std::span<HalfEdge> half_edges, std:
     }
 }
 
-/// @param vertex_of  stands for each vertex; vertices on one place have one number
-template <typename VertexOf>
-std::vector<BorderEdge> unbalanced_edges(const LatticeMesh& lattice, const VertexOf& vertex_of) {
+/// [vertex_count] the first vertex on the same lattice point.
+std::vector<std::uint32_t> first_vertices_at(const std::vector<LatticePoint>& vertices) {
+    const auto key = [&](std::uint32_t v) {
+        return std::tuple(vertices[v].x, vertices[v].y, vertices[v].z, v);
+    };
+    std::vector<std::uint32_t> order(vertices.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+    std::vector<std::uint32_t> first(vertices.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const bool repeated = i > 0 && vertices[order[i]] == vertices[order[i - 1]];
+        first[order[i]] = repeated ? first[order[i - 1]] : order[i];
+    }
+    return first;
+}
+
+/// @param number  [vertex_count] of each vertex; vertices on one place have one number
+std::vector<BorderEdge> unbalanced_edges(const LatticeMesh& lattice,
+                                         const std::vector<std::uint32_t>& number) {
     const auto for_each_half_edge = [&](const auto& visit) {
         for (std::uint32_t face = 0; face < lattice.faces.size(); ++face) {
             if (is_collapsed(lattice.corners(face))) continue;
             for (std::size_t k = 0; k < 3; ++k) {
-                const std::uint32_t a = vertex_of(lattice.faces[face][k]);
-                const std::uint32_t b = vertex_of(lattice.faces[face][(k + 1) % 3]);
+                const std::uint32_t a = number[lattice.faces[face][k]];
+                const std::uint32_t b = number[lattice.faces[face][(k + 1) % 3]];
                 visit(std::min(a, b), HalfEdge{std::max(a, b), a < b ? 1 : -1});
             }
         }
@@ -56,22 +72,6 @@ std::vector<BorderEdge> unbalanced_edges(const LatticeMesh& lattice, const Verte
         first = next[lower];
     }
     return border;
-}
-
-/// [vertex_count] the first vertex on the same lattice point.
-std::vector<std::uint32_t> first_vertices_at(const std::vector<LatticePoint>& vertices) {
-    const auto key = [&](std::uint32_t v) {
-        return std::tuple(vertices[v].x, vertices[v].y, vertices[v].z, v);
-    };
-    std::vector<std::uint32_t> order(vertices.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-    std::vector<std::uint32_t> first(vertices.size());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const bool repeated = i > 0 && vertices[order[i]] == vertices[order[i - 1]];
-        first[order[i]] = repeated ? first[order[i - 1]] : order[i];
-    }
-    return first;
 }
 
 /// A hair's breadth in the direction in which the perturbation (e, e^2, e^3) leads away from a ray first.
@@ -105,10 +105,7 @@ double cone_solid_angle(const LatticePoint& a, const LatticePoint& b, const Latt
 } // namespace
 
 std::vector<BorderEdge> find_border(const LatticeMesh& lattice) {
-    std::vector<BorderEdge> border = unbalanced_edges(lattice, [](std::uint32_t vertex) { return vertex; });
-    if (border.empty()) return border;
-    const std::vector<std::uint32_t> first = first_vertices_at(lattice.vertices);
-    return unbalanced_edges(lattice, [&](std::uint32_t vertex) { return first[vertex]; });
+    return unbalanced_edges(lattice, first_vertices_at(lattice.vertices));
 }
 
 double border_part(std::span<const BorderEdge> border, std::span<const Vec3<std::int32_t>> vertices,

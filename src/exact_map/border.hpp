@@ -20,7 +20,8 @@
 namespace echinus {
 
 /// The edges along which a different number of faces runs one way than the other, ascending. Vertices on one
-/// lattice point count as one. Empty when the surface is closed.
+/// lattice point count as one. Empty when the surface is closed, as it surely is where mesh/is_closed.hpp
+/// finds it so: that takes less time, and what collapses on the lattice has no border there.
 std::vector<BorderEdge> find_border(const LatticeMesh& lattice);
 
 /// What the border adds to the signed crossings beyond the place share * d to make the generalised winding

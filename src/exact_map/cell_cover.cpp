@@ -131,9 +131,9 @@ class OctantCover {
         double slack;
     };
 
-    /// Where a side's line crosses row i. Of the triangles that are not turned, the half-plane's first or last
-    /// is slope i + upright, rounded to the next even number; of the turned ones it is one more than slope i +
-    /// turned, rounded likewise.
+    /// Where a side's line crosses row i. Of the triangles that are not turned, the half-plane's first or
+    /// last is slope i + upright, rounded to the next even number; of the turned ones it is one more than
+    /// slope i + turned, rounded likewise.
     struct Crossing {
         double slope, upright, turned;
     };

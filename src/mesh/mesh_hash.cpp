@@ -5,9 +5,14 @@
 
 namespace echinus {
 
+std::uint64_t mesh_hash(std::span<const Vec3f> vertices, std::span<const Triangle> faces,
+                        std::uint64_t seed) {
+    const std::uint64_t of_vertices = XXH64(vertices.data(), vertices.size_bytes(), seed);
+    return XXH64(faces.data(), faces.size_bytes(), of_vertices);
+}
+
 std::uint64_t mesh_hash(const TriangleMesh& mesh, std::uint64_t seed) {
-    const std::uint64_t of_vertices = XXH64(mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3f), seed);
-    return XXH64(mesh.faces.data(), mesh.faces.size() * sizeof(Triangle), of_vertices);
+    return mesh_hash(mesh.vertices, mesh.faces, seed);
 }
 
 } // namespace echinus

@@ -2,15 +2,40 @@
 
 #include <echinus/mesh.hpp>
 
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 namespace echinus {
 
-/// [vertex_count] does a face use the vertex? Others may be anything, even NaN.
-/// @pre indices are in range
-std::vector<bool> is_vertex_used(const TriangleMesh& mesh);
+/// Which vertices the faces of a mesh use; others may be anything, even NaN. Known before it is known where
+/// the vertices are.
+class UsedVertices {
+  public:
+    UsedVertices() = default;
+    UsedVertices(std::span<const Triangle> faces, std::size_t vertex_count);
+
+    std::size_t vertex_count() const { return is_used_.size(); }
+    bool operator[](std::size_t vertex) const { return is_used_[vertex] != 0; }
+
+    /// Throws what echinus::require_valid() throws for these vertices and the faces. Time O(vertices).
+    /// @pre vertices.size() == vertex_count(); the faces are those of the constructor
+    void require_valid(std::span<const Vec3f> vertices, std::span<const Triangle> faces) const;
+
+    /// The positions of the vertices that faces use, ascending by number.
+    /// @param memory  for those, should they not lie side by side
+    /// @pre vertices.size() == vertex_count()
+    std::span<const Vec3f> positions(std::span<const Vec3f> vertices, std::vector<Vec3f>& memory) const;
+
+  private:
+    std::vector<std::uint8_t> is_used_; ///< [vertex_count]
+    bool all_used_ = true;
+    bool in_range_ = true; ///< all numbers in faces are below vertex_count
+};
 
 /// The positions of the vertices that faces use.
+/// @pre indices are in range
 std::vector<Vec3f> used_positions(const TriangleMesh& mesh);
 
 } // namespace echinus
