@@ -62,6 +62,10 @@ const char* kind_of(const Simulation& simulation) {
     return is_exact(simulation) ? "exact" : "distance";
 }
 
+const char* solver_of(const SimulationOptions& options) {
+    return options.solver == SolverKind::Verlet ? "verlet" : "xpbd";
+}
+
 ordered_json to_json(const Vec3d& v) {
     return {v.x, v.y, v.z};
 }
@@ -96,6 +100,8 @@ ordered_json to_json(const SimulationResult& result) {
         {"scene", result.scene_name},
         {"particles", deformable.particle_count()},
         {"sticks", deformable.sticks.size()},
+        {"solver", solver_of(options)},
+        {"substeps", options.substep_count},
         {"iterations", options.iteration_count},
         {"time_step", options.time_step},
         {"frames", simulation.frame()},
@@ -136,7 +142,8 @@ std::string to_text(const SimulationResult& result) {
         text += fmt::format("  {:<22}{}\n", label, value);
     };
     add("particles, sticks", fmt::format("{}, {}", particle_count, simulation.deformable().sticks.size()));
-    add("iterations per frame", fmt::format("{}", simulation.options().iteration_count));
+    add("solver", fmt::format("{}, substeps x iterations per frame: {} x {}", solver_of(simulation.options()),
+                              simulation.options().substep_count, simulation.options().iteration_count));
     add("frames", fmt::format("{}, {}", simulation.frame(),
                               simulation.at_rest() ? "at rest" : "not at rest: the frame limit"));
     add("ms per frame",

@@ -13,7 +13,8 @@
 
 /// Deformable models after Jakobsen, "Advanced Character Physics" (GDC 2001), the method that the paper's
 /// simulations use (section 2.3): particles moved by Verlet integration, sticks between them relaxed one
-/// after the other, and collision with rigid models inside every relaxation.
+/// after the other, and collision with rigid models inside every relaxation. Or by extended position-based
+/// dynamics, XPBD (Macklin et al. 2016), in small steps (Macklin et al. 2019), where sticks are springs.
 namespace echinus {
 
 /// What a stick stands for; each kind has its own stiffness.
@@ -34,10 +35,11 @@ struct Stick {
 /// Particles and the sticks between them, all in world units and axes.
 struct Deformable {
     std::vector<Vec3f> positions; ///< [particle_count]
-    /// [particle_count] one time step ago: positions - previous_positions = velocity * time_step.
+    /// [particle_count] one substep ago: positions - previous_positions = velocity * time_step /
+    /// substep_count.
     std::vector<Vec3f> previous_positions;
-    /// [particle_count] 1 / mass in any unit, since only ratios count; 0 for a particle that is pinned: it
-    /// stays where it is, and no collider moves it.
+    /// [particle_count] 1 / mass, in any unit where only ratios count, which they do unless sticks have a
+    /// compliance; 0 for a particle that is pinned: it stays where it is, and no collider moves it.
     std::vector<float> inverse_masses;
     std::vector<Stick> sticks;   ///< in the order in which they are relaxed
     std::vector<Triangle> faces; ///< for pictures; nothing is computed from them
@@ -72,14 +74,32 @@ struct RestCondition {
     std::uint32_t frame_count = 60; ///< at least 1
 };
 
+/// How sticks hold their particles.
+enum class SolverKind : std::uint8_t {
+    /// As sticks (Jakobsen 2001): each relaxation removes a share of the error. More relaxations per second
+    /// make a stiffer cloth.
+    Verlet,
+    /// As springs (XPBD: Macklin et al. 2016, equation 18): what they give under a force does not depend on
+    /// the number of relaxations, once they are enough, nor on the time step.
+    Xpbd,
+};
+
 struct SimulationOptions {
+    SolverKind solver = SolverKind::Verlet;
     double time_step = 1.0 / 240; ///< seconds per frame. Half of it: twice the time, a quarter of the stretch
-    std::uint32_t iteration_count = 10; ///< relaxations per frame: more cost time and stretch less
-    Vec3d gravity{0, 0, -9.81};         ///< units per second squared
-    double drag = 0.005;                ///< share of the velocity that is lost per frame, 0 to 1
-    /// Share of a stick's error that one relaxation removes, by StickKind. 1 removes all; from 1 to 2 (not
-    /// included) it overshoots, which carries tension further per relaxation.
+    /// Relaxations per substep, of all sticks and then of all contacts: more cost time and stretch less.
+    std::uint32_t iteration_count = 10;
+    /// Xpbd: steps of time_step / substep_count that a frame is made of. For the same number of relaxations
+    /// in all, substeps of one each stretch least (Macklin et al. 2019). Verlet: 1.
+    std::uint32_t substep_count = 1;
+    Vec3d gravity{0, 0, -9.81}; ///< units per second squared
+    double drag = 0.005;        ///< share of the velocity that is lost per frame, 0 to 1
+    /// Verlet: share of a stick's error that one relaxation removes, by StickKind. 1 removes all; from 1 to 2
+    /// (not included) it overshoots, which carries tension further per relaxation.
     std::array<double, kStickKindCount> stiffness{1, 1, 0.3};
+    /// Xpbd: how far a stick gives per unit of force, by StickKind: length / (mass * length / s^2), with the
+    /// masses of the particles. 0 does not give.
+    std::array<double, kStickKindCount> compliance{0, 1e-6, 1e-4};
     double thickness = 0; ///< distance that particles keep from colliders, units
     /// Coulomb's coefficient: tangential motion relative to the collider is shortened by this times the
     /// length of the push, and never reversed. 0 is ice.
@@ -126,9 +146,9 @@ class Simulation {
     Simulation(Simulation&& other) noexcept;
     Simulation& operator=(Simulation&& other) noexcept;
 
-    /// One frame: Verlet integration with drag, colliders move on along their velocities, then
-    /// iteration_count times all sticks and then collision of all particles with all colliders; at last the
-    /// proof that no particle passed through an exact map. Allocates nothing.
+    /// One frame: substep_count times Verlet integration, drag with the first, colliders that move on along
+    /// their velocities, then iteration_count times all sticks and then collision of all particles with all
+    /// colliders; at last the proof that no particle passed through an exact map. Allocates nothing.
     ///
     /// A distance map pushes along its rays (docs/paper.md). An exact map pushes to the thickness over the
     /// nearest point. Its particles are then swept from where they were proven free last to where they are,
@@ -147,7 +167,7 @@ class Simulation {
     const SimulationOptions& options() const;
     /// Frames computed so far.
     std::uint32_t frame() const;
-    /// Speed of the fastest particle in the last frame, units per second; infinite before the first.
+    /// Speed of the fastest particle in the last substep, units per second; infinite before the first.
     double largest_speed() const;
     /// Has the rest condition held for as many frames as it asks?
     bool at_rest() const;

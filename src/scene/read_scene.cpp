@@ -112,11 +112,12 @@ ExactMapOptions read_exact_map(JsonObject& map) {
     return options;
 }
 
-/// A key that is right for the other kind of map is no misspelling: the sentence says what it needs.
-void refuse_keys_of_other_kind(const JsonObject& map, std::initializer_list<const char*> keys,
-                               const std::string& kind) {
+/// A key that is right for another choice is no misspelling: the sentence says what it needs.
+/// @param choice  the key that chooses, and the word that these keys need
+void refuse_keys_of_other_choice(const JsonObject& object, std::initializer_list<const char*> keys,
+                                 const std::string& choice, const std::string& word) {
     for (const char* key : keys)
-        if (map.has(key)) map.refuse(key, "left out, or \"map.kind\" must be \"" + kind + "\"");
+        if (object.has(key)) object.refuse(key, "left out, or \"" + choice + "\" must be \"" + word + "\"");
 }
 
 MapOptions read_map(JsonObject& scene) {
@@ -124,10 +125,12 @@ MapOptions read_map(JsonObject& scene) {
     if (!map) return {};
     MapOptions options;
     if (map->read_word("kind", {"exact", "distance"}).value_or(0) == 0) {
-        refuse_keys_of_other_kind(*map, {"directions", "correction", "entries", "pole_axis"}, "distance");
+        refuse_keys_of_other_choice(*map, {"directions", "correction", "entries", "pole_axis"}, "map.kind",
+                                    "distance");
         options = read_exact_map(*map);
     } else {
-        refuse_keys_of_other_kind(*map, {"cells_per_octant", "budget", "rule", "centre"}, "exact");
+        refuse_keys_of_other_choice(*map, {"cells_per_octant", "budget", "rule", "centre"}, "map.kind",
+                                    "exact");
         options = read_distance_map(*map);
     }
     map->finish();
@@ -208,13 +211,31 @@ void read_cloth(JsonObject& root, Scene& scene) {
     cloth->finish();
 }
 
+/// One number for each kind of stick.
+void read_stick_kinds(JsonObject& object, std::array<double, kStickKindCount>& values, Range range) {
+    object.read("structural", values[0], range);
+    object.read("shear", values[1], range);
+    object.read("bending", values[2], range);
+}
+
+void read_compliance(JsonObject& material, std::array<double, kStickKindCount>& compliance) {
+    auto object = material.object("compliance");
+    if (!object) return;
+    read_stick_kinds(*object, compliance, {0, 1e9});
+    object->finish();
+}
+
+/// @pre the solver was read
 void read_material(JsonObject& root, SimulationOptions& options) {
     auto material = root.object("material");
     if (!material) return;
-    constexpr Range kStiffness{0, 1.99};
-    material->read("structural", options.stiffness[0], kStiffness);
-    material->read("shear", options.stiffness[1], kStiffness);
-    material->read("bending", options.stiffness[2], kStiffness);
+    if (options.solver == SolverKind::Verlet) {
+        refuse_keys_of_other_choice(*material, {"compliance"}, "solver", "xpbd");
+        read_stick_kinds(*material, options.stiffness, {0, 1.99});
+    } else {
+        refuse_keys_of_other_choice(*material, {"structural", "shear", "bending"}, "solver", "verlet");
+        read_compliance(*material, options.compliance);
+    }
     material->read("friction", options.friction, {0, 1e9});
     material->read("drag", options.drag, {0, 1});
     material->finish();
@@ -223,6 +244,15 @@ void read_material(JsonObject& root, SimulationOptions& options) {
 void read_solver(JsonObject& root, SimulationOptions& options) {
     root.read("gravity", options.gravity, kCoordinate);
     root.read("time_step", options.time_step, {1e-9, 1e9});
+    if (root.read_word("solver", {"verlet", "xpbd"}).value_or(0) == 0) {
+        refuse_keys_of_other_choice(root, {"substeps"}, "solver", "xpbd");
+    } else {
+        // As much work as ten iterations, in small steps.
+        options.solver = SolverKind::Xpbd;
+        options.iteration_count = 1;
+        options.substep_count = 10;
+        root.read("substeps", options.substep_count, {1, 1e6});
+    }
     root.read("iterations", options.iteration_count, {1, 1e6});
 }
 
@@ -263,8 +293,8 @@ Scene parse_scene(std::string_view json, const std::string& name) {
     scene.map = read_map(root);
     read_collider(root, scene);
     read_cloth(root, scene);
-    read_material(root, scene.simulation);
     read_solver(root, scene.simulation);
+    read_material(root, scene.simulation);
     read_end(root, scene);
     root.finish();
     return scene;

@@ -52,7 +52,7 @@ Collider make_collider(const Scene& scene, const AnyMap& map) {
 
 Simulation make_simulation(const Scene& scene, const AnyMap& map) {
     Deformable cloth = make_cloth(scene.cloth);
-    const Vec3d way = scene.cloth_velocity * scene.simulation.time_step;
+    const Vec3d way = scene.cloth_velocity * (scene.simulation.time_step / scene.simulation.substep_count);
     for (std::size_t i = 0; i < cloth.particle_count(); ++i)
         if (cloth.inverse_masses[i] != 0)
             cloth.previous_positions[i] = Vec3f(Vec3d(cloth.positions[i]) - way);

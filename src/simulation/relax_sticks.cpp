@@ -11,6 +11,7 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -32,15 +33,17 @@ struct LanePoints {
 class LaneStick {
   public:
     explicit LaneStick(const StickRun& run)
-        : share_a_(hn::Set(Tag(), run.share_a)), share_b_(hn::Set(Tag(), run.share_b)) {}
+        : share_a_(hn::Set(Tag(), run.share_a)), share_b_(hn::Set(Tag(), run.share_b)),
+          yield_(hn::Set(Tag(), run.yield)), gives_way_(run.yield != 0) {}
 
-    /// Operation by operation what relax_one() does.
-    void operator()(LanePoints& a, LanePoints& b, const float* rest_lengths) const {
+    /// Operation by operation what relax_one() does. @param left  sticks from the first lane on
+    void operator()(LanePoints& a, LanePoints& b, float* goal_lengths, std::size_t left) const {
         const Tag d;
         const Lanes x = b.x - a.x, y = b.y - a.y, z = b.z - a.z;
         const Lanes least = hn::Set(d, std::numeric_limits<float>::min());
         const Lanes distance = hn::Sqrt(x * x + y * y + z * z + least);
-        const Lanes factor = hn::Set(d, 1.0F) - hn::LoadU(d, rest_lengths) / distance;
+        const Lanes goal = hn::LoadU(d, goal_lengths);
+        const Lanes factor = hn::Set(d, 1.0F) - goal / distance;
         const LanePoints correction{x * factor, y * factor, z * factor};
         a.x = a.x + correction.x * share_a_;
         a.y = a.y + correction.y * share_a_;
@@ -48,10 +51,14 @@ class LaneStick {
         b.x = b.x - correction.x * share_b_;
         b.y = b.y - correction.y * share_b_;
         b.z = b.z - correction.z * share_b_;
+        if (!gives_way_) return;
+        const Mask in_run = hn::FirstN(d, std::min(left, hn::Lanes(d)));
+        hn::BlendedStore(goal + (distance - goal) * yield_, in_run, d, goal_lengths);
     }
 
   private:
-    Lanes share_a_, share_b_;
+    Lanes share_a_, share_b_, yield_;
+    bool gives_way_;
 };
 
 /// Particles that follow each other.
@@ -74,21 +81,21 @@ struct Row {
     }
 };
 
-void relax_side_by_side(const StickRun& run, const float* rest_lengths, PointArrays& p) {
+void relax_side_by_side(const StickRun& run, float* goal_lengths, PointArrays& p) {
     const Tag d;
     const LaneStick stick(run);
     const std::size_t lanes = hn::Lanes(d);
     std::size_t i = 0;
     for (; i + lanes <= run.count; i += lanes) {
         LanePoints a = Row::load(p, run.a + i), b = Row::load(p, run.b + i);
-        stick(a, b, rest_lengths + i);
+        stick(a, b, goal_lengths + i, run.count - i);
         Row::store(a, p, run.a + i);
         Row::store(b, p, run.b + i);
     }
     if (i == run.count) return;
     const Mask rest = hn::FirstN(d, run.count - i);
     LanePoints a = Row::load(p, run.a + i), b = Row::load(p, run.b + i);
-    stick(a, b, rest_lengths + i);
+    stick(a, b, goal_lengths + i, run.count - i);
     Row::store(a, rest, p, run.a + i);
     Row::store(b, rest, p, run.b + i);
 }
@@ -127,7 +134,7 @@ HWY_INLINE LanePoints chosen(const Mask& mask, const LanePoints& yes, const Lane
 }
 
 template <typename Element>
-void relax_alternating(const StickRun& run, const float* rest_lengths, PointArrays& p) {
+void relax_alternating(const StickRun& run, float* goal_lengths, PointArrays& p) {
     using Ends = Alternating<Element>;
     const Tag d;
     const LaneStick stick(run);
@@ -136,7 +143,7 @@ void relax_alternating(const StickRun& run, const float* rest_lengths, PointArra
         LanePoints a, b;
         Ends::load(p, run.a + 2 * i, a, b);
         LanePoints new_a = a, new_b = b;
-        stick(new_a, new_b, rest_lengths + i);
+        stick(new_a, new_b, goal_lengths + i, run.count - i);
         if (i + lanes > run.count) {
             const Mask rest = hn::FirstN(d, run.count - i);
             new_a = chosen(rest, new_a, a);
@@ -146,16 +153,16 @@ void relax_alternating(const StickRun& run, const float* rest_lengths, PointArra
     }
 }
 
-void relax_run(const StickRun& run, const StickArrays& sticks, PointArrays& positions) {
-    const float* rest_lengths = &sticks.rest_lengths[run.first];
+void relax_run(const StickRun& run, StickArrays& sticks, PointArrays& positions) {
+    float* goal_lengths = &sticks.goal_lengths[run.first];
     switch (run.shape) {
     case RunShape::SideBySide:
-        return relax_side_by_side(run, rest_lengths, positions);
+        return relax_side_by_side(run, goal_lengths, positions);
     case RunShape::Neighbours:
-        return relax_alternating<float>(run, rest_lengths, positions);
+        return relax_alternating<float>(run, goal_lengths, positions);
     case RunShape::EverySecond:
 #if HWY_TARGET != HWY_SCALAR // compiled by Highway, never chosen by dispatch.hpp, and too narrow for a pair
-        return relax_alternating<double>(run, rest_lengths, positions);
+        return relax_alternating<double>(run, goal_lengths, positions);
 #endif
     case RunShape::Scattered:
         break;
@@ -173,25 +180,26 @@ namespace {
 
 HWY_EXPORT(relax_run);
 
-void relax_one(const StickArrays& sticks, std::size_t i, PointArrays& positions) {
+void relax_one(StickArrays& sticks, std::size_t i, PointArrays& positions) {
     const Vec3f a = positions[sticks.a[i]];
     const Vec3f b = positions[sticks.b[i]];
     const Vec3f across = b - a;
     // The smallest float keeps particles at one place from dividing by zero and is lost in all else.
     const float distance = std::sqrt(dot(across, across) + std::numeric_limits<float>::min());
-    const Vec3f correction = across * (1 - sticks.rest_lengths[i] / distance);
+    float& goal = sticks.goal_lengths[i];
+    const Vec3f correction = across * (1 - goal / distance);
     positions.set(sticks.a[i], a + correction * sticks.share_a[i]);
     positions.set(sticks.b[i], b - correction * sticks.share_b[i]);
+    if (sticks.yield[i] != 0) goal = goal + (distance - goal) * sticks.yield[i];
 }
 
-void relax_one_by_one(const StickArrays& sticks, std::size_t first, std::size_t count,
-                      PointArrays& positions) {
+void relax_one_by_one(StickArrays& sticks, std::size_t first, std::size_t count, PointArrays& positions) {
     for (std::size_t i = first; i < first + count; ++i) relax_one(sticks, i, positions);
 }
 
 } // namespace
 
-void relax(const StickArrays& sticks, PointArrays& positions) noexcept {
+void relax(StickArrays& sticks, PointArrays& positions) noexcept {
     if (!use_kernels()) return relax_one_by_one(sticks, 0, sticks.count(), positions);
     for (const StickRun& run : sticks.runs) {
         if (run.shape == RunShape::Scattered)

@@ -48,7 +48,8 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
                   std::move(deformable_in))),
       colliders(std::move(colliders_in)), options(options_in),
       largest_speed(std::numeric_limits<double>::infinity()), particles_(deformable),
-      sticks_(stiff_sticks(deformable, options)) {
+      sticks_(weighted_sticks(deformable, options)), goals_give_way_(sticks_.gives_way()),
+      substep_seconds_(options.time_step / options.substep_count) {
     for (const Collider& collider : colliders) previous_poses_.push_back(collider.pose);
     for (const Collider& collider : colliders)
         if (is_exact(collider)) exact_.emplace_back(collider, particles_, options);
@@ -62,11 +63,14 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
 
 void Simulation::Solver::step() {
     begin_frame();
-    integrate();
-    move_colliders();
-    for (std::uint32_t iteration = 0; iteration < options.iteration_count; ++iteration) {
-        relax_sticks();
-        collide();
+    for (std::uint32_t substep = 0; substep < options.substep_count; ++substep) {
+        integrate(substep == 0 ? 1 - options.drag : 1);
+        move_colliders();
+        restore_goal_lengths();
+        for (std::uint32_t iteration = 0; iteration < options.iteration_count; ++iteration) {
+            relax_sticks();
+            collide();
+        }
     }
     keep_free();
     publish();
@@ -98,10 +102,11 @@ void integrate(std::vector<float>& positions, std::vector<float>& previous,
 
 } // namespace
 
-void Simulation::Solver::integrate() {
+/// @param share_kept  of the velocity
+void Simulation::Solver::integrate(double share_kept) {
     const Stopwatch stopwatch(profile.integration_seconds);
-    const Vec3f fall(options.gravity * (options.time_step * options.time_step));
-    const auto keep = static_cast<float>(1 - options.drag);
+    const Vec3f fall(options.gravity * (substep_seconds_ * substep_seconds_));
+    const auto keep = static_cast<float>(share_kept);
     PointArrays& now = particles_.positions;
     PointArrays& before = particles_.previous;
     echinus::integrate(now.x, before.x, particles_.inverse_masses, keep, fall.x);
@@ -114,9 +119,16 @@ void Simulation::Solver::move_colliders() {
     std::size_t exact = 0;
     for (std::size_t i = 0; i < colliders.size(); ++i) {
         previous_poses_[i] = colliders[i].pose;
-        colliders[i].pose = pose_after(colliders[i], options.time_step);
+        colliders[i].pose = pose_after(colliders[i], substep_seconds_);
         if (is_exact(colliders[i])) exact_[exact++].begin_substep(colliders[i], previous_poses_[i], options);
     }
+}
+
+/// Multipliers begin at 0 in each substep (Macklin et al. 2016, algorithm 1).
+void Simulation::Solver::restore_goal_lengths() {
+    const Stopwatch stopwatch(profile.constraint_seconds);
+    if (goals_give_way_)
+        std::copy(sticks_.rest_lengths.begin(), sticks_.rest_lengths.end(), sticks_.goal_lengths.begin());
 }
 
 void Simulation::Solver::relax_sticks() {
@@ -202,7 +214,7 @@ void Simulation::Solver::judge_frame() {
         const Vec3f motion = position - deformable.previous_positions[i];
         largest_motion_sq = std::max(largest_motion_sq, dot(motion, motion));
     }
-    largest_speed = std::sqrt(double{largest_motion_sq}) / options.time_step;
+    largest_speed = std::sqrt(double{largest_motion_sq}) / substep_seconds_;
     judge_rest();
 }
 

@@ -29,8 +29,9 @@ class Simulation::Solver {
 
   private:
     void begin_frame();
-    void integrate();
+    void integrate(double share_kept);
     void move_colliders();
+    void restore_goal_lengths();
     void relax_sticks();
     void collide();
     void collide_radially(const Collider& collider, const RigidTransform& previous_pose);
@@ -44,6 +45,8 @@ class Simulation::Solver {
 
     Particles particles_;
     StickArrays sticks_;
+    bool goals_give_way_;
+    double substep_seconds_;
     std::vector<RigidTransform> previous_poses_; // of the colliders, one substep ago
     std::vector<ExactCollision> exact_;          // with each exact map, in the order of the colliders
     std::vector<std::uint32_t> unsettled_;       // particles, in keep_free()

@@ -50,6 +50,7 @@ std::size_t run_length(const StickArrays& sticks, std::size_t first, RunShape sh
         if (std::pair(sticks.a[first + n], sticks.b[first + n]) != expected) break;
         if (sticks.share_a[first + n] != sticks.share_a[first]) break;
         if (sticks.share_b[first + n] != sticks.share_b[first]) break;
+        if (sticks.yield[first + n] != sticks.yield[first]) break;
     }
     return n;
 }
@@ -60,7 +61,8 @@ StickRun longest_run_from(const StickArrays& sticks, std::size_t first) {
                  .first = first,
                  .count = 1,
                  .share_a = sticks.share_a[first],
-                 .share_b = sticks.share_b[first]};
+                 .share_b = sticks.share_b[first],
+                 .yield = sticks.yield[first]};
     for (const RunShape shape : {RunShape::SideBySide, RunShape::Neighbours, RunShape::EverySecond}) {
         const std::size_t count = run_length(sticks, first, shape);
         if (count < kShortestRun || count <= run.count) continue;
@@ -86,23 +88,50 @@ std::vector<StickRun> runs_of(const StickArrays& sticks) {
     return runs;
 }
 
+/// How the ends share the correction, and what is left to the goal.
+struct Shares {
+    double a, b, yield;
+};
+
+/// Jakobsen 2001, section 4.
+Shares shares_of_stick(double inverse_mass_a, double inverse_mass_b, double stiffness) {
+    const double sum = inverse_mass_a + inverse_mass_b;
+    return {stiffness * inverse_mass_a / sum, stiffness * inverse_mass_b / sum, 0};
+}
+
+Shares shares_of_spring(double inverse_mass_a, double inverse_mass_b, double compliance, double substep) {
+    const double scaled_compliance = compliance / (substep * substep);
+    const double sum = inverse_mass_a + inverse_mass_b + scaled_compliance;
+    return {inverse_mass_a / sum, inverse_mass_b / sum, scaled_compliance / sum};
+}
+
 } // namespace
 
-StickArrays stiff_sticks(const Deformable& deformable, const SimulationOptions& options) {
+bool StickArrays::gives_way() const {
+    return std::any_of(yield.begin(), yield.end(), [](float share) { return share != 0; });
+}
+
+StickArrays weighted_sticks(const Deformable& deformable, const SimulationOptions& options) {
+    const double substep = options.time_step / options.substep_count;
     StickArrays sticks;
     for (const Stick& stick : deformable.sticks) {
         const double mass_a = deformable.inverse_masses[stick.a];
         const double mass_b = deformable.inverse_masses[stick.b];
         if (mass_a + mass_b == 0) continue; // both pinned
-        const double stiffness = options.stiffness[static_cast<std::size_t>(stick.kind)];
+        const auto kind = static_cast<std::size_t>(stick.kind);
+        const Shares shares = options.solver == SolverKind::Verlet
+                                  ? shares_of_stick(mass_a, mass_b, options.stiffness[kind])
+                                  : shares_of_spring(mass_a, mass_b, options.compliance[kind], substep);
         sticks.a.push_back(stick.a);
         sticks.b.push_back(stick.b);
-        sticks.share_a.push_back(static_cast<float>(stiffness * mass_a / (mass_a + mass_b)));
-        sticks.share_b.push_back(static_cast<float>(stiffness * mass_b / (mass_a + mass_b)));
+        sticks.share_a.push_back(static_cast<float>(shares.a));
+        sticks.share_b.push_back(static_cast<float>(shares.b));
+        sticks.yield.push_back(static_cast<float>(shares.yield));
         sticks.rest_lengths.push_back(stick.rest_length);
     }
     sticks.runs = runs_of(sticks);
     sticks.rest_lengths.resize(sticks.count() + PointArrays::kPadding);
+    sticks.goal_lengths = sticks.rest_lengths;
     return sticks;
 }
 

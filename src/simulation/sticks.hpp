@@ -24,25 +24,38 @@ struct StickRun {
     RunShape shape = RunShape::Scattered;
     std::uint32_t a = 0, b = 0; ///< particles of the first stick
     std::size_t first = 0, count = 0;
-    float share_a = 0, share_b = 0; ///< of the first stick
+    float share_a = 0, share_b = 0, yield = 0; ///< of the first stick
 };
 
 /// All sticks with what their relaxation needs, in the order in which they are relaxed.
+///
+/// A spring is relaxed like a stick whose length gives way. XPBD (Macklin et al. 2016, equation 18) changes
+/// the multiplier m of a spring of compliance c, length error e and inverse masses w_a, w_b, which are moved
+/// by w_a m and w_b m along it, by
+///
+///     dm = -(e + c' m) / (w_a + w_b + c')      with c' = c / substep^2
+///
+/// With the goal length g = rest length - c' m, for which e + c' m = distance - g, this reads: the ends take
+/// the shares w / (w_a + w_b + c') of the way to the goal, and the goal gives way by the share that is left,
+/// c' / (w_a + w_b + c').
 struct StickArrays {
     std::vector<std::uint32_t> a, b; ///< [count]
     /// [count] Parts of a stick's error that its two ends take: by their masses, and by the stiffness or the
     /// compliance.
     std::vector<float> share_a, share_b;
+    std::vector<float> yield;        ///< [count] The part by which its goal gives way; 0 of a stick
     std::vector<float> rest_lengths; ///< [count + PointArrays::kPadding]
+    std::vector<float> goal_lengths; ///< the same
     std::vector<StickRun> runs;
 
     std::size_t count() const { return a.size(); }
+    bool gives_way() const;
 };
 
-/// Sticks with a stiffness (Jakobsen 2001, section 4), in the deformable's order.
-StickArrays stiff_sticks(const Deformable& deformable, const SimulationOptions& options);
+/// By the solver that the options choose, in the deformable's order.
+StickArrays weighted_sticks(const Deformable& deformable, const SimulationOptions& options);
 
 /// One relaxation of all sticks, in order. The same bits under every instruction set.
-void relax(const StickArrays& sticks, PointArrays& positions) noexcept;
+void relax(StickArrays& sticks, PointArrays& positions) noexcept;
 
 } // namespace echinus

@@ -30,6 +30,10 @@ void require_valid(const SimulationOptions& options) {
     constexpr double kLargest = 1e9;
     require_within("time_step", options.time_step, 1e-9, kLargest);
     require_within("iteration_count", options.iteration_count, 1, 1e6);
+    require_within("substep_count", options.substep_count, 1, 1e6);
+    if (options.solver == SolverKind::Verlet && options.substep_count != 1)
+        fail("simulation option substep_count is " + std::to_string(options.substep_count) +
+             "; it must be 1 with the Verlet solver, whose sticks would become stiffer");
     require_within("drag", options.drag, 0, 1);
     require_within("thickness", options.thickness, 0, kLargest);
     require_within("friction", options.friction, 0, kLargest);
@@ -37,6 +41,7 @@ void require_valid(const SimulationOptions& options) {
     require_within("rest.distance", options.rest.distance, 0, 1e9);
     require_within("rest.frame_count", options.rest.frame_count, 1, kLargest);
     for (const double stiffness : options.stiffness) require_within("stiffness", stiffness, 0, 1.99);
+    for (const double compliance : options.compliance) require_within("compliance", compliance, 0, kLargest);
     if (!echinus::is_finite(options.gravity)) fail("simulation option gravity is not finite");
 }
 

@@ -45,6 +45,10 @@ TEST_F(SimulateCommand, LeavesNoParticleOfTheSmallClothInsideTheTorus) {
     expect_none_inside("torus_small.json");
 }
 
+TEST_F(SimulateCommand, LeavesNoParticleInsideTheTorusInSmallStepsEither) {
+    expect_none_inside("torus_small_xpbd.json");
+}
+
 TEST_F(SimulateCommand, LeavesNoParticleOfTheSmallClothInsideTheHorse) {
     if (!fs::exists(kSource / "models" / "horse.3ds"))
         GTEST_SKIP() << "models/horse.3ds is not there; scripts/setup fetches it";

@@ -145,6 +145,56 @@ TEST(Scene, RefusesTheKeysOfTheOtherKindOfMap) {
     EXPECT_NE(refusal_of_map(R"({"budgets": 9})"), "");
 }
 
+TEST(Scene, ChoosesTheSolverAndGivesEachItsOwnMaterial) {
+    const auto options_of = [](const std::string& rest) {
+        return parse_scene(R"({"model": "a", "cloth": {"size": [1, 1]})" + rest + "}", "a.json").simulation;
+    };
+    EXPECT_EQ(options_of("").solver, SolverKind::Verlet);
+    EXPECT_EQ(options_of(R"(, "solver": "verlet")").iteration_count, 10u);
+    const SimulationOptions small_steps = options_of(R"(, "solver": "xpbd")");
+    EXPECT_EQ(small_steps.solver, SolverKind::Xpbd);
+    EXPECT_EQ(small_steps.substep_count, 10u);
+    EXPECT_EQ(small_steps.iteration_count, 1u);
+    const SimulationOptions full =
+        options_of(R"(, "solver": "xpbd", "substeps": 7, "iterations": 3, "material": {"friction": 0.25,
+            "compliance": {"structural": 1e-7, "shear": 2e-6, "bending": 0.5}})");
+    EXPECT_EQ(full.substep_count, 7u);
+    EXPECT_EQ(full.iteration_count, 3u);
+    EXPECT_EQ(full.compliance, (std::array{1e-7, 2e-6, 0.5}));
+    EXPECT_EQ(full.friction, 0.25);
+}
+
+TEST(Scene, RefusesTheKeysOfTheOtherSolver) {
+    const auto refusal_of = [](const std::string& rest) {
+        return refusal(R"({"model": "a", "cloth": {"size": [1, 1]}, )" + rest + "}");
+    };
+    EXPECT_EQ(refusal_of(R"("substeps": 4)"),
+              R"(a.json: substeps is 4; it must be left out, or "solver" must be "xpbd")");
+    EXPECT_EQ(refusal_of(R"("material": {"compliance": {}})"),
+              R"(a.json: material.compliance is {}; it must be left out, or "solver" must be "xpbd")");
+    EXPECT_EQ(refusal_of(R"("solver": "xpbd", "material": {"shear": 1})"),
+              R"(a.json: material.shear is 1; it must be left out, or "solver" must be "verlet")");
+    EXPECT_EQ(refusal_of(R"("solver": "pbd")"), R"(a.json: solver is "pbd"; it must be "verlet" or "xpbd")");
+    EXPECT_EQ(refusal_of(R"("solver": "xpbd", "substeps": 0)"),
+              "a.json: substeps is 0; it must be a whole number from 1 to 1e+06");
+    EXPECT_EQ(refusal_of(R"("solver": "xpbd", "material": {"compliance": {"bending": -1}})"),
+              "a.json: material.compliance.bending is -1; it must be a number from 0 to 1e+09");
+    EXPECT_EQ(
+        refusal_of(R"("solver": "xpbd", "material": {"compliance": {"bendin": 1}})"),
+        R"(a.json: there is no key "material.compliance.bendin"; the nearest is "material.compliance.bending")");
+}
+
+TEST(Scene, ThrowsTheClothAtItsVelocityInSubstepsToo) {
+    const Scene scene =
+        parse_scene(R"({"model": {"box": {}}, "solver": "xpbd", "substeps": 4, "gravity": [0, 0, 0],
+        "material": {"drag": 0}, "time_step": 0.01,
+        "cloth": {"size": [1, 1], "particles": [2, 2], "position": [0, 0, 5], "velocity": [0, 0, 3]}})",
+                    "a.json");
+    Simulation simulation = make_simulation(scene, ExactMap::build(make_box({1, 1, 1})));
+    for (int i = 0; i < 100; ++i) simulation.step();
+    EXPECT_NEAR(simulation.positions()[0].z, 5 + 3, 1e-3);
+}
+
 TEST(Scene, ScalesTheColliderByOneNumberOrThree) {
     const auto scale_of = [](const std::string& scale) {
         return R"({"model": "a", "cloth": {"size": [1, 1]}, "collider": {"scale": )" + scale + "}}";
