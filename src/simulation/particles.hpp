@@ -37,17 +37,19 @@ struct PointArrays {
 /// The particles of a deformable while a frame is computed.
 struct Particles {
     PointArrays positions;
-    PointArrays previous;    ///< one substep ago
-    PointArrays frame_start; ///< where they were when the frame began
-    std::vector<float> inverse_masses;
+    PointArrays previous;        ///< one substep ago
+    PointArrays frame_start;     ///< where they were when the frame began
+    std::vector<float> mobility; ///< 1, or 0 of a particle that is pinned
 
-    explicit Particles(const Deformable& deformable) : inverse_masses(deformable.inverse_masses) {
+    explicit Particles(const Deformable& deformable) {
+        for (const float inverse_mass : deformable.inverse_masses)
+            mobility.push_back(inverse_mass == 0 ? 0.0F : 1.0F);
         positions.load(deformable.positions);
         previous.load(deformable.previous_positions);
         frame_start = positions;
     }
-    std::size_t count() const { return inverse_masses.size(); }
-    bool pinned(std::size_t i) const { return inverse_masses[i] == 0; }
+    std::size_t count() const { return mobility.size(); }
+    bool pinned(std::size_t i) const { return mobility[i] == 0; }
 };
 
 } // namespace echinus
