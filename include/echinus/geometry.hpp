@@ -110,6 +110,13 @@ class StridedSpan {
     std::size_t size() const { return size_; }
     bool empty() const { return size_ == 0; }
     T& operator[](std::size_t i) const { return *reinterpret_cast<T*>(first_ + i * stride_); }
+    /// @pre first + count <= size()
+    StridedSpan subspan(std::size_t first, std::size_t count) const {
+        StridedSpan result = *this;
+        result.first_ = first_ + first * stride_;
+        result.size_ = count;
+        return result;
+    }
 
   private:
     Byte* first_ = nullptr;

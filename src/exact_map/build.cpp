@@ -46,6 +46,7 @@ std::uint64_t hash_of(std::span<const Vec3f> vertices, std::span<const Triangle>
 
 struct OwnedArrays {
     Bands bands;
+    std::vector<std::uint16_t> reaches;
     std::vector<Vec3<std::int32_t>> vertices;
     IndexStorage corners;
     IndexStorage face_numbers;
@@ -61,6 +62,7 @@ ExactMapView view_of(const OwnedArrays& arrays, const LatticeMesh& lattice, std:
     view.divisions = divisions;
     view.rule = rule;
     view.band_offsets = arrays.bands.offsets;
+    view.reaches = arrays.reaches;
     view.bands = arrays.bands.bands;
     view.winding_below = arrays.bands.winding_below;
     view.references = arrays.bands.references.view();
@@ -133,7 +135,7 @@ void MapMaker::snap(std::span<const Vec3f> vertices) {
     else
         snapper_.snap(vertices, lattice_);
     if (lattice_.faces.empty())
-        throw Error(ErrorCode::InvalidMesh, "no face is larger than a step of the lattice_, " +
+        throw Error(ErrorCode::InvalidMesh, "no face is larger than a step of the lattice, " +
                                                 std::to_string(lattice_.frame.step) +
                                                 ": the mesh is a few specks in a large void");
     dropped_faces_ = faces_.size() - lattice_.faces.size();
@@ -201,6 +203,7 @@ std::uint32_t MapMaker::set_bands() {
     const auto find = [&](std::uint32_t candidate) {
         finder_.find(lattice_, arrays_->border, OctahedralCells(candidate), options_.thread_count,
                      arrays_->bands);
+        set_reaches(arrays_->bands.offsets, arrays_->bands.bands, arrays_->reaches);
     };
     std::uint32_t divisions = options_.divisions;
     if (options_.byte_budget != 0)

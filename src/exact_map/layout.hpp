@@ -6,6 +6,9 @@
 #include <echinus/exact_map.hpp>
 
 #include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
 
 /// What build and queries share about an exact map's arrays.
 namespace echinus {
@@ -33,6 +36,16 @@ struct BandRange {
 
 inline BandRange bands_of_cell(const ExactMapView& map, std::uint32_t cell) {
     return {map.band_offsets[cell], map.band_offsets[cell + 1]};
+}
+
+/// Sets ExactMapView::reaches.
+inline void set_reaches(std::span<const std::uint32_t> band_offsets, std::span<const Band> bands,
+                        std::vector<std::uint16_t>& reaches) {
+    reaches.resize(band_offsets.size() - 1);
+    for (std::size_t cell = 0; cell < reaches.size(); ++cell) {
+        const std::uint32_t end = band_offsets[cell + 1];
+        reaches[cell] = end > band_offsets[cell] ? bands[end - 1].upper : std::uint16_t{0};
+    }
 }
 
 /// Winding number of the gap beyond a band of a cell, or kUncertain.

@@ -2,7 +2,9 @@
 
 #include "exact_map/layout.hpp"
 #include "exact_map/nearest.hpp"
+#include "exact_map/sides.hpp"
 #include "exact_map/winding.hpp"
+#include "geometry/parallel.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -94,18 +96,23 @@ Contact contact(const ExactMapView& map, Vec3f point_local, float margin, const 
 }
 
 void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
-                    std::span<std::uint8_t> inside) noexcept {
+                    std::span<std::uint8_t> inside, unsigned thread_count) noexcept {
     assert(points_local.size() == inside.size());
-    const LatticeFrame frame = frame_of(map);
-    for (std::size_t i = 0; i < inside.size(); ++i)
-        inside[i] = containment(map, frame, points_local[i]).inside ? 1 : 0;
+    for_each_piece(inside.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        const std::span<Side> sides = inside.subspan(begin, end - begin);
+        find_sides(map, points_local.subspan(begin, end - begin), sides);
+        if (map.border.empty()) return;
+        for (Side& side : sides) side &= kInside;
+    });
 }
 
 void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local, float margin,
-                    std::span<Contact> contacts, const Vec3d& stretch) noexcept {
+                    std::span<Contact> contacts, const Vec3d& stretch, unsigned thread_count) noexcept {
     assert(points_local.size() == contacts.size());
     const ContactSearch search(map, stretch, margin);
-    for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = search(points_local[i]);
+    for_each_piece(contacts.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) contacts[i] = search(points_local[i]);
+    });
 }
 
 } // namespace echinus

@@ -88,12 +88,12 @@ Winding winding_beyond_lattice(const ExactMapView& map, const Vec3d& place) {
 
 Winding winding_at(const ExactMapView& map, const LatticePoint& p) noexcept {
     const auto [cell, part] = OctahedralCells(map.divisions).locate(p);
-    const BandRange bands = bands_of_cell(map, cell);
     const std::int64_t t = band_unit_of(l1_norm(p));
+    if (t >= map.reaches[cell] && map.border.empty()) return {};
+    const BandRange bands = bands_of_cell(map, cell);
     std::uint32_t band = bands.first;
     while (band < bands.last && t >= map.bands[band].upper) ++band;
-    if (band == bands.last)
-        return map.border.empty() ? Winding{} : generalised_winding(map, band, bands, part, p);
+    if (band == bands.last) return generalised_winding(map, band, bands, part, p);
     const bool in_gap = t < map.bands[band].lower;
     const int winding = in_gap ? map.winding_below[band] : winding_beyond(map, band, bands);
     if (winding == ExactMapView::kUncertain) return generalised_winding(map, band, bands, part, p);

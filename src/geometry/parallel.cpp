@@ -1,5 +1,7 @@
 #include "geometry/parallel.hpp"
 
+#include <algorithm>
+
 #ifdef ECHINUS_WITH_TBB
 #include <tbb/blocked_range.h>
 #include <tbb/info.h>
@@ -79,6 +81,29 @@ void parallel_for(std::size_t count, unsigned thread_count,
                   const std::function<void(std::size_t begin, std::size_t end)>& body) {
     parallel_for_workers(count, thread_count,
                          [&](std::size_t, std::size_t begin, std::size_t end) { body(begin, end); });
+}
+
+void for_each_piece(std::size_t count, unsigned thread_count,
+                    const std::function<void(std::size_t begin, std::size_t end)>& answer) noexcept {
+    constexpr std::size_t kFewest = 1 << 14; // items that are worth a thread
+    constexpr std::size_t kMost = 1 << 30;
+    const std::size_t wanted =
+        thread_count == 1 ? 1 : std::min(2 * worker_count(thread_count), count / kFewest);
+    const std::size_t pieces = std::max({wanted, (count + kMost - 1) / kMost, std::size_t{1}});
+    const auto answer_pieces = [&](std::size_t first, std::size_t last) {
+        for (std::size_t piece = first; piece < last; ++piece)
+            answer(count / pieces * piece + std::min(piece, count % pieces),
+                   count / pieces * (piece + 1) + std::min(piece + 1, count % pieces));
+    };
+    if (wanted <= 1) {
+        answer_pieces(0, pieces);
+        return;
+    }
+    try {
+        parallel_for(pieces, thread_count, answer_pieces);
+    } catch (...) {
+        answer_pieces(0, pieces);
+    }
 }
 
 } // namespace echinus

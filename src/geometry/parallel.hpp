@@ -21,6 +21,18 @@ void parallel_for_workers(
     std::size_t count, unsigned thread_count,
     const std::function<void(std::size_t worker, std::size_t begin, std::size_t end)>& body);
 
+/// Calls `answer(begin, end)` for pieces of a batch that together are [0, count), on up to `thread_count`
+/// threads where the batch is large enough to gain by it. No piece has more than 2^30 items.
+/// Should no thread or no memory be had, this thread does what is left to do, and perhaps some of it again.
+void for_each_piece(std::size_t count, unsigned thread_count,
+                    const std::function<void(std::size_t begin, std::size_t end)>& answer) noexcept;
+template <typename Answer>
+void for_each_piece(std::size_t count, unsigned thread_count, const Answer& answer) noexcept {
+    // A reference fits into a std::function; what a lambda captures may need memory, which may fail.
+    const std::function<void(std::size_t, std::size_t)> reference = std::cref(answer);
+    for_each_piece(count, thread_count, reference);
+}
+
 /// Calls both, at the same time if there are two threads for it. Exceptions reach the caller.
 void parallel_invoke(unsigned thread_count, const std::function<void()>& first,
                      const std::function<void()>& second);

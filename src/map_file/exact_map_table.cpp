@@ -1,8 +1,11 @@
 #include "map_file/exact_map_table.hpp"
 
+#include "exact_map/layout.hpp"
 #include "map_file/table_arrays.hpp"
 
+#include <cstdint>
 #include <utility>
+#include <vector>
 
 namespace echinus {
 
@@ -99,10 +102,17 @@ flatbuffers::Offset<schema::ExactMap> write_table(flatbuffers::FlatBufferBuilder
 
 ExactMap read_table(const schema::ExactMap& stored, std::uint64_t source_hash,
                     std::shared_ptr<const void> storage, const std::string& name) {
-    const ExactMapView view = read_view(stored);
+    ExactMapView view = read_view(stored);
     const ExactMapStatistics statistics = read_statistics(*stored.statistics());
     validate(view, statistics, name);
-    return {view, statistics, source_hash, std::move(storage)};
+    struct Kept {
+        std::shared_ptr<const void> file;
+        std::vector<std::uint16_t> reaches;
+    };
+    const auto kept = std::make_shared<Kept>(Kept{std::move(storage), {}});
+    set_reaches(view.band_offsets, view.bands, kept->reaches); // told by the bands, so files lack them
+    view.reaches = kept->reaches;
+    return {view, statistics, source_hash, kept};
 }
 
 } // namespace echinus

@@ -45,31 +45,30 @@ inline void demand(bool holds, const char* what) {
     if (!holds) throw std::logic_error(what);
 }
 
-/// What the queries of both kinds of map say of some points must agree.
-template <typename View>
-void attack_queries(const View& map, const std::vector<Vec3f>& points) {
+inline void attack_map(const DistanceMap& map) {
+    const std::vector<Vec3f> points = telling_points(map.view().centre, map.view().radius);
     std::vector<Contact> contacts(points.size());
-    contacts_batch(map, points, map.radius, contacts);
+    contacts_batch(map.view(), points, map.view().radius, contacts);
     std::vector<std::uint8_t> inside(points.size());
-    contains_batch(map, points, inside);
+    contains_batch(map.view(), points, inside);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        demand(contacts[i].inside == contains(map, points[i]), "contact and contains disagree");
+        demand(contacts[i].inside == contains(map.view(), points[i]), "contact and contains disagree");
         demand(inside[i] == (contacts[i].inside ? 1 : 0), "contains_batch and contact disagree");
     }
-}
-
-inline void attack_map(const DistanceMap& map) {
-    attack_queries(map.view(), telling_points(map.view().centre, map.view().radius));
     std::size_t direction_count = 0;
     for (const std::size_t count : entry_histogram(map)) direction_count += count;
     demand(direction_count == map.view().direction_count(), "histogram is not complete");
 }
 
+/// A map whose bands contradict its faces may answer one query this way and another that way; that such a
+/// batch and single queries agree is asked only of sound maps, elsewhere.
 inline void attack_map(const ExactMap& map) {
     const ExactMapView& view = map.view();
     const std::vector<Vec3f> points = telling_points(view);
-    attack_queries(view, points);
+    std::vector<std::uint8_t> inside(points.size());
+    contains_batch(view, points, inside);
     std::vector<Contact> contacts(points.size());
+    contacts_batch(view, points, view.radius, contacts);
     contacts_batch(view, points, view.radius * 0.01F, contacts, {2, -1, 0.5});
     contacts_batch(view, points, 3e38F, contacts, {1e-3, 1, 1e3});
     contacts_batch(view, points, 0, contacts, {1e-300, 1e300, 1});

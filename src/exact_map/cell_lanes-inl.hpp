@@ -1,0 +1,143 @@
+// Included once for each instruction set, as Highway wants it: no guard against a second time.
+#if defined(ECHINUS_CELL_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef ECHINUS_CELL_LANES_INL
+#undef ECHINUS_CELL_LANES_INL
+#else
+#define ECHINUS_CELL_LANES_INL
+#endif
+
+#include "directions/lattice.hpp"
+#include "directions/octahedral_cells.hpp"
+
+#include <hwy/highway.h>
+
+#include <cstdint>
+
+#if HWY_TARGET != HWY_SCALAR // where the reference is used instead
+HWY_BEFORE_NAMESPACE();
+namespace echinus::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::ScalableTag<float>;
+using Ints = hn::RebindToSigned<Floats>;
+using FloatLanes = hn::Vec<Floats>;
+using IntLanes = hn::Vec<Ints>;
+using FloatMask = hn::Mask<Floats>;
+using IntMask = hn::Mask<Ints>;
+
+struct PointLanes {
+    FloatLanes x, y, z;
+};
+
+/// Where particles are, in single precision.
+struct CellLanes {
+    FloatLanes l1; ///< the L1 norm in lattice steps; that of the snapped particle is within kL1Error of it
+    IntLanes cell;
+    FloatMask sure; ///< the snapped particle surely lies in that cell
+
+    static constexpr float kL1Error = 2;
+};
+
+/// LatticeFrame::to_lattice() and OctahedralCells::locate(), but for rounding: the frame's centre is a float,
+/// so that a coordinate is rounded twice, by 2^-24 of at most 2^20 each; together 1/8 of a step. Snapping
+/// moves it by another 1/2.
+class LocateLanes {
+  public:
+    LocateLanes(const Vec3f& centre, const LatticeFrame& frame, std::uint32_t divisions)
+        : centre_(centre), inverse_step_(static_cast<float>(frame.inverse_step)),
+          n_(static_cast<std::int32_t>(divisions)) {}
+
+    CellLanes operator()(const PointLanes& point_local) const {
+        constexpr Floats f;
+        constexpr Ints i;
+        const FloatLanes x = on_lattice(point_local.x, centre_.x);
+        const FloatLanes y = on_lattice(point_local.y, centre_.y);
+        const FloatLanes z = on_lattice(point_local.z, centre_.z);
+        const FloatLanes abs_x = hn::Abs(x), abs_y = hn::Abs(y);
+        const FloatLanes l1 = hn::Add(hn::Add(abs_x, abs_y), hn::Abs(z));
+
+        const FloatLanes cells_per_step = hn::Div(hn::Set(f, static_cast<float>(n_)), l1);
+        const FloatLanes along_x = hn::Mul(abs_x, cells_per_step), along_y = hn::Mul(abs_y, cells_per_step);
+        const IntLanes row = hn::ConvertTo(i, along_x), column = hn::ConvertTo(i, along_y);
+        const FloatLanes rest_x = hn::Sub(along_x, hn::ConvertTo(f, row));
+        const FloatLanes rest_y = hn::Sub(along_y, hn::ConvertTo(f, column));
+        const FloatLanes rest = hn::Add(rest_x, rest_y);
+        // Of n times a share of the norm: both of them are off by less than 2 steps, and there are 4
+        // roundings.
+        const FloatLanes slack =
+            hn::MulAdd(hn::Set(f, 4), cells_per_step, hn::Set(f, static_cast<float>(n_) * 0x1p-21F));
+        const FloatLanes one = hn::Set(f, 1);
+        const FloatLanes clearance =
+            hn::Min(hn::Min(hn::Min(rest_x, rest_y), hn::Sub(one, hn::Max(rest_x, rest_y))),
+                    hn::Abs(hn::Sub(rest, one)));
+
+        // index(), in which `down` is 1: as a number, a mask is 0 or -1.
+        const IntLanes minus_down = hn::BitCast(i, hn::VecFromMask(f, hn::Gt(rest, one)));
+        const IntLanes before_row = hn::Mul(row, hn::Sub(hn::Set(i, 2 * n_), row));
+        const IntLanes in_octant = hn::Sub(hn::Add(before_row, hn::Add(column, column)), minus_down);
+        const IntLanes cell = hn::Add(hn::Mul(octant(x, y, z), hn::Set(i, n_ * n_)), in_octant);
+        return {l1, cell, hn::Gt(clearance, slack)};
+    }
+
+  private:
+    FloatLanes on_lattice(FloatLanes local, float centre) const {
+        constexpr Floats f;
+        return hn::Mul(hn::Sub(local, hn::Set(f, centre)), hn::Set(f, inverse_step_));
+    }
+
+    static IntLanes octant(FloatLanes x, FloatLanes y, FloatLanes z) {
+        constexpr Ints i;
+        const auto bit = [&](FloatLanes coordinate, std::int32_t value) {
+            return hn::And(hn::BroadcastSignBit(hn::BitCast(i, coordinate)), hn::Set(i, value));
+        };
+        return hn::Or(hn::Or(bit(x, 1), bit(y, 2)), bit(z, 4));
+    }
+
+    Vec3f centre_;
+    float inverse_step_;
+    std::int32_t n_;
+};
+
+/// Particles on the lattice: whole numbers.
+struct LatticeLanes {
+    FloatLanes x, y, z;
+
+    FloatLanes l1_norm() const { return hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Abs(z)); }
+};
+
+/// LatticeFrame::to_lattice() and rounded(), in the same arithmetic. What is not on the lattice goes to 2^20.
+class SnapLanes {
+  public:
+    explicit SnapLanes(const LatticeFrame& frame) : frame_(frame) {}
+
+    LatticeLanes operator()(const PointLanes& point_local) const {
+        return {snapped(point_local.x, frame_.centre.x), snapped(point_local.y, frame_.centre.y),
+                snapped(point_local.z, frame_.centre.z)};
+    }
+
+  private:
+    FloatLanes snapped(FloatLanes local, double centre) const {
+        constexpr hn::Half<Floats> half;
+        return hn::Combine(Floats(), snapped_half(hn::UpperHalf(half, local), centre),
+                           snapped_half(hn::LowerHalf(half, local), centre));
+    }
+
+    hn::Vec<hn::Half<Floats>> snapped_half(hn::Vec<hn::Half<Floats>> local, double centre) const {
+        constexpr hn::Repartition<double, Floats> d;
+        const auto place =
+            hn::Mul(hn::Sub(hn::PromoteTo(d, local), hn::Set(d, centre)), hn::Set(d, frame_.inverse_step));
+        constexpr auto kExtent = static_cast<double>(kLatticeExtent);
+        const auto on_lattice = hn::Le(hn::Abs(place), hn::Set(d, kExtent + 0.5)); // not NaN
+        const auto usable = hn::IfThenElse(on_lattice, place, hn::Set(d, 2 * kExtent));
+        return hn::DemoteTo(hn::Half<Floats>(), hn::Round(usable));
+    }
+
+    LatticeFrame frame_;
+};
+
+} // namespace echinus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
+
+#endif

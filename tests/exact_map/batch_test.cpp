@@ -1,0 +1,172 @@
+#include "support/instruction_sets.hpp"
+#include "support/mesh_assembly.hpp"
+#include "support/point_sets.hpp"
+#include "support/random_points.hpp"
+
+#include <echinus/exact_map.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+#include <string>
+
+using namespace echinus;
+using test::joined;
+using test::translated;
+
+namespace {
+
+struct Case {
+    std::string name;
+    TriangleMesh mesh;
+    ExactMapOptions options;
+};
+
+TriangleMesh without_last_faces(TriangleMesh mesh, std::size_t count) {
+    mesh.faces.resize(mesh.faces.size() - count);
+    return mesh;
+}
+
+std::vector<Case> cases() {
+    const TriangleMesh torus = make_torus(1, 0.4, 40, 16);
+    const TriangleMesh boxes =
+        joined({make_box({2, 2, 2}, 3), translated(make_box({1, 1, 3}, 2), {0.3F, 0.2F, 0.1F})});
+    return {
+        {"torus", torus, {}},
+        {"torus, few cells", torus, {.divisions = 1}},
+        {"torus, many cells", torus, {.divisions = 61}},
+        {"torus far away", translated(torus, {3e4F, -2e4F, 1e4F}), {}},
+        {"overlapping boxes", boxes, {}},
+        {"overlapping boxes by parity", boxes, {.rule = InsideRule::Parity}},
+        {"a box inside out", test::turned_inside_out(make_box({1, 2, 3}, 2)), {}},
+        {"an open sphere", without_last_faces(make_sphere(1, 24, 12), 60), {}},
+        {"a plate", make_box({1, 1, 1e-4F}, 4), {}},
+        {"a tetrahedron's worth of faces", make_box({1, 1, 1}), {.divisions = 3}},
+    };
+}
+
+/// All over the lattice and beyond; on the surface, on its vertices, and a rounding error away from them; on
+/// walls of cells; and what is no place at all.
+std::vector<Vec3f> telling_points(const ExactMapView& map, const TriangleMesh& mesh) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    test::Random random(1);
+    std::vector<Vec3f> points = test::surface_points(mesh, 3000);
+    for (const Vec3f& p : test::surface_points(mesh, 1000, 0)) points.push_back(p);
+    for (const Vec3f& p : test::surface_points(mesh, 500, 1e-6)) points.push_back(p);
+    for (int n = 0; n < 3000; ++n) points.push_back(map.centre + test::in_cube(random, 1.3F * map.radius));
+    for (int n = 0; n < 300; ++n) points.push_back(map.centre + test::in_cube(random, 1e-5F * map.radius));
+    for (const Vec3f& vertex : mesh.vertices) points.push_back(vertex);
+    for (int x = -8; x <= 8; ++x)
+        for (int y = -8; y <= 8; ++y)
+            for (int z = -8; z <= 8; z += 4)
+                points.push_back(map.centre + Vec3f{float(x), float(y), float(z)} * (map.radius / 8));
+    for (const float far : {1e10F, 3e38F, -3e38F, kInfinity, -kInfinity, kNan})
+        for (const Vec3f& p :
+             {Vec3f{far, 0, 0}, Vec3f{0, far, 0}, Vec3f{0.1F, 0.2F, far}, Vec3f{far, far, far}})
+            points.push_back(p);
+    points.push_back(map.centre);
+    return points;
+}
+
+bool same_bits(const Contact& a, const Contact& b) {
+    return std::memcmp(&a.point, &b.point, sizeof a.point) == 0 &&
+           std::memcmp(&a.normal, &b.normal, sizeof a.normal) == 0 && a.depth == b.depth &&
+           a.face == b.face && a.inside == b.inside && a.certain == b.certain && a.feature == b.feature;
+}
+
+void expect_same_sides(const ExactMapView& map, StridedSpan<const Vec3f> points, unsigned thread_count) {
+    std::vector<std::uint8_t> inside(points.size(), 7);
+    contains_batch(map, points, inside, thread_count);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < inside.size(); ++i)
+        if (inside[i] != (contains(map, points[i]) ? 1 : 0) && ++wrong <= 3)
+            ADD_FAILURE() << "point " << i << " of " << inside.size() << ": " << points[i].x << " "
+                          << points[i].y << " " << points[i].z;
+    EXPECT_EQ(wrong, 0U);
+}
+
+void expect_same_contacts(const ExactMapView& map, StridedSpan<const Vec3f> points, float margin,
+                          const Vec3d& stretch, unsigned thread_count) {
+    std::vector<Contact> contacts(points.size());
+    contacts_batch(map, points, margin, contacts, stretch, thread_count);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const Contact expected = contact(map, points[i], margin, stretch);
+        if (!same_bits(contacts[i], expected) && ++wrong <= 3)
+            ADD_FAILURE() << "point " << i << ": " << points[i].x << " " << points[i].y << " " << points[i].z
+                          << ", face " << contacts[i].face << " and not " << expected.face << ", depth "
+                          << contacts[i].depth << " and not " << expected.depth;
+    }
+    EXPECT_EQ(wrong, 0U);
+}
+
+} // namespace
+
+TEST(ExactMapBatch, SaysWhatContainsSaysUnderEveryInstructionSet) {
+    for (const Case& c : cases()) {
+        SCOPED_TRACE(c.name);
+        const ExactMap map = ExactMap::build(c.mesh, c.options);
+        const std::vector<Vec3f> points = telling_points(map, c.mesh);
+        test::under_each_instruction_set([&](std::string_view name) {
+            SCOPED_TRACE(std::string(name));
+            expect_same_sides(map, points, 1);
+        });
+    }
+}
+
+TEST(ExactMapBatch, SaysWhatContactSaysUnderEveryInstructionSet) {
+    for (const Case& c : cases()) {
+        SCOPED_TRACE(c.name);
+        const ExactMap map = ExactMap::build(c.mesh, c.options);
+        const std::vector<Vec3f> points = telling_points(map, c.mesh);
+        test::under_each_instruction_set([&](std::string_view name) {
+            SCOPED_TRACE(std::string(name));
+            expect_same_contacts(map, points, 0, {1, 1, 1}, 1);
+            expect_same_contacts(map, points, 0.05F * map.view().radius, {1, 1, 1}, 1);
+            expect_same_contacts(map, points, 0.05F * map.view().radius, {2, -1, 0.5}, 1);
+        });
+    }
+}
+
+TEST(ExactMapBatch, TakesAnyNumberOfPointsAtAnyStride) {
+    const TriangleMesh mesh = make_torus(1, 0.4, 40, 16);
+    const ExactMap map = ExactMap::build(mesh);
+    struct Particle {
+        Vec3f position;
+        float mass;
+    };
+    const std::vector<Vec3f> points = test::surface_points(mesh, 600);
+    std::vector<Particle> particles;
+    for (const Vec3f& point : points) particles.push_back({point, 1});
+    test::under_each_instruction_set([&](std::string_view name) {
+        SCOPED_TRACE(std::string(name));
+        for (std::size_t count :
+             {0, 1, 2, 15, 16, 17, 31, 32, 33, 47, 48, 63, 64, 65, 100, 255, 256, 257, 600}) {
+            expect_same_sides(map, {points.data(), count}, 1);
+            const StridedSpan<const Vec3f> strided(&particles[0].position, count, sizeof(Particle));
+            expect_same_sides(map, strided, 1);
+            expect_same_contacts(map, strided, 0.01F, {1, 1, 1}, 1);
+        }
+    });
+}
+
+TEST(ExactMapBatch, GivesTheSameAnswersOnAnyNumberOfThreads) {
+    const TriangleMesh mesh = make_torus(1, 0.4, 40, 16);
+    const ExactMap map = ExactMap::build(mesh);
+    const std::vector<Vec3f> points = test::surface_points(mesh, 100'000);
+    for (unsigned thread_count : {0U, 2U, 3U}) {
+        expect_same_sides(map, points, thread_count);
+        expect_same_contacts(map, points, 0, {1, 1, 1}, thread_count);
+    }
+}
+
+TEST(ExactMapBatch, CountsLongListsOfFacesToo) {
+    // Two hundred boxes on one place: every list is longer than what is prepared at a time.
+    TriangleMesh many = make_box({1, 2, 3});
+    for (int n = 0; n < 200; ++n) many = joined({many, make_box({1, 2, 3})});
+    const ExactMap map = ExactMap::build(many, {.divisions = 4});
+    const std::vector<Vec3f> points = telling_points(map, many);
+    test::under_each_instruction_set([&](std::string_view) { expect_same_sides(map, points, 1); });
+}
