@@ -8,6 +8,8 @@
 #include "baselines/classified_grid/kernels.hpp"
 #include "baselines/classified_grid/nearest.hpp"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -105,6 +107,7 @@ class ContactKernel {
     HWY_ATTR void run() {
         const std::size_t n = hn::Lanes(Floats());
         for (std::size_t i = 0; i < s_.sorted.size();) {
+            fetch(i + kAhead, n);
             const std::size_t size = load_group(i, std::min(n, s_.sorted.size() - i));
             answer_group(i, size);
             i += size;
@@ -115,10 +118,20 @@ class ContactKernel {
     /// Places of some particles, from the list's middle; lanes beyond repeat the first.
     struct Group {
         alignas(64) double x[kLanes], y[kLanes], z[kLanes]; ///< in lattice steps
+        alignas(64) float inside[kLanes];                   ///< 0 or 1
         Vec3<std::int32_t> middle;
         double radius;
         bool any_inside;
     };
+
+    /// Neighbours in space lie anywhere in memory: groups ask for it some time before.
+    static constexpr std::size_t kAhead = 4 * kLanes;
+    HWY_ATTR void fetch(std::size_t first, std::size_t size) const {
+        for (std::size_t i = first; i < std::min(first + size, s_.sorted.size()); ++i) {
+            hwy::Prefetch(&points_[s_.sorted[i].number]);
+            hwy::Prefetch(&contacts_[s_.sorted[i].number]);
+        }
+    }
 
     HWY_ATTR std::size_t load_group(std::size_t first, std::size_t size) {
         Vec3d low, high;
@@ -126,6 +139,7 @@ class ContactKernel {
         for (std::size_t i = 0; i < size; ++i) {
             const std::uint32_t number = s_.sorted[first + i].number;
             const Vec3d p = frame_.lattice.to_lattice(points_[number]);
+            group_.inside[i] = s_.inside[number];
             group_.any_inside |= s_.inside[number] != 0;
             if (i == 0) low = high = p;
             low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
@@ -138,6 +152,7 @@ class ContactKernel {
             group_.x[i] = group_.x[0];
             group_.y[i] = group_.y[0];
             group_.z[i] = group_.z[0];
+            group_.inside[i] = group_.inside[0];
         }
         group_.middle = Vec3<std::int32_t>(rounded((low + high) * 0.5));
         group_.radius = length(high - low) * 0.5 + 1; // the middle is rounded
@@ -149,21 +164,24 @@ class ContactKernel {
         choose();
         const Floats df;
         const Ints di;
-        const FloatVectors p{from_middle(group_.x, list_.middle.x), from_middle(group_.y, list_.middle.y),
-                             from_middle(group_.z, list_.middle.z)};
+        const FloatVectors p = places();
         auto best_sq = hn::Set(df, std::numeric_limits<float>::max());
         auto best = hn::Zero(di);
         for (std::size_t c = 0; c < chosen_count_; ++c) {
             const std::uint32_t face = list_.chosen[c];
-            const float* numbers = &list_.numbers[face];
-            const auto distance_sq = distance_sq_of(
-                p, [&](std::size_t k) HWY_ATTR { return hn::Set(df, numbers[k * list_.capacity]); });
+            const auto distance_sq = distance_sq_of(p, face);
             const auto nearer = hn::Lt(distance_sq, best_sq);
             best_sq = hn::IfThenElse(nearer, distance_sq, best_sq);
             best = hn::IfThenElse(hn::RebindMask(di, nearer), hn::Set(di, static_cast<std::int32_t>(face)),
                                   best);
         }
         write(first, size, p, best);
+    }
+
+    /// Of the group, from the list's middle.
+    HWY_ATTR HWY_INLINE FloatVectors places() const {
+        return {from_middle(group_.x, list_.middle.x), from_middle(group_.y, list_.middle.y),
+                from_middle(group_.z, list_.middle.z)};
     }
 
     HWY_ATTR HWY_INLINE hn::VFromD<Floats> from_middle(const double* places, std::int32_t middle) const {
@@ -212,61 +230,87 @@ class ContactKernel {
         return hn::MulAdd(height, height, hn::IfThenZeroElse(is_above(a, b, c), to_edges));
     }
 
+    HWY_ATTR HWY_INLINE hn::VFromD<Floats> distance_sq_of(const FloatVectors& p, std::uint32_t face) const {
+        const float* numbers = &list_.numbers[face];
+        return distance_sq_of(p, [&](std::size_t k)
+                                     HWY_ATTR { return hn::Set(Floats(), numbers[k * list_.capacity]); });
+    }
+
     // ---- The list
 
-    /// Sees to it that the list holds every face that can be nearest to a particle of the group. False when
-    /// no face is within the margin of any.
+    /// Sees to it that the list holds every face that can be nearest to a particle of the group, and finds
+    /// how far from the group's middle these may be. False when no face is within the margin of any particle.
     HWY_ATTR bool make_list_cover() {
-        double nearest = measure_from_group();
-        if (!is_covered(nearest) || is_excessive(nearest)) {
-            renew_list(nearest);
-            nearest = measure_from_group();
+        measure_from_group();
+        needed_ = needed();
+        const Vec3d offset = Vec3d(group_.middle) - Vec3d(list_.middle);
+        if (length(offset) + needed_ > list_.reach || is_excessive()) {
+            renew_list();
+            measure_from_group();
+            needed_ = needed();
         }
-        nearest_ = nearest;
-        return list_.count != 0 &&
-               (group_.any_inside || nearest <= margin_ + group_.radius + double{kRounding});
+        return list_.count != 0 && nearest_ <= needed_;
     }
 
-    /// How far from the group's middle its nearest faces may be, when `nearest` is that far.
-    HWY_ATTR double needed(double nearest) const {
-        const double farthest = nearest + 2 * group_.radius + 2 * double{kRounding};
-        return group_.any_inside ? farthest
-                                 : std::min(farthest, margin_ + group_.radius + 2 * double{kRounding});
-    }
-    HWY_ATTR bool is_covered(double nearest) const {
-        const Vec3d offset = Vec3d(group_.middle) - Vec3d(list_.middle);
-        return length(offset) + needed(nearest) <= list_.reach;
+    /// A particle's nearest face is no farther from the middle than the particle itself and as far again as
+    /// it is from any one face, or from the margin if it is outside: here from the face that is nearest to
+    /// the middle.
+    HWY_ATTR double needed() const {
+        const Floats df;
+        const auto margin = hn::Set(df, static_cast<float>(std::min(margin_, kEverything)));
+        auto reach = hn::Set(df, static_cast<float>(kEverything));
+        const FloatVectors p = places();
+        if (list_.count != 0) reach = hn::Sqrt(distance_sq_of(p, nearest_face_));
+        const auto inside = hn::Ne(hn::Load(df, group_.inside), hn::Zero(df));
+        reach = hn::IfThenElse(inside, reach, hn::Min(reach, margin));
+        const Vec3f offset(Vec3d(group_.middle) - Vec3d(list_.middle));
+        const FloatVectors middle{hn::Set(df, offset.x), hn::Set(df, offset.y), hn::Set(df, offset.z)};
+        const FloatVectors from = sub(p, middle);
+        reach = hn::Add(reach, hn::Sqrt(dot(from, from)));
+        return double{hn::GetLane(hn::MaxOfLanes(df, reach))} + 2 * double{kRounding};
     }
 
     /// Would a new list be much shorter?
-    HWY_ATTR bool is_excessive(double nearest) const {
+    HWY_ATTR bool is_excessive() const {
         constexpr std::size_t kShort = 128;
-        return list_.count > kShort && list_.reach > 4 * (needed(nearest) + frame_.cell_steps);
+        return list_.count > kShort && list_.reach > 4 * (needed_ + frame_.cell_steps);
     }
 
-    /// Distances of the list's faces from the group's middle; returns the least.
-    HWY_ATTR double measure_from_group() {
+    /// Distances of the list's faces from the group's middle.
+    HWY_ATTR void measure_from_group() {
         const Floats df;
+        const Ints di;
         const std::size_t n = hn::Lanes(df);
-        if (list_.count == 0) return std::numeric_limits<double>::infinity();
+        nearest_ = std::numeric_limits<double>::infinity();
+        if (list_.count == 0) return;
         const Vec3f offset(Vec3d(group_.middle) - Vec3d(list_.middle));
         const FloatVectors p{hn::Set(df, offset.x), hn::Set(df, offset.y), hn::Set(df, offset.z)};
         auto least = hn::Set(df, std::numeric_limits<float>::infinity());
-        for (std::size_t i = 0; i < list_.count; i += n) {
+        auto nearest = hn::Zero(di);
+        for (std::size_t i = 0; i < list_.count; i += n) { // lanes beyond the end repeat the last face
             const float* numbers = &list_.numbers[i];
             const auto distance = hn::Sqrt(distance_sq_of(
                 p, [&](std::size_t k) HWY_ATTR { return hn::LoadU(df, &numbers[k * list_.capacity]); }));
             hn::StoreU(distance, df, &list_.distances[i]);
-            least = hn::Min(least, distance); // lanes beyond the end repeat the last face
+            const auto nearer = hn::Lt(distance, least);
+            least = hn::Min(least, distance);
+            nearest = hn::IfThenElse(hn::RebindMask(di, nearer), hn::Iota(di, static_cast<std::int32_t>(i)),
+                                     nearest);
         }
-        return double{hn::GetLane(hn::MinOfLanes(df, least))};
+        alignas(64) float distances[kLanes];
+        alignas(64) std::int32_t faces[kLanes];
+        hn::Store(least, df, distances);
+        hn::Store(nearest, di, faces);
+        const auto lane = static_cast<std::size_t>(std::min_element(distances, distances + n) - distances);
+        nearest_ = double{distances[lane]};
+        nearest_face_ = static_cast<std::uint32_t>(faces[lane]);
     }
 
     HWY_ATTR void choose() {
         const Floats df;
         const hn::Rebind<std::uint32_t, Floats> du;
         const std::size_t n = hn::Lanes(df);
-        const auto limit = hn::Set(df, static_cast<float>(needed(nearest_)));
+        const auto limit = hn::Set(df, static_cast<float>(needed_));
         chosen_count_ = 0;
         for (std::size_t i = 0; i < list_.count; i += n) {
             auto near = hn::Le(hn::LoadU(df, &list_.distances[i]), limit);
@@ -277,20 +321,23 @@ class ContactKernel {
     }
 
     /// All faces within reach of the group, and some more for the groups to come.
-    HWY_ATTR void renew_list(double nearest) {
+    HWY_ATTR void renew_list() {
         const double cell = frame_.cell_steps;
         const Vec3d middle(group_.middle);
         // From where the last list was made the nearest face may be far off.
         constexpr double kFarCells = 2;
-        if (!(nearest < kFarCells * cell)) {
+        double reach = needed_;
+        if (!(nearest_ < kFarCells * cell)) {
             const double limit =
                 group_.any_inside ? kEverything : margin_ + group_.radius + double{kRounding};
-            const auto found = nearest_place(grid_, middle, std::min(limit, nearest + double{kRounding}));
-            nearest = found ? found->distance : std::numeric_limits<double>::infinity();
+            const auto found = nearest_place(grid_, middle, std::min(limit, nearest_ + double{kRounding}));
+            const double farthest =
+                (found ? found->distance : limit) + 2 * group_.radius + 2 * double{kRounding};
+            reach = std::min(reach, farthest);
         }
         constexpr double kSpareCells = 0.75;
         list_.middle = group_.middle;
-        list_.reach = needed(nearest) + kSpareCells * cell;
+        list_.reach = reach + kSpareCells * cell;
         collect_faces(middle, list_.reach + double{kRounding});
         prepare_faces();
     }
@@ -522,8 +569,10 @@ class ContactKernel {
     FaceList& list_;
     std::span<const Vec3f> points_;
     std::span<Contact> contacts_;
-    double margin_; ///< in lattice steps
-    double nearest_ = 0;
+    double margin_;      ///< in lattice steps
+    double nearest_ = 0; ///< distance of the list's nearest face from the group's middle
+    std::uint32_t nearest_face_ = 0;
+    double needed_ = 0; ///< see needed()
     std::size_t chosen_count_ = 0;
     Group group_;
     alignas(64) float offset_x_[kLanes], offset_y_[kLanes], offset_z_[kLanes], distances_[kLanes];
