@@ -31,8 +31,9 @@ namespace echinus::baselines {
 
 /// A particle that needs a nearest point.
 struct Seeker {
-    std::uint32_t key; ///< along the curve
-    std::uint32_t number;
+    std::uint32_t key;    ///< along the curve
+    std::uint32_t number; ///< << 1 | inside
+    Vec3f point;          ///< carried along: neighbours in space lie anywhere in memory
 };
 
 /// What a group's faces are asked for, in lattice steps from the list's middle. A face's plane has the unit
@@ -83,7 +84,7 @@ namespace echinus::baselines::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
 
-void find_contacts(const GridArrays&, ContactScratch&, std::span<const Vec3f>, float, std::span<Contact>) {}
+void find_contacts(const GridArrays&, ContactScratch&, float, std::span<Contact>) {}
 
 #else
 
@@ -99,10 +100,9 @@ constexpr float kRounding = 2;
 
 class ContactKernel {
   public:
-    ContactKernel(const GridArrays& grid, ContactScratch& scratch, std::span<const Vec3f> points,
-                  float margin, std::span<Contact> contacts)
-        : grid_(grid), frame_(grid.frame), s_(scratch), list_(scratch.list), points_(points),
-          contacts_(contacts), margin_(margin > 0 ? double{margin} * grid.frame.lattice.inverse_step : 0) {}
+    ContactKernel(const GridArrays& grid, ContactScratch& scratch, float margin, std::span<Contact> contacts)
+        : grid_(grid), frame_(grid.frame), s_(scratch), list_(scratch.list), contacts_(contacts),
+          margin_(margin > 0 ? double{margin} * grid.frame.lattice.inverse_step : 0) {}
 
     HWY_ATTR void run() {
         const std::size_t n = hn::Lanes(Floats());
@@ -124,12 +124,13 @@ class ContactKernel {
         bool any_inside;
     };
 
-    /// Neighbours in space lie anywhere in memory: groups ask for it some time before.
+    /// Where answers go to is asked for some time before.
     static constexpr std::size_t kAhead = 4 * kLanes;
     HWY_ATTR void fetch(std::size_t first, std::size_t size) const {
         for (std::size_t i = first; i < std::min(first + size, s_.sorted.size()); ++i) {
-            hwy::Prefetch(&points_[s_.sorted[i].number]);
-            hwy::Prefetch(&contacts_[s_.sorted[i].number]);
+            const Contact* contact = &contacts_[s_.sorted[i].number >> 1];
+            hwy::Prefetch(contact);
+            hwy::Prefetch(reinterpret_cast<const char*>(contact) + sizeof(Contact) - 1);
         }
     }
 
@@ -137,10 +138,11 @@ class ContactKernel {
         Vec3d low, high;
         group_.any_inside = false;
         for (std::size_t i = 0; i < size; ++i) {
-            const std::uint32_t number = s_.sorted[first + i].number;
-            const Vec3d p = frame_.lattice.to_lattice(points_[number]);
-            group_.inside[i] = s_.inside[number];
-            group_.any_inside |= s_.inside[number] != 0;
+            const Seeker& seeker = s_.sorted[first + i];
+            const Vec3d p = frame_.lattice.to_lattice(seeker.point);
+            const bool inside = seeker.number & 1;
+            group_.inside[i] = inside ? 1 : 0;
+            group_.any_inside |= inside;
             if (i == 0) low = high = p;
             low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
             high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
@@ -539,23 +541,23 @@ class ContactKernel {
         hn::Store(distance, df, distances_);
         hn::Store(best, di, best_);
         hn::Store(feature, di, features_);
-        for (std::size_t lane = 0; lane < size; ++lane) write_one(s_.sorted[first + lane].number, lane);
+        for (std::size_t lane = 0; lane < size; ++lane) write_one(s_.sorted[first + lane], lane);
     }
 
-    HWY_ATTR void write_one(std::uint32_t number, std::size_t lane) {
-        const bool inside = s_.inside[number] != 0;
+    HWY_ATTR void write_one(const Seeker& seeker, std::size_t lane) {
+        const bool inside = seeker.number & 1;
         if (!inside && double{distances_[lane]} > margin_) return;
         const std::uint32_t face = list_.faces[static_cast<std::size_t>(best_[lane])];
-        Contact& contact = contacts_[number];
+        Contact& contact = contacts_[seeker.number >> 1];
         if (HWY_UNLIKELY(distances_[lane] <= 2 * kRounding)) {
-            contact = contact_at(grid_, points_[number], inside,
-                                 nearest_on_face(grid_, face, frame_.lattice.to_lattice(points_[number])));
+            contact = contact_at(grid_, seeker.point, inside,
+                                 nearest_on_face(grid_, face, frame_.lattice.to_lattice(seeker.point)));
             return;
         }
         const Vec3f offset{offset_x_[lane], offset_y_[lane], offset_z_[lane]};
         const auto step = static_cast<float>(frame_.lattice.step);
         const float sign = inside ? 1.0F : -1.0F;
-        contact.point = points_[number] + offset * step;
+        contact.point = seeker.point + offset * step;
         contact.normal = offset * (sign / distances_[lane]);
         contact.depth = sign * distances_[lane] * step;
         contact.face = static_cast<std::int32_t>(face);
@@ -567,7 +569,6 @@ class ContactKernel {
     const GridFrame& frame_;
     ContactScratch& s_;
     FaceList& list_;
-    std::span<const Vec3f> points_;
     std::span<Contact> contacts_;
     double margin_;      ///< in lattice steps
     double nearest_ = 0; ///< distance of the list's nearest face from the group's middle
@@ -579,9 +580,9 @@ class ContactKernel {
     alignas(64) std::int32_t best_[kLanes], features_[kLanes];
 };
 
-HWY_ATTR void find_contacts(const GridArrays& grid, ContactScratch& scratch, std::span<const Vec3f> points,
-                            float margin, std::span<Contact> contacts) {
-    ContactKernel(grid, scratch, points, margin, contacts).run();
+HWY_ATTR void find_contacts(const GridArrays& grid, ContactScratch& scratch, float margin,
+                            std::span<Contact> contacts) {
+    ContactKernel(grid, scratch, margin, contacts).run();
 }
 
 #endif
@@ -681,10 +682,11 @@ void contacts_kernel(const GridArrays& grid, std::span<const Vec3f> points_local
                     continue;
                 }
             }
-            scratch.seekers.push_back({key(points[i]), static_cast<std::uint32_t>(i)});
+            const auto number = static_cast<std::uint32_t>(i << 1);
+            scratch.seekers.push_back({key(points[i]), number | scratch.inside[i], points[i]});
         }
         sort_by_key(scratch.seekers, scratch.sorted);
-        ECHINUS_DISPATCH(find_contacts)(grid, scratch, points, margin, contacts.subspan(first, count));
+        ECHINUS_DISPATCH(find_contacts)(grid, scratch, margin, contacts.subspan(first, count));
     }
 }
 
