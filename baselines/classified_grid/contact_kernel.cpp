@@ -424,8 +424,8 @@ class ContactKernel {
         const IntVectors middle{hn::Set(di, list_.middle.x), hn::Set(di, list_.middle.y),
                                 hn::Set(di, list_.middle.z)};
         for (std::size_t i = 0; i < list_.count; i += n) {
-            const auto faces = hn::LoadU(di, reinterpret_cast<const std::int32_t*>(&list_.faces[i]));
-            const FaceVectors corners = gather(faces, middle);
+            const FaceVectors corners =
+                gather([&](std::size_t lane) { return list_.faces[i + lane]; }, middle);
             prepare_half(
                 i, [&](hn::VFromD<Floats> v) HWY_ATTR { return hn::LowerHalf(df_half, v); }, corners);
             prepare_half(

@@ -178,44 +178,46 @@ struct FaceVectors {
     FloatVectors a, b, c;
 };
 
-/// Corners of faces, counted from a centre each: whole numbers below 2^22, exact as floats.
+/// Corners of faces, counted from a centre each: whole numbers below 2^22, exact as floats. Loads one face
+/// after the other: gather instructions took more than twice as long.
 class FaceGather {
   public:
     HWY_ATTR explicit FaceGather(const GridArrays& grid)
-        : narrow_(grid.corners.narrow.data()), wide_(grid.corners.wide.data()),
-          vertices_(reinterpret_cast<const std::int32_t*>(grid.vertices.data())) {}
+        : narrow_(grid.corners.narrow.data()),
+          wide_(grid.corners.wide.empty() ? nullptr : grid.corners.wide.data()),
+          vertices_(grid.vertices.data()) {}
 
-    HWY_ATTR HWY_INLINE FaceVectors operator()(hn::VFromD<Ints> faces, const IntVectors& centre) const {
-        const Ints di;
-        const auto first = hn::Add(faces, hn::Add(faces, faces));
-        if (wide_ != nullptr) {
-            const auto* base = reinterpret_cast<const std::int32_t*>(wide_);
-            return {place(hn::GatherIndex(di, base, first), centre),
-                    place(hn::GatherIndex(di, base + 1, first), centre),
-                    place(hn::GatherIndex(di, base + 2, first), centre)};
-        }
-        // Two numbers at once.
-        const auto* base = reinterpret_cast<const std::int32_t*>(narrow_);
-        const auto offset = hn::Add(first, first);
-        const auto mask = hn::Set(di, 0xFFFF);
-        const auto a_and_b = hn::GatherOffset(di, base, offset);
-        const auto c = hn::GatherOffset(di, base, hn::Add(offset, hn::Set(di, 4)));
-        return {place(hn::And(a_and_b, mask), centre),
-                place(hn::And(hn::ShiftRight<16>(a_and_b), mask), centre), place(hn::And(c, mask), centre)};
+    /// @param face_of  the face of a lane, by its number
+    template <class FaceOf>
+    HWY_ATTR HWY_INLINE FaceVectors operator()(const FaceOf& face_of, const IntVectors& centre) const {
+        return wide_ != nullptr ? load(wide_, face_of, centre) : load(narrow_, face_of, centre);
     }
 
   private:
-    HWY_ATTR HWY_INLINE FloatVectors place(hn::VFromD<Ints> vertex, const IntVectors& centre) const {
+    template <class Index, class FaceOf>
+    HWY_ATTR HWY_INLINE FaceVectors load(const Index* corners, const FaceOf& face_of,
+                                         const IntVectors& centre) const {
+        alignas(64) PackedPoint points[3][16];
+        for (std::size_t lane = 0; lane < hn::Lanes(Ints()); ++lane) {
+            const Index* face = corners + 3 * std::size_t{face_of(lane)};
+            points[0][lane] = vertices_[face[0]];
+            points[1][lane] = vertices_[face[1]];
+            points[2][lane] = vertices_[face[2]];
+        }
+        return {places(points[0], centre), places(points[1], centre), places(points[2], centre)};
+    }
+
+    HWY_ATTR HWY_INLINE static FloatVectors places(const PackedPoint* points, const IntVectors& centre) {
         const Floats df;
         const Ints di;
         const hn::Rebind<std::uint32_t, Floats> du;
-        const auto twice = hn::Add(vertex, vertex);
-        const auto low = hn::GatherIndex(di, vertices_, twice);
-        const auto high = hn::GatherIndex(di, vertices_ + 1, twice);
+        hn::VFromD<decltype(du)> low_bits, high_bits;
+        hn::LoadInterleaved2(du, &points[0].low, low_bits, high_bits);
+        const auto low = hn::BitCast(di, low_bits), high = hn::BitCast(di, high_bits);
         // As unpacked() does.
         const auto x = hn::ShiftRight<11>(hn::ShiftLeft<11>(low));
         const auto y = hn::Or(hn::ShiftRight<11>(hn::ShiftLeft<22>(high)),
-                              hn::BitCast(di, hn::ShiftRight<21>(hn::BitCast(du, low))));
+                              hn::BitCast(di, hn::ShiftRight<21>(low_bits)));
         const auto z = hn::ShiftRight<11>(high);
         return {hn::ConvertTo(df, hn::Sub(x, centre.x)), hn::ConvertTo(df, hn::Sub(y, centre.y)),
                 hn::ConvertTo(df, hn::Sub(z, centre.z))};
@@ -223,7 +225,7 @@ class FaceGather {
 
     const std::uint16_t* narrow_;
     const std::uint32_t* wide_; ///< null where the other is used
-    const std::int32_t* vertices_;
+    const PackedPoint* vertices_;
 };
 
 } // namespace echinus::baselines::HWY_NAMESPACE

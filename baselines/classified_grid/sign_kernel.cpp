@@ -81,7 +81,13 @@ class SignKernel {
         take_from_centres(count);
         find_lists(count);
         sort(count);
-        for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) test(i, count);
+        const Indices& references = grid_.references;
+        for (std::size_t i = 0; i < count; i += hn::Lanes(Floats())) {
+            if (references.wide.empty())
+                test(references.narrow.data(), i, count);
+            else
+                test(references.wide.data(), i, count);
+        }
     }
 
   private:
@@ -183,7 +189,8 @@ class SignKernel {
     }
 
     /// Lanes of particles, from the i-th of the sorted on.
-    HWY_ATTR void test(std::size_t i, std::size_t count) {
+    template <class Index>
+    HWY_ATTR void test(const Index* references, std::size_t i, std::size_t count) {
         const Floats df;
         const Ints di;
         const std::size_t n = hn::Lanes(df);
@@ -193,16 +200,20 @@ class SignKernel {
         IntVectors centre;
         hn::VFromD<Ints> particle;
         hn::LoadInterleaved4(di, &s_.cells_of[i].x, centre.x, centre.y, centre.z, particle);
-        const auto first = hn::BitCast(di, first_bits);
         const auto lengths = hn::LoadU(di, &s_.sorted_lengths[i]);
         const std::int32_t longest = *std::max_element(&s_.sorted_lengths[i], &s_.sorted_lengths[i] + n);
         auto winding = hn::ShiftRight<16>(particle);
         const FaceGather gather(grid_);
-        const IndexGather references(grid_.references);
         for (std::int32_t k = 0; k < longest; ++k) {
             const auto is_active = hn::Gt(lengths, hn::Set(di, k));
-            const auto number = hn::IfThenElseZero(is_active, hn::Add(first, hn::Set(di, k)));
-            const Verdict verdict = cross_face(gather(references(number), centre), p);
+            // Of lanes that are through, the first of all; without a branch.
+            const auto face_of = [&](std::size_t lane) {
+                const auto active = static_cast<std::uint32_t>(k < s_.sorted_lengths[i + lane]);
+                const std::uint32_t number =
+                    s_.places[i + lane].first_reference + static_cast<std::uint32_t>(k);
+                return references[number & (0 - active)];
+            };
+            const Verdict verdict = cross_face(gather(face_of, centre), p);
             winding = hn::Add(winding, hn::IfThenElseZero(is_active, verdict.crossing));
             const auto unsure = hn::And(hn::RebindMask(di, verdict.unsure), is_active);
             if (HWY_UNLIKELY(!hn::AllFalse(di, unsure)))
