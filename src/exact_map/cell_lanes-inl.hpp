@@ -33,6 +33,7 @@ struct PointLanes {
 /// Where particles are, in single precision.
 struct CellLanes {
     FloatLanes l1; ///< the L1 norm in lattice steps; that of the snapped particle is within kL1Error of it
+    FloatLanes farthest; ///< the largest coordinate, in lattice steps
     IntLanes cell;
     FloatMask sure; ///< the snapped particle surely lies in that cell
 
@@ -54,8 +55,8 @@ class LocateLanes {
         const FloatLanes x = on_lattice(point_local.x, centre_.x);
         const FloatLanes y = on_lattice(point_local.y, centre_.y);
         const FloatLanes z = on_lattice(point_local.z, centre_.z);
-        const FloatLanes abs_x = hn::Abs(x), abs_y = hn::Abs(y);
-        const FloatLanes l1 = hn::Add(hn::Add(abs_x, abs_y), hn::Abs(z));
+        const FloatLanes abs_x = hn::Abs(x), abs_y = hn::Abs(y), abs_z = hn::Abs(z);
+        const FloatLanes l1 = hn::Add(hn::Add(abs_x, abs_y), abs_z);
 
         const FloatLanes cells_per_step = hn::Div(hn::Set(f, static_cast<float>(n_)), l1);
         const FloatLanes along_x = hn::Mul(abs_x, cells_per_step), along_y = hn::Mul(abs_y, cells_per_step);
@@ -77,7 +78,7 @@ class LocateLanes {
         const IntLanes before_row = hn::Mul(row, hn::Sub(hn::Set(i, 2 * n_), row));
         const IntLanes in_octant = hn::Sub(hn::Add(before_row, hn::Add(column, column)), minus_down);
         const IntLanes cell = hn::Add(hn::Mul(octant(x, y, z), hn::Set(i, n_ * n_)), in_octant);
-        return {l1, cell, hn::Gt(clearance, slack)};
+        return {l1, hn::Max(hn::Max(abs_x, abs_y), abs_z), cell, hn::Gt(clearance, slack)};
     }
 
   private:

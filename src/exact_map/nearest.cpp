@@ -195,18 +195,31 @@ std::optional<NearestPoint> nearest_point(const ExactMapView& map, const Vec3d& 
         const FaceLanes lanes(map, faces, place, stretch);
         for (std::uint32_t lane = 0; lane < faces.last - faces.first; ++lane) {
             const double distance_sq = lanes.distance_sq(lane);
-            if (!(distance_sq <= nearest_sq) || (face && distance_sq == nearest_sq)) continue;
+            const std::uint32_t found = faces.first + lane;
+            if (!(distance_sq <= nearest_sq) || (face && distance_sq == nearest_sq && found > *face))
+                continue;
             nearest_sq = distance_sq;
             bound = rounded_up(nearest_sq);
-            face = faces.first + lane;
+            face = found;
         }
     });
     if (!face) return std::nullopt;
-    NearestPoint nearest = nearest_on_triangle(corners_around(map, *face, place, stretch));
+    return nearest_point_on_face(map, *face, place, stretch);
+}
+
+NearestPoint nearest_point_on_face(const ExactMapView& map, std::uint32_t face, const Vec3d& place,
+                                   const Vec3d& stretch) noexcept {
+    NearestPoint nearest = nearest_on_triangle(corners_around(map, face, place, stretch));
     const Vec3d& offset = nearest.point;
     nearest.point = place + Vec3d{offset.x / stretch.x, offset.y / stretch.y, offset.z / stretch.z};
-    nearest.face = *face;
+    nearest.face = face;
     return nearest;
+}
+
+double distance_sq_to_face(const ExactMapView& map, std::uint32_t face, const Vec3d& place,
+                           const Vec3d& stretch) noexcept {
+    const auto [a, b, c] = corners_around(map, face, place, stretch);
+    return distance_sq_to_triangle(a, b, c);
 }
 
 Vec3f pseudonormal(const ExactMapView& map, const NearestPoint& nearest, const Vec3d& stretch,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "directions/lattice.hpp"
+
 #include <echinus/exact_map.hpp>
 
 #include <cstdint>
@@ -16,10 +18,22 @@ struct NearestPoint {
     Feature feature = Feature::Unknown;
 };
 
+/// In lattice steps: farther than any surface is from any place on the lattice, where no axis is stretched by
+/// more than 1.
+inline constexpr double kEverywhere = 4 * static_cast<double>(kLatticeExtent);
+
 /// The nearest point of the whole surface, if it is at most `farthest` away: a branch and bound search of the
-/// face tree, so that the minimum is global.
+/// face tree, so that the minimum is global. Of faces that are equally near, the first.
 std::optional<NearestPoint> nearest_point(const ExactMapView& map, const Vec3d& place, const Vec3d& stretch,
                                           double farthest) noexcept;
+
+/// The nearest point of one face.
+NearestPoint nearest_point_on_face(const ExactMapView& map, std::uint32_t face, const Vec3d& place,
+                                   const Vec3d& stretch) noexcept;
+
+/// The squared distance by which nearest_point() compares faces.
+double distance_sq_to_face(const ExactMapView& map, std::uint32_t face, const Vec3d& place,
+                           const Vec3d& stretch) noexcept;
 
 /// Unit normal of the stretched surface at its nearest point: the sum of the normals of the faces within
 /// `reach` lattice steps of it, each weighed by the angle that the face spans there (a full turn inside a

@@ -84,6 +84,7 @@ class SideFinder {
 
   private:
     static constexpr std::size_t kPiece = Group::kCapacity;
+    static constexpr float kSurelyOnLattice = static_cast<float>(kLatticeExtent) - 1;
     /// An L1 norm that no place in the bounding sphere has.
     static constexpr float kBeyondEverything = 1.75F * static_cast<float>(kLatticeExtent);
     using Numbers = std::array<std::int32_t, kPiece>;
@@ -135,6 +136,8 @@ class SideFinder {
             hn::Store(hn::IfThenElse(located, at.l1, largest), f, &l1_[slot]);
             hn::Store(hn::IfThenElseZero(hn::RebindMask(i, located), at.cell), i, &cells_[slot]);
             refer_later(slot, hn::RebindMask(i, hn::Not(hn::Or(far, at.sure))));
+            if (is_open_) [[unlikely]] // beyond the lattice nothing is certain
+                refer_later(slot, hn::RebindMask(i, hn::Gt(at.farthest, hn::Set(f, kSurelyOnLattice))));
         }
     }
 
@@ -378,8 +381,8 @@ class SideFinder {
     alignas(64) std::array<float, kPiece> l1_, inner_l1_;
     alignas(64) Numbers cells_, first_bands_, bands_, limits_;
     Group below_, in_bands_, in_gaps_;
-    std::size_t outermost_count_ = 0; ///< so many of in_bands_ are in the outermost of their cell
-    std::array<std::int32_t, 2 * kPiece> refer_;
+    std::size_t outermost_count_ = 0;            ///< so many of in_bands_ are in the outermost of their cell
+    std::array<std::int32_t, 4 * kPiece> refer_; ///< some perhaps several times
     std::size_t refer_count_ = 0;
 
     alignas(64) std::array<std::array<float, Group::kMargin>, 3> rows_{};

@@ -1,0 +1,189 @@
+// Included once for each instruction set, as Highway wants it: no guard against a second time.
+#if defined(ECHINUS_LEAF_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef ECHINUS_LEAF_LANES_INL
+#undef ECHINUS_LEAF_LANES_INL
+#else
+#define ECHINUS_LEAF_LANES_INL
+#endif
+
+#include "exact_map/layout.hpp"
+
+#include <hwy/highway.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#if HWY_TARGET != HWY_SCALAR // where the reference is used instead
+HWY_BEFORE_NAMESPACE();
+namespace echinus::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::ScalableTag<float>;
+using FloatLanes = hn::Vec<Floats>;
+using FloatMask = hn::Mask<Floats>;
+
+/// Places, relative to an origin of the lattice and stretched.
+struct PlaceLanes {
+    FloatLanes x, y, z;
+};
+
+/// Squared distances from places to a face, and how far off they may be.
+struct DistanceLanes {
+    FloatLanes lower, upper;
+};
+
+/// The faces of a leaf, made ready for distances in single precision. They are prepared as lanes, and then
+/// measured with places as lanes: to the three edges and, above the face, to its plane.
+///
+/// Rounding. Let S be the sum of all that is measured, coordinates of corners and places. Corners and places
+/// are off by less than 2^-22 S, hence the distance to an edge by less than 2^-19 S, and the distance to the
+/// plane, and where its sides are, by that times q = |ab| |bc| / |ab x bc|. What is allowed for is twice
+/// that, e = 2^-18 S q: distances d lie within d (1 - 2^-9) - 2^9 e^2 and the like, squared, since 2 d e is
+/// less than 2^-10 d^2 + 2^10 e^2. Where q is large, only the edges are measured: no point of the face is
+/// farther from them than its width w, and (d - w)^2 is at least d^2 / 2 - w^2.
+class LeafLanes {
+  public:
+    /// @param reach  a sum of coordinates that no place's exceeds
+    void prepare(const ExactMapView& map, std::uint32_t first_face, std::uint32_t count,
+                 const Vec3<std::int32_t>& origin, const Vec3f& stretch, float reach) {
+        for (std::uint32_t lane = 0; lane < kWidth; ++lane) {
+            const std::size_t face = first_face + (lane < count ? lane : 0);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vec3<std::int32_t> corner = map.vertices[map.corners[3 * face + k]] - origin;
+                corners_[k].x[lane] = static_cast<float>(corner.x) * stretch.x;
+                corners_[k].y[lane] = static_cast<float>(corner.y) * stretch.y;
+                corners_[k].z[lane] = static_cast<float>(corner.z) * stretch.z;
+            }
+        }
+        constexpr Faces d;
+        for (std::size_t lane = 0; lane < kWidth; lane += hn::Lanes(d)) prepare_lanes(lane, reach);
+    }
+
+    DistanceLanes distances_sq(std::size_t face, const PlaceLanes& place) const {
+        constexpr Floats f;
+        const auto all = [&](const Row& row) { return hn::Set(f, row[face]); };
+        const auto dot = [&](const PlaceLanes& u, const Rows& v) {
+            return hn::MulAdd(u.z, all(v.z), hn::MulAdd(u.y, all(v.y), hn::Mul(u.x, all(v.x))));
+        };
+        const FloatLanes zero = hn::Zero(f), one = hn::Set(f, 1);
+        FloatLanes to_edges = hn::Set(f, kFar);
+        FloatMask above = hn::Eq(zero, zero);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Rows& edge = edges_[k];
+            const PlaceLanes start{hn::Sub(all(corners_[k].x), place.x), hn::Sub(all(corners_[k].y), place.y),
+                                   hn::Sub(all(corners_[k].z), place.z)};
+            const FloatLanes share =
+                hn::Min(hn::Max(hn::Mul(dot(start, edge), all(minus_inverses_[k])), zero), one);
+            const PlaceLanes nearest{hn::MulAdd(all(edge.x), share, start.x),
+                                     hn::MulAdd(all(edge.y), share, start.y),
+                                     hn::MulAdd(all(edge.z), share, start.z)};
+            const FloatLanes distance_sq = hn::MulAdd(
+                nearest.z, nearest.z, hn::MulAdd(nearest.y, nearest.y, hn::Mul(nearest.x, nearest.x)));
+            to_edges = hn::Min(to_edges, distance_sq);
+            above = hn::And(above, hn::Gt(dot(start, inward_[k]), zero));
+        }
+        const PlaceLanes corner{hn::Sub(all(corners_[0].x), place.x), hn::Sub(all(corners_[0].y), place.y),
+                                hn::Sub(all(corners_[0].z), place.z)};
+        const FloatLanes height = dot(corner, normals_);
+        const FloatLanes to_plane = hn::Mul(hn::Mul(height, height), all(normal_inverses_));
+        const FloatLanes distance_sq = hn::IfThenElse(above, to_plane, to_edges);
+        return {hn::MulSub(distance_sq, all(lower_factors_), all(lower_terms_)),
+                hn::MulAdd(distance_sq, hn::Set(f, kUpperFactor), all(upper_terms_))};
+    }
+
+  private:
+    static constexpr std::size_t kWidth = TreeNode::kWidth;
+    static constexpr float kFar = 1e30F;
+    static constexpr float kLowerFactor = 1 - 0x1p-9F, kUpperFactor = 1 + 0x1p-9F;
+
+    using Faces = hn::CappedTag<float, kWidth>;
+    using FaceLanes = hn::Vec<Faces>;
+    struct Vec3Lanes {
+        FaceLanes x, y, z;
+    };
+    using Row = std::array<float, kWidth>;
+    struct Rows {
+        alignas(32) Row x, y, z;
+    };
+
+    static FaceLanes dot(const Vec3Lanes& u, const Vec3Lanes& v) {
+        return hn::MulAdd(u.z, v.z, hn::MulAdd(u.y, v.y, hn::Mul(u.x, v.x)));
+    }
+    static Vec3Lanes cross(const Vec3Lanes& u, const Vec3Lanes& v) {
+        return {hn::Sub(hn::Mul(u.y, v.z), hn::Mul(u.z, v.y)), hn::Sub(hn::Mul(u.z, v.x), hn::Mul(u.x, v.z)),
+                hn::Sub(hn::Mul(u.x, v.y), hn::Mul(u.y, v.x))};
+    }
+    static Vec3Lanes minus(const Vec3Lanes& u, const Vec3Lanes& v) {
+        return {hn::Sub(u.x, v.x), hn::Sub(u.y, v.y), hn::Sub(u.z, v.z)};
+    }
+    static FaceLanes sum_of(const Vec3Lanes& v) {
+        return hn::Add(hn::Add(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z));
+    }
+    /// 0 where the value is.
+    static FaceLanes inverse(FaceLanes value) {
+        constexpr Faces d;
+        return hn::IfThenElseZero(hn::Gt(value, hn::Zero(d)), hn::Div(hn::Set(d, 1), value));
+    }
+
+    void prepare_lanes(std::size_t first, float reach) {
+        constexpr Faces d;
+        const auto load = [&](const Rows& rows) {
+            return Vec3Lanes{hn::Load(d, &rows.x[first]), hn::Load(d, &rows.y[first]),
+                             hn::Load(d, &rows.z[first])};
+        };
+        const auto store = [&](const Vec3Lanes& v, Rows& rows) {
+            hn::Store(v.x, d, &rows.x[first]);
+            hn::Store(v.y, d, &rows.y[first]);
+            hn::Store(v.z, d, &rows.z[first]);
+        };
+        const Vec3Lanes a = load(corners_[0]), b = load(corners_[1]), c = load(corners_[2]);
+        const Vec3Lanes ab = minus(b, a), bc = minus(c, b), ca = minus(a, c);
+        const Vec3Lanes normal = cross(ab, bc);
+        const FaceLanes ab_sq = dot(ab, ab), bc_sq = dot(bc, bc), ca_sq = dot(ca, ca),
+                        normal_sq = dot(normal, normal);
+
+        const FaceLanes scale = hn::Add(hn::Add(sum_of(a), sum_of(b)), hn::Add(sum_of(c), hn::Set(d, reach)));
+        const FaceLanes error_sq = hn::Mul(hn::Mul(scale, scale), hn::Set(d, 0x1p-26F));
+        constexpr float kThin = 1024; // q^2 beyond which the plane is not used
+        const auto has_plane = hn::Lt(hn::Mul(ab_sq, bc_sq), hn::Mul(normal_sq, hn::Set(d, kThin)));
+        const FaceLanes q_sq = hn::Mul(hn::Mul(ab_sq, bc_sq), inverse(normal_sq));
+        const FaceLanes with_plane = hn::Mul(error_sq, hn::Max(q_sq, hn::Set(d, 1)));
+        const FaceLanes width_sq = hn::Mul(normal_sq, inverse(hn::Max(hn::Max(ab_sq, bc_sq), ca_sq)));
+        const FaceLanes upper_term = hn::IfThenElse(has_plane, with_plane, error_sq);
+        hn::Store(upper_term, d, &upper_terms_[first]);
+        hn::Store(hn::IfThenElse(has_plane, with_plane, hn::MulAdd(width_sq, hn::Set(d, 1.01F), error_sq)), d,
+                  &lower_terms_[first]);
+        hn::Store(hn::IfThenElse(has_plane, hn::Set(d, kLowerFactor), hn::Set(d, kLowerFactor / 2)), d,
+                  &lower_factors_[first]);
+
+        store(ab, edges_[0]);
+        store(bc, edges_[1]);
+        store(ca, edges_[2]);
+        hn::Store(hn::Neg(inverse(ab_sq)), d, &minus_inverses_[0][first]);
+        hn::Store(hn::Neg(inverse(bc_sq)), d, &minus_inverses_[1][first]);
+        hn::Store(hn::Neg(inverse(ca_sq)), d, &minus_inverses_[2][first]);
+        // Without a plane no place is above the face.
+        const auto if_plane = [&](const Vec3Lanes& v) {
+            return Vec3Lanes{hn::IfThenElseZero(has_plane, v.x), hn::IfThenElseZero(has_plane, v.y),
+                             hn::IfThenElseZero(has_plane, v.z)};
+        };
+        store(if_plane(cross(ab, normal)), inward_[0]);
+        store(if_plane(cross(bc, normal)), inward_[1]);
+        store(if_plane(cross(ca, normal)), inward_[2]);
+        store(if_plane(normal), normals_);
+        hn::Store(hn::IfThenElseZero(has_plane, inverse(normal_sq)), d, &normal_inverses_[first]);
+    }
+
+    std::array<Rows, 3> corners_, edges_, inward_;
+    Rows normals_;
+    alignas(32) std::array<Row, 3> minus_inverses_;
+    alignas(32) Row normal_inverses_, lower_factors_, lower_terms_, upper_terms_;
+};
+
+} // namespace echinus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
+
+#endif
