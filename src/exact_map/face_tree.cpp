@@ -32,12 +32,12 @@ constexpr NodeBox empty_box() {
     return {{kHigh, kHigh, kHigh}, {kLow, kLow, kLow}};
 }
 
-std::int16_t divided_down(std::int32_t value) {
-    constexpr std::int32_t kUnit = ExactMapView::kBoxUnit;
+std::int16_t divided_down(std::int64_t value) {
+    constexpr std::int64_t kUnit = ExactMapView::kBoxUnit;
     return static_cast<std::int16_t>((value >= 0 ? value : value - (kUnit - 1)) / kUnit);
 }
 
-std::int16_t divided_up(std::int32_t value) {
+std::int16_t divided_up(std::int64_t value) {
     return static_cast<std::int16_t>(-divided_down(-value));
 }
 
@@ -53,7 +53,7 @@ void set_box_of_child(TreeNode& node, std::size_t child, const NodeBox& box) {
     }
 }
 
-NodeBox box_of(const TreeNode& node) {
+NodeBox box_of_node(const TreeNode& node) {
     NodeBox box = box_of_child(node, 0);
     for (std::size_t child = 1; child < kWidth; ++child) box.add(box_of_child(node, child));
     return box;
@@ -212,26 +212,28 @@ class TreeBuilder {
 
     void finish_child_node(const Branch& branch) {
         TreeNode& node = tree_.nodes[branch.node];
-        set_box_of_child(node, branch.child, box_of(tree_.nodes[node.children[branch.child]]));
+        set_box_of_child(node, branch.child, box_of_node(tree_.nodes[node.children[branch.child]]));
     }
 
     /// Orders a leaf's faces by number: how they come out of the splits is arbitrary.
     void add_leaf(const Branch& branch) {
         const std::span<TreeItem> items = items_of(branch);
         sort_by_face(items);
-        NodeBox box = empty_box();
-        for (const TreeItem& item : items) add_face(box, item.face);
         TreeNode& node = tree_.nodes[branch.node];
         node.children[branch.child] = TreeNode::kLeaf + static_cast<std::uint32_t>(branch.first_leaf);
-        set_box_of_child(node, branch.child, box);
+        set_box_of_child(node, branch.child, box_of(items));
     }
 
-    void add_face(NodeBox& box, std::uint32_t face) const {
-        for (std::uint32_t vertex : lattice_.faces[face]) {
-            const Vec3<std::int32_t> v(lattice_.vertices[vertex]);
-            box.add({{divided_down(v.x), divided_down(v.y), divided_down(v.z)},
-                     {divided_up(v.x), divided_up(v.y), divided_up(v.z)}});
-        }
+    NodeBox box_of(std::span<const TreeItem> items) const {
+        LatticePoint low = lattice_.vertices[lattice_.faces[items[0].face][0]], high = low;
+        for (const TreeItem& item : items)
+            for (std::uint32_t vertex : lattice_.faces[item.face]) {
+                const LatticePoint& v = lattice_.vertices[vertex];
+                low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+                high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+            }
+        return {{divided_down(low.x), divided_down(low.y), divided_down(low.z)},
+                {divided_up(high.x), divided_up(high.y), divided_up(high.z)}};
     }
 
     const LatticeMesh& lattice_;

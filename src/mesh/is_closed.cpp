@@ -3,6 +3,7 @@
 #include "geometry/arena.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -16,26 +17,34 @@ using HalfEdge = std::uint64_t;
 /// Calls visit(lower vertex, half edge) for all edges of faces but those from a vertex to itself.
 template <typename Visit>
 void for_each_half_edge(std::span<const Triangle> faces, const Visit& visit) {
-    for (const Triangle& face : faces)
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t a = face[k], b = face[k == 2 ? 0 : k + 1];
-            if (a != b) visit(std::min(a, b), HalfEdge{std::max(a, b)} << 1 | (a < b ? 1 : 0));
-        }
+    const auto visit_edge = [&](std::uint32_t a, std::uint32_t b) {
+        if (a != b) visit(std::min(a, b), HalfEdge{std::max(a, b)} << 1 | HalfEdge{a < b});
+    };
+    for (const auto& [a, b, c] : faces) {
+        visit_edge(a, b);
+        visit_edge(b, c);
+        visit_edge(c, a);
+    }
 }
 
 int direction(HalfEdge edge) {
-    return (edge & 1U) != 0 ? 1 : -1;
+    return static_cast<int>(2 * (edge & 1U)) - 1;
 }
 
 /// By comparing all pairs, without a branch: the few edges of a usual vertex are told apart fastest so.
-bool few_are_balanced(std::span<const HalfEdge> edges) {
-    bool balanced = true;
-    for (HalfEdge edge : edges) {
-        int sum = 0;
-        for (HalfEdge other : edges) sum += (other >> 1) == (edge >> 1) ? direction(other) : 0;
-        balanced &= sum == 0;
+template <std::size_t kCount>
+bool are_balanced(const HalfEdge* edges) {
+    std::array<std::uint32_t, kCount> ends;
+    std::array<int, kCount> directions, sums{};
+    for (std::size_t i = 0; i < kCount; ++i) {
+        ends[i] = static_cast<std::uint32_t>(edges[i] >> 1);
+        directions[i] = direction(edges[i]);
     }
-    return balanced;
+    for (std::size_t k = 0; k < kCount; ++k)
+        for (std::size_t i = 0; i < kCount; ++i) sums[i] += ends[i] == ends[k] ? directions[k] : 0;
+    int unbalanced = 0;
+    for (int sum : sums) unbalanced |= sum;
+    return unbalanced == 0;
 }
 
 bool many_are_balanced(std::span<HalfEdge> edges) {
@@ -49,10 +58,30 @@ bool many_are_balanced(std::span<HalfEdge> edges) {
     return true;
 }
 
+bool are_balanced(std::span<HalfEdge> edges) {
+    switch (edges.size()) {
+    case 0:
+        return true;
+    case 2:
+        return are_balanced<2>(edges.data());
+    case 4:
+        return are_balanced<4>(edges.data());
+    case 6:
+        return are_balanced<6>(edges.data());
+    case 8:
+        return are_balanced<8>(edges.data());
+    case 10:
+        return are_balanced<10>(edges.data());
+    case 12:
+        return are_balanced<12>(edges.data());
+    default:
+        return many_are_balanced(edges);
+    }
+}
+
 } // namespace
 
 bool is_closed(std::span<const Triangle> faces, std::size_t vertex_count) {
-    constexpr std::size_t kFew = 24;
     std::vector<std::uint32_t> ends(vertex_count + 1);
     for_each_half_edge(faces, [&](std::uint32_t lower, HalfEdge) { ++ends[lower]; });
     std::uint32_t end = 0;
@@ -69,7 +98,7 @@ bool is_closed(std::span<const Triangle> faces, std::size_t vertex_count) {
     for (std::size_t lower = 0; lower < vertex_count; ++lower) {
         const std::span<HalfEdge> edges = std::span<HalfEdge>(half_edges).subspan(begin, ends[lower] - begin);
         begin = ends[lower];
-        if (!(edges.size() <= kFew ? few_are_balanced(edges) : many_are_balanced(edges))) return false;
+        if (!are_balanced(edges)) return false;
     }
     return true;
 }
