@@ -29,7 +29,8 @@ struct BandList {
     Arena<std::uint16_t> reference_parts;
     Arena<CellVolume> volumes; ///< [cell_count] of an open surface; none of a closed one
 
-    void clear();
+    /// Empties the list, with room for what so many intervals and cells usually need.
+    void clear(std::size_t interval_count, std::size_t cell_count);
 };
 
 /// Sorts the intervals of a cell.

@@ -86,8 +86,10 @@ void CellIntervals::find(const LatticeMesh& lattice, const OctahedralCells& cell
 void CellIntervals::cover_all_faces(const LatticeMesh& lattice, const OctahedralCells& cells,
                                     unsigned thread_count) {
     workers_.resize(worker_count(thread_count));
+    constexpr std::size_t kCellsPerFace = 8; // seldom more; what is not needed costs no memory
     for (Worker& worker : workers_) {
         worker.found.clear();
+        worker.found.room_for(kCellsPerFace * lattice.faces.size() / workers_.size());
         worker.next.assign(cells.count(), 0);
     }
     std::atomic<std::size_t> total = 0;

@@ -35,6 +35,8 @@ class CellIntervals {
     /// @throws Error InvalidMesh when there is too much
     void find(const LatticeMesh& lattice, const OctahedralCells& cells, unsigned thread_count);
 
+    std::size_t count() const { return by_cell_.size(); }
+
     /// A cell's intervals, in an order that depends on chance; the caller may sort them.
     std::span<Interval> of(std::uint32_t cell) {
         return std::span<Interval>(by_cell_).subspan(offsets_[cell], offsets_[cell + 1] - offsets_[cell]);
