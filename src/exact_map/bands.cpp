@@ -23,7 +23,8 @@ void BandFinder::find_blocks(std::span<const BorderEdge> border, const LatticeMe
     std::optional<GapStates> gap_states;
     if (!border.empty()) gap_states.emplace(lattice, border, cells);
     lists_.resize(worker_count(thread_count));
-    for (BandList& list : lists_) list.clear(intervals_.count() / lists_.size(), cells.count() / lists_.size());
+    for (BandList& list : lists_)
+        list.clear(intervals_.count() / lists_.size(), cells.count() / lists_.size());
     blocks_.clear();
     std::mutex mutex;
     parallel_for_workers(cells.count(), thread_count,

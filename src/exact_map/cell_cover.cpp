@@ -59,8 +59,13 @@ struct Affine {
     double operator()(double x, double y) const { return along_x * x + along_y * y + at_origin; }
     /// Least and most over a part that is not turned, less the value at its origin. A turned part is that
     /// part mirrored in its origin.
-    double least_in_part() const { return std::min(0.0, std::min(along_x, along_y)); }
-    double most_in_part() const { return std::max(0.0, std::max(along_x, along_y)); }
+    double least_in_part() const { return 0.5 * (least_slope() - std::fabs(least_slope())); }
+    double most_in_part() const { return 0.5 * (most_slope() + std::fabs(most_slope())); }
+
+  private:
+    // Cut off at 0 without a branch, of which a compiler would make one.
+    double least_slope() const { return std::min(along_x, along_y); }
+    double most_slope() const { return std::max(along_x, along_y); }
 };
 
 struct Range {
@@ -85,7 +90,8 @@ struct Plane {
 std::uint64_t ones(std::int32_t first, std::int32_t last) {
     first = std::max(first, 0);
     last = std::min(last, 63);
-    return first > last ? 0 : ~std::uint64_t{0} >> (63 - last) & ~std::uint64_t{0} << first;
+    const std::uint64_t run = (~std::uint64_t{0} >> ((63 - last) & 63)) & (~std::uint64_t{0} << (first & 63));
+    return first > last ? 0 : run;
 }
 
 /// A face's directions in one octant, mirrored to where all coordinates are positive.
@@ -166,13 +172,18 @@ class OctantCover {
 
     /// The polygon's own sides as separating lines.
     void add_sides() {
+        // A triangle has at most two of each. Where it has one, a line beyond all rows is the other: a number
+        // of rounds that never changes is never mispredicted.
+        const double beyond = 4.0 * fine_n_;
+        firsts_[0] = firsts_[1] = {0, -beyond, -beyond};
+        lasts_[0] = lasts_[1] = {0, beyond, beyond};
         double doubled_area = 0;
         for (std::size_t k = 0; k < size_; ++k) {
             const Point &a = corners_[k], &b = corners_[k + 1 < size_ ? k + 1 : 0];
             doubled_area += a.x * b.y - a.y * b.x;
         }
         // Where the polygon is so thin that rounding decides this, both signs keep what is within the slack.
-        const double sign = doubled_area < 0 ? -1 : 1;
+        const double sign = std::copysign(1.0, doubled_area);
         for (std::size_t k = 0; k < size_; ++k) {
             const Point &a = corners_[k], &b = corners_[k + 1 < size_ ? k + 1 : 0];
             const double along_x = sign * (a.y - b.y), along_y = sign * (b.x - a.x);
@@ -184,6 +195,8 @@ class OctantCover {
             const double slack = kSlack * length;
             add_side({{along_x, along_y, slack - along_x * a.x - along_y * a.y}, slack});
         }
+        first_count_ = std::max<std::size_t>(2, first_count_);
+        last_count_ = std::max<std::size_t>(2, last_count_);
     }
 
     void add_side(const Side& side) {
@@ -195,11 +208,14 @@ class OctantCover {
         const double slope = inner.along_x * scale;
         const double upright = (inner.at_origin + inner.most_in_part()) * scale;
         const double turned = slope - 2 + (inner.at_origin - inner.least_in_part()) * scale;
-        // Rounded up where the half-plane begins and down where it ends.
-        if (inner.along_y > 0)
-            firsts_[first_count_++] = {slope, upright + 1, turned + 1};
-        else
-            lasts_[last_count_++] = {slope, upright - 1, turned - 1};
+        // Rounded up where the half-plane begins and down where it ends. Which it does is anybody's guess, so
+        // both are written and one is kept.
+        const bool begins = inner.along_y > 0;
+        constexpr std::size_t kSpare = 8;
+        firsts_[begins ? first_count_ : kSpare] = {slope, upright + 1, turned + 1};
+        lasts_[begins ? kSpare : last_count_] = {slope, upright - 1, turned - 1};
+        first_count_ += begins ? 1 : 0;
+        last_count_ += begins ? 0 : 1;
     }
 
     /// 1 / L1 norm over the face's plane: (normal . u) / height for a direction u with |u|_1 = 1.
@@ -242,13 +258,14 @@ class OctantCover {
             }
         std::array<Run, kPartRows> runs;
         const double end = 2 * fine_n_;
-        for (std::size_t row = 0; row < kPartRows; ++row)
-            runs[row] = {static_cast<std::int32_t>(std::min(first[row], end)),
-                         static_cast<std::int32_t>(std::max(last[row], -1.0))};
-        const std::int32_t begin = kPartsPerSide * i;
-        for (std::int32_t row = 0; row < kPartsPerSide; ++row)
-            if (begin + row < rows_.first || begin + row > rows_.last)
-                runs[static_cast<std::size_t>(row)] = {1, 0};
+        for (std::int32_t row = 0; row < kPartsPerSide; ++row) {
+            const auto r = static_cast<std::size_t>(row);
+            const std::int32_t at = kPartsPerSide * i + row;
+            const bool touched = (at >= rows_.first) & (at <= rows_.last);
+            runs[r] = {static_cast<std::int32_t>(std::min(first[r], end)),
+                       static_cast<std::int32_t>(std::max(last[r], -1.0))};
+            runs[r].last = touched ? runs[r].last : -1;
+        }
         return runs;
     }
 
@@ -265,8 +282,9 @@ class OctantCover {
         const std::array<Run, kPartRows> runs = strips(i);
         Run hull{std::numeric_limits<std::int32_t>::max(), -1};
         for (const Run& run : runs) {
-            if (run.first > run.last) continue;
-            hull = {std::min(hull.first, run.first), std::max(hull.last, run.last)};
+            const bool empty = run.first > run.last;
+            hull = {std::min(hull.first, empty ? hull.first : run.first),
+                    std::max(hull.last, empty ? hull.last : run.last)};
         }
         if (hull.last < 0) return;
         const Run squares{std::max(hull.first, 0) / kStripLength, hull.last / kStripLength};
@@ -287,21 +305,24 @@ class OctantCover {
                 parts |= kPartsOfStrip[row][words[row] & 0xFF];
                 words[row] >>= kStripLength;
             }
-            if (const std::uint32_t up = parts & 0xFFFF; up != 0) add_cell(i, j, false, up, covers);
-            if (const std::uint32_t down = parts >> 16; down != 0) add_cell(i, j, true, down, covers);
+            if (const std::uint32_t up = parts & 0xFFFF; up != 0) add_cell<false>(i, j, up, covers);
+            if (const std::uint32_t down = parts >> 16; down != 0) add_cell<true>(i, j, down, covers);
         }
     }
 
-    void add_cell(std::int32_t i, std::int32_t j, bool down, std::uint32_t parts,
-                  std::vector<CellCover>& covers) const {
-        const Range l1 = l1_range(i, j, down, parts);
-        const bool at_middle = (parts >> OctahedralCells::middle_part() & 1U) != 0;
-        covers.push_back({cells_.index(octant_, i, j, down), static_cast<std::uint16_t>(parts),
-                          at_middle ? middle_ray(i, j, down) : MiddleRay::Misses, l1.low, l1.high});
+    template <bool down>
+    void add_cell(std::int32_t i, std::int32_t j, std::uint32_t parts, std::vector<CellCover>& covers) const {
+        const Range l1 = l1_range<down>(i, j, parts);
+        const std::uint32_t at_middle = parts >> OctahedralCells::middle_part() & 1U;
+        const auto middle =
+            static_cast<MiddleRay>(at_middle * static_cast<std::uint32_t>(middle_ray(i, j, down)));
+        covers.push_back(
+            {cells_.index(octant_, i, j, down), static_cast<std::uint16_t>(parts), middle, l1.low, l1.high});
     }
 
     /// What the plane has over the parts, where that is better than what the polygon has as a whole.
-    Range l1_range(std::int32_t i, std::int32_t j, bool down, std::uint32_t parts) const {
+    template <bool down>
+    Range l1_range(std::int32_t i, std::int32_t j, std::uint32_t parts) const {
         if (!std::isfinite(reciprocal_error_)) return l1_; // edge-on
         const Range in_cell = range_over(parts);
         // A down cell is seen with its axes turned.
@@ -326,17 +347,21 @@ class OctantCover {
                          std::max(part_highs_[highs[2]], part_highs_[highs[3]]))};
     }
 
+    /// Without a branch, as the sides that a middle is beyond cannot be foretold.
     MiddleRay middle_ray(std::int32_t i, std::int32_t j, bool down) const {
         constexpr double kThird = kPartsPerSide / 3.0;
         const double offset = down ? 2 * kThird : kThird;
         const double x = kPartsPerSide * i + offset, y = kPartsPerSide * j + offset;
-        bool sure = !lacks_sides_;
+        double least = kEmptyRange.low, least_sure = kEmptyRange.low;
         for (std::size_t k = 0; k < side_count_; ++k) {
             const double value = sides_[k].inner(x, y);
-            if (value < 0) return MiddleRay::Misses;
-            sure = sure && value > 2 * sides_[k].slack;
+            least = std::min(least, value);
+            least_sure = std::min(least_sure, value - 2 * sides_[k].slack);
         }
-        return sure ? MiddleRay::Meets : MiddleRay::Unsure;
+        static_assert(static_cast<int>(MiddleRay::Misses) == 0 && static_cast<int>(MiddleRay::Meets) == 1 &&
+                      static_cast<int>(MiddleRay::Unsure) == 2);
+        const int unsure = static_cast<int>(lacks_sides_) | static_cast<int>(!(least_sure > 0));
+        return static_cast<MiddleRay>(static_cast<int>(least >= 0) * (1 + unsure));
     }
 
     static constexpr std::int32_t kSquaresPerWord = 64 / kStripLength;
@@ -351,7 +376,7 @@ class OctantCover {
     std::array<Side, 8> sides_;
     std::size_t side_count_ = 0;
     bool lacks_sides_ = false;
-    std::array<Crossing, 8> firsts_, lasts_; ///< where half-planes begin and end along the rows
+    std::array<Crossing, 8 + 1> firsts_, lasts_; ///< where half-planes begin and end along the rows
     std::size_t first_count_ = 0, last_count_ = 0;
     Affine reciprocal_;
     double reciprocal_error_;
@@ -398,8 +423,10 @@ std::uint32_t reached_sides(const std::array<LatticePoint, 3>& face) {
     return reaches(&LatticePoint::x) | reaches(&LatticePoint::y) << 1 | reaches(&LatticePoint::z) << 2;
 }
 
+/// To where all coordinates of the octant are positive.
 Vec3d mirrored(const Vec3d& v, std::uint32_t octant) {
-    return {octant & 1U ? -v.x : v.x, octant & 2U ? -v.y : v.y, octant & 4U ? -v.z : v.z};
+    constexpr std::array<double, 2> kSign{1, -1};
+    return {v.x * kSign[octant & 1U], v.y * kSign[octant >> 1 & 1U], v.z * kSign[octant >> 2 & 1U]};
 }
 
 } // namespace
@@ -411,6 +438,11 @@ void cover_cells(const OctahedralCells& cells, const std::array<LatticePoint, 3>
     const std::uint32_t positive = reached_sides(face);
     const std::uint32_t negative = reached_sides({-face[0], -face[1], -face[2]});
     const std::uint32_t both = positive & negative;
+    if (both == 0) { // as nearly always
+        Polygon polygon;
+        for (const LatticePoint& corner : face) polygon.add(mirrored(Vec3d(corner), negative));
+        return cover_octant(cells, negative, polygon, {mirrored(Vec3d(normal), negative), height}, covers);
+    }
     for (std::uint32_t octant = 0; octant < 8; ++octant) {
         if (((octant ^ negative) & ~both) != 0) continue;
         Polygon polygon;
