@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 using namespace echinus;
 
@@ -46,9 +47,14 @@ std::vector<Vec3f> wobbled(std::vector<Vec3f> vertices, double moment) {
 } // namespace
 
 TEST(ExactMapBuild, GivesTheSameBytesForEveryNumberOfThreads) {
-    for (const TriangleMesh& mesh : {make_torus(1, 0.4, 60, 24), opened(make_torus(1, 0.4, 60, 24))})
-        EXPECT_TRUE(
-            same(ExactMap::build(mesh, {.thread_count = 1}), ExactMap::build(mesh, {.thread_count = 0})));
+    const TriangleMesh torus = make_torus(1, 0.4, 60, 24);
+    TriangleMesh with_needles = make_sphere(1, 40, 20); // whose faces at the poles collapse on the lattice
+    for (Vec3f& v : with_needles.vertices) v.x *= 1e-7F;
+    for (const TriangleMesh& mesh : {torus, opened(torus), with_needles, make_torus(1, 0.4, 250, 150)}) {
+        const ExactMap one = ExactMap::build(mesh, {.thread_count = 1});
+        for (unsigned thread_count : {2U, 3U, 0U})
+            EXPECT_TRUE(same(one, ExactMap::build(mesh, {.thread_count = thread_count})));
+    }
 }
 
 TEST(ExactMapBuild, RefusesWhatIsNoMeshAndBadOptions) {
@@ -104,6 +110,30 @@ TEST(ExactMapBuilder, GivesTheBytesOfAFreshBuildForEveryMoment) {
             EXPECT_TRUE(same(builder.rebuild(now.vertices), ExactMap::build(now, options)));
         }
     }
+}
+
+TEST(ExactMapBuilder, GivesTheBytesOfAFreshBuildHoweverFarTheSurfaceMoves) {
+    const TriangleMesh torus = make_torus(1, 0.4, 60, 24);
+    for (const TriangleMesh& mesh : {torus, opened(torus)}) {
+        ExactMapBuilder builder(mesh.faces, {});
+        for (int moment = 0; moment < 12; ++moment) {
+            TriangleMesh now{wobbled(mesh.vertices, 0.4 * moment), mesh.faces};
+            for (Vec3f& v : now.vertices) // now as it was, now turned, now pressed flat
+                v = moment % 4 == 1   ? Vec3f{v.y, v.z, v.x}
+                    : moment % 4 == 3 ? Vec3f{v.x, v.y, 1e-7F * v.z}
+                                      : v;
+            EXPECT_TRUE(same(builder.rebuild(now.vertices), ExactMap::build(now))) << moment;
+        }
+    }
+}
+
+TEST(ExactMapBuilder, TakesVerticesThatNoFaceUses) {
+    const TriangleMesh mesh = make_torus(1, 0.4, 40, 16);
+    ExactMapBuilder builder(mesh.faces, {});
+    TriangleMesh longer = mesh;
+    longer.vertices.push_back({std::numeric_limits<float>::quiet_NaN(), 0, 0});
+    for (const TriangleMesh& now : {mesh, longer, mesh})
+        EXPECT_TRUE(same(builder.rebuild(now.vertices), ExactMap::build(now)));
 }
 
 TEST(ExactMapBuilder, LeavesMapsAloneThatWereCopied) {

@@ -1,3 +1,4 @@
+#include "directions/crossing.hpp"
 #include "exact_map/cell_cover.hpp"
 
 #include <gtest/gtest.h>
@@ -98,4 +99,38 @@ TEST(CellCover, ListsAFaceOnceInACell) {
         std::set<std::uint32_t> listed;
         for (const CellCover& cover : covers) ASSERT_TRUE(listed.insert(cover.cell).second) << "face " << n;
     }
+}
+
+TEST(CellCover, KnowsWhetherTheRayThroughTheMiddleMeetsTheFace) {
+    RandomLattice random(9);
+    int met = 0, unsure = 0, total = 0;
+    for (int n = 0; n < 600; ++n) {
+        const std::int64_t extent = kLatticeExtent / (n % 2 == 0 ? 4 : 32);
+        const LatticePoint middle = random.point(kLatticeExtent / 2);
+        std::array<LatticePoint, 3> face;
+        for (LatticePoint& corner : face) corner = middle + random.point(extent);
+        const FaceCone cone(face[0], face[1], face[2]);
+        if (cone.edge_on()) continue;
+        const OctahedralCells cells(static_cast<std::uint32_t>(1 + n % 24));
+        std::vector<CellCover> covers;
+        cover_cells(cells, face, covers);
+        std::set<std::uint32_t> said_to_meet;
+        for (const CellCover& cover : covers) {
+            const bool meets = cone.meets(cells.middle(cover.cell));
+            ++total;
+            met += meets ? 1 : 0;
+            unsure += cover.middle == MiddleRay::Unsure ? 1 : 0;
+            if (cover.middle != MiddleRay::Unsure) {
+                ASSERT_EQ(cover.middle == MiddleRay::Meets, meets) << n;
+            }
+            if (meets) said_to_meet.insert(cover.cell);
+        }
+        for (std::uint32_t cell = 0; cell < cells.count(); ++cell) { // and no cell lacks a face that counts
+            if (cone.meets(cells.middle(cell))) {
+                ASSERT_TRUE(said_to_meet.contains(cell)) << n;
+            }
+        }
+    }
+    EXPECT_GT(met, 200);
+    EXPECT_LT(unsure, total / 20);
 }

@@ -26,3 +26,31 @@ TEST(ParallelFor, PassesOnTheExceptionOfItsBody) {
     EXPECT_THROW(parallel_for(100, 0, [](std::size_t, std::size_t) { throw std::runtime_error("body"); }),
                  std::runtime_error);
 }
+
+TEST(ParallelForWorkers, LetsNoTwoCallsOfOneWorkerOverlap) {
+    for (unsigned thread_count : {0u, 1u, 2u, 7u}) {
+        std::vector<std::atomic<int>> busy(worker_count(thread_count));
+        std::atomic<std::size_t> visited = 0;
+        parallel_for_workers(5'000, thread_count,
+                             [&](std::size_t worker, std::size_t begin, std::size_t end) {
+                                 ASSERT_LT(worker, busy.size());
+                                 EXPECT_EQ(busy[worker]++, 0);
+                                 visited += end - begin;
+                                 --busy[worker];
+                             });
+        EXPECT_EQ(visited, 5'000u);
+    }
+}
+
+TEST(ParallelInvoke, CallsBothOnceAndPassesOnExceptions) {
+    for (unsigned thread_count : {0u, 1u, 2u}) {
+        std::atomic<int> first = 0, second = 0;
+        parallel_invoke(
+            thread_count, [&] { ++first; }, [&] { ++second; });
+        EXPECT_EQ(first, 1);
+        EXPECT_EQ(second, 1);
+        EXPECT_THROW(parallel_invoke(
+                         thread_count, [] {}, [] { throw std::runtime_error("second"); }),
+                     std::runtime_error);
+    }
+}
