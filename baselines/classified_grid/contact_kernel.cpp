@@ -54,7 +54,7 @@ struct FaceList {
     Vec3<std::int32_t> middle;
     double reach = -1; ///< less than any distance: no list yet
     std::size_t count = 0, capacity = 0;
-    std::vector<std::uint32_t> faces;  ///< [capacity]
+    std::vector<std::uint32_t> faces;  ///< [face_count + kMostLanes], the first `count` are in the list
     std::vector<float> numbers;        ///< [kFaceNumbers][capacity]
     std::vector<float> distances;      ///< [capacity] from the middle of a group
     std::vector<std::uint32_t> chosen; ///< [capacity] which of the list a group needs
@@ -346,7 +346,7 @@ class ContactKernel {
 
     HWY_ATTR void collect_faces(const Vec3d& place, double reach) {
         ++s_.stamp;
-        list_.faces.clear();
+        list_.count = 0;
         const double size = frame_.cell_steps;
         const Vec3d from_origin = (place - Vec3d(frame_.origin)) * (1 / size); // in cells
         const double cells = reach / size + 0.001;
@@ -406,20 +406,20 @@ class ContactKernel {
         }
     }
 
+    /// Once each; without a branch, as nobody can foresee which faces came before.
     HWY_ATTR HWY_INLINE void take(std::uint32_t face) {
-        if (s_.stamps[face] == s_.stamp) return;
+        list_.faces[list_.count] = face;
+        list_.count += s_.stamps[face] != s_.stamp ? 1 : 0;
         s_.stamps[face] = s_.stamp;
-        list_.faces.push_back(face);
     }
 
     HWY_ATTR void prepare_faces() {
         const Ints di;
         const hn::Half<Floats> df_half;
         const std::size_t n = hn::Lanes(di);
-        list_.count = list_.faces.size();
         if (list_.count == 0) return;
         list_.reserve(list_.count);
-        list_.faces.resize((list_.count + n - 1) / n * n, list_.faces.back());
+        std::fill_n(&list_.faces[list_.count], n, list_.faces[list_.count - 1]);
         const FaceGather gather(grid_);
         const IntVectors middle{hn::Set(di, list_.middle.x), hn::Set(di, list_.middle.y),
                                 hn::Set(di, list_.middle.z)};
@@ -661,6 +661,7 @@ void contacts_kernel(const GridArrays& grid, std::span<const Vec3f> points_local
                      std::span<Contact> contacts) {
     ContactScratch scratch;
     scratch.stamps.resize(grid.face_count());
+    scratch.list.faces.resize(grid.face_count() + FaceList::kMostLanes);
     scratch.inside.resize(std::min(kChunk, points_local.size()));
     const float margin_cells = margin > 0 ? margin * grid.frame.cells_per_unit * 1.001F + 1 : 0;
     // Farther away float would round too much.
