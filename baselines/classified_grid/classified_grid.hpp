@@ -16,8 +16,8 @@
 /// between itself and that centre.
 ///
 /// Written to be as good as we can: cells of two bits, in bricks of 4 x 4 x 4 of which only those on the
-/// surface are stored; particles sorted by cell and tested 16 at a time; the same lattice of integers and
-/// the same perturbation as ExactMap, so that both give the same answers on closed meshes.
+/// surface are stored; particles tested 16 at a time, each with its own cell; the same lattice of integers
+/// and the same perturbation as ExactMap, so that both give the same answers on closed meshes.
 namespace echinus::baselines {
 
 struct GridArrays;

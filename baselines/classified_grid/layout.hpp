@@ -54,7 +54,7 @@ inline std::uint32_t rank_in_brick(const Brick& brick, std::uint32_t cell) {
 
 /// A lattice point in 8 bytes: 21 bits per coordinate.
 struct PackedPoint {
-    std::uint32_t low, high; ///< x | y's lower 11 bits << 21; y's upper 10 bits | z << 11... see unpacked()
+    std::uint32_t low, high; ///< x, 21 bits, and the lower 11 of y; the upper 10 of y, and z
 };
 
 inline PackedPoint packed(const LatticePoint& p) {

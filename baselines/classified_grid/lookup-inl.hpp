@@ -179,7 +179,7 @@ struct FaceVectors {
 };
 
 /// Corners of faces, counted from a centre each: whole numbers below 2^22, exact as floats. Loads one face
-/// after the other: gather instructions took more than twice as long.
+/// after the other: gather instructions took longer.
 class FaceGather {
   public:
     HWY_ATTR explicit FaceGather(const GridArrays& grid)
