@@ -12,6 +12,8 @@ using namespace echinus;
 
 namespace {
 
+constexpr std::size_t kLargestTorus = 300'000; // faces; the next, of a million, is one of the subjects
+
 double wall_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -71,6 +73,7 @@ Records measure_build(const Setting& setting) {
     };
     for (const auto& make_subject : subjects(setting.meshes, setting.debian_horse)) {
         const Subject subject = make_subject();
+        if (subject.large && setting.effort.large_point_count == 0) continue;
         setting.report_progress("build " + subject.name, 0);
         const std::vector<BuildWay> ways = ways_for(subject.mesh);
         measure(subject, true, one_thread(ways), records);
@@ -78,11 +81,11 @@ Records measure_build(const Setting& setting) {
         std::vector<BuildWay> ours;
         for (const BuildWay& way : ways)
             if (way.system == "exact map" || way.system == "distance map") ours.push_back(way);
-        list_batches(ours, subject, setting.effort.large_point_count);
+        list_batches(ours, subject, std::min<std::size_t>(setting.effort.point_count, 200'000));
         measure(subject, false, ours, records);
         pin_to_one_core();
     }
-    for (std::size_t faces = 1000; faces <= 1'100'000; faces *= 4) {
+    for (std::size_t faces = 1000; faces <= kLargestTorus; faces *= 4) {
         const Subject torus = torus_subject(faces);
         setting.report_progress(fmt::format("build torus of {} faces", torus.mesh.faces.size()), 0);
         measure(torus, true, one_thread(ways_for(torus.mesh)), records);

@@ -27,7 +27,7 @@ struct Competitor {
 /// How thoroughly is measured.
 struct Effort {
     std::size_t point_count = 1'000'000;     ///< per set
-    std::size_t large_point_count = 200'000; ///< per set, of large meshes
+    std::size_t large_point_count = 200'000; ///< per set, of large meshes; 0 leaves these out
     int passes = 5;
     double seconds_per_block = 0.03; ///< who would take longer for a block does only the first part of it
 };

@@ -13,6 +13,7 @@ Records measure_contains(const Setting& setting) {
     Records records = comparison_records();
     for (const auto& make_subject : subjects(setting.meshes, setting.debian_horse)) {
         const Subject subject = make_subject();
+        if (subject.large && setting.effort.large_point_count == 0) continue;
         const std::size_t count =
             subject.large ? setting.effort.large_point_count : setting.effort.point_count;
         setting.report_progress("contains " + subject.name + ": building", 0);

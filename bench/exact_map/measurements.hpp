@@ -3,11 +3,8 @@
 #include "models.hpp"
 #include "page.hpp"
 
-// What is measured, one function a section of docs/performance.md. Each adds its tables to the values and
-// writes its plots.
-
-/// Size, build time, query times and errors at default options, beside Embree and the distance map.
-void measure_defaults(const Setting& setting, Values& values);
+// What is measured, one function a section of docs/exact_map_options.md. Each adds its tables to the values
+// and writes its plots.
 
 /// Bytes and times against the number of cells.
 void measure_divisions(const Setting& setting, Values& values);
