@@ -82,7 +82,7 @@ void compare(const Comparison& comparison, const Subject& subject, const Particl
         Racer racer{[&](std::size_t begin, std::size_t end) {
             competitor.answer(std::span(set.points).subspan(begin, end - begin), begin);
         }};
-        racer.block_share = share_for(racer, count, comparison.effort.seconds_per_block);
+        racer.block_share = share_for(racer, count, options.block_size, comparison.effort.patience_seconds);
         racers.push_back(std::move(racer));
     }
     const std::vector<Pace> paces = take_turns(count, racers, options);

@@ -29,7 +29,7 @@ struct Effort {
     std::size_t point_count = 1'000'000;     ///< per set
     std::size_t large_point_count = 200'000; ///< per set, of large meshes; 0 leaves these out
     int passes = 5;
-    double seconds_per_block = 0.03; ///< who would take longer for a block does only the first part of it
+    double patience_seconds = 0.13; ///< who would take longer for a block does only the first part of it
 };
 
 /// What a comparison is about.

@@ -9,6 +9,7 @@
 namespace {
 
 constexpr double kWidth = 720, kHeight = 440;
+constexpr double kLegendWidth = 230; // beside the diagram
 constexpr double kLeft = 80, kRight = 24, kTop = 48, kBottom = 60;
 
 /// One logarithmic axis, from numbers to places on the page.
@@ -62,7 +63,7 @@ std::string stroke_of(const Curve& curve) {
 }
 
 std::string disc(double x, double y, const std::string& colour) {
-    return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>\n", x, y, colour);
+    return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\"/>\n", x, y, colour);
 }
 
 std::string ring(double x, double y, const std::string& colour) {
@@ -103,31 +104,22 @@ std::string drawn(const Curve& curve, const Axis& x, const Axis& y) {
     return result;
 }
 
-/// At the left edge, from `top` downwards.
-std::string legend(const Plot& plot, double left, double top) {
-    const double height = 18 * static_cast<double>(plot.curves.size() + !plot.ring_meaning.empty()) + 10;
-    std::string result = fmt::format("<rect x=\"{}\" y=\"{}\" width=\"250\" height=\"{}\" fill=\"#ffffff\" "
-                                     "fill-opacity=\"0.9\" stroke=\"#bbbbbb\"/>\n",
-                                     left, top, height);
-    double y = top + 18;
+/// Beside the diagram, where it hides nothing.
+std::string legend(const Plot& plot) {
+    constexpr double kBegin = kWidth - kRight + 14;
+    double y = kTop + 10;
+    std::string result;
     for (const Curve& curve : plot.curves) {
-        result += line(left + 8, y - 4, left + 48, y - 4, stroke_of(curve));
-        result += text(left + 56, y, "start", curve.name);
+        if (curve.points.size() > 1)
+            result += line(kBegin, y - 4, kBegin + 40, y - 4, stroke_of(curve));
+        else
+            result += disc(kBegin + 20, y - 4, curve.colour);
+        result += text(kBegin + 48, y, "start", curve.name);
         y += 18;
     }
     if (!plot.ring_meaning.empty())
-        result += ring(left + 28, y - 4, "#444444") + text(left + 56, y, "start", plot.ring_meaning);
+        result += ring(kBegin + 20, y - 4, "#444444") + text(kBegin + 48, y, "start", plot.ring_meaning);
     return result;
-}
-
-/// How many points of the curves lie in the legend's place.
-std::size_t hidden_points(const Plot& plot, const Axis& x, const Axis& y, double left, double top) {
-    std::size_t count = 0;
-    for (const Curve& curve : plot.curves)
-        for (const PlotPoint& p : curve.points)
-            count += x.place(p.x) > left && x.place(p.x) < left + 250 && y.place(p.y) > top &&
-                     y.place(p.y) < top + 18 * static_cast<double>(plot.curves.size() + 1) + 10;
-    return count;
 }
 
 } // namespace
@@ -146,12 +138,10 @@ std::string svg(const Plot& plot) {
         fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
                     "height=\"{1}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#222222\">\n"
                     "<rect width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n",
-                    kWidth, kHeight);
+                    kWidth + kLegendWidth, kHeight);
     result += frame(plot, x, y);
     for (const Curve& curve : plot.curves) result += drawn(curve, x, y);
-    const double left = kLeft + 10, right = kWidth - kRight - 260, top = kTop + 10;
-    const bool at_right = hidden_points(plot, x, y, right, top) < hidden_points(plot, x, y, left, top);
-    return result + legend(plot, at_right ? right : left, top) + "</svg>\n";
+    return result + legend(plot) + "</svg>\n";
 }
 
 double fitted_exponent(const std::vector<PlotPoint>& points, double from) {

@@ -33,13 +33,15 @@ double median_of(std::vector<double> values) {
     return values.empty() ? std::nan("") : quantile(values, 0.5);
 }
 
-std::size_t share_for(const Racer& racer, std::size_t item_count, double seconds_per_block) {
+std::size_t share_for(const Racer& racer, std::size_t item_count, std::size_t block_size,
+                      double patience_seconds) {
     const std::size_t trial = std::min<std::size_t>(item_count, 1000);
     racer.run(0, trial);
     const double start = thread_seconds();
     racer.run(0, trial);
     const double seconds = (thread_seconds() - start) / static_cast<double>(trial);
-    return std::max<std::size_t>(trial, static_cast<std::size_t>(seconds_per_block / seconds));
+    if (seconds * static_cast<double>(block_size) <= patience_seconds) return block_size;
+    return std::max<std::size_t>(trial, static_cast<std::size_t>(patience_seconds / 4 / seconds));
 }
 
 std::vector<Pace> take_turns(std::size_t item_count, const std::vector<Racer>& racers,

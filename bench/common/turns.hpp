@@ -34,7 +34,9 @@ struct Pace {
 std::vector<Pace> take_turns(std::size_t item_count, const std::vector<Racer>& racers,
                              const TurnOptions& options);
 
-/// The share of a block that a racer should do, by a short trial.
-std::size_t share_for(const Racer& racer, std::size_t item_count, double seconds_per_block);
+/// How much of a block a racer should do, by a short trial: all of it if that takes no longer than
+/// `patience`, and otherwise what it does in a quarter of that time.
+std::size_t share_for(const Racer& racer, std::size_t item_count, std::size_t block_size,
+                      double patience_seconds);
 
 double median_of(std::vector<double> values);

@@ -70,7 +70,7 @@ std::string table(const Records& all, const std::string& mesh, const std::string
              : farthest == 0 ? "none"
                              : fmt::format("{:.0e}", farthest)});
         if (has_depth && sets.size() > 1)
-            rows.back().push_back(fmt::format("{:.0e} / {:.0e} / {:.0e}", number(*sets[1], "depth_mean"),
+            rows.back().push_back(fmt::format("{:.1g} / {:.1g} / {:.1g}", number(*sets[1], "depth_mean"),
                                               number(*sets[1], "depth_99"), number(*sets[1], "depth_worst")));
     }
     return markdown_table(rows);
@@ -90,9 +90,42 @@ std::string tables(const Records& all, const char* suffix, bool has_depth) {
     return text;
 }
 
+/// What nobody can go below, and how far above it we are.
+std::string floors(const Records& contains) {
+    const std::string mesh = contains.all().front().at("mesh");
+    Rows rows{{"set", "stream, ns", "one gather, ns", "exact map, ns", "of one gather", "distance map, ns",
+               "of one gather"}};
+    for (const char* set : {"U", "S", "C"}) {
+        const std::vector<Records::Record> all = contains.where({{"mesh", mesh}, {"set", set}});
+        const auto ns = [&](const char* system, const char* way) {
+            return number(*find(all, system, way), "ns");
+        };
+        const double gather = ns("floor", "one gather"), exact = ns("exact map", ""),
+                     distance = ns("distance map", "");
+        rows.push_back({set, shown(ns("floor", "stream")), shown(gather), shown(exact), shown(exact / gather),
+                        shown(distance), shown(distance / gather)});
+    }
+    return markdown_table(rows);
+}
+
+/// How far a number may be trusted: the spread of the passes, in words.
+std::string spread(const Results& results) {
+    std::vector<double> spreads;
+    for (const Records* records : {&results.contains, &results.contacts})
+        for (const Records::Record& record : records->all()) spreads.push_back(number(record, "spread"));
+    std::ranges::sort(spreads);
+    const auto percent_at = [&](double share) {
+        return 100 * spreads[static_cast<std::size_t>(share * static_cast<double>(spreads.size() - 1))];
+    };
+    return fmt::format("{:.1f} % in the median, {:.1f} % for the worst tenth", percent_at(0.5),
+                       percent_at(0.9));
+}
+
 } // namespace
 
 void add_comparisons(const Results& results, Values& values) {
+    values["floors"] = floors(results.contains);
+    values["spread"] = spread(results);
     values["contains"] = tables(results.contains, "", false);
     values["contacts"] = tables(results.contacts, "", true);
     values["contains_10k"] = tables(results.contains, " 10k", false);

@@ -19,20 +19,24 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_face_graph_triangle_primitive<Mesh>>>;
 
-/// Each face with corners of its own, since Surface_mesh refuses what is not manifold and the tree does not
-/// look at neighbours.
-Mesh soup_of(const TriangleMesh& mesh) {
-    Mesh soup;
-    const auto vertex = [&](std::uint32_t i) {
-        const Vec3d p(mesh.vertices[i]);
-        return soup.add_vertex({p.x, p.y, p.z});
-    };
-    for (const Triangle& face : mesh.faces) soup.add_face(vertex(face[0]), vertex(face[1]), vertex(face[2]));
-    return soup;
-}
-
 Kernel::Point_3 to_cgal(const Vec3f& p) {
     return {double{p.x}, double{p.y}, double{p.z}};
+}
+
+/// Vertices shared, or, where Surface_mesh refuses a face because the mesh is not manifold, each face with
+/// corners of its own: the tree does not look at neighbours.
+Mesh to_cgal(const TriangleMesh& mesh) {
+    using Vertex = Mesh::Vertex_index;
+    Mesh result;
+    for (const Vec3f& v : mesh.vertices) result.add_vertex(to_cgal(v));
+    for (const Triangle& face : mesh.faces) {
+        if (result.add_face(Vertex(face[0]), Vertex(face[1]), Vertex(face[2])) != Mesh::null_face()) continue;
+        Mesh soup;
+        const auto corner = [&](std::uint32_t v) { return soup.add_vertex(to_cgal(mesh.vertices[v])); };
+        for (const Triangle& f : mesh.faces) soup.add_face(corner(f[0]), corner(f[1]), corner(f[2]));
+        return soup;
+    }
+    return result;
 }
 
 } // namespace
@@ -44,7 +48,7 @@ struct CgalRival::Impl {
     std::optional<CGAL::Side_of_triangle_mesh<Mesh, Kernel>> side;
     std::size_t bytes;
 
-    explicit Impl(const TriangleMesh& mesh_) : mesh(soup_of(mesh_)) {
+    explicit Impl(const TriangleMesh& mesh_) : mesh(to_cgal(mesh_)) {
         tree.insert(faces(mesh).first, faces(mesh).second, mesh);
         tree.build();
         tree.accelerate_distance_queries();
