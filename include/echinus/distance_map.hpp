@@ -40,15 +40,22 @@ enum class EntryFormat : std::uint8_t {
 struct DistanceMapOptions {
     static constexpr std::uint32_t kMinSampleCount = 4;
     static constexpr std::uint32_t kMaxSampleCount = 8192;
+    static constexpr std::uint32_t kMinDivisions = 4;
+    static constexpr std::uint32_t kMaxDivisions = 4096;
 
-    std::uint32_t longitude_count =
-        200; ///< samples of phi; memory and build time grow with the product of the two
-    std::uint32_t colatitude_count =
-        200; ///< samples of theta; doubling both divides the share of wrong signs by 2.5
+    DirectionGrid grid = DirectionGrid::Spherical; ///< which of the counts below are looked at
+    /// Spherical: samples of phi; memory and build time grow with the product of the two.
+    std::uint32_t longitude_count = 200;
+    /// Spherical: samples of theta; doubling both divides the share of wrong signs by 2.5.
+    std::uint32_t colatitude_count = 200;
+    /// Octahedral: into how many an edge of the octahedron is cut. There are (2 divisions + 1)^2 samples: 100
+    /// make as many bytes as 200 x 200.
+    std::uint32_t divisions = 100;
     VertexCorrection correction =
         VertexCorrection::Signed;                    ///< None is unbiased; Signed misses fewer particles
     EntryFormat entry_format = EntryFormat::Float32; ///< Unorm16 halves the entries, costs 7.6e-6 R
-    PoleAxis pole_axis = PoleAxis::Z;                ///< samples crowd at the poles: put them where detail is
+    /// Spherical: samples crowd at the poles; put them where detail is.
+    PoleAxis pole_axis = PoleAxis::Z;
     unsigned thread_count = 0; ///< 0: all cores. The bytes of the map do not depend on it.
 };
 
@@ -68,23 +75,34 @@ struct DistanceMapStatistics {
 /// A map as plain arrays, wherever they lie: in a DistanceMap, in a mapped file, in JavaScript's memory. Owns
 /// nothing, copies cheaply, and is what all queries take. Invariants (validate() in src/map_file checks them
 /// for untrusted bytes): entry_offsets ascends from 0 to the number of entries; the entries of a direction
-/// ascend within [0, radius].
+/// ascend within [0, largest_entry()].
 struct DistanceMapView {
     Vec3f centre;     ///< C, local
     float radius = 0; ///< R: every vertex of the mesh lies within R of C
-    std::uint32_t longitude_count = 0;
-    std::uint32_t colatitude_count = 0;
-    PoleAxis pole_axis = PoleAxis::Z;
+    DirectionGrid grid = DirectionGrid::Spherical;
+    std::uint32_t longitude_count = 0;  ///< spherical; 0 in an octahedral map
+    std::uint32_t colatitude_count = 0; ///< spherical; 0 in an octahedral map
+    std::uint32_t divisions = 0;        ///< octahedral; 0 in a spherical map
+    PoleAxis pole_axis = PoleAxis::Z;   ///< spherical
     EntryFormat entry_format = EntryFormat::Float32;
     VertexCorrection correction = VertexCorrection::None;
     bool centre_inside = false;
     /// [direction_count + 1]; direction (i, j) of longitude i and colatitude j has index j * longitude_count
-    /// + i.
+    /// + i; of column i and row j of the unfolded octahedron (docs/file_format.md) j * (2 divisions + 1) + i.
     std::span<const std::uint32_t> entry_offsets;
-    std::span<const float> entries_float32;         ///< [entry_count] distances, or empty
-    std::span<const std::uint16_t> entries_unorm16; ///< [entry_count] distances * 65535 / R, or empty
+    /// [entry_count] or empty. Spherical: distances from C. Octahedral: L1 radii |x| + |y| + |z| around C.
+    std::span<const float> entries_float32;
+    std::span<const std::uint16_t>
+        entries_unorm16; ///< [entry_count] the same * 65535 / largest_entry(), or empty
 
-    std::size_t direction_count() const { return std::size_t{longitude_count} * colatitude_count; }
+    std::size_t direction_count() const {
+        if (grid == DirectionGrid::Spherical) return std::size_t{longitude_count} * colatitude_count;
+        return (2 * std::size_t{divisions} + 1) * (2 * std::size_t{divisions} + 1);
+    }
+    /// R, or a little more than sqrt(3) R, which is the largest L1 radius in the bounding sphere.
+    float largest_entry() const {
+        return grid == DirectionGrid::Spherical ? radius : radius * kLargestL1Radius;
+    }
     std::size_t entry_count() const { return entry_offsets.empty() ? 0 : entry_offsets.back(); }
     /// All that a query reads.
     std::size_t byte_count() const {
@@ -103,7 +121,7 @@ class DistanceMap {
     /// solid so flat or thin that no ray meets it gives a map without entries, for which everything is
     /// outside
     /// @throws Error InvalidMesh as inspect() does, or when the bounding radius lies outside [1e-15, 1e15];
-    /// InvalidOptions when a sample count lies outside [kMinSampleCount, kMaxSampleCount]
+    /// InvalidOptions when a count that the grid looks at lies outside the bounds above
     static DistanceMap build(const TriangleMesh& mesh, const DistanceMapOptions& options = {});
 
     /// Puts arrays that already exist under `storage`, which is kept alive as long as the map. Used by the
@@ -167,12 +185,13 @@ void contacts_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_
 /// How many directions have 0, 1, 2 ... entries.
 std::vector<std::size_t> entry_histogram(const DistanceMapView& map);
 
-/// How many of the four samples around a point entered the interpolation (paper section 2.2: "rarely ... less
-/// than 3"). 1 to 4, or 0 where no query looks: outside the sphere, not finite.
+/// How many of the four samples around a point, or three on an octahedron, entered the interpolation (paper
+/// section 2.2: "rarely ... less than 3"). 1 to 4, or 0 where no query looks: outside the sphere, not finite.
 int usable_sample_count(const DistanceMapView& map, Vec3f point_local) noexcept;
 
 /// The surface as the map sees it (figures 2 and 3): where four neighbouring directions have the same number
-/// of entries, each layer is a quadrilateral, cut into two triangles.
+/// of entries, each layer is a quadrilateral, cut into two triangles; on an octahedron, where three have, a
+/// triangle.
 struct MapSurface {
     TriangleMesh mesh;                ///< local frame; wound so that faces look out of the solid
     std::vector<std::uint32_t> layer; ///< [face_count] 0 for the entries nearest to the centre

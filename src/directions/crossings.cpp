@@ -1,6 +1,7 @@
 #include "directions/crossings.hpp"
 
 #include "directions/crossing.hpp"
+#include "directions/octahedral_samples.hpp"
 #include "directions/samples_in_cap.hpp"
 #include "geometry/parallel.hpp"
 
@@ -19,56 +20,51 @@ struct Crossing {
     float distance;
 };
 
-/// The grid's directions on the lattice: what the exact test takes, and its length in the mesh's unit.
-struct LatticeDirections {
-    std::vector<LatticePoint> points;
-    std::vector<double> lengths;
-
-    LatticeDirections(const SphericalGrid& grid, double step) {
-        points.reserve(grid.direction_count());
-        lengths.reserve(grid.direction_count());
-        for (const Vec3d& unit : grid.directions()) {
-            points.push_back(lattice_direction(unit));
-            lengths.push_back(length(Vec3d(points.back())) * step);
-        }
-    }
-};
-
+/// Casts the rays of a grid at faces.
+template <typename Grid>
 class RayCaster {
   public:
-    RayCaster(const LatticeMesh& lattice, const SphericalGrid& grid)
-        : lattice_(lattice), grid_(grid), directions_(grid, lattice.frame.step) {}
+    RayCaster(const LatticeMesh& lattice, const Grid& grid)
+        : lattice_(lattice), grid_(grid), directions_(grid.lattice_directions()),
+          largest_(Grid::largest_entry(lattice.radius)) {
+        norms_.reserve(directions_.size());
+        for (const LatticePoint& d : directions_)
+            norms_.push_back(Grid::radial_norm(Vec3d(d)) * lattice.frame.step);
+    }
 
     /// Appends the crossings of all rays with one face.
     void cast_at(const Triangle& face, std::vector<Crossing>& crossings) const {
-        const LatticePoint &a = lattice_.vertices[face[0]], &b = lattice_.vertices[face[1]],
-                           &c = lattice_.vertices[face[2]];
-        const FaceCone cone(a, b, c);
+        const std::array<LatticePoint, 3> corners{lattice_.vertices[face[0]], lattice_.vertices[face[1]],
+                                                  lattice_.vertices[face[2]]};
+        const FaceCone cone(corners[0], corners[1], corners[2]);
         if (cone.edge_on()) return;
-        const DirectionCap cap({Vec3d(grid_.to_grid(a)), Vec3d(grid_.to_grid(b)), Vec3d(grid_.to_grid(c))});
-        for_each_sample_in(grid_, cap, 0,
-                           [&](std::uint32_t direction) { cast_along(direction, cone, crossings); });
+        for_each_sample_near(grid_, corners, 0,
+                             [&](std::uint32_t direction) { cast_along(direction, cone, crossings); });
     }
 
   private:
     void cast_along(std::uint32_t direction, const FaceCone& cone, std::vector<Crossing>& crossings) const {
-        const LatticePoint& d = directions_.points[direction];
+        const LatticePoint& d = directions_[direction];
         if (!cone.meets(d)) return;
-        const double distance = cone.parameter(d) * directions_.lengths[direction];
+        const double distance = cone.parameter(d) * norms_[direction];
         // Snapping may lift a vertex out of the sphere by a lattice step.
-        crossings.push_back({direction, std::clamp(static_cast<float>(distance), 0.0F, lattice_.radius)});
+        crossings.push_back({direction, std::clamp(static_cast<float>(distance), 0.0F, largest_)});
     }
 
     const LatticeMesh& lattice_;
-    const SphericalGrid& grid_;
-    LatticeDirections directions_;
+    const Grid& grid_;
+    std::vector<LatticePoint> directions_;
+    std::vector<double>
+        norms_; ///< the radial coordinate of each direction's lattice point, in the mesh's unit
+    float largest_;
 };
 
 using Batches = std::vector<std::vector<Crossing>>;
 
 /// In no particular order: how faces are shared out differs from run to run.
-Batches cast_at_all_faces(const LatticeMesh& lattice, const SphericalGrid& grid, unsigned thread_count) {
-    const RayCaster caster(lattice, grid);
+template <typename Grid>
+Batches cast_at_all_faces(const LatticeMesh& lattice, const Grid& grid, unsigned thread_count) {
+    const RayCaster<Grid> caster(lattice, grid);
     Batches batches;
     std::mutex mutex;
     parallel_for(lattice.faces.size(), thread_count, [&](std::size_t begin, std::size_t end) {
@@ -95,11 +91,8 @@ std::vector<std::uint32_t> offsets_of(const Batches& batches, std::size_t direct
     return offsets;
 }
 
-} // namespace
-
-Crossings cast_rays(const LatticeMesh& lattice, const SphericalGrid& grid, unsigned thread_count) {
-    const std::size_t direction_count = grid.direction_count();
-    const Batches batches = cast_at_all_faces(lattice, grid, thread_count);
+/// All crossings by direction, in order.
+Crossings sorted(const Batches& batches, std::size_t direction_count, unsigned thread_count) {
     Crossings result{offsets_of(batches, direction_count), {}};
     result.distances.resize(result.offsets.back());
     std::vector<std::uint32_t> next(result.offsets.begin(), result.offsets.end() - 1);
@@ -113,6 +106,21 @@ Crossings cast_rays(const LatticeMesh& lattice, const SphericalGrid& grid, unsig
                       result.distances.begin() + result.offsets[d + 1]);
     });
     return result;
+}
+
+template <typename Grid>
+Crossings cast_rays_of(const LatticeMesh& lattice, const Grid& grid, unsigned thread_count) {
+    return sorted(cast_at_all_faces(lattice, grid, thread_count), grid.direction_count(), thread_count);
+}
+
+} // namespace
+
+Crossings cast_rays(const LatticeMesh& lattice, const SphericalGrid& grid, unsigned thread_count) {
+    return cast_rays_of(lattice, grid, thread_count);
+}
+
+Crossings cast_rays(const LatticeMesh& lattice, const OctahedralGrid& grid, unsigned thread_count) {
+    return cast_rays_of(lattice, grid, thread_count);
 }
 
 } // namespace echinus

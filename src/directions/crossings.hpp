@@ -1,6 +1,7 @@
 #pragma once
 
 #include "directions/lattice.hpp"
+#include "directions/octahedral_grid.hpp"
 #include "directions/spherical_grid.hpp"
 
 #include <cstdint>
@@ -12,12 +13,13 @@ namespace echinus {
 struct Crossings {
     std::vector<std::uint32_t>
         offsets;                  ///< [direction_count + 1]; direction d has offsets[d] up to offsets[d + 1]
-    std::vector<float> distances; ///< from the centre, within [0, radius], ascending along a ray
+    std::vector<float> distances; ///< radial coordinates, within [0, largest_entry(R)], ascending along a ray
 };
 
 /// Casts a ray along every direction of the grid. The number of crossings of each ray is exact, also where it
 /// meets an edge or a vertex; the distances are rounded. The result does not depend on the number of threads.
 /// @throws Error InvalidMesh when there are 2^32 crossings or more
 Crossings cast_rays(const LatticeMesh& lattice, const SphericalGrid& grid, unsigned thread_count);
+Crossings cast_rays(const LatticeMesh& lattice, const OctahedralGrid& grid, unsigned thread_count);
 
 } // namespace echinus

@@ -41,4 +41,14 @@ void for_each_sample_in(const SphericalGrid& grid, const DirectionCap& cap, doub
         }
 }
 
+/// Calls `visit(index)` for samples among which are all those inside the cone of a face, and those at most
+/// `reach` cells outside it.
+template <typename Visit>
+void for_each_sample_near(const SphericalGrid& grid, const std::array<LatticePoint, 3>& face, double reach,
+                          const Visit& visit) {
+    const DirectionCap cap(
+        {Vec3d(grid.to_grid(face[0])), Vec3d(grid.to_grid(face[1])), Vec3d(grid.to_grid(face[2]))});
+    for_each_sample_in(grid, cap, reach, visit);
+}
+
 } // namespace echinus

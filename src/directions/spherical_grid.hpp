@@ -1,6 +1,7 @@
 #pragma once
 
 #include "directions/angles.hpp"
+#include "directions/lattice.hpp"
 #include "geometry/circle.hpp"
 
 #include <echinus/directions.hpp>
@@ -71,8 +72,26 @@ class SphericalGrid {
         return result;
     }
 
-    /// The sine of a row's colatitude: the solid angle of its samples, but for a factor that all rows share.
-    double solid_angle_weight(std::uint32_t colatitude) const { return colatitude_point(colatitude).sine; }
+    /// The directions in which rays are cast.
+    std::vector<LatticePoint> lattice_directions() const {
+        std::vector<LatticePoint> result;
+        result.reserve(direction_count());
+        for (const Vec3d& unit : directions()) result.push_back(lattice_direction(unit));
+        return result;
+    }
+
+    /// The solid angle of each sample, but for a factor that all share: the sine of the colatitude.
+    std::vector<double> solid_angle_weights() const {
+        std::vector<double> result;
+        result.reserve(direction_count());
+        for (std::uint32_t j = 0; j < colatitude_count_; ++j)
+            result.insert(result.end(), longitude_count_, colatitude_point(j).sine);
+        return result;
+    }
+
+    static double radial_norm(const Vec3d& d) { return length(d); }
+    /// The largest distance in a sphere.
+    static float largest_entry(float radius) { return radius; }
 
     /// Longitude and colatitude in cells, counted from sample 0.
     struct Coordinates {
@@ -109,6 +128,51 @@ class SphericalGrid {
 
     /// @param d_grid  as for coordinates_of()
     Cell locate(const Vec3f& d_grid) const { return cell_at(coordinates_of(d_grid)); }
+
+    /// Bilinear, for the four corners.
+    static std::array<float, 4> weights(const Cell& cell) {
+        return {(1 - cell.u) * (1 - cell.v), cell.u * (1 - cell.v), (1 - cell.u) * cell.v, cell.u * cell.v};
+    }
+
+    /// "the sample which is closer to (phi_d, theta_d) as the reference sample" (section 2.2): distances
+    /// along phi and theta in cells.
+    static std::size_t reference_corner(const Cell& cell) {
+        return (cell.u > 0.5F ? 1U : 0U) + (cell.v > 0.5F ? 2U : 0U);
+    }
+    /// All four corners are samples that interpolation looks at.
+    static bool is_sample(const Cell&, std::size_t) { return true; }
+
+    struct Derivatives {
+        std::array<float, 4> along_u, along_v;
+    };
+    static Derivatives weight_derivatives(const Cell& cell) {
+        return {{cell.v - 1, 1 - cell.v, -cell.v, cell.v}, {cell.u - 1, -cell.u, 1 - cell.u, cell.u}};
+    }
+
+    // Interpolated between samples is the distance itself.
+    static float interpolant(float entry, float) { return entry; }
+    static float interpolant_at(const Vec3d& d) { return static_cast<float>(length(d)); }
+    static float distance_of(float interpolated, const Coordinates&) { return interpolated; }
+    static bool is_farther(float interpolant, float other) { return interpolant > other; }
+    /// An entry whose interpolant moves by `shift`.
+    static float moved(float entry, float shift, bool outward) {
+        return outward ? entry + shift : entry - shift;
+    }
+
+    /// The gradient of |x| - S(phi, theta) on the map's surface: e_r - S_theta / S e_theta - S_phi / (S sin
+    /// theta) e_phi.
+    /// @param distance  S; slope_u and slope_v are its derivatives per cell
+    Vec3f surface_gradient(const Vec3f& e_r, const Cell&, float distance, float, float slope_u,
+                           float slope_v) const {
+        const float sine = std::sqrt(e_r.x * e_r.x + e_r.y * e_r.y); // of theta
+        if (!(sine > 0 && distance > 0)) return e_r; // on the pole axis longitude has no meaning
+        const Vec3f e_phi{-e_r.y / sine, e_r.x / sine, 0};
+        const Vec3f e_theta = cross(e_phi, e_r);
+        const float per_theta = slope_v * (static_cast<float>(colatitude_count_) / kPi) / distance;
+        const float per_phi =
+            slope_u * (static_cast<float>(longitude_count_) / (2 * kPi)) / (distance * sine);
+        return e_r - e_theta * per_theta - e_phi * per_phi;
+    }
 
   private:
     /// Without the call that std::floor is on processors older than SSE4.1.

@@ -2,7 +2,6 @@
 
 #include "directions/crossings.hpp"
 #include "directions/lattice.hpp"
-#include "directions/spherical_grid.hpp"
 #include "distance_map/layout.hpp"
 #include "distance_map/vertex_correction.hpp"
 #include "mesh/mesh_hash.hpp"
@@ -20,12 +19,21 @@ namespace echinus {
 
 namespace {
 
-void require_sample_count(const char* name, std::uint32_t count) {
-    if (count >= DistanceMapOptions::kMinSampleCount && count <= DistanceMapOptions::kMaxSampleCount) return;
+void require_within(const char* name, std::uint32_t count, std::uint32_t least, std::uint32_t most) {
+    if (count >= least && count <= most) return;
     throw Error(ErrorCode::InvalidOptions, std::string(name) + " is " + std::to_string(count) +
-                                               ", outside [" +
-                                               std::to_string(DistanceMapOptions::kMinSampleCount) + ", " +
-                                               std::to_string(DistanceMapOptions::kMaxSampleCount) + "]");
+                                               ", outside [" + std::to_string(least) + ", " +
+                                               std::to_string(most) + "]");
+}
+
+void require_usable(const DistanceMapOptions& options) {
+    using Bounds = DistanceMapOptions;
+    if (options.grid == DirectionGrid::Octahedral)
+        return require_within("divisions", options.divisions, Bounds::kMinDivisions, Bounds::kMaxDivisions);
+    require_within("longitude_count", options.longitude_count, Bounds::kMinSampleCount,
+                   Bounds::kMaxSampleCount);
+    require_within("colatitude_count", options.colatitude_count, Bounds::kMinSampleCount,
+                   Bounds::kMaxSampleCount);
 }
 
 /// Is the centre inside, judged by the parity of each ray and weighed by the solid angle that the ray stands
@@ -35,31 +43,32 @@ struct CentreSide {
     float wrong_parity_share;
 };
 
-CentreSide side_of_centre(const Crossings& crossings, const SphericalGrid& grid) {
+CentreSide side_of_centre(const Crossings& crossings, const std::vector<double>& solid_angles) {
     double odd_weight = 0;
     double weight = 0;
     std::size_t odd_count = 0;
-    for (std::uint32_t j = 0; j < grid.colatitude_count(); ++j) {
-        std::size_t odd_in_row = 0;
-        for (std::uint32_t i = 0; i < grid.longitude_count(); ++i) {
-            const std::uint32_t d = grid.index(i, j);
-            odd_in_row += (crossings.offsets[d + 1] - crossings.offsets[d]) % 2;
-        }
-        const double solid_angle = grid.solid_angle_weight(j);
-        odd_weight += solid_angle * static_cast<double>(odd_in_row);
-        weight += solid_angle * grid.longitude_count();
-        odd_count += odd_in_row;
+    for (std::size_t d = 0; d < solid_angles.size(); ++d) {
+        const bool odd = (crossings.offsets[d + 1] - crossings.offsets[d]) % 2 == 1;
+        odd_weight += odd ? solid_angles[d] : 0;
+        weight += solid_angles[d];
+        odd_count += odd ? 1 : 0;
     }
-    const std::size_t direction_count = crossings.offsets.size() - 1;
+    const std::size_t direction_count = solid_angles.size();
     const bool inside = odd_weight > weight / 2;
     const std::size_t wrong_count = inside ? direction_count - odd_count : odd_count;
     return {inside, static_cast<float>(wrong_count) / static_cast<float>(direction_count)};
 }
 
 std::uint64_t hash_of(const TriangleMesh& mesh, const DistanceMapOptions& options) {
-    const std::array<std::uint32_t, 5> fields{
+    std::array<std::uint32_t, 5> fields{
         options.longitude_count, options.colatitude_count, static_cast<std::uint32_t>(options.correction),
         static_cast<std::uint32_t>(options.entry_format), static_cast<std::uint32_t>(options.pole_axis)};
+    constexpr std::uint32_t kNotSpherical = ~0U; // no count of longitudes
+    if (options.grid == DirectionGrid::Octahedral) {
+        fields[0] = kNotSpherical;
+        fields[1] = options.divisions;
+        fields[4] = 0;
+    }
     return mesh_hash(mesh, XXH64(fields.data(), sizeof fields, 0));
 }
 
@@ -77,27 +86,39 @@ struct OwnedArrays {
     std::vector<std::uint16_t> unorm16;
 };
 
-std::shared_ptr<const OwnedArrays> store(Crossings&& crossings, EntryFormat format, float radius) {
+std::shared_ptr<const OwnedArrays> store(Crossings&& crossings, EntryFormat format, float largest) {
     auto arrays = std::make_shared<OwnedArrays>();
     arrays->offsets = std::move(crossings.offsets);
     if (format == EntryFormat::Float32) {
         arrays->float32 = std::move(crossings.distances);
     } else {
         arrays->unorm16.reserve(crossings.distances.size());
-        for (float distance : crossings.distances) arrays->unorm16.push_back(to_unorm16(distance, radius));
+        for (float distance : crossings.distances) arrays->unorm16.push_back(to_unorm16(distance, largest));
     }
     return arrays;
 }
 
-} // namespace
+/// The part of a view that the options decide.
+DistanceMapView view_of(const DistanceMapOptions& options) {
+    DistanceMapView view;
+    view.grid = options.grid;
+    if (options.grid == DirectionGrid::Octahedral) {
+        view.divisions = options.divisions;
+    } else {
+        view.longitude_count = options.longitude_count;
+        view.colatitude_count = options.colatitude_count;
+        view.pole_axis = options.pole_axis;
+    }
+    view.entry_format = options.entry_format;
+    view.correction = options.correction;
+    return view;
+}
 
-DistanceMap DistanceMap::build(const TriangleMesh& mesh, const DistanceMapOptions& options) {
-    require_sample_count("longitude_count", options.longitude_count);
-    require_sample_count("colatitude_count", options.colatitude_count);
+template <typename Grid>
+DistanceMap build_with(const Grid& grid, const TriangleMesh& mesh, const DistanceMapOptions& options) {
     const LatticeMesh lattice = snap_to_lattice(mesh);
-    const SphericalGrid grid(options.longitude_count, options.colatitude_count, options.pole_axis);
     Crossings crossings = cast_rays(lattice, grid, options.thread_count);
-    const CentreSide centre = side_of_centre(crossings, grid);
+    const CentreSide centre = side_of_centre(crossings, grid.solid_angle_weights());
     const CorrectionCounts counts =
         correct_at_vertices(options.correction, lattice, grid, centre.inside, crossings);
 
@@ -109,20 +130,22 @@ DistanceMap DistanceMap::build(const TriangleMesh& mesh, const DistanceMapOption
     statistics.clamped_entries = counts.clamped_entries;
     statistics.wrong_parity_share = centre.wrong_parity_share;
 
-    const auto arrays = store(std::move(crossings), options.entry_format, lattice.radius);
-    DistanceMapView view;
+    DistanceMapView view = view_of(options);
     view.centre = lattice.centre;
     view.radius = lattice.radius;
-    view.longitude_count = options.longitude_count;
-    view.colatitude_count = options.colatitude_count;
-    view.pole_axis = options.pole_axis;
-    view.entry_format = options.entry_format;
-    view.correction = options.correction;
     view.centre_inside = centre.inside;
+    const auto arrays = store(std::move(crossings), options.entry_format, view.largest_entry());
     view.entry_offsets = arrays->offsets;
     view.entries_float32 = arrays->float32;
     view.entries_unorm16 = arrays->unorm16;
     return {view, statistics, hash_of(mesh, options), arrays};
+}
+
+} // namespace
+
+DistanceMap DistanceMap::build(const TriangleMesh& mesh, const DistanceMapOptions& options) {
+    require_usable(options);
+    return with_grid(options, [&](const auto& grid) { return build_with(grid, mesh, options); });
 }
 
 } // namespace echinus

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "directions/octahedral_grid.hpp"
 #include "directions/spherical_grid.hpp"
 
 #include <echinus/distance_map.hpp>
@@ -10,8 +11,11 @@
 
 namespace echinus {
 
-inline SphericalGrid grid_of(const DistanceMapView& map) {
-    return {map.longitude_count, map.colatitude_count, map.pole_axis};
+/// Calls `use(grid)` with the grid of a view or of options, and gives back what it gives.
+template <typename Described, typename Use>
+decltype(auto) with_grid(const Described& map, const Use& use) {
+    if (map.grid == DirectionGrid::Octahedral) return use(OctahedralGrid(map.divisions));
+    return use(SphericalGrid(map.longitude_count, map.colatitude_count, map.pole_axis));
 }
 
 /// Rays from the centre that are shorter than this are lengthened: far above where squares leave the range of
@@ -21,17 +25,18 @@ inline constexpr float kRayLengthening = 0x1p100F;
 
 inline constexpr float kUnormSteps = 65535;
 
-inline std::uint16_t to_unorm16(float entry, float radius) {
-    return static_cast<std::uint16_t>(std::lround(static_cast<double>(entry) / radius * kUnormSteps));
+inline std::uint16_t to_unorm16(float entry, float largest) {
+    return static_cast<std::uint16_t>(std::lround(static_cast<double>(entry) / largest * kUnormSteps));
 }
-inline float from_unorm16(std::uint16_t stored, float radius) {
-    return static_cast<float>(stored) * (radius / kUnormSteps);
+inline float from_unorm16(std::uint16_t stored, float largest) {
+    return static_cast<float>(stored) * (largest / kUnormSteps);
 }
 
 /// The entry at a position of the entry arrays, whatever its format, in the mesh's unit.
 inline float entry_at(const DistanceMapView& map, std::size_t position) {
-    return map.entry_format == EntryFormat::Float32 ? map.entries_float32[position]
-                                                    : from_unorm16(map.entries_unorm16[position], map.radius);
+    return map.entry_format == EntryFormat::Float32
+               ? map.entries_float32[position]
+               : from_unorm16(map.entries_unorm16[position], map.largest_entry());
 }
 
 inline std::uint32_t entry_count_of(const DistanceMapView& map, std::uint32_t direction) {

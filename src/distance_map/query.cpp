@@ -18,27 +18,25 @@ namespace echinus {
 namespace {
 
 /// The ray from the centre to a particle.
+template <typename Grid>
 struct Ray {
     Vec3f along;  ///< d in the grid's frame, lengthened where it is very short: only its direction counts
     float length; ///< |d|
-    SphericalGrid::Coordinates at; ///< (phi_d, theta_d)
+    typename Grid::Coordinates at; ///< (phi_d, theta_d)
 };
 
-/// Free of branches: the compiler turns loops over it into vector instructions.
-Ray ray_along(const SphericalGrid& grid, const Vec3f& d_grid) {
-    const float d_length = length(d_grid);
-    const Vec3f along = d_grid * (d_length < kShortRay ? kRayLengthening : 1);
+template <typename Grid>
+Ray<Grid> ray_to(const DistanceMapView& map, const Grid& grid, const Vec3f& point_local) {
+    const Vec3f d = grid.to_grid(point_local - map.centre);
+    const float d_length = length(d);
+    const Vec3f along = d * (d_length < kShortRay ? kRayLengthening : 1);
     return {along, d_length, grid.coordinates_of(along)};
-}
-
-Ray ray_to(const DistanceMapView& map, const SphericalGrid& grid, const Vec3f& point_local) {
-    return ray_along(grid, grid.to_grid(point_local - map.centre));
 }
 
 /// "Particle p is initially tested against the bounding sphere. If the particle does not penetrate the sphere
 /// then no collision is reported." False for NaN and infinity too, since neither compares below R.
-bool reaches_sphere(const DistanceMapView& map, const Ray& ray, float margin) {
-    return ray.length <= map.radius + margin;
+bool reaches_sphere(const DistanceMapView& map, float d_length, float margin) {
+    return d_length <= map.radius + margin;
 }
 
 /// Where a particle lies along its ray.
@@ -50,11 +48,12 @@ struct Interval {
 /// "It is then enough to enumerate the intervals (starting from 0), find the interval where |d| lies": the
 /// interval's number is the number of distances that |d| has reached. A particle on the map's surface lies in
 /// the outer interval.
-Interval interval_of(const DistanceMapView& map, const Interpolation& at, float d_length) {
+template <typename Grid>
+Interval interval_of(const DistanceMapView& map, const Interpolation<Grid>& at, const Ray<Grid>& ray) {
     Interval interval{0, 0, map.radius};
     for (; interval.number < at.entry_count; ++interval.number) {
-        const float distance = interpolated_entry(map, at, interval.number);
-        if (distance > d_length) {
+        const float distance = Grid::distance_of(interpolated(map, at, interval.number), ray.at);
+        if (distance > ray.length) {
             interval.above = distance;
             break;
         }
@@ -77,12 +76,12 @@ struct IntervalEnd {
 
 /// "the interpolated distance value closer to |d|": one of the two ends of the interval. The centre is no
 /// end, and the bounding sphere only where the solid reaches it, through a hole of an open mesh.
-std::optional<IntervalEnd> nearest_end(const DistanceMapView& map, const Interpolation& at,
+std::optional<IntervalEnd> nearest_end(const DistanceMapView& map, std::uint32_t entry_count,
                                        const Interval& interval, float d_length) {
     const IntervalEnd below{interval.number - 1, interval.below};
     const IntervalEnd above{interval.number, interval.above};
     const bool has_below = interval.number > 0;
-    const bool has_above = interval.number < at.entry_count || is_inside(map, interval.number);
+    const bool has_above = interval.number < entry_count || is_inside(map, interval.number);
     if (has_below && has_above) return d_length - below.distance < above.distance - d_length ? below : above;
     if (has_below) return below;
     if (has_above) return above;
@@ -90,31 +89,22 @@ std::optional<IntervalEnd> nearest_end(const DistanceMapView& map, const Interpo
 }
 
 /// The unit vector along d; for the centre itself that of longitude 0, colatitude 0.
-Vec3f direction_of(const Ray& ray) {
-    const float l = length(ray.along);
-    return l > 0 ? ray.along * (1 / l) : Vec3f{0, 0, 1};
-}
-
-/// The gradient of |x| - S(phi, theta) on the map's surface: e_r - S_theta / S e_theta - S_phi / (S sin
-/// theta) e_phi. The paper has no normals; without one a solver has no contact plane and friction no
-/// direction.
-Vec3f surface_gradient(const SphericalGrid& grid, const Vec3f& e_r, float distance, const Slope& slope) {
-    const float sine = std::sqrt(e_r.x * e_r.x + e_r.y * e_r.y); // of theta
-    if (!(sine > 0 && distance > 0)) return e_r;                 // on the pole axis longitude has no meaning
-    const Vec3f e_phi{-e_r.y / sine, e_r.x / sine, 0};
-    const Vec3f e_theta = cross(e_phi, e_r);
-    const float per_theta = slope.along_v * (static_cast<float>(grid.colatitude_count()) / kPi) / distance;
-    const float per_phi =
-        slope.along_u * (static_cast<float>(grid.longitude_count()) / (2 * kPi)) / (distance * sine);
-    return e_r - e_theta * per_theta - e_phi * per_phi;
+Vec3f direction_of(const Vec3f& along) {
+    const float l = length(along);
+    return l > 0 ? along * (1 / l) : Vec3f{0, 0, 1};
 }
 
 /// The unit normal of the map's surface, out of the solid: along the gradient where the ray leaves it,
-/// against the gradient where the ray enters.
-Vec3f surface_normal(const DistanceMapView& map, const SphericalGrid& grid, const Interpolation& at,
+/// against the gradient where the ray enters. The paper has no normals; without one a solver has no contact
+/// plane and friction no direction.
+template <typename Grid>
+Vec3f surface_normal(const DistanceMapView& map, const Grid& grid, const Interpolation<Grid>& at,
                      const Vec3f& e_r, const IntervalEnd& end) {
     if (end.k == at.entry_count) return grid.from_grid(e_r); // the bounding sphere
-    const Vec3f gradient = surface_gradient(grid, e_r, end.distance, slope_of_entry(map, at, end.k));
+    const float value = interpolated(map, at, end.k);
+    const Slope slope = slope_of_entry(map, at, end.k, value);
+    const Vec3f gradient =
+        grid.surface_gradient(e_r, at.cell, end.distance, value, slope.along_u, slope.along_v);
     const float steepness = length(gradient); // infinite where its square leaves the range of float
     const Vec3f unit = std::isfinite(steepness) ? gradient * (1 / steepness) : e_r;
     return grid.from_grid(is_outward(map.centre_inside, end.k) ? unit : -unit);
@@ -126,27 +116,30 @@ Contact no_contact(const Vec3f& point_local) {
     return contact;
 }
 
-bool contains(const DistanceMapView& map, const SphericalGrid& grid, const Ray& ray) {
-    if (!reaches_sphere(map, ray, 0)) return false;
-    const Interpolation at = interpolation_at(map, grid.cell_at(ray.at));
-    return is_inside(map, interval_of(map, at, ray.length).number);
+template <typename Grid>
+bool contains(const DistanceMapView& map, const Grid& grid, const Vec3f& point_local) {
+    const Ray<Grid> ray = ray_to(map, grid, point_local);
+    if (!reaches_sphere(map, ray.length, 0)) return false;
+    const Interpolation<Grid> at = interpolation_at(map, grid, grid.cell_at(ray.at));
+    return is_inside(map, interval_of(map, at, ray).number);
 }
 
 /// @pre margin >= 0
-Contact contact(const DistanceMapView& map, const SphericalGrid& grid, const Ray& ray,
-                const Vec3f& point_local, float margin) {
+template <typename Grid>
+Contact contact(const DistanceMapView& map, const Grid& grid, const Vec3f& point_local, float margin) {
     Contact result = no_contact(point_local);
-    if (!(reaches_sphere(map, ray, margin) && std::isfinite(ray.length))) return result;
+    const Ray<Grid> ray = ray_to(map, grid, point_local);
+    if (!(reaches_sphere(map, ray.length, margin) && std::isfinite(ray.length))) return result;
 
-    const Interpolation at = interpolation_at(map, grid.cell_at(ray.at));
-    const Interval interval = interval_of(map, at, ray.length);
-    const std::optional<IntervalEnd> end = nearest_end(map, at, interval, ray.length);
+    const Interpolation<Grid> at = interpolation_at(map, grid, grid.cell_at(ray.at));
+    const Interval interval = interval_of(map, at, ray);
+    const std::optional<IntervalEnd> end = nearest_end(map, at.entry_count, interval, ray.length);
     if (!end) return result;
     const bool inside = ray.length <= map.radius && is_inside(map, interval.number);
     const float distance = std::fabs(end->distance - ray.length);
     if (!inside && !(distance <= margin)) return result;
 
-    const Vec3f e_r = direction_of(ray);
+    const Vec3f e_r = direction_of(ray.along);
     result.inside = inside;
     result.normal = surface_normal(map, grid, at, e_r, *end);
     // "in order for p to exit from A, it should translate S - |d| distance along the direction of d"
@@ -163,13 +156,12 @@ float usable_margin(float margin) {
 } // namespace
 
 bool contains(const DistanceMapView& map, Vec3f point_local) noexcept {
-    const SphericalGrid grid = grid_of(map);
-    return contains(map, grid, ray_to(map, grid, point_local));
+    return with_grid(map, [&](const auto& grid) { return contains(map, grid, point_local); });
 }
 
 Contact contact(const DistanceMapView& map, Vec3f point_local, float margin) noexcept {
-    const SphericalGrid grid = grid_of(map);
-    return contact(map, grid, ray_to(map, grid, point_local), point_local, usable_margin(margin));
+    return with_grid(
+        map, [&](const auto& grid) { return contact(map, grid, point_local, usable_margin(margin)); });
 }
 
 void contains_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local,
@@ -188,11 +180,15 @@ void contacts_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_
 }
 
 int usable_sample_count(const DistanceMapView& map, Vec3f point_local) noexcept {
-    const SphericalGrid grid = grid_of(map);
-    const Ray ray = ray_to(map, grid, point_local);
-    if (!reaches_sphere(map, ray, 0)) return 0;
-    const Interpolation at = interpolation_at(map, grid.cell_at(ray.at));
-    return at.usable[0] + at.usable[1] + at.usable[2] + at.usable[3];
+    return with_grid(map, [&]<typename Grid>(const Grid& grid) {
+        const Ray<Grid> ray = ray_to(map, grid, point_local);
+        if (!reaches_sphere(map, ray.length, 0)) return 0;
+        const Interpolation<Grid> at = interpolation_at(map, grid, grid.cell_at(ray.at));
+        int count = 0;
+        for (std::size_t corner = 0; corner < 4; ++corner)
+            if (at.usable[corner] && Grid::is_sample(at.cell, corner)) ++count;
+        return count;
+    });
 }
 
 } // namespace echinus

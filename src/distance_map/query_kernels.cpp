@@ -20,6 +20,7 @@
 #include <hwy/foreach_target.h>
 
 // After foreach_target.h, which includes this file once for each instruction set.
+#include "distance_map/octahedral_lanes-inl.hpp"
 #include "distance_map/spherical_lanes-inl.hpp"
 #include "simd/dispatch.hpp"
 
@@ -54,8 +55,8 @@ class FloatEntries {
     HWY_INLINE hn::Vec<FourFloats> operator()(std::int32_t position) const {
         return hn::LoadU(FourFloats(), entries_ + position);
     }
-    /// What a row holds, as a distance.
-    HWY_INLINE Floats distance_of(Floats loaded) const { return loaded; }
+    /// What a row holds, in the mesh's unit.
+    HWY_INLINE Floats entry_of(Floats loaded) const { return loaded; }
     HWY_INLINE Floats gather(Ints positions) const { return hn::GatherIndex(kFloat, entries_, positions); }
 
   private:
@@ -65,13 +66,13 @@ class FloatEntries {
 class UnormEntries {
   public:
     explicit UnormEntries(const DistanceMapView& map)
-        : entries_(map.entries_unorm16.data()), step_(map.radius / kUnormSteps) {}
+        : entries_(map.entries_unorm16.data()), step_(map.largest_entry() / kUnormSteps) {}
 
     HWY_INLINE hn::Vec<FourFloats> operator()(std::int32_t position) const {
         const auto narrow = hn::LoadU(hn::FixedTag<std::uint16_t, 4>(), entries_ + position);
         return hn::BitCast(FourFloats(), hn::PromoteTo(hn::FixedTag<std::uint32_t, 4>(), narrow));
     }
-    HWY_INLINE Floats distance_of(Floats loaded) const {
+    HWY_INLINE Floats entry_of(Floats loaded) const {
         return hn::Mul(hn::ConvertTo(kFloat, hn::BitCast(kInt, loaded)), splat(step_));
     }
     /// Gathers pairs, each with the entry before, so that nothing beyond the last is read.
@@ -82,7 +83,7 @@ class UnormEntries {
         const Mask is_first = as_mask(hn::Eq(positions, hn::Zero(kInt)));
         const Ints first = hn::And(pair, splat_int(0xFFFF));
         const Ints second = hn::And(hn::ShiftRight<16>(pair), splat_int(0xFFFF));
-        return distance_of(hn::BitCast(kFloat, choose(is_first, first, second)));
+        return entry_of(hn::BitCast(kFloat, choose(is_first, first, second)));
     }
 
   private:
@@ -135,7 +136,7 @@ struct Contacts {
     Mask inside;
 };
 
-/// The entries of an easy cell: at[k][corner].
+/// The interpolants of an easy cell's entries: at[k][corner].
 struct EasyEntries {
     std::array<std::array<Floats, 4>, 2> at;
 
@@ -148,9 +149,10 @@ struct EasyEntries {
     }
 };
 
-/// The entries of any cell.
-template <typename Entries>
+/// The interpolants of any cell's entries.
+template <typename Grid, typename Entries>
 struct GatheredEntries {
+    const Grid& grid;
     const Entries& entries;
     std::array<Ints, 4> first;
     Ints count;
@@ -160,7 +162,8 @@ struct GatheredEntries {
         std::array<Floats, 4> gathered;
         for (std::size_t corner = 0; corner < 4; ++corner) {
             const Ints position = hn::Add(first[corner], k);
-            gathered[corner] = entries.gather(hn::IfThenElseZero(as_int_mask(exists), position));
+            gathered[corner] =
+                grid.interpolant(entries.gather(hn::IfThenElseZero(as_int_mask(exists), position)));
         }
         return gathered;
     }
@@ -201,7 +204,7 @@ class Kernel {
         const Mask reaches = hn::Le(rays.length, splat(map_.radius));
         std::array<Ints, 4> first;
         const Samples<Grid> samples = look_at(rays, reaches, first);
-        const GatheredEntries<Entries> entries{entries_, first, samples.entry_count};
+        const GatheredEntries<Grid, Entries> entries{grid_, entries_, first, samples.entry_count};
         const Intervals intervals = intervals_of(rays, samples, entries, reaches);
         store(hn::And(reaches, is_inside(intervals.number)), inside);
     }
@@ -212,7 +215,7 @@ class Kernel {
         const Mask reaches = reaches_sphere(rays, margin);
         std::array<Ints, 4> first;
         const Samples<Grid> samples = look_at(rays, reaches, first);
-        const GatheredEntries<Entries> entries{entries_, first, samples.entry_count};
+        const GatheredEntries<Grid, Entries> entries{grid_, entries_, first, samples.entry_count};
         const Intervals intervals = intervals_of(rays, samples, entries, reaches);
         store(contacts_of(point, rays, samples, intervals, entries, reaches, margin), contacts);
     }
@@ -297,16 +300,19 @@ class Kernel {
     }
 
     HWY_INLINE void take_apart(const Rows& row, Mask two, std::size_t corner, EasyEntries& entries) const {
-        entries.at[0][corner] = entries_.distance_of(row.at[0]);
-        entries.at[0][corner + 1] = entries_.distance_of(choose(two, row.at[2], row.at[1]));
-        entries.at[1][corner] = entries_.distance_of(row.at[1]);
-        entries.at[1][corner + 1] = entries_.distance_of(row.at[3]);
+        entries.at[0][corner] = interpolant(row.at[0]);
+        entries.at[0][corner + 1] = interpolant(choose(two, row.at[2], row.at[1]));
+        entries.at[1][corner] = interpolant(row.at[1]);
+        entries.at[1][corner + 1] = interpolant(row.at[3]);
+    }
+    HWY_INLINE Floats interpolant(Floats loaded) const {
+        return grid_.interpolant(entries_.entry_of(loaded));
     }
 
     HWY_INLINE Intervals easy_intervals(const Rays<Grid>& rays, const Easy& easy) const {
         const Ints zero = hn::Zero(kInt);
         const Ints count = easy.samples.entry_count;
-        const Floats first = interpolated(rays, easy.samples, easy.entries.at[0]);
+        const Floats first = grid_.distance_of(interpolated(easy.samples, easy.entries.at[0]), rays.at);
         const Mask has_first = as_mask(hn::Gt(count, zero));
         const Mask beyond_first = hn::AndNot(hn::Gt(first, rays.length), has_first);
         Intervals intervals{hn::IfThenElseZero(as_int_mask(beyond_first), splat_int(1)),
@@ -314,7 +320,7 @@ class Kernel {
                             choose(hn::AndNot(beyond_first, has_first), first, splat(map_.radius))};
         const Mask look_on = hn::And(beyond_first, as_mask(hn::Gt(count, splat_int(1))));
         if (hn::AllFalse(kFloat, look_on)) return intervals;
-        const Floats second = interpolated(rays, easy.samples, easy.entries.at[1]);
+        const Floats second = grid_.distance_of(interpolated(easy.samples, easy.entries.at[1]), rays.at);
         const Mask beyond_second = hn::AndNot(hn::Gt(second, rays.length), look_on);
         intervals.number = choose(beyond_second, splat_int(2), intervals.number);
         intervals.below = choose(beyond_second, second, intervals.below);
@@ -359,7 +365,7 @@ class Kernel {
         Ints k = hn::Zero(kInt);
         Mask looking = hn::And(reaches, as_mask(hn::Gt(samples.entry_count, k)));
         while (!hn::AllFalse(kFloat, looking)) {
-            const Floats distance = interpolated(rays, samples, entries_at(k));
+            const Floats distance = grid_.distance_of(interpolated(samples, entries_at(k)), rays.at);
             const Mask beyond = hn::AndNot(hn::Gt(distance, rays.length), looking);
             intervals.above = choose(hn::AndNot(beyond, looking), distance, intervals.above);
             intervals.below = choose(beyond, distance, intervals.below);
@@ -370,9 +376,8 @@ class Kernel {
         return intervals;
     }
 
-    /// interpolated_entry() of interpolation.hpp.
-    HWY_INLINE Floats interpolated(const Rays<Grid>&, const Samples<Grid>& samples,
-                                   const std::array<Floats, 4>& entries) const {
+    /// interpolated() of interpolation.hpp.
+    HWY_INLINE Floats interpolated(const Samples<Grid>& samples, const std::array<Floats, 4>& entries) const {
         Floats sum = hn::Zero(kFloat);
         for (std::size_t corner = 0; corner < 4; ++corner)
             sum = hn::Add(sum, hn::Mul(samples.weight[corner], entries[corner]));
@@ -401,11 +406,10 @@ class Kernel {
     }
 
     /// surface_normal() of query.cpp.
-    HWY_INLINE Vectors surface_normals(const Rays<Grid>& rays, const Samples<Grid>& samples,
-                                       const std::array<Floats, 4>& entries, const Vectors& e_r,
-                                       const Ends& ends) const {
+    HWY_INLINE Vectors surface_normals(const Samples<Grid>& samples, const std::array<Floats, 4>& entries,
+                                       const Vectors& e_r, const Ends& ends) const {
         const typename Grid::Derivatives derivative = grid_.weight_derivatives(samples.cell);
-        const Floats value = interpolated(rays, samples, entries);
+        const Floats value = interpolated(samples, entries);
         Floats slope_u = hn::Zero(kFloat);
         Floats slope_v = hn::Zero(kFloat);
         for (std::size_t corner = 0; corner < 4; ++corner) {
@@ -413,8 +417,9 @@ class Kernel {
             slope_u = hn::Add(slope_u, hn::Mul(derivative.along_u[corner], excess));
             slope_v = hn::Add(slope_v, hn::Mul(derivative.along_v[corner], excess));
         }
-        const Vectors gradient = grid_.surface_gradient(
-            e_r, ends.distance, hn::Div(slope_u, samples.weight_sum), hn::Div(slope_v, samples.weight_sum));
+        const Vectors gradient = grid_.surface_gradient(e_r, samples.cell, ends.distance, value,
+                                                        hn::Div(slope_u, samples.weight_sum),
+                                                        hn::Div(slope_v, samples.weight_sum));
         const Floats steepness = length(gradient);
         const Mask finite = hn::Lt(steepness, splat(std::numeric_limits<float>::infinity()));
         const Vectors unit = choose(finite, scaled(gradient, hn::Div(splat(1), steepness)), e_r);
@@ -437,7 +442,7 @@ class Kernel {
         if (hn::AllFalse(kFloat, found)) return {point, {zero, zero, zero}, zero, found};
 
         const Vectors e_r = direction_of(rays.along);
-        const Vectors normal = surface_normals(rays, samples, entries_at(ends.k), e_r, ends);
+        const Vectors normal = surface_normals(samples, entries_at(ends.k), e_r, ends);
         const Vectors offset = scaled(grid_.from_grid(e_r), ends.distance);
         const Vectors end_point{hn::Add(splat(map_.centre.x), offset.x),
                                 hn::Add(splat(map_.centre.y), offset.y),
@@ -569,25 +574,33 @@ void answer_all(const Kernel& kernel, const StridedSpan<const Vec3f>& points, An
     }
 }
 
-template <typename Answers>
+template <typename Grid, typename Answers>
 void answer_in_format(const DistanceMapView& map, const StridedSpan<const Vec3f>& points,
                       const Answers& answers) {
     if (map.entry_format == EntryFormat::Float32)
-        answer_all(Kernel<SphericalLanes, FloatEntries>(map), points, answers);
+        answer_all(Kernel<Grid, FloatEntries>(map), points, answers);
     else
-        answer_all(Kernel<SphericalLanes, UnormEntries>(map), points, answers);
+        answer_all(Kernel<Grid, UnormEntries>(map), points, answers);
+}
+
+template <typename Answers>
+void answer(const DistanceMapView& map, const StridedSpan<const Vec3f>& points, const Answers& answers) {
+    if (map.grid == DirectionGrid::Octahedral)
+        answer_in_format<OctahedralLanes>(map, points, answers);
+    else
+        answer_in_format<SphericalLanes>(map, points, answers);
 }
 
 } // namespace
 
 void contains_lanes(const DistanceMapView& map, const StridedSpan<const Vec3f>& points,
                     std::uint8_t* inside) {
-    answer_in_format(map, points, InsideAnswers{inside});
+    answer(map, points, InsideAnswers{inside});
 }
 
 void contacts_lanes(const DistanceMapView& map, const StridedSpan<const Vec3f>& points, float margin,
                     Contact* contacts) {
-    answer_in_format(map, points, ContactAnswers{contacts, margin});
+    answer(map, points, ContactAnswers{contacts, margin});
 }
 
 #endif

@@ -115,9 +115,11 @@ class SphericalLanes {
                 {hn::Sub(cell.u, one), hn::Neg(cell.u), hn::Sub(one, cell.u), cell.u}};
     }
 
-    /// surface_gradient() of query.cpp.
-    HWY_INLINE Vectors surface_gradient(const Vectors& e_r, Floats distance, Floats slope_u,
-                                        Floats slope_v) const {
+    static HWY_INLINE Floats interpolant(Floats entry) { return entry; }
+    static HWY_INLINE Floats distance_of(Floats interpolated, const Coordinates&) { return interpolated; }
+
+    HWY_INLINE Vectors surface_gradient(const Vectors& e_r, const Cell&, Floats distance, Floats,
+                                        Floats slope_u, Floats slope_v) const {
         const Floats zero = hn::Zero(kFloat);
         const Floats sine = hn::Sqrt(hn::Add(hn::Mul(e_r.x, e_r.x), hn::Mul(e_r.y, e_r.y)));
         const Mask has_angles = hn::And(hn::Gt(sine, zero), hn::Gt(distance, zero));

@@ -1,6 +1,5 @@
 // The surface that a map describes, for pictures: the paper's figures 2 and 3.
 
-#include "directions/spherical_grid.hpp"
 #include "distance_map/layout.hpp"
 
 #include <array>
@@ -21,7 +20,8 @@ bool have_equal_counts(const DistanceMapView& map, const CellCorners& corners) {
 }
 
 /// One vertex per entry, at the entry's position in the entry arrays.
-std::vector<Vec3f> entry_points(const DistanceMapView& map, const SphericalGrid& grid) {
+template <typename Grid>
+std::vector<Vec3f> entry_points(const DistanceMapView& map, const Grid& grid) {
     std::vector<Vec3f> points;
     points.reserve(map.entry_count());
     std::size_t d = 0;
@@ -66,12 +66,7 @@ void add_pole(const DistanceMapView& map, const SphericalGrid& grid, std::uint32
     }
 }
 
-} // namespace
-
-MapSurface reconstruct_surface(const DistanceMapView& map) {
-    const SphericalGrid grid = grid_of(map);
-    MapSurface surface;
-    surface.mesh.vertices = entry_points(map, grid);
+void add_layers(const DistanceMapView& map, const SphericalGrid& grid, MapSurface& surface) {
     for (std::uint32_t j = 0; j + 1 < grid.colatitude_count(); ++j)
         for (std::uint32_t i = 0; i < grid.longitude_count(); ++i) {
             const std::uint32_t next = i + 1 == grid.longitude_count() ? 0 : i + 1;
@@ -81,7 +76,38 @@ MapSurface reconstruct_surface(const DistanceMapView& map) {
         }
     add_pole(map, grid, 0, surface);
     add_pole(map, grid, grid.colatitude_count() - 1, surface);
-    return surface;
+}
+
+/// The layers of one small triangle, whose corners are counter-clockwise seen from outside.
+void add_triangle(const DistanceMapView& map, const Triangle& corners, MapSurface& surface) {
+    const std::uint32_t count = entry_count_of(map, corners[0]);
+    if (entry_count_of(map, corners[1]) != count || entry_count_of(map, corners[2]) != count) return;
+    for (std::uint32_t k = 0; k < count; ++k) add_face(map, corners, k, surface);
+}
+
+/// Unfolding keeps the sense of rotation, so that what turns counter-clockwise in the square does so seen
+/// from outside. Samples that appear more than once are one vertex, which closes the square's border.
+void add_layers(const DistanceMapView& map, const OctahedralGrid& grid, MapSurface& surface) {
+    const std::uint32_t n = grid.divisions();
+    for (std::uint32_t j = 0; j < 2 * n; ++j)
+        for (std::uint32_t i = 0; i < 2 * n; ++i) {
+            const std::array<std::uint32_t, 4> q{grid.canonical(i, j), grid.canonical(i + 1, j),
+                                                 grid.canonical(i + 1, j + 1), grid.canonical(i, j + 1)};
+            const std::size_t turn = (i >= n) != (j >= n) ? 1 : 0; // the way the diagonal runs
+            add_triangle(map, {q[turn], q[turn + 1], q[(turn + 3) % 4]}, surface);
+            add_triangle(map, {q[turn + 1], q[(turn + 2) % 4], q[(turn + 3) % 4]}, surface);
+        }
+}
+
+} // namespace
+
+MapSurface reconstruct_surface(const DistanceMapView& map) {
+    return with_grid(map, [&](const auto& grid) {
+        MapSurface surface;
+        surface.mesh.vertices = entry_points(map, grid);
+        add_layers(map, grid, surface);
+        return surface;
+    });
 }
 
 } // namespace echinus

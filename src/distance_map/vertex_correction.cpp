@@ -27,37 +27,40 @@ namespace echinus {
 namespace {
 
 /// The uncorrected entries, as the query sees them.
-DistanceMapView as_map(const LatticeMesh& lattice, const SphericalGrid& grid, bool centre_inside,
-                       const Crossings& crossings) {
+DistanceMapView as_map(const LatticeMesh& lattice, bool centre_inside, const Crossings& crossings) {
     DistanceMapView map;
     map.radius = lattice.radius;
-    map.longitude_count = grid.longitude_count();
-    map.colatitude_count = grid.colatitude_count();
     map.centre_inside = centre_inside;
     map.entry_offsets = crossings.offsets;
     map.entries_float32 = crossings.distances;
     return map;
 }
 
+/// Reckons in the grid's interpolant, the number that goes linearly between samples.
+template <typename Grid>
 class Corrector {
   public:
-    Corrector(VertexCorrection correction, const LatticeMesh& lattice, const SphericalGrid& grid,
-              bool centre_inside, const Crossings& crossings)
+    Corrector(VertexCorrection correction, const LatticeMesh& lattice, const Grid& grid, bool centre_inside,
+              const Crossings& crossings)
         : correction_(correction), step_(lattice.frame.step), grid_(grid), centre_inside_(centre_inside),
-          map_(as_map(lattice, grid, centre_inside, crossings)), shifts_(crossings.distances.size()) {}
+          map_(as_map(lattice, centre_inside, crossings)), shifts_(crossings.distances.size()) {}
 
     void consider(const LatticePoint& vertex, const VertexLayer& layer) {
         if (!has_layer_of_its_own(layer)) return;
         const Vec3d d = Vec3d(vertex) * step_;
-        const Interpolation at = interpolation_at(map_, grid_.locate(grid_.to_grid(Vec3f(d))));
+        const Interpolation<Grid> at = interpolation_at(map_, grid_, grid_.locate(grid_.to_grid(Vec3f(d))));
         if (!(at.usable[0] && at.usable[1] && at.usable[2] && at.usable[3])) return;
         if (at.entry_count != layer.crossing_count) return;
         const std::uint32_t k = layer.crossings_before;
-        const float missing = static_cast<float>(length(d)) - interpolated_entry(map_, at, k);
-        if (moves_outward(k) ? missing <= 0 : missing >= 0) return;
+        const float wanted = Grid::interpolant_at(d);
+        const float present = interpolated(map_, at, k);
+        const bool reached =
+            moves_outward(k) ? !Grid::is_farther(wanted, present) : !Grid::is_farther(present, wanted);
+        if (reached) return;
+        const float missing = std::fabs(wanted - present);
         for (std::uint32_t first : at.first_entry) {
             float& shift = shifts_[first + k];
-            shift = std::max(shift, std::fabs(missing));
+            shift = std::max(shift, missing);
         }
     }
 
@@ -80,19 +83,19 @@ class Corrector {
 
     VertexCorrection correction_;
     double step_;
-    const SphericalGrid& grid_;
+    const Grid& grid_;
     bool centre_inside_;
     DistanceMapView map_;
     std::vector<float> shifts_;
 };
 
-} // namespace
-
-CorrectionCounts correct_at_vertices(VertexCorrection correction, const LatticeMesh& lattice,
-                                     const SphericalGrid& grid, bool centre_inside, Crossings& crossings) {
+/// @param finder  finds the faces around a vertex's ray
+template <typename Grid>
+CorrectionCounts correct(VertexCorrection correction, const LatticeMesh& lattice, const Grid& grid,
+                         const SphericalGrid& finder, bool centre_inside, Crossings& crossings) {
     if (correction == VertexCorrection::None) return {};
-    Corrector corrector(correction, lattice, grid, centre_inside, crossings);
-    const std::vector<VertexLayer> layers = layers_of_vertices(lattice, grid);
+    Corrector<Grid> corrector(correction, lattice, grid, centre_inside, crossings);
+    const std::vector<VertexLayer> layers = layers_of_vertices(lattice, finder);
     for (std::size_t i = 0; i < layers.size(); ++i) corrector.consider(lattice.vertices[i], layers[i]);
 
     CorrectionCounts counts;
@@ -105,14 +108,27 @@ CorrectionCounts correct_at_vertices(VertexCorrection correction, const LatticeM
             if (shift == 0) continue;
             // The entry below has its final value, the one above its old one: between them order is kept.
             const float lowest = i == first ? 0 : entries[i - 1];
-            const float highest = i + 1 == last ? lattice.radius : entries[i + 1];
-            const float wanted = corrector.moves_outward(i - first) ? entries[i] + shift : entries[i] - shift;
+            const float highest = i + 1 == last ? Grid::largest_entry(lattice.radius) : entries[i + 1];
+            const float wanted = Grid::moved(entries[i], shift, corrector.moves_outward(i - first));
             entries[i] = std::clamp(wanted, lowest, highest);
             ++counts.corrected_entries;
             if (entries[i] != wanted) ++counts.clamped_entries;
         }
     }
     return counts;
+}
+
+} // namespace
+
+CorrectionCounts correct_at_vertices(VertexCorrection correction, const LatticeMesh& lattice,
+                                     const SphericalGrid& grid, bool centre_inside, Crossings& crossings) {
+    return correct(correction, lattice, grid, grid, centre_inside, crossings);
+}
+
+CorrectionCounts correct_at_vertices(VertexCorrection correction, const LatticeMesh& lattice,
+                                     const OctahedralGrid& grid, bool centre_inside, Crossings& crossings) {
+    const SphericalGrid finder(2 * grid.divisions(), 2 * grid.divisions(), PoleAxis::Z);
+    return correct(correction, lattice, grid, finder, centre_inside, crossings);
 }
 
 } // namespace echinus

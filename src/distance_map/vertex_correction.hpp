@@ -2,7 +2,6 @@
 
 #include "directions/crossings.hpp"
 #include "directions/lattice.hpp"
-#include "directions/spherical_grid.hpp"
 
 #include <echinus/distance_map.hpp>
 
@@ -14,8 +13,10 @@ struct CorrectionCounts {
 };
 
 /// Moves the entries around the mesh's vertices so that interpolation no longer passes by them (paper
-/// section 2.1 and figure 1b). Entries stay sorted within [0, R].
+/// section 2.1 and figure 1b). Entries stay sorted within [0, largest_entry(R)].
 CorrectionCounts correct_at_vertices(VertexCorrection correction, const LatticeMesh& lattice,
                                      const SphericalGrid& grid, bool centre_inside, Crossings& crossings);
+CorrectionCounts correct_at_vertices(VertexCorrection correction, const LatticeMesh& lattice,
+                                     const OctahedralGrid& grid, bool centre_inside, Crossings& crossings);
 
 } // namespace echinus

@@ -2,7 +2,6 @@
 
 #include "directions/crossing.hpp"
 #include "directions/samples_in_cap.hpp"
-#include "distance_map/interpolation.hpp"
 
 #include <algorithm>
 #include <span>
@@ -20,7 +19,7 @@ class VertexBins {
         bins.reserve(lattice.vertices.size());
         for (const LatticePoint& vertex : lattice.vertices) {
             const SphericalGrid::Cell cell = grid.locate(Vec3f(grid.to_grid(vertex)));
-            bins.push_back(cell.corners[reference_corner(cell)]);
+            bins.push_back(cell.corners[SphericalGrid::reference_corner(cell)]);
             ++offsets_[bins.back() + 1];
         }
         for (std::size_t bin = 1; bin < offsets_.size(); ++bin) offsets_[bin] += offsets_[bin - 1];
@@ -62,9 +61,8 @@ std::vector<VertexLayer> layers_of_vertices(const LatticeMesh& lattice, const Sp
             const bool is_corner = std::find(face.begin(), face.end(), i) != face.end();
             if (!is_corner && cone.nearer_than(vertex)) ++layers[i].crossings_before;
         };
-        const DirectionCap cap({Vec3d(grid.to_grid(a)), Vec3d(grid.to_grid(b)), Vec3d(grid.to_grid(c))});
         constexpr double kHalfACell = 0.5; // from a vertex to the sample it is binned at
-        for_each_sample_in(grid, cap, kHalfACell, [&](std::uint32_t sample) {
+        for_each_sample_near(grid, {a, b, c}, kHalfACell, [&](std::uint32_t sample) {
             for (std::uint32_t i : bins.at(sample)) cast_at_vertex(i);
         });
     }

@@ -96,6 +96,22 @@ TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesOnMapsOfMeshes) {
                 }
 }
 
+TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesOnOctahedralMaps) {
+    const TriangleMesh box = make_box({2, 3, 4});
+    const TriangleMesh torus = make_torus(1, 0.4, 60, 24);
+    for (const TriangleMesh* mesh : {&box, &torus})
+        for (EntryFormat format : {EntryFormat::Float32, EntryFormat::Unorm16})
+            for (std::uint32_t divisions : {4U, 5U, 20U})
+                for (VertexCorrection correction :
+                     {VertexCorrection::None, VertexCorrection::Paper, VertexCorrection::Signed}) {
+                    const DistanceMap map = DistanceMap::build(*mesh, {.grid = DirectionGrid::Octahedral,
+                                                                       .divisions = divisions,
+                                                                       .correction = correction,
+                                                                       .entry_format = format});
+                    expect_batches_as_single_particles(map, mesh == &box ? "box" : "torus", 1000);
+                }
+}
+
 TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesOnAnySoundMap) {
     for (std::uint32_t seed = 0; seed < 12; ++seed) {
         const EntryFormat format = seed % 2 == 0 ? EntryFormat::Float32 : EntryFormat::Unorm16;

@@ -1,0 +1,127 @@
+#pragma once
+
+#include "directions/octahedral_grid.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+namespace echinus {
+
+/// A convex polygon with few corners, to be cut by planes through the origin.
+class ClippedFace {
+  public:
+    explicit ClippedFace(const std::array<Vec3d, 3>& corners) : size_(3) {
+        std::copy(corners.begin(), corners.end(), corners_.begin());
+    }
+
+    /// Keeps what has n.p >= 0.
+    void cut(const Vec3d& n) {
+        std::array<Vec3d, kMost> kept;
+        std::size_t kept_size = 0;
+        for (std::size_t i = 0; i < size_; ++i) {
+            const Vec3d& a = corners_[i];
+            const Vec3d& b = corners_[i + 1 == size_ ? 0 : i + 1];
+            const double height_a = dot(n, a), height_b = dot(n, b);
+            if (height_a >= 0) kept[kept_size++] = a;
+            if ((height_a >= 0) != (height_b >= 0))
+                kept[kept_size++] = a + (b - a) * (height_a / (height_a - height_b));
+        }
+        corners_ = kept;
+        size_ = kept_size;
+    }
+
+    bool empty() const { return size_ == 0; }
+    const Vec3d* begin() const { return corners_.data(); }
+    const Vec3d* end() const { return corners_.data() + size_; }
+
+  private:
+    static constexpr std::size_t kMost = 3 + 3 + 1; // each of three planes adds a corner at most
+    std::array<Vec3d, kMost> corners_;
+    std::size_t size_;
+};
+
+/// Visits the samples of one octant near a face. Each sample belongs to one octant: those on coordinate
+/// planes to the positive side.
+template <typename Visit>
+class OctantSamples {
+  public:
+    OctantSamples(const OctahedralGrid& grid, std::uint32_t octant, const Visit& visit)
+        : grid_(grid), n_(static_cast<std::int32_t>(grid.divisions())), negative_x_((octant & 1U) != 0),
+          negative_y_((octant & 2U) != 0), negative_z_((octant & 4U) != 0), visit_(visit) {}
+
+    void visit_near(const std::array<LatticePoint, 3>& face, double reach) const {
+        ClippedFace part({folded(face[0]), folded(face[1]), folded(face[2])});
+        // Slightly more than the octant, so that a face that touches it from beside is not lost.
+        const double tolerance = (reach + kMargin) / n_;
+        const Vec3d beside = Vec3d{1, 1, 1} * tolerance;
+        part.cut(Vec3d{1, 0, 0} + beside);
+        part.cut(Vec3d{0, 1, 0} + beside);
+        part.cut(Vec3d{0, 0, 1} + beside);
+        if (part.empty()) return;
+
+        double x_min = n_, x_max = 0, y_min = n_, y_max = 0, sum_min = n_, sum_max = 0;
+        for (const Vec3d& p : part) {
+            const double per_length = n_ / (p.x + p.y + p.z);
+            const double x = p.x * per_length, y = p.y * per_length;
+            x_min = std::min(x_min, x), x_max = std::max(x_max, x);
+            y_min = std::min(y_min, y), y_max = std::max(y_max, y);
+            sum_min = std::min(sum_min, x + y), sum_max = std::max(sum_max, x + y);
+        }
+        const double margin = reach + kMargin;
+        const std::int32_t first_x = at_least(x_min - margin), last_x = at_most(x_max + margin);
+        for (std::int32_t x = first_x; x <= last_x; ++x) {
+            const std::int32_t first_y =
+                std::max(at_least(y_min - margin), at_least(sum_min - 2 * margin) - x);
+            const std::int32_t last_y = std::min(at_most(y_max + margin), at_most(sum_max + 2 * margin) - x);
+            for (std::int32_t y = first_y; y <= last_y; ++y) visit_if_owned(x, y);
+        }
+    }
+
+  private:
+    static constexpr double kMargin = 1e-3; // cells; far above the rounding of these lines
+
+    std::int32_t at_least(double value) const {
+        return std::max(static_cast<std::int32_t>(std::ceil(value)), 0);
+    }
+    std::int32_t at_most(double value) const {
+        return std::min(static_cast<std::int32_t>(std::floor(value)), n_);
+    }
+
+    /// Into the octant of positive coordinates.
+    Vec3d folded(const LatticePoint& p) const {
+        return {static_cast<double>(negative_x_ ? -p.x : p.x), static_cast<double>(negative_y_ ? -p.y : p.y),
+                static_cast<double>(negative_z_ ? -p.z : p.z)};
+    }
+
+    /// The sample n (|x|, |y|) of this octant's side.
+    void visit_if_owned(std::int32_t x, std::int32_t y) const {
+        if (negative_z_) { // folded outwards
+            if (x + y >= n_) return;
+            visit(n_ - y, n_ - x);
+        } else if (x + y <= n_ && !(negative_x_ && x == 0) && !(negative_y_ && y == 0)) {
+            visit(x, y);
+        }
+    }
+    void visit(std::int32_t across, std::int32_t up) const {
+        visit_(grid_.index(static_cast<std::uint32_t>(negative_x_ ? n_ - across : n_ + across),
+                           static_cast<std::uint32_t>(negative_y_ ? n_ - up : n_ + up)));
+    }
+
+    const OctahedralGrid& grid_;
+    std::int32_t n_;
+    bool negative_x_, negative_y_, negative_z_;
+    const Visit& visit_;
+};
+
+/// Calls `visit(index)` for samples among which are all those inside the cone of a face, and those at most
+/// `reach` cells outside it. Each at most once.
+template <typename Visit>
+void for_each_sample_near(const OctahedralGrid& grid, const std::array<LatticePoint, 3>& face, double reach,
+                          const Visit& visit) {
+    for (std::uint32_t octant = 0; octant < 8; ++octant)
+        OctantSamples(grid, octant, visit).visit_near(face, reach);
+}
+
+} // namespace echinus
