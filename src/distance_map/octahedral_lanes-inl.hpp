@@ -73,12 +73,18 @@ class OctahedralLanes {
         const Ints second = hn::Add(first, splat_int(1));
         const Ints third = hn::Add(first, splat_int(width_));
         const Ints fourth = hn::Add(third, splat_int(1));
+        return corners_of_cell(cell, {first, second, third, fourth});
+    }
+
+    /// Replaces that of the corner which is none of the triangle's: see OctahedralGrid::Cell::doubled().
+    static HWY_INLINE std::array<Ints, 4> corners_of_cell(const Cell& cell,
+                                                          const std::array<Ints, 4>& values) {
+        const Ints other = choose(cell.mirrored, values[0], values[1]);
         const Mask near = hn::Not(cell.beyond);
-        // The corner that is none of the triangle's is replaced: see OctahedralGrid::Cell::doubled().
-        return {choose(hn::AndNot(cell.mirrored, cell.beyond), second, first),
-                choose(hn::And(cell.mirrored, cell.beyond), first, second),
-                choose(hn::And(cell.mirrored, near), first, third),
-                choose(hn::AndNot(cell.mirrored, near), second, fourth)};
+        return {choose(hn::AndNot(cell.mirrored, cell.beyond), other, values[0]),
+                choose(hn::And(cell.mirrored, cell.beyond), other, values[1]),
+                choose(hn::And(cell.mirrored, near), other, values[2]),
+                choose(hn::AndNot(cell.mirrored, near), other, values[3])};
     }
 
     struct CornerRows {

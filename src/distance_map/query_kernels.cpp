@@ -1,11 +1,10 @@
 // The queries of query.cpp on vectors of particles: the same operations in the same order, hence the same
 // bits.
 //
-// Most particles are easy: the four samples around them have one number of entries, which is 0, 1 or 2. The
-// corners of such a cell lie in two rows of two neighbours, and so do their entries, so that two loads of
-// four numbers give the offsets of all four samples and two more give their entries. The other particles (at
-// silhouettes, under several layers, at the seam and the poles) are put on a list, which is then worked off
-// by gathers, with all lanes full.
+// The corners of a cell lie in two rows of two neighbours, so that two loads of four numbers give the offsets
+// of all four samples, and one load for each sample gives its first four entries. Where that does not do (at
+// the seam and the poles, at the ends of the arrays, under more than four layers) a particle is put on a
+// list, which is then worked off by gathers, with all lanes full.
 
 #include "distance_map/query_kernels.hpp"
 
@@ -136,36 +135,63 @@ struct Contacts {
     Mask inside;
 };
 
-/// The interpolants of an easy cell's entries: at[k][corner].
-struct EasyEntries {
-    std::array<std::array<Floats, 4>, 2> at;
+/// The first four entries of each sample: rows[corner].at[k].
+template <typename Grid, typename Entries>
+struct LoadedEntries {
+    static constexpr std::int32_t kMost = 4;
 
-    HWY_INLINE std::array<Floats, 4> operator()(Ints k) const {
-        const Mask second = as_mask(hn::Eq(k, splat_int(1)));
-        std::array<Floats, 4> chosen;
+    const Grid& grid;
+    const Entries& entries;
+    std::array<Rows, 4> rows;
+
+    HWY_INLINE LoadedEntries(const Grid& grid_, const Entries& entries_, const std::array<Ints, 4>& first,
+                             Mask wanted)
+        : grid(grid_), entries(entries_) {
         for (std::size_t corner = 0; corner < 4; ++corner)
-            chosen[corner] = choose(second, at[1][corner], at[0][corner]);
-        return chosen;
+            rows[corner] = load_rows(entries, hn::IfThenElseZero(as_int_mask(wanted), first[corner]));
     }
+
+    /// The interpolants of the k-th entries, the same k for all lanes.
+    HWY_INLINE std::array<Floats, 4> operator()(std::int32_t k) const {
+        std::array<Floats, 4> result;
+        for (std::size_t corner = 0; corner < 4; ++corner)
+            result[corner] = interpolant(rows[corner].at[static_cast<std::size_t>(k)]);
+        return result;
+    }
+    HWY_INLINE std::array<Floats, 4> operator()(Ints k) const {
+        const Mask odd = is_odd(k);
+        const Mask late = as_mask(hn::Gt(k, splat_int(1)));
+        std::array<Floats, 4> result;
+        for (std::size_t corner = 0; corner < 4; ++corner) {
+            const auto& at = rows[corner].at;
+            result[corner] = interpolant(choose(late, choose(odd, at[3], at[2]), choose(odd, at[1], at[0])));
+        }
+        return result;
+    }
+
+  private:
+    HWY_INLINE Floats interpolant(Floats loaded) const { return grid.interpolant(entries.entry_of(loaded)); }
 };
 
-/// The interpolants of any cell's entries.
+/// Any entries.
 template <typename Grid, typename Entries>
 struct GatheredEntries {
+    static constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+
     const Grid& grid;
     const Entries& entries;
     std::array<Ints, 4> first;
     Ints count;
 
+    HWY_INLINE std::array<Floats, 4> operator()(std::int32_t k) const { return (*this)(splat_int(k)); }
     HWY_INLINE std::array<Floats, 4> operator()(Ints k) const {
-        const Mask exists = as_mask(hn::Lt(k, count));
-        std::array<Floats, 4> gathered;
+        const IntMask exists = hn::Lt(k, count);
+        std::array<Floats, 4> result;
         for (std::size_t corner = 0; corner < 4; ++corner) {
-            const Ints position = hn::Add(first[corner], k);
-            gathered[corner] =
-                grid.interpolant(entries.gather(hn::IfThenElseZero(as_int_mask(exists), position)));
+            const Ints position = hn::IfThenElseZero(exists, hn::Add(first[corner], k));
+            result[corner] = grid.interpolant(entries.gather(position));
         }
-        return gathered;
+        return result;
     }
 };
 
@@ -178,54 +204,47 @@ class Kernel {
           entry_count_(static_cast<std::int32_t>(map.entry_count())),
           centre_inside_(splat_mask(map.centre_inside)) {}
 
-    /// Answers a vector of neighbouring particles as far as they are easy.
+    /// Answers those of a vector of neighbouring particles that rows of entries are enough for.
     /// @return the others
-    HWY_INLINE Mask contains_easy(const Vec3f* points, std::uint8_t* inside) const {
+    HWY_INLINE Mask contains_most(const Vec3f* points, std::uint8_t* inside) const {
         const Rays<Grid> rays = aim(load(points));
         const Mask reaches = hn::Le(rays.length, splat(map_.radius));
-        const Easy easy = look_at_easy(rays, reaches);
-        store(hn::And(easy.settled, is_inside(easy.intervals.number)), inside);
-        return hn::AndNot(easy.settled, reaches);
+        Neighbours found = look_at_rows(rays, reaches);
+        const LoadedEntries<Grid, Entries> entries(grid_, entries_, found.first, found.known);
+        store(is_inside_at(rays, found, entries), inside);
+        return hn::AndNot(found.known, reaches);
     }
 
-    HWY_INLINE Mask contacts_easy(const Vec3f* points, float margin, Contact* contacts) const {
+    HWY_INLINE Mask contacts_most(const Vec3f* points, float margin, Contact* contacts) const {
         const Vectors point = load(points);
         const Rays<Grid> rays = aim(point);
         const Mask reaches = reaches_sphere(rays, margin);
-        const Easy easy = look_at_easy(rays, reaches);
-        store(contacts_of(point, rays, easy.samples, easy.intervals, easy.entries, easy.settled, margin),
-              contacts);
-        return hn::AndNot(easy.settled, reaches);
+        const Neighbours found = look_at_rows(rays, reaches);
+        const LoadedEntries<Grid, Entries> entries(grid_, entries_, found.first, found.known);
+        store(contacts_of(point, rays, found, entries, margin), contacts);
+        return hn::AndNot(found.known, reaches);
     }
 
     /// Answers any vector of particles.
     HWY_INLINE void contains_any(const Vec3f* points, std::uint8_t* inside) const {
         const Rays<Grid> rays = aim(load(points));
-        const Mask reaches = hn::Le(rays.length, splat(map_.radius));
-        std::array<Ints, 4> first;
-        const Samples<Grid> samples = look_at(rays, reaches, first);
-        const GatheredEntries<Grid, Entries> entries{grid_, entries_, first, samples.entry_count};
-        const Intervals intervals = intervals_of(rays, samples, entries, reaches);
-        store(hn::And(reaches, is_inside(intervals.number)), inside);
+        const Neighbours found = look_at(rays, hn::Le(rays.length, splat(map_.radius)));
+        store(is_inside_at(rays, found, gathered(found)), inside);
     }
 
     HWY_INLINE void contacts_any(const Vec3f* points, float margin, Contact* contacts) const {
         const Vectors point = load(points);
         const Rays<Grid> rays = aim(point);
-        const Mask reaches = reaches_sphere(rays, margin);
-        std::array<Ints, 4> first;
-        const Samples<Grid> samples = look_at(rays, reaches, first);
-        const GatheredEntries<Grid, Entries> entries{grid_, entries_, first, samples.entry_count};
-        const Intervals intervals = intervals_of(rays, samples, entries, reaches);
-        store(contacts_of(point, rays, samples, intervals, entries, reaches, margin), contacts);
+        const Neighbours found = look_at(rays, reaches_sphere(rays, margin));
+        store(contacts_of(point, rays, found, gathered(found), margin), contacts);
     }
 
   private:
-    struct Easy {
+    /// The samples around the rays.
+    struct Neighbours {
         Samples<Grid> samples;
-        Intervals intervals;
-        EasyEntries entries;
-        Mask settled;
+        std::array<Ints, 4> first; ///< where the entries of each begin
+        Mask known;                ///< for these lanes
     };
 
     static HWY_INLINE Vectors load(const Vec3f* points) {
@@ -257,123 +276,96 @@ class Kernel {
 
     HWY_INLINE Mask is_inside(Ints interval) const { return hn::Xor(is_odd(interval), centre_inside_); }
 
-    /// The samples around the rays and the intervals of the particles, where that is easy.
-    HWY_INLINE Easy look_at_easy(const Rays<Grid>& rays, Mask reaches) const {
-        Easy easy;
-        easy.samples.cell = grid_.cell_at(rays.at, reaches);
-        easy.samples.weight = grid_.weights(easy.samples.cell);
-        easy.samples.weight_sum = hn::Zero(kFloat);
-        for (std::size_t corner = 0; corner < 4; ++corner) {
-            easy.samples.usable[corner] = reaches;
-            easy.samples.weight_sum = hn::Add(easy.samples.weight_sum, easy.samples.weight[corner]);
-        }
+    HWY_INLINE GatheredEntries<Grid, Entries> gathered(const Neighbours& found) const {
+        return {grid_, entries_, found.first, found.samples.entry_count};
+    }
 
-        // A row of offsets is the beginnings of three directions and one more number.
-        const typename Grid::CornerRows rows = grid_.corner_rows(easy.samples.cell);
+    /// The samples around the rays where rows of offsets and of entries hold all that is needed.
+    HWY_INLINE Neighbours look_at_rows(const Rays<Grid>& rays, Mask reaches) const {
+        const typename Grid::Cell cell = grid_.cell_at(rays.at, reaches);
+        const typename Grid::CornerRows rows = grid_.corner_rows(cell);
+        // A row of offsets: where two directions begin and the second ends, and one number more.
         const IntMask offsets_end = hn::Gt(rows.upper, splat_int(direction_count_ - 3));
-        const Mask has_offsets = hn::And(hn::And(reaches, rows.exist), none_of(as_mask(offsets_end)));
+        const Mask has_rows = hn::And(reaches, hn::AndNot(as_mask(offsets_end), rows.exist));
         const OffsetRows offsets{map_.entry_offsets.data()};
-        const Rows lower = load_rows(offsets, hn::IfThenElseZero(as_int_mask(has_offsets), rows.lower));
-        const Rows upper = load_rows(offsets, hn::IfThenElseZero(as_int_mask(has_offsets), rows.upper));
-        const Ints lower_first = hn::BitCast(kInt, lower.at[0]);
-        const Ints upper_first = hn::BitCast(kInt, upper.at[0]);
-        const Ints count = hn::Sub(hn::BitCast(kInt, lower.at[1]), lower_first);
-        const IntMask same = hn::And(
-            hn::And(hn::Eq(hn::BitCast(kInt, lower.at[2]), hn::Add(hn::BitCast(kInt, lower.at[1]), count)),
-                    hn::Eq(hn::BitCast(kInt, upper.at[1]), hn::Add(upper_first, count))),
-            hn::And(hn::Eq(hn::BitCast(kInt, upper.at[2]), hn::Add(hn::BitCast(kInt, upper.at[1]), count)),
-                    hn::Lt(count, splat_int(3))));
-        const IntMask entries_end = hn::Gt(upper_first, splat_int(entry_count_ - 4));
-        easy.settled = hn::And(has_offsets, as_mask(hn::AndNot(entries_end, same)));
-        easy.samples.entry_count = hn::IfThenElseZero(as_int_mask(easy.settled), count);
-
-        // A row of entries is those of two directions one after the other: one or two each.
-        const Mask two = as_mask(hn::Gt(easy.samples.entry_count, splat_int(1)));
-        const Rows lower_entries =
-            load_rows(entries_, hn::IfThenElseZero(as_int_mask(easy.settled), lower_first));
-        const Rows upper_entries =
-            load_rows(entries_, hn::IfThenElseZero(as_int_mask(easy.settled), upper_first));
-        take_apart(lower_entries, two, 0, easy.entries);
-        take_apart(upper_entries, two, 2, easy.entries);
-        easy.intervals = easy_intervals(rays, easy);
-        return easy;
+        const Rows lower = load_rows(offsets, hn::IfThenElseZero(as_int_mask(has_rows), rows.lower));
+        const Rows upper = load_rows(offsets, hn::IfThenElseZero(as_int_mask(has_rows), rows.upper));
+        const auto as_ints = [](Floats bits) HWY_ATTR { return hn::BitCast(kInt, bits); };
+        std::array<Ints, 4> first{as_ints(lower.at[0]), as_ints(lower.at[1]), as_ints(upper.at[0]),
+                                  as_ints(upper.at[1])};
+        std::array<Ints, 4> count{hn::Sub(first[1], first[0]), hn::Sub(as_ints(lower.at[2]), first[1]),
+                                  hn::Sub(first[3], first[2]), hn::Sub(as_ints(upper.at[2]), first[3])};
+        Neighbours found =
+            neighbours(cell, grid_.corners_of_cell(cell, first), grid_.corners_of_cell(cell, count));
+        const Ints last =
+            hn::Max(hn::Max(found.first[0], found.first[1]), hn::Max(found.first[2], found.first[3]));
+        const IntMask entries_end = hn::Or(hn::Gt(last, splat_int(entry_count_ - 4)),
+                                           hn::Gt(found.samples.entry_count, splat_int(4)));
+        found.known = hn::AndNot(as_mask(entries_end), has_rows);
+        return found;
     }
 
-    HWY_INLINE void take_apart(const Rows& row, Mask two, std::size_t corner, EasyEntries& entries) const {
-        entries.at[0][corner] = interpolant(row.at[0]);
-        entries.at[0][corner + 1] = interpolant(choose(two, row.at[2], row.at[1]));
-        entries.at[1][corner] = interpolant(row.at[1]);
-        entries.at[1][corner + 1] = interpolant(row.at[3]);
-    }
-    HWY_INLINE Floats interpolant(Floats loaded) const {
-        return grid_.interpolant(entries_.entry_of(loaded));
-    }
-
-    HWY_INLINE Intervals easy_intervals(const Rays<Grid>& rays, const Easy& easy) const {
-        const Ints zero = hn::Zero(kInt);
-        const Ints count = easy.samples.entry_count;
-        const Floats first = grid_.distance_of(interpolated(easy.samples, easy.entries.at[0]), rays.at);
-        const Mask has_first = as_mask(hn::Gt(count, zero));
-        const Mask beyond_first = hn::AndNot(hn::Gt(first, rays.length), has_first);
-        Intervals intervals{hn::IfThenElseZero(as_int_mask(beyond_first), splat_int(1)),
-                            hn::IfThenElseZero(beyond_first, first),
-                            choose(hn::AndNot(beyond_first, has_first), first, splat(map_.radius))};
-        const Mask look_on = hn::And(beyond_first, as_mask(hn::Gt(count, splat_int(1))));
-        if (hn::AllFalse(kFloat, look_on)) return intervals;
-        const Floats second = grid_.distance_of(interpolated(easy.samples, easy.entries.at[1]), rays.at);
-        const Mask beyond_second = hn::AndNot(hn::Gt(second, rays.length), look_on);
-        intervals.number = choose(beyond_second, splat_int(2), intervals.number);
-        intervals.below = choose(beyond_second, second, intervals.below);
-        intervals.above = choose(hn::AndNot(beyond_second, look_on), second, intervals.above);
-        return intervals;
-    }
-
-    /// interpolation_at() of interpolation.hpp.
-    /// @param first  out: where the entries of each sample begin
-    HWY_INLINE Samples<Grid> look_at(const Rays<Grid>& rays, Mask reaches, std::array<Ints, 4>& first) const {
-        Samples<Grid> samples;
-        samples.cell = grid_.cell_at(rays.at, reaches);
-        const std::array<Ints, 4> corners = grid_.corners(samples.cell);
-        const std::array<Floats, 4> weights = grid_.weights(samples.cell);
-        std::array<Ints, 4> count;
+    /// The samples around any rays.
+    HWY_INLINE Neighbours look_at(const Rays<Grid>& rays, Mask reaches) const {
+        const typename Grid::Cell cell = grid_.cell_at(rays.at, reaches);
+        const std::array<Ints, 4> corners = grid_.corners(cell);
+        const auto* offsets = reinterpret_cast<const std::int32_t*>(map_.entry_offsets.data());
+        std::array<Ints, 4> first, count;
         for (std::size_t corner = 0; corner < 4; ++corner) {
-            const auto* offsets = reinterpret_cast<const std::int32_t*>(map_.entry_offsets.data());
             first[corner] = hn::GatherIndex(kInt, offsets, corners[corner]);
             count[corner] = hn::Sub(hn::GatherIndex(kInt, offsets + 1, corners[corner]), first[corner]);
         }
-        samples.entry_count = grid_.of_reference(samples.cell, count);
-        const Ints first_of_reference = grid_.of_reference(samples.cell, first);
+        Neighbours found = neighbours(cell, first, count);
+        found.known = reaches;
+        return found;
+    }
+
+    /// interpolation_at() of interpolation.hpp.
+    HWY_INLINE Neighbours neighbours(const typename Grid::Cell& cell, const std::array<Ints, 4>& first,
+                                     const std::array<Ints, 4>& count) const {
+        Neighbours found;
+        Samples<Grid>& samples = found.samples;
+        samples.cell = cell;
+        const std::array<Floats, 4> weights = grid_.weights(cell);
+        samples.entry_count = grid_.of_reference(cell, count);
+        const Ints first_of_reference = grid_.of_reference(cell, first);
         samples.weight_sum = hn::Zero(kFloat);
         Mask all = splat_mask(true);
         for (std::size_t corner = 0; corner < 4; ++corner) {
             const Mask usable = as_mask(hn::Eq(count[corner], samples.entry_count));
             samples.usable[corner] = usable;
-            first[corner] = choose(usable, first[corner], first_of_reference);
+            found.first[corner] = choose(usable, first[corner], first_of_reference);
             samples.weight[corner] = hn::IfThenElseZero(usable, weights[corner]);
             samples.weight_sum = hn::Add(samples.weight_sum, samples.weight[corner]);
             all = hn::And(all, usable);
         }
         for (Floats& weight : samples.weight)
             weight = choose(all, weight, hn::Div(weight, samples.weight_sum));
-        return samples;
+        return found;
     }
 
+    /// interval_of() of query.cpp.
     template <typename EntriesAt>
-    HWY_INLINE Intervals intervals_of(const Rays<Grid>& rays, const Samples<Grid>& samples,
-                                      const EntriesAt& entries_at, Mask reaches) const {
+    HWY_INLINE Intervals intervals_of(const Rays<Grid>& rays, const Neighbours& found,
+                                      const EntriesAt& entries_at) const {
+        const Samples<Grid>& samples = found.samples;
         Intervals intervals{hn::Zero(kInt), hn::Zero(kFloat), splat(map_.radius)};
-        Ints k = hn::Zero(kInt);
-        Mask looking = hn::And(reaches, as_mask(hn::Gt(samples.entry_count, k)));
-        while (!hn::AllFalse(kFloat, looking)) {
+        Mask looking = hn::And(found.known, as_mask(hn::Gt(samples.entry_count, hn::Zero(kInt))));
+        for (std::int32_t k = 0; k < EntriesAt::kMost && !hn::AllFalse(kFloat, looking); ++k) {
             const Floats distance = grid_.distance_of(interpolated(samples, entries_at(k)), rays.at);
             const Mask beyond = hn::AndNot(hn::Gt(distance, rays.length), looking);
             intervals.above = choose(hn::AndNot(beyond, looking), distance, intervals.above);
             intervals.below = choose(beyond, distance, intervals.below);
-            k = hn::Add(k, splat_int(1));
-            intervals.number = choose(beyond, k, intervals.number);
-            looking = hn::And(beyond, as_mask(hn::Gt(samples.entry_count, k)));
+            intervals.number = choose(beyond, splat_int(k + 1), intervals.number);
+            looking = hn::And(beyond, as_mask(hn::Gt(samples.entry_count, splat_int(k + 1))));
         }
         return intervals;
+    }
+
+    template <typename EntriesAt>
+    HWY_INLINE Mask is_inside_at(const Rays<Grid>& rays, const Neighbours& found,
+                                 const EntriesAt& entries_at) const {
+        return hn::And(found.known, is_inside(intervals_of(rays, found, entries_at).number));
     }
 
     /// interpolated() of interpolation.hpp.
@@ -428,17 +420,19 @@ class Kernel {
         return grid_.from_grid(choose(inward, negated(unit), choose(on_sphere, e_r, unit)));
     }
 
-    /// contact() of query.cpp, for the lanes that are wanted; the others get none.
+    /// contact() of query.cpp, where the samples are known; elsewhere none.
     template <typename EntriesAt>
     HWY_INLINE Contacts contacts_of(const Vectors& point, const Rays<Grid>& rays,
-                                    const Samples<Grid>& samples, const Intervals& intervals,
-                                    const EntriesAt& entries_at, Mask wanted, float margin) const {
+                                    const Neighbours& neighbours, const EntriesAt& entries_at,
+                                    float margin) const {
+        const Samples<Grid>& samples = neighbours.samples;
+        const Intervals intervals = intervals_of(rays, neighbours, entries_at);
         const Floats zero = hn::Zero(kFloat);
         const Ends ends = nearest_ends(samples, intervals, rays.length);
         const Mask inside = hn::And(hn::Le(rays.length, splat(map_.radius)), is_inside(intervals.number));
         const Floats distance = hn::Abs(hn::Sub(ends.distance, rays.length));
         const Mask near = hn::Or(inside, hn::Le(distance, splat(margin)));
-        const Mask found = hn::And(hn::And(wanted, ends.exist), near);
+        const Mask found = hn::And(hn::And(neighbours.known, ends.exist), near);
         if (hn::AllFalse(kFloat, found)) return {point, {zero, zero, zero}, zero, found};
 
         const Vectors e_r = direction_of(rays.along);
@@ -490,8 +484,8 @@ struct InsideAnswers {
     std::uint8_t* answers;
 
     template <typename Kernel>
-    HWY_INLINE Mask easy(const Kernel& kernel, const Vec3f* points, std::size_t first) const {
-        return kernel.contains_easy(points, answers + first);
+    HWY_INLINE Mask most(const Kernel& kernel, const Vec3f* points, std::size_t first) const {
+        return kernel.contains_most(points, answers + first);
     }
     template <typename Kernel>
     HWY_INLINE void any(const Kernel& kernel, const Vec3f* points, Answer* result) const {
@@ -505,8 +499,8 @@ struct ContactAnswers {
     float margin;
 
     template <typename Kernel>
-    HWY_INLINE Mask easy(const Kernel& kernel, const Vec3f* points, std::size_t first) const {
-        return kernel.contacts_easy(points, margin, answers + first);
+    HWY_INLINE Mask most(const Kernel& kernel, const Vec3f* points, std::size_t first) const {
+        return kernel.contacts_most(points, margin, answers + first);
     }
     template <typename Kernel>
     HWY_INLINE void any(const Kernel& kernel, const Vec3f* points, Answer* result) const {
@@ -552,7 +546,7 @@ template <typename Kernel, typename Answers>
 void answer_piece(const Kernel& kernel, const Vec3f* points, std::size_t count, const Answers& answers) {
     Leftovers leftovers;
     std::size_t i = 0;
-    for (; i + kLanes <= count; i += kLanes) leftovers.add(answers.easy(kernel, points + i, i), i);
+    for (; i + kLanes <= count; i += kLanes) leftovers.add(answers.most(kernel, points + i, i), i);
     for (; i < count; ++i) leftovers.add_one(i);
     leftovers.work_off(kernel, points, answers);
 }

@@ -94,6 +94,11 @@ class SphericalLanes {
         return {lower, hn::Add(lower, splat_int(columns_)), none_of(as_mask(hn::Or(beyond_pole, on_seam)))};
     }
 
+    /// Values of the corners of the rows as corners(cell) orders them.
+    static HWY_INLINE std::array<Ints, 4> corners_of_cell(const Cell&, const std::array<Ints, 4>& values) {
+        return values;
+    }
+
     HWY_INLINE std::array<Floats, 4> weights(const Cell& cell) const {
         const Floats left = hn::Sub(splat(1), cell.u);
         const Floats low = hn::Sub(splat(1), cell.v);
