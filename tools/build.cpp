@@ -34,7 +34,8 @@ struct BuildArguments {
     ByteCountArgument budget;
     DistanceMapOptions distance;
     GridArgument directions{DistanceMapOptions{}.longitude_count, DistanceMapOptions{}.colatitude_count};
-    std::vector<const CLI::Option*> exact_only, distance_only; ///< options that belong to one kind
+    std::vector<const CLI::Option*> exact_only, distance_only;       ///< options that belong to one kind
+    std::vector<const CLI::Option*> spherical_only, octahedral_only; ///< ... to one grid of a distance map
     unsigned thread_count = 0;
     bool repair = false;
     bool allow_open = false;
@@ -48,6 +49,11 @@ void refuse_options_of_the_other_kind(const BuildArguments& arguments) {
         if (option->count() > 0)
             throw CLI::ValidationError(option->get_name(),
                                        std::string("belongs to --kind ") + (exact ? "distance" : "exact"));
+    const bool spherical = arguments.distance.grid == DirectionGrid::Spherical;
+    for (const CLI::Option* option : spherical ? arguments.octahedral_only : arguments.spherical_only)
+        if (option->count() > 0)
+            throw CLI::ValidationError(option->get_name(), std::string("belongs to --grid ") +
+                                                               (spherical ? "octahedral" : "spherical"));
 }
 
 ExactMapOptions exact_options_of(const BuildArguments& arguments) {
@@ -191,10 +197,33 @@ void add_exact_options(CLI::App& command, BuildArguments& arguments) {
 
 void add_distance_options(CLI::App& command, BuildArguments& arguments) {
     DistanceMapOptions& options = arguments.distance;
-    arguments.distance_only = {
+    const CLI::Option* grid = add_choice<DirectionGrid>(
+        command, "--grid", options.grid,
+        {{"spherical", DirectionGrid::Spherical}, {"octahedral", DirectionGrid::Octahedral}},
+        "How to divide the directions: by longitude and colatitude, as the paper does, or the sides of an "
+        "octahedron, which keeps flat faces flat");
+    const CLI::Option* directions =
         command.add_option("--directions", arguments.directions, "Samples of longitude and colatitude")
             ->type_name("COUNTxCOUNT")
-            ->default_str("200x200"),
+            ->default_str("200x200");
+    const CLI::Option* divisions =
+        command
+            .add_option("--divisions", options.divisions,
+                        "Into how many parts to cut each edge of the octahedron; 100 make as many bytes as "
+                        "200x200 directions")
+            ->check(CLI::Range(DistanceMapOptions::kMinDivisions, DistanceMapOptions::kMaxDivisions))
+            ->type_name("COUNT")
+            ->capture_default_str();
+    const CLI::Option* pole = add_choice<PoleAxis>(
+        command, "--pole", options.pole_axis, {{"x", PoleAxis::X}, {"y", PoleAxis::Y}, {"z", PoleAxis::Z}},
+        "Axis of the mesh through the poles of the grid");
+    arguments.spherical_only = {directions, pole};
+    arguments.octahedral_only = {divisions};
+    arguments.distance_only = {
+        grid,
+        directions,
+        divisions,
+        pole,
         add_choice<VertexCorrection>(command, "--correction", options.correction,
                                      {{"signed", VertexCorrection::Signed},
                                       {"paper", VertexCorrection::Paper},
@@ -202,10 +231,7 @@ void add_distance_options(CLI::App& command, BuildArguments& arguments) {
                                      "What to do about vertices between the samples"),
         add_choice<EntryFormat>(command, "--entries", options.entry_format,
                                 {{"float32", EntryFormat::Float32}, {"unorm16", EntryFormat::Unorm16}},
-                                "How to store a distance"),
-        add_choice<PoleAxis>(command, "--pole", options.pole_axis,
-                             {{"x", PoleAxis::X}, {"y", PoleAxis::Y}, {"z", PoleAxis::Z}},
-                             "Axis of the mesh through the poles of the grid")};
+                                "How to store a distance")};
 }
 
 void add_options(CLI::App& command, BuildArguments& arguments) {

@@ -16,6 +16,10 @@ const char* name_of(echinus::PoleAxis axis) {
     return axis == echinus::PoleAxis::X ? "x" : axis == echinus::PoleAxis::Y ? "y" : "z";
 }
 
+const char* name_of(echinus::DirectionGrid grid) {
+    return grid == echinus::DirectionGrid::Spherical ? "spherical" : "octahedral";
+}
+
 const char* name_of(echinus::EntryFormat format) {
     return format == echinus::EntryFormat::Float32 ? "float32" : "unorm16";
 }
@@ -41,6 +45,13 @@ struct ExactMapBytes {
                map.border.size_bytes()),
           tree(map.nodes.size_bytes()) {}
 };
+
+std::string directions_text(const DistanceMapView& map) {
+    if (map.grid == echinus::DirectionGrid::Octahedral)
+        return fmt::format("{}, edges of the octahedron cut into {}", map.direction_count(), map.divisions);
+    return fmt::format("{} x {} = {}, poles on {}", map.longitude_count, map.colatitude_count,
+                       map.direction_count(), name_of(map.pole_axis));
+}
 
 double mean_entries(const DistanceMapView& map) {
     return static_cast<double>(map.entry_count()) / static_cast<double>(map.direction_count());
@@ -82,9 +93,14 @@ void add_own_keys(ordered_json& object, const DistanceMap& map) {
     const DistanceMapView& view = map.view();
     const echinus::DistanceMapStatistics& statistics = map.statistics();
     object["directions"] = view.direction_count();
-    object["longitude_count"] = view.longitude_count;
-    object["colatitude_count"] = view.colatitude_count;
-    object["pole"] = name_of(view.pole_axis);
+    object["grid"] = name_of(view.grid);
+    if (view.grid == echinus::DirectionGrid::Spherical) {
+        object["longitude_count"] = view.longitude_count;
+        object["colatitude_count"] = view.colatitude_count;
+        object["pole"] = name_of(view.pole_axis);
+    } else {
+        object["divisions"] = view.divisions;
+    }
     object["correction"] = name_of(view.correction);
     object["entry_format"] = name_of(view.entry_format);
     object["entries"] = view.entry_count();
@@ -123,9 +139,7 @@ void add_own_rows(Table& table, const DistanceMap& map) {
     const DistanceMapView& view = map.view();
     const echinus::DistanceMapStatistics& statistics = map.statistics();
     const std::size_t offset_bytes = view.entry_offsets.size_bytes();
-    table.add("directions",
-              fmt::format("{} x {} = {}, poles on {}", view.longitude_count, view.colatitude_count,
-                          view.direction_count(), name_of(view.pole_axis)));
+    table.add("directions", directions_text(view));
     table.add("entries",
               fmt::format("{} as {}; per direction {:.3f} on average, {} at most", view.entry_count(),
                           name_of(view.entry_format), mean_entries(view), statistics.max_entries));

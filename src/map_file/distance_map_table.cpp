@@ -6,6 +6,8 @@
 
 namespace echinus {
 
+static_assert(same_value(schema::DirectionGrid::Spherical, DirectionGrid::Spherical) &&
+              same_value(schema::DirectionGrid::Octahedral, DirectionGrid::Octahedral));
 static_assert(same_value(schema::PoleAxis::X, PoleAxis::X) && same_value(schema::PoleAxis::Y, PoleAxis::Y) &&
               same_value(schema::PoleAxis::Z, PoleAxis::Z));
 static_assert(same_value(schema::EntryFormat::Float32, EntryFormat::Float32) &&
@@ -22,6 +24,8 @@ DistanceMapView read_view(const schema::DistanceMap& stored) {
     view.radius = stored.radius();
     view.longitude_count = stored.longitude_count();
     view.colatitude_count = stored.colatitude_count();
+    view.grid = DirectionGrid(stored.grid());
+    view.divisions = stored.divisions();
     view.pole_axis = PoleAxis(stored.pole_axis());
     view.entry_format = EntryFormat(stored.entry_format());
     view.correction = VertexCorrection(stored.vertex_correction());
@@ -62,11 +66,11 @@ flatbuffers::Offset<schema::DistanceMap> write_table(flatbuffers::FlatBufferBuil
     const auto entries_unorm16 = write_if_any(builder, view.entries_unorm16);
     const auto statistics = write_statistics(builder, map.statistics());
     const schema::Point centre = to_stored(view.centre);
-    return schema::CreateDistanceMap(builder, &centre, view.radius, view.longitude_count,
-                                     view.colatitude_count, schema::PoleAxis(view.pole_axis),
-                                     schema::EntryFormat(view.entry_format),
-                                     schema::VertexCorrection(view.correction), view.centre_inside,
-                                     entry_offsets, entries_float32, entries_unorm16, statistics);
+    return schema::CreateDistanceMap(
+        builder, &centre, view.radius, view.longitude_count, view.colatitude_count,
+        schema::PoleAxis(view.pole_axis), schema::EntryFormat(view.entry_format),
+        schema::VertexCorrection(view.correction), view.centre_inside, entry_offsets, entries_float32,
+        entries_unorm16, statistics, schema::DirectionGrid(view.grid), view.divisions);
 }
 
 DistanceMap read_table(const schema::DistanceMap& stored, std::uint64_t source_hash,

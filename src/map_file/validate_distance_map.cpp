@@ -18,12 +18,28 @@ void check_sample_count(const Checker& checker, std::string_view field, std::uin
                         DistanceMapOptions::kMaxSampleCount);
 }
 
+/// What the other grid would need is 0.
+void check_counts(const Checker& checker, const DistanceMapView& map) {
+    if (map.grid == DirectionGrid::Spherical) {
+        check_sample_count(checker, "longitude_count", map.longitude_count);
+        check_sample_count(checker, "colatitude_count", map.colatitude_count);
+        checker.check_equal("divisions", map.divisions, 0);
+    } else {
+        checker.check_equal("longitude_count", map.longitude_count, 0);
+        checker.check_equal("colatitude_count", map.colatitude_count, 0);
+        // Reciprocals of entries are to be finite: the bounds of a build, and room for rounding.
+        checker.check_range("radius", map.radius, 1e-15F, 4e15F);
+        checker.check_range("divisions", map.divisions, DistanceMapOptions::kMinDivisions,
+                            DistanceMapOptions::kMaxDivisions);
+    }
+}
+
 void check_scalars(const Checker& checker, const DistanceMapView& map) {
     if (!is_finite(map.centre)) checker.fail("centre is not finite");
     if (!std::isfinite(map.radius) || !(map.radius > 0))
         checker.fail("radius is not a positive finite number");
-    check_sample_count(checker, "longitude_count", map.longitude_count);
-    check_sample_count(checker, "colatitude_count", map.colatitude_count);
+    checker.check_enumerator("grid", map.grid, DirectionGrid::Octahedral);
+    check_counts(checker, map);
     checker.check_enumerator("pole_axis", map.pole_axis, PoleAxis::Z);
     checker.check_enumerator("entry_format", map.entry_format, EntryFormat::Unorm16);
     checker.check_enumerator("vertex_correction", map.correction, VertexCorrection::Signed);
@@ -50,7 +66,8 @@ void check_entries(const Checker& checker, const DistanceMapView& map) {
     checker.check_size("entries_float32", map.entries_float32.size(), is_float(map) ? map.entry_count() : 0);
     checker.check_size("entries_unorm16", map.entries_unorm16.size(), is_float(map) ? 0 : map.entry_count());
     if (is_float(map)) {
-        check_entries(checker, "entries_float32", map.entry_offsets, map.entries_float32, map.radius);
+        check_entries(checker, "entries_float32", map.entry_offsets, map.entries_float32,
+                      map.largest_entry());
     } else {
         check_entries(checker, "entries_unorm16", map.entry_offsets, map.entries_unorm16, kMaxUnorm16);
     }

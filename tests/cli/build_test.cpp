@@ -145,6 +145,27 @@ TEST_F(BuildCommand, ObeysItsOptions) {
     EXPECT_EQ(std::memcmp(actual.view().entries_unorm16.data(), entries.data(), entries.size_bytes()), 0);
 }
 
+TEST_F(BuildCommand, BuildsAnOctahedralGridAndRefusesTheOptionsOfTheOtherGrid) {
+    const json built =
+        json::parse(expect_success({"build", "box.obj", "--kind", "distance", "--grid", "octahedral",
+                                    "--divisions", "8", "-o", "box.ech", "--json"}));
+    EXPECT_EQ(built["grid"], "octahedral");
+    EXPECT_EQ(built["divisions"], 8);
+    EXPECT_EQ(built["directions"], 17 * 17);
+    EXPECT_FALSE(built.contains("longitude_count"));
+    EXPECT_TRUE(contains(load_distance_map(path("box.ech")), {0.99F, 0, 0}));
+    EXPECT_NE(expect_success({"info", "box.ech"}).find("289, edges of the octahedron cut into 8"),
+              std::string::npos);
+    const auto refuse = [&](const std::string& words, std::vector<std::string> options) {
+        options.insert(options.begin(), {"build", "box.obj", "--kind", "distance", "-o", "box.ech"});
+        expect_failure(2, words, options);
+    };
+    refuse("--divisions: belongs to --grid octahedral", {"--divisions", "8"});
+    refuse("--directions: belongs to --grid spherical", {"--grid", "octahedral", "--directions", "24x12"});
+    refuse("--pole: belongs to --grid spherical", {"--grid", "octahedral", "--pole", "x"});
+    refuse("--divisions", {"--grid", "octahedral", "--divisions", "3"});
+}
+
 TEST_F(BuildCommand, GivesTheSameMapOnAnyNumberOfThreads) {
     expect_success(small({"--threads", "1", "-o", "one.ech"}));
     expect_success(small({"--threads", "3", "-o", "three.ech"}));

@@ -118,10 +118,12 @@ TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesOnAnySoundMap) {
         const std::uint32_t size = 4 + seed * 3;
         const DistanceMap map = test::random_map_parts(format, size, size + seed % 3, seed).map();
         expect_batches_as_single_particles(map, "random map " + std::to_string(seed), 1000);
+        const DistanceMap other = test::random_octahedral_map_parts(format, 4 + seed, seed).map();
+        expect_batches_as_single_particles(other, "random octahedral map " + std::to_string(seed), 1000);
     }
 }
 
-TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesOnMapsWithHardlyAnyEntries) {
+TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesOnMapsWithHardlyAnyEntriesAndWithMany) {
     for (const bool centre_inside : {false, true}) {
         test::HandMadeMap map(8, 4, centre_inside);
         expect_batches_as_single_particles(map.view(), "no entry", 100);
@@ -129,6 +131,9 @@ TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesOnMapsWithHardlyAnyEntries) {
         expect_batches_as_single_particles(map.view(), "an entry", 100);
         map.entries(0, 0) = {0.25F, 0.5F, 0.75F};
         expect_batches_as_single_particles(map.view(), "four entries", 100);
+        map.fill({0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F, 0.7F});
+        map.entries(3, 2) = {0.25F, 0.5F, 0.75F, 0.8F, 0.9F};
+        expect_batches_as_single_particles(map.view(), "many entries", 100);
         map.fill({0.0F, 0.0F});
         expect_batches_as_single_particles(map.view(), "entries at the centre", 100);
     }

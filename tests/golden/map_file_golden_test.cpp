@@ -14,9 +14,9 @@ namespace fs = std::filesystem;
 
 // Files of every version of the format, kept forever: what one release wrote, all later ones read.
 //
-// Distance maps are of a box of 2 x 3 x 4 around the origin with 8 x 6 directions, exact maps of the same
-// box, of that box without its last face, and of a torus, with 8 cells each; that of the torus has all
-// indices in 32 bits.
+// Distance maps are of a box of 2 x 3 x 4 around the origin with 8 x 6 directions or 9 x 9 on an octahedron,
+// exact maps of the same box, of that box without its last face, and of a torus, with 8 cells each; that of
+// the torus has all indices in 32 bits.
 
 namespace {
 
@@ -39,6 +39,12 @@ const Golden kGoldenUnorm16{"v1_box_unorm16.ech",
                              .correction = VertexCorrection::Signed,
                              .entry_format = EntryFormat::Unorm16,
                              .pole_axis = PoleAxis::X}};
+
+const Golden kGoldenOctahedral{"v1_box_octahedral.ech",
+                               {.grid = DirectionGrid::Octahedral,
+                                .divisions = 4,
+                                .correction = VertexCorrection::None,
+                                .entry_format = EntryFormat::Float32}};
 
 const char* const kGoldenExact = "v1_box_exact.ech";
 const char* const kGoldenExactOpen = "v1_open_box_exact.ech";
@@ -127,6 +133,25 @@ TEST(GoldenMapFile, OfVersion1With16BitsHoldsTheBoxOrMore) {
     EXPECT_GT(map.statistics().corrected_entries, 0u);
 }
 
+TEST(GoldenMapFile, OfVersion1WithAnOctahedralGridHoldsTheBox) {
+    const DistanceMap map = load_distance_map(path_of(kGoldenOctahedral.file));
+    EXPECT_EQ(map.view().grid, DirectionGrid::Octahedral);
+    EXPECT_EQ(map.view().divisions, 4u);
+    EXPECT_EQ(map.view().entry_count(), 81u);
+    EXPECT_TRUE(map.view().centre_inside);
+    // Column i and row j of the upper side: along (i - 4, j - 4, the rest of 4).
+    for (int j = 4; j <= 8; ++j) {
+        for (int i = 4; i + j <= 12; ++i) {
+            const Vec3d d = Vec3d{i - 4.0, j - 4.0, 12.0 - i - j} * 0.25;
+            const double l1_radius = std::min({1 / d.x, 1.5 / d.y, 2 / d.z});
+            const auto index = static_cast<std::size_t>(j * 9 + i);
+            EXPECT_NEAR(map.view().entries_float32[index], l1_radius, 1e-5);
+        }
+    }
+    EXPECT_TRUE(contains(map, {0.99F, 0.1F, 0.1F}));
+    EXPECT_FALSE(contains(map, {1.01F, 0.1F, 0.1F}));
+}
+
 TEST(GoldenMapFile, OfVersion1WithAnExactMapHoldsTheBox) {
     const ExactMap map = load_exact_map(path_of(kGoldenExact));
     EXPECT_NEAR(map.view().radius, std::sqrt(29.0) / 2, 1e-5);
@@ -157,15 +182,15 @@ TEST(GoldenMapFile, OfVersion1WithAnExactMapInWideIndicesHoldsTheTorus) {
 }
 
 TEST(GoldenMapFile, IsWrittenBackByteForByte) {
-    for (const char* file :
-         {kGoldenFloat32.file, kGoldenUnorm16.file, kGoldenExact, kGoldenExactOpen, kGoldenExactWide}) {
+    for (const char* file : {kGoldenFloat32.file, kGoldenUnorm16.file, kGoldenOctahedral.file, kGoldenExact,
+                             kGoldenExactOpen, kGoldenExactWide}) {
         expect_same_bytes(serialise(load_map(path_of(file))), file);
     }
 }
 
 TEST(GoldenMapFile, IsWhatTodaysBuildWritesOnAnyNumberOfThreads) {
     for (const unsigned thread_count : {1u, 3u}) {
-        for (Golden golden : {kGoldenFloat32, kGoldenUnorm16}) {
+        for (Golden golden : {kGoldenFloat32, kGoldenUnorm16, kGoldenOctahedral}) {
             golden.options.thread_count = thread_count;
             expect_same_bytes(serialise(DistanceMap::build(make_box(kBoxSize), golden.options)), golden.file);
         }

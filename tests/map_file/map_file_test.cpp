@@ -34,6 +34,8 @@ bool same_bits(std::span<const T> a, std::span<const T> b) {
 void expect_same_map(const DistanceMap& a, const DistanceMap& b) {
     EXPECT_EQ(a.view().centre, b.view().centre);
     EXPECT_EQ(a.view().radius, b.view().radius);
+    EXPECT_EQ(a.view().grid, b.view().grid);
+    EXPECT_EQ(a.view().divisions, b.view().divisions);
     EXPECT_EQ(a.view().longitude_count, b.view().longitude_count);
     EXPECT_EQ(a.view().colatitude_count, b.view().colatitude_count);
     EXPECT_EQ(a.view().pole_axis, b.view().pole_axis);
@@ -137,6 +139,50 @@ TEST(MapFile, WithstandsChangesOfEveryByte) {
             }
             byte = original;
         }
+    }
+}
+
+TEST(MapFile, ReadsBackEveryBitOfAnOctahedralMap) {
+    for (const EntryFormat format : kFormats) {
+        const DistanceMap map = random_octahedral_map_parts(format, 5, 3).map();
+        expect_same_map(map, load_bytes(serialise(map)));
+    }
+}
+
+TEST(MapFile, WithstandsChangesOfEveryByteOfAnOctahedralMap) {
+    for (const EntryFormat format : kFormats) {
+        auto bytes = serialise(random_octahedral_map_parts(format, 4, 4).map());
+        for (auto& byte : bytes) {
+            const std::byte original = byte;
+            for (const int flip : {0x01, 0x04, 0x40, 0x80, 0xff}) {
+                byte = original ^ std::byte(flip);
+                EXPECT_NO_THROW(attack_map_file(bytes)) << "byte " << &byte - bytes.data() << " ^ " << flip;
+            }
+            byte = original;
+        }
+    }
+}
+
+TEST(MapFile, NamesWhatContradictsTheMeaningOfAnOctahedralMap) {
+    struct Case {
+        const char* words;
+        std::function<void(MapParts&)> spoil;
+    };
+    const Case cases[] = {
+        {"grid has the unknown value 2", [](MapParts& p) { p.view.grid = DirectionGrid(2); }},
+        {"longitude_count is 0", [](MapParts& p) { p.view.grid = DirectionGrid::Spherical; }},
+        {"longitude_count is 7 and not 0", [](MapParts& p) { p.view.longitude_count = 7; }},
+        {"colatitude_count is 7 and not 0", [](MapParts& p) { p.view.colatitude_count = 7; }},
+        {"divisions is 3 and not within 4 to 4096", [](MapParts& p) { p.view.divisions = 3; }},
+        {"divisions is 4097", [](MapParts& p) { p.view.divisions = 4097; }},
+        {"radius is", [](MapParts& p) { p.view.radius = 1e-40F; }},
+        {"entry_offsets has 122 elements and not 170", [](MapParts& p) { p.view.divisions = 6; }},
+        {"entries_float32[9]", [](MapParts& p) { p.entries_float32[9] = p.view.largest_entry() * 1.0001F; }},
+    };
+    for (const Case& wrong : cases) {
+        MapParts parts = random_octahedral_map_parts(EntryFormat::Float32, 5, 6);
+        wrong.spoil(parts);
+        expect_error(ErrorCode::Damaged, wrong.words, [&] { load_bytes(serialise(parts.map())); });
     }
 }
 

@@ -31,15 +31,15 @@ struct MapParts {
 };
 
 /// A map of no mesh in particular: sound, with 0 to 4 entries in each direction.
-inline MapParts random_map_parts(EntryFormat format, std::uint32_t longitude_count,
-                                 std::uint32_t colatitude_count, std::uint32_t seed) {
+/// @param grid  the fields of a view that describe it
+inline MapParts random_map_parts_on(const DistanceMapView& grid, EntryFormat format, std::uint32_t seed) {
     std::mt19937 random(seed);
     MapParts parts;
+    parts.view = grid;
     parts.view.centre = {1.5F, -2.0F, 0.25F};
     parts.view.radius = 3.0F + static_cast<float>(random() % 1000) / 512;
-    parts.view.longitude_count = longitude_count;
-    parts.view.colatitude_count = colatitude_count;
-    parts.view.pole_axis = PoleAxis(random() % 3);
+    const auto pole_axis = PoleAxis(random() % 3);
+    if (grid.grid == DirectionGrid::Spherical) parts.view.pole_axis = pole_axis;
     parts.view.entry_format = format;
     parts.view.correction = VertexCorrection(random() % 3);
     parts.view.centre_inside = random() % 2 == 0;
@@ -54,7 +54,8 @@ inline MapParts random_map_parts(EntryFormat format, std::uint32_t longitude_cou
             if (format == EntryFormat::Unorm16) {
                 parts.entries_unorm16.push_back(step);
             } else {
-                parts.entries_float32.push_back(static_cast<float>(step) / 65535 * parts.view.radius);
+                parts.entries_float32.push_back(static_cast<float>(step) / 65535 *
+                                                parts.view.largest_entry());
             }
         }
         parts.entry_offsets.push_back(parts.entry_offsets.back() + entry_count);
@@ -64,6 +65,21 @@ inline MapParts random_map_parts(EntryFormat format, std::uint32_t longitude_cou
     parts.statistics.corrected_entries = random();
     parts.statistics.wrong_parity_share = 0.25F;
     return parts;
+}
+
+inline MapParts random_map_parts(EntryFormat format, std::uint32_t longitude_count,
+                                 std::uint32_t colatitude_count, std::uint32_t seed) {
+    DistanceMapView grid;
+    grid.longitude_count = longitude_count;
+    grid.colatitude_count = colatitude_count;
+    return random_map_parts_on(grid, format, seed);
+}
+
+inline MapParts random_octahedral_map_parts(EntryFormat format, std::uint32_t divisions, std::uint32_t seed) {
+    DistanceMapView grid;
+    grid.grid = DirectionGrid::Octahedral;
+    grid.divisions = divisions;
+    return random_map_parts_on(grid, format, seed);
 }
 
 } // namespace echinus::test
