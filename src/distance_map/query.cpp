@@ -6,6 +6,7 @@
 
 #include "distance_map/interpolation.hpp"
 #include "distance_map/query_kernels.hpp"
+#include "geometry/parallel.hpp"
 #include "simd/dispatch.hpp"
 
 #include <algorithm>
@@ -165,18 +166,28 @@ Contact contact(const DistanceMapView& map, Vec3f point_local, float margin) noe
 }
 
 void contains_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local,
-                    std::span<std::uint8_t> inside) noexcept {
+                    std::span<std::uint8_t> inside, unsigned thread_count) noexcept {
     assert(points_local.size() == inside.size());
-    if (use_kernels() && kernels_read(map)) return contains_by_kernel(map, points_local, inside);
-    for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = contains(map, points_local[i]) ? 1 : 0;
+    const bool by_kernel = use_kernels() && kernels_read(map);
+    for_each_piece(inside.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        const std::size_t size = end - begin;
+        if (by_kernel)
+            return contains_by_kernel(map, points_local.subspan(begin, size), inside.subspan(begin, size));
+        for (std::size_t i = begin; i < end; ++i) inside[i] = contains(map, points_local[i]) ? 1 : 0;
+    });
 }
 
 void contacts_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local, float margin,
-                    std::span<Contact> contacts) noexcept {
+                    std::span<Contact> contacts, unsigned thread_count) noexcept {
     assert(points_local.size() == contacts.size());
-    if (use_kernels() && kernels_read(map))
-        return contacts_by_kernel(map, points_local, usable_margin(margin), contacts);
-    for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = contact(map, points_local[i], margin);
+    const bool by_kernel = use_kernels() && kernels_read(map);
+    for_each_piece(contacts.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        const std::size_t size = end - begin;
+        if (by_kernel)
+            return contacts_by_kernel(map, points_local.subspan(begin, size), usable_margin(margin),
+                                      contacts.subspan(begin, size));
+        for (std::size_t i = begin; i < end; ++i) contacts[i] = contact(map, points_local[i], margin);
+    });
 }
 
 int usable_sample_count(const DistanceMapView& map, Vec3f point_local) noexcept {

@@ -173,3 +173,25 @@ TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesForEachSizeAndStride) {
         }
     });
 }
+
+TEST(DistanceMapBatch, HasTheSameBitsOnAnyNumberOfThreads) {
+    for (const DirectionGrid grid : {DirectionGrid::Spherical, DirectionGrid::Octahedral}) {
+        const DistanceMap map = DistanceMap::build(make_torus(1, 0.4, 60, 24), {.grid = grid});
+        test::Random random(9);
+        std::vector<Vec3f> points(150'001); // enough for several threads
+        for (Vec3f& p : points) p = test::in_cube(random, 1.4F);
+        std::vector<std::uint8_t> inside(points.size());
+        std::vector<Contact> contacts(points.size());
+        contains_batch(map, points, inside, 1);
+        contacts_batch(map, points, 0.05F, contacts, 1);
+        for (const unsigned thread_count : {0U, 2U, 3U}) {
+            std::vector<std::uint8_t> other_inside(points.size());
+            std::vector<Contact> other_contacts(points.size());
+            contains_batch(map, points, other_inside, thread_count);
+            contacts_batch(map, points, 0.05F, other_contacts, thread_count);
+            ASSERT_EQ(inside, other_inside);
+            for (std::size_t i = 0; i < points.size(); ++i)
+                ASSERT_TRUE(same_bits(contacts[i], other_contacts[i])) << i;
+        }
+    }
+}
