@@ -66,7 +66,8 @@ void measure(const Arguments& arguments) {
     Setting setting = setting_of(arguments, progress);
     if (arguments.short_run) setting.effort = {.point_count = 40'000, .large_point_count = 0, .passes = 3};
     pin_to_one_core();
-    kTasks.at(arguments.task)(setting).write(arguments.target, {describe_machine()});
+    kTasks.at(arguments.task)(setting).write(
+        arguments.target, {describe_machine(), fmt::format("{} passes", setting.effort.passes)});
 }
 
 std::string read_text(const fs::path& path) {
@@ -78,6 +79,7 @@ void write_page(const Arguments& arguments) {
     const Results results = read_results(arguments.results);
     Values values;
     values["machine"] = results.contains.comments().front();
+    values["passes"] = results.contains.comments().at(1);
     values["optimisations"] = read_text(arguments.optimisations);
     add_comparisons(results, values);
     add_goals(results, values);
