@@ -68,29 +68,58 @@ class LeafLanes {
             return hn::MulAdd(u.z, all(v.z), hn::MulAdd(u.y, all(v.y), hn::Mul(u.x, all(v.x))));
         };
         const FloatLanes zero = hn::Zero(f), one = hn::Set(f, 1);
-        FloatLanes to_edges = hn::Set(f, kFar);
         FloatMask above = hn::Eq(zero, zero);
+        std::array<PlaceLanes, 3> starts;
         for (std::size_t k = 0; k < 3; ++k) {
-            const Rows& edge = edges_[k];
-            const PlaceLanes start{hn::Sub(all(corners_[k].x), place.x), hn::Sub(all(corners_[k].y), place.y),
-                                   hn::Sub(all(corners_[k].z), place.z)};
-            const FloatLanes share =
-                hn::Min(hn::Max(hn::Mul(dot(start, edge), all(minus_inverses_[k])), zero), one);
-            const PlaceLanes nearest{hn::MulAdd(all(edge.x), share, start.x),
-                                     hn::MulAdd(all(edge.y), share, start.y),
-                                     hn::MulAdd(all(edge.z), share, start.z)};
-            const FloatLanes distance_sq = hn::MulAdd(
-                nearest.z, nearest.z, hn::MulAdd(nearest.y, nearest.y, hn::Mul(nearest.x, nearest.x)));
-            to_edges = hn::Min(to_edges, distance_sq);
-            above = hn::And(above, hn::Gt(dot(start, inward_[k]), zero));
+            const Rows& corner = corners_[k];
+            starts[k] = {hn::Sub(all(corner.x), place.x), hn::Sub(all(corner.y), place.y),
+                         hn::Sub(all(corner.z), place.z)};
+            above = hn::And(above, hn::Gt(dot(starts[k], inward_[k]), zero));
         }
-        const PlaceLanes corner{hn::Sub(all(corners_[0].x), place.x), hn::Sub(all(corners_[0].y), place.y),
-                                hn::Sub(all(corners_[0].z), place.z)};
-        const FloatLanes height = dot(corner, normals_);
-        const FloatLanes to_plane = hn::Mul(hn::Mul(height, height), all(normal_inverses_));
-        const FloatLanes distance_sq = hn::IfThenElse(above, to_plane, to_edges);
+        const FloatLanes height = dot(starts[0], normals_);
+        FloatLanes distance_sq = hn::Mul(hn::Mul(height, height), all(normal_inverses_));
+        if (!hn::AllTrue(f, above)) {
+            FloatLanes to_edges = hn::Set(f, kFar);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const PlaceLanes& start = starts[k];
+                const Rows& edge = edges_[k];
+                const FloatLanes share =
+                    hn::Min(hn::Max(hn::Mul(dot(start, edge), all(minus_inverses_[k])), zero), one);
+                const PlaceLanes nearest{hn::MulAdd(all(edge.x), share, start.x),
+                                         hn::MulAdd(all(edge.y), share, start.y),
+                                         hn::MulAdd(all(edge.z), share, start.z)};
+                const FloatLanes to_edge = hn::MulAdd(
+                    nearest.z, nearest.z, hn::MulAdd(nearest.y, nearest.y, hn::Mul(nearest.x, nearest.x)));
+                to_edges = hn::Min(to_edges, to_edge);
+            }
+            distance_sq = hn::IfThenElse(above, distance_sq, to_edges);
+        }
         return {hn::MulSub(distance_sq, all(lower_factors_), all(lower_terms_)),
                 hn::MulAdd(distance_sq, hn::Set(f, kUpperFactor), all(upper_terms_))};
+    }
+
+    /// Lower bounds of the squared distances between the box around some places and the boxes around the
+    /// faces, all of them stretched.
+    void distances_sq_to_box(const Vec3f& low, const Vec3f& high,
+                             std::array<float, TreeNode::kWidth>& distances_sq) const {
+        constexpr Faces d;
+        for (std::size_t lane = 0; lane < kWidth; lane += hn::Lanes(d)) {
+            FaceLanes sum = hn::Zero(d);
+            const auto add_axis = [&](const Row& a, const Row& b, const Row& c, float low_bound,
+                                      float high_bound) {
+                const FaceLanes u = hn::Load(d, &a[lane]), v = hn::Load(d, &b[lane]),
+                                w = hn::Load(d, &c[lane]);
+                const FaceLanes above_all = hn::Sub(hn::Min(hn::Min(u, v), w), hn::Set(d, high_bound));
+                const FaceLanes below_all = hn::Sub(hn::Set(d, low_bound), hn::Max(hn::Max(u, v), w));
+                const FaceLanes gap = hn::Max(hn::Max(above_all, below_all), hn::Zero(d));
+                sum = hn::MulAdd(gap, gap, sum);
+            };
+            add_axis(corners_[0].x, corners_[1].x, corners_[2].x, low.x, high.x);
+            add_axis(corners_[0].y, corners_[1].y, corners_[2].y, low.y, high.y);
+            add_axis(corners_[0].z, corners_[1].z, corners_[2].z, low.z, high.z);
+            const FaceLanes terms = hn::Load(d, &upper_terms_[lane]);
+            hn::StoreU(hn::Sub(hn::Mul(sum, hn::Set(d, kLowerFactor)), terms), d, &distances_sq[lane]);
+        }
     }
 
   private:

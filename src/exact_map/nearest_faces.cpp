@@ -70,11 +70,20 @@ class Candidates {
     alignas(64) std::array<std::array<float, kMostLanes>, kCapacity> lowers_;
 };
 
-/// As many searches as there are lanes, on one way through the tree.
+/// As many searches as there are lanes, on one way through the tree. Leaves once met are kept ready for the
+/// searches that follow.
 class NearestFaceFinder {
   public:
-    NearestFaceFinder(const ExactMapView& map, const Vec3d& stretch)
-        : map_(map), stretch_(stretch), stretch_float_(stretch) {}
+    /// @param all  searches; one at least
+    NearestFaceFinder(const ExactMapView& map, const Vec3d& stretch, std::span<const NearestSearch> all)
+        : map_(map), stretch_(stretch), stretch_float_(stretch), origin_(rounded_origin(all.front().place)) {
+        for (const NearestSearch& search : all) {
+            const Vec3d offset = search.place - Vec3d(origin_);
+            reach_ = std::max(
+                reach_, static_cast<float>(std::fabs(offset.x) + std::fabs(offset.y) + std::fabs(offset.z)));
+        }
+        leaf_of_slot_.fill(kNoFace);
+    }
 
     /// @param searches  one at least, and no more than there are lanes
     void find(std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) {
@@ -93,6 +102,13 @@ class NearestFaceFinder {
 
   private:
     static constexpr double kMostSquared = 1e30;
+
+    static Vec3<std::int32_t> rounded_origin(const Vec3d& place) {
+        const auto within = [](double coordinate) {
+            return static_cast<std::int32_t>(std::clamp(coordinate, -kEverywhere, kEverywhere));
+        };
+        return {within(place.x), within(place.y), within(place.z)};
+    }
     static constexpr float kRoundedUp = 1 + 0x1p-20F;
 
     std::uint32_t by_reference(const NearestSearch& search) const {
@@ -102,7 +118,6 @@ class NearestFaceFinder {
 
     void start(std::span<const NearestSearch> searches) {
         constexpr Floats f;
-        origin_ = Vec3<std::int32_t>(rounded(searches.front().place));
         alignas(64) std::array<std::array<float, kMostLanes>, 4> rows;
         for (std::size_t lane = 0; lane < hn::Lanes(f); ++lane) {
             const NearestSearch& search = searches[std::min(lane, searches.size() - 1)];
@@ -119,7 +134,8 @@ class NearestFaceFinder {
         upper_ = hn::Mul(hn::Load(f, rows[3].data()), hn::Set(f, kRoundedUp));
         low_ = {least(flat_.x), least(flat_.y), least(flat_.z)};
         high_ = {most(flat_.x), most(flat_.y), most(flat_.z)};
-        reach_ = most(hn::Add(hn::Add(hn::Abs(places_.x), hn::Abs(places_.y)), hn::Abs(places_.z)));
+        stretched_low_ = {least(places_.x), least(places_.y), least(places_.z)};
+        stretched_high_ = {most(places_.x), most(places_.y), most(places_.z)};
         farthest_upper_ = most(upper_);
         candidates_.clear();
     }
@@ -223,13 +239,25 @@ class NearestFaceFinder {
         return hn::AllTrue(f, hn::Gt(sum, upper_));
     }
 
+    const LeafLanes& leaf_at(std::uint32_t first, std::uint32_t count) {
+        const std::size_t slot = first / TreeNode::kWidth % kKeptLeaves;
+        if (leaf_of_slot_[slot] != first) {
+            leaf_of_slot_[slot] = first;
+            leaves_[slot].prepare(map_, first, count, origin_, stretch_float_, reach_);
+        }
+        return leaves_[slot];
+    }
+
     bool visit_leaf(std::uint32_t first) {
         constexpr Floats f;
         const auto count = std::min(static_cast<std::uint32_t>(TreeNode::kWidth),
                                     static_cast<std::uint32_t>(map_.face_count()) - first);
-        leaf_.prepare(map_, first, count, origin_, stretch_float_, reach_);
+        const LeafLanes& leaf = leaf_at(first, count);
+        alignas(32) std::array<float, TreeNode::kWidth> distances_sq;
+        leaf.distances_sq_to_box(stretched_low_, stretched_high_, distances_sq);
         for (std::uint32_t lane = 0; lane < count; ++lane) {
-            const auto [lower, upper] = leaf_.distances_sq(lane, places_);
+            if (!(distances_sq[lane] <= farthest_upper_)) continue;
+            const auto [lower, upper] = leaf.distances_sq(lane, places_);
             if (hn::AllFalse(f, hn::Le(lower, upper_))) continue;
             if (candidates_.full()) candidates_.keep_within(upper_);
             if (candidates_.full()) return false;
@@ -283,15 +311,20 @@ class NearestFaceFinder {
     Vec3f stretch_float_;
     std::uint32_t last_leaf_ = kNoFace; ///< its first face; where the last places found their nearest
 
+    Vec3<std::int32_t> origin_; ///< on the lattice, near all places
+    float reach_ = 0;           ///< no place's coordinates, taken together, are farther from it
+
     // The places at hand.
-    Vec3<std::int32_t> origin_;
     PlaceLanes flat_, places_; ///< before and after stretching
     Vec3f low_, high_;         ///< the box around them, before stretching
-    float reach_ = 0;          ///< most of the sums of their coordinates
+    Vec3f stretched_low_, stretched_high_;
     FloatLanes upper_;         ///< squared distance within which the nearest face of each surely lies
     float farthest_upper_ = 0; ///< most of those
 
-    LeafLanes leaf_;
+    static constexpr std::size_t kKeptLeaves = 32;
+    std::array<std::uint32_t, kKeptLeaves> leaf_of_slot_; ///< first face, or kNoFace
+    std::array<LeafLanes, kKeptLeaves> leaves_;
+
     Candidates candidates_;
     static constexpr std::size_t kMaxDepth = 12; // as in walk_near_leaves()
     std::array<Waiting, kMaxDepth * TreeNode::kWidth> waiting_;
@@ -301,7 +334,8 @@ class NearestFaceFinder {
 
 void find_nearest_faces(const ExactMapView& map, const Vec3d& stretch,
                         std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) {
-    NearestFaceFinder finder(map, stretch);
+    if (searches.empty()) return;
+    NearestFaceFinder finder(map, stretch, searches);
     const std::size_t lanes = hn::Lanes(Floats());
     for (std::size_t begin = 0; begin < searches.size(); begin += lanes) {
         const std::size_t count = std::min(lanes, searches.size() - begin);

@@ -421,7 +421,7 @@ void find_sides(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                 std::span<Side> sides) noexcept {
     assert(points_local.size() == sides.size());
     constexpr std::size_t kMostBands = 1 << 27; // so that int32 holds byte offsets
-    constexpr std::size_t kFewest = 32;         // below, lists cost more than they save
+    constexpr std::size_t kFewest = 512;        // below, hardly two particles share a band
     if (use_kernels() && sides.size() >= kFewest && map.bands.size() < kMostBands) {
         try {
             BandBuckets buckets(map.bands.size(), sides.size());

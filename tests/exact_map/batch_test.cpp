@@ -143,7 +143,7 @@ TEST(ExactMapBatch, TakesAnyNumberOfPointsAtAnyStride) {
     test::under_each_instruction_set([&](std::string_view name) {
         SCOPED_TRACE(std::string(name));
         for (std::size_t count :
-             {0, 1, 2, 15, 16, 17, 31, 32, 33, 47, 48, 63, 64, 65, 100, 255, 256, 257, 600}) {
+             {0, 1, 2, 15, 16, 17, 31, 32, 33, 47, 48, 63, 64, 65, 100, 255, 256, 257, 511, 512, 513, 600}) {
             expect_same_sides(map, {points.data(), count}, 1);
             const StridedSpan<const Vec3f> strided(&particles[0].position, count, sizeof(Particle));
             expect_same_sides(map, strided, 1);
