@@ -23,7 +23,7 @@ namespace {
 
 const std::map<std::string, Records (*)(const Setting&)> kTasks{
     {"contains", measure_contains}, {"contacts", measure_contacts}, {"bytes", measure_bytes},
-    {"build", measure_build},       {"cloth", measure_cloth},
+    {"build", measure_build},       {"cloth", measure_cloth},       {"threads", measure_threads},
 };
 
 /// A bar for one piece of work after the other.
@@ -65,7 +65,7 @@ void measure(const Arguments& arguments) {
     Progress progress;
     Setting setting = setting_of(arguments, progress);
     if (arguments.short_run) setting.effort = {.point_count = 40'000, .large_point_count = 0, .passes = 3};
-    pin_to_one_core();
+    if (arguments.task != "threads") pin_to_one_core();
     kTasks.at(arguments.task)(setting).write(
         arguments.target, {describe_machine(), fmt::format("{} passes", setting.effort.passes)});
 }

@@ -17,8 +17,12 @@ Records measure_contains(const Setting& setting);
 /// Signs, depths and normals, all systems on all meshes and sets.
 Records measure_contacts(const Setting& setting);
 
-/// Build times, against the number of faces too, and what a second core brings to builds and batches.
+/// Build times, against the number of faces too.
 Records measure_build(const Setting& setting);
+
+/// What a second core brings to builds and batches. In a process that was never pinned: oneTBB looks only
+/// once how many cores there are.
+Records measure_threads(const Setting& setting);
 
 /// Times, errors and bytes over sizes of each structure.
 Records measure_bytes(const Setting& setting);

@@ -1,7 +1,6 @@
 #include "build/system.hpp"
 #include "build/threads.hpp"
 #include "common/comparison.hpp"
-#include "common/pinning.hpp"
 #include "measurements.hpp"
 
 #include <fmt/format.h>
@@ -77,18 +76,26 @@ Records measure_build(const Setting& setting) {
         setting.report_progress("build " + subject.name, 0);
         const std::vector<BuildWay> ways = ways_for(subject.mesh);
         measure(subject, true, one_thread(ways), records);
-        unpin();
-        std::vector<BuildWay> ours;
-        for (const BuildWay& way : ways)
-            if (way.system == "exact map" || way.system == "distance map") ours.push_back(way);
-        list_batches(ours, subject, std::min<std::size_t>(setting.effort.point_count, 200'000));
-        measure(subject, false, ours, records);
-        pin_to_one_core();
     }
     for (std::size_t faces = 1000; faces <= kLargestTorus; faces *= 4) {
         const Subject torus = torus_subject(faces);
         setting.report_progress(fmt::format("build torus of {} faces", torus.mesh.faces.size()), 0);
         measure(torus, true, one_thread(ways_for(torus.mesh)), records);
+    }
+    return records;
+}
+
+Records measure_threads(const Setting& setting) {
+    Records records({"mesh", "faces", "system", "way", "threads", "clock", "ms"});
+    for (const auto& make_subject : subjects(setting.meshes, setting.debian_horse)) {
+        const Subject subject = make_subject();
+        if (subject.large && setting.effort.large_point_count == 0) continue;
+        setting.report_progress("threads " + subject.name, 0);
+        BuildList ways;
+        list_exact_map(ways, subject.mesh);
+        list_distance_map(ways, subject.mesh);
+        list_batches(ways, subject, 200'000);
+        measure(subject, false, ways, records);
     }
     return records;
 }

@@ -11,9 +11,10 @@ namespace {
 
 class DistanceMapContacts : public ContactsSystem {
   public:
-    /// @param sample_count  along each of the two angles
-    explicit DistanceMapContacts(std::uint32_t sample_count) {
-        options_.longitude_count = options_.colatitude_count = sample_count;
+    /// @param count  spherical: samples along each of the two angles; octahedral: divisions of an edge
+    DistanceMapContacts(DirectionGrid grid, std::uint32_t count) {
+        options_.grid = grid;
+        options_.longitude_count = options_.colatitude_count = options_.divisions = count;
         options_.thread_count = 1;
     }
     void build(const TriangleMesh& mesh) override { map_ = DistanceMap::build(mesh, options_); }
@@ -38,15 +39,24 @@ class DistanceMapContacts : public ContactsSystem {
     std::optional<DistanceMap> map_;
 };
 
+Listed<ContactsSystem> spherical(std::uint32_t count) {
+    return listed<DistanceMapContacts, ContactsSystem>("distance map", Role::Ours, true,
+                                                       DirectionGrid::Spherical, count);
+}
+
+Listed<ContactsSystem> octahedral(std::uint32_t count) {
+    return listed<DistanceMapContacts, ContactsSystem>("octahedral distance map", Role::Ours, true,
+                                                       DirectionGrid::Octahedral, count);
+}
+
 } // namespace
 
 void list_distance_map(ContactsList& list) {
-    list.push_back(listed<DistanceMapContacts, ContactsSystem>("distance map", Role::Ours, true,
-                                                               DistanceMapOptions{}.longitude_count));
+    list.push_back(spherical(DistanceMapOptions{}.longitude_count));
+    list.push_back(octahedral(DistanceMapOptions{}.divisions));
 }
 
 void list_sizes_of_distance_map(ContactsList& list) {
-    for (const std::uint32_t sample_count : {50U, 100U, 200U, 400U, 800U})
-        list.push_back(
-            listed<DistanceMapContacts, ContactsSystem>("distance map", Role::Ours, true, sample_count));
+    for (const std::uint32_t count : {50U, 100U, 200U, 400U, 800U}) list.push_back(spherical(count));
+    for (const std::uint32_t count : {25U, 50U, 100U, 200U, 400U}) list.push_back(octahedral(count));
 }

@@ -11,9 +11,10 @@ namespace {
 
 class DistanceMapContains : public ContainsSystem {
   public:
-    /// @param sample_count  along each of the two angles
-    explicit DistanceMapContains(std::uint32_t sample_count) {
-        options_.longitude_count = options_.colatitude_count = sample_count;
+    /// @param count  spherical: samples along each of the two angles; octahedral: divisions of an edge
+    DistanceMapContains(DirectionGrid grid, std::uint32_t count) {
+        options_.grid = grid;
+        options_.longitude_count = options_.colatitude_count = options_.divisions = count;
         options_.thread_count = 1;
     }
     void build(const TriangleMesh& mesh) override { map_ = DistanceMap::build(mesh, options_); }
@@ -38,15 +39,24 @@ class DistanceMapContains : public ContainsSystem {
     std::optional<DistanceMap> map_;
 };
 
+Listed<ContainsSystem> spherical(std::uint32_t count) {
+    return listed<DistanceMapContains, ContainsSystem>("distance map", Role::Ours, true,
+                                                       DirectionGrid::Spherical, count);
+}
+
+Listed<ContainsSystem> octahedral(std::uint32_t count) {
+    return listed<DistanceMapContains, ContainsSystem>("octahedral distance map", Role::Ours, true,
+                                                       DirectionGrid::Octahedral, count);
+}
+
 } // namespace
 
 void list_distance_map(ContainsList& list) {
-    list.push_back(listed<DistanceMapContains, ContainsSystem>("distance map", Role::Ours, true,
-                                                               DistanceMapOptions{}.longitude_count));
+    list.push_back(spherical(DistanceMapOptions{}.longitude_count));
+    list.push_back(octahedral(DistanceMapOptions{}.divisions));
 }
 
 void list_sizes_of_distance_map(ContainsList& list) {
-    for (const std::uint32_t sample_count : {50U, 100U, 200U, 400U, 800U})
-        list.push_back(
-            listed<DistanceMapContains, ContainsSystem>("distance map", Role::Ours, true, sample_count));
+    for (const std::uint32_t count : {50U, 100U, 200U, 400U, 800U}) list.push_back(spherical(count));
+    for (const std::uint32_t count : {25U, 50U, 100U, 200U, 400U}) list.push_back(octahedral(count));
 }

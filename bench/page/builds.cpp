@@ -53,7 +53,7 @@ std::string two_cores(const Records& build) {
 
 void add_builds(const Results& results, Values& values) {
     values["builds"] = one_core(results.build);
-    values["threads"] = two_cores(results.build);
+    values["threads"] = two_cores(results.threads);
 }
 
 void add_cloth(const Results& results, Values& values) {

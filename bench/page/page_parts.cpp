@@ -6,8 +6,8 @@
 
 Results read_results(const std::filesystem::path& folder) {
     return {Records::read(folder / "contains.csv"), Records::read(folder / "contacts.csv"),
-            Records::read(folder / "bytes.csv"), Records::read(folder / "build.csv"),
-            Records::read(folder / "cloth.csv")};
+            Records::read(folder / "bytes.csv"),    Records::read(folder / "build.csv"),
+            Records::read(folder / "threads.csv"),  Records::read(folder / "cloth.csv")};
 }
 
 std::string shown(double value) {

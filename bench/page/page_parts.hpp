@@ -7,7 +7,7 @@
 
 /// The records of all tasks.
 struct Results {
-    Records contains, contacts, bytes, build, cloth;
+    Records contains, contacts, bytes, build, threads, cloth;
 };
 
 /// Reads the CSV files of a folder. @throws echinus::Error Unreadable when a task's is missing

@@ -21,6 +21,7 @@ struct Style {
 constexpr Style kStyles[] = {
     {"exact map", "#0072b2", false},
     {"distance map", "#56b4e9", false},
+    {"octahedral distance map", "#332288", false},
     {"classified grid", "#d55e00", true},
     {"dense grid", "#009e73", true},
     {"dense grid 0.63 MB", "#009e73", true},
