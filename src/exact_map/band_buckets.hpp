@@ -2,6 +2,8 @@
 
 #include <echinus/geometry.hpp>
 
+#include <hwy/cache_control.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -35,12 +37,14 @@ class BandBuckets {
 
     std::size_t count() const { return sizes_.size(); }
 
+    static constexpr std::size_t kAhead = 8;
+
     /// Returns the bucket that the particle went to.
     std::size_t add(const Unsettled& particle) {
         const std::size_t bucket = particle.band() >> band_shift_;
         Unsettled* place = &found_[bucket * capacity_ + sizes_[bucket]++];
         *place = particle;
-        __builtin_prefetch(place + 8, 1);
+        hwy::Prefetch(place + kAhead); // of its bucket the next to be written
         return bucket;
     }
     bool is_full(std::size_t bucket) const { return sizes_[bucket] == capacity_; }

@@ -18,6 +18,7 @@
 // After foreach_target.h, which includes this file once for each instruction set.
 #include "simd/dispatch.hpp"
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 namespace echinus {
@@ -269,10 +270,13 @@ void answer(const ContactSearch& search, ContactBlock& block, std::span<Contact>
     const std::span<const NearestSearch> searches(block.searches.data(), block.size);
     find_nearest_faces(search.map(), search.stretch(), searches, {block.faces.data(), block.size});
     ECHINUS_DISPATCH(measure_contacts)(search, block);
-    for (std::size_t i = 0; i < block.size; ++i)
-        contacts[block.particles[i]] = block.faces[i] != kNoFace
-                                           ? block.contacts[i]
-                                           : ContactSearch::no_contact(block.points_local[i], block.sides[i]);
+    for (std::size_t i = 0; i < block.size; ++i) {
+        Contact& contact = contacts[block.particles[i]];
+        if (block.faces[i] != kNoFace)
+            contact = block.contacts[i];
+        else
+            ContactSearch::set_no_contact(contact, block.points_local[i], block.sides[i]);
+    }
     block.size = 0;
 }
 
@@ -290,7 +294,15 @@ void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& 
     std::size_t count = 0; // of stations
     const auto answer_stations = [&] {
         sort_by_key(memory.stations.first(count), memory.spare.first(count));
-        for (const Station& station : memory.stations.first(count)) {
+        for (std::size_t k = 0; k < count; ++k) {
+            const Station& station = memory.stations[k];
+            // Neighbours in space are not neighbours in memory: what is read and written next is sent for.
+            constexpr std::size_t kAhead = 16;
+            const std::uint32_t next = memory.stations[std::min(k + kAhead, count - 1)].particle;
+            hwy::Prefetch(&points_local[next]);
+            hwy::Prefetch(&sides[next]);
+            hwy::Prefetch(&contacts[station.particle]);
+            hwy::Prefetch(&contacts[station.particle].feature); // perhaps on another line
             block.add(search, station.particle, points_local[station.particle], sides[station.particle]);
             if (block.size == ContactBlock::kCapacity) answer(search, block, contacts);
         }
@@ -299,7 +311,7 @@ void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& 
     };
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         if (!search.is_wanted(points_local[i], sides[i])) {
-            contacts[i] = ContactSearch::no_contact(points_local[i], sides[i]);
+            ContactSearch::set_no_contact(contacts[i], points_local[i], sides[i]);
             continue;
         }
         memory.stations[count++] = {morton_key(search.place_of(points_local[i])),

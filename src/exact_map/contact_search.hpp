@@ -52,9 +52,19 @@ class ContactSearch {
 
     static Contact no_contact(const Vec3f& point_local, Side side) {
         Contact result;
-        result.point = point_local;
-        result.certain = (side & kUncertain) == 0;
+        set_no_contact(result, point_local, side);
         return result;
+    }
+    /// The same in place, member by member: a whole contact made elsewhere is copied by wide loads that have
+    /// to wait for the narrow stores before them.
+    static void set_no_contact(Contact& contact, const Vec3f& point_local, Side side) {
+        contact.point = point_local;
+        contact.normal = {};
+        contact.depth = 0;
+        contact.face = Contact::kUnknownFace;
+        contact.inside = false;
+        contact.certain = (side & kUncertain) == 0;
+        contact.feature = Feature::Unknown;
     }
 
     Contact contact_at(const Vec3f& point_local, Side side, const NearestPoint& nearest) const {
