@@ -2,8 +2,10 @@
 #include "output.hpp"
 
 #include <echinus/error.hpp>
+#include <echinus/instruction_set.hpp>
 
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <sstream>
@@ -36,7 +38,14 @@ int fail_wrong_use(std::string_view sentence) {
     return fail(std::string(sentence) + "; see echinus --help", kWrongUse);
 }
 
+/// The library passes over a wish that it cannot grant; somebody at a command line wants to hear of it.
+void require_wished_instruction_set() {
+    const char* wish = std::getenv("ECHINUS_INSTRUCTION_SET");
+    if (wish != nullptr && *wish != '\0') echinus::use_instruction_set(wish);
+}
+
 void parse_and_run(int argc, char** argv) {
+    require_wished_instruction_set();
     CLI::App app{"Echinus: is a particle inside a rigid model, how deep, and which way out?"};
     app.name("echinus");
     app.set_version_flag("--version", "echinus " ECHINUS_VERSION);

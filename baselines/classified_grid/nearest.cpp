@@ -1,6 +1,6 @@
 #include "baselines/classified_grid/nearest.hpp"
 
-#include "directions/angles.hpp"
+#include "exact_map/triangle.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,17 +10,11 @@ namespace echinus::baselines {
 
 namespace {
 
-using Corners = std::array<Vec3d, 3>; ///< of a face, with the place as origin
+using Corners = TriangleCorners; ///< of a face, with the place as origin
 
 Corners corners_around(const GridArrays& grid, std::uint32_t face, const Vec3d& place) {
     const auto corners = grid.face(face);
     return {Vec3d(corners[0]) - place, Vec3d(corners[1]) - place, Vec3d(corners[2]) - place};
-}
-
-/// The point of a segment that is nearest to the origin, as a share of the way from a to b.
-double nearest_share(const Vec3d& a, const Vec3d& ab) {
-    const double length_sq = dot(ab, ab);
-    return length_sq > 0 ? std::clamp(-dot(a, ab) / length_sq, 0.0, 1.0) : 0;
 }
 
 /// Distance of a place from a box.
@@ -92,24 +86,6 @@ Vec3d unit_normal(const GridArrays& grid, std::uint32_t face) {
     return area > 0 ? normal * (1 / area) : Vec3d{};
 }
 
-double angle_between(const Vec3d& a, const Vec3d& b) {
-    const double lengths = length(a) * length(b);
-    return double{atan2_polynomial(static_cast<float>(length(cross(a, b)) / lengths),
-                                   static_cast<float>(dot(a, b) / lengths))};
-}
-
-/// How far around the origin a triangle reaches; edges and corners within `reach` count as met.
-double spanned_angle(const Corners& corners, double reach) {
-    for (std::size_t k = 0; k < 3; ++k)
-        if (length(corners[k]) <= reach)
-            return angle_between(corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]);
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3d edge = corners[(k + 1) % 3] - corners[k];
-        if (length(corners[k] + edge * nearest_share(corners[k], edge)) <= reach) return double{kPi};
-    }
-    return 2 * double{kPi};
-}
-
 /// Two snapped positions differ from the true ones by at most sqrt(3) lattice steps together.
 constexpr double kSnapping = 2;
 
@@ -129,8 +105,8 @@ Vec3d pseudonormal(const GridArrays& grid, const NearestPlace& nearest) {
     Vec3d sum;
     for (const std::uint32_t face : faces)
         if (nearest_on_face(grid, face, nearest.point).distance <= kSnapping)
-            sum +=
-                unit_normal(grid, face) * spanned_angle(corners_around(grid, face, nearest.point), kSnapping);
+            sum += unit_normal(grid, face) *
+                   double{spanned_angle(corners_around(grid, face, nearest.point), kSnapping)};
     constexpr double kCancelled = 1e-6;
     if (length(sum) < kCancelled) sum = unit_normal(grid, nearest.face);
     const double l = length(sum);
@@ -151,30 +127,11 @@ Vec3f out_of_solid(const GridArrays& grid, const Vec3d& point, const Vec3d& norm
 } // namespace
 
 NearestPlace nearest_on_face(const GridArrays& grid, std::uint32_t face, const Vec3d& place) {
-    const Corners corners = corners_around(grid, face, place);
-    const auto& [a, b, c] = corners;
-    const Vec3d normal = cross(b - a, c - b);
+    const auto [offset, distance, feature] = nearest_on_triangle(corners_around(grid, face, place));
     NearestPlace nearest;
-    double nearest_sq = std::numeric_limits<double>::infinity();
-    bool above = true;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3d& start = corners[k];
-        const Vec3d edge = corners[(k + 1) % 3] - start;
-        above = above && dot(cross(normal, start), edge) > 0;
-        const double share = nearest_share(start, edge);
-        const Vec3d candidate = start + edge * share;
-        const double distance_sq = dot(candidate, candidate);
-        if (!(distance_sq < nearest_sq)) continue;
-        nearest_sq = distance_sq;
-        nearest.point = candidate;
-        nearest.feature = share > 0 && share < 1 ? Feature::Edge : Feature::Vertex;
-    }
-    if (above) {
-        nearest.point = normal * (dot(a, normal) / dot(normal, normal));
-        nearest.feature = Feature::Face;
-    }
-    nearest.distance = length(nearest.point);
-    nearest.point += place;
+    nearest.point = offset + place;
+    nearest.distance = distance;
+    nearest.feature = feature;
     nearest.face = face;
     return nearest;
 }

@@ -4,6 +4,7 @@
 #include <echinus/exact_map.hpp>
 
 #include <concepts>
+#include <type_traits>
 #include <variant>
 
 /// Two maps, one vocabulary: who need not care which kind of map there is, asks here.
@@ -24,15 +25,22 @@ Contact contact(const Map& map, Vec3f point_local, float margin = 0) noexcept {
 }
 
 template <std::same_as<AnyMap> Map>
-void contains_batch(const Map& map, StridedSpan<const Vec3f> points_local,
-                    std::span<std::uint8_t> inside) noexcept {
-    std::visit([&](const auto& kind) { contains_batch(kind.view(), points_local, inside); }, map);
+void contains_batch(const Map& map, StridedSpan<const Vec3f> points_local, std::span<std::uint8_t> inside,
+                    unsigned thread_count = 1) noexcept {
+    std::visit([&](const auto& kind) { contains_batch(kind.view(), points_local, inside, thread_count); },
+               map);
 }
 
 template <std::same_as<AnyMap> Map>
 void contacts_batch(const Map& map, StridedSpan<const Vec3f> points_local, float margin,
-                    std::span<Contact> contacts) noexcept {
-    std::visit([&](const auto& kind) { contacts_batch(kind.view(), points_local, margin, contacts); }, map);
+                    std::span<Contact> contacts, unsigned thread_count = 1) noexcept {
+    const auto answer = [&](const auto& kind) {
+        if constexpr (std::same_as<std::remove_cvref_t<decltype(kind)>, ExactMap>)
+            contacts_batch(kind.view(), points_local, margin, contacts, {1, 1, 1}, thread_count);
+        else
+            contacts_batch(kind.view(), points_local, margin, contacts, thread_count);
+    };
+    std::visit(answer, map);
 }
 
 } // namespace echinus

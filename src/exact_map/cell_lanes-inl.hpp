@@ -8,27 +8,13 @@
 
 #include "directions/lattice.hpp"
 #include "directions/octahedral_cells.hpp"
-
-#include <hwy/highway.h>
+#include "simd/lanes-inl.hpp"
 
 #include <cstdint>
 
 #if HWY_TARGET != HWY_SCALAR // where the reference is used instead
 HWY_BEFORE_NAMESPACE();
 namespace echinus::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::ScalableTag<float>;
-using Ints = hn::RebindToSigned<Floats>;
-using FloatLanes = hn::Vec<Floats>;
-using IntLanes = hn::Vec<Ints>;
-using FloatMask = hn::Mask<Floats>;
-using IntMask = hn::Mask<Ints>;
-
-struct PointLanes {
-    FloatLanes x, y, z;
-};
 
 /// Where particles are, in single precision.
 struct CellLanes {

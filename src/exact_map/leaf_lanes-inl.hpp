@@ -7,8 +7,7 @@
 #endif
 
 #include "exact_map/layout.hpp"
-
-#include <hwy/highway.h>
+#include "simd/lanes-inl.hpp"
 
 #include <array>
 #include <cstddef>
@@ -17,17 +16,6 @@
 #if HWY_TARGET != HWY_SCALAR // where the reference is used instead
 HWY_BEFORE_NAMESPACE();
 namespace echinus::HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Floats = hn::ScalableTag<float>;
-using FloatLanes = hn::Vec<Floats>;
-using FloatMask = hn::Mask<Floats>;
-
-/// Places, relative to an origin of the lattice and stretched.
-struct PlaceLanes {
-    FloatLanes x, y, z;
-};
 
 /// Squared distances from places to a face, and how far off they may be.
 struct DistanceLanes {
@@ -38,11 +26,12 @@ struct DistanceLanes {
 /// measured with places as lanes: to the three edges and, above the face, to its plane.
 ///
 /// Rounding. Let S be the sum of all that is measured, coordinates of corners and places. Corners and places
-/// are off by less than 2^-22 S, hence the distance to an edge by less than 2^-19 S, and the distance to the
-/// plane, and where its sides are, by that times q = |ab| |bc| / |ab x bc|. What is allowed for is twice
-/// that, e = 2^-18 S q: distances d lie within d (1 - 2^-9) - 2^9 e^2 and the like, squared, since 2 d e is
-/// less than 2^-10 d^2 + 2^10 e^2. Where q is large, only the edges are measured: no point of the face is
-/// farther from them than its width w, and (d - w)^2 is at least d^2 / 2 - w^2.
+/// are off by less than 2^-22 S, hence the distance to an edge by less than 2^-19 S. The distance to the
+/// plane, and where its sides are, is off by that times q = |u| |v| / |u x v| for the sharpest corner,
+/// between sides u and v. What is allowed for is twice that, e = 2^-18 S q: distances d lie within d (1 -
+/// 2^-9) - 2^9 e^2 and the like, squared, since 2 d e is less than 2^-10 d^2 + 2^10 e^2. Where q is large,
+/// only the edges are measured: no point of the face is farther from them than its width w, and (d - w)^2 is
+/// at least d^2 / 2 - w^2.
 class LeafLanes {
   public:
     /// @param reach  a sum of coordinates that no place's exceeds
@@ -61,15 +50,15 @@ class LeafLanes {
         for (std::size_t lane = 0; lane < kWidth; lane += hn::Lanes(d)) prepare_lanes(lane, reach);
     }
 
-    DistanceLanes distances_sq(std::size_t face, const PlaceLanes& place) const {
+    DistanceLanes distances_sq(std::size_t face, const PointLanes& place) const {
         constexpr Floats f;
         const auto all = [&](const Row& row) { return hn::Set(f, row[face]); };
-        const auto dot = [&](const PlaceLanes& u, const Rows& v) {
+        const auto dot = [&](const PointLanes& u, const Rows& v) {
             return hn::MulAdd(u.z, all(v.z), hn::MulAdd(u.y, all(v.y), hn::Mul(u.x, all(v.x))));
         };
         const FloatLanes zero = hn::Zero(f), one = hn::Set(f, 1);
         FloatMask above = hn::Eq(zero, zero);
-        std::array<PlaceLanes, 3> starts;
+        std::array<PointLanes, 3> starts;
         for (std::size_t k = 0; k < 3; ++k) {
             const Rows& corner = corners_[k];
             starts[k] = {hn::Sub(all(corner.x), place.x), hn::Sub(all(corner.y), place.y),
@@ -81,11 +70,11 @@ class LeafLanes {
         if (!hn::AllTrue(f, above)) {
             FloatLanes to_edges = hn::Set(f, kFar);
             for (std::size_t k = 0; k < 3; ++k) {
-                const PlaceLanes& start = starts[k];
+                const PointLanes& start = starts[k];
                 const Rows& edge = edges_[k];
                 const FloatLanes share =
                     hn::Min(hn::Max(hn::Mul(dot(start, edge), all(minus_inverses_[k])), zero), one);
-                const PlaceLanes nearest{hn::MulAdd(all(edge.x), share, start.x),
+                const PointLanes nearest{hn::MulAdd(all(edge.x), share, start.x),
                                          hn::MulAdd(all(edge.y), share, start.y),
                                          hn::MulAdd(all(edge.z), share, start.z)};
                 const FloatLanes to_edge = hn::MulAdd(
@@ -176,8 +165,10 @@ class LeafLanes {
         const FaceLanes scale = hn::Add(hn::Add(sum_of(a), sum_of(b)), hn::Add(sum_of(c), hn::Set(d, reach)));
         const FaceLanes error_sq = hn::Mul(hn::Mul(scale, scale), hn::Set(d, 0x1p-26F));
         constexpr float kThin = 1024; // q^2 beyond which the plane is not used
-        const auto has_plane = hn::Lt(hn::Mul(ab_sq, bc_sq), hn::Mul(normal_sq, hn::Set(d, kThin)));
-        const FaceLanes q_sq = hn::Mul(hn::Mul(ab_sq, bc_sq), inverse(normal_sq));
+        const FaceLanes sides_sq =    // of the two longest, which meet in the sharpest corner
+            hn::Max(hn::Max(hn::Mul(ab_sq, bc_sq), hn::Mul(bc_sq, ca_sq)), hn::Mul(ca_sq, ab_sq));
+        const auto has_plane = hn::Lt(sides_sq, hn::Mul(normal_sq, hn::Set(d, kThin)));
+        const FaceLanes q_sq = hn::Mul(sides_sq, inverse(normal_sq));
         const FaceLanes with_plane = hn::Mul(error_sq, hn::Max(q_sq, hn::Set(d, 1)));
         const FaceLanes width_sq = hn::Mul(normal_sq, inverse(hn::Max(hn::Max(ab_sq, bc_sq), ca_sq)));
         const FaceLanes upper_term = hn::IfThenElse(has_plane, with_plane, error_sq);

@@ -1,8 +1,8 @@
 #include "exact_map/nearest.hpp"
 
-#include "directions/angles.hpp"
 #include "exact_map/face_tree_walk.hpp"
 #include "exact_map/layout.hpp"
+#include "exact_map/triangle.hpp"
 
 #include <cmath>
 #include <limits>
@@ -19,23 +19,13 @@ Vec3d stretched(const Vec3d& v, const Vec3d& stretch) {
 }
 
 /// Corners of a face, stretched, with the place as origin.
-using Corners = std::array<Vec3d, 3>;
+using Corners = TriangleCorners;
 
 Corners corners_around(const ExactMapView& map, std::uint32_t face, const Vec3d& place,
                        const Vec3d& stretch) {
     const auto corners = face_corners(map, face);
     return {stretched(Vec3d(corners[0]) - place, stretch), stretched(Vec3d(corners[1]) - place, stretch),
             stretched(Vec3d(corners[2]) - place, stretch)};
-}
-
-double clamp01(double value) {
-    return value < 0 ? 0 : value > 1 ? 1 : value;
-}
-
-/// The point of a segment that is nearest to the origin, as a share of the way from a to b.
-double nearest_share(const Vec3d& a, const Vec3d& ab) {
-    const double length_sq = dot(ab, ab);
-    return length_sq > 0 ? clamp01(-dot(a, ab) / length_sq) : 0; // faces may be segments or points
 }
 
 /// Squared distance of a triangle from the origin, as vector instructions like it: all of the face and its
@@ -128,34 +118,6 @@ float rounded_up(double value) {
     return static_cast<float>(std::min(value, 1e37)) * (1 + 1e-6F);
 }
 
-/// Where on a triangle the nearest point to the origin lies, relative to it, and what of the triangle that
-/// is.
-NearestPoint nearest_on_triangle(const Corners& corners) {
-    const auto& [a, b, c] = corners;
-    const Vec3d normal = cross(b - a, c - b);
-    NearestPoint nearest;
-    double nearest_sq = kInfinity;
-    bool above = true;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3d& start = corners[k];
-        const Vec3d edge = corners[(k + 1) % 3] - start;
-        above = above && dot(cross(normal, start), edge) > 0;
-        const double share = nearest_share(start, edge);
-        const Vec3d candidate = start + edge * share;
-        const double distance_sq = dot(candidate, candidate);
-        if (!(distance_sq < nearest_sq)) continue;
-        nearest_sq = distance_sq;
-        nearest.point = candidate;
-        nearest.feature = share > 0 && share < 1 ? Feature::Edge : Feature::Vertex;
-    }
-    if (above) {
-        nearest.point = normal * (dot(a, normal) / dot(normal, normal));
-        nearest.feature = Feature::Face;
-    }
-    nearest.distance = length(nearest.point);
-    return nearest;
-}
-
 /// Of the stretched face, out of its front; 0 of one without area.
 Vec3d unit_normal(const ExactMapView& map, std::uint32_t face, const Vec3d& place, const Vec3d& stretch) {
     const Corners corners = corners_around(map, face, place, stretch);
@@ -163,25 +125,6 @@ Vec3d unit_normal(const ExactMapView& map, std::uint32_t face, const Vec3d& plac
     const double area = length(normal);
     const double mirror = stretch.x * stretch.y * stretch.z < 0 ? -1 : 1;
     return area > 0 ? normal * (mirror / area) : Vec3d{};
-}
-
-/// The angle between two vectors.
-float angle_between(const Vec3d& a, const Vec3d& b) {
-    return atan2_polynomial(static_cast<float>(length(cross(a, b)) / (length(a) * length(b))),
-                            static_cast<float>(dot(a, b) / (length(a) * length(b))));
-}
-
-/// How far around the origin a triangle reaches: a full turn inside, half a turn on an edge, at a corner its
-/// angle. Edges and corners within `reach` count as met.
-float spanned_angle(const Corners& corners, double reach) {
-    for (std::size_t k = 0; k < 3; ++k)
-        if (length(corners[k]) <= reach)
-            return angle_between(corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]);
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3d edge = corners[(k + 1) % 3] - corners[k];
-        if (length(corners[k] + edge * nearest_share(corners[k], edge)) <= reach) return kPi;
-    }
-    return 2 * kPi;
 }
 
 } // namespace
@@ -209,11 +152,9 @@ std::optional<NearestPoint> nearest_point(const ExactMapView& map, const Vec3d& 
 
 NearestPoint nearest_point_on_face(const ExactMapView& map, std::uint32_t face, const Vec3d& place,
                                    const Vec3d& stretch) noexcept {
-    NearestPoint nearest = nearest_on_triangle(corners_around(map, face, place, stretch));
-    const Vec3d& offset = nearest.point;
-    nearest.point = place + Vec3d{offset.x / stretch.x, offset.y / stretch.y, offset.z / stretch.z};
-    nearest.face = face;
-    return nearest;
+    const auto [offset, distance, feature] = nearest_on_triangle(corners_around(map, face, place, stretch));
+    return {place + Vec3d{offset.x / stretch.x, offset.y / stretch.y, offset.z / stretch.z}, distance, face,
+            feature};
 }
 
 double distance_sq_to_face(const ExactMapView& map, std::uint32_t face, const Vec3d& place,

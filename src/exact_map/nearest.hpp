@@ -18,9 +18,9 @@ struct NearestPoint {
     Feature feature = Feature::Unknown;
 };
 
-/// In lattice steps: farther than any surface is from any place on the lattice, where no axis is stretched by
-/// more than 1.
-inline constexpr double kEverywhere = 4 * static_cast<double>(kLatticeExtent);
+/// In lattice steps: farther than any surface is from any place whose coordinates are within half of it,
+/// where no axis is stretched by more than 1.
+inline constexpr double kEverywhere = 8 * static_cast<double>(kLatticeExtent);
 
 /// The nearest point of the whole surface, if it is at most `farthest` away: a branch and bound search of the
 /// face tree, so that the minimum is global. Of faces that are equally near, the first.

@@ -78,6 +78,7 @@ class NearestFaceFinder {
     NearestFaceFinder(const ExactMapView& map, const Vec3d& stretch, std::span<const NearestSearch> all)
         : map_(map), stretch_(stretch), stretch_float_(stretch), origin_(rounded_origin(all.front().place)) {
         for (const NearestSearch& search : all) {
+            if (!is_within_range(search)) continue;
             const Vec3d offset = search.place - Vec3d(origin_);
             reach_ = std::max(
                 reach_, static_cast<float>(std::fabs(offset.x) + std::fabs(offset.y) + std::fabs(offset.z)));
@@ -87,13 +88,9 @@ class NearestFaceFinder {
 
     /// @param searches  one at least, and no more than there are lanes
     void find(std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) {
-        const bool on_lattice =
-            std::all_of(searches.begin(), searches.end(), [](const NearestSearch& search) {
-                const Vec3d& p = search.place;
-                return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) < kEverywhere;
-            });
-        if (on_lattice) start(searches);
-        if (!on_lattice || !search()) {
+        const bool within_range = std::all_of(searches.begin(), searches.end(), is_within_range);
+        if (within_range) start(searches);
+        if (!within_range || !search()) {
             for (std::size_t i = 0; i < searches.size(); ++i) faces[i] = by_reference(searches[i]);
             return;
         }
@@ -103,9 +100,17 @@ class NearestFaceFinder {
   private:
     static constexpr double kMostSquared = 1e30;
 
+    /// Places farther off are left to the reference.
+    static constexpr double kRange = kEverywhere / 2;
+
+    static bool is_within_range(const NearestSearch& search) {
+        const Vec3d& p = search.place;
+        return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) < kRange;
+    }
+
     static Vec3<std::int32_t> rounded_origin(const Vec3d& place) {
         const auto within = [](double coordinate) {
-            return static_cast<std::int32_t>(std::clamp(coordinate, -kEverywhere, kEverywhere));
+            return static_cast<std::int32_t>(std::clamp(coordinate, -kRange, kRange));
         };
         return {within(place.x), within(place.y), within(place.z)};
     }
@@ -315,7 +320,7 @@ class NearestFaceFinder {
     float reach_ = 0;           ///< no place's coordinates, taken together, are farther from it
 
     // The places at hand.
-    PlaceLanes flat_, places_; ///< before and after stretching
+    PointLanes flat_, places_; ///< before and after stretching
     Vec3f low_, high_;         ///< the box around them, before stretching
     Vec3f stretched_low_, stretched_high_;
     FloatLanes upper_;         ///< squared distance within which the nearest face of each surely lies

@@ -36,8 +36,8 @@ struct Group {
     static constexpr std::size_t kMargin = 16; // lanes of the widest vector
 
     std::size_t size = 0;
-    std::array<std::int32_t, kCapacity + kMargin> slots; ///< numbers in the piece
-    std::array<std::int32_t, kCapacity + kMargin> bands;
+    alignas(64) std::array<std::int32_t, kCapacity + kMargin> slots; ///< numbers in the piece
+    alignas(64) std::array<std::int32_t, kCapacity + kMargin> bands;
 
     void add(IntMask mask, IntLanes slot, IntLanes band) {
         constexpr Ints i;
@@ -184,6 +184,8 @@ class SideFinder {
             store_sides(slot, hn::Zero(i));
             if (is_open_) [[unlikely]]
                 refer_later(slot, beyond);
+            // With the cell for the moment: its bands are looked up next. A cell without bands has no such
+            // particle, since nobody is sure of a cell who is less than kL1Error from the centre.
             below_.add(hn::Not(beyond), hn::Iota(i, static_cast<std::int32_t>(slot)),
                        hn::Load(i, &cells_[slot]));
         }

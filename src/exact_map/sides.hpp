@@ -19,7 +19,8 @@ inline Side side_of(const Containment& containment) {
 }
 
 /// The side of every particle; the same as by classify(), whatever the instruction set.
-/// Cost: allocates 56 bytes a particle, at most 8 MB; where there is no memory, the reference answers.
+/// Cost: for 512 particles and more, allocates up to 160 bytes a particle, at most 6 MB; where there is no
+/// memory, the reference answers.
 /// @pre points_local.size() == sides.size()
 void find_sides(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                 std::span<Side> sides) noexcept;

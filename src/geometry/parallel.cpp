@@ -8,8 +8,6 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
-
-#include <algorithm>
 #endif
 
 namespace echinus {
@@ -21,7 +19,8 @@ namespace {
 int concurrency(unsigned thread_count) {
     // Asked for more threads than it has, oneTBB would print a warning.
     const int available = tbb::info::default_concurrency();
-    return thread_count == 0 ? available : std::min(available, static_cast<int>(thread_count));
+    return thread_count == 0 ? available
+                             : static_cast<int>(std::min(static_cast<unsigned>(available), thread_count));
 }
 
 } // namespace

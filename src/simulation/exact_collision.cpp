@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace echinus {
 
@@ -44,7 +45,8 @@ void ExactCollision::relax(Particles& particles, SimulationProfile& profile) {
 ///
 /// Particles with about the same reach are asked for together.
 void ExactCollision::ask(Particles& particles, SimulationProfile& profile) {
-    const float least_reach = 2 * now_.thickness;
+    // Above 0 also where that is too little for a float, so that doubling gets somewhere.
+    const float least_reach = std::max(2 * now_.thickness, std::numeric_limits<float>::min());
     float reach = least_reach;
     std::size_t left = 0;
     for (const std::uint32_t i : to_ask_.all()) {

@@ -25,7 +25,7 @@ using Tag = hn::ScalableTag<float>;
 using Lanes = hn::Vec<Tag>;
 using Mask = hn::Mask<Tag>;
 
-struct LanePoints {
+struct EndLanes {
     Lanes x, y, z;
 };
 
@@ -37,14 +37,14 @@ class LaneStick {
           yield_(hn::Set(Tag(), run.yield)), gives_way_(run.yield != 0) {}
 
     /// Operation by operation what relax_one() does. @param left  sticks from the first lane on
-    void operator()(LanePoints& a, LanePoints& b, float* goal_lengths, std::size_t left) const {
+    void operator()(EndLanes& a, EndLanes& b, float* goal_lengths, std::size_t left) const {
         const Tag d;
         const Lanes x = b.x - a.x, y = b.y - a.y, z = b.z - a.z;
         const Lanes least = hn::Set(d, std::numeric_limits<float>::min());
         const Lanes distance = hn::Sqrt(x * x + y * y + z * z + least);
         const Lanes goal = hn::LoadU(d, goal_lengths);
         const Lanes factor = hn::Set(d, 1.0F) - goal / distance;
-        const LanePoints correction{x * factor, y * factor, z * factor};
+        const EndLanes correction{x * factor, y * factor, z * factor};
         a.x = a.x + correction.x * share_a_;
         a.y = a.y + correction.y * share_a_;
         a.z = a.z + correction.z * share_a_;
@@ -63,17 +63,17 @@ class LaneStick {
 
 /// Particles that follow each other.
 struct Row {
-    static LanePoints load(const PointArrays& p, std::size_t i) {
+    static EndLanes load(const PointArrays& p, std::size_t i) {
         const Tag d;
         return {hn::LoadU(d, &p.x[i]), hn::LoadU(d, &p.y[i]), hn::LoadU(d, &p.z[i])};
     }
-    static void store(const LanePoints& points, PointArrays& p, std::size_t i) {
+    static void store(const EndLanes& points, PointArrays& p, std::size_t i) {
         const Tag d;
         hn::StoreU(points.x, d, &p.x[i]);
         hn::StoreU(points.y, d, &p.y[i]);
         hn::StoreU(points.z, d, &p.z[i]);
     }
-    static void store(const LanePoints& points, const Mask& mask, PointArrays& p, std::size_t i) {
+    static void store(const EndLanes& points, const Mask& mask, PointArrays& p, std::size_t i) {
         const Tag d;
         hn::BlendedStore(points.x, mask, d, &p.x[i]);
         hn::BlendedStore(points.y, mask, d, &p.y[i]);
@@ -87,14 +87,14 @@ void relax_side_by_side(const StickRun& run, float* goal_lengths, PointArrays& p
     const std::size_t lanes = hn::Lanes(d);
     std::size_t i = 0;
     for (; i + lanes <= run.count; i += lanes) {
-        LanePoints a = Row::load(p, run.a + i), b = Row::load(p, run.b + i);
+        EndLanes a = Row::load(p, run.a + i), b = Row::load(p, run.b + i);
         stick(a, b, goal_lengths + i, run.count - i);
         Row::store(a, p, run.a + i);
         Row::store(b, p, run.b + i);
     }
     if (i == run.count) return;
     const Mask rest = hn::FirstN(d, run.count - i);
-    LanePoints a = Row::load(p, run.a + i), b = Row::load(p, run.b + i);
+    EndLanes a = Row::load(p, run.a + i), b = Row::load(p, run.b + i);
     stick(a, b, goal_lengths + i, run.count - i);
     Row::store(a, rest, p, run.a + i);
     Row::store(b, rest, p, run.b + i);
@@ -116,19 +116,19 @@ struct Alternating {
         const ElementTag d;
         hn::StoreInterleaved2(hn::BitCast(d, a), hn::BitCast(d, b), d, reinterpret_cast<Element*>(to));
     }
-    static void load(const PointArrays& p, std::size_t i, LanePoints& a, LanePoints& b) {
+    static void load(const PointArrays& p, std::size_t i, EndLanes& a, EndLanes& b) {
         load(&p.x[i], a.x, b.x);
         load(&p.y[i], a.y, b.y);
         load(&p.z[i], a.z, b.z);
     }
-    static void store(const LanePoints& a, const LanePoints& b, PointArrays& p, std::size_t i) {
+    static void store(const EndLanes& a, const EndLanes& b, PointArrays& p, std::size_t i) {
         store(a.x, b.x, &p.x[i]);
         store(a.y, b.y, &p.y[i]);
         store(a.z, b.z, &p.z[i]);
     }
 };
 
-HWY_INLINE LanePoints chosen(const Mask& mask, const LanePoints& yes, const LanePoints& no) {
+HWY_INLINE EndLanes chosen(const Mask& mask, const EndLanes& yes, const EndLanes& no) {
     return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y),
             hn::IfThenElse(mask, yes.z, no.z)};
 }
@@ -140,9 +140,9 @@ void relax_alternating(const StickRun& run, float* goal_lengths, PointArrays& p)
     const LaneStick stick(run);
     const std::size_t lanes = hn::Lanes(d);
     for (std::size_t i = 0; i < run.count; i += lanes) {
-        LanePoints a, b;
+        EndLanes a, b;
         Ends::load(p, run.a + 2 * i, a, b);
-        LanePoints new_a = a, new_b = b;
+        EndLanes new_a = a, new_b = b;
         stick(new_a, new_b, goal_lengths + i, run.count - i);
         if (i + lanes > run.count) {
             const Mask rest = hn::FirstN(d, run.count - i);

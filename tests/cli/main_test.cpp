@@ -1,5 +1,7 @@
 #include "cli/command_line.hpp"
 
+#include <cstdlib>
+
 using MainCommand = CommandLineTest;
 
 TEST_F(MainCommand, PrintsItsVersion) {
@@ -19,4 +21,12 @@ TEST_F(MainCommand, RefusesAMissingOrUnknownCommandAsWrongUse) {
 
 TEST_F(MainCommand, SaysOnOneLineAlsoWhatAnArgumentWithNewlinesBroke) {
     expect_failure(2, "two lines", {"two\nlines"});
+}
+
+TEST_F(MainCommand, TellsOfAnInstructionSetThatTheMachineDoesNotHave) {
+    setenv("ECHINUS_INSTRUCTION_SET", "abacus", 1);
+    expect_failure(2, "'abacus'", {"--version"});
+    setenv("ECHINUS_INSTRUCTION_SET", "scalar", 1);
+    expect_success({"--version"});
+    unsetenv("ECHINUS_INSTRUCTION_SET");
 }

@@ -42,7 +42,10 @@ std::vector<Case> cases() {
         {"a box inside out", test::turned_inside_out(make_box({1, 2, 3}, 2)), {}},
         {"an open sphere", without_last_faces(make_sphere(1, 24, 12), 60), {}},
         {"a plate", make_box({1, 1, 1e-4F}, 4), {}},
-        {"a tetrahedron's worth of faces", make_box({1, 1, 1}), {.divisions = 3}},
+        {"twelve faces", make_box({1, 1, 1}), {.divisions = 3}},
+        // Faces with tips sharp enough for rounding to matter beyond them.
+        {"a rod", make_box({1, 2e-3F, 1e-3F}), {}},
+        {"spokes", make_sphere(1, 700, 3), {}},
     };
 }
 
@@ -57,6 +60,9 @@ std::vector<Vec3f> telling_points(const ExactMapView& map, const TriangleMesh& m
     for (const Vec3f& p : test::surface_points(mesh, 500, 1e-6)) points.push_back(p);
     for (int n = 0; n < 3000; ++n) points.push_back(map.centre + test::in_cube(random, 1.3F * map.radius));
     for (int n = 0; n < 300; ++n) points.push_back(map.centre + test::in_cube(random, 1e-5F * map.radius));
+    for (int n = 0; n < 300; ++n) points.push_back(map.centre + test::in_cube(random, 5 * map.radius));
+    for (std::size_t i = 0; i < mesh.vertices.size(); i += 7)
+        points.push_back(mesh.vertices[i] + test::in_cube(random, 0.01F * map.radius));
     for (const Vec3f& vertex : mesh.vertices) points.push_back(vertex);
     for (int x = -8; x <= 8; ++x)
         for (int y = -8; y <= 8; ++y)
@@ -126,6 +132,7 @@ TEST(ExactMapBatch, SaysWhatContactSaysUnderEveryInstructionSet) {
             expect_same_contacts(map, points, 0, {1, 1, 1}, 1);
             expect_same_contacts(map, points, 0.05F * map.view().radius, {1, 1, 1}, 1);
             expect_same_contacts(map, points, 0.05F * map.view().radius, {2, -1, 0.5}, 1);
+            expect_same_contacts(map, points, 4.5F * map.view().radius, {1, 0.7, 0.3}, 1);
         });
     }
 }

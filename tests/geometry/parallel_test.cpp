@@ -54,3 +54,21 @@ TEST(ParallelInvoke, CallsBothOnceAndPassesOnExceptions) {
                      std::runtime_error);
     }
 }
+
+TEST(ParallelFor, TakesMoreThreadsThanThereCanBe) {
+    std::atomic<std::size_t> sum = 0;
+    parallel_for(1000, 0xFFFF'FFFFU, [&](std::size_t begin, std::size_t end) { sum += end - begin; });
+    EXPECT_EQ(sum, 1000U);
+    EXPECT_LE(worker_count(0xFFFF'FFFFU), worker_count(0));
+}
+
+TEST(ForEachPiece, VisitsEveryIndexOnceForAnyThreadCount) {
+    for (unsigned thread_count : {0U, 1U, 2U, 7U})
+        for (std::size_t size : {0, 1, 100, 40'000, 100'003}) {
+            std::vector<std::atomic<int>> visits(size);
+            for_each_piece(size, thread_count, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) ++visits[i];
+            });
+            for (const auto& count : visits) ASSERT_EQ(count, 1);
+        }
+}

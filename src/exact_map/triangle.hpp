@@ -1,0 +1,79 @@
+#pragma once
+
+#include "directions/angles.hpp"
+
+#include <echinus/contact.hpp>
+#include <echinus/geometry.hpp>
+
+#include <array>
+#include <limits>
+
+/// A triangle seen from the origin: its nearest point, and the angle that it spans around it.
+namespace echinus {
+
+using TriangleCorners = std::array<Vec3d, 3>;
+
+inline double clamp01(double value) {
+    return value < 0 ? 0 : value > 1 ? 1 : value;
+}
+
+/// The point of a segment that is nearest to the origin, as a share of the way from a to b.
+inline double nearest_share(const Vec3d& a, const Vec3d& ab) {
+    const double length_sq = dot(ab, ab);
+    return length_sq > 0 ? clamp01(-dot(a, ab) / length_sq) : 0; // faces may be segments or points
+}
+
+struct NearestOnTriangle {
+    Vec3d point;
+    double distance = 0;
+    Feature feature = Feature::Unknown;
+};
+
+/// Where on a triangle the nearest point to the origin lies, relative to it, and what of the triangle that
+/// is.
+inline NearestOnTriangle nearest_on_triangle(const TriangleCorners& corners) {
+    const auto& [a, b, c] = corners;
+    const Vec3d normal = cross(b - a, c - b);
+    NearestOnTriangle nearest;
+    double nearest_sq = std::numeric_limits<double>::infinity();
+    bool above = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3d& start = corners[k];
+        const Vec3d edge = corners[(k + 1) % 3] - start;
+        above = above && dot(cross(normal, start), edge) > 0;
+        const double share = nearest_share(start, edge);
+        const Vec3d candidate = start + edge * share;
+        const double distance_sq = dot(candidate, candidate);
+        if (!(distance_sq < nearest_sq)) continue;
+        nearest_sq = distance_sq;
+        nearest.point = candidate;
+        nearest.feature = share > 0 && share < 1 ? Feature::Edge : Feature::Vertex;
+    }
+    if (above) {
+        nearest.point = normal * (dot(a, normal) / dot(normal, normal));
+        nearest.feature = Feature::Face;
+    }
+    nearest.distance = length(nearest.point);
+    return nearest;
+}
+
+/// The angle between two vectors.
+inline float angle_between(const Vec3d& a, const Vec3d& b) {
+    return atan2_polynomial(static_cast<float>(length(cross(a, b)) / (length(a) * length(b))),
+                            static_cast<float>(dot(a, b) / (length(a) * length(b))));
+}
+
+/// How far around the origin a triangle reaches: a full turn inside, half a turn on an edge, at a corner its
+/// angle. Edges and corners within `reach` count as met.
+inline float spanned_angle(const TriangleCorners& corners, double reach) {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (length(corners[k]) <= reach)
+            return angle_between(corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3d edge = corners[(k + 1) % 3] - corners[k];
+        if (length(corners[k] + edge * nearest_share(corners[k], edge)) <= reach) return kPi;
+    }
+    return 2 * kPi;
+}
+
+} // namespace echinus

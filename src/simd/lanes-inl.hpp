@@ -1,0 +1,32 @@
+// Included once for each instruction set, as Highway wants it: no guard against a second time.
+#if defined(ECHINUS_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef ECHINUS_LANES_INL
+#undef ECHINUS_LANES_INL
+#else
+#define ECHINUS_LANES_INL
+#endif
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace echinus::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Vectors as wide as the instruction set has them.
+using Floats = hn::ScalableTag<float>;
+using Ints = hn::RebindToSigned<Floats>;
+using FloatLanes = hn::Vec<Floats>;
+using IntLanes = hn::Vec<Ints>;
+using FloatMask = hn::Mask<Floats>;
+using IntMask = hn::Mask<Ints>;
+
+/// Points or directions of several particles.
+struct PointLanes {
+    FloatLanes x, y, z;
+};
+
+} // namespace echinus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
