@@ -64,7 +64,12 @@ Setting setting_of(const Arguments& arguments, Progress& progress) {
 void measure(const Arguments& arguments) {
     Progress progress;
     Setting setting = setting_of(arguments, progress);
-    if (arguments.short_run) setting.effort = {.point_count = 40'000, .large_point_count = 0, .passes = 3};
+    if (arguments.short_run)
+        setting.effort = {.point_count = 40'000,
+                          .large_point_count = 0,
+                          .passes = 3,
+                          .patience_seconds = 0.05,
+                          .enough_seconds = 0.3};
     if (arguments.task != "threads") pin_to_one_core();
     kTasks.at(arguments.task)(setting).write(
         arguments.target, {describe_machine(), fmt::format("{} passes", setting.effort.passes)});

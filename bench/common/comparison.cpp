@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <time.h>
 
-#include <algorithm>
+#include <cmath>
 
 using namespace echinus;
 
 namespace {
 
-constexpr std::size_t kBatch = 10'000;
+constexpr std::size_t kSmall = 100'000; // sets of so few particles are quick: more passes
 
 const char* name_of(Role role) {
     switch (role) {
@@ -24,13 +24,10 @@ const char* name_of(Role role) {
 }
 
 /// The particles that a racer was timed with.
-std::vector<std::uint32_t> asked_of(const Racer& racer, std::size_t count, std::size_t block_size) {
+std::vector<std::uint32_t> asked_of(const Racer& racer) {
     std::vector<std::uint32_t> asked;
-    for (std::size_t begin = 0; begin < count; begin += block_size) {
-        const std::size_t block = std::min(block_size, count - begin);
-        for (std::size_t i = begin; i < begin + std::min(racer.block_share, block); ++i)
-            asked.push_back(static_cast<std::uint32_t>(i));
-    }
+    for (const Part& part : racer.parts)
+        for (std::size_t i = part.begin; i < part.end; ++i) asked.push_back(static_cast<std::uint32_t>(i));
     return asked;
 }
 
@@ -47,7 +44,7 @@ ErrorSummary judge(const Comparison& comparison, const Subject& subject, const T
 }
 
 std::string digits(double value) {
-    return fmt::format("{:.4g}", value);
+    return std::isnan(value) ? "" : fmt::format("{:.4g}", value);
 }
 
 } // namespace
@@ -64,37 +61,42 @@ Records comparison_records() {
                     "depth_worst"});
 }
 
+std::vector<Racer> racers_for(const std::vector<Competitor>& competitors, const ParticleSet& set,
+                              double patience_seconds) {
+    std::vector<Racer> racers;
+    for (const Competitor& competitor : competitors) {
+        const auto run = [&](Part part) {
+            competitor.answer(std::span(set.points).subspan(part.begin, part.size()), part.begin);
+        };
+        const std::size_t count = set.points.size();
+        racers.push_back({run, competitor.as_whole ? std::vector<Part>{{0, count}}
+                                                   : parts_for(run, count, patience_seconds)});
+    }
+    return racers;
+}
+
 void compare(const Comparison& comparison, const Subject& subject, const ParticleSet& set,
              const std::vector<Competitor>& competitors, Records& records) {
     const Truth truth = truth_of(subject, set, comparison.truth_cache);
-    const std::size_t count = set.points.size();
-    const bool is_batch = count <= kBatch;
     TurnOptions options;
-    options.passes = is_batch ? 3 * comparison.effort.passes : comparison.effort.passes;
-    if (is_batch) options.block_size = options.warm_up = kBatch;
+    options.passes = comparison.effort.passes * (set.points.size() <= kSmall ? 3 : 1);
+    options.enough_seconds = comparison.effort.enough_seconds;
     options.report_progress = [&](double fraction) {
         comparison.report_progress(fmt::format("{} {} {}", comparison.task, subject.name, set.name),
                                    fraction);
     };
 
-    std::vector<Racer> racers;
-    for (const Competitor& competitor : competitors) {
-        Racer racer{[&](std::size_t begin, std::size_t end) {
-            competitor.answer(std::span(set.points).subspan(begin, end - begin), begin);
-        }};
-        racer.block_share = share_for(racer, count, options.block_size, comparison.effort.patience_seconds);
-        racers.push_back(std::move(racer));
-    }
-    const std::vector<Pace> paces = take_turns(count, racers, options);
+    const std::vector<Racer> racers = racers_for(competitors, set, comparison.effort.patience_seconds);
+    const std::vector<Pace> paces = take_turns(racers, options);
 
     for (std::size_t k = 0; k < competitors.size(); ++k) {
         const Competitor& competitor = competitors[k];
-        const std::vector<std::uint32_t> asked = asked_of(racers[k], count, options.block_size);
+        const std::vector<std::uint32_t> asked = asked_of(racers[k]);
         Records::Record record{{"task", comparison.task},
                                {"mesh", subject.name},
                                {"faces", fmt::format("{}", subject.mesh.faces.size())},
                                {"set", set.name},
-                               {"particles", fmt::format("{}", count)},
+                               {"particles", fmt::format("{}", set.points.size())},
                                {"system", competitor.system},
                                {"way", competitor.way},
                                {"role", name_of(competitor.role)},

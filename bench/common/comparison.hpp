@@ -18,6 +18,7 @@ struct Competitor {
     Role role;
     std::size_t bytes;
     double build_ms;
+    bool as_whole; ///< gains by the number of particles in a call: never asked for parts of a set
     /// Answers for particles [first, first + points.size()) of the set, and keeps what it answered.
     std::function<void(std::span<const echinus::Vec3f> points, std::size_t first)> answer;
     /// What was answered for particle i; of a task that asks for the sign alone the depth is 1 or 0.
@@ -29,7 +30,8 @@ struct Effort {
     std::size_t point_count = 1'000'000;     ///< per set
     std::size_t large_point_count = 200'000; ///< per set, of large meshes; 0 leaves these out
     int passes = 5;
-    double patience_seconds = 0.13; ///< who would take longer for a block does only the first part of it
+    double patience_seconds = 0.5; ///< who would take longer for a set is asked for parts spread over it
+    double enough_seconds = 3;     ///< who took so long in all passes is asked no more
 };
 
 /// What a comparison is about.
@@ -43,6 +45,10 @@ struct Comparison {
 
 /// The columns of a comparison's records.
 Records comparison_records();
+
+/// All of them, asked for a set: whole, in one call, or who is too slow for that, in parts.
+std::vector<Racer> racers_for(const std::vector<Competitor>& competitors, const ParticleSet& set,
+                              double patience_seconds);
 
 /// Lets all answer for all particles of a set, judges what they said, and adds a record for each.
 void compare(const Comparison& comparison, const Subject& subject, const ParticleSet& set,

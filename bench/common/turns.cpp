@@ -14,16 +14,50 @@ double quantile(const std::vector<double>& sorted, double q) {
     return sorted[below] + (sorted[above] - sorted[below]) * (place - static_cast<double>(below));
 }
 
-/// Seconds for one racer's part of a block.
-double timed(const Racer& racer, std::size_t begin, std::size_t end, std::size_t warm_up) {
-    const std::size_t warm_begin = begin - std::min(begin, warm_up);
-    if (warm_begin < begin)
-        racer.run(warm_begin, begin);
-    else
-        racer.run(begin, std::min(begin + warm_up, end)); // the first block has none before it
+double seconds_of(const std::function<void(Part)>& run, Part part) {
     const double start = thread_seconds();
-    racer.run(begin, end);
+    run(part);
     return thread_seconds() - start;
+}
+
+Part before(Part part, std::size_t item_count) {
+    const std::size_t count = std::min(item_count, part.size());
+    if (part.begin < count) return {part.begin, part.begin + count};
+    return {part.begin - count, part.begin};
+}
+
+/// Seconds that a racer takes for its parts.
+double turn_seconds(const Racer& racer, std::size_t warm_up) {
+    double seconds = 0;
+    for (const Part& part : racer.parts) {
+        racer.run(before(part, warm_up));
+        seconds += seconds_of(racer.run, part);
+    }
+    return seconds;
+}
+
+std::size_t item_count_of(const std::vector<Part>& parts) {
+    std::size_t count = 0;
+    for (const Part& part : parts) count += part.size();
+    return count;
+}
+
+Pace pace_of(std::vector<double> pass_ns) {
+    std::vector<double> sorted = pass_ns;
+    std::ranges::sort(sorted);
+    const double median = quantile(sorted, 0.5);
+    const double spread = (quantile(sorted, 0.75) - quantile(sorted, 0.25)) / 2 / median;
+    return {median, sorted.size() > 1 ? spread : std::nan(""), std::move(pass_ns)};
+}
+
+/// In the middle of each of `part_count` equal stretches.
+std::vector<Part> spread_parts(std::size_t item_count, std::size_t part_count, std::size_t part_size) {
+    std::vector<Part> parts;
+    for (std::size_t k = 0; k < part_count; ++k) {
+        const std::size_t begin = (2 * k + 1) * item_count / (2 * part_count) - part_size / 2;
+        parts.push_back({begin, begin + part_size});
+    }
+    return parts;
 }
 
 } // namespace
@@ -33,48 +67,35 @@ double median_of(std::vector<double> values) {
     return values.empty() ? std::nan("") : quantile(values, 0.5);
 }
 
-std::size_t share_for(const Racer& racer, std::size_t item_count, std::size_t block_size,
-                      double patience_seconds) {
-    const std::size_t trial = std::min<std::size_t>(item_count, 1000);
-    racer.run(0, trial);
-    const double start = thread_seconds();
-    racer.run(0, trial);
-    const double seconds = (thread_seconds() - start) / static_cast<double>(trial);
-    if (seconds * static_cast<double>(block_size) <= patience_seconds) return block_size;
-    return std::max<std::size_t>(trial, static_cast<std::size_t>(patience_seconds / 4 / seconds));
+std::vector<Part> parts_for(const std::function<void(Part)>& run, std::size_t item_count,
+                            double patience_seconds) {
+    constexpr std::size_t kPart = 1000, kFewest = 10;
+    const std::vector<Part> whole{{0, item_count}};
+    if (item_count <= kFewest * kPart) return whole;
+    double seconds = 0; // for a part
+    for (const Part& part : spread_parts(item_count, kFewest, kPart))
+        seconds += seconds_of(run, part) / kFewest;
+    const double affordable = patience_seconds / seconds;
+    if (affordable * kPart >= static_cast<double>(item_count)) return whole;
+    return spread_parts(item_count, std::max(static_cast<std::size_t>(affordable), kFewest), kPart);
 }
 
-std::vector<Pace> take_turns(std::size_t item_count, const std::vector<Racer>& racers,
-                             const TurnOptions& options) {
-    const auto passes = static_cast<std::size_t>(options.passes);
-    const std::size_t block_count = (item_count + options.block_size - 1) / options.block_size;
-    std::vector<Pace> paces(racers.size());
-    for (Pace& pace : paces) pace.pass_ns.assign(passes, 0);
-    std::vector<std::vector<double>> times(racers.size(), std::vector<double>(passes));
-    std::size_t turns_done = 0;
-    for (std::size_t begin = 0; begin < item_count; begin += options.block_size) {
-        const std::size_t block_end = std::min(begin + options.block_size, item_count);
-        for (std::size_t pass = 0; pass < passes; ++pass)
-            for (std::size_t turn = 0; turn < racers.size(); ++turn) {
-                const std::size_t k = pass % 2 == 0 ? turn : racers.size() - 1 - turn;
-                const std::size_t end = begin + std::min(racers[k].block_share, block_end - begin);
-                times[k][pass] = timed(racers[k], begin, end, std::min(options.warm_up, end - begin)) * 1e9 /
-                                 static_cast<double>(end - begin);
-                ++turns_done;
-                if (options.report_progress)
-                    options.report_progress(static_cast<double>(turns_done) /
-                                            static_cast<double>(block_count * passes * racers.size()));
-            }
-        for (std::size_t k = 0; k < racers.size(); ++k) {
-            for (std::size_t pass = 0; pass < passes; ++pass)
-                paces[k].pass_ns[pass] += times[k][pass] / static_cast<double>(block_count);
-            std::vector<double> sorted = times[k];
-            std::ranges::sort(sorted);
-            const double median = quantile(sorted, 0.5);
-            paces[k].ns += median / static_cast<double>(block_count);
-            paces[k].spread += (quantile(sorted, 0.75) - quantile(sorted, 0.25)) / 2 / median /
-                               static_cast<double>(block_count);
+std::vector<Pace> take_turns(const std::vector<Racer>& racers, const TurnOptions& options) {
+    std::vector<std::vector<double>> pass_ns(racers.size());
+    std::vector<double> seconds(racers.size());
+    for (int pass = 0; pass < options.passes; ++pass)
+        for (std::size_t turn = 0; turn < racers.size(); ++turn) {
+            const std::size_t k = pass % 2 == 0 ? turn : racers.size() - 1 - turn;
+            if (seconds[k] > options.enough_seconds) continue;
+            const double turn_took = turn_seconds(racers[k], options.warm_up);
+            seconds[k] += turn_took;
+            pass_ns[k].push_back(1e9 * turn_took / static_cast<double>(item_count_of(racers[k].parts)));
+            if (options.report_progress)
+                options.report_progress(
+                    (pass + static_cast<double>(turn + 1) / static_cast<double>(racers.size())) /
+                    options.passes);
         }
-    }
+    std::vector<Pace> paces;
+    for (std::vector<double>& of_racer : pass_ns) paces.push_back(pace_of(std::move(of_racer)));
     return paces;
 }

@@ -2,41 +2,48 @@
 
 #include <cstddef>
 #include <functional>
-#include <string>
+#include <limits>
 #include <vector>
 
-/// One of those that take turns: does its work for items [begin, end).
+/// Items [begin, end).
+struct Part {
+    std::size_t begin, end;
+
+    std::size_t size() const { return end - begin; }
+};
+
+/// One of those that take turns.
 struct Racer {
-    std::function<void(std::size_t begin, std::size_t end)> run;
-    /// Of each block, how many items it does: all, or for what is slow only the first.
-    std::size_t block_share = static_cast<std::size_t>(-1);
+    /// Does its work for a part, in one call.
+    std::function<void(Part)> run;
+    /// What it does in a turn: all items in one part, or a sample of them.
+    std::vector<Part> parts;
 };
 
 struct TurnOptions {
-    std::size_t block_size = 100'000;
-    std::size_t warm_up = 20'000; ///< items done before a block without being timed
+    std::size_t warm_up = 20'000; ///< items done before a part without being timed, as many as it has at most
     int passes = 5;
+    double enough_seconds = std::numeric_limits<double>::infinity(); ///< who was timed so long drops out
     std::function<void(double fraction)> report_progress;
 };
 
 /// What a racer took.
 struct Pace {
-    double ns = 0;     ///< per item: mean over blocks of the median over passes
-    double spread = 0; ///< half the distance between the quartiles of a block's times, by their median; the
-                       ///< mean over blocks
-    std::vector<double> pass_ns; ///< [passes] per item: mean over blocks
+    double ns;                   ///< per item: the median over passes
+    double spread;               ///< half the distance between their quartiles, by it; NaN after one pass
+    std::vector<double> pass_ns; ///< [passes, or fewer for who dropped out] per item
 };
 
-/// Races on the calling thread, by its processor time. For each block of items all racers take their turn,
-/// there and back, `passes` times over, so that a machine that changes its pace hits all alike. Before it is
-/// timed, each runs for a while on the items before the block: its tables, not another's, are then in the
+/// Races on the calling thread, by its processor time. All racers take their turn, there and back, `passes`
+/// times over, so that a machine that changes its pace hits all alike. Before each part each runs for a while
+/// on the items before it, or on its first where there are none: its tables, not another's, are then in the
 /// caches, as they would be in a program that uses one of them.
-std::vector<Pace> take_turns(std::size_t item_count, const std::vector<Racer>& racers,
-                             const TurnOptions& options);
+std::vector<Pace> take_turns(const std::vector<Racer>& racers, const TurnOptions& options);
 
-/// How much of a block a racer should do, by a short trial: all of it if that takes no longer than
-/// `patience`, and otherwise what it does in a quarter of that time.
-std::size_t share_for(const Racer& racer, std::size_t item_count, std::size_t block_size,
-                      double patience_seconds);
+/// What a racer should do in a turn: all items in one part if a short trial says that this takes no longer
+/// than `patience`, and otherwise as many parts of a thousand items as it can do in that time, but no fewer
+/// than ten, spread evenly over all.
+std::vector<Part> parts_for(const std::function<void(Part)>& run, std::size_t item_count,
+                            double patience_seconds);
 
 double median_of(std::vector<double> values);

@@ -18,9 +18,11 @@ class ClassifiedGridContacts : public ContactsSystem {
     void build(const TriangleMesh& mesh) override { grid_ = baselines::ClassifiedGrid::build(mesh, budget_); }
     std::size_t byte_count() const override { return grid_->byte_count(); }
     std::vector<ContactsWay> ways(std::size_t point_count) override {
-        return {contact_way("batch", point_count, [this](auto points, auto contacts) {
+        ContactsWay way = contact_way("batch", point_count, [this](auto points, auto contacts) {
             grid_->contacts_batch(points, 0, contacts);
-        })};
+        });
+        way.as_whole = true;
+        return {std::move(way)};
     }
 
   private:

@@ -22,12 +22,14 @@ class DistanceMapContacts : public ContactsSystem {
 
     std::vector<ContactsWay> ways(std::size_t point_count) override {
         std::vector<ContactsWay> ways;
-        for (const std::string_view set : available_instruction_sets())
+        for (const std::string_view set : available_instruction_sets()) {
             ways.push_back(contact_way("batch " + std::string(set), point_count,
                                        [this, set](auto points, auto contacts) {
                                            use_instruction_set(set);
                                            contacts_batch(map_->view(), points, 0, contacts);
                                        }));
+            ways.back().as_whole = true;
+        }
         ways.push_back(contact_way("one by one", point_count, [this](auto points, auto contacts) {
             for (std::size_t i = 0; i < points.size(); ++i) contacts[i] = contact(map_->view(), points[i]);
         }));

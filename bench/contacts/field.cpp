@@ -6,13 +6,8 @@ namespace {
 
 Competitor competitor_of(const Listed<ContactsSystem>& listed, const ContactsSystem& system, double build_ms,
                          ContactsWay way) {
-    return {listed.name,
-            way.name,
-            listed.role,
-            system.byte_count(),
-            build_ms,
-            std::move(way.answer),
-            std::move(way.answered)};
+    return {listed.name, way.name,     listed.role,           system.byte_count(),
+            build_ms,    way.as_whole, std::move(way.answer), std::move(way.answered)};
 }
 
 } // namespace

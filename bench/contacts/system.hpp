@@ -15,6 +15,7 @@ struct ContactsWay {
     std::function<void(std::span<const echinus::Vec3f> points, std::size_t first)> answer;
     /// What was answered for particle i.
     std::function<DepthNormal(std::size_t i)> answered;
+    bool as_whole = false; ///< gains by the number of particles in a call: never asked for parts of a set
 };
 
 /// A system in the task "contacts".

@@ -19,7 +19,7 @@ class ClassifiedGridContains : public ContainsSystem {
     void build(const TriangleMesh& mesh) override { grid_ = baselines::ClassifiedGrid::build(mesh, budget_); }
     std::size_t byte_count() const override { return grid_->byte_count(); }
     std::vector<ContainsWay> ways() override {
-        return {{"batch", [this](auto points, auto inside) { grid_->contains_batch(points, inside); }}};
+        return {{"batch", [this](auto points, auto inside) { grid_->contains_batch(points, inside); }, true}};
     }
 
   private:

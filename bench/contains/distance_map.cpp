@@ -23,10 +23,12 @@ class DistanceMapContains : public ContainsSystem {
     std::vector<ContainsWay> ways() override {
         std::vector<ContainsWay> ways;
         for (const std::string_view set : available_instruction_sets())
-            ways.push_back({"batch " + std::string(set), [this, set](auto points, auto inside) {
+            ways.push_back({"batch " + std::string(set),
+                            [this, set](auto points, auto inside) {
                                 use_instruction_set(set);
                                 contains_batch(map_->view(), points, inside);
-                            }});
+                            },
+                            true});
         ways.push_back({"one by one", [this](auto points, auto inside) {
                             for (std::size_t i = 0; i < points.size(); ++i)
                                 inside[i] = contains(map_->view(), points[i]);

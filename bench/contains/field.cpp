@@ -12,6 +12,7 @@ Competitor competitor_of(const Listed<ContainsSystem>& listed, const ContainsSys
             listed.role,
             system.byte_count(),
             build_ms,
+            way.as_whole,
             [=, answer = std::move(way.answer)](std::span<const Vec3f> points, std::size_t first) {
                 answer(points, std::span(*inside).subspan(first, points.size()));
             },

@@ -11,6 +11,7 @@ struct ContainsWay {
     /// @param points  [n]
     /// @param inside  [n] out: not 0 inside
     std::function<void(std::span<const echinus::Vec3f> points, std::span<std::uint8_t> inside)> answer;
+    bool as_whole = false; ///< gains by the number of particles in a call: never asked for parts of a set
 };
 
 /// A system in the task "contains": the sign of every particle.

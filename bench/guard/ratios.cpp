@@ -56,18 +56,12 @@ void measure_queries(const Subject& horse, const std::string& task, const std::v
                      const std::vector<Competitor>& competitors, const Setting& setting, Records& records) {
     for (const ParticleSet& set : sets) {
         TurnOptions options;
-        options.block_size = 25'000;
-        options.warm_up = 10'000;
         options.passes = kPasses;
         options.report_progress = [&](double fraction) {
             setting.report_progress(task + ' ' + set.name, fraction);
         };
-        std::vector<Racer> racers;
-        for (const Competitor& competitor : competitors)
-            racers.push_back({[&](std::size_t begin, std::size_t end) {
-                competitor.answer(std::span(set.points).subspan(begin, end - begin), begin);
-            }});
-        const std::vector<Pace> paces = take_turns(set.points.size(), racers, options);
+        const std::vector<Pace> paces =
+            take_turns(racers_for(competitors, set, setting.effort.patience_seconds), options);
         std::vector<Entry> entries;
         for (std::size_t k = 0; k < competitors.size(); ++k)
             entries.push_back({competitors[k].system, competitors[k].role == Role::Ours, paces[k]});
@@ -92,12 +86,11 @@ void measure_builds(const Subject& horse, const Setting& setting, Records& recor
     list_build_rivals(ways, horse.mesh);
     std::erase_if(ways, [](const BuildWay& way) { return way.thread_count != 1; });
     std::vector<Racer> racers;
-    for (const BuildWay& way : ways) racers.push_back({[&way](std::size_t, std::size_t) { way.build(); }});
+    for (const BuildWay& way : ways) racers.push_back({[&way](Part) { way.build(); }, {{0, 1}}});
     TurnOptions options;
-    options.block_size = options.warm_up = 1;
     options.passes = 3 * kPasses;
     options.report_progress = [&](double fraction) { setting.report_progress("build", fraction); };
-    const std::vector<Pace> paces = take_turns(1, racers, options);
+    const std::vector<Pace> paces = take_turns(racers, options);
     std::vector<Entry> entries;
     for (std::size_t k = 0; k < ways.size(); ++k) {
         const bool ours = ways[k].system == "exact map" || ways[k].system == "distance map";

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace {
 
@@ -113,6 +114,7 @@ std::string spread(const Results& results) {
     std::vector<double> spreads;
     for (const Records* records : {&results.contains, &results.contacts})
         for (const Records::Record& record : records->all()) spreads.push_back(number(record, "spread"));
+    std::erase_if(spreads, [](double one_pass) { return std::isnan(one_pass); });
     std::ranges::sort(spreads);
     const auto percent_at = [&](double share) {
         return 100 * spreads[static_cast<std::size_t>(share * static_cast<double>(spreads.size() - 1))];
