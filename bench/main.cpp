@@ -103,7 +103,6 @@ void print_all(const char* head, const std::vector<std::string>& sentences) {
 Records measure_guard(const Arguments& arguments) {
     Progress progress;
     Setting setting = setting_of(arguments, progress);
-    setting.effort.point_count = 100'000;
     pin_to_one_core();
     return measure_ratios(setting);
 }
