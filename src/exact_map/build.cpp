@@ -67,7 +67,7 @@ ExactMapView view_of(const OwnedArrays& arrays, const LatticeMesh& lattice, std:
     view.winding_below = arrays.bands.winding_below;
     view.references = arrays.bands.references.view();
     view.reference_parts = arrays.bands.reference_parts;
-    view.vertices = arrays.vertices;
+    view.vertices = std::span(arrays.vertices).subspan(1);
     view.corners = arrays.corners.view();
     view.face_numbers = arrays.face_numbers.view();
     view.nodes = arrays.nodes;
@@ -193,7 +193,8 @@ void MapMaker::set_surface(std::span<const Vec3f> vertices) {
     arrays_->border.clear();
     if (!*closed_) arrays_->border = find_border(lattice_);
     arrays_->vertices.clear();
-    arrays_->vertices.reserve(lattice_.vertices.size());
+    arrays_->vertices.reserve(1 + lattice_.vertices.size());
+    arrays_->vertices.emplace_back(); // so that vectors can read a number before the first
     for (const LatticePoint& vertex : lattice_.vertices) arrays_->vertices.emplace_back(vertex);
 }
 

@@ -123,6 +123,48 @@ class SnapLanes {
     LatticeFrame frame_;
 };
 
+/// Parts of cells in which particles on the lattice lie, a bit each, as of ExactMapView::reference_parts.
+class PartLanes {
+  public:
+    explicit PartLanes(std::uint32_t divisions)
+        : fine_n_(static_cast<float>(OctahedralCells::kPartsPerSide * divisions)) {}
+
+    /// All of them for a particle that is so close to a wall that rounding may decide.
+    IntLanes operator()(const LatticeLanes& p) const {
+        constexpr Floats f;
+        constexpr Ints i;
+        const FloatLanes parts_per_step = hn::Div(hn::Set(f, fine_n_), p.l1_norm());
+        const FloatLanes along_x = hn::Mul(hn::Abs(p.x), parts_per_step);
+        const FloatLanes along_y = hn::Mul(hn::Abs(p.y), parts_per_step);
+        const IntLanes row = hn::ConvertTo(i, along_x), column = hn::ConvertTo(i, along_y);
+        const FloatLanes rest_x = hn::Sub(along_x, hn::ConvertTo(f, row));
+        const FloatLanes rest_y = hn::Sub(along_y, hn::ConvertTo(f, column));
+        const FloatLanes rest = hn::Add(rest_x, rest_y);
+        const FloatLanes one = hn::Set(f, 1);
+        const FloatLanes clearance =
+            hn::Min(hn::Min(hn::Min(rest_x, rest_y), hn::Sub(one, hn::Max(rest_x, rest_y))),
+                    hn::Abs(hn::Sub(rest, one)));
+        const FloatMask sure = hn::Gt(clearance, hn::Set(f, fine_n_ * 0x1p-21F));
+
+        const IntLanes three = hn::Set(i, OctahedralCells::kPartsPerSide - 1);
+        const IntLanes minus_down = hn::BitCast(i, hn::VecFromMask(f, hn::Gt(rest, one)));
+        const IntLanes part_row = hn::And(row, three), part_column = hn::And(column, three);
+        // A cell that is down counts from the other end.
+        const IntLanes turned =
+            hn::VecFromMask(i, hn::Gt(hn::Sub(hn::Add(part_row, part_column), minus_down), three));
+        const IntLanes flip = hn::And(turned, three);
+        const IntLanes part_i = hn::Xor(part_row, flip), part_j = hn::Xor(part_column, flip);
+        const IntLanes down = hn::Xor(minus_down, turned); // 0 or -1
+        const IntLanes part =
+            hn::Sub(hn::Add(hn::Mul(part_i, hn::Sub(hn::Set(i, 8), part_i)), hn::Add(part_j, part_j)), down);
+        const IntLanes all = hn::Set(i, (1 << OctahedralCells::kPartCount) - 1);
+        return hn::IfThenElse(hn::RebindMask(i, sure), hn::Shl(hn::Set(i, 1), part), all);
+    }
+
+  private:
+    float fine_n_;
+};
+
 } // namespace echinus::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
-/// contains() and classify() for many particles: vector instructions settle those in gaps, gather those in
-/// bands, and test the faces of one band after the other.
+/// contains() and classify() for many particles: vector instructions settle those in gaps, and test pairs of
+/// a particle and a face for those in bands.
 namespace echinus {
 
 /// What classify() says, in bits.
@@ -19,8 +19,7 @@ inline Side side_of(const Containment& containment) {
 }
 
 /// The side of every particle; the same as by classify(), whatever the instruction set.
-/// Cost: for 512 particles and more, allocates up to 160 bytes a particle, at most 6 MB; where there is no
-/// memory, the reference answers.
+/// Cost: takes 130 KB of the stack for 16 particles and more.
 /// @pre points_local.size() == sides.size()
 void find_sides(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                 std::span<Side> sides) noexcept;

@@ -196,3 +196,18 @@ TEST(ExactMapBatch, CountsLongListsOfFacesToo) {
     const std::vector<Vec3f> points = telling_points(map, many);
     test::under_each_instruction_set([&](std::string_view) { expect_same_sides(map, points, 1); });
 }
+
+TEST(ExactMapBatch, AnswersWithIndicesOf32BitsToo) {
+    // Of more than 65 536 faces; then of as many vertices, too.
+    for (const TriangleMesh& mesh : {make_sphere(1, 260, 130), make_sphere(1, 400, 200)}) {
+        const ExactMap map = ExactMap::build(mesh, {.divisions = 20});
+        ASSERT_FALSE(map.view().references.wide.empty());
+        const std::vector<Vec3f> points = test::surface_points(mesh, 3000);
+        const std::vector<Contact> expected = one_by_one(map, points, 0, {1, 1, 1});
+        test::under_each_instruction_set([&](std::string_view name) {
+            SCOPED_TRACE(std::string(name));
+            expect_same_sides(map, points, 1);
+            expect_same_contacts(expected, map, points, 0, {1, 1, 1}, 1);
+        });
+    }
+}

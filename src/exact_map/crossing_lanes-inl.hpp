@@ -1,0 +1,72 @@
+// Included once for each instruction set, as Highway wants it: no guard against a second time.
+#if defined(ECHINUS_CROSSING_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef ECHINUS_CROSSING_LANES_INL
+#undef ECHINUS_CROSSING_LANES_INL
+#else
+#define ECHINUS_CROSSING_LANES_INL
+#endif
+
+#include "simd/lanes-inl.hpp"
+
+#if HWY_TARGET != HWY_SCALAR // where the reference is used instead
+HWY_BEFORE_NAMESPACE();
+namespace echinus::HWY_NAMESPACE {
+
+/// How faces count for particles, one pair a lane.
+struct CrossingLanes {
+    IntLanes crossing; ///< as crossing_on() has it, where sure
+    FloatMask unsure;
+};
+
+/// A filter in single precision for crossing_on().
+///
+/// With corners a, b, c counted from the particle p, the ray from the origin through p passes an edge (a, b)
+/// on the side that the sign of p . (a x b) tells, and p lies on the side of the plane that the sign of
+/// a . (b x c) tells; added to the sum of the former, that is the volume as seen from the origin.
+///
+/// Corners are exact here: differences of whole numbers below 2^20. With m^2 the largest of |a|^2, |b|^2,
+/// |c|^2 and u = 2^-24, each component of a x b is off by at most 4 u m^2, and its product with a vector v by
+/// at most 10 u |v| m^2 in the L1 norm, which is below 3 * 2^20 for p and 3 * 2^21 for a: less than 4 m^2 for
+/// either. So three edges and the volume: less than 11 m^2, roundings of the sum included.
+/// @param before  with its sign bit set, crossings between the origin and p are wanted; else those from p on
+HWY_INLINE CrossingLanes crossings_of(const PointLanes& a, const PointLanes& b, const PointLanes& c,
+                                      const PointLanes& p, IntLanes before) {
+    constexpr Floats f;
+    constexpr Ints i;
+    const auto cross = [](const PointLanes& u, const PointLanes& v) {
+        return PointLanes{hn::MulSub(u.y, v.z, hn::Mul(u.z, v.y)), hn::MulSub(u.z, v.x, hn::Mul(u.x, v.z)),
+                          hn::MulSub(u.x, v.y, hn::Mul(u.y, v.x))};
+    };
+    const auto dot = [](const PointLanes& u, const PointLanes& v) {
+        return hn::MulAdd(u.x, v.x, hn::MulAdd(u.y, v.y, hn::Mul(u.z, v.z)));
+    };
+    const PointLanes b_c = cross(b, c);
+    const FloatLanes past_bc = dot(p, b_c);
+    const FloatLanes past_ca = dot(p, cross(c, a));
+    const FloatLanes past_ab = dot(p, cross(a, b));
+    const FloatLanes volume = dot(a, b_c);
+    const FloatLanes bound = hn::Mul(hn::Max(hn::Max(dot(a, a), dot(b, b)), dot(c, c)), hn::Set(f, 16));
+
+    // All of one sign, and by how much; negative where the signs differ.
+    const FloatLanes least = hn::Min(hn::Min(past_ab, past_bc), past_ca);
+    const FloatLanes most = hn::Max(hn::Max(past_ab, past_bc), past_ca);
+    const FloatLanes hit = hn::Max(least, hn::Neg(most));
+    // Where it is hit, from its front with sign +: the plane lies ahead of p where the first is positive,
+    // behind the origin where the second is negative.
+    const FloatLanes sign_bit = hn::SignBit(f);
+    const FloatLanes side = hn::And(past_ab, sign_bit);
+    const FloatLanes ahead = hn::Xor(volume, side);
+    const FloatLanes from_origin = hn::Add(ahead, hn::Abs(hn::Add(hn::Add(past_ab, past_bc), past_ca)));
+    const FloatLanes wanted = hn::Xor(ahead, hn::And(hn::BitCast(f, before), sign_bit));
+    const FloatLanes clear_of_plane = hn::Min(hn::Abs(volume), from_origin);
+    const FloatMask counts = hn::Gt(hn::Min(hit, wanted), bound);
+    const FloatMask unsure = hn::Le(hn::Min(hn::Abs(hit), hn::Max(hn::Neg(hit), clear_of_plane)), bound);
+    const IntLanes sign = hn::Or(hn::BroadcastSignBit(hn::BitCast(i, past_ab)), hn::Set(i, 1));
+    return {hn::IfThenElseZero(hn::RebindMask(i, counts), sign), unsure};
+}
+
+} // namespace echinus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
+
+#endif
