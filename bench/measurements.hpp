@@ -9,6 +9,9 @@ struct Setting {
     std::function<void(const std::string& what, double fraction)> report_progress;
 };
 
+/// A comparison of the systems at a task.
+Comparison comparison_of(Task task, const Setting& setting);
+
 // One function a task; each returns the records of its CSV file.
 
 /// The sign of every particle, all systems on all meshes and sets.

@@ -5,24 +5,18 @@
 #include "common/system.hpp"
 #include "common/truth.hpp"
 #include "common/turns.hpp"
-#include "rivals/depth_normal.hpp"
 
 #include <functional>
-#include <span>
 #include <string>
 #include <vector>
 
 /// One way of one system, ready to be asked.
 struct Competitor {
-    std::string system, way;
+    std::string system;
     Role role;
-    std::size_t bytes;
-    double build_ms;
-    bool as_whole; ///< gains by the number of particles in a call: never asked for parts of a set
-    /// Answers for particles [first, first + points.size()) of the set, and keeps what it answered.
-    std::function<void(std::span<const echinus::Vec3f> points, std::size_t first)> answer;
-    /// What was answered for particle i; of a task that asks for the sign alone the depth is 1 or 0.
-    std::function<DepthNormal(std::size_t i)> answered;
+    double build_ms;     ///< processor time, the median of several when it is quick
+    Structure structure; ///< that the way asks
+    Way way;
 };
 
 /// How thoroughly is measured.
@@ -36,12 +30,20 @@ struct Effort {
 
 /// What a comparison is about.
 struct Comparison {
-    std::string task; ///< "contains" or "contacts"
-    bool has_depth;
+    Task task;
     std::filesystem::path truth_cache;
     Effort effort;
     std::function<void(const std::string& what, double fraction)> report_progress;
 };
+
+/// "contains" or "contacts"
+const char* name_of(Task task);
+
+/// Builds all systems.
+/// @param point_count  of the largest set that they will be asked for
+/// @param one_way      only the first way of each system, which is its best
+std::vector<Competitor> build_all(const std::vector<System>& systems, std::size_t point_count,
+                                  bool one_way = false);
 
 /// The columns of a comparison's records.
 Records comparison_records();
@@ -54,27 +56,5 @@ std::vector<Racer> racers_for(const std::vector<Competitor>& competitors, const 
 void compare(const Comparison& comparison, const Subject& subject, const ParticleSet& set,
              const std::vector<Competitor>& competitors, Records& records);
 
-/// Builds a structure, several times over when that is quick. @returns milliseconds of processor time, the
-/// median; the last that was built is left in `built`
-template <typename System>
-double time_build(const Listed<System>& listed, const echinus::TriangleMesh& mesh,
-                  std::unique_ptr<System>& built);
-
 /// Processor time of all threads of the process.
 double process_seconds();
-
-template <typename System>
-double time_build(const Listed<System>& listed, const echinus::TriangleMesh& mesh,
-                  std::unique_ptr<System>& built) {
-    constexpr double kEnough = 0.1; // seconds
-    constexpr std::size_t kMost = 9;
-    std::vector<double> times;
-    for (double sum = 0; times.empty() || (sum < kEnough && times.size() < kMost); sum += times.back()) {
-        built = listed.make();
-        built->plan(mesh);
-        const double start = process_seconds();
-        built->build(mesh);
-        times.push_back(process_seconds() - start);
-    }
-    return 1e3 * median_of(times);
-}

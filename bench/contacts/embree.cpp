@@ -1,46 +1,31 @@
 #include "rivals/embree.hpp"
 
-#include "contacts/system.hpp"
+#include "systems/ways.hpp"
 
 using namespace echinus;
 
 namespace {
 
-class EmbreeContacts : public ContactsSystem {
-  public:
-    void build(const TriangleMesh& mesh) override { rival_ = std::make_unique<EmbreeRival>(mesh); }
-    std::size_t byte_count() const override { return rival_->byte_count(); }
-
-    std::vector<ContactsWay> ways(std::size_t point_count) override {
-        inside_.resize(point_count);
-        return {depth_normal_way("first hit then point query", point_count,
-                                 [this](auto points, auto contacts) {
-                                     rival_->first_hits(points, inside_);
-                                     find_nearest(points, contacts);
-                                 }),
-                depth_normal_way("first hit packets of 16 then point query", point_count,
-                                 [this](auto points, auto contacts) {
-                                     rival_->first_hits_by_packets(points, inside_);
-                                     find_nearest(points, contacts);
-                                 })};
+void find_nearest(const EmbreeRival& embree, std::span<const Vec3f> points,
+                  std::span<const std::uint8_t> inside, std::span<DepthNormal> contacts) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        contacts[i] = {};
+        if (inside[i] == 0) continue;
+        const auto [point, distance] = embree.nearest(points[i]);
+        contacts[i] = {distance, (point - points[i]) * (1 / distance)};
     }
-
-  private:
-    void find_nearest(std::span<const Vec3f> points, std::span<DepthNormal> contacts) const {
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            contacts[i] = {};
-            if (inside_[i] == 0) continue;
-            const auto [point, distance] = rival_->nearest(points[i]);
-            contacts[i] = {distance, (point - points[i]) * (1 / distance)};
-        }
-    }
-
-    std::unique_ptr<EmbreeRival> rival_;
-    std::vector<std::uint8_t> inside_;
-};
+}
 
 } // namespace
 
-void list_embree(ContactsList& list) {
-    list.push_back(listed<EmbreeContacts, ContactsSystem>("Embree", Role::Rival, true));
+Ways contacts_ways(const EmbreeRival& embree, std::size_t point_count) {
+    const auto inside = std::make_shared<std::vector<std::uint8_t>>(point_count);
+    const auto way = [&](const char* name, auto find_signs) {
+        return way_of<DepthNormal>(name, point_count, [=, &embree](auto points, auto contacts) {
+            (embree.*find_signs)(points, *inside);
+            find_nearest(embree, points, *inside, contacts);
+        });
+    };
+    return {way("first hit then point query", &EmbreeRival::first_hits),
+            way("first hit packets of 16 then point query", &EmbreeRival::first_hits_by_packets)};
 }

@@ -1,27 +1,8 @@
 #include "rivals/cgal.hpp"
 
-#include "contains/system.hpp"
+#include "systems/ways.hpp"
 
-using namespace echinus;
-
-namespace {
-
-class CgalContains : public ContainsSystem {
-  public:
-    void build(const TriangleMesh& mesh) override { rival_ = std::make_unique<CgalRival>(mesh); }
-    std::size_t byte_count() const override { return rival_->byte_count(); }
-    std::vector<ContainsWay> ways() override {
-        return {{"side", [this](auto points, auto inside) {
-                     for (std::size_t i = 0; i < points.size(); ++i) inside[i] = rival_->inside(points[i]);
-                 }}};
-    }
-
-  private:
-    std::unique_ptr<CgalRival> rival_;
-};
-
-} // namespace
-
-void list_cgal(ContainsList& list) {
-    list.push_back(listed<CgalContains, ContainsSystem>("CGAL", Role::Rival, false));
+Ways contains_ways(const CgalRival& cgal, std::size_t point_count) {
+    return {way_one_by_one<std::uint8_t>("side", point_count,
+                                         [&](const auto& point) { return cgal.inside(point); })};
 }

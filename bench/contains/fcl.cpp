@@ -1,28 +1,8 @@
 #include "rivals/fcl.hpp"
 
-#include "contains/system.hpp"
+#include "systems/ways.hpp"
 
-using namespace echinus;
-
-namespace {
-
-class FclContains : public ContainsSystem {
-  public:
-    void build(const TriangleMesh& mesh) override { rival_ = std::make_unique<FclRival>(mesh); }
-    std::size_t byte_count() const override { return rival_->byte_count(); }
-    std::vector<ContainsWay> ways() override {
-        return {{"side of the nearest face", [this](auto points, auto inside) {
-                     for (std::size_t i = 0; i < points.size(); ++i)
-                         inside[i] = rival_->contact(points[i]).depth > 0;
-                 }}};
-    }
-
-  private:
-    std::unique_ptr<FclRival> rival_;
-};
-
-} // namespace
-
-void list_fcl(ContainsList& list) {
-    list.push_back(listed<FclContains, ContainsSystem>("FCL", Role::Rival, false));
+Ways contains_ways(const FclRival& fcl, std::size_t point_count) {
+    return {way_one_by_one<std::uint8_t>("side of the nearest face", point_count,
+                                         [&](const auto& point) { return fcl.contact(point).depth > 0; })};
 }

@@ -1,6 +1,6 @@
 // What every system pays: the stream of particles, and one look into a table.
 
-#include "contains/system.hpp"
+#include "systems/ways.hpp"
 
 #include <cmath>
 
@@ -8,57 +8,50 @@ using namespace echinus;
 
 namespace {
 
-/// Reads each particle and writes its byte: is it within the sphere that bounds the mesh?
-class Stream : public ContainsSystem {
-  public:
-    void build(const TriangleMesh& mesh) override { sphere_ = inspect(mesh).bounding_sphere; }
-    std::size_t byte_count() const override { return 0; }
-    std::vector<ContainsWay> ways() override {
-        return {{"stream", [this](std::span<const Vec3f> points, std::span<std::uint8_t> inside) {
-                     const Vec3f centre(sphere_.centre);
-                     const auto radius_sq = static_cast<float>(sphere_.radius * sphere_.radius);
-                     const std::size_t count = points.size();
-                     const Vec3f* const p = points.data();
-                     std::uint8_t* const out = inside.data();
+/// Is each particle nearer to the centre than the radius there?
+/// @param radius  float (float x, float y, float z) by the direction from the centre
+template <typename Radius>
+void compare_with_radius(std::span<const Vec3f> points, Vec3f centre, Radius radius,
+                         std::span<std::uint8_t> inside) {
+    const std::size_t count = points.size();
+    const Vec3f* const p = points.data();
+    std::uint8_t* const out = inside.data();
 #pragma omp simd
-                     for (std::size_t i = 0; i < count; ++i) {
-                         const float x = p[i].x - centre.x, y = p[i].y - centre.y, z = p[i].z - centre.z;
-                         out[i] = x * x + y * y + z * z < radius_sq ? 1 : 0;
-                     }
-                 }}};
+    for (std::size_t i = 0; i < count; ++i) {
+        const float x = p[i].x - centre.x, y = p[i].y - centre.y, z = p[i].z - centre.z;
+        const float r = radius(x, y, z);
+        out[i] = x * x + y * y + z * z < r * r ? 1 : 0;
     }
+}
 
-  protected:
-    Sphere sphere_;
+/// Reads each particle and writes its byte: is it within the sphere that bounds the mesh?
+struct Stream {
+    Vec3f centre;
+    float radius;
+
+    explicit Stream(const Sphere& sphere)
+        : centre(sphere.centre), radius(static_cast<float>(sphere.radius)) {}
+    std::size_t byte_count() const { return 0; }
 };
+
+Ways stream_ways(const Stream& stream, std::size_t point_count) {
+    return {way_of<std::uint8_t>("stream", point_count, [&](auto points, auto inside) {
+        const float radius = stream.radius;
+        compare_with_radius(
+            points, stream.centre, [=](float, float, float) { return radius; }, inside);
+    })};
+}
 
 /// A map of directions with one radius each: an octahedral square of 256 x 256 floats, the nearest sample,
 /// one gather a particle. It answers for the sphere.
-class OneGather : public Stream {
-  public:
-    void build(const TriangleMesh& mesh) override {
-        Stream::build(mesh);
-        radii_.assign(kSide * kSide, static_cast<float>(sphere_.radius));
-    }
-    std::size_t byte_count() const override { return radii_.size() * sizeof(float); }
-    std::vector<ContainsWay> ways() override {
-        return {{"one gather", [this](std::span<const Vec3f> points, std::span<std::uint8_t> inside) {
-                     const Vec3f centre(sphere_.centre);
-                     const float* const radii = radii_.data();
-                     const std::size_t count = points.size();
-                     const Vec3f* const p = points.data();
-                     std::uint8_t* const out = inside.data();
-#pragma omp simd
-                     for (std::size_t i = 0; i < count; ++i) {
-                         const float x = p[i].x - centre.x, y = p[i].y - centre.y, z = p[i].z - centre.z;
-                         const float radius = radii[sample_of(x, y, z)];
-                         out[i] = x * x + y * y + z * z < radius * radius ? 1 : 0;
-                     }
-                 }}};
-    }
-
-  private:
+struct OneGather {
     static constexpr std::int32_t kSide = 256;
+    Vec3f centre;
+    std::vector<float> radii;
+
+    explicit OneGather(const Sphere& sphere)
+        : centre(sphere.centre), radii(kSide * kSide, static_cast<float>(sphere.radius)) {}
+    std::size_t byte_count() const { return radii.size() * sizeof(float); }
 
     /// The octahedron unfolded into a square (Meyer et al. 2010, "On Floating-Point Normal Vectors").
     static std::int32_t sample_of(float x, float y, float z) {
@@ -71,13 +64,22 @@ class OneGather : public Stream {
         const auto row = static_cast<std::int32_t>((folded_v + 1) * kHalf);
         return row * kSide + column;
     }
-
-    std::vector<float> radii_;
 };
+
+Ways one_gather_ways(const OneGather& map, std::size_t point_count) {
+    return {way_of<std::uint8_t>("one gather", point_count, [&](auto points, auto inside) {
+        const float* const radii = map.radii.data();
+        const auto radius = [=](float x, float y, float z) { return radii[OneGather::sample_of(x, y, z)]; };
+        compare_with_radius(points, map.centre, radius, inside);
+    })};
+}
 
 } // namespace
 
-void list_floors(ContainsList& list) {
-    list.push_back(listed<Stream, ContainsSystem>("floor", Role::Floor, true));
-    list.push_back(listed<OneGather, ContainsSystem>("floor", Role::Floor, true));
+void list_floors(const TriangleMesh& mesh, std::vector<System>& list) {
+    const Sphere sphere = inspect(mesh).bounding_sphere;
+    list.push_back(system_of(
+        "floor", Role::Floor, [=] { return std::make_shared<Stream>(sphere); }, stream_ways));
+    list.push_back(system_of(
+        "floor", Role::Floor, [=] { return std::make_shared<OneGather>(sphere); }, one_gather_ways));
 }

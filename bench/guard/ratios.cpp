@@ -1,8 +1,7 @@
 #include "build/system.hpp"
 #include "common/comparison.hpp"
-#include "contacts/field.hpp"
-#include "contains/field.hpp"
 #include "guard/guard.hpp"
+#include "systems/systems.hpp"
 
 #include <fmt/format.h>
 
@@ -70,13 +69,12 @@ void measure_queries(const Subject& horse, const std::string& task, const std::v
 }
 
 /// Ours, the small dense grid and Embree.
-template <typename List>
-List chosen(const List& all) {
+std::vector<System> chosen(std::vector<System> systems) {
     constexpr std::array kNames{"exact map", "distance map", "dense grid 0.63 MB", "Embree"};
-    List list;
-    for (const auto& listed : all)
-        if (std::ranges::find(kNames, listed.name) != kNames.end()) list.push_back(listed);
-    return list;
+    std::erase_if(systems, [&](const System& system) {
+        return std::ranges::find(kNames, system.name) == kNames.end();
+    });
+    return systems;
 }
 
 void measure_builds(const Subject& horse, const Setting& setting, Records& records) {
@@ -107,14 +105,9 @@ Records measure_ratios(const Setting& setting) {
     const std::size_t count = setting.effort.point_count;
     const std::vector<ParticleSet> sets = horse.sets(count);
     setting.report_progress("building", 0);
-    {
-        const ContainsField field(horse, count, chosen(all_contains_systems()), true);
-        measure_queries(horse, "contains", sets, field.competitors(), setting, records);
-    }
-    {
-        const ContactsField field(horse, count, chosen(all_contacts_systems()), true);
-        measure_queries(horse, "contacts", sets, field.competitors(), setting, records);
-    }
+    for (const Task task : {Task::Contains, Task::Contacts})
+        measure_queries(horse, name_of(task), sets, build_all(chosen(systems_for(task, horse)), count, true),
+                        setting, records);
     measure_builds(horse, setting, records);
     return records;
 }

@@ -91,6 +91,28 @@ std::string tables(const Records& all, const char* suffix, bool has_depth) {
     return text;
 }
 
+/// The first way of each system that was asked in calls of three sizes.
+std::string calls(const Results& results) {
+    constexpr const char* kSuffixes[] = {" 10k", " 100k", ""};
+    Rows rows{{"task, system", "10 000", "100 000", "1 000 000"}};
+    for (const Records* records : {&results.contains, &results.contacts}) {
+        const std::string mesh = records->all().front().at("mesh");
+        const std::vector<Records::Record> asked = records->where({{"mesh", mesh}, {"set", "U 100k"}});
+        for (const std::string& system : distinct(asked, "system")) {
+            rows.push_back({asked.front().at("task") + ", " + system});
+            for (const std::string suffix : kSuffixes) {
+                std::vector<std::string> cells;
+                for (const std::string set : {"U", "S", "C"})
+                    cells.push_back(shown(number(
+                        records->where({{"mesh", mesh}, {"set", set + suffix}, {"system", system}}).front(),
+                        "ns")));
+                rows.back().push_back(fmt::format("{}", fmt::join(cells, " / ")));
+            }
+        }
+    }
+    return rows.size() == 1 ? "Not measured." : markdown_table(rows);
+}
+
 /// What nobody can go below, and how far above it we are.
 std::string floors(const Records& contains) {
     const std::string mesh = contains.all().front().at("mesh");
@@ -130,6 +152,7 @@ void add_comparisons(const Results& results, Values& values) {
     values["spread"] = spread(results);
     values["contains"] = tables(results.contains, "", false);
     values["contacts"] = tables(results.contacts, "", true);
+    values["calls"] = calls(results);
     values["contains_10k"] = tables(results.contains, " 10k", false);
     values["contacts_10k"] = tables(results.contacts, " 10k", true);
 }
