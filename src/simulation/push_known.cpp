@@ -7,10 +7,9 @@
 
 // After foreach_target.h, which includes this file once for each instruction set.
 #include "simd/dispatch.hpp"
+#include "simd/lanes-inl.hpp"
 #include "simulation/contact_response.hpp"
 #include "simulation/known_contacts.hpp"
-
-#include <hwy/highway.h>
 
 #include <cmath>
 
@@ -31,31 +30,26 @@ HWY_BEFORE_NAMESPACE();
 namespace echinus {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Tag = hn::ScalableTag<float>;
-using Lanes = hn::Vec<Tag>;
-using Mask = hn::Mask<Tag>;
-
-HWY_INLINE Lanes all(float value) {
-    return hn::Set(Tag(), value);
+HWY_INLINE FloatLanes all(float value) {
+    return hn::Set(Floats(), value);
 }
-HWY_INLINE Lanes load(const float* from) {
-    return hn::LoadU(Tag(), from);
+HWY_INLINE FloatLanes load(const float* from) {
+    return hn::LoadU(Floats(), from);
 }
 
 struct LanePoints {
-    Lanes x, y, z;
+    FloatLanes x, y, z;
 
     explicit LanePoints(const Vec3f& point) : x(all(point.x)), y(all(point.y)), z(all(point.z)) {}
     LanePoints(const PointArrays& points, std::size_t i)
         : x(load(&points.x[i])), y(load(&points.y[i])), z(load(&points.z[i])) {}
-    LanePoints(const Lanes& x_in, const Lanes& y_in, const Lanes& z_in) : x(x_in), y(y_in), z(z_in) {}
+    LanePoints(const FloatLanes& x_in, const FloatLanes& y_in, const FloatLanes& z_in)
+        : x(x_in), y(y_in), z(z_in) {}
 
-    void store(const Mask& mask, PointArrays& points, std::size_t i) const {
-        hn::BlendedStore(x, mask, Tag(), &points.x[i]);
-        hn::BlendedStore(y, mask, Tag(), &points.y[i]);
-        hn::BlendedStore(z, mask, Tag(), &points.z[i]);
+    void store(const FloatMask& mask, PointArrays& points, std::size_t i) const {
+        hn::BlendedStore(x, mask, Floats(), &points.x[i]);
+        hn::BlendedStore(y, mask, Floats(), &points.y[i]);
+        hn::BlendedStore(z, mask, Floats(), &points.z[i]);
     }
 };
 
@@ -65,16 +59,16 @@ HWY_INLINE LanePoints operator+(const LanePoints& a, const LanePoints& b) {
 HWY_INLINE LanePoints operator-(const LanePoints& a, const LanePoints& b) {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-HWY_INLINE LanePoints operator*(const LanePoints& a, const Lanes& s) {
+HWY_INLINE LanePoints operator*(const LanePoints& a, const FloatLanes& s) {
     return {a.x * s, a.y * s, a.z * s};
 }
-HWY_INLINE Lanes dot(const LanePoints& a, const LanePoints& b) {
+HWY_INLINE FloatLanes dot(const LanePoints& a, const LanePoints& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 /// Adds the chosen ones of the particles i, i + 1 ... to a list.
-HWY_INLINE void add(const Mask& chosen, std::size_t i, ParticleList& list) {
-    const hn::RebindToUnsigned<Tag> d;
+HWY_INLINE void add(const FloatMask& chosen, std::size_t i, ParticleList& list) {
+    const hn::RebindToUnsigned<Floats> d;
     const auto particles = hn::Iota(d, static_cast<std::uint32_t>(i));
     list.count += hn::CompressStore(particles, hn::RebindMask(d, chosen), d, &list.particles[list.count]);
 }
@@ -89,45 +83,45 @@ HWY_INLINE LanePoints motion_at(const MaterialMotion& material, const LanePoints
 }
 
 /// push_out(), and what comes of it.
-HWY_INLINE void push(const Mask& below, const Lanes& missing, const LanePoints& normal,
+HWY_INLINE void push(const FloatMask& below, const FloatLanes& missing, const LanePoints& normal,
                      const ColliderNow& collider, std::size_t i, Particles& particles) {
-    const Lanes zero = all(0);
+    const FloatLanes zero = all(0);
     const LanePoints position(particles.positions, i), previous(particles.previous, i);
     const LanePoints start = previous + motion_at(collider.material, position);
     const LanePoints motion = position - start;
-    const Lanes toward = zero - dot(motion, normal);
-    const Lanes approach = hn::IfThenElse(zero < toward, toward, zero);
-    const Lanes back = hn::IfThenElse(approach < missing, approach, missing);
+    const FloatLanes toward = zero - dot(motion, normal);
+    const FloatLanes approach = hn::IfThenElse(zero < toward, toward, zero);
+    const FloatLanes back = hn::IfThenElse(approach < missing, approach, missing);
     const LanePoints pushed = motion + normal * missing;
     const LanePoints tangential = pushed - normal * dot(pushed, normal);
-    const Lanes slip = hn::Sqrt(dot(tangential, tangential));
-    const Lanes grip = all(collider.friction) * back;
-    const Lanes share = hn::IfThenElse(slip <= grip, all(1), grip / slip);
+    const FloatLanes slip = hn::Sqrt(dot(tangential, tangential));
+    const FloatLanes grip = all(collider.friction) * back;
+    const FloatLanes share = hn::IfThenElse(slip <= grip, all(1), grip / slip);
     (start + (pushed - tangential * share)).store(below, particles.positions, i);
     (previous + normal * (missing - back)).store(below, particles.previous, i);
 }
 
 std::size_t push_lanes(const KnownContacts& known, const ColliderNow& collider, Particles& particles,
                        ParticleList& to_ask) {
-    const Lanes thickness = all(collider.thickness);
-    const Lanes reuse = all(kPlaneReuse * collider.thickness);
+    const FloatLanes thickness = all(collider.thickness);
+    const FloatLanes reuse = all(kPlaneReuse * collider.thickness);
     std::size_t pushed_count = 0;
-    for (std::size_t i = 0; i < particles.count(); i += hn::Lanes(Tag())) {
+    for (std::size_t i = 0; i < particles.count(); i += hn::Lanes(Floats())) {
         const LanePoints moved = LanePoints(particles.positions, i) - LanePoints(known.asked_at, i);
-        const Lanes moved_sq = dot(moved, moved);
-        const Lanes quiet = load(&known.clearance[i]) - thickness;
-        const Mask far = moved_sq < quiet * hn::Abs(quiet);
-        if (hn::AllTrue(Tag(), far)) continue;
-        const Lanes height = load(&known.height[i]);
-        const Mask usable = hn::And(moved_sq <= reuse * reuse, height < all(KnownContacts::kNoPlane));
-        const Mask unknown = hn::Not(hn::Or(far, usable));
-        if (!hn::AllFalse(Tag(), unknown)) add(unknown, i, to_ask);
+        const FloatLanes moved_sq = dot(moved, moved);
+        const FloatLanes quiet = load(&known.clearance[i]) - thickness;
+        const FloatMask far = moved_sq < quiet * hn::Abs(quiet);
+        if (hn::AllTrue(Floats(), far)) continue;
+        const FloatLanes height = load(&known.height[i]);
+        const FloatMask usable = hn::And(moved_sq <= reuse * reuse, height < all(KnownContacts::kNoPlane));
+        const FloatMask unknown = hn::Not(hn::Or(far, usable));
+        if (!hn::AllFalse(Floats(), unknown)) add(unknown, i, to_ask);
         const LanePoints normal(known.normal, i);
-        const Lanes missing = thickness - (height + dot(moved, normal));
-        const Mask below = hn::And(hn::AndNot(far, usable), missing > all(0));
-        if (hn::AllFalse(Tag(), below)) continue;
+        const FloatLanes missing = thickness - (height + dot(moved, normal));
+        const FloatMask below = hn::And(hn::AndNot(far, usable), missing > all(0));
+        if (hn::AllFalse(Floats(), below)) continue;
         push(below, missing, normal, collider, i, particles);
-        pushed_count += hn::CountTrue(Tag(), below);
+        pushed_count += hn::CountTrue(Floats(), below);
     }
     return pushed_count;
 }
@@ -135,17 +129,18 @@ std::size_t push_lanes(const KnownContacts& known, const ColliderNow& collider, 
 void list_unproven_lanes(const KnownContacts& known, const ColliderNow& collider,
                          const PointArrays& positions, const PointArrays& free_places,
                          std::size_t particle_count, ParticleList& unproven) {
-    for (std::size_t i = 0; i < particle_count; i += hn::Lanes(Tag())) {
+    for (std::size_t i = 0; i < particle_count; i += hn::Lanes(Floats())) {
         const LanePoints position(positions, i), asked_at(known.asked_at, i);
         const LanePoints moved = position - asked_at;
         const LanePoints free_moved = LanePoints(free_places, i) - asked_at;
-        const Lanes clearance = load(&known.clearance[i]);
-        const Lanes size = hn::Abs(position.x) + hn::Abs(position.y) + hn::Abs(position.z) +
-                           all(collider.coordinate_sum) + clearance;
-        const Lanes radius = clearance - all(collider.guard) - size * all(kRounding);
-        const Lanes radius_sq = radius * hn::Abs(radius);
-        const Mask in_ball = hn::And(dot(moved, moved) < radius_sq, dot(free_moved, free_moved) < radius_sq);
-        if (!hn::AllTrue(Tag(), in_ball)) add(hn::Not(in_ball), i, unproven);
+        const FloatLanes clearance = load(&known.clearance[i]);
+        const FloatLanes size = hn::Abs(position.x) + hn::Abs(position.y) + hn::Abs(position.z) +
+                                all(collider.coordinate_sum) + clearance;
+        const FloatLanes radius = clearance - all(collider.guard) - size * all(kRounding);
+        const FloatLanes radius_sq = radius * hn::Abs(radius);
+        const FloatMask in_ball =
+            hn::And(dot(moved, moved) < radius_sq, dot(free_moved, free_moved) < radius_sq);
+        if (!hn::AllTrue(Floats(), in_ball)) add(hn::Not(in_ball), i, unproven);
     }
 }
 

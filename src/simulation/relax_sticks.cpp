@@ -7,9 +7,8 @@
 
 // After foreach_target.h, which includes this file once for each instruction set.
 #include "simd/dispatch.hpp"
+#include "simd/lanes-inl.hpp"
 #include "simulation/sticks.hpp"
-
-#include <hwy/highway.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,32 +18,22 @@ HWY_BEFORE_NAMESPACE();
 namespace echinus {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Tag = hn::ScalableTag<float>;
-using Lanes = hn::Vec<Tag>;
-using Mask = hn::Mask<Tag>;
-
-struct EndLanes {
-    Lanes x, y, z;
-};
-
 /// What a run's sticks have in common.
 class LaneStick {
   public:
     explicit LaneStick(const StickRun& run)
-        : share_a_(hn::Set(Tag(), run.share_a)), share_b_(hn::Set(Tag(), run.share_b)),
-          yield_(hn::Set(Tag(), run.yield)), gives_way_(run.yield != 0) {}
+        : share_a_(hn::Set(Floats(), run.share_a)), share_b_(hn::Set(Floats(), run.share_b)),
+          yield_(hn::Set(Floats(), run.yield)), gives_way_(run.yield != 0) {}
 
     /// Operation by operation what relax_one() does. @param left  sticks from the first lane on
-    void operator()(EndLanes& a, EndLanes& b, float* goal_lengths, std::size_t left) const {
-        const Tag d;
-        const Lanes x = b.x - a.x, y = b.y - a.y, z = b.z - a.z;
-        const Lanes least = hn::Set(d, std::numeric_limits<float>::min());
-        const Lanes distance = hn::Sqrt(x * x + y * y + z * z + least);
-        const Lanes goal = hn::LoadU(d, goal_lengths);
-        const Lanes factor = hn::Set(d, 1.0F) - goal / distance;
-        const EndLanes correction{x * factor, y * factor, z * factor};
+    void operator()(PointLanes& a, PointLanes& b, float* goal_lengths, std::size_t left) const {
+        const Floats d;
+        const FloatLanes x = b.x - a.x, y = b.y - a.y, z = b.z - a.z;
+        const FloatLanes least = hn::Set(d, std::numeric_limits<float>::min());
+        const FloatLanes distance = hn::Sqrt(x * x + y * y + z * z + least);
+        const FloatLanes goal = hn::LoadU(d, goal_lengths);
+        const FloatLanes factor = hn::Set(d, 1.0F) - goal / distance;
+        const PointLanes correction{x * factor, y * factor, z * factor};
         a.x = a.x + correction.x * share_a_;
         a.y = a.y + correction.y * share_a_;
         a.z = a.z + correction.z * share_a_;
@@ -52,29 +41,29 @@ class LaneStick {
         b.y = b.y - correction.y * share_b_;
         b.z = b.z - correction.z * share_b_;
         if (!gives_way_) return;
-        const Mask in_run = hn::FirstN(d, std::min(left, hn::Lanes(d)));
+        const FloatMask in_run = hn::FirstN(d, std::min(left, hn::Lanes(d)));
         hn::BlendedStore(goal + (distance - goal) * yield_, in_run, d, goal_lengths);
     }
 
   private:
-    Lanes share_a_, share_b_, yield_;
+    FloatLanes share_a_, share_b_, yield_;
     bool gives_way_;
 };
 
 /// Particles that follow each other.
 struct Row {
-    static EndLanes load(const PointArrays& p, std::size_t i) {
-        const Tag d;
+    static PointLanes load(const PointArrays& p, std::size_t i) {
+        const Floats d;
         return {hn::LoadU(d, &p.x[i]), hn::LoadU(d, &p.y[i]), hn::LoadU(d, &p.z[i])};
     }
-    static void store(const EndLanes& points, PointArrays& p, std::size_t i) {
-        const Tag d;
+    static void store(const PointLanes& points, PointArrays& p, std::size_t i) {
+        const Floats d;
         hn::StoreU(points.x, d, &p.x[i]);
         hn::StoreU(points.y, d, &p.y[i]);
         hn::StoreU(points.z, d, &p.z[i]);
     }
-    static void store(const EndLanes& points, const Mask& mask, PointArrays& p, std::size_t i) {
-        const Tag d;
+    static void store(const PointLanes& points, const FloatMask& mask, PointArrays& p, std::size_t i) {
+        const Floats d;
         hn::BlendedStore(points.x, mask, d, &p.x[i]);
         hn::BlendedStore(points.y, mask, d, &p.y[i]);
         hn::BlendedStore(points.z, mask, d, &p.z[i]);
@@ -82,19 +71,19 @@ struct Row {
 };
 
 void relax_side_by_side(const StickRun& run, float* goal_lengths, PointArrays& p) {
-    const Tag d;
+    const Floats d;
     const LaneStick stick(run);
     const std::size_t lanes = hn::Lanes(d);
     std::size_t i = 0;
     for (; i + lanes <= run.count; i += lanes) {
-        EndLanes a = Row::load(p, run.a + i), b = Row::load(p, run.b + i);
+        PointLanes a = Row::load(p, run.a + i), b = Row::load(p, run.b + i);
         stick(a, b, goal_lengths + i, run.count - i);
         Row::store(a, p, run.a + i);
         Row::store(b, p, run.b + i);
     }
     if (i == run.count) return;
-    const Mask rest = hn::FirstN(d, run.count - i);
-    EndLanes a = Row::load(p, run.a + i), b = Row::load(p, run.b + i);
+    const FloatMask rest = hn::FirstN(d, run.count - i);
+    PointLanes a = Row::load(p, run.a + i), b = Row::load(p, run.b + i);
     stick(a, b, goal_lengths + i, run.count - i);
     Row::store(a, rest, p, run.a + i);
     Row::store(b, rest, p, run.b + i);
@@ -103,32 +92,32 @@ void relax_side_by_side(const StickRun& run, float* goal_lengths, PointArrays& p
 /// Elements of kWidth floats each, in turn those of ends a and ends b.
 template <typename Element>
 struct Alternating {
-    using ElementTag = hn::Repartition<Element, Tag>;
+    using ElementTag = hn::Repartition<Element, Floats>;
 
-    static void load(const float* from, Lanes& a, Lanes& b) {
+    static void load(const float* from, FloatLanes& a, FloatLanes& b) {
         const ElementTag d;
         hn::Vec<ElementTag> elements_a, elements_b;
         hn::LoadInterleaved2(d, reinterpret_cast<const Element*>(from), elements_a, elements_b);
-        a = hn::BitCast(Tag(), elements_a);
-        b = hn::BitCast(Tag(), elements_b);
+        a = hn::BitCast(Floats(), elements_a);
+        b = hn::BitCast(Floats(), elements_b);
     }
-    static void store(const Lanes& a, const Lanes& b, float* to) {
+    static void store(const FloatLanes& a, const FloatLanes& b, float* to) {
         const ElementTag d;
         hn::StoreInterleaved2(hn::BitCast(d, a), hn::BitCast(d, b), d, reinterpret_cast<Element*>(to));
     }
-    static void load(const PointArrays& p, std::size_t i, EndLanes& a, EndLanes& b) {
+    static void load(const PointArrays& p, std::size_t i, PointLanes& a, PointLanes& b) {
         load(&p.x[i], a.x, b.x);
         load(&p.y[i], a.y, b.y);
         load(&p.z[i], a.z, b.z);
     }
-    static void store(const EndLanes& a, const EndLanes& b, PointArrays& p, std::size_t i) {
+    static void store(const PointLanes& a, const PointLanes& b, PointArrays& p, std::size_t i) {
         store(a.x, b.x, &p.x[i]);
         store(a.y, b.y, &p.y[i]);
         store(a.z, b.z, &p.z[i]);
     }
 };
 
-HWY_INLINE EndLanes chosen(const Mask& mask, const EndLanes& yes, const EndLanes& no) {
+HWY_INLINE PointLanes chosen(const FloatMask& mask, const PointLanes& yes, const PointLanes& no) {
     return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y),
             hn::IfThenElse(mask, yes.z, no.z)};
 }
@@ -136,16 +125,16 @@ HWY_INLINE EndLanes chosen(const Mask& mask, const EndLanes& yes, const EndLanes
 template <typename Element>
 void relax_alternating(const StickRun& run, float* goal_lengths, PointArrays& p) {
     using Ends = Alternating<Element>;
-    const Tag d;
+    const Floats d;
     const LaneStick stick(run);
     const std::size_t lanes = hn::Lanes(d);
     for (std::size_t i = 0; i < run.count; i += lanes) {
-        EndLanes a, b;
+        PointLanes a, b;
         Ends::load(p, run.a + 2 * i, a, b);
-        EndLanes new_a = a, new_b = b;
+        PointLanes new_a = a, new_b = b;
         stick(new_a, new_b, goal_lengths + i, run.count - i);
         if (i + lanes > run.count) {
-            const Mask rest = hn::FirstN(d, run.count - i);
+            const FloatMask rest = hn::FirstN(d, run.count - i);
             new_a = chosen(rest, new_a, a);
             new_b = chosen(rest, new_b, b);
         }
