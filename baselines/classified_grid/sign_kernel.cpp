@@ -16,6 +16,7 @@
 
 // After foreach_target.h, which includes this file once for each instruction set.
 #include "baselines/classified_grid/lookup-inl.hpp"
+#include "simd/compress-inl.hpp"
 #include "simd/dispatch.hpp"
 
 #ifndef ECHINUS_CLASSIFIED_GRID_SIGN_KERNEL_ONCE
@@ -123,14 +124,14 @@ class SignKernel {
                 hn::StoreU(bytes, d8, &inside_[i]);
             }
             if (hn::AllFalse(di, on_surface)) continue;
-            const auto mask = hn::RebindMask(df, on_surface);
-            hn::CompressStore(x, mask, df, &s_.x[count]);
-            hn::CompressStore(y, mask, df, &s_.y[count]);
-            hn::CompressStore(z, mask, df, &s_.z[count]);
-            hn::CompressStore(hn::BitCast(du, found.cell), hn::RebindMask(du, on_surface), du,
-                              &s_.cells[count]);
-            count += hn::CompressStore(hn::Iota(du, static_cast<std::uint32_t>(i)),
-                                       hn::RebindMask(du, on_surface), du, &s_.particles[count]);
+            const ::echinus::HWY_NAMESPACE::Compressor compress(on_surface);
+            hn::StoreU(compress(x), df, &s_.x[count]);
+            hn::StoreU(compress(y), df, &s_.y[count]);
+            hn::StoreU(compress(z), df, &s_.z[count]);
+            hn::StoreU(hn::BitCast(du, compress(found.cell)), du, &s_.cells[count]);
+            const auto particles = compress(hn::Iota(di, static_cast<std::int32_t>(i)));
+            hn::StoreU(hn::BitCast(du, particles), du, &s_.particles[count]);
+            count += compress.count();
         }
         return count;
     }

@@ -13,51 +13,55 @@
 #include <cstddef>
 #include <cstdint>
 
-#if HWY_TARGET != HWY_SCALAR // where the reference is used instead
 HWY_BEFORE_NAMESPACE();
 namespace echinus::HWY_NAMESPACE {
 
-/// The chosen lanes of up to two vectors, moved together.
+#if HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_SCALAR // with an instruction for it, or nothing to move
+
+/// Moves the chosen lanes of vectors to their beginning; what follows them is arbitrary. Highway 1.0 copies
+/// its table to the stack each time.
 class Compressor {
   public:
-    explicit Compressor(IntMask chosen) : chosen_(chosen) {
-#if HWY_TARGET != HWY_AVX3
-        std::uint8_t bits[8];
-        hn::StoreMaskBits(Ints(), chosen, bits);
-        constexpr hn::Rebind<std::uint8_t, Ints> bytes;
-        places_ = hn::IndicesFromVec(Ints(),
-                                     hn::PromoteTo(Ints(), hn::LoadU(bytes, kCompressTable[bits[0]].data())));
-        count_ = static_cast<std::size_t>(std::popcount(bits[0]));
-#endif
-    }
+    explicit Compressor(IntMask chosen) : chosen_(chosen) {}
 
-    std::size_t count() const {
-#if HWY_TARGET == HWY_AVX3
-        return hn::CountTrue(Ints(), chosen_);
-#else
-        return count_;
-#endif
-    }
-
-    /// The lanes that were not chosen follow, or zeros.
-    IntLanes operator()(IntLanes lanes) const {
-#if HWY_TARGET == HWY_AVX3 // the only one with an instruction for it
-        return hn::Compress(lanes, chosen_);
-#else
-        return hn::TableLookupLanes(lanes, places_);
-#endif
+    std::size_t count() const { return hn::CountTrue(Ints(), chosen_); }
+    IntLanes operator()(IntLanes lanes) const { return hn::Compress(lanes, chosen_); }
+    FloatLanes operator()(FloatLanes lanes) const {
+        return hn::Compress(lanes, hn::RebindMask(Floats(), chosen_));
     }
 
   private:
     IntMask chosen_;
-#if HWY_TARGET != HWY_AVX3
-    decltype(hn::IndicesFromVec(Ints(), IntLanes())) places_;
-    std::size_t count_;
-#endif
 };
+
+#else
+
+class Compressor {
+  public:
+    explicit Compressor(IntMask chosen) {
+        constexpr hn::Rebind<std::uint8_t, Ints> bytes;
+        std::uint8_t bits[8];
+        hn::StoreMaskBits(Ints(), chosen, bits);
+        count_ = static_cast<std::size_t>(std::popcount(bits[0]));
+        places_ = hn::PromoteTo(Ints(), hn::LoadU(bytes, kCompressTable[bits[0]].data()));
+    }
+
+    std::size_t count() const { return count_; }
+    IntLanes operator()(IntLanes lanes) const {
+        return hn::TableLookupLanes(lanes, hn::IndicesFromVec(Ints(), places_));
+    }
+    FloatLanes operator()(FloatLanes lanes) const {
+        return hn::TableLookupLanes(lanes, hn::IndicesFromVec(Floats(), places_));
+    }
+
+  private:
+    IntLanes places_;
+    std::size_t count_;
+};
+
+#endif
 
 } // namespace echinus::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif
 
 #endif

@@ -6,6 +6,7 @@
 #include <hwy/foreach_target.h>
 
 // After foreach_target.h, which includes this file once for each instruction set.
+#include "simd/compress-inl.hpp"
 #include "simd/dispatch.hpp"
 #include "simd/lanes-inl.hpp"
 #include "simulation/contact_response.hpp"
@@ -68,9 +69,11 @@ HWY_INLINE FloatLanes dot(const LanePoints& a, const LanePoints& b) {
 
 /// Adds the chosen ones of the particles i, i + 1 ... to a list.
 HWY_INLINE void add(const FloatMask& chosen, std::size_t i, ParticleList& list) {
-    const hn::RebindToUnsigned<Floats> d;
-    const auto particles = hn::Iota(d, static_cast<std::uint32_t>(i));
-    list.count += hn::CompressStore(particles, hn::RebindMask(d, chosen), d, &list.particles[list.count]);
+    const Compressor compress(hn::RebindMask(Ints(), chosen));
+    const IntLanes particles = hn::Iota(Ints(), static_cast<std::int32_t>(i));
+    hn::StoreU(hn::BitCast(hn::RebindToUnsigned<Ints>(), compress(particles)), hn::RebindToUnsigned<Ints>(),
+               &list.particles[list.count]);
+    list.count += compress.count();
 }
 
 /// MaterialMotion::at().
