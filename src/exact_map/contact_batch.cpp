@@ -290,6 +290,7 @@ void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& 
                    std::span<Contact> contacts, const ContactMemory& memory) {
     const std::span<Side> sides = memory.sides;
     find_sides(search.map(), points_local, sides);
+    const MortonCurve curve(search.map().centre, search.map().radius);
     ContactBlock block;
     std::size_t count = 0; // of stations
     const auto answer_stations = [&] {
@@ -314,8 +315,7 @@ void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& 
             ContactSearch::set_no_contact(contacts[i], points_local[i], sides[i]);
             continue;
         }
-        memory.stations[count++] = {morton_key(search.place_of(points_local[i])),
-                                    static_cast<std::uint32_t>(i)};
+        memory.stations[count++] = {curve.key(points_local[i]), static_cast<std::uint32_t>(i)};
         if (count == memory.stations.size()) answer_stations();
     }
     answer_stations();

@@ -7,33 +7,31 @@ namespace echinus {
 
 namespace {
 
-constexpr int kBitsPerAxis = 7;
-
-/// Moves the lowest 7 bits apart: bit k goes to 3 k.
+/// Moves bits apart: bit k goes to 3 k. @param bits  MortonCurve::kBitsPerAxis of them
 std::uint32_t spread(std::uint32_t bits) {
     bits = (bits | bits << 8) & 0x0700F;
     bits = (bits | bits << 4) & 0x430C3;
     return (bits | bits << 2) & 0x49249;
 }
 
-std::uint32_t cell_of(double coordinate) {
-    constexpr auto kExtent = static_cast<double>(kLatticeExtent);
-    constexpr std::uint32_t kCellSize = 2 * kLatticeExtent >> kBitsPerAxis;
-    constexpr std::uint32_t kLast = (1U << kBitsPerAxis) - 1;
-    const double clamped = std::min(std::max(coordinate, -kExtent), kExtent);
-    return std::min(static_cast<std::uint32_t>(clamped + kExtent) / kCellSize, kLast);
-}
-
 } // namespace
 
-std::uint32_t morton_key(const Vec3d& place) noexcept {
-    return spread(cell_of(place.x)) | spread(cell_of(place.y)) << 1 | spread(cell_of(place.z)) << 2;
+MortonCurve::MortonCurve(const Vec3f& centre, float radius)
+    : low_(centre - Vec3f{radius, radius, radius}), cells_per_unit_((kLast + 1) / (2 * radius)) {}
+
+std::uint32_t MortonCurve::key(const Vec3f& point_local) const noexcept {
+    const auto cell = [&](float coordinate, float low) {
+        const float place = (coordinate - low) * cells_per_unit_;
+        return static_cast<std::uint32_t>(std::min(std::max(place, 0.0F), static_cast<float>(kLast)));
+    };
+    return spread(cell(point_local.x, low_.x)) | spread(cell(point_local.y, low_.y)) << 1 |
+           spread(cell(point_local.z, low_.z)) << 2;
 }
 
 void sort_by_key(std::span<Station> stations, std::span<Station> spare) noexcept {
     constexpr int kDigitBits = 11;
     constexpr std::uint32_t kMask = (1U << kDigitBits) - 1;
-    static_assert(3 * kBitsPerAxis <= 2 * kDigitBits); // so that two passes do
+    static_assert(3 * MortonCurve::kBitsPerAxis <= 2 * kDigitBits); // so that two passes do
     for (int shift = 0; shift < 2 * kDigitBits; shift += kDigitBits) {
         std::array<std::uint32_t, kMask + 2> starts{};
         for (const Station& station : stations) ++starts[(station.key >> shift & kMask) + 1];
