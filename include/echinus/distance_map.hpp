@@ -95,13 +95,10 @@ struct DistanceMapView {
     std::span<const std::uint16_t>
         entries_unorm16; ///< [entry_count] the same * 65535 / largest_entry(), or empty
 
-    std::size_t direction_count() const {
-        if (grid == DirectionGrid::Spherical) return std::size_t{longitude_count} * colatitude_count;
-        return (2 * std::size_t{divisions} + 1) * (2 * std::size_t{divisions} + 1);
-    }
+    std::size_t direction_count() const;
     /// R, or a little more than sqrt(3) R, which is the largest L1 radius in the bounding sphere.
     float largest_entry() const {
-        return grid == DirectionGrid::Spherical ? radius : radius * kLargestL1Radius;
+        return grid == DirectionGrid::Octahedral ? radius * kLargestL1Radius : radius;
     }
     std::size_t entry_count() const { return entry_offsets.empty() ? 0 : entry_offsets.back(); }
     /// All that a query reads.

@@ -29,7 +29,7 @@ class RayCaster {
           largest_(Grid::largest_entry(lattice.radius)) {
         norms_.reserve(directions_.size());
         for (const LatticePoint& d : directions_)
-            norms_.push_back(Grid::radial_norm(Vec3d(d)) * lattice.frame.step);
+            norms_.push_back(grid.radial_norm(Vec3d(d)) * lattice.frame.step);
     }
 
     /// Appends the crossings of all rays with one face.
@@ -108,19 +108,15 @@ Crossings sorted(const Batches& batches, std::size_t direction_count, unsigned t
     return result;
 }
 
-template <typename Grid>
-Crossings cast_rays_of(const LatticeMesh& lattice, const Grid& grid, unsigned thread_count) {
-    return sorted(cast_at_all_faces(lattice, grid, thread_count), grid.direction_count(), thread_count);
-}
-
 } // namespace
 
-Crossings cast_rays(const LatticeMesh& lattice, const SphericalGrid& grid, unsigned thread_count) {
-    return cast_rays_of(lattice, grid, thread_count);
-}
-
-Crossings cast_rays(const LatticeMesh& lattice, const OctahedralGrid& grid, unsigned thread_count) {
-    return cast_rays_of(lattice, grid, thread_count);
+Crossings cast_rays(const LatticeMesh& lattice, const AnyGrid& any_grid, unsigned thread_count) {
+    return std::visit(
+        [&](const auto& grid) {
+            return sorted(cast_at_all_faces(lattice, grid, thread_count), grid.direction_count(),
+                          thread_count);
+        },
+        any_grid);
 }
 
 } // namespace echinus

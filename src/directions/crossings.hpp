@@ -1,8 +1,7 @@
 #pragma once
 
+#include "directions/grids.hpp"
 #include "directions/lattice.hpp"
-#include "directions/octahedral_grid.hpp"
-#include "directions/spherical_grid.hpp"
 
 #include <cstdint>
 #include <vector>
@@ -19,7 +18,6 @@ struct Crossings {
 /// Casts a ray along every direction of the grid. The number of crossings of each ray is exact, also where it
 /// meets an edge or a vertex; the distances are rounded. The result does not depend on the number of threads.
 /// @throws Error InvalidMesh when there are 2^32 crossings or more
-Crossings cast_rays(const LatticeMesh& lattice, const SphericalGrid& grid, unsigned thread_count);
-Crossings cast_rays(const LatticeMesh& lattice, const OctahedralGrid& grid, unsigned thread_count);
+Crossings cast_rays(const LatticeMesh& lattice, const AnyGrid& grid, unsigned thread_count);
 
 } // namespace echinus

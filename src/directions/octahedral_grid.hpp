@@ -191,6 +191,22 @@ class OctahedralGrid {
     static Vec3f from_grid(const Vec3f& v) { return v; }
     static Vec3d to_grid(const Vec3d& v) { return v; }
 
+    /// Calls `visit(corners)` for each small triangle, its indices counter-clockwise seen from outside, as
+    /// unfolding keeps the sense of rotation. Samples that appear more than once have one index, which closes
+    /// the square's border.
+    template <typename Visit>
+    void for_each_facet(const Visit& visit) const {
+        const auto n = static_cast<std::uint32_t>(n_);
+        for (std::uint32_t j = 0; j < 2 * n; ++j)
+            for (std::uint32_t i = 0; i < 2 * n; ++i) {
+                const std::array<std::uint32_t, 4> q{canonical(i, j), canonical(i + 1, j),
+                                                     canonical(i + 1, j + 1), canonical(i, j + 1)};
+                const std::size_t turn = (i >= n) != (j >= n) ? 1 : 0; // the way the diagonal runs
+                visit(std::array{q[turn], q[turn + 1], q[(turn + 3) % 4]});
+                visit(std::array{q[turn + 1], q[(turn + 2) % 4], q[(turn + 3) % 4]});
+            }
+    }
+
   private:
     /// Does a cell lie on that side of its square's diagonal which looks to the middle of the unfolded
     /// square?

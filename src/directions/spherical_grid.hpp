@@ -174,6 +174,26 @@ class SphericalGrid {
         return e_r - e_theta * per_theta - e_phi * per_phi;
     }
 
+    /// Calls `visit(corners)` for the polygons between neighbouring samples, whose indices are
+    /// counter-clockwise seen from outside: with theta running down from the pole and phi counter-clockwise,
+    /// a cell's are (i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j). The small polygons around the poles come
+    /// last.
+    template <typename Visit>
+    void for_each_facet(const Visit& visit) const {
+        for (std::uint32_t j = 0; j + 1 < colatitude_count_; ++j)
+            for (std::uint32_t i = 0; i < longitude_count_; ++i) {
+                const std::uint32_t next = i + 1 == longitude_count_ ? 0 : i + 1;
+                visit(std::array{index(i, j), index(i, j + 1), index(next, j + 1), index(next, j)});
+            }
+        std::vector<std::uint32_t> pole(longitude_count_);
+        for (std::uint32_t i = 0; i < longitude_count_; ++i) pole[i] = index(i, 0);
+        visit(pole);
+        // Seen from outside, longitude runs clockwise around the other pole.
+        for (std::uint32_t i = 0; i < longitude_count_; ++i)
+            pole[i] = index(i == 0 ? 0 : longitude_count_ - i, colatitude_count_ - 1);
+        visit(pole);
+    }
+
   private:
     /// Without the call that std::floor is on processors older than SSE4.1.
     static std::int32_t floor_to_int(float value) {

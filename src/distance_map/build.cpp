@@ -59,6 +59,10 @@ CentreSide side_of_centre(const Crossings& crossings, const std::vector<double>&
     return {inside, static_cast<float>(wrong_count) / static_cast<float>(direction_count)};
 }
 
+std::vector<double> solid_angle_weights(const AnyGrid& any_grid) {
+    return std::visit([](const auto& grid) { return grid.solid_angle_weights(); }, any_grid);
+}
+
 std::uint64_t hash_of(const TriangleMesh& mesh, const DistanceMapOptions& options) {
     std::array<std::uint32_t, 5> fields{
         options.longitude_count, options.colatitude_count, static_cast<std::uint32_t>(options.correction),
@@ -114,11 +118,19 @@ DistanceMapView view_of(const DistanceMapOptions& options) {
     return view;
 }
 
-template <typename Grid>
-DistanceMap build_with(const Grid& grid, const TriangleMesh& mesh, const DistanceMapOptions& options) {
+} // namespace
+
+DistanceMap DistanceMap::build(const TriangleMesh& mesh, const DistanceMapOptions& options) {
+    require_usable(options);
     const LatticeMesh lattice = snap_to_lattice(mesh);
+    DistanceMapView view = view_of(options);
+    view.centre = lattice.centre;
+    view.radius = lattice.radius;
+    const AnyGrid grid = with_grid(view, [](const auto& one) { return AnyGrid(one); });
+
     Crossings crossings = cast_rays(lattice, grid, options.thread_count);
-    const CentreSide centre = side_of_centre(crossings, grid.solid_angle_weights());
+    const CentreSide centre = side_of_centre(crossings, solid_angle_weights(grid));
+    view.centre_inside = centre.inside;
     const CorrectionCounts counts =
         correct_at_vertices(options.correction, lattice, grid, centre.inside, crossings);
 
@@ -130,22 +142,11 @@ DistanceMap build_with(const Grid& grid, const TriangleMesh& mesh, const Distanc
     statistics.clamped_entries = counts.clamped_entries;
     statistics.wrong_parity_share = centre.wrong_parity_share;
 
-    DistanceMapView view = view_of(options);
-    view.centre = lattice.centre;
-    view.radius = lattice.radius;
-    view.centre_inside = centre.inside;
     const auto arrays = store(std::move(crossings), options.entry_format, view.largest_entry());
     view.entry_offsets = arrays->offsets;
     view.entries_float32 = arrays->float32;
     view.entries_unorm16 = arrays->unorm16;
     return {view, statistics, hash_of(mesh, options), arrays};
-}
-
-} // namespace
-
-DistanceMap DistanceMap::build(const TriangleMesh& mesh, const DistanceMapOptions& options) {
-    require_usable(options);
-    return with_grid(options, [&](const auto& grid) { return build_with(grid, mesh, options); });
 }
 
 } // namespace echinus

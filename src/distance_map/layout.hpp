@@ -1,7 +1,6 @@
 #pragma once
 
-#include "directions/octahedral_grid.hpp"
-#include "directions/spherical_grid.hpp"
+#include "directions/grids.hpp"
 
 #include <echinus/distance_map.hpp>
 
@@ -11,9 +10,9 @@
 
 namespace echinus {
 
-/// Calls `use(grid)` with the grid of a view or of options, and gives back what it gives.
-template <typename Described, typename Use>
-decltype(auto) with_grid(const Described& map, const Use& use) {
+/// Calls `use(grid)` with the grid that a view describes, and gives back what it gives.
+template <typename Use>
+decltype(auto) with_grid(const DistanceMapView& map, const Use& use) {
     if (map.grid == DirectionGrid::Octahedral) return use(OctahedralGrid(map.divisions));
     return use(SphericalGrid(map.longitude_count, map.colatitude_count, map.pole_axis));
 }

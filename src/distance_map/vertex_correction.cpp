@@ -52,7 +52,7 @@ class Corrector {
         if (!(at.usable[0] && at.usable[1] && at.usable[2] && at.usable[3])) return;
         if (at.entry_count != layer.crossing_count) return;
         const std::uint32_t k = layer.crossings_before;
-        const float wanted = Grid::interpolant_at(d);
+        const float wanted = grid_.interpolant_at(d);
         const float present = interpolated(map_, at, k);
         const bool reached =
             moves_outward(k) ? !Grid::is_farther(wanted, present) : !Grid::is_farther(present, wanted);
@@ -89,13 +89,19 @@ class Corrector {
     std::vector<float> shifts_;
 };
 
-/// @param finder  finds the faces around a vertex's ray
+/// Finds the faces around the rays of vertices. Any resolution gives the same layers; about as many
+/// directions as the map has suit its mesh.
+SphericalGrid finder_like(std::size_t direction_count) {
+    const auto side = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(direction_count)));
+    return {side, side, PoleAxis::Z};
+}
+
 template <typename Grid>
 CorrectionCounts correct(VertexCorrection correction, const LatticeMesh& lattice, const Grid& grid,
-                         const SphericalGrid& finder, bool centre_inside, Crossings& crossings) {
+                         bool centre_inside, Crossings& crossings) {
     if (correction == VertexCorrection::None) return {};
     Corrector<Grid> corrector(correction, lattice, grid, centre_inside, crossings);
-    const std::vector<VertexLayer> layers = layers_of_vertices(lattice, finder);
+    const std::vector<VertexLayer> layers = layers_of_vertices(lattice, finder_like(grid.direction_count()));
     for (std::size_t i = 0; i < layers.size(); ++i) corrector.consider(lattice.vertices[i], layers[i]);
 
     CorrectionCounts counts;
@@ -121,14 +127,10 @@ CorrectionCounts correct(VertexCorrection correction, const LatticeMesh& lattice
 } // namespace
 
 CorrectionCounts correct_at_vertices(VertexCorrection correction, const LatticeMesh& lattice,
-                                     const SphericalGrid& grid, bool centre_inside, Crossings& crossings) {
-    return correct(correction, lattice, grid, grid, centre_inside, crossings);
-}
-
-CorrectionCounts correct_at_vertices(VertexCorrection correction, const LatticeMesh& lattice,
-                                     const OctahedralGrid& grid, bool centre_inside, Crossings& crossings) {
-    const SphericalGrid finder(2 * grid.divisions(), 2 * grid.divisions(), PoleAxis::Z);
-    return correct(correction, lattice, grid, finder, centre_inside, crossings);
+                                     const AnyGrid& any_grid, bool centre_inside, Crossings& crossings) {
+    return std::visit(
+        [&](const auto& grid) { return correct(correction, lattice, grid, centre_inside, crossings); },
+        any_grid);
 }
 
 } // namespace echinus

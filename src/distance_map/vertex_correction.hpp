@@ -15,8 +15,6 @@ struct CorrectionCounts {
 /// Moves the entries around the mesh's vertices so that interpolation no longer passes by them (paper
 /// section 2.1 and figure 1b). Entries stay sorted within [0, largest_entry(R)].
 CorrectionCounts correct_at_vertices(VertexCorrection correction, const LatticeMesh& lattice,
-                                     const SphericalGrid& grid, bool centre_inside, Crossings& crossings);
-CorrectionCounts correct_at_vertices(VertexCorrection correction, const LatticeMesh& lattice,
-                                     const OctahedralGrid& grid, bool centre_inside, Crossings& crossings);
+                                     const AnyGrid& grid, bool centre_inside, Crossings& crossings);
 
 } // namespace echinus
