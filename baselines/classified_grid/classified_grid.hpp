@@ -1,7 +1,7 @@
 #pragma once
 
-#include <echinus/contact.hpp>
-#include <echinus/geometry.hpp>
+#include "baselines/baseline.hpp"
+
 #include <echinus/mesh.hpp>
 
 #include <cstddef>
@@ -22,7 +22,7 @@ namespace echinus::baselines {
 
 struct GridArrays;
 
-class ClassifiedGrid {
+class ClassifiedGrid final : public Baseline {
   public:
     /// The finest cells whose bytes fit, to about one part in a hundred.
     /// @param mesh  closed; inside is where the winding number is not 0
@@ -35,8 +35,10 @@ class ClassifiedGrid {
     /// @throws Error as above; InvalidOptions when the cells are too many or too long for the format
     static ClassifiedGrid build_with_cells(const TriangleMesh& mesh, std::int32_t cell_steps);
 
+    std::string name() const override { return "classified"; }
     /// All that a query reads, mesh included.
-    std::size_t byte_count() const;
+    std::size_t byte_count() const override;
+    std::string_view counted() const override { return "cells, lists of faces, vertices and faces"; }
 
     /// Edge of a cell in lattice steps.
     std::int32_t cell_steps() const;
@@ -51,11 +53,14 @@ class ClassifiedGrid {
 
     /// contains() of many points, bit for bit. Allocates scratch memory. Any number of threads.
     /// @param inside  [n] 1 or 0. @pre points_local.size() == inside.size()
-    void contains_batch(std::span<const Vec3f> points_local, std::span<std::uint8_t> inside) const;
+    void contains_batch(std::span<const Vec3f> points_local, std::span<std::uint8_t> inside) const override;
 
     /// contact() of many points. @param margin  not negative, NaN counts as 0
     /// @pre points_local.size() == contacts.size()
     void contacts_batch(std::span<const Vec3f> points_local, float margin, std::span<Contact> contacts) const;
+    void contacts_batch(std::span<const Vec3f> points_local, std::span<Contact> contacts) const override {
+        contacts_batch(points_local, 0, contacts);
+    }
 
   private:
     explicit ClassifiedGrid(std::shared_ptr<const GridArrays> arrays) : arrays_(std::move(arrays)) {}

@@ -1,87 +1,142 @@
-#include "baselines/dense_grid/dense_grid.hpp"
+// From a mesh to samples: the fastest exact distances at hand, those of an exact map, on all cores if asked
+// to, so that the grid's build time is not held against it.
 
+#include "baselines/common/closed_mesh.hpp"
+#include "baselines/dense_grid/field.hpp"
+
+#include <echinus/error.hpp>
 #include <echinus/exact_map.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <string>
 
 namespace echinus::baselines {
 
 namespace {
 
-struct Box {
-    Vec3f low, high;
-};
+/// Nodes that are asked about at once: enough for all cores, few enough to need little memory.
+constexpr std::size_t kMostAtOnce = std::size_t{1} << 17;
+constexpr float kMostSteps = 32767;
 
-Box box_of(const TriangleMesh& mesh) {
-    Box box{mesh.vertices[mesh.faces.front()[0]], mesh.vertices[mesh.faces.front()[0]]};
-    for (const Triangle& face : mesh.faces)
-        for (const std::uint32_t v : face) {
-            const Vec3f& p = mesh.vertices[v];
-            box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-            box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
-        }
-    return box;
+std::size_t bytes_of_sample(SampleFormat format) {
+    return format == SampleFormat::Float32 ? sizeof(float) : sizeof(std::int16_t);
 }
 
-std::uint32_t nodes_along(float low, float high, double spacing) {
-    return static_cast<std::uint32_t>(std::ceil((double{high} - double{low}) / spacing)) + 1;
+double count_of(const std::array<double, 3>& nodes) {
+    return nodes[0] * nodes[1] * nodes[2];
 }
 
-std::array<std::uint32_t, 3> nodes_of(const Box& box, double spacing) {
-    // Two nodes at least: an interpolation needs a cell.
-    return {std::max(2U, nodes_along(box.low.x, box.high.x, spacing)),
-            std::max(2U, nodes_along(box.low.y, box.high.y, spacing)),
-            std::max(2U, nodes_along(box.low.z, box.high.z, spacing))};
+/// All that is known before the samples are.
+SampledField frame_of(const Box& box, double spacing, SampleFormat format) {
+    if (!(spacing > 0) || spacing > box.longest_side())
+        throw Error(ErrorCode::InvalidOptions,
+                    "the spacing of a dense grid is to be positive and at most the mesh's longest side, " +
+                        std::to_string(box.longest_side()) + "; it is " + std::to_string(spacing));
+    const std::array<double, 3> nodes = nodes_over(box, spacing);
+    if (count_of(nodes) > static_cast<double>(DenseGrid::kMostNodes))
+        throw Error(ErrorCode::InvalidOptions, "a dense grid of " + std::to_string(count_of(nodes)) +
+                                                   " nodes is asked for; most are " +
+                                                   std::to_string(DenseGrid::kMostNodes));
+    SampledField field;
+    field.low = box.low;
+    field.high = box.high;
+    field.spacing = spacing;
+    field.nodes_per_unit = static_cast<float>(1 / spacing);
+    for (std::size_t axis = 0; axis < 3; ++axis) field.nodes[axis] = static_cast<std::int32_t>(nodes[axis]);
+    field.format = format;
+    return field;
 }
 
-std::size_t bytes_of(const std::array<std::uint32_t, 3>& nodes) {
-    return sizeof(float) * nodes[0] * nodes[1] * nodes[2];
+Vec3f place_of(const SampledField& field, std::size_t node) {
+    const auto row = static_cast<std::size_t>(field.row()), slice = static_cast<std::size_t>(field.slice());
+    const Vec3d steps(static_cast<double>(node % row), static_cast<double>(node % slice / row),
+                      static_cast<double>(node / slice));
+    return Vec3f(Vec3d(field.low) + steps * field.spacing);
+}
+
+std::vector<float> signed_distances(const TriangleMesh& mesh, const SampledField& field,
+                                    unsigned thread_count) {
+    ExactMapOptions options;
+    options.thread_count = thread_count;
+    const ExactMap map = ExactMap::build(mesh, options);
+    const float farthest = 4 * map.view().radius; // the grid ends before
+    std::vector<float> distances(static_cast<std::size_t>(field.slice()) *
+                                 static_cast<std::size_t>(field.nodes[2]));
+    std::vector<Vec3f> points;
+    std::vector<Contact> contacts;
+    for (std::size_t begin = 0; begin < distances.size(); begin += kMostAtOnce) {
+        const std::size_t count = std::min(kMostAtOnce, distances.size() - begin);
+        points.resize(count);
+        contacts.resize(count);
+        for (std::size_t i = 0; i < count; ++i) points[i] = place_of(field, begin + i);
+        echinus::contacts_batch(map.view(), points, farthest, contacts, {1, 1, 1}, thread_count);
+        for (std::size_t i = 0; i < count; ++i) distances[begin + i] = -contacts[i].depth;
+    }
+    return distances;
+}
+
+void store_as_snorm16(const std::vector<float>& distances, SampledField& field) {
+    float largest = 0;
+    for (const float distance : distances) largest = std::max(largest, std::abs(distance));
+    field.step = largest / kMostSteps;
+    field.snorm16.reserve(distances.size());
+    for (const float distance : distances) {
+        const float steps = std::clamp(distance / field.step, -kMostSteps, kMostSteps);
+        field.snorm16.push_back(static_cast<std::int16_t>(std::lround(steps)));
+    }
+}
+
+std::shared_ptr<const SampledField> sampled(const TriangleMesh& mesh, SampledField frame,
+                                            const DenseGridOptions& options) {
+    std::vector<float> distances = signed_distances(mesh, frame, options.thread_count);
+    if (frame.format == SampleFormat::Float32)
+        frame.float32 = std::move(distances);
+    else
+        store_as_snorm16(distances, frame);
+    return std::make_shared<const SampledField>(std::move(frame));
+}
+
+/// By halving: bytes fall as the spacing grows.
+double finest_spacing_within(const Box& box, std::size_t byte_budget, SampleFormat format) {
+    const std::size_t sample = bytes_of_sample(format);
+    if (byte_budget < 8 * sample || byte_budget > DenseGrid::kMostNodes * sample)
+        throw Error(ErrorCode::InvalidOptions, "a dense grid takes " + std::to_string(8 * sample) + " to " +
+                                                   std::to_string(DenseGrid::kMostNodes * sample) +
+                                                   " bytes; the budget is " + std::to_string(byte_budget));
+    const double most_nodes = static_cast<double>(byte_budget / sample);
+    double too_fine = 0, coarse_enough = box.longest_side();
+    for (int i = 0; i < 50; ++i) {
+        const double middle = (too_fine + coarse_enough) / 2;
+        (count_of(nodes_over(box, middle)) <= most_nodes ? coarse_enough : too_fine) = middle;
+    }
+    return coarse_enough;
+}
+
+Box box_of_closed(const TriangleMesh& mesh) {
+    require_closed(mesh, "a dense grid");
+    return box_of(mesh);
 }
 
 } // namespace
 
-DenseGrid DenseGrid::with_spacing(const TriangleMesh& mesh, double spacing) {
-    return {mesh, spacing};
+DenseGrid DenseGrid::with_samples(const TriangleMesh& mesh, std::uint32_t sample_count,
+                                  const DenseGridOptions& options) {
+    const Box box = box_of_closed(mesh);
+    const double spacing = spacing_of_samples(box, sample_count, kMostSamples);
+    return DenseGrid(sampled(mesh, frame_of(box, spacing, options.format), options));
 }
 
-DenseGrid DenseGrid::with_bytes(const TriangleMesh& mesh, std::size_t byte_budget) {
-    const Box box = box_of(mesh);
-    const Vec3d size = Vec3d(box.high) - Vec3d(box.low);
-    double too_fine = 0, coarse_enough = std::max({size.x, size.y, size.z});
-    for (int i = 0; i < 50; ++i) {
-        const double middle = (too_fine + coarse_enough) / 2;
-        const bool fits = bytes_of(nodes_of(box, middle)) <= byte_budget;
-        (fits ? coarse_enough : too_fine) = middle;
-    }
-    return {mesh, coarse_enough};
+DenseGrid DenseGrid::with_bytes(const TriangleMesh& mesh, std::size_t byte_budget,
+                                const DenseGridOptions& options) {
+    const Box box = box_of_closed(mesh);
+    const double spacing = finest_spacing_within(box, byte_budget, options.format);
+    return DenseGrid(sampled(mesh, frame_of(box, spacing, options.format), options));
 }
 
-/// The samples come from an exact map, a row of nodes at a time: the fastest exact distances at hand, so that
-/// the grid's build time is not held against it.
-DenseGrid::DenseGrid(const TriangleMesh& mesh, double spacing) {
-    const Box box = box_of(mesh);
-    const std::array<std::uint32_t, 3> nodes = nodes_of(box, spacing);
-    std::ranges::copy(nodes, node_counts_);
-    low_ = box.low;
-    nodes_per_unit_ = static_cast<float>(1 / spacing);
-    samples_.resize(std::size_t{nodes[0]} * nodes[1] * nodes[2]);
-
-    ExactMapOptions options;
-    options.thread_count = 1;
-    const ExactMap map = ExactMap::build(mesh, options);
-    const float farthest = 4 * map.view().radius;
-    std::vector<Vec3f> points(nodes[0]);
-    std::vector<Contact> contacts(nodes[0]);
-    float* sample = samples_.data();
-    for (std::uint32_t z = 0; z < nodes[2]; ++z)
-        for (std::uint32_t y = 0; y < nodes[1]; ++y) {
-            for (std::uint32_t x = 0; x < nodes[0]; ++x)
-                points[x] = Vec3f(Vec3d(low_) + Vec3d(x, y, z) * spacing);
-            echinus::contacts_batch(map.view(), points, farthest, contacts);
-            for (const Contact& contact : contacts) *sample++ = -contact.depth;
-        }
+DenseGrid DenseGrid::with_spacing(const TriangleMesh& mesh, double spacing, const DenseGridOptions& options) {
+    const Box box = box_of_closed(mesh);
+    return DenseGrid(sampled(mesh, frame_of(box, spacing, options.format), options));
 }
 
 } // namespace echinus::baselines

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <echinus/contact.hpp>
+#include <echinus/geometry.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+/// The systems that answer the same questions as the maps of Echinus do.
+namespace echinus::baselines {
+
+/// A structure around a closed mesh that can be asked about particles: what all systems have in common, so
+/// that a comparison treats them alike. Each is built by its own function with its own options. All points
+/// are in the mesh's frame and unit. Immutable once built; any number of threads may query one.
+class Baseline {
+  public:
+    virtual ~Baseline() = default;
+
+    /// Short, the same for all resolutions: "dense", "openvdb", "embree", "exact" ...
+    virtual std::string name() const = 0;
+
+    /// All that a query reads.
+    virtual std::size_t byte_count() const = 0;
+
+    /// What byte_count() sums up, for the foot of a table.
+    virtual std::string_view counted() const = 0;
+
+    /// Is each particle inside? What is not finite is outside.
+    /// @param inside  [n] 1 or 0. @pre points.size() == inside.size()
+    virtual void contains_batch(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const = 0;
+
+    /// How deep is each particle, and which way is out? One outside, or not finite, gets no_contact(). A
+    /// system that finds a particle inside and no way out says so: inside, with no normal and depth 0.
+    /// @param contacts  [n] @pre points.size() == contacts.size()
+    virtual void contacts_batch(std::span<const Vec3f> points, std::span<Contact> contacts) const = 0;
+
+  protected:
+    Baseline() = default;
+    Baseline(const Baseline&) = default;
+    Baseline(Baseline&&) = default;
+    Baseline& operator=(const Baseline&) = default;
+    Baseline& operator=(Baseline&&) = default;
+};
+
+/// The answer for a particle outside.
+inline Contact no_contact(const Vec3f& point) {
+    Contact none;
+    none.point = point;
+    return none;
+}
+
+/// The answer for a particle inside at this depth, where the way out is straight along the normal.
+inline Contact contact_along(const Vec3f& point, float depth, const Vec3f& normal) {
+    Contact result;
+    result.point = point + normal * depth;
+    result.normal = normal;
+    result.depth = depth;
+    result.inside = true;
+    return result;
+}
+
+} // namespace echinus::baselines

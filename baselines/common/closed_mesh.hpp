@@ -1,0 +1,38 @@
+#pragma once
+
+#include <echinus/mesh.hpp>
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+/// What the builders of several systems ask about a mesh first.
+namespace echinus::baselines {
+
+/// Throws unless the mesh has an inside: no system can say more about an open one than where its rule of
+/// sides happens to lead. Vertices on one point of ExactMap's lattice count as one, so that faces need not
+/// share vertices.
+/// @param system  for the sentence, such as "a dense grid"
+/// @throws Error InvalidMesh as inspect() does, for an open mesh, or when the bounding radius lies outside
+/// [1e-15, 1e15]
+void require_closed(const TriangleMesh& mesh, std::string_view system);
+
+struct Box {
+    Vec3f low, high;
+
+    Vec3d size() const { return Vec3d(high) - Vec3d(low); }
+    double longest_side() const;
+};
+
+/// Of the vertices that faces use. @pre there is a face, and indices are in range
+Box box_of(const TriangleMesh& mesh);
+
+/// The nodes of a grid from the box's lowest corner on that has a cell everywhere in the box: two at least
+/// along each axis. In double, since nobody bounded the spacing yet.
+std::array<double, 3> nodes_over(const Box& box, double spacing);
+
+/// The spacing that puts so many samples along the box's longest side, ends included.
+/// @throws Error InvalidOptions unless sample_count lies in [2, most]
+double spacing_of_samples(const Box& box, std::uint32_t sample_count, std::uint32_t most);
+
+} // namespace echinus::baselines

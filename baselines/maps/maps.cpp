@@ -1,0 +1,108 @@
+#include "baselines/maps/maps.hpp"
+
+#include "baselines/common/closed_mesh.hpp"
+
+#include <echinus/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace echinus::baselines {
+
+namespace {
+
+/// Both kinds of maps are asked in the same words.
+template <typename Map>
+class MapBaseline final : public Baseline {
+  public:
+    MapBaseline(Map map, std::string name, std::string_view counted)
+        : map_(std::move(map)), name_(std::move(name)), counted_(counted) {}
+
+    std::string name() const override { return name_; }
+    std::size_t byte_count() const override { return map_.view().byte_count(); }
+    std::string_view counted() const override { return counted_; }
+    void contains_batch(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const override {
+        echinus::contains_batch(map_.view(), points, inside);
+    }
+    void contacts_batch(std::span<const Vec3f> points, std::span<Contact> contacts) const override {
+        echinus::contacts_batch(map_.view(), points, 0, contacts);
+    }
+
+  private:
+    Map map_;
+    std::string name_;
+    std::string_view counted_;
+};
+
+std::unique_ptr<const Baseline> behind_interface(DistanceMap map) {
+    const bool spherical = map.view().grid == DirectionGrid::Spherical;
+    return std::make_unique<MapBaseline<DistanceMap>>(
+        std::move(map), spherical ? "distance" : "octahedral distance", "offsets and entries of directions");
+}
+
+/// A resolution is one number: longitudes and colatitudes, or divisions.
+struct Resolutions {
+    std::uint32_t least, most;
+    DistanceMapOptions options;
+
+    explicit Resolutions(const DistanceMapOptions& wanted) : options(wanted) {
+        const bool spherical = options.grid == DirectionGrid::Spherical;
+        least = spherical ? DistanceMapOptions::kMinSampleCount : DistanceMapOptions::kMinDivisions;
+        most = spherical ? DistanceMapOptions::kMaxSampleCount : DistanceMapOptions::kMaxDivisions;
+    }
+    DistanceMap build(const TriangleMesh& mesh, std::uint32_t resolution) {
+        options.longitude_count = options.colatitude_count = options.divisions = resolution;
+        return DistanceMap::build(mesh, options);
+    }
+};
+
+} // namespace
+
+std::unique_ptr<const Baseline> exact_map(const TriangleMesh& mesh, const ExactMapOptions& options) {
+    require_closed(mesh, "a comparison");
+    return std::make_unique<MapBaseline<ExactMap>>(ExactMap::build(mesh, options), "exact",
+                                                   "bands, lists of faces, vertices, faces and tree");
+}
+
+std::unique_ptr<const Baseline> distance_map(const TriangleMesh& mesh, const DistanceMapOptions& options) {
+    require_closed(mesh, "a comparison");
+    return behind_interface(DistanceMap::build(mesh, options));
+}
+
+/// Bytes grow nearly as the square of the resolution, so that a map of any resolution foretells the next to
+/// try; bisection has the last word where it does not.
+std::unique_ptr<const Baseline> distance_map_with_bytes(const TriangleMesh& mesh, std::size_t byte_budget,
+                                                        const DistanceMapOptions& options) {
+    require_closed(mesh, "a comparison");
+    Resolutions resolutions(options);
+    std::uint32_t fits = resolutions.least, too_fine = resolutions.most + 1;
+    DistanceMap best = resolutions.build(mesh, fits);
+    if (best.view().byte_count() > byte_budget)
+        throw Error(ErrorCode::InvalidOptions, "the coarsest distance map takes " +
+                                                   std::to_string(best.view().byte_count()) +
+                                                   " bytes; the budget is " + std::to_string(byte_budget));
+    const double wanted = static_cast<double>(byte_budget);
+    double bytes = static_cast<double>(best.view().byte_count());
+    double resolution = resolutions.least;
+    for (int builds = 0; builds < 12 && too_fine - fits > 1; ++builds) {
+        if (static_cast<double>(best.view().byte_count()) > 0.99 * wanted) break;
+        const double foretold = resolution * std::sqrt(wanted / bytes * 0.998);
+        const double middle = (fits + 1.0 * too_fine) / 2;
+        // Early on only what is foretold, since the middle of all resolutions is a huge map.
+        const double next = builds < 6 ? foretold : std::min(foretold, middle);
+        resolution = std::clamp(std::floor(next), fits + 1.0, too_fine - 1.0);
+        DistanceMap map = resolutions.build(mesh, static_cast<std::uint32_t>(resolution));
+        bytes = static_cast<double>(map.view().byte_count());
+        if (bytes > wanted) {
+            too_fine = static_cast<std::uint32_t>(resolution);
+        } else {
+            fits = static_cast<std::uint32_t>(resolution);
+            best = std::move(map);
+        }
+    }
+    return behind_interface(std::move(best));
+}
+
+} // namespace echinus::baselines
