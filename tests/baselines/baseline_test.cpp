@@ -5,6 +5,15 @@
 #include "baselines/classified_grid/classified_grid.hpp"
 #include "baselines/dense_grid/dense_grid.hpp"
 #include "baselines/maps/maps.hpp"
+#ifdef ECHINUS_HAS_SPARSE_FIELD
+#include "baselines/sparse_field/sparse_field.hpp"
+#endif
+#ifdef ECHINUS_HAS_EMBREE_TREE
+#include "baselines/embree_tree/embree_tree.hpp"
+#endif
+#ifdef ECHINUS_HAS_BULLET_MESH
+#include "baselines/bullet_mesh/bullet_mesh.hpp"
+#endif
 #include "support/random_points.hpp"
 
 #include <gtest/gtest.h>
@@ -25,6 +34,8 @@ struct System {
     std::string name;
     double distance_error; ///< of depths and places on the unit sphere, by coarse resolutions
     std::function<std::unique_ptr<const Baseline>(const TriangleMesh&)> build;
+    /// False where the first of two faces in one place is a matter of chance.
+    bool tells_faces_in_one_place_apart = true;
 };
 
 template <typename Kind>
@@ -46,6 +57,15 @@ std::vector<System> all_systems() {
         {"classified", 0.01,
          [](const TriangleMesh& mesh) { return held(ClassifiedGrid::build(mesh, 2'000'000)); }},
         {"dense", 0.05, [](const TriangleMesh& mesh) { return held(DenseGrid::with_samples(mesh, 31)); }},
+#ifdef ECHINUS_HAS_SPARSE_FIELD
+        {"openvdb", 0.05, [](const TriangleMesh& mesh) { return held(SparseField::with_samples(mesh, 31)); }},
+#endif
+#ifdef ECHINUS_HAS_EMBREE_TREE
+        {"embree", 0.01, [](const TriangleMesh& mesh) { return held(EmbreeTree::build(mesh)); }},
+#endif
+#ifdef ECHINUS_HAS_BULLET_MESH
+        {"bullet", 0.01, [](const TriangleMesh& mesh) { return held(BulletMesh::build(mesh, 2)); }, false},
+#endif
     };
 }
 
@@ -152,6 +172,7 @@ TEST(EveryBaseline, FindsNothingInAFlatMesh) {
     }
     for (const System& system : all_systems()) {
         const auto built = system.build(test::flat_mesh());
+        if (!system.tells_faces_in_one_place_apart) continue;
         std::vector<std::uint8_t> inside(points.size(), 2);
         built->contains_batch(points, inside);
         EXPECT_EQ(inside, std::vector<std::uint8_t>(points.size(), 0)) << system.name;
