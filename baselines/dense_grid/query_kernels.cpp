@@ -94,7 +94,10 @@ struct Corners {
 template <typename Samples>
 class Kernel {
   public:
-    explicit Kernel(const SampledField& field) : field_(field), samples_(field) {}
+    explicit Kernel(const SampledField& field)
+        : low_(field.low), high_(field.high), last_(field.last(0), field.last(1), field.last(2)),
+          nodes_per_unit_(field.nodes_per_unit), step_(field.step), slope_scale_(field.slope_scale()),
+          row_(field.row()), slice_(field.slice()), samples_(field) {}
 
     HWY_INLINE void contains(const Vec3f* points, float* distances) const {
         const Corners c = corners_of(load(points));
@@ -109,7 +112,7 @@ class Kernel {
         const Floats s00 = mix(c.at00.low, c.at00.high, c.x), s10 = mix(c.at10.low, c.at10.high, c.x);
         const Floats s01 = mix(c.at01.low, c.at01.high, c.x), s11 = mix(c.at11.low, c.at11.high, c.x);
         const Floats low_z = mix(s00, s10, c.y), high_z = mix(s01, s11, c.y);
-        const Floats scale = hn::IfThenElseZero(c.in_box, splat(field_.slope_scale()));
+        const Floats scale = hn::IfThenElseZero(c.in_box, splat(slope_scale_));
         const Floats x = hn::Mul(
             mix(mix(rise(c.at00), rise(c.at10), c.y), mix(rise(c.at01), rise(c.at11), c.y), c.z), scale);
         const Floats y = hn::Mul(mix(hn::Sub(s10, s00), hn::Sub(s11, s01), c.z), scale);
@@ -127,7 +130,7 @@ class Kernel {
     static HWY_INLINE Floats rise(const Pair& pair) { return hn::Sub(pair.high, pair.low); }
 
     HWY_INLINE Floats distance(const Corners& c, Floats low_z, Floats high_z) const {
-        return hn::IfThenElseZero(c.in_box, hn::Mul(mix(low_z, high_z, c.z), splat(field_.step)));
+        return hn::IfThenElseZero(c.in_box, hn::Mul(mix(low_z, high_z, c.z), splat(step_)));
     }
 
     static HWY_INLINE Mask is_between(Floats v, float low, float high) {
@@ -136,32 +139,33 @@ class Kernel {
 
     HWY_INLINE Corners corners_of(const Vectors& p) const {
         Corners c;
-        c.in_box = hn::And(hn::And(is_between(p.x, field_.low.x, field_.high.x),
-                                   is_between(p.y, field_.low.y, field_.high.y)),
-                           is_between(p.z, field_.low.z, field_.high.z));
-        const Ints i = node_below(c.in_box, p.x, field_.low.x, field_.last(0), c.x);
-        const Ints j = node_below(c.in_box, p.y, field_.low.y, field_.last(1), c.y);
-        const Ints k = node_below(c.in_box, p.z, field_.low.z, field_.last(2), c.z);
-        const std::int32_t row = field_.row(), slice = field_.slice();
+        c.in_box = hn::And(hn::And(is_between(p.x, low_.x, high_.x), is_between(p.y, low_.y, high_.y)),
+                           is_between(p.z, low_.z, high_.z));
+        const Ints i = node_below(c.in_box, p.x, low_.x, last_.x, c.x);
+        const Ints j = node_below(c.in_box, p.y, low_.y, last_.y, c.y);
+        const Ints k = node_below(c.in_box, p.z, low_.z, last_.z, c.z);
         const Ints first =
-            hn::Add(hn::Add(hn::Mul(k, hn::Set(kInt, slice)), hn::Mul(j, hn::Set(kInt, row))), i);
+            hn::Add(hn::Add(hn::Mul(k, hn::Set(kInt, slice_)), hn::Mul(j, hn::Set(kInt, row_))), i);
         c.at00 = samples_(first, 0);
-        c.at10 = samples_(first, row);
-        c.at01 = samples_(first, slice);
-        c.at11 = samples_(first, slice + row);
+        c.at10 = samples_(first, row_);
+        c.at01 = samples_(first, slice_);
+        c.at11 = samples_(first, slice_ + row_);
         return c;
     }
 
     /// Beyond the box: the first node, whose samples exist.
     HWY_INLINE Ints node_below(Mask in_box, Floats p, float low, float last, Floats& in_cell) const {
-        const Floats from_low = hn::Mul(hn::Sub(p, splat(low)), splat(field_.nodes_per_unit));
+        const Floats from_low = hn::Mul(hn::Sub(p, splat(low)), splat(nodes_per_unit_));
         const Floats coordinate = hn::IfThenElseZero(in_box, hn::Min(from_low, splat(last)));
         const Ints whole = hn::ConvertTo(kInt, hn::Min(coordinate, splat(last - 1)));
         in_cell = hn::Sub(coordinate, hn::ConvertTo(kFloat, whole));
         return whole;
     }
 
-    const SampledField& field_;
+    // Copies, since for all the compiler knows an answer may be written where the field lies.
+    Vec3f low_, high_, last_;
+    float nodes_per_unit_, step_, slope_scale_;
+    std::int32_t row_, slice_;
     Samples samples_;
 };
 

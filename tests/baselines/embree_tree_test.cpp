@@ -74,7 +74,7 @@ TEST(EmbreeTree, TellsTheSidesThatTheExactMapTellsButForFewAtEdges) {
         }
 }
 
-/// Spatial splits would count the long faces of such a mesh more than once.
+/// Long faces across many boxes are what spatial splits are made for, and may then be reported twice.
 TEST(EmbreeTree, CountsLongFacesOnce) {
     TriangleMesh needles;
     for (int i = 0; i < 40; ++i) {
