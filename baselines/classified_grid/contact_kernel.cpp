@@ -217,8 +217,7 @@ class ContactKernel {
     HWY_ATTR HWY_INLINE static hn::VFromD<Floats> in_plane_sq(const ToEdge& edge) {
         return hn::MulAdd(edge.inwards, edge.inwards, hn::Mul(edge.beyond, edge.beyond));
     }
-    HWY_ATTR HWY_INLINE static hn::MFromD<Floats> is_above(const ToEdge& a, const ToEdge& b,
-                                                           const ToEdge& c) {
+    HWY_ATTR HWY_INLINE static hn::Mask<Floats> is_above(const ToEdge& a, const ToEdge& b, const ToEdge& c) {
         return hn::Gt(hn::Min(hn::Min(a.inwards, b.inwards), c.inwards), hn::Zero(Floats()));
     }
 

@@ -50,7 +50,7 @@ template <class V>
 HWY_ATTR HWY_INLINE V longest(const Vectors<V>& a) {
     return hn::Max(hn::Max(hn::Abs(a.x), hn::Abs(a.y)), hn::Abs(a.z));
 }
-HWY_ATTR HWY_INLINE hn::MFromD<Floats> is_zero(const FloatVectors& a) {
+HWY_ATTR HWY_INLINE hn::Mask<Floats> is_zero(const FloatVectors& a) {
     return hn::Eq(longest(a), hn::Zero(Floats()));
 }
 
@@ -142,7 +142,7 @@ class CellLookup {
     }
 
   private:
-    HWY_ATTR HWY_INLINE static hn::MFromD<Floats> is_within(hn::VFromD<Floats> g, float limit) {
+    HWY_ATTR HWY_INLINE static hn::Mask<Floats> is_within(hn::VFromD<Floats> g, float limit) {
         const Floats df;
         return hn::And(hn::Ge(g, hn::Zero(df)), hn::Lt(g, hn::Set(df, limit)));
     }

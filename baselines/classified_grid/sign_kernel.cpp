@@ -195,12 +195,12 @@ class SignKernel {
         const Floats df;
         const Ints di;
         const std::size_t n = hn::Lanes(df);
-        FloatVectors p;
-        hn::VFromD<Floats> first_bits;
-        hn::LoadInterleaved4(df, &s_.places[i].x, p.x, p.y, p.z, first_bits);
-        IntVectors centre;
-        hn::VFromD<Ints> particle;
-        hn::LoadInterleaved4(di, &s_.cells_of[i].x, centre.x, centre.y, centre.z, particle);
+        hn::VFromD<Floats> x, y, z, first_bits;
+        hn::LoadInterleaved4(df, &s_.places[i].x, x, y, z, first_bits);
+        const FloatVectors p{x, y, z};
+        hn::VFromD<Ints> centre_x, centre_y, centre_z, particle;
+        hn::LoadInterleaved4(di, &s_.cells_of[i].x, centre_x, centre_y, centre_z, particle);
+        const IntVectors centre{centre_x, centre_y, centre_z};
         const auto lengths = hn::LoadU(di, &s_.sorted_lengths[i]);
         const std::int32_t longest = *std::max_element(&s_.sorted_lengths[i], &s_.sorted_lengths[i] + n);
         auto winding = hn::ShiftRight<16>(particle);
@@ -229,7 +229,7 @@ class SignKernel {
 
     struct Verdict {
         hn::VFromD<Ints> crossing; ///< what it adds to the winding number; 0 where not sure
-        hn::MFromD<Floats> unsure;
+        hn::Mask<Floats> unsure;
     };
 
     /// Is a face between the particle p and the centre of its cell, which is the origin? p passes each edge

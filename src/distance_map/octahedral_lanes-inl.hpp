@@ -57,11 +57,15 @@ class OctahedralLanes {
         const Floats along_u = hn::IfThenElseZero(wanted, at.along_u);
         const Floats along_v = hn::IfThenElseZero(wanted, at.along_v);
         const Ints last = splat_int(2 * n_ - 1);
-        Cell cell;
-        cell.i = hn::Min(hn::ConvertTo(kInt, along_u), last);
-        cell.j = hn::Min(hn::ConvertTo(kInt, along_v), last);
-        cell.u = hn::Sub(along_u, hn::ConvertTo(kFloat, cell.i));
-        cell.v = hn::Sub(along_v, hn::ConvertTo(kFloat, cell.j));
+        const Ints i = hn::Min(hn::ConvertTo(kInt, along_u), last);
+        const Ints j = hn::Min(hn::ConvertTo(kInt, along_v), last);
+        Cell cell{i,
+                  j,
+                  hn::Sub(along_u, hn::ConvertTo(kFloat, i)),
+                  hn::Sub(along_v, hn::ConvertTo(kFloat, j)),
+                  splat(0),
+                  wanted,
+                  wanted};
         cell.mirrored = hn::Xor(is_right(cell), is_upper(cell));
         cell.rest = hn::Sub(choose(cell.mirrored, cell.u, hn::Sub(splat(1), cell.u)), cell.v);
         cell.beyond = hn::Lt(cell.rest, hn::Zero(kFloat));

@@ -248,9 +248,9 @@ class Kernel {
     };
 
     static HWY_INLINE Vectors load(const Vec3f* points) {
-        Vectors result;
-        hn::LoadInterleaved3(kFloat, &points->x, result.x, result.y, result.z);
-        return result;
+        Floats x, y, z;
+        hn::LoadInterleaved3(kFloat, &points->x, x, y, z);
+        return {x, y, z};
     }
 
     static HWY_INLINE void store(Mask inside, std::uint8_t* bytes) {

@@ -57,14 +57,14 @@ class LeafLanes {
             return hn::MulAdd(u.z, all(v.z), hn::MulAdd(u.y, all(v.y), hn::Mul(u.x, all(v.x))));
         };
         const FloatLanes zero = hn::Zero(f), one = hn::Set(f, 1);
+        const auto from_place = [&](const Rows& corner) {
+            return PointLanes{hn::Sub(all(corner.x), place.x), hn::Sub(all(corner.y), place.y),
+                              hn::Sub(all(corner.z), place.z)};
+        };
+        const std::array<PointLanes, 3> starts{from_place(corners_[0]), from_place(corners_[1]),
+                                               from_place(corners_[2])};
         FloatMask above = hn::Eq(zero, zero);
-        std::array<PointLanes, 3> starts;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Rows& corner = corners_[k];
-            starts[k] = {hn::Sub(all(corner.x), place.x), hn::Sub(all(corner.y), place.y),
-                         hn::Sub(all(corner.z), place.z)};
-            above = hn::And(above, hn::Gt(dot(starts[k], inward_[k]), zero));
-        }
+        for (std::size_t k = 0; k < 3; ++k) above = hn::And(above, hn::Gt(dot(starts[k], inward_[k]), zero));
         const FloatLanes height = dot(starts[0], normals_);
         FloatLanes distance_sq = hn::Mul(hn::Mul(height, height), all(normal_inverses_));
         if (!hn::AllTrue(f, above)) {

@@ -320,8 +320,8 @@ class NearestFaceFinder {
     float reach_ = 0;           ///< no place's coordinates, taken together, are farther from it
 
     // The places at hand.
-    PointLanes flat_, places_; ///< before and after stretching
-    Vec3f low_, high_;         ///< the box around them, before stretching
+    PointLanes flat_ = at_origin(), places_ = at_origin(); ///< before and after stretching
+    Vec3f low_, high_;                                     ///< the box around them, before stretching
     Vec3f stretched_low_, stretched_high_;
     FloatLanes upper_;         ///< squared distance within which the nearest face of each surely lies
     float farthest_upper_ = 0; ///< most of those

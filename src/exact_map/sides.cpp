@@ -60,9 +60,9 @@ class SideFinder {
     PointLanes load(std::size_t particle) {
         constexpr Floats f;
         if (is_packed_) {
-            PointLanes points;
-            hn::LoadInterleaved3(f, &points_[particle].x, points.x, points.y, points.z);
-            return points;
+            FloatLanes x, y, z;
+            hn::LoadInterleaved3(f, &points_[particle].x, x, y, z);
+            return {x, y, z};
         }
         alignas(64) std::array<std::array<float, BandGroup::kMargin>, 3> rows;
         for (std::size_t lane = 0; lane < hn::Lanes(f); ++lane) {

@@ -21,10 +21,15 @@ using IntLanes = hn::Vec<Ints>;
 using FloatMask = hn::Mask<Floats>;
 using IntMask = hn::Mask<Ints>;
 
-/// Points or directions of several particles.
+/// Points or directions of several particles. Never without values: for Arm, GCC compiles what sets up an
+/// empty one for a processor without vectors, and then refuses.
 struct PointLanes {
     FloatLanes x, y, z;
 };
+
+inline PointLanes at_origin() {
+    return {hn::Zero(Floats()), hn::Zero(Floats()), hn::Zero(Floats())};
+}
 
 } // namespace echinus::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -105,10 +105,15 @@ struct Alternating {
         const ElementTag d;
         hn::StoreInterleaved2(hn::BitCast(d, a), hn::BitCast(d, b), d, reinterpret_cast<Element*>(to));
     }
-    static void load(const PointArrays& p, std::size_t i, PointLanes& a, PointLanes& b) {
-        load(&p.x[i], a.x, b.x);
-        load(&p.y[i], a.y, b.y);
-        load(&p.z[i], a.z, b.z);
+    struct Points {
+        PointLanes a, b;
+    };
+    static Points load(const PointArrays& p, std::size_t i) {
+        FloatLanes ax, ay, az, bx, by, bz;
+        load(&p.x[i], ax, bx);
+        load(&p.y[i], ay, by);
+        load(&p.z[i], az, bz);
+        return {{ax, ay, az}, {bx, by, bz}};
     }
     static void store(const PointLanes& a, const PointLanes& b, PointArrays& p, std::size_t i) {
         store(a.x, b.x, &p.x[i]);
@@ -129,8 +134,7 @@ void relax_alternating(const StickRun& run, float* goal_lengths, PointArrays& p)
     const LaneStick stick(run);
     const std::size_t lanes = hn::Lanes(d);
     for (std::size_t i = 0; i < run.count; i += lanes) {
-        PointLanes a, b;
-        Ends::load(p, run.a + 2 * i, a, b);
+        const auto [a, b] = Ends::load(p, run.a + 2 * i);
         PointLanes new_a = a, new_b = b;
         stick(new_a, new_b, goal_lengths + i, run.count - i);
         if (i + lanes > run.count) {
