@@ -34,8 +34,8 @@ struct BuildArguments {
     ByteCountArgument budget;
     DistanceMapOptions distance;
     GridArgument directions{DistanceMapOptions{}.longitude_count, DistanceMapOptions{}.colatitude_count};
-    std::vector<const CLI::Option*> exact_only, distance_only;       ///< options that belong to one kind
-    std::vector<const CLI::Option*> spherical_only, octahedral_only; ///< ... to one grid of a distance map
+    std::vector<const CLI::Option*> exact_only, distance_only;    ///< options that belong to one kind
+    std::vector<const CLI::Option*> spherical_only, divided_only; ///< ... to some grids of a distance map
     unsigned thread_count = 0;
     bool repair = false;
     bool allow_open = false;
@@ -50,10 +50,11 @@ void refuse_options_of_the_other_kind(const BuildArguments& arguments) {
             throw CLI::ValidationError(option->get_name(),
                                        std::string("belongs to --kind ") + (exact ? "distance" : "exact"));
     const bool spherical = arguments.distance.grid == DirectionGrid::Spherical;
-    for (const CLI::Option* option : spherical ? arguments.octahedral_only : arguments.spherical_only)
+    for (const CLI::Option* option : spherical ? arguments.divided_only : arguments.spherical_only)
         if (option->count() > 0)
-            throw CLI::ValidationError(option->get_name(), std::string("belongs to --grid ") +
-                                                               (spherical ? "octahedral" : "spherical"));
+            throw CLI::ValidationError(option->get_name(),
+                                       std::string("belongs to --grid ") +
+                                           (spherical ? "octahedral or cube" : "spherical"));
 }
 
 ExactMapOptions exact_options_of(const BuildArguments& arguments) {
@@ -199,9 +200,11 @@ void add_distance_options(CLI::App& command, BuildArguments& arguments) {
     DistanceMapOptions& options = arguments.distance;
     const CLI::Option* grid = add_choice<DirectionGrid>(
         command, "--grid", options.grid,
-        {{"spherical", DirectionGrid::Spherical}, {"octahedral", DirectionGrid::Octahedral}},
-        "How to divide the directions: by longitude and colatitude, as the paper does, or the sides of an "
-        "octahedron, which keeps flat faces flat");
+        {{"spherical", DirectionGrid::Spherical},
+         {"octahedral", DirectionGrid::Octahedral},
+         {"cube", DirectionGrid::Cube}},
+        "How to divide the directions: by longitude and colatitude, as the paper does; the sides of an "
+        "octahedron, which keeps flat faces flat; or the sides of a cube, evenly by angle");
     const CLI::Option* directions =
         command.add_option("--directions", arguments.directions, "Samples of longitude and colatitude")
             ->type_name("COUNTxCOUNT")
@@ -209,8 +212,8 @@ void add_distance_options(CLI::App& command, BuildArguments& arguments) {
     const CLI::Option* divisions =
         command
             .add_option("--divisions", options.divisions,
-                        "Into how many parts to cut each edge of the octahedron; 100 make as many bytes as "
-                        "200x200 directions")
+                        "Into how many parts to cut each edge of the octahedron or the cube; 100 or 81 make "
+                        "as many bytes as 200x200 directions")
             ->check(CLI::Range(DistanceMapOptions::kMinDivisions, DistanceMapOptions::kMaxDivisions))
             ->type_name("COUNT")
             ->capture_default_str();
@@ -218,7 +221,7 @@ void add_distance_options(CLI::App& command, BuildArguments& arguments) {
         command, "--pole", options.pole_axis, {{"x", PoleAxis::X}, {"y", PoleAxis::Y}, {"z", PoleAxis::Z}},
         "Axis of the mesh through the poles of the grid");
     arguments.spherical_only = {directions, pole};
-    arguments.octahedral_only = {divisions};
+    arguments.divided_only = {divisions};
     arguments.distance_only = {
         grid,
         directions,

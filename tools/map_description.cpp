@@ -17,7 +17,9 @@ const char* name_of(echinus::PoleAxis axis) {
 }
 
 const char* name_of(echinus::DirectionGrid grid) {
-    return grid == echinus::DirectionGrid::Spherical ? "spherical" : "octahedral";
+    using echinus::DirectionGrid;
+    if (grid == DirectionGrid::Spherical) return "spherical";
+    return grid == DirectionGrid::Octahedral ? "octahedral" : "cube";
 }
 
 const char* name_of(echinus::EntryFormat format) {
@@ -47,8 +49,9 @@ struct ExactMapBytes {
 };
 
 std::string directions_text(const DistanceMapView& map) {
-    if (map.grid == echinus::DirectionGrid::Octahedral)
-        return fmt::format("{}, edges of the octahedron cut into {}", map.direction_count(), map.divisions);
+    if (map.grid != echinus::DirectionGrid::Spherical)
+        return fmt::format("{}, edges of the {} cut into {}", map.direction_count(),
+                           map.grid == echinus::DirectionGrid::Cube ? "cube" : "octahedron", map.divisions);
     return fmt::format("{} x {} = {}, poles on {}", map.longitude_count, map.colatitude_count,
                        map.direction_count(), name_of(map.pole_axis));
 }

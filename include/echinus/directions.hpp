@@ -13,6 +13,9 @@ enum class DirectionGrid : std::uint8_t {
     /// where the spherical ones are 127 : 1. Interpolated is the reciprocal of the L1 radius |x| + |y| + |z|,
     /// which is affine over a flat face, so that flat faces stay flat.
     Octahedral,
+    /// The sides of a cube, evenly spaced in angle (a tangent-warped, or equiangular, cube map): the evenest
+    /// grid, samples 1.4 : 1 in solid angle. Interpolated is the distance, bilinearly.
+    Cube,
 };
 
 /// The largest L1 radius |x| + |y| + |z| in a ball of radius 1: a little more than sqrt(3).

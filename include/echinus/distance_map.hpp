@@ -49,7 +49,8 @@ struct DistanceMapOptions {
     /// Spherical: samples of theta; doubling both divides the share of wrong signs by 2.5.
     std::uint32_t colatitude_count = 200;
     /// Octahedral: into how many an edge of the octahedron is cut. There are (2 divisions + 1)^2 samples: 100
-    /// make as many bytes as 200 x 200.
+    /// make as many bytes as 200 x 200. Cube: into how many an edge of the cube is cut, which makes
+    /// 6 (divisions + 1)^2 samples: 81 make as many bytes as 200 x 200.
     std::uint32_t divisions = 100;
     VertexCorrection correction =
         VertexCorrection::Signed;                    ///< None is unbiased; Signed misses fewer particles
@@ -80,17 +81,19 @@ struct DistanceMapView {
     Vec3f centre;     ///< C, local
     float radius = 0; ///< R: every vertex of the mesh lies within R of C
     DirectionGrid grid = DirectionGrid::Spherical;
-    std::uint32_t longitude_count = 0;  ///< spherical; 0 in an octahedral map
-    std::uint32_t colatitude_count = 0; ///< spherical; 0 in an octahedral map
-    std::uint32_t divisions = 0;        ///< octahedral; 0 in a spherical map
+    std::uint32_t longitude_count = 0;  ///< spherical; 0 in other maps
+    std::uint32_t colatitude_count = 0; ///< spherical; 0 in other maps
+    std::uint32_t divisions = 0;        ///< octahedral and cube; 0 in a spherical map
     PoleAxis pole_axis = PoleAxis::Z;   ///< spherical
     EntryFormat entry_format = EntryFormat::Float32;
     VertexCorrection correction = VertexCorrection::None;
     bool centre_inside = false;
     /// [direction_count + 1]; direction (i, j) of longitude i and colatitude j has index j * longitude_count
-    /// + i; of column i and row j of the unfolded octahedron (docs/file_format.md) j * (2 divisions + 1) + i.
+    /// + i; of column i and row j of the unfolded octahedron (docs/file_format.md) j * (2 divisions + 1) + i;
+    /// of column i and row j of side s of the cube (s (divisions + 1) + j) (divisions + 1) + i.
     std::span<const std::uint32_t> entry_offsets;
-    /// [entry_count] or empty. Spherical: distances from C. Octahedral: L1 radii |x| + |y| + |z| around C.
+    /// [entry_count] or empty. Spherical and cube: distances from C. Octahedral: L1 radii |x| + |y| + |z|
+    /// around C.
     std::span<const float> entries_float32;
     std::span<const std::uint16_t>
         entries_unorm16; ///< [entry_count] the same * 65535 / largest_entry(), or empty

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "directions/cube_grid.hpp"
 #include "directions/octahedral_grid.hpp"
 #include "directions/spherical_grid.hpp"
 
@@ -11,6 +12,6 @@ namespace echinus {
 /// cells and weights, what is interpolated, the gradient), a for_each_sample_near() beside it, its line here,
 /// one in with_grid() (distance_map/layout.hpp) and its counterpart for vectors of particles
 /// (distance_map/*_lanes-inl.hpp). Builds and queries know nothing else of it.
-using AnyGrid = std::variant<SphericalGrid, OctahedralGrid>;
+using AnyGrid = std::variant<SphericalGrid, OctahedralGrid, CubeGrid>;
 
 } // namespace echinus

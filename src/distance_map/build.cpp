@@ -28,7 +28,7 @@ void require_within(const char* name, std::uint32_t count, std::uint32_t least, 
 
 void require_usable(const DistanceMapOptions& options) {
     using Bounds = DistanceMapOptions;
-    if (options.grid == DirectionGrid::Octahedral)
+    if (options.grid != DirectionGrid::Spherical)
         return require_within("divisions", options.divisions, Bounds::kMinDivisions, Bounds::kMaxDivisions);
     require_within("longitude_count", options.longitude_count, Bounds::kMinSampleCount,
                    Bounds::kMaxSampleCount);
@@ -67,9 +67,9 @@ std::uint64_t hash_of(const TriangleMesh& mesh, const DistanceMapOptions& option
     std::array<std::uint32_t, 5> fields{
         options.longitude_count, options.colatitude_count, static_cast<std::uint32_t>(options.correction),
         static_cast<std::uint32_t>(options.entry_format), static_cast<std::uint32_t>(options.pole_axis)};
-    constexpr std::uint32_t kNotSpherical = ~0U; // no count of longitudes
-    if (options.grid == DirectionGrid::Octahedral) {
-        fields[0] = kNotSpherical;
+    constexpr std::uint32_t kOctahedral = ~0U, kCube = ~1U; // no counts of longitudes
+    if (options.grid != DirectionGrid::Spherical) {
+        fields[0] = options.grid == DirectionGrid::Octahedral ? kOctahedral : kCube;
         fields[1] = options.divisions;
         fields[4] = 0;
     }
@@ -106,7 +106,7 @@ std::shared_ptr<const OwnedArrays> store(Crossings&& crossings, EntryFormat form
 DistanceMapView view_of(const DistanceMapOptions& options) {
     DistanceMapView view;
     view.grid = options.grid;
-    if (options.grid == DirectionGrid::Octahedral) {
+    if (options.grid != DirectionGrid::Spherical) {
         view.divisions = options.divisions;
     } else {
         view.longitude_count = options.longitude_count;

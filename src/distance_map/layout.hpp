@@ -14,6 +14,7 @@ namespace echinus {
 template <typename Use>
 decltype(auto) with_grid(const DistanceMapView& map, const Use& use) {
     if (map.grid == DirectionGrid::Octahedral) return use(OctahedralGrid(map.divisions));
+    if (map.grid == DirectionGrid::Cube) return use(CubeGrid(map.divisions));
     return use(SphericalGrid(map.longitude_count, map.colatitude_count, map.pole_axis));
 }
 

@@ -19,6 +19,7 @@
 #include <hwy/foreach_target.h>
 
 // After foreach_target.h, which includes this file once for each instruction set.
+#include "distance_map/cube_lanes-inl.hpp"
 #include "distance_map/octahedral_lanes-inl.hpp"
 #include "distance_map/spherical_lanes-inl.hpp"
 #include "simd/dispatch.hpp"
@@ -581,6 +582,8 @@ template <typename Answers>
 void answer(const DistanceMapView& map, const StridedSpan<const Vec3f>& points, const Answers& answers) {
     if (map.grid == DirectionGrid::Octahedral)
         answer_in_format<OctahedralLanes>(map, points, answers);
+    else if (map.grid == DirectionGrid::Cube)
+        answer_in_format<CubeLanes>(map, points, answers);
     else
         answer_in_format<SphericalLanes>(map, points, answers);
 }

@@ -7,7 +7,8 @@
 namespace echinus {
 
 static_assert(same_value(schema::DirectionGrid::Spherical, DirectionGrid::Spherical) &&
-              same_value(schema::DirectionGrid::Octahedral, DirectionGrid::Octahedral));
+              same_value(schema::DirectionGrid::Octahedral, DirectionGrid::Octahedral) &&
+              same_value(schema::DirectionGrid::Cube, DirectionGrid::Cube));
 static_assert(same_value(schema::PoleAxis::X, PoleAxis::X) && same_value(schema::PoleAxis::Y, PoleAxis::Y) &&
               same_value(schema::PoleAxis::Z, PoleAxis::Z));
 static_assert(same_value(schema::EntryFormat::Float32, EntryFormat::Float32) &&

@@ -38,7 +38,7 @@ void check_scalars(const Checker& checker, const DistanceMapView& map) {
     if (!is_finite(map.centre)) checker.fail("centre is not finite");
     if (!std::isfinite(map.radius) || !(map.radius > 0))
         checker.fail("radius is not a positive finite number");
-    checker.check_enumerator("grid", map.grid, DirectionGrid::Octahedral);
+    checker.check_enumerator("grid", map.grid, DirectionGrid::Cube);
     check_counts(checker, map);
     checker.check_enumerator("pole_axis", map.pole_axis, PoleAxis::Z);
     checker.check_enumerator("entry_format", map.entry_format, EntryFormat::Unorm16);

@@ -79,8 +79,24 @@ RepairOptions read_repair(JsonObject& scene) {
     return options;
 }
 
+/// A key that is right for another choice is no misspelling: the sentence says what it needs.
+/// @param choice  the key that chooses, and the word that these keys need
+void refuse_keys_of_other_choice(const JsonObject& object, std::initializer_list<const char*> keys,
+                                 const std::string& choice, const std::string& word) {
+    for (const char* key : keys)
+        if (object.has(key)) object.refuse(key, "left out, or \"" + choice + "\" must be \"" + word + "\"");
+}
+
 DistanceMapOptions read_distance_map(JsonObject& map) {
     DistanceMapOptions options;
+    options.grid =
+        static_cast<DirectionGrid>(map.read_word("grid", {"spherical", "octahedral", "cube"}).value_or(0));
+    if (options.grid == DirectionGrid::Spherical)
+        refuse_keys_of_other_choice(map, {"divisions"}, "map.grid", "octahedral\" or \"cube");
+    else
+        refuse_keys_of_other_choice(map, {"directions", "pole_axis"}, "map.grid", "spherical");
+    map.read("divisions", options.divisions,
+             {DistanceMapOptions::kMinDivisions, DistanceMapOptions::kMaxDivisions});
     Counts directions{options.longitude_count, options.colatitude_count};
     map.read("directions", directions,
              {DistanceMapOptions::kMinSampleCount, DistanceMapOptions::kMaxSampleCount});
@@ -112,21 +128,14 @@ ExactMapOptions read_exact_map(JsonObject& map) {
     return options;
 }
 
-/// A key that is right for another choice is no misspelling: the sentence says what it needs.
-/// @param choice  the key that chooses, and the word that these keys need
-void refuse_keys_of_other_choice(const JsonObject& object, std::initializer_list<const char*> keys,
-                                 const std::string& choice, const std::string& word) {
-    for (const char* key : keys)
-        if (object.has(key)) object.refuse(key, "left out, or \"" + choice + "\" must be \"" + word + "\"");
-}
-
 MapOptions read_map(JsonObject& scene) {
     auto map = scene.object("map");
     if (!map) return {};
     MapOptions options;
     if (map->read_word("kind", {"exact", "distance"}).value_or(0) == 0) {
-        refuse_keys_of_other_choice(*map, {"directions", "correction", "entries", "pole_axis"}, "map.kind",
-                                    "distance");
+        refuse_keys_of_other_choice(*map,
+                                    {"grid", "divisions", "directions", "correction", "entries", "pole_axis"},
+                                    "map.kind", "distance");
         options = read_exact_map(*map);
     } else {
         refuse_keys_of_other_choice(*map, {"cells_per_octant", "budget", "rule", "centre"}, "map.kind",

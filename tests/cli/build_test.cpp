@@ -160,10 +160,21 @@ TEST_F(BuildCommand, BuildsAnOctahedralGridAndRefusesTheOptionsOfTheOtherGrid) {
         options.insert(options.begin(), {"build", "box.obj", "--kind", "distance", "-o", "box.ech"});
         expect_failure(2, words, options);
     };
-    refuse("--divisions: belongs to --grid octahedral", {"--divisions", "8"});
+    refuse("--divisions: belongs to --grid octahedral or cube", {"--divisions", "8"});
+    refuse("--pole: belongs to --grid spherical", {"--grid", "cube", "--pole", "x"});
     refuse("--directions: belongs to --grid spherical", {"--grid", "octahedral", "--directions", "24x12"});
     refuse("--pole: belongs to --grid spherical", {"--grid", "octahedral", "--pole", "x"});
     refuse("--divisions", {"--grid", "octahedral", "--divisions", "3"});
+}
+
+TEST_F(BuildCommand, BuildsACube) {
+    const json built = json::parse(expect_success({"build", "box.obj", "--kind", "distance", "--grid", "cube",
+                                                   "--divisions", "8", "-o", "box.ech", "--json"}));
+    EXPECT_EQ(built["grid"], "cube");
+    EXPECT_EQ(built["directions"], 6 * 9 * 9);
+    EXPECT_TRUE(contains(load_distance_map(path("box.ech")), {0.99F, 0, 0}));
+    EXPECT_NE(expect_success({"info", "box.ech"}).find("486, edges of the cube cut into 8"),
+              std::string::npos);
 }
 
 TEST_F(BuildCommand, GivesTheSameMapOnAnyNumberOfThreads) {

@@ -96,20 +96,21 @@ TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesOnMapsOfMeshes) {
                 }
 }
 
-TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesOnOctahedralMaps) {
+TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesOnOctahedralMapsAndCubes) {
     const TriangleMesh box = make_box({2, 3, 4});
     const TriangleMesh torus = make_torus(1, 0.4, 60, 24);
     for (const TriangleMesh* mesh : {&box, &torus})
         for (EntryFormat format : {EntryFormat::Float32, EntryFormat::Unorm16})
-            for (std::uint32_t divisions : {4U, 5U, 20U})
-                for (VertexCorrection correction :
-                     {VertexCorrection::None, VertexCorrection::Paper, VertexCorrection::Signed}) {
-                    const DistanceMap map = DistanceMap::build(*mesh, {.grid = DirectionGrid::Octahedral,
-                                                                       .divisions = divisions,
-                                                                       .correction = correction,
-                                                                       .entry_format = format});
-                    expect_batches_as_single_particles(map, mesh == &box ? "box" : "torus", 1000);
-                }
+            for (DirectionGrid grid : {DirectionGrid::Octahedral, DirectionGrid::Cube})
+                for (std::uint32_t divisions : {4U, 5U, 20U})
+                    for (VertexCorrection correction :
+                         {VertexCorrection::None, VertexCorrection::Paper, VertexCorrection::Signed}) {
+                        const DistanceMap map = DistanceMap::build(*mesh, {.grid = grid,
+                                                                           .divisions = divisions,
+                                                                           .correction = correction,
+                                                                           .entry_format = format});
+                        expect_batches_as_single_particles(map, mesh == &box ? "box" : "torus", 1000);
+                    }
 }
 
 TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesOnAnySoundMap) {
@@ -120,6 +121,8 @@ TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesOnAnySoundMap) {
         expect_batches_as_single_particles(map, "random map " + std::to_string(seed), 1000);
         const DistanceMap other = test::random_octahedral_map_parts(format, 4 + seed, seed).map();
         expect_batches_as_single_particles(other, "random octahedral map " + std::to_string(seed), 1000);
+        const DistanceMap cube = test::random_cube_map_parts(format, 4 + seed, seed).map();
+        expect_batches_as_single_particles(cube, "random cube " + std::to_string(seed), 1000);
     }
 }
 
@@ -175,7 +178,8 @@ TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesForEachSizeAndStride) {
 }
 
 TEST(DistanceMapBatch, HasTheSameBitsOnAnyNumberOfThreads) {
-    for (const DirectionGrid grid : {DirectionGrid::Spherical, DirectionGrid::Octahedral}) {
+    for (const DirectionGrid grid :
+         {DirectionGrid::Spherical, DirectionGrid::Octahedral, DirectionGrid::Cube}) {
         const DistanceMap map = DistanceMap::build(make_torus(1, 0.4, 60, 24), {.grid = grid});
         test::Random random(9);
         std::vector<Vec3f> points(150'001); // enough for several threads

@@ -14,9 +14,9 @@ namespace fs = std::filesystem;
 
 // Files of every version of the format, kept forever: what one release wrote, all later ones read.
 //
-// Distance maps are of a box of 2 x 3 x 4 around the origin with 8 x 6 directions or 9 x 9 on an octahedron,
-// exact maps of the same box, of that box without its last face, and of a torus, with 8 cells each; that of
-// the torus has all indices in 32 bits.
+// Distance maps are of a box of 2 x 3 x 4 around the origin with 8 x 6 directions, 9 x 9 on an octahedron or
+// 6 x 5 x 5 on a cube, exact maps of the same box, of that box without its last face, and of a torus, with 8
+// cells each; that of the torus has all indices in 32 bits.
 
 namespace {
 
@@ -45,6 +45,12 @@ const Golden kGoldenOctahedral{"v1_box_octahedral.ech",
                                 .divisions = 4,
                                 .correction = VertexCorrection::None,
                                 .entry_format = EntryFormat::Float32}};
+
+const Golden kGoldenCube{"v1_box_cube.ech",
+                         {.grid = DirectionGrid::Cube,
+                          .divisions = 4,
+                          .correction = VertexCorrection::None,
+                          .entry_format = EntryFormat::Float32}};
 
 const char* const kGoldenExact = "v1_box_exact.ech";
 const char* const kGoldenExactOpen = "v1_open_box_exact.ech";
@@ -152,6 +158,24 @@ TEST(GoldenMapFile, OfVersion1WithAnOctahedralGridHoldsTheBox) {
     EXPECT_FALSE(contains(map, {1.01F, 0.1F, 0.1F}));
 }
 
+TEST(GoldenMapFile, OfVersion1WithACubeHoldsTheBox) {
+    const DistanceMap map = load_distance_map(path_of(kGoldenCube.file));
+    EXPECT_EQ(map.view().grid, DirectionGrid::Cube);
+    EXPECT_EQ(map.view().divisions, 4u);
+    EXPECT_EQ(map.view().entry_count(), 150u);
+    EXPECT_TRUE(map.view().centre_inside);
+    // Column i and row j of the side towards -y: along (q, -1, p).
+    for (int j = 0; j <= 4; ++j) {
+        for (int i = 0; i <= 4; ++i) {
+            const double p = std::tan(std::numbers::pi / 4 * (i / 2.0 - 1));
+            const double q = std::tan(std::numbers::pi / 4 * (j / 2.0 - 1));
+            const double per_length = std::min({1 / std::fabs(q), 1.5, 2 / std::fabs(p)});
+            const auto index = static_cast<std::size_t>((3 * 5 + j) * 5 + i);
+            EXPECT_NEAR(map.view().entries_float32[index], per_length * std::sqrt(1 + p * p + q * q), 1e-5);
+        }
+    }
+}
+
 TEST(GoldenMapFile, OfVersion1WithAnExactMapHoldsTheBox) {
     const ExactMap map = load_exact_map(path_of(kGoldenExact));
     EXPECT_NEAR(map.view().radius, std::sqrt(29.0) / 2, 1e-5);
@@ -182,15 +206,15 @@ TEST(GoldenMapFile, OfVersion1WithAnExactMapInWideIndicesHoldsTheTorus) {
 }
 
 TEST(GoldenMapFile, IsWrittenBackByteForByte) {
-    for (const char* file : {kGoldenFloat32.file, kGoldenUnorm16.file, kGoldenOctahedral.file, kGoldenExact,
-                             kGoldenExactOpen, kGoldenExactWide}) {
+    for (const char* file : {kGoldenFloat32.file, kGoldenUnorm16.file, kGoldenOctahedral.file,
+                             kGoldenCube.file, kGoldenExact, kGoldenExactOpen, kGoldenExactWide}) {
         expect_same_bytes(serialise(load_map(path_of(file))), file);
     }
 }
 
 TEST(GoldenMapFile, IsWhatTodaysBuildWritesOnAnyNumberOfThreads) {
     for (const unsigned thread_count : {1u, 3u}) {
-        for (Golden golden : {kGoldenFloat32, kGoldenUnorm16, kGoldenOctahedral}) {
+        for (Golden golden : {kGoldenFloat32, kGoldenUnorm16, kGoldenOctahedral, kGoldenCube}) {
             golden.options.thread_count = thread_count;
             expect_same_bytes(serialise(DistanceMap::build(make_box(kBoxSize), golden.options)), golden.file);
         }

@@ -142,11 +142,40 @@ TEST(MapFile, WithstandsChangesOfEveryByte) {
     }
 }
 
-TEST(MapFile, ReadsBackEveryBitOfAnOctahedralMap) {
+TEST(MapFile, ReadsBackEveryBitOfAnOctahedralMapAndOfACube) {
     for (const EntryFormat format : kFormats) {
         const DistanceMap map = random_octahedral_map_parts(format, 5, 3).map();
         expect_same_map(map, load_bytes(serialise(map)));
+        const DistanceMap cube = random_cube_map_parts(format, 5, 3).map();
+        expect_same_map(cube, load_bytes(serialise(cube)));
     }
+}
+
+TEST(MapFile, WithstandsChangesOfEveryByteOfACube) {
+    auto bytes = serialise(random_cube_map_parts(EntryFormat::Unorm16, 4, 4).map());
+    for (auto& byte : bytes) {
+        const std::byte original = byte;
+        for (const int flip : {0x01, 0x04, 0x80}) {
+            byte = original ^ std::byte(flip);
+            EXPECT_NO_THROW(attack_map_file(bytes)) << "byte " << &byte - bytes.data() << " ^ " << flip;
+        }
+        byte = original;
+    }
+}
+
+TEST(MapFile, NamesWhatContradictsTheMeaningOfACube) {
+    const auto expect_damaged = [](const char* words, const std::function<void(MapParts&)>& spoil) {
+        MapParts parts = random_cube_map_parts(EntryFormat::Float32, 5, 6);
+        spoil(parts);
+        expect_error(ErrorCode::Damaged, words, [&] { load_bytes(serialise(parts.map())); });
+    };
+    expect_damaged("longitude_count is 7 and not 0", [](MapParts& p) { p.view.longitude_count = 7; });
+    expect_damaged("divisions is 4097", [](MapParts& p) { p.view.divisions = 4097; });
+    expect_damaged("entry_offsets has 217 elements and not 295", [](MapParts& p) { p.view.divisions = 6; });
+    expect_damaged("entry_offsets has 217 elements and not 122",
+                   [](MapParts& p) { p.view.grid = DirectionGrid::Octahedral; });
+    expect_damaged("entries_float32[9]",
+                   [](MapParts& p) { p.entries_float32[9] = p.view.largest_entry() * 1.0001F; });
 }
 
 TEST(MapFile, WithstandsChangesOfEveryByteOfAnOctahedralMap) {
@@ -169,7 +198,7 @@ TEST(MapFile, NamesWhatContradictsTheMeaningOfAnOctahedralMap) {
         std::function<void(MapParts&)> spoil;
     };
     const Case cases[] = {
-        {"grid has the unknown value 2", [](MapParts& p) { p.view.grid = DirectionGrid(2); }},
+        {"grid has the unknown value 3", [](MapParts& p) { p.view.grid = DirectionGrid(3); }},
         {"longitude_count is 0", [](MapParts& p) { p.view.grid = DirectionGrid::Spherical; }},
         {"longitude_count is 7 and not 0", [](MapParts& p) { p.view.longitude_count = 7; }},
         {"colatitude_count is 7 and not 0", [](MapParts& p) { p.view.colatitude_count = 7; }},

@@ -129,6 +129,32 @@ TEST(Scene, UsesAnExactMapUnlessItSaysOtherwise) {
     EXPECT_TRUE(std::holds_alternative<DistanceMap>(build_map(box, DistanceMapOptions{})));
 }
 
+TEST(Scene, DividesTheDirectionsOfADistanceMapAsItSays) {
+    const auto options_of = [](const std::string& keys) {
+        return std::get<DistanceMapOptions>(
+            parse_scene(R"({"model": "a", "cloth": {"size": [1, 1]}, "map": {"kind": "distance")" + keys +
+                            "}}",
+                        "a.json")
+                .map);
+    };
+    const auto refusal_of = [](const std::string& keys) {
+        return refusal(R"({"model": "a", "cloth": {"size": [1, 1]}, "map": {"kind": "distance")" + keys +
+                       "}}");
+    };
+    EXPECT_EQ(options_of("").grid, DirectionGrid::Spherical);
+    EXPECT_EQ(options_of(R"(, "grid": "cube", "divisions": 30)").grid, DirectionGrid::Cube);
+    EXPECT_EQ(options_of(R"(, "grid": "octahedral", "divisions": 30)").grid, DirectionGrid::Octahedral);
+    EXPECT_EQ(options_of(R"(, "grid": "octahedral", "divisions": 30)").divisions, 30u);
+    EXPECT_EQ(
+        refusal_of(R"(, "divisions": 30)"),
+        R"(a.json: map.divisions is 30; it must be left out, or "map.grid" must be "octahedral" or "cube")");
+    EXPECT_EQ(refusal_of(R"(, "grid": "cube", "pole_axis": "x")"),
+              R"(a.json: map.pole_axis is "x"; it must be left out, or "map.grid" must be "spherical")");
+    EXPECT_NE(refusal_of(R"(, "grid": "cube", "divisions": 3)").find("map.divisions is 3"),
+              std::string::npos);
+    EXPECT_NE(refusal_of(R"(, "grid": "dodecahedral")").find("map.grid"), std::string::npos);
+}
+
 TEST(Scene, RefusesTheKeysOfTheOtherKindOfMap) {
     const auto refusal_of_map = [](const std::string& map) {
         return refusal(R"({"model": "a", "cloth": {"size": [1, 1]}, "map": )" + map + "}");

@@ -82,4 +82,11 @@ inline MapParts random_octahedral_map_parts(EntryFormat format, std::uint32_t di
     return random_map_parts_on(grid, format, seed);
 }
 
+inline MapParts random_cube_map_parts(EntryFormat format, std::uint32_t divisions, std::uint32_t seed) {
+    DistanceMapView grid;
+    grid.grid = DirectionGrid::Cube;
+    grid.divisions = divisions;
+    return random_map_parts_on(grid, format, seed);
+}
+
 } // namespace echinus::test

@@ -1,0 +1,231 @@
+#pragma once
+
+#include "directions/angles.hpp"
+#include "directions/lattice.hpp"
+#include "geometry/circle.hpp"
+
+#include <echinus/directions.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+namespace echinus {
+
+/// Directions on the six sides of a cube, evenly spaced in angle along each (the equiangular or
+/// tangent-warped cube map: Ronchi et al., "The Cubed Sphere", J. Comput. Phys. 124, 1996; the warp among
+/// others: Zucker and Higashi, "Cube-to-sphere Projections for Procedural Texturing and Beyond", JCGT 2018).
+///
+/// A side sees a direction as (p, q, m): m along its outer axis, the largest of the three, p and q along the
+/// two axes that follow it cyclically. Sample (i, j) of a side lies at p / m = tan(pi / 4 (2 i / n - 1)), q /
+/// m likewise by j, for i and j from 0 to n. Sides are numbered +x, -x, +y, -y, +z, -z. Each has its own
+/// samples on its border, so that samples on the cube's edges appear twice and those on its corners three
+/// times, and no cell looks across an edge.
+///
+/// Interpolated is the distance, bilinearly, as on the paper's grid.
+class CubeGrid {
+  public:
+    explicit CubeGrid(std::uint32_t divisions)
+        : n_(static_cast<std::int32_t>(divisions)), width_(divisions + 1) {}
+
+    std::uint32_t divisions() const { return static_cast<std::uint32_t>(n_); }
+    std::size_t direction_count() const { return 6 * std::size_t{width_} * width_; }
+    std::uint32_t index(std::uint32_t side, std::uint32_t column, std::uint32_t row) const {
+        return (side * width_ + row) * width_ + column;
+    }
+
+    /// (p, q, m) of a vector, m with the sign that it has in the mesh's frame.
+    template <typename T>
+    static Vec3<T> to_side(std::uint32_t side, const Vec3<T>& v) {
+        if (side < 2) return {v.y, v.z, v.x};
+        if (side < 4) return {v.z, v.x, v.y};
+        return v;
+    }
+    template <typename T>
+    static Vec3<T> from_side(std::uint32_t side, const Vec3<T>& v) {
+        if (side < 2) return {v.z, v.x, v.y};
+        if (side < 4) return {v.y, v.z, v.x};
+        return v;
+    }
+    static bool is_negative(std::uint32_t side) { return side % 2 == 1; }
+
+    /// Unit vectors of all samples by index. Samples of one direction have the same bits.
+    std::vector<Vec3d> directions() const {
+        std::vector<Vec3d> result;
+        for_all_samples([&](std::uint32_t side, double p, double q) {
+            const Vec3d v = from_side(side, Vec3d{p, q, is_negative(side) ? -1.0 : 1.0});
+            result.push_back(v * (1 / length(v)));
+        });
+        return result;
+    }
+    std::vector<LatticePoint> lattice_directions() const {
+        std::vector<LatticePoint> result;
+        result.reserve(direction_count());
+        for (const Vec3d& unit : directions()) result.push_back(lattice_direction(unit));
+        return result;
+    }
+    /// The solid angle of each sample, but for a factor that all share; on a side's border half of it, on its
+    /// corners a quarter.
+    std::vector<double> solid_angle_weights() const {
+        std::vector<double> result;
+        for_all_samples([&](std::uint32_t, double p, double q) {
+            const double square = 1 + p * p + q * q;
+            const double border = (p * p == 1 ? 0.5 : 1) * (q * q == 1 ? 0.5 : 1);
+            result.push_back(border * (1 + p * p) * (1 + q * q) / (square * std::sqrt(square)));
+        });
+        return result;
+    }
+
+    static double radial_norm(const Vec3d& d) { return length(d); }
+    /// The largest distance in a sphere.
+    static float largest_entry(float radius) { return radius; }
+
+    struct Coordinates {
+        float along_u, along_v; ///< in [0, n]
+        std::uint32_t side;
+    };
+
+    /// @param d  any length, zero included (then +z). Finite; what is not gives coordinates without meaning
+    Coordinates coordinates_of(const Vec3f& d) const {
+        const std::uint32_t side = side_of(d);
+        const Vec3f s = to_side(side, d);
+        const float m = std::fabs(s.z);
+        return {along(s.x, m), along(s.y, m), side};
+    }
+
+    /// The four samples around a direction and where it lies between them.
+    struct Cell {
+        std::array<std::uint32_t, 4> corners; ///< (0,0), (1,0), (0,1), (1,1), the first number along U
+        float u, v;                           ///< in [0, 1]
+        std::uint32_t side;
+    };
+
+    Cell cell_at(const Coordinates& at) const {
+        const std::int32_t i = std::clamp(static_cast<std::int32_t>(at.along_u), 0, n_ - 1);
+        const std::int32_t j = std::clamp(static_cast<std::int32_t>(at.along_v), 0, n_ - 1);
+        const std::uint32_t first =
+            index(at.side, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
+        return {{first, first + 1, first + width_, first + width_ + 1},
+                at.along_u - static_cast<float>(i),
+                at.along_v - static_cast<float>(j),
+                at.side};
+    }
+    Cell locate(const Vec3f& d) const { return cell_at(coordinates_of(d)); }
+
+    /// Bilinear, for the four corners.
+    static std::array<float, 4> weights(const Cell& cell) {
+        return {(1 - cell.u) * (1 - cell.v), cell.u * (1 - cell.v), (1 - cell.u) * cell.v, cell.u * cell.v};
+    }
+    static std::size_t reference_corner(const Cell& cell) {
+        return (cell.u > 0.5F ? 1U : 0U) + (cell.v > 0.5F ? 2U : 0U);
+    }
+    static bool is_sample(const Cell&, std::size_t) { return true; }
+
+    struct Derivatives {
+        std::array<float, 4> along_u, along_v;
+    };
+    static Derivatives weight_derivatives(const Cell& cell) {
+        return {{cell.v - 1, 1 - cell.v, -cell.v, cell.v}, {cell.u - 1, -cell.u, 1 - cell.u, cell.u}};
+    }
+
+    // Interpolated between samples is the distance itself.
+    static float interpolant(float entry, float) { return entry; }
+    static float interpolant_at(const Vec3d& d) { return static_cast<float>(length(d)); }
+    static float distance_of(float interpolated, const Coordinates&) { return interpolated; }
+    static bool is_farther(float interpolant, float other) { return interpolant > other; }
+    static float moved(float entry, float shift, bool outward) {
+        return outward ? entry + shift : entry - shift;
+    }
+
+    /// The gradient of |x| - S(u, v) on the map's surface; u runs with the angle atan(p / m), whose gradient
+    /// is (m, 0, -p) / (p^2 + m^2).
+    /// @param distance  S; slope_u and slope_v are its derivatives per cell
+    Vec3f surface_gradient(const Vec3f& e_r, const Cell& cell, float distance, float, float slope_u,
+                           float slope_v) const {
+        if (!(distance > 0)) return e_r;
+        const Vec3f s = to_side(cell.side, e_r);
+        const float m = std::fabs(s.z);
+        const float per_angle = 2 * static_cast<float>(n_) / kPi;
+        const float a = slope_u * per_angle / (distance * (s.x * s.x + m * m));
+        const float b = slope_v * per_angle / (distance * (s.y * s.y + m * m));
+        const float along_m = s.x * a + s.y * b;
+        return from_side(
+            cell.side, Vec3f{s.x - a * m, s.y - b * m, s.z + (is_negative(cell.side) ? -along_m : along_m)});
+    }
+
+    static Vec3f to_grid(const Vec3f& v) { return v; }
+    static Vec3f from_grid(const Vec3f& v) { return v; }
+    static Vec3d to_grid(const Vec3d& v) { return v; }
+
+    /// Calls `visit(corners)` for each cell, its indices counter-clockwise seen from outside. Samples that
+    /// appear more than once are taken at the first place, which closes the cube's edges.
+    template <typename Visit>
+    void for_each_facet(const Visit& visit) const {
+        for (std::uint32_t side = 0; side < 6; ++side)
+            for (std::uint32_t j = 0; j + 1 < width_; ++j)
+                for (std::uint32_t i = 0; i + 1 < width_; ++i) {
+                    const std::array<std::uint32_t, 4> q{canonical(side, i, j), canonical(side, i + 1, j),
+                                                         canonical(side, i + 1, j + 1),
+                                                         canonical(side, i, j + 1)};
+                    if (is_negative(side)) // p and q run clockwise there
+                        visit(std::array{q[0], q[3], q[2], q[1]});
+                    else
+                        visit(q);
+                }
+    }
+
+    /// The index that all samples of one direction share: the lowest.
+    std::uint32_t canonical(std::uint32_t side, std::uint32_t column, std::uint32_t row) const {
+        const std::int64_t n = n_;
+        const Vec3<std::int64_t> v =
+            from_side(side, Vec3<std::int64_t>{2 * std::int64_t{column} - n, 2 * std::int64_t{row} - n,
+                                               is_negative(side) ? -n : n});
+        for (std::uint32_t other = 0; other < side; ++other) {
+            const Vec3<std::int64_t> s = to_side(other, v);
+            if (s.z == (is_negative(other) ? -n : n))
+                return index(other, static_cast<std::uint32_t>((s.x + n) / 2),
+                             static_cast<std::uint32_t>((s.y + n) / 2));
+        }
+        return index(side, column, row);
+    }
+
+  private:
+    static std::uint32_t side_of(const Vec3f& d) {
+        const float ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
+        if (az >= ax && az >= ay) return d.z < 0 ? 5 : 4;
+        if (ax >= ay) return d.x < 0 ? 1 : 0;
+        return d.y < 0 ? 3 : 2;
+    }
+    /// Along one angle in cells. @pre |p| <= m
+    float along(float p, float m) const {
+        const auto n = static_cast<float>(n_);
+        return std::min(std::max((atan2_polynomial(p, m) * (2 / kPi) + 0.5F) * n, 0.0F), n);
+    }
+    /// tan(pi / 4 (2 i / n - 1)), exactly 1 at a border and exactly symmetric.
+    double tangent(std::uint32_t i) const {
+        const std::int64_t from_middle = 2 * std::int64_t{i} - n_;
+        const auto distance = static_cast<std::uint64_t>(from_middle < 0 ? -from_middle : from_middle);
+        if (distance == static_cast<std::uint64_t>(n_)) return from_middle < 0 ? -1 : 1;
+        const CirclePoint point = circle_point(distance, 8 * static_cast<std::uint64_t>(n_));
+        const double t = point.sine / point.cosine;
+        return from_middle < 0 ? -t : t;
+    }
+    /// Calls use(side, p / m, q / m) for the samples by index.
+    template <typename Use>
+    void for_all_samples(const Use& use) const {
+        std::vector<double> tangents(width_);
+        for (std::uint32_t i = 0; i < width_; ++i) tangents[i] = tangent(i);
+        for (std::uint32_t side = 0; side < 6; ++side)
+            for (const double q : tangents)
+                for (const double p : tangents) use(side, p, q);
+    }
+
+    std::int32_t n_;
+    std::uint32_t width_;
+};
+
+} // namespace echinus

@@ -1,0 +1,153 @@
+// CubeGrid for a vector of particles: the same members with the same bits.
+
+#include "distance_map/lanes-inl.hpp"
+
+#include <echinus/distance_map.hpp>
+
+#if defined(ECHINUS_DISTANCE_MAP_CUBE_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef ECHINUS_DISTANCE_MAP_CUBE_LANES_INL_HPP
+#undef ECHINUS_DISTANCE_MAP_CUBE_LANES_INL_HPP
+#else
+#define ECHINUS_DISTANCE_MAP_CUBE_LANES_INL_HPP
+#endif
+
+#if HWY_TARGET != HWY_SCALAR // whose vectors have one lane
+HWY_BEFORE_NAMESPACE();
+namespace echinus {
+namespace HWY_NAMESPACE {
+
+class CubeLanes {
+  public:
+    explicit CubeLanes(const DistanceMapView& map)
+        : n_(static_cast<std::int32_t>(map.divisions)), width_(n_ + 1),
+          n_float_(static_cast<float>(map.divisions)), per_angle_(2 * n_float_ / kPi) {}
+
+    HWY_INLINE Vectors to_grid(const Vectors& v) const { return v; }
+    HWY_INLINE Vectors from_grid(const Vectors& v) const { return v; }
+
+    struct Side {
+        Mask is_x, is_y; ///< else z
+        Mask negative;
+    };
+    struct Coordinates {
+        Floats along_u, along_v;
+        Side side;
+    };
+
+    HWY_INLINE Coordinates coordinates_of(const Vectors& d) const {
+        const Side side = side_of(d);
+        const Vectors s = to_side(side, d);
+        const Floats m = hn::Abs(s.z);
+        return {along(s.x, m), along(s.y, m), side};
+    }
+
+    struct Cell {
+        Ints first; ///< the direction (0, 0)
+        Floats u, v;
+        Side side;
+    };
+
+    /// @param wanted  other lanes get some cell
+    HWY_INLINE Cell cell_at(const Coordinates& at, Mask wanted) const {
+        const Floats along_u = hn::IfThenElseZero(wanted, at.along_u);
+        const Floats along_v = hn::IfThenElseZero(wanted, at.along_v);
+        const Ints last = splat_int(n_ - 1);
+        const Ints i = hn::Max(hn::Min(hn::ConvertTo(kInt, along_u), last), hn::Zero(kInt));
+        const Ints j = hn::Max(hn::Min(hn::ConvertTo(kInt, along_v), last), hn::Zero(kInt));
+        const Ints axis =
+            choose(at.side.is_x, hn::Zero(kInt), choose(at.side.is_y, splat_int(2), splat_int(4)));
+        const Ints side = hn::Add(axis, choose(at.side.negative, splat_int(1), hn::Zero(kInt)));
+        const Ints row = hn::Add(hn::Mul(side, splat_int(width_)), j);
+        return {hn::Add(hn::Mul(row, splat_int(width_)), i), hn::Sub(along_u, hn::ConvertTo(kFloat, i)),
+                hn::Sub(along_v, hn::ConvertTo(kFloat, j)), at.side};
+    }
+
+    HWY_INLINE std::array<Ints, 4> corners(const Cell& cell) const {
+        const Ints upper = hn::Add(cell.first, splat_int(width_));
+        return {cell.first, hn::Add(cell.first, splat_int(1)), upper, hn::Add(upper, splat_int(1))};
+    }
+    struct CornerRows {
+        Ints lower, upper; ///< the directions (0, 0) and (0, 1)
+        Mask exist;
+    };
+    HWY_INLINE CornerRows corner_rows(const Cell& cell) const {
+        return {cell.first, hn::Add(cell.first, splat_int(width_)), splat_mask(true)};
+    }
+    static HWY_INLINE std::array<Ints, 4> corners_of_cell(const Cell&, const std::array<Ints, 4>& values) {
+        return values;
+    }
+
+    HWY_INLINE std::array<Floats, 4> weights(const Cell& cell) const {
+        const Floats left = hn::Sub(splat(1), cell.u);
+        const Floats low = hn::Sub(splat(1), cell.v);
+        return {hn::Mul(left, low), hn::Mul(cell.u, low), hn::Mul(left, cell.v), hn::Mul(cell.u, cell.v)};
+    }
+    HWY_INLINE Ints of_reference(const Cell& cell, const std::array<Ints, 4>& values) const {
+        const Mask right = hn::Gt(cell.u, splat(0.5F));
+        const Mask high = hn::Gt(cell.v, splat(0.5F));
+        return choose(high, choose(right, values[3], values[2]), choose(right, values[1], values[0]));
+    }
+
+    struct Derivatives {
+        std::array<Floats, 4> along_u, along_v;
+    };
+    HWY_INLINE Derivatives weight_derivatives(const Cell& cell) const {
+        const Floats one = splat(1);
+        return {{hn::Sub(cell.v, one), hn::Sub(one, cell.v), hn::Neg(cell.v), cell.v},
+                {hn::Sub(cell.u, one), hn::Neg(cell.u), hn::Sub(one, cell.u), cell.u}};
+    }
+
+    static HWY_INLINE Floats interpolant(Floats entry) { return entry; }
+    static HWY_INLINE Floats distance_of(Floats interpolated, const Coordinates&) { return interpolated; }
+
+    HWY_INLINE Vectors surface_gradient(const Vectors& e_r, const Cell& cell, Floats distance, Floats,
+                                        Floats slope_u, Floats slope_v) const {
+        const Vectors s = to_side(cell.side, e_r);
+        const Floats m = hn::Abs(s.z);
+        const Floats m_squared = hn::Mul(m, m);
+        const Floats per_angle = splat(per_angle_);
+        const Floats a =
+            hn::Div(hn::Mul(slope_u, per_angle), hn::Mul(distance, hn::Add(hn::Mul(s.x, s.x), m_squared)));
+        const Floats b =
+            hn::Div(hn::Mul(slope_v, per_angle), hn::Mul(distance, hn::Add(hn::Mul(s.y, s.y), m_squared)));
+        const Floats along_m = hn::Add(hn::Mul(s.x, a), hn::Mul(s.y, b));
+        const Vectors gradient =
+            from_side(cell.side, {hn::Sub(s.x, hn::Mul(a, m)), hn::Sub(s.y, hn::Mul(b, m)),
+                                  hn::Add(s.z, choose(cell.side.negative, hn::Neg(along_m), along_m))});
+        return choose(hn::Gt(distance, hn::Zero(kFloat)), gradient, e_r);
+    }
+
+  private:
+    static HWY_INLINE Side side_of(const Vectors& d) {
+        const Floats ax = hn::Abs(d.x);
+        const Floats ay = hn::Abs(d.y);
+        const Floats az = hn::Abs(d.z);
+        const Mask is_z = hn::And(hn::Ge(az, ax), hn::Ge(az, ay));
+        const Mask x_before_y = hn::Ge(ax, ay);
+        const Mask is_x = hn::AndNot(is_z, x_before_y);
+        const Mask is_y = none_of(hn::Or(is_z, x_before_y));
+        const Floats along = choose(is_x, d.x, choose(is_y, d.y, d.z));
+        return {is_x, is_y, hn::Lt(along, hn::Zero(kFloat))};
+    }
+    static HWY_INLINE Vectors to_side(const Side& side, const Vectors& v) {
+        return choose(side.is_x, {v.y, v.z, v.x}, choose(side.is_y, {v.z, v.x, v.y}, v));
+    }
+    static HWY_INLINE Vectors from_side(const Side& side, const Vectors& v) {
+        return choose(side.is_x, {v.z, v.x, v.y}, choose(side.is_y, {v.y, v.z, v.x}, v));
+    }
+    HWY_INLINE Floats along(Floats p, Floats m) const {
+        const Floats n = splat(n_float_);
+        const Floats cells = hn::Mul(hn::Add(hn::Mul(angle_of(p, m), splat(2 / kPi)), splat(0.5F)), n);
+        return hn::Min(hn::Max(cells, hn::Zero(kFloat)), n);
+    }
+
+    std::int32_t n_, width_;
+    float n_float_, per_angle_;
+};
+
+} // namespace HWY_NAMESPACE
+} // namespace echinus
+HWY_AFTER_NAMESPACE();
+#endif
+
+#endif
