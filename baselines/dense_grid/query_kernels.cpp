@@ -47,9 +47,9 @@ HWY_INLINE Vectors load(const Vec3f* points) {
 #if HWY_TARGET == HWY_SCALAR
     return {splat(points->x), splat(points->y), splat(points->z)};
 #else
-    Vectors result;
-    hn::LoadInterleaved3(kFloat, &points->x, result.x, result.y, result.z);
-    return result;
+    Floats x, y, z;
+    hn::LoadInterleaved3(kFloat, &points->x, x, y, z);
+    return {x, y, z};
 #endif
 }
 

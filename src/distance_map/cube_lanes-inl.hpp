@@ -22,122 +22,125 @@ class CubeLanes {
         : n_(static_cast<std::int32_t>(map.divisions)), width_(n_ + 1),
           n_float_(static_cast<float>(map.divisions)), per_angle_(2 * n_float_ / kPi) {}
 
-    HWY_INLINE Vectors to_grid(const Vectors& v) const { return v; }
-    HWY_INLINE Vectors from_grid(const Vectors& v) const { return v; }
+    HWY_INLINE PointLanes to_grid(const PointLanes& v) const { return v; }
+    HWY_INLINE PointLanes from_grid(const PointLanes& v) const { return v; }
 
     struct Side {
-        Mask is_x, is_y; ///< else z
-        Mask negative;
+        FloatMask is_x, is_y; ///< else z
+        FloatMask negative;
     };
     struct Coordinates {
-        Floats along_u, along_v;
+        FloatLanes along_u, along_v;
         Side side;
     };
 
-    HWY_INLINE Coordinates coordinates_of(const Vectors& d) const {
+    HWY_INLINE Coordinates coordinates_of(const PointLanes& d) const {
         const Side side = side_of(d);
-        const Vectors s = to_side(side, d);
-        const Floats m = hn::Abs(s.z);
+        const PointLanes s = to_side(side, d);
+        const FloatLanes m = hn::Abs(s.z);
         return {along(s.x, m), along(s.y, m), side};
     }
 
     struct Cell {
-        Ints first; ///< the direction (0, 0)
-        Floats u, v;
+        IntLanes first; ///< the direction (0, 0)
+        FloatLanes u, v;
         Side side;
     };
 
     /// @param wanted  other lanes get some cell
-    HWY_INLINE Cell cell_at(const Coordinates& at, Mask wanted) const {
-        const Floats along_u = hn::IfThenElseZero(wanted, at.along_u);
-        const Floats along_v = hn::IfThenElseZero(wanted, at.along_v);
-        const Ints last = splat_int(n_ - 1);
-        const Ints i = hn::Max(hn::Min(hn::ConvertTo(kInt, along_u), last), hn::Zero(kInt));
-        const Ints j = hn::Max(hn::Min(hn::ConvertTo(kInt, along_v), last), hn::Zero(kInt));
-        const Ints axis =
+    HWY_INLINE Cell cell_at(const Coordinates& at, FloatMask wanted) const {
+        const FloatLanes along_u = hn::IfThenElseZero(wanted, at.along_u);
+        const FloatLanes along_v = hn::IfThenElseZero(wanted, at.along_v);
+        const IntLanes last = splat_int(n_ - 1);
+        const IntLanes i = hn::Max(hn::Min(hn::ConvertTo(kInt, along_u), last), hn::Zero(kInt));
+        const IntLanes j = hn::Max(hn::Min(hn::ConvertTo(kInt, along_v), last), hn::Zero(kInt));
+        const IntLanes axis =
             choose(at.side.is_x, hn::Zero(kInt), choose(at.side.is_y, splat_int(2), splat_int(4)));
-        const Ints side = hn::Add(axis, choose(at.side.negative, splat_int(1), hn::Zero(kInt)));
-        const Ints row = hn::Add(hn::Mul(side, splat_int(width_)), j);
+        const IntLanes side = hn::Add(axis, choose(at.side.negative, splat_int(1), hn::Zero(kInt)));
+        const IntLanes row = hn::Add(hn::Mul(side, splat_int(width_)), j);
         return {hn::Add(hn::Mul(row, splat_int(width_)), i), hn::Sub(along_u, hn::ConvertTo(kFloat, i)),
                 hn::Sub(along_v, hn::ConvertTo(kFloat, j)), at.side};
     }
 
-    HWY_INLINE std::array<Ints, 4> corners(const Cell& cell) const {
-        const Ints upper = hn::Add(cell.first, splat_int(width_));
+    HWY_INLINE std::array<IntLanes, 4> corners(const Cell& cell) const {
+        const IntLanes upper = hn::Add(cell.first, splat_int(width_));
         return {cell.first, hn::Add(cell.first, splat_int(1)), upper, hn::Add(upper, splat_int(1))};
     }
     struct CornerRows {
-        Ints lower, upper; ///< the directions (0, 0) and (0, 1)
-        Mask exist;
+        IntLanes lower, upper; ///< the directions (0, 0) and (0, 1)
+        FloatMask exist;
     };
     HWY_INLINE CornerRows corner_rows(const Cell& cell) const {
         return {cell.first, hn::Add(cell.first, splat_int(width_)), splat_mask(true)};
     }
-    static HWY_INLINE std::array<Ints, 4> corners_of_cell(const Cell&, const std::array<Ints, 4>& values) {
+    static HWY_INLINE std::array<IntLanes, 4> corners_of_cell(const Cell&,
+                                                              const std::array<IntLanes, 4>& values) {
         return values;
     }
 
-    HWY_INLINE std::array<Floats, 4> weights(const Cell& cell) const {
-        const Floats left = hn::Sub(splat(1), cell.u);
-        const Floats low = hn::Sub(splat(1), cell.v);
+    HWY_INLINE std::array<FloatLanes, 4> weights(const Cell& cell) const {
+        const FloatLanes left = hn::Sub(splat(1), cell.u);
+        const FloatLanes low = hn::Sub(splat(1), cell.v);
         return {hn::Mul(left, low), hn::Mul(cell.u, low), hn::Mul(left, cell.v), hn::Mul(cell.u, cell.v)};
     }
-    HWY_INLINE Ints of_reference(const Cell& cell, const std::array<Ints, 4>& values) const {
-        const Mask right = hn::Gt(cell.u, splat(0.5F));
-        const Mask high = hn::Gt(cell.v, splat(0.5F));
+    HWY_INLINE IntLanes of_reference(const Cell& cell, const std::array<IntLanes, 4>& values) const {
+        const FloatMask right = hn::Gt(cell.u, splat(0.5F));
+        const FloatMask high = hn::Gt(cell.v, splat(0.5F));
         return choose(high, choose(right, values[3], values[2]), choose(right, values[1], values[0]));
     }
 
     struct Derivatives {
-        std::array<Floats, 4> along_u, along_v;
+        std::array<FloatLanes, 4> along_u, along_v;
     };
     HWY_INLINE Derivatives weight_derivatives(const Cell& cell) const {
-        const Floats one = splat(1);
+        const FloatLanes one = splat(1);
         return {{hn::Sub(cell.v, one), hn::Sub(one, cell.v), hn::Neg(cell.v), cell.v},
                 {hn::Sub(cell.u, one), hn::Neg(cell.u), hn::Sub(one, cell.u), cell.u}};
     }
 
-    static HWY_INLINE Floats interpolant(Floats entry) { return entry; }
-    static HWY_INLINE Floats distance_of(Floats interpolated, const Coordinates&) { return interpolated; }
+    static HWY_INLINE FloatLanes interpolant(FloatLanes entry) { return entry; }
+    static HWY_INLINE FloatLanes distance_of(FloatLanes interpolated, const Coordinates&) {
+        return interpolated;
+    }
 
-    HWY_INLINE Vectors surface_gradient(const Vectors& e_r, const Cell& cell, Floats distance, Floats,
-                                        Floats slope_u, Floats slope_v) const {
-        const Vectors s = to_side(cell.side, e_r);
-        const Floats m = hn::Abs(s.z);
-        const Floats m_squared = hn::Mul(m, m);
-        const Floats per_angle = splat(per_angle_);
-        const Floats a =
+    HWY_INLINE PointLanes surface_gradient(const PointLanes& e_r, const Cell& cell, FloatLanes distance,
+                                           FloatLanes, FloatLanes slope_u, FloatLanes slope_v) const {
+        const PointLanes s = to_side(cell.side, e_r);
+        const FloatLanes m = hn::Abs(s.z);
+        const FloatLanes m_squared = hn::Mul(m, m);
+        const FloatLanes per_angle = splat(per_angle_);
+        const FloatLanes a =
             hn::Div(hn::Mul(slope_u, per_angle), hn::Mul(distance, hn::Add(hn::Mul(s.x, s.x), m_squared)));
-        const Floats b =
+        const FloatLanes b =
             hn::Div(hn::Mul(slope_v, per_angle), hn::Mul(distance, hn::Add(hn::Mul(s.y, s.y), m_squared)));
-        const Floats along_m = hn::Add(hn::Mul(s.x, a), hn::Mul(s.y, b));
-        const Vectors gradient =
+        const FloatLanes along_m = hn::Add(hn::Mul(s.x, a), hn::Mul(s.y, b));
+        const PointLanes gradient =
             from_side(cell.side, {hn::Sub(s.x, hn::Mul(a, m)), hn::Sub(s.y, hn::Mul(b, m)),
                                   hn::Add(s.z, choose(cell.side.negative, hn::Neg(along_m), along_m))});
         return choose(hn::Gt(distance, hn::Zero(kFloat)), gradient, e_r);
     }
 
   private:
-    static HWY_INLINE Side side_of(const Vectors& d) {
-        const Floats ax = hn::Abs(d.x);
-        const Floats ay = hn::Abs(d.y);
-        const Floats az = hn::Abs(d.z);
-        const Mask is_z = hn::And(hn::Ge(az, ax), hn::Ge(az, ay));
-        const Mask x_before_y = hn::Ge(ax, ay);
-        const Mask is_x = hn::AndNot(is_z, x_before_y);
-        const Mask is_y = none_of(hn::Or(is_z, x_before_y));
-        const Floats along = choose(is_x, d.x, choose(is_y, d.y, d.z));
+    static HWY_INLINE Side side_of(const PointLanes& d) {
+        const FloatLanes ax = hn::Abs(d.x);
+        const FloatLanes ay = hn::Abs(d.y);
+        const FloatLanes az = hn::Abs(d.z);
+        const FloatMask is_z = hn::And(hn::Ge(az, ax), hn::Ge(az, ay));
+        const FloatMask x_before_y = hn::Ge(ax, ay);
+        const FloatMask is_x = hn::AndNot(is_z, x_before_y);
+        const FloatMask is_y = none_of(hn::Or(is_z, x_before_y));
+        const FloatLanes along = choose(is_x, d.x, choose(is_y, d.y, d.z));
         return {is_x, is_y, hn::Lt(along, hn::Zero(kFloat))};
     }
-    static HWY_INLINE Vectors to_side(const Side& side, const Vectors& v) {
+    static HWY_INLINE PointLanes to_side(const Side& side, const PointLanes& v) {
         return choose(side.is_x, {v.y, v.z, v.x}, choose(side.is_y, {v.z, v.x, v.y}, v));
     }
-    static HWY_INLINE Vectors from_side(const Side& side, const Vectors& v) {
+    static HWY_INLINE PointLanes from_side(const Side& side, const PointLanes& v) {
         return choose(side.is_x, {v.z, v.x, v.y}, choose(side.is_y, {v.y, v.z, v.x}, v));
     }
-    HWY_INLINE Floats along(Floats p, Floats m) const {
-        const Floats n = splat(n_float_);
-        const Floats cells = hn::Mul(hn::Add(hn::Mul(angle_of(p, m), splat(2 / kPi)), splat(0.5F)), n);
+    HWY_INLINE FloatLanes along(FloatLanes p, FloatLanes m) const {
+        const FloatLanes n = splat(n_float_);
+        const FloatLanes cells = hn::Mul(hn::Add(hn::Mul(angle_of(p, m), splat(2 / kPi)), splat(0.5F)), n);
         return hn::Min(hn::Max(cells, hn::Zero(kFloat)), n);
     }
 

@@ -22,6 +22,7 @@
 #include "distance_map/cube_lanes-inl.hpp"
 #include "distance_map/octahedral_lanes-inl.hpp"
 #include "distance_map/spherical_lanes-inl.hpp"
+#include "simd/compress-inl.hpp"
 #include "simd/dispatch.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -56,8 +57,10 @@ class FloatEntries {
         return hn::LoadU(FourFloats(), entries_ + position);
     }
     /// What a row holds, in the mesh's unit.
-    HWY_INLINE Floats entry_of(Floats loaded) const { return loaded; }
-    HWY_INLINE Floats gather(Ints positions) const { return hn::GatherIndex(kFloat, entries_, positions); }
+    HWY_INLINE FloatLanes entry_of(FloatLanes loaded) const { return loaded; }
+    HWY_INLINE FloatLanes gather(IntLanes positions) const {
+        return hn::GatherIndex(kFloat, entries_, positions);
+    }
 
   private:
     const float* entries_;
@@ -72,17 +75,17 @@ class UnormEntries {
         const auto narrow = hn::LoadU(hn::FixedTag<std::uint16_t, 4>(), entries_ + position);
         return hn::BitCast(FourFloats(), hn::PromoteTo(hn::FixedTag<std::uint32_t, 4>(), narrow));
     }
-    HWY_INLINE Floats entry_of(Floats loaded) const {
+    HWY_INLINE FloatLanes entry_of(FloatLanes loaded) const {
         return hn::Mul(hn::ConvertTo(kFloat, hn::BitCast(kInt, loaded)), splat(step_));
     }
     /// Gathers pairs, each with the entry before, so that nothing beyond the last is read.
-    HWY_INLINE Floats gather(Ints positions) const {
-        const Ints before = hn::Max(hn::Sub(positions, splat_int(1)), hn::Zero(kInt));
+    HWY_INLINE FloatLanes gather(IntLanes positions) const {
+        const IntLanes before = hn::Max(hn::Sub(positions, splat_int(1)), hn::Zero(kInt));
         const auto* pairs = reinterpret_cast<const std::int32_t*>(entries_);
-        const Ints pair = hn::GatherOffset(kInt, pairs, hn::Add(before, before));
-        const Mask is_first = as_mask(hn::Eq(positions, hn::Zero(kInt)));
-        const Ints first = hn::And(pair, splat_int(0xFFFF));
-        const Ints second = hn::And(hn::ShiftRight<16>(pair), splat_int(0xFFFF));
+        const IntLanes pair = hn::GatherOffset(kInt, pairs, hn::Add(before, before));
+        const FloatMask is_first = as_mask(hn::Eq(positions, hn::Zero(kInt)));
+        const IntLanes first = hn::And(pair, splat_int(0xFFFF));
+        const IntLanes second = hn::And(hn::ShiftRight<16>(pair), splat_int(0xFFFF));
         return entry_of(hn::BitCast(kFloat, choose(is_first, first, second)));
     }
 
@@ -104,8 +107,8 @@ struct OffsetRows {
 
 template <typename Grid>
 struct Rays {
-    Vectors along;
-    Floats length;
+    PointLanes along;
+    FloatLanes length;
     typename Grid::Coordinates at;
 };
 
@@ -113,27 +116,27 @@ struct Rays {
 template <typename Grid>
 struct Samples {
     typename Grid::Cell cell;
-    std::array<Floats, 4> weight;
-    std::array<Mask, 4> usable;
-    Floats weight_sum;
-    Ints entry_count;
+    std::array<FloatLanes, 4> weight;
+    std::array<FloatMask, 4> usable;
+    FloatLanes weight_sum;
+    IntLanes entry_count;
 };
 
 struct Intervals {
-    Ints number;
-    Floats below, above;
+    IntLanes number;
+    FloatLanes below, above;
 };
 
 struct Ends {
-    Mask exist;
-    Ints k;
-    Floats distance;
+    FloatMask exist;
+    IntLanes k;
+    FloatLanes distance;
 };
 
 struct Contacts {
-    Vectors point, normal;
-    Floats depth;
-    Mask inside;
+    PointLanes point, normal;
+    FloatLanes depth;
+    FloatMask inside;
 };
 
 /// The first four entries of each sample: rows[corner].at[k].
@@ -145,33 +148,30 @@ struct LoadedEntries {
     const Entries& entries;
     std::array<Rows, 4> rows;
 
-    HWY_INLINE LoadedEntries(const Grid& grid_, const Entries& entries_, const std::array<Ints, 4>& first,
-                             Mask wanted)
-        : grid(grid_), entries(entries_) {
-        for (std::size_t corner = 0; corner < 4; ++corner)
-            rows[corner] = load_rows(entries, hn::IfThenElseZero(as_int_mask(wanted), first[corner]));
-    }
+    HWY_INLINE LoadedEntries(const Grid& grid_, const Entries& entries_, const std::array<IntLanes, 4>& first,
+                             FloatMask wanted)
+        : grid(grid_), entries(entries_), rows(at_corners([&](std::size_t corner) HWY_ATTR {
+              return load_rows_at(entries_, hn::IfThenElseZero(as_int_mask(wanted), first[corner]));
+          })) {}
 
     /// The interpolants of the k-th entries, the same k for all lanes.
-    HWY_INLINE std::array<Floats, 4> operator()(std::int32_t k) const {
-        std::array<Floats, 4> result;
-        for (std::size_t corner = 0; corner < 4; ++corner)
-            result[corner] = interpolant(rows[corner].at[static_cast<std::size_t>(k)]);
-        return result;
+    HWY_INLINE std::array<FloatLanes, 4> operator()(std::int32_t k) const {
+        return at_corners([&](std::size_t corner)
+                              HWY_ATTR { return interpolant(rows[corner].at[static_cast<std::size_t>(k)]); });
     }
-    HWY_INLINE std::array<Floats, 4> operator()(Ints k) const {
-        const Mask odd = is_odd(k);
-        const Mask late = as_mask(hn::Gt(k, splat_int(1)));
-        std::array<Floats, 4> result;
-        for (std::size_t corner = 0; corner < 4; ++corner) {
+    HWY_INLINE std::array<FloatLanes, 4> operator()(IntLanes k) const {
+        const FloatMask odd = is_odd(k);
+        const FloatMask late = as_mask(hn::Gt(k, splat_int(1)));
+        return at_corners([&](std::size_t corner) HWY_ATTR {
             const auto& at = rows[corner].at;
-            result[corner] = interpolant(choose(late, choose(odd, at[3], at[2]), choose(odd, at[1], at[0])));
-        }
-        return result;
+            return interpolant(choose(late, choose(odd, at[3], at[2]), choose(odd, at[1], at[0])));
+        });
     }
 
   private:
-    HWY_INLINE Floats interpolant(Floats loaded) const { return grid.interpolant(entries.entry_of(loaded)); }
+    HWY_INLINE FloatLanes interpolant(FloatLanes loaded) const {
+        return grid.interpolant(entries.entry_of(loaded));
+    }
 };
 
 /// Any entries.
@@ -181,18 +181,16 @@ struct GatheredEntries {
 
     const Grid& grid;
     const Entries& entries;
-    std::array<Ints, 4> first;
-    Ints count;
+    std::array<IntLanes, 4> first;
+    IntLanes count;
 
-    HWY_INLINE std::array<Floats, 4> operator()(std::int32_t k) const { return (*this)(splat_int(k)); }
-    HWY_INLINE std::array<Floats, 4> operator()(Ints k) const {
+    HWY_INLINE std::array<FloatLanes, 4> operator()(std::int32_t k) const { return (*this)(splat_int(k)); }
+    HWY_INLINE std::array<FloatLanes, 4> operator()(IntLanes k) const {
         const IntMask exists = hn::Lt(k, count);
-        std::array<Floats, 4> result;
-        for (std::size_t corner = 0; corner < 4; ++corner) {
-            const Ints position = hn::IfThenElseZero(exists, hn::Add(first[corner], k));
-            result[corner] = grid.interpolant(entries.gather(position));
-        }
-        return result;
+        return at_corners([&](std::size_t corner) HWY_ATTR {
+            const IntLanes position = hn::IfThenElseZero(exists, hn::Add(first[corner], k));
+            return grid.interpolant(entries.gather(position));
+        });
     }
 };
 
@@ -207,19 +205,19 @@ class Kernel {
 
     /// Answers those of a vector of neighbouring particles that rows of entries are enough for.
     /// @return the others
-    HWY_INLINE Mask contains_most(const Vec3f* points, std::uint8_t* inside) const {
+    HWY_INLINE FloatMask contains_most(const Vec3f* points, std::uint8_t* inside) const {
         const Rays<Grid> rays = aim(load(points));
-        const Mask reaches = hn::Le(rays.length, splat(map_.radius));
+        const FloatMask reaches = hn::Le(rays.length, splat(map_.radius));
         Neighbours found = look_at_rows(rays, reaches);
         const LoadedEntries<Grid, Entries> entries(grid_, entries_, found.first, found.known);
         store(is_inside_at(rays, found, entries), inside);
         return hn::AndNot(found.known, reaches);
     }
 
-    HWY_INLINE Mask contacts_most(const Vec3f* points, float margin, Contact* contacts) const {
-        const Vectors point = load(points);
+    HWY_INLINE FloatMask contacts_most(const Vec3f* points, float margin, Contact* contacts) const {
+        const PointLanes point = load(points);
         const Rays<Grid> rays = aim(point);
-        const Mask reaches = reaches_sphere(rays, margin);
+        const FloatMask reaches = reaches_sphere(rays, margin);
         const Neighbours found = look_at_rows(rays, reaches);
         const LoadedEntries<Grid, Entries> entries(grid_, entries_, found.first, found.known);
         store(contacts_of(point, rays, found, entries, margin), contacts);
@@ -234,7 +232,7 @@ class Kernel {
     }
 
     HWY_INLINE void contacts_any(const Vec3f* points, float margin, Contact* contacts) const {
-        const Vectors point = load(points);
+        const PointLanes point = load(points);
         const Rays<Grid> rays = aim(point);
         const Neighbours found = look_at(rays, reaches_sphere(rays, margin));
         store(contacts_of(point, rays, found, gathered(found), margin), contacts);
@@ -244,61 +242,63 @@ class Kernel {
     /// The samples around the rays.
     struct Neighbours {
         Samples<Grid> samples;
-        std::array<Ints, 4> first; ///< where the entries of each begin
-        Mask known;                ///< for these lanes
+        std::array<IntLanes, 4> first; ///< where the entries of each begin
+        FloatMask known;               ///< for these lanes
     };
 
-    static HWY_INLINE Vectors load(const Vec3f* points) {
-        Floats x, y, z;
+    static HWY_INLINE PointLanes load(const Vec3f* points) {
+        FloatLanes x, y, z;
         hn::LoadInterleaved3(kFloat, &points->x, x, y, z);
         return {x, y, z};
     }
 
-    static HWY_INLINE void store(Mask inside, std::uint8_t* bytes) {
-        const Ints ones = hn::IfThenElseZero(as_int_mask(inside), splat_int(1));
-        const hn::Rebind<std::uint8_t, IntTag> narrow;
+    static HWY_INLINE void store(FloatMask inside, std::uint8_t* bytes) {
+        const IntLanes ones = hn::IfThenElseZero(as_int_mask(inside), splat_int(1));
+        const hn::Rebind<std::uint8_t, Ints> narrow;
         hn::StoreU(hn::DemoteTo(narrow, ones), narrow, bytes);
     }
 
-    HWY_INLINE Rays<Grid> aim(const Vectors& point) const {
-        const Vectors d =
+    HWY_INLINE Rays<Grid> aim(const PointLanes& point) const {
+        const PointLanes d =
             grid_.to_grid({hn::Sub(point.x, splat(map_.centre.x)), hn::Sub(point.y, splat(map_.centre.y)),
                            hn::Sub(point.z, splat(map_.centre.z))});
-        const Floats d_length = length(d);
-        const Mask is_short = hn::Lt(d_length, splat(kShortRay));
-        const Vectors along = scaled(d, choose(is_short, splat(kRayLengthening), splat(1)));
+        const FloatLanes d_length = length(d);
+        const FloatMask is_short = hn::Lt(d_length, splat(kShortRay));
+        const PointLanes along = scaled(d, choose(is_short, splat(kRayLengthening), splat(1)));
         return {along, d_length, grid_.coordinates_of(along)};
     }
 
-    HWY_INLINE Mask reaches_sphere(const Rays<Grid>& rays, float margin) const {
+    HWY_INLINE FloatMask reaches_sphere(const Rays<Grid>& rays, float margin) const {
         return hn::And(hn::Le(rays.length, splat(map_.radius + margin)),
                        hn::Lt(rays.length, splat(std::numeric_limits<float>::infinity())));
     }
 
-    HWY_INLINE Mask is_inside(Ints interval) const { return hn::Xor(is_odd(interval), centre_inside_); }
+    HWY_INLINE FloatMask is_inside(IntLanes interval) const {
+        return hn::Xor(is_odd(interval), centre_inside_);
+    }
 
     HWY_INLINE GatheredEntries<Grid, Entries> gathered(const Neighbours& found) const {
         return {grid_, entries_, found.first, found.samples.entry_count};
     }
 
     /// The samples around the rays where rows of offsets and of entries hold all that is needed.
-    HWY_INLINE Neighbours look_at_rows(const Rays<Grid>& rays, Mask reaches) const {
+    HWY_INLINE Neighbours look_at_rows(const Rays<Grid>& rays, FloatMask reaches) const {
         const typename Grid::Cell cell = grid_.cell_at(rays.at, reaches);
         const typename Grid::CornerRows rows = grid_.corner_rows(cell);
         // A row of offsets: where two directions begin and the second ends, and one number more.
         const IntMask offsets_end = hn::Gt(rows.upper, splat_int(direction_count_ - 3));
-        const Mask has_rows = hn::And(reaches, hn::AndNot(as_mask(offsets_end), rows.exist));
+        const FloatMask has_rows = hn::And(reaches, hn::AndNot(as_mask(offsets_end), rows.exist));
         const OffsetRows offsets{map_.entry_offsets.data()};
-        const Rows lower = load_rows(offsets, hn::IfThenElseZero(as_int_mask(has_rows), rows.lower));
-        const Rows upper = load_rows(offsets, hn::IfThenElseZero(as_int_mask(has_rows), rows.upper));
-        const auto as_ints = [](Floats bits) HWY_ATTR { return hn::BitCast(kInt, bits); };
-        std::array<Ints, 4> first{as_ints(lower.at[0]), as_ints(lower.at[1]), as_ints(upper.at[0]),
-                                  as_ints(upper.at[1])};
-        std::array<Ints, 4> count{hn::Sub(first[1], first[0]), hn::Sub(as_ints(lower.at[2]), first[1]),
-                                  hn::Sub(first[3], first[2]), hn::Sub(as_ints(upper.at[2]), first[3])};
+        const Rows lower = load_rows_at(offsets, hn::IfThenElseZero(as_int_mask(has_rows), rows.lower));
+        const Rows upper = load_rows_at(offsets, hn::IfThenElseZero(as_int_mask(has_rows), rows.upper));
+        const auto as_ints = [](FloatLanes bits) HWY_ATTR { return hn::BitCast(kInt, bits); };
+        std::array<IntLanes, 4> first{as_ints(lower.at[0]), as_ints(lower.at[1]), as_ints(upper.at[0]),
+                                      as_ints(upper.at[1])};
+        std::array<IntLanes, 4> count{hn::Sub(first[1], first[0]), hn::Sub(as_ints(lower.at[2]), first[1]),
+                                      hn::Sub(first[3], first[2]), hn::Sub(as_ints(upper.at[2]), first[3])};
         Neighbours found =
             neighbours(cell, grid_.corners_of_cell(cell, first), grid_.corners_of_cell(cell, count));
-        const Ints last =
+        const IntLanes last =
             hn::Max(hn::Max(found.first[0], found.first[1]), hn::Max(found.first[2], found.first[3]));
         const IntMask entries_end = hn::Or(hn::Gt(last, splat_int(entry_count_ - 4)),
                                            hn::Gt(found.samples.entry_count, splat_int(4)));
@@ -307,42 +307,40 @@ class Kernel {
     }
 
     /// The samples around any rays.
-    HWY_INLINE Neighbours look_at(const Rays<Grid>& rays, Mask reaches) const {
+    HWY_INLINE Neighbours look_at(const Rays<Grid>& rays, FloatMask reaches) const {
         const typename Grid::Cell cell = grid_.cell_at(rays.at, reaches);
-        const std::array<Ints, 4> corners = grid_.corners(cell);
+        const std::array<IntLanes, 4> corners = grid_.corners(cell);
         const auto* offsets = reinterpret_cast<const std::int32_t*>(map_.entry_offsets.data());
-        std::array<Ints, 4> first, count;
-        for (std::size_t corner = 0; corner < 4; ++corner) {
-            first[corner] = hn::GatherIndex(kInt, offsets, corners[corner]);
-            count[corner] = hn::Sub(hn::GatherIndex(kInt, offsets + 1, corners[corner]), first[corner]);
-        }
+        const auto first = at_corners(
+            [&](std::size_t corner) HWY_ATTR { return hn::GatherIndex(kInt, offsets, corners[corner]); });
+        const auto count = at_corners([&](std::size_t corner) HWY_ATTR {
+            return hn::Sub(hn::GatherIndex(kInt, offsets + 1, corners[corner]), first[corner]);
+        });
         Neighbours found = neighbours(cell, first, count);
         found.known = reaches;
         return found;
     }
 
     /// interpolation_at() of interpolation.hpp.
-    HWY_INLINE Neighbours neighbours(const typename Grid::Cell& cell, const std::array<Ints, 4>& first,
-                                     const std::array<Ints, 4>& count) const {
-        Neighbours found;
-        Samples<Grid>& samples = found.samples;
-        samples.cell = cell;
-        const std::array<Floats, 4> weights = grid_.weights(cell);
-        samples.entry_count = grid_.of_reference(cell, count);
-        const Ints first_of_reference = grid_.of_reference(cell, first);
-        samples.weight_sum = hn::Zero(kFloat);
-        Mask all = splat_mask(true);
-        for (std::size_t corner = 0; corner < 4; ++corner) {
-            const Mask usable = as_mask(hn::Eq(count[corner], samples.entry_count));
-            samples.usable[corner] = usable;
-            found.first[corner] = choose(usable, first[corner], first_of_reference);
-            samples.weight[corner] = hn::IfThenElseZero(usable, weights[corner]);
-            samples.weight_sum = hn::Add(samples.weight_sum, samples.weight[corner]);
-            all = hn::And(all, usable);
-        }
-        for (Floats& weight : samples.weight)
-            weight = choose(all, weight, hn::Div(weight, samples.weight_sum));
-        return found;
+    HWY_INLINE Neighbours neighbours(const typename Grid::Cell& cell, const std::array<IntLanes, 4>& first,
+                                     const std::array<IntLanes, 4>& count) const {
+        const auto weights = grid_.weights(cell);
+        const IntLanes entry_count = grid_.of_reference(cell, count);
+        const IntLanes first_of_reference = grid_.of_reference(cell, first);
+        const auto usable = at_corners([&](std::size_t corner)
+                                           HWY_ATTR { return as_mask(hn::Eq(count[corner], entry_count)); });
+        const FloatMask all = hn::And(hn::And(usable[0], usable[1]), hn::And(usable[2], usable[3]));
+        const auto of_usable = at_corners(
+            [&](std::size_t corner) HWY_ATTR { return hn::IfThenElseZero(usable[corner], weights[corner]); });
+        FloatLanes weight_sum = hn::Zero(kFloat);
+        for (const FloatLanes& weight : of_usable) weight_sum = hn::Add(weight_sum, weight);
+        const auto weight = at_corners([&](std::size_t corner) HWY_ATTR {
+            return choose(all, of_usable[corner], hn::Div(of_usable[corner], weight_sum));
+        });
+        const auto found_first = at_corners([&](std::size_t corner) HWY_ATTR {
+            return choose(usable[corner], first[corner], first_of_reference);
+        });
+        return {{cell, weight, usable, weight_sum, entry_count}, found_first, all};
     }
 
     /// interval_of() of query.cpp.
@@ -351,10 +349,10 @@ class Kernel {
                                       const EntriesAt& entries_at) const {
         const Samples<Grid>& samples = found.samples;
         Intervals intervals{hn::Zero(kInt), hn::Zero(kFloat), splat(map_.radius)};
-        Mask looking = hn::And(found.known, as_mask(hn::Gt(samples.entry_count, hn::Zero(kInt))));
+        FloatMask looking = hn::And(found.known, as_mask(hn::Gt(samples.entry_count, hn::Zero(kInt))));
         for (std::int32_t k = 0; k < EntriesAt::kMost && !hn::AllFalse(kFloat, looking); ++k) {
-            const Floats distance = grid_.distance_of(interpolated(samples, entries_at(k)), rays.at);
-            const Mask beyond = hn::AndNot(hn::Gt(distance, rays.length), looking);
+            const FloatLanes distance = grid_.distance_of(interpolated(samples, entries_at(k)), rays.at);
+            const FloatMask beyond = hn::AndNot(hn::Gt(distance, rays.length), looking);
             intervals.above = choose(hn::AndNot(beyond, looking), distance, intervals.above);
             intervals.below = choose(beyond, distance, intervals.below);
             intervals.number = choose(beyond, splat_int(k + 1), intervals.number);
@@ -364,14 +362,15 @@ class Kernel {
     }
 
     template <typename EntriesAt>
-    HWY_INLINE Mask is_inside_at(const Rays<Grid>& rays, const Neighbours& found,
-                                 const EntriesAt& entries_at) const {
+    HWY_INLINE FloatMask is_inside_at(const Rays<Grid>& rays, const Neighbours& found,
+                                      const EntriesAt& entries_at) const {
         return hn::And(found.known, is_inside(intervals_of(rays, found, entries_at).number));
     }
 
     /// interpolated() of interpolation.hpp.
-    HWY_INLINE Floats interpolated(const Samples<Grid>& samples, const std::array<Floats, 4>& entries) const {
-        Floats sum = hn::Zero(kFloat);
+    HWY_INLINE FloatLanes interpolated(const Samples<Grid>& samples,
+                                       const std::array<FloatLanes, 4>& entries) const {
+        FloatLanes sum = hn::Zero(kFloat);
         for (std::size_t corner = 0; corner < 4; ++corner)
             sum = hn::Add(sum, hn::Mul(samples.weight[corner], entries[corner]));
         return sum;
@@ -379,69 +378,72 @@ class Kernel {
 
     /// nearest_end() of query.cpp.
     HWY_INLINE Ends nearest_ends(const Samples<Grid>& samples, const Intervals& intervals,
-                                 Floats d_length) const {
-        const Mask has_below = as_mask(hn::Gt(intervals.number, hn::Zero(kInt)));
-        const Mask has_above =
+                                 FloatLanes d_length) const {
+        const FloatMask has_below = as_mask(hn::Gt(intervals.number, hn::Zero(kInt)));
+        const FloatMask has_above =
             hn::Or(as_mask(hn::Lt(intervals.number, samples.entry_count)), is_inside(intervals.number));
-        const Mask below_is_nearer =
+        const FloatMask below_is_nearer =
             hn::Lt(hn::Sub(d_length, intervals.below), hn::Sub(intervals.above, d_length));
-        const Mask below = hn::And(has_below, hn::Or(none_of(has_above), below_is_nearer));
+        const FloatMask below = hn::And(has_below, hn::Or(none_of(has_above), below_is_nearer));
         return {hn::Or(has_below, has_above),
                 choose(below, hn::Sub(intervals.number, splat_int(1)), intervals.number),
                 choose(below, intervals.below, intervals.above)};
     }
 
     /// direction_of() of query.cpp.
-    static HWY_INLINE Vectors direction_of(const Vectors& along) {
-        const Floats l = length(along);
-        const Vectors z{hn::Zero(kFloat), hn::Zero(kFloat), splat(1)};
+    static HWY_INLINE PointLanes direction_of(const PointLanes& along) {
+        const FloatLanes l = length(along);
+        const PointLanes z{hn::Zero(kFloat), hn::Zero(kFloat), splat(1)};
         return choose(hn::Gt(l, hn::Zero(kFloat)), scaled(along, hn::Div(splat(1), l)), z);
     }
 
     /// surface_normal() of query.cpp.
-    HWY_INLINE Vectors surface_normals(const Samples<Grid>& samples, const std::array<Floats, 4>& entries,
-                                       const Vectors& e_r, const Ends& ends) const {
+    HWY_INLINE PointLanes surface_normals(const Samples<Grid>& samples,
+                                          const std::array<FloatLanes, 4>& entries, const PointLanes& e_r,
+                                          const Ends& ends) const {
         const typename Grid::Derivatives derivative = grid_.weight_derivatives(samples.cell);
-        const Floats value = interpolated(samples, entries);
-        Floats slope_u = hn::Zero(kFloat);
-        Floats slope_v = hn::Zero(kFloat);
+        const FloatLanes value = interpolated(samples, entries);
+        FloatLanes slope_u = hn::Zero(kFloat);
+        FloatLanes slope_v = hn::Zero(kFloat);
         for (std::size_t corner = 0; corner < 4; ++corner) {
-            const Floats excess = hn::IfThenElseZero(samples.usable[corner], hn::Sub(entries[corner], value));
+            const FloatLanes excess =
+                hn::IfThenElseZero(samples.usable[corner], hn::Sub(entries[corner], value));
             slope_u = hn::Add(slope_u, hn::Mul(derivative.along_u[corner], excess));
             slope_v = hn::Add(slope_v, hn::Mul(derivative.along_v[corner], excess));
         }
-        const Vectors gradient = grid_.surface_gradient(e_r, samples.cell, ends.distance, value,
-                                                        hn::Div(slope_u, samples.weight_sum),
-                                                        hn::Div(slope_v, samples.weight_sum));
-        const Floats steepness = length(gradient);
-        const Mask finite = hn::Lt(steepness, splat(std::numeric_limits<float>::infinity()));
-        const Vectors unit = choose(finite, scaled(gradient, hn::Div(splat(1), steepness)), e_r);
-        const Mask on_sphere = as_mask(hn::Eq(ends.k, samples.entry_count));
-        const Mask inward = hn::AndNot(on_sphere, none_of(is_inside(ends.k)));
+        const PointLanes gradient = grid_.surface_gradient(e_r, samples.cell, ends.distance, value,
+                                                           hn::Div(slope_u, samples.weight_sum),
+                                                           hn::Div(slope_v, samples.weight_sum));
+        const FloatLanes steepness = length(gradient);
+        const FloatMask finite = hn::Lt(steepness, splat(std::numeric_limits<float>::infinity()));
+        const PointLanes unit = choose(finite, scaled(gradient, hn::Div(splat(1), steepness)), e_r);
+        const FloatMask on_sphere = as_mask(hn::Eq(ends.k, samples.entry_count));
+        const FloatMask inward = hn::AndNot(on_sphere, none_of(is_inside(ends.k)));
         return grid_.from_grid(choose(inward, negated(unit), choose(on_sphere, e_r, unit)));
     }
 
     /// contact() of query.cpp, where the samples are known; elsewhere none.
     template <typename EntriesAt>
-    HWY_INLINE Contacts contacts_of(const Vectors& point, const Rays<Grid>& rays,
+    HWY_INLINE Contacts contacts_of(const PointLanes& point, const Rays<Grid>& rays,
                                     const Neighbours& neighbours, const EntriesAt& entries_at,
                                     float margin) const {
         const Samples<Grid>& samples = neighbours.samples;
         const Intervals intervals = intervals_of(rays, neighbours, entries_at);
-        const Floats zero = hn::Zero(kFloat);
+        const FloatLanes zero = hn::Zero(kFloat);
         const Ends ends = nearest_ends(samples, intervals, rays.length);
-        const Mask inside = hn::And(hn::Le(rays.length, splat(map_.radius)), is_inside(intervals.number));
-        const Floats distance = hn::Abs(hn::Sub(ends.distance, rays.length));
-        const Mask near = hn::Or(inside, hn::Le(distance, splat(margin)));
-        const Mask found = hn::And(hn::And(neighbours.known, ends.exist), near);
+        const FloatMask inside =
+            hn::And(hn::Le(rays.length, splat(map_.radius)), is_inside(intervals.number));
+        const FloatLanes distance = hn::Abs(hn::Sub(ends.distance, rays.length));
+        const FloatMask near = hn::Or(inside, hn::Le(distance, splat(margin)));
+        const FloatMask found = hn::And(hn::And(neighbours.known, ends.exist), near);
         if (hn::AllFalse(kFloat, found)) return {point, {zero, zero, zero}, zero, found};
 
-        const Vectors e_r = direction_of(rays.along);
-        const Vectors normal = surface_normals(samples, entries_at(ends.k), e_r, ends);
-        const Vectors offset = scaled(grid_.from_grid(e_r), ends.distance);
-        const Vectors end_point{hn::Add(splat(map_.centre.x), offset.x),
-                                hn::Add(splat(map_.centre.y), offset.y),
-                                hn::Add(splat(map_.centre.z), offset.z)};
+        const PointLanes e_r = direction_of(rays.along);
+        const PointLanes normal = surface_normals(samples, entries_at(ends.k), e_r, ends);
+        const PointLanes offset = scaled(grid_.from_grid(e_r), ends.distance);
+        const PointLanes end_point{hn::Add(splat(map_.centre.x), offset.x),
+                                   hn::Add(splat(map_.centre.y), offset.y),
+                                   hn::Add(splat(map_.centre.z), offset.z)};
         return {choose(found, end_point, point), choose(found, normal, {zero, zero, zero}),
                 hn::IfThenElseZero(found, choose(inside, distance, hn::Neg(distance))),
                 hn::And(found, inside)};
@@ -452,7 +454,7 @@ class Kernel {
                       offsetof(Contact, depth) == 24 && offsetof(Contact, face) == 28 &&
                       offsetof(Contact, inside) == 32 && offsetof(Contact, certain) == 33 &&
                       offsetof(Contact, feature) == 34);
-        const Floats no_face = hn::BitCast(kFloat, splat_int(Contact::kUnknownFace));
+        const FloatLanes no_face = hn::BitCast(kFloat, splat_int(Contact::kUnknownFace));
         HWY_ALIGN float head[4 * kLanes];
         HWY_ALIGN float body[4 * kLanes];
         hn::StoreInterleaved4(from.point.x, from.point.y, from.point.z, from.normal.x, kFloat, head);
@@ -474,7 +476,7 @@ class Kernel {
     Grid grid_;
     Entries entries_;
     std::int32_t direction_count_, entry_count_;
-    Mask centre_inside_;
+    FloatMask centre_inside_;
 };
 
 // ---- Batches
@@ -485,7 +487,7 @@ struct InsideAnswers {
     std::uint8_t* answers;
 
     template <typename Kernel>
-    HWY_INLINE Mask most(const Kernel& kernel, const Vec3f* points, std::size_t first) const {
+    HWY_INLINE FloatMask most(const Kernel& kernel, const Vec3f* points, std::size_t first) const {
         return kernel.contains_most(points, answers + first);
     }
     template <typename Kernel>
@@ -500,7 +502,7 @@ struct ContactAnswers {
     float margin;
 
     template <typename Kernel>
-    HWY_INLINE Mask most(const Kernel& kernel, const Vec3f* points, std::size_t first) const {
+    HWY_INLINE FloatMask most(const Kernel& kernel, const Vec3f* points, std::size_t first) const {
         return kernel.contacts_most(points, margin, answers + first);
     }
     template <typename Kernel>
@@ -514,11 +516,12 @@ class Leftovers {
   public:
     static constexpr std::size_t kMost = 256;
 
-    HWY_INLINE void add(Mask mask, std::size_t first) {
+    HWY_INLINE void add(FloatMask mask, std::size_t first) {
         if (hn::AllFalse(kFloat, mask)) return;
-        const Ints numbers = hn::Iota(kInt, static_cast<std::int32_t>(first));
-        hn::StoreU(hn::Compress(numbers, as_int_mask(mask)), kInt, numbers_ + count_);
-        count_ += hn::CountTrue(kFloat, mask);
+        const IntLanes numbers = hn::Iota(kInt, static_cast<std::int32_t>(first));
+        const Compressor compress(as_int_mask(mask));
+        hn::StoreU(compress(numbers), kInt, numbers_ + count_);
+        count_ += compress.count();
     }
     void add_one(std::size_t number) { numbers_[count_++] = static_cast<std::int32_t>(number); }
 

@@ -216,11 +216,14 @@ class BandWindings {
         constexpr Floats f;
         const std::int32_t* corner_of = &pair_corners_[first_pair];
         const std::int32_t* vertices = &map_.vertices.data()->x;
-        const auto rows = load_rows(Ints(), [=](std::size_t lane) HWY_ATTR {
-            return vertices + 3 * std::size_t{corners[static_cast<std::uint32_t>(corner_of[lane])]};
-        });
-        return {hn::Sub(hn::ConvertTo(f, rows.x), p.x), hn::Sub(hn::ConvertTo(f, rows.y), p.y),
-                hn::Sub(hn::ConvertTo(f, rows.z), p.z)};
+        // The vertex as the last three numbers of a row.
+        const auto [before, x, y, z] =
+            load_rows(Ints(), [=](std::size_t lane) HWY_ATTR {
+                const std::size_t vertex = corners[static_cast<std::uint32_t>(corner_of[lane])];
+                return hn::LoadU(hn::FixedTag<std::int32_t, 4>(), vertices + 3 * vertex - 1);
+            }).at;
+        return {hn::Sub(hn::ConvertTo(f, x), p.x), hn::Sub(hn::ConvertTo(f, y), p.y),
+                hn::Sub(hn::ConvertTo(f, z), p.z)};
     }
 
     /// Decides pairs by integers.
