@@ -2,6 +2,7 @@
 
 #include "baselines/superquadric_map/log_powers.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -9,17 +10,29 @@ namespace echinus::baselines {
 
 namespace {
 
-constexpr double kLeast = Superquadric::kLeastExponent, kLargest = Superquadric::kLargestExponent;
+/// A number between two bounds as a logit, which has none.
+struct Bounded {
+    double least, largest;
 
-double exponent_of(double logit) {
-    return kLeast + (kLargest - kLeast) / (1 + std::exp(-logit));
+    double from(double logit) const { return least + (largest - least) / (1 + std::exp(-logit)); }
+    /// @param value  pulled inwards where it is at a bound or beyond, whose logit is infinite
+    double logit(double value) const {
+        const double margin = 1e-3 * (largest - least);
+        const double inner = std::clamp(value, least + margin, largest - margin);
+        return std::log((inner - least) / (largest - inner));
+    }
+    /// d value / d logit
+    double slope(double value) const { return (value - least) * (largest - value) / (largest - least); }
+};
+constexpr Bounded kExponent{Superquadric::kLeastExponent, Superquadric::kLargestExponent};
+const Bounded kLogSize{std::log(FitParameters::kLeastSize), std::log(FitParameters::kLargestSize)};
+
+double size_from(double logit) {
+    return std::exp(kLogSize.from(logit));
 }
-double logit_of(double exponent) {
-    return std::log((exponent - kLeast) / (kLargest - exponent));
-}
-/// d exponent / d logit
-double exponent_slope(double exponent) {
-    return (exponent - kLeast) * (kLargest - exponent) / (kLargest - kLeast);
+/// d ln size / d logit
+double log_size_slope(double size) {
+    return kLogSize.slope(std::log(size));
 }
 
 /// ln F's derivatives. x d/dx is -a d/da, since coordinates only occur divided by their size.
@@ -70,19 +83,19 @@ double ratio_or_zero(double numerator, double denominator) {
 } // namespace
 
 Eigen::VectorXd FitParameters::of(const Superquadric& shape) {
-    const auto log_size = [](double size) { return std::log(std::max(size - kLeastSize, kLeastSize)); };
+    const auto size = [](double value) { return kLogSize.logit(std::log(std::max(value, kLeastSize))); };
     Eigen::VectorXd p(kCount);
-    p << log_size(shape.sizes.x), log_size(shape.sizes.y), log_size(shape.sizes.z),
-        logit_of(shape.eta_exponent), logit_of(shape.omega_exponent), shape.centre.x, shape.centre.y,
-        shape.centre.z, shape.rotation.w, shape.rotation.x, shape.rotation.y, shape.rotation.z;
+    p << size(shape.sizes.x), size(shape.sizes.y), size(shape.sizes.z), kExponent.logit(shape.eta_exponent),
+        kExponent.logit(shape.omega_exponent), shape.centre.x, shape.centre.y, shape.centre.z,
+        shape.rotation.w, shape.rotation.x, shape.rotation.y, shape.rotation.z;
     return p;
 }
 
 Superquadric FitParameters::shape_of(const Eigen::VectorXd& p) {
     Superquadric shape;
-    shape.sizes = {kLeastSize + std::exp(p[0]), kLeastSize + std::exp(p[1]), kLeastSize + std::exp(p[2])};
-    shape.eta_exponent = exponent_of(p[kEtaExponent]);
-    shape.omega_exponent = exponent_of(p[kOmegaExponent]);
+    shape.sizes = {size_from(p[0]), size_from(p[1]), size_from(p[2])};
+    shape.eta_exponent = kExponent.from(p[kEtaExponent]);
+    shape.omega_exponent = kExponent.from(p[kOmegaExponent]);
     shape.centre = {p[kCentre], p[kCentre + 1], p[kCentre + 2]};
     shape.rotation =
         Rotation{p[kRotation], p[kRotation + 1], p[kRotation + 2], p[kRotation + 3]}.normalised();
@@ -117,12 +130,12 @@ int FitResiduals::df(const InputType& parameters, JacobianType& jacobian) const 
         const double factor = std::exp(-e1 / 2 * powers.whole);
         const double per_log_f = r * factor * e1 / 2; // d residual / d ln F
 
-        row[0] = -per_log_f * log_f.scaled.x / a.x * (a.x - FitParameters::kLeastSize);
-        row[1] = -per_log_f * log_f.scaled.y / a.y * (a.y - FitParameters::kLeastSize);
-        row[2] = -per_log_f * log_f.scaled.z / a.z * (a.z - FitParameters::kLeastSize);
+        row[0] = -per_log_f * log_f.scaled.x * log_size_slope(a.x);
+        row[1] = -per_log_f * log_f.scaled.y * log_size_slope(a.y);
+        row[2] = -per_log_f * log_f.scaled.z * log_size_slope(a.z);
         row[FitParameters::kEtaExponent] =
-            (per_log_f * log_f.eta_exponent + r * factor * powers.whole / 2) * exponent_slope(e1);
-        row[FitParameters::kOmegaExponent] = per_log_f * log_f.omega_exponent * exponent_slope(e2);
+            (per_log_f * log_f.eta_exponent + r * factor * powers.whole / 2) * kExponent.slope(e1);
+        row[FitParameters::kOmegaExponent] = per_log_f * log_f.omega_exponent * kExponent.slope(e2);
 
         const Vec3d by_place = place * ((1 - factor) / r) + Vec3d{ratio_or_zero(log_f.scaled.x, place.x),
                                                                   ratio_or_zero(log_f.scaled.y, place.y),

@@ -13,12 +13,13 @@
 
 namespace echinus::baselines {
 
-/// A superquadric as twelve numbers without bounds: logarithms of the sizes above their floor, logits of the
+/// A superquadric as twelve numbers without bounds: logits of the sizes' logarithms and of the
 /// exponents between their bounds, centre, quaternion (w, x, y, z) of any length but zero.
 struct FitParameters {
     enum Index : Eigen::Index { kSize = 0, kEtaExponent = 3, kOmegaExponent = 4, kCentre = 5, kRotation = 8 };
     static constexpr Eigen::Index kCount = 12;
-    static constexpr double kLeastSize = 1e-3; ///< in units of the points' spread, which is 1 in a fit
+    /// In units of the points' largest distance from their mean.
+    static constexpr double kLeastSize = 1e-3, kLargestSize = 2;
 
     static Eigen::VectorXd of(const Superquadric& shape);
     static Superquadric shape_of(const Eigen::VectorXd& parameters);
