@@ -1,3 +1,4 @@
+#include "baselines/common/closed_mesh.hpp"
 #include "baselines/superquadric_map/decompose.hpp"
 #include "baselines/superquadric_map/fit.hpp"
 #include "baselines/superquadric_map/layout.hpp"
@@ -41,22 +42,14 @@ void require_usable(const SuperquadricMapOptions& options) {
            "concavity is " + std::to_string(options.concavity) + ", outside (0, 1]");
 }
 
-/// Refuses what no segments can be made of. @return the bounding radius
-double require_solid(const TriangleMesh& mesh) {
-    const MeshReport report = inspect(mesh);
-    const double radius = snap_to_lattice(mesh).radius; // throws for one that is too small or too large
-    if (!report.closed)
-        throw Error(ErrorCode::InvalidMesh,
-                    "the mesh is open: " + std::to_string(report.border_edges.count) +
-                        " edges have one face; a superquadric map needs a closed mesh");
+bool encloses_volume(const MeshReport& report) {
     constexpr double kFlat = 1e-9; // far below any solid, far above the rounding of the sum
-    if (std::fabs(report.signed_volume) <= kFlat * radius * radius * radius)
-        throw Error(ErrorCode::InvalidMesh, "the mesh is flat: it encloses no volume");
-    return radius;
+    const double radius = report.bounding_sphere.radius;
+    return std::fabs(report.signed_volume) > kFlat * radius * radius * radius;
 }
 
-TriangleMesh wound_outward(TriangleMesh mesh) {
-    if (inspect(mesh).signed_volume < 0)
+TriangleMesh wound_outward(TriangleMesh mesh, const MeshReport& report) {
+    if (report.signed_volume < 0)
         for (Triangle& face : mesh.faces) std::swap(face[1], face[2]);
     return mesh;
 }
@@ -214,17 +207,21 @@ void store(const BuiltSegment& segment, EntryFormat format, SegmentArrays& map) 
 SuperquadricMap SuperquadricMap::build(const TriangleMesh& mesh, const SuperquadricMapOptions& options,
                                        const Progress& progress) {
     require_usable(options);
-    require_valid(mesh);
-    const TriangleMesh solid = wound_outward(weld(mesh)); // faces keep their numbers
-    const double radius = require_solid(solid);
+    require_closed(mesh, "a superquadric map");
+    const TriangleMesh welded = weld(mesh); // faces keep their numbers
+    const MeshReport inspected = inspect(welded);
+    const TriangleMesh solid = wound_outward(welded, inspected);
+    Decomposition decomposition;
+    if (encloses_volume(inspected))
+        decomposition = decompose(
+            solid, {options.segment_count, options.concavity, options.decomposition_face_limit}, progress);
 
-    const Decomposition decomposition = decompose(
-        solid, {options.segment_count, options.concavity, options.decomposition_face_limit}, progress);
     auto map = std::make_shared<SegmentArrays>();
     map->grid = grid_for(options, decomposition.segment_count);
     map->sampling = options.sampling;
     auto report = std::make_shared<SuperquadricReport>();
     report->segment_of_face = decomposition.segment_of_face;
+    const double radius = inspected.bounding_sphere.radius;
     for (const BuiltSegment& segment :
          build_segments(make_segments(solid, decomposition), map->grid, options, radius, progress)) {
         store(segment, options.sample_format, *map);

@@ -87,8 +87,9 @@ void measure_coverage(const TriangleMesh& mesh, const SegmentArrays& map, double
         uncovered += coverage.is_covered ? 0 : 1;
         buried += coverage.is_buried ? 1 : 0;
     }
-    report.uncovered_area_share = static_cast<double>(uncovered) / static_cast<double>(samples.points.size());
-    report.buried_area_share = static_cast<double>(buried) / static_cast<double>(samples.points.size());
+    const auto count = static_cast<double>(std::max<std::size_t>(samples.points.size(), 1));
+    report.uncovered_area_share = static_cast<double>(uncovered) / count;
+    report.buried_area_share = static_cast<double>(buried) / count;
     for (std::uint32_t face = 0; face < mesh.faces.size(); ++face)
         if (!coverage_of(map, middle_of(mesh, mesh.faces[face]), tolerance).is_covered)
             report.uncovered_faces.push_back(face);

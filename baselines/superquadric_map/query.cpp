@@ -27,8 +27,7 @@ Contact deepest_contact(const SegmentArrays& map, const Vec3f& point_local, floa
         deepest = answer;
         its_segment = segment;
     }
-    Contact contact;
-    contact.point = point_local;
+    Contact contact = no_contact(point_local);
     if (!deepest.is_known || !(deepest.depth >= -margin)) return contact;
     const SegmentFrame& frame = map.frames[its_segment];
     const Vec3f ray = deepest.at.distance > 0 ? deepest.place * (1 / deepest.at.distance) : Vec3f{1, 0, 0};
@@ -64,22 +63,18 @@ bool SuperquadricMap::contains(const Vec3f& point_local) const noexcept {
 }
 
 Contact SuperquadricMap::contact(const Vec3f& point_local, float margin) const noexcept {
-    if (is_finite(point_local)) return deepest_contact(*arrays_, point_local, usable_margin(margin));
-    Contact none;
-    none.point = point_local;
-    return none;
+    if (!is_finite(point_local)) return no_contact(point_local);
+    return deepest_contact(*arrays_, point_local, usable_margin(margin));
 }
 
-void SuperquadricMap::contains_batch(std::span<const Vec3f> points_local,
-                                     std::span<std::uint8_t> inside) const noexcept {
-    assert(points_local.size() == inside.size());
-    for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = contains(points_local[i]) ? 1 : 0;
+void SuperquadricMap::contains_batch(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const {
+    assert(points.size() == inside.size());
+    for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = contains(points[i]) ? 1 : 0;
 }
 
-void SuperquadricMap::contacts_batch(std::span<const Vec3f> points_local, float margin,
-                                     std::span<Contact> contacts) const noexcept {
-    assert(points_local.size() == contacts.size());
-    for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = contact(points_local[i], margin);
+void SuperquadricMap::contacts_batch(std::span<const Vec3f> points, std::span<Contact> contacts) const {
+    assert(points.size() == contacts.size());
+    for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = contact(points[i]);
 }
 
 } // namespace echinus::baselines

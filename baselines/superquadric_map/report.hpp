@@ -24,7 +24,7 @@ struct SegmentReport {
 
 struct SuperquadricReport {
     std::vector<SegmentReport> segments;
-    std::vector<std::uint32_t> segment_of_face; ///< [face_count] as in the mesh
+    std::vector<std::uint32_t> segment_of_face; ///< [face_count] as in the mesh; empty without segments
 
     /// A point of the surface is covered when the surface of some segment's map passes within the tolerance
     /// of it, to first order: radial distance times the cosine between ray and normal.

@@ -135,6 +135,7 @@ Vec3d barycentric(std::size_t i) {
 
 std::vector<Segment> make_segments(const TriangleMesh& mesh, const Decomposition& decomposition) {
     std::vector<Segment> segments(decomposition.segment_count);
+    if (segments.empty()) return segments;
     std::vector<std::vector<Triangle>> faces(segments.size());
     for (std::uint32_t face = 0; face < mesh.faces.size(); ++face) {
         const std::uint32_t segment = decomposition.segment_of_face[face];

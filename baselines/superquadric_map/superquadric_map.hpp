@@ -1,5 +1,6 @@
 #pragma once
 
+#include "baselines/baseline.hpp"
 #include "baselines/superquadric_map/progress.hpp"
 #include "baselines/superquadric_map/report.hpp"
 
@@ -12,6 +13,8 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 
 /// The map that the distance map grew out of: SQ-Map of Moustakas, Tzovaras and Strintzis, "SQ-Map: efficient
 /// layered collision detection and haptic rendering", IEEE TVCG 13(1), 2007. The model is cut into nearly
@@ -83,23 +86,25 @@ struct SegmentArrays;
 
 /// Immutable; copies share the arrays. Any number of threads may query one map. Points are in the frame and
 /// unit of the mesh.
-class SuperquadricMap {
+class SuperquadricMap final : public Baseline {
   public:
     /// Time: HACD's (decompose.hpp), 0.1 s a segment for its fit, and the rays. The same mesh and options
     /// give the same map on one machine; powers and fits are the C library's and the compiler's, so others
     /// may differ in last digits.
-    /// @param mesh  closed; which way it is wound does not matter
-    /// @throws Error InvalidMesh as inspect() does, for an open mesh, for one that encloses no volume, when
-    /// the bounding radius lies outside [1e-15, 1e15], or as decompose() does; InvalidOptions when an option
-    /// lies outside the bounds above or the coarsest grid exceeds the budget; and what `progress` throws,
-    /// when HACD's memory is not freed
+    /// @param mesh  closed; which way it is wound does not matter. One that encloses no volume gives a map
+    /// without segments, for which everything is outside
+    /// @throws Error InvalidMesh as inspect() does, for an open mesh, when the bounding radius lies outside
+    /// [1e-15, 1e15], or as decompose() does; InvalidOptions when an option lies outside the bounds above or
+    /// the coarsest grid exceeds the budget; and what `progress` throws, when HACD's memory is not freed
     static SuperquadricMap build(const TriangleMesh& mesh, const SuperquadricMapOptions& options = {},
                                  const Progress& progress = {});
 
     /// All that a query reads: for each segment 76 bytes of pose, sizes and exponents, 8 bytes for each row
     /// and each column of its grid (sines and cosines to their powers, for normals), and 4 bytes a sample, 2
     /// if Unorm16.
-    std::size_t byte_count() const;
+    std::size_t byte_count() const override;
+    std::string name() const override { return "superquadric"; }
+    std::string_view counted() const override { return "frames, powers and samples of all segments"; }
 
     std::size_t segment_count() const;
     std::uint32_t omega_count() const;
@@ -113,12 +118,8 @@ class SuperquadricMap {
     /// of the map's surface there; the face is unknown. @param margin  not negative, NaN counts as 0
     Contact contact(const Vec3f& point_local, float margin = 0) const noexcept;
 
-    /// contains() of many points. @param inside  [n] out: 1 or 0. @pre points_local.size() == inside.size()
-    void contains_batch(std::span<const Vec3f> points_local, std::span<std::uint8_t> inside) const noexcept;
-
-    /// contact() of many points. @pre points_local.size() == contacts.size()
-    void contacts_batch(std::span<const Vec3f> points_local, float margin,
-                        std::span<Contact> contacts) const noexcept;
+    void contains_batch(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const override;
+    void contacts_batch(std::span<const Vec3f> points, std::span<Contact> contacts) const override;
 
     /// What the map holds of the surface, and how well its superquadrics fit.
     const SuperquadricReport& report() const { return *report_; }

@@ -14,6 +14,9 @@
 #ifdef ECHINUS_HAS_BULLET_MESH
 #include "baselines/bullet_mesh/bullet_mesh.hpp"
 #endif
+#ifdef ECHINUS_HAS_SUPERQUADRIC_MAP
+#include "baselines/superquadric_map/superquadric_map.hpp"
+#endif
 #include "support/random_points.hpp"
 
 #include <gtest/gtest.h>
@@ -65,6 +68,15 @@ std::vector<System> all_systems() {
 #endif
 #ifdef ECHINUS_HAS_BULLET_MESH
         {"bullet", 0.01, [](const TriangleMesh& mesh) { return held(BulletMesh::build(mesh, 2)); }, false},
+#endif
+#ifdef ECHINUS_HAS_SUPERQUADRIC_MAP
+        {"superquadric", 0.02,
+         [](const TriangleMesh& mesh) {
+             SuperquadricMapOptions options;
+             options.omega_count = options.eta_count = 100;
+             options.decomposition_face_limit = 500; // for the sake of time
+             return held(SuperquadricMap::build(mesh, options));
+         }},
 #endif
     };
 }

@@ -1,3 +1,4 @@
+#include "bad_meshes.hpp"
 #include "baselines/superquadric_map/superquadric_map.hpp"
 #include "support/expect_error.hpp"
 #include "support/mesh_assembly.hpp"
@@ -245,13 +246,13 @@ TEST(SuperquadricMap, AnswersBatchesLikeSingleParticles) {
     std::vector<std::uint8_t> inside(points.size(), 2);
     std::vector<Contact> contacts(points.size());
     map.contains_batch(points, inside);
-    map.contacts_batch(points, 0.05F, contacts);
+    map.contacts_batch(points, contacts);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Contact contact = map.contact(points[i], 0.05F);
         ASSERT_EQ(inside[i], map.contains(points[i]) ? 1 : 0);
         ASSERT_EQ(contact.inside, inside[i] == 1);
-        ASSERT_EQ(contacts[i].depth, contact.depth);
-        ASSERT_EQ(contacts[i].normal, contact.normal);
+        ASSERT_EQ(contacts[i].found(), contact.inside);
+        ASSERT_EQ(contacts[i].depth, contact.inside ? contact.depth : 0);
         if (!contact.found()) {
             ASSERT_EQ(contact.point, points[i]);
             ASSERT_EQ(contact.depth, 0);
@@ -310,32 +311,21 @@ TEST(SuperquadricMap, TellsOfItsProgressAndStopsWhenTheListenerThrows) {
                  std::runtime_error);
 }
 
-TEST(SuperquadricMap, RefusesWhatIsNoSolid) {
-    const auto refuses = [](const char* words, const TriangleMesh& mesh) {
-        test::expect_error(ErrorCode::InvalidMesh, words, [&] { (void)SuperquadricMap::build(mesh); });
-    };
-    const TriangleMesh box = make_box({1, 1, 1}, 2);
-    refuses("no faces", {});
-    TriangleMesh bad = box;
-    bad.vertices[bad.faces[3][0]].y = kNan;
-    refuses("not finite", bad);
-    bad = box;
-    bad.faces[5][1] = 1000;
-    refuses("vertex 1000", bad);
-    bad = box;
-    bad.faces.pop_back();
-    refuses("open", bad);
-    refuses("open", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
-    refuses("flat", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 1}}});
-    bad = box;
-    for (Vec3f& p : bad.vertices) p.z = 0;
-    refuses("flat", bad);
-    bad = box;
-    for (Vec3f& p : bad.vertices) p *= 1e20F;
-    refuses("radius", bad);
-    bad = box;
-    for (Vec3f& p : bad.vertices) p *= 1e-20F;
-    refuses("radius", bad);
+TEST(SuperquadricMap, RefusesWhatItCannotBeBuiltAround) {
+    test::expect_bad_meshes_are_refused([](const TriangleMesh& mesh) { (void)SuperquadricMap::build(mesh); });
+}
+
+TEST(SuperquadricMap, HasNoSegmentsWhereThereIsNoVolume) {
+    TriangleMesh squashed = make_box({1, 1, 1}, 2);
+    for (Vec3f& p : squashed.vertices) p.z = 0;
+    for (const TriangleMesh& mesh : {test::flat_mesh(), squashed}) {
+        const SuperquadricMap map = SuperquadricMap::build(mesh);
+        EXPECT_EQ(map.segment_count(), 0U);
+        EXPECT_FALSE(map.contains({0.1F, 0.1F, 0}));
+        EXPECT_FALSE(map.contact({0.1F, 0.1F, 0}, 10).found());
+        EXPECT_EQ(map.report().uncovered_area_share, 1);
+        EXPECT_EQ(map.report().uncovered_faces.size(), mesh.faces.size());
+    }
 }
 
 TEST(SuperquadricMap, RefusesOptionsOutOfBounds) {
