@@ -31,8 +31,8 @@ struct DecompositionOptions {
 /// are on hulls: 0.3, 0.9 and 2.6 s for spheres of 500, 1000 and 2000 faces. It cannot be stopped between its
 /// reports. So a mesh of more than `face_limit` faces is simplified first, and each face of the original
 /// belongs to the segment of the face it became or, where it vanished, of the nearest one from edge to edge.
-/// Segments of a simplified mesh are less good: of the horse in 17 segments, 3 times as many answers are
-/// wrong with 4000 faces as with all 6000.
+/// Segments of a simplified mesh are less good: of the horse in 17 segments, 2.4 % of the particles near the
+/// surface are told wrongly with 4000 faces, 1.7 % with all 6000.
 ///
 /// HACD cannot reach a count below that of the parts of a mesh that are farther than 1.5 % of the diagonal
 /// from each other: then there is a segment for each. Nor can there be more segments than faces.

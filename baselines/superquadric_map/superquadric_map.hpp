@@ -27,16 +27,16 @@
 /// second. What they leave open:
 ///   - segments come from HACD (decompose.hpp), where SQ-Map goes by visual salience and curvature;
 ///   - a segment's convex hull closes it where it borders on others (segments.hpp): a ray ends at the
-///   segment's
-///     outermost face or, where it meets none, at the hull. Caps over the border, tried first, left gaps
-///     between segments: 10 times as many wrong answers on a torus and a horse;
+///     segment's outermost face or, where it meets none, at the hull. Caps over the border, tried first, left
+///     gaps between segments: 10 times as many wrong answers in the bounding sphere of a torus and of a
+///     horse;
 ///   - the superquadric is the one nearest to the hull (fit.hpp), whose centre then lies within, enlarged
 ///     about that centre until it holds the segment;
 ///   - distances are radial, along rays from the superquadric's centre, and rays are cast by exact integers,
 ///     as for the other maps; samples lie half a step off the poles;
 ///   - a ray that misses the hull too, as it may where that is flat, leaves its sample empty. A particle
-///   whose
-///     nearest sample is empty is not in the segment; other empty samples do not enter the interpolation;
+///     whose nearest sample is empty is not in the segment; other empty samples do not enter the
+///     interpolation;
 ///   - of several segments, the one that the particle is deepest in answers.
 ///
 /// Wrong by sampling, by one distance a ray (all from the centre to the outermost face counts as solid), and
