@@ -138,28 +138,37 @@ class Kernel {
     }
 
     HWY_INLINE Corners corners_of(const Vectors& p) const {
-        Corners c;
-        c.in_box = hn::And(hn::And(is_between(p.x, low_.x, high_.x), is_between(p.y, low_.y, high_.y)),
-                           is_between(p.z, low_.z, high_.z));
-        const Ints i = node_below(c.in_box, p.x, low_.x, last_.x, c.x);
-        const Ints j = node_below(c.in_box, p.y, low_.y, last_.y, c.y);
-        const Ints k = node_below(c.in_box, p.z, low_.z, last_.z, c.z);
-        const Ints first =
-            hn::Add(hn::Add(hn::Mul(k, hn::Set(kInt, slice_)), hn::Mul(j, hn::Set(kInt, row_))), i);
-        c.at00 = samples_(first, 0);
-        c.at10 = samples_(first, row_);
-        c.at01 = samples_(first, slice_);
-        c.at11 = samples_(first, slice_ + row_);
-        return c;
+        const Mask in_box =
+            hn::And(hn::And(is_between(p.x, low_.x, high_.x), is_between(p.y, low_.y, high_.y)),
+                    is_between(p.z, low_.z, high_.z));
+        const NodeBelow i = node_below(in_box, p.x, low_.x, last_.x);
+        const NodeBelow j = node_below(in_box, p.y, low_.y, last_.y);
+        const NodeBelow k = node_below(in_box, p.z, low_.z, last_.z);
+        const Ints row = hn::Mul(j.number, hn::Set(kInt, row_)),
+                   slice = hn::Mul(k.number, hn::Set(kInt, slice_));
+        const Ints first = hn::Add(hn::Add(slice, row), i.number);
+        return {samples_(first, 0),
+                samples_(first, row_),
+                samples_(first, slice_),
+                samples_(first, slice_ + row_),
+                i.in_cell,
+                j.in_cell,
+                k.in_cell,
+                in_box};
     }
 
+    /// Along one axis.
+    struct NodeBelow {
+        Ints number;
+        Floats in_cell; ///< from it on, 0 to 1
+    };
+
     /// Beyond the box: the first node, whose samples exist.
-    HWY_INLINE Ints node_below(Mask in_box, Floats p, float low, float last, Floats& in_cell) const {
+    HWY_INLINE NodeBelow node_below(Mask in_box, Floats p, float low, float last) const {
         const Floats from_low = hn::Mul(hn::Sub(p, splat(low)), splat(nodes_per_unit_));
         const Floats coordinate = hn::IfThenElseZero(in_box, hn::Min(from_low, splat(last)));
-        const Ints whole = hn::ConvertTo(kInt, hn::Min(coordinate, splat(last - 1)));
-        in_cell = hn::Sub(coordinate, hn::ConvertTo(kFloat, whole));
-        return whole;
+        const Ints number = hn::ConvertTo(kInt, hn::Min(coordinate, splat(last - 1)));
+        return {number, hn::Sub(coordinate, hn::ConvertTo(kFloat, number))};
     }
 
     // Copies, since for all the compiler knows an answer may be written where the field lies.
