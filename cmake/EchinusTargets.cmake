@@ -44,3 +44,8 @@ function(echinus_add_library name)
   target_link_libraries(echinus_${name} PRIVATE $<BUILD_INTERFACE:echinus_options>)
   set_property(GLOBAL APPEND PROPERTY ECHINUS_LIBRARIES echinus_${name})
 endfunction()
+
+# For all who compile kernels. SSSE3 without SSE4, and what AVX3_DL adds to AVX-512, would be compiled for nobody.
+# Vectors of SVE, whose length is not known, cannot be members of anything; Arm processors that have it have NEON, too.
+set(ECHINUS_HIGHWAY_TARGETS
+  "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")

@@ -14,8 +14,10 @@ Ways our_ways(std::size_t point_count, Batch batch, Query query) {
     for (const std::string_view set : echinus::available_instruction_sets()) {
         ways.push_back(
             way_of<Answer>("batch " + std::string(set), point_count, [=](auto points, auto answers) {
+                const std::string_view before = echinus::instruction_set(); // rivals choose like ours
                 echinus::use_instruction_set(set);
                 batch(points, answers);
+                echinus::use_instruction_set(before);
             }));
         ways.back().as_whole = true;
     }

@@ -169,7 +169,7 @@ Contact contact(const DistanceMapView& map, Vec3f point_local, float margin = 0)
 /// faster.
 /// @param points_local  [n]
 /// @param inside        [n] out: 1 inside, 0 outside. Does not overlap points_local.
-/// @param thread_count  0: all cores. For 30 000 points and more; the answers do not depend on it
+/// @param thread_count  0: all cores. From 32 768 points on; the answers do not depend on it
 /// @pre points_local.size() == inside.size()
 void contains_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_local,
                     std::span<std::uint8_t> inside, unsigned thread_count = 1) noexcept;

@@ -67,7 +67,9 @@ class BandSearch {
     static constexpr float kSurelyOnLattice = static_cast<float>(kLatticeExtent) - 1;
     static constexpr float kSurelyBeyondLattice = static_cast<float>(kLatticeExtent) + 2;
     /// An L1 norm that no place in the bounding sphere has.
-    static constexpr float kBeyondEverything = 1.75F * static_cast<float>(kLatticeExtent);
+    static constexpr float kBeyondSphere = 1.75F * static_cast<float>(kLatticeExtent);
+    /// One that no band reaches to, whatever its 16 bits say.
+    static constexpr float kBeyondBands = 2.0F * (UINT16_MAX + 1) * ExactMapView::kBandUnit;
     template <typename T>
     using Column = std::array<T, BandGroup::kCapacity>;
 
@@ -86,16 +88,15 @@ class BandSearch {
     void locate(std::size_t count, const Load& load) {
         constexpr Floats f;
         constexpr Ints i;
-        const FloatLanes largest = hn::Set(f, kBeyondEverything);
         for (std::size_t slot = 0; slot < count; slot += hn::Lanes(f)) {
             const CellLanes at = locate_(load(slot));
             const FloatMask on_lattice = hn::Lt(at.farthest, hn::Set(f, kSurelyOnLattice));
             const FloatMask located = hn::And(at.sure, on_lattice);
-            hn::Store(hn::IfThenElse(located, at.l1, largest), f, &l1_[slot]);
+            hn::Store(hn::IfThenElse(located, at.l1, hn::Set(f, kBeyondBands)), f, &l1_[slot]);
             hn::Store(hn::IfThenElseZero(hn::RebindMask(i, located), at.cell), i, &cells_[slot]);
             if (is_open_) continue; // then who is not located counts as beyond all bands
-            const FloatMask far =
-                hn::Or(hn::Ge(at.l1, largest), hn::Gt(at.farthest, hn::Set(f, kSurelyBeyondLattice)));
+            const FloatMask far = hn::Or(hn::Ge(at.l1, hn::Set(f, kBeyondSphere)),
+                                         hn::Gt(at.farthest, hn::Set(f, kSurelyBeyondLattice)));
             leave_unsure(slots_from(slot), hn::RebindMask(i, hn::Not(hn::Or(located, far))));
         }
     }

@@ -26,9 +26,9 @@ struct CellLanes {
     static constexpr float kL1Error = 2;
 };
 
-/// LatticeFrame::to_lattice() and OctahedralCells::locate(), but for rounding: the frame's centre is a float,
-/// so that a coordinate is rounded twice, by 2^-24 of at most 2^20 each; together 1/8 of a step. Snapping
-/// moves it by another 1/2.
+/// LatticeFrame::to_lattice() and OctahedralCells::locate(), but for rounding: a difference, the inverse of a
+/// step and their product are rounded, by 2^-24 of at most 2^19 each; together less than 1/8 of a step.
+/// Snapping moves it by another 1/2.
 class LocateLanes {
   public:
     LocateLanes(const Vec3f& centre, const LatticeFrame& frame, std::uint32_t divisions)

@@ -24,10 +24,11 @@ struct CrossingLanes {
 /// on the side that the sign of p . (a x b) tells, and p lies on the side of the plane that the sign of
 /// a . (b x c) tells; added to the sum of the former, that is the volume as seen from the origin.
 ///
-/// Corners are exact here: differences of whole numbers below 2^20. With m^2 the largest of |a|^2, |b|^2,
+/// Corners are exact here: differences of whole numbers up to 2^19. With m^2 the largest of |a|^2, |b|^2,
 /// |c|^2 and u = 2^-24, each component of a x b is off by at most 4 u m^2, and its product with a vector v by
-/// at most 10 u |v| m^2 in the L1 norm, which is below 3 * 2^20 for p and 3 * 2^21 for a: less than 4 m^2 for
-/// either. So three edges and the volume: less than 11 m^2, roundings of the sum included.
+/// at most 10 u |v| m^2 in the L1 norm, which is at most 3 * 2^19 for p and 3 * 2^20 for a: less than m^2 and
+/// 2 m^2. So three edges and the volume: less than 5 m^2, and a little for their sum. Three times as much is
+/// allowed for.
 /// @param before  with its sign bit set, crossings between the origin and p are wanted; else those from p on
 HWY_INLINE CrossingLanes crossings_of(const PointLanes& a, const PointLanes& b, const PointLanes& c,
                                       const PointLanes& p, IntLanes before) {

@@ -20,6 +20,16 @@
 HWY_BEFORE_NAMESPACE();
 namespace echinus::HWY_NAMESPACE {
 
+namespace {
+
+std::uint32_t nearest_by_reference(const ExactMapView& map, const Vec3d& stretch,
+                                   const NearestSearch& search) {
+    const auto nearest = nearest_point(map, search.place, stretch, search.farthest);
+    return nearest ? nearest->face : kNoFace;
+}
+
+} // namespace
+
 #if HWY_TARGET != HWY_SCALAR
 
 namespace {
@@ -91,7 +101,8 @@ class NearestFaceFinder {
         const bool within_range = std::all_of(searches.begin(), searches.end(), is_within_range);
         if (within_range) start(searches);
         if (!within_range || !search()) {
-            for (std::size_t i = 0; i < searches.size(); ++i) faces[i] = by_reference(searches[i]);
+            for (std::size_t i = 0; i < searches.size(); ++i)
+                faces[i] = nearest_by_reference(map_, stretch_, searches[i]);
             return;
         }
         choose(searches, faces);
@@ -115,11 +126,6 @@ class NearestFaceFinder {
         return {within(place.x), within(place.y), within(place.z)};
     }
     static constexpr float kRoundedUp = 1 + 0x1p-20F;
-
-    std::uint32_t by_reference(const NearestSearch& search) const {
-        const auto nearest = nearest_point(map_, search.place, stretch_, search.farthest);
-        return nearest ? nearest->face : kNoFace;
-    }
 
     void start(std::span<const NearestSearch> searches) {
         constexpr Floats f;
@@ -340,6 +346,13 @@ class NearestFaceFinder {
 void find_nearest_faces(const ExactMapView& map, const Vec3d& stretch,
                         std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) {
     if (searches.empty()) return;
+    // Flatter, and products of lengths leave the range of single precision.
+    constexpr double kFlattest = 1e-6;
+    if (std::min({std::fabs(stretch.x), std::fabs(stretch.y), std::fabs(stretch.z)}) < kFlattest) {
+        for (std::size_t i = 0; i < searches.size(); ++i)
+            faces[i] = nearest_by_reference(map, stretch, searches[i]);
+        return;
+    }
     NearestFaceFinder finder(map, stretch, searches);
     const std::size_t lanes = hn::Lanes(Floats());
     for (std::size_t begin = 0; begin < searches.size(); begin += lanes) {
@@ -352,10 +365,8 @@ void find_nearest_faces(const ExactMapView& map, const Vec3d& stretch,
 
 void find_nearest_faces(const ExactMapView& map, const Vec3d& stretch,
                         std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) {
-    for (std::size_t i = 0; i < searches.size(); ++i) {
-        const auto nearest = nearest_point(map, searches[i].place, stretch, searches[i].farthest);
-        faces[i] = nearest ? nearest->face : kNoFace;
-    }
+    for (std::size_t i = 0; i < searches.size(); ++i)
+        faces[i] = nearest_by_reference(map, stretch, searches[i]);
 }
 
 #endif

@@ -29,14 +29,30 @@ namespace {
 
 class SideFinder {
   public:
-    SideFinder(const ExactMapView& map, const StridedSpan<const Vec3f>& points, std::span<Side> sides)
-        : map_(map), points_(points), sides_(sides) {}
+    explicit SideFinder(const ExactMapView& map) : map_(map) {}
 
-    void run() {
-        const std::size_t lanes = hn::Lanes(Floats());
-        const std::size_t whole = sides_.size() / lanes * lanes;
-        for (begin_ = 0; begin_ < whole; begin_ += BandGroup::kCapacity) {
-            const std::size_t count = std::min(BandGroup::kCapacity, whole - begin_);
+    /// The particles of any batch: the last of them that fill no vector are followed by copies of the last.
+    void run(const StridedSpan<const Vec3f>& points, std::span<Side> sides) {
+        const std::size_t rest = sides.size() % hn::Lanes(Floats()), whole = sides.size() - rest;
+        run_whole(points.subspan(0, whole), sides.first(whole));
+        if (rest == 0) return;
+        std::array<Vec3f, BandGroup::kMargin> last_points;
+        std::array<Side, BandGroup::kMargin> last_sides;
+        for (std::size_t lane = 0; lane < last_points.size(); ++lane)
+            last_points[lane] = points[whole + std::min(lane, rest - 1)];
+        const std::size_t count = hn::Lanes(Floats());
+        run_whole({last_points.data(), count}, {last_sides.data(), count});
+        std::copy_n(last_sides.data(), rest, &sides[whole]);
+    }
+
+  private:
+    /// Particles that fill vectors.
+    void run_whole(const StridedSpan<const Vec3f>& points, std::span<Side> sides) {
+        points_ = points;
+        sides_ = sides;
+        is_packed_ = points.size() > 1 && &points[1] == &points[0] + 1;
+        for (begin_ = 0; begin_ < sides.size(); begin_ += BandGroup::kCapacity) {
+            const std::size_t count = std::min(BandGroup::kCapacity, sides.size() - begin_);
             search_.find(count, [this](std::size_t slot) HWY_ATTR { return load(begin_ + slot); });
             std::fill_n(&sides_[begin_], count, Side{0}); // those beyond all bands
             answer_in_gaps();
@@ -44,11 +60,8 @@ class SideFinder {
             answer_in_bands();
             for (const std::int32_t slot : search_.unsure()) refer(slot);
         }
-        for (std::size_t particle = whole; particle < sides_.size(); ++particle)
-            sides_[particle] = side_of(classify(map_, points_[particle]));
     }
 
-  private:
     std::size_t particle_of(std::int32_t slot) const { return begin_ + static_cast<std::size_t>(slot); }
 
     /// Leaves a particle to the reference.
@@ -119,12 +132,12 @@ class SideFinder {
     }
 
     const ExactMapView& map_;
-    StridedSpan<const Vec3f> points_;
-    bool is_packed_ = points_.size() > 1 && &points_[1] == &points_[0] + 1;
-    std::span<Side> sides_;
-
     SnapLanes snap_{frame_of(map_)};
     PartLanes parts_of_{map_.divisions};
+
+    StridedSpan<const Vec3f> points_;
+    bool is_packed_ = false; ///< one point after the other, without a gap
+    std::span<Side> sides_;
     std::size_t begin_ = 0; ///< of the piece at hand
     BandSearch search_{map_};
     BandWindings windings_{map_};
@@ -134,7 +147,7 @@ class SideFinder {
 
 void find_sides(const ExactMapView& map, const StridedSpan<const Vec3f>& points_local,
                 std::span<Side> sides) {
-    SideFinder(map, points_local, sides).run();
+    SideFinder(map).run(points_local, sides);
 }
 
 #else
@@ -161,7 +174,7 @@ HWY_EXPORT(find_sides);
 void find_sides(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                 std::span<Side> sides) noexcept {
     assert(points_local.size() == sides.size());
-    constexpr std::size_t kFewest = 16; // as many as the widest vector has lanes
+    constexpr std::size_t kFewest = 8; // one vector takes as long as the reference for so many
     if (use_kernels() && sides.size() >= kFewest) {
         ECHINUS_DISPATCH(find_sides)(map, points_local, sides);
         return;

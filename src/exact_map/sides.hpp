@@ -19,7 +19,7 @@ inline Side side_of(const Containment& containment) {
 }
 
 /// The side of every particle; the same as by classify(), whatever the instruction set.
-/// Cost: takes 130 KB of the stack for 16 particles and more.
+/// Cost: takes 90 KB of the stack for 8 particles and more.
 /// @pre points_local.size() == sides.size()
 void find_sides(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                 std::span<Side> sides) noexcept;

@@ -22,7 +22,7 @@ MortonCurve::MortonCurve(const Vec3f& centre, float radius)
 std::uint32_t MortonCurve::key(const Vec3f& point_local) const noexcept {
     const auto cell = [&](float coordinate, float low) {
         const float place = (coordinate - low) * cells_per_unit_;
-        return static_cast<std::uint32_t>(std::min(std::max(place, 0.0F), static_cast<float>(kLast)));
+        return static_cast<std::uint32_t>(std::min(std::max(0.0F, place), static_cast<float>(kLast)));
     };
     return spread(cell(point_local.x, low_.x)) | spread(cell(point_local.y, low_.y)) << 1 |
            spread(cell(point_local.z, low_.z)) << 2;

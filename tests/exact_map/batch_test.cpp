@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -29,6 +30,17 @@ TriangleMesh without_last_faces(TriangleMesh mesh, std::size_t count) {
     return mesh;
 }
 
+/// With a hole in a direction, and certain answers in the others.
+TriangleMesh without_face_towards(TriangleMesh mesh, const Vec3f& direction) {
+    const auto along = [&](const Triangle& face) {
+        float sum = 0;
+        for (const std::uint32_t vertex : face) sum += dot(mesh.vertices[vertex], direction);
+        return sum;
+    };
+    mesh.faces.erase(std::ranges::max_element(mesh.faces, {}, along));
+    return mesh;
+}
+
 std::vector<Case> cases() {
     const TriangleMesh torus = make_torus(1, 0.4, 40, 16);
     const TriangleMesh boxes =
@@ -42,6 +54,9 @@ std::vector<Case> cases() {
         {"overlapping boxes by parity", boxes, {.rule = InsideRule::Parity}},
         {"a box inside out", test::turned_inside_out(make_box({1, 2, 3}, 2)), {}},
         {"an open sphere", without_last_faces(make_sphere(1, 24, 12), 60), {}},
+        {"an open sphere in eight cells",
+         without_face_towards(make_sphere(1, 16, 8), {-1, -1, -1}),
+         {.divisions = 1}},
         {"a plate", make_box({1, 1, 1e-4F}, 4), {}},
         {"twelve faces", make_box({1, 1, 1}), {.divisions = 3}},
         // Faces with tips sharp enough for rounding to matter beyond them.
@@ -208,6 +223,19 @@ TEST(ExactMapBatch, AnswersWithIndicesOf32BitsToo) {
             SCOPED_TRACE(std::string(name));
             expect_same_sides(map, points, 1);
             expect_same_contacts(expected, map, points, 0, {1, 1, 1}, 1);
+        });
+    }
+}
+
+TEST(ExactMapBatch, SaysWhatContactSaysWhenTheWorldIsSquashed) {
+    const TriangleMesh mesh = make_torus(1, 0.4, 40, 16);
+    const ExactMap map = ExactMap::build(mesh);
+    const std::vector<Vec3f> points = test::surface_points(mesh, 300);
+    for (const Vec3d& stretch : {Vec3d{1, 1e-5, 1e-3}, Vec3d{1, 1e-25, 1e-25}, Vec3d{1e-25, 1, 1e-50}}) {
+        const std::vector<Contact> expected = one_by_one(map, points, 0.2F, stretch);
+        test::under_each_instruction_set([&](std::string_view name) {
+            SCOPED_TRACE(std::string(name));
+            expect_same_contacts(expected, map, points, 0.2F, stretch, 1);
         });
     }
 }
