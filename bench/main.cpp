@@ -1,7 +1,7 @@
 // Measures Echinus beside its rivals; scripts/bench runs it.
 
-#include "common/machine.hpp"
 #include "common/pinning.hpp"
+#include "comparison/machine.hpp"
 #include "files/atomic_file.hpp"
 #include "guard/guard.hpp"
 #include "measurements.hpp"
@@ -72,7 +72,7 @@ void measure(const Arguments& arguments) {
                           .enough_seconds = 0.3};
     if (arguments.task != "threads") pin_to_one_core();
     kTasks.at(arguments.task)(setting).write(
-        arguments.target, {describe_machine(), fmt::format("{} passes", setting.effort.passes)});
+        arguments.target, {comparison::describe_machine(), fmt::format("{} passes", setting.effort.passes)});
 }
 
 std::string read_text(const fs::path& path) {
@@ -121,12 +121,12 @@ std::vector<std::string> slower_again(const GuardVerdict& first, const GuardVerd
 int guard(const Arguments& arguments) {
     Records measured = measure_guard(arguments);
     if (arguments.record) {
-        measured.write(arguments.recorded, {describe_machine()});
+        measured.write(arguments.recorded, {comparison::describe_machine()});
         fmt::print("Recorded in {}.\n", arguments.recorded.string());
         return 0;
     }
     const Records recorded = Records::read(arguments.recorded);
-    if (recorded.comments().front() != describe_machine())
+    if (recorded.comments().front() != comparison::describe_machine())
         fmt::print(
             "Recorded on another machine: {}. Ratios depend on the processor; record anew to be sure.\n",
             recorded.comments().front());

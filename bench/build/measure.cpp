@@ -1,6 +1,7 @@
 #include "build/system.hpp"
 #include "build/threads.hpp"
 #include "common/comparison.hpp"
+#include "comparison/clock.hpp"
 #include "measurements.hpp"
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include <chrono>
 
 using namespace echinus;
+using namespace echinus::comparison;
 
 namespace {
 

@@ -1,5 +1,5 @@
-#include "common/stopwatch.hpp"
-#include "common/turns.hpp"
+#include "comparison/clock.hpp"
+#include "comparison/turns.hpp"
 #include "measurements.hpp"
 
 #include <echinus/mesh_io.hpp>
@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 using namespace echinus;
+using namespace echinus::comparison;
 
 namespace {
 

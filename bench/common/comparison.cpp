@@ -1,11 +1,13 @@
-#include "comparison.hpp"
+#include "common/comparison.hpp"
+
+#include "comparison/clock.hpp"
 
 #include <fmt/format.h>
-#include <time.h>
 
 #include <cmath>
 
 using namespace echinus;
+using namespace echinus::comparison;
 
 namespace {
 
@@ -23,24 +25,17 @@ const char* name_of(Role role) {
     return "";
 }
 
-/// The particles that a racer was timed with.
-std::vector<std::uint32_t> asked_of(const Racer& racer) {
-    std::vector<std::uint32_t> asked;
+/// What a competitor said about the particles that it was timed with.
+Answers answers_of(Task task, const Competitor& competitor, const Racer& racer) {
+    Answers answers;
     for (const Part& part : racer.parts)
-        for (std::size_t i = part.begin; i < part.end; ++i) asked.push_back(static_cast<std::uint32_t>(i));
-    return asked;
-}
-
-ErrorSummary judge(Task task, const Subject& subject, const Truth& truth, const Competitor& competitor,
-                   const std::vector<std::uint32_t>& asked) {
-    std::vector<std::uint8_t> inside;
-    std::vector<float> depth;
-    for (const std::uint32_t i : asked) {
-        const DepthNormal answer = competitor.way.answered(i);
-        inside.push_back(answer.depth > 0 ? 1 : 0);
-        if (task == Task::Contacts) depth.push_back(answer.depth);
-    }
-    return errors_of(truth, subject.radius, asked, inside, depth);
+        for (std::size_t i = part.begin; i < part.end; ++i) {
+            const DepthNormal answer = competitor.way.answered(i);
+            answers.asked.push_back(static_cast<std::uint32_t>(i));
+            answers.inside.push_back(answer.depth > 0 ? 1 : 0);
+            if (task == Task::Contacts) answers.depth.push_back(answer.depth);
+        }
+    return answers;
 }
 
 /// Builds a structure, several times over when that is quick.
@@ -63,12 +58,6 @@ std::string digits(double value) {
 }
 
 } // namespace
-
-double process_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 const char* name_of(Task task) {
     return task == Task::Contains ? "contains" : "contacts";
@@ -123,7 +112,7 @@ void compare(const Comparison& comparison, const Subject& subject, const Particl
 
     for (std::size_t k = 0; k < competitors.size(); ++k) {
         const Competitor& competitor = competitors[k];
-        const std::vector<std::uint32_t> asked = asked_of(racers[k]);
+        const Answers answers = answers_of(comparison.task, competitor, racers[k]);
         Records::Record record{{"task", name_of(comparison.task)},
                                {"mesh", subject.name},
                                {"faces", fmt::format("{}", subject.mesh.faces.size())},
@@ -136,15 +125,15 @@ void compare(const Comparison& comparison, const Subject& subject, const Particl
                                {"spread", digits(paces[k].spread)},
                                {"bytes", fmt::format("{}", competitor.structure.byte_count)},
                                {"build_ms", digits(competitor.build_ms)},
-                               {"asked", fmt::format("{}", asked.size())}};
+                               {"asked", fmt::format("{}", answers.asked.size())}};
         if (competitor.role != Role::Floor) {
-            const ErrorSummary errors = judge(comparison.task, subject, truth, competitor, asked);
+            const ErrorSummary errors = errors_of(truth, subject.radius, answers);
             record["wrong_share"] = digits(errors.wrong_share);
             record["farthest_wrong"] = digits(errors.farthest_wrong);
             if (comparison.task == Task::Contacts) {
-                record["depth_mean"] = digits(errors.depth_mean);
-                record["depth_99"] = digits(errors.depth_99);
-                record["depth_worst"] = digits(errors.depth_worst);
+                record["depth_mean"] = digits(errors.depth.mean);
+                record["depth_99"] = digits(errors.depth.most);
+                record["depth_worst"] = digits(errors.depth.worst);
             }
         }
         records.add(std::move(record));

@@ -4,7 +4,7 @@
 #include "common/subjects.hpp"
 #include "common/system.hpp"
 #include "common/truth.hpp"
-#include "common/turns.hpp"
+#include "comparison/turns.hpp"
 
 #include <functional>
 #include <string>
@@ -49,12 +49,9 @@ std::vector<Competitor> build_all(const std::vector<System>& systems, std::size_
 Records comparison_records();
 
 /// All of them, asked for a set: whole, in one call, or who is too slow for that, in parts.
-std::vector<Racer> racers_for(const std::vector<Competitor>& competitors, const ParticleSet& set,
-                              double patience_seconds);
+std::vector<echinus::comparison::Racer> racers_for(const std::vector<Competitor>& competitors,
+                                                   const ParticleSet& set, double patience_seconds);
 
 /// Lets all answer for all particles of a set, judges what they said, and adds a record for each.
 void compare(const Comparison& comparison, const Subject& subject, const ParticleSet& set,
              const std::vector<Competitor>& competitors, Records& records);
-
-/// Processor time of all threads of the process.
-double process_seconds();

@@ -1,15 +1,11 @@
 #include "stopwatch.hpp"
 
-#include <time.h>
+#include "comparison/clock.hpp"
 
 #include <algorithm>
 #include <limits>
 
-double thread_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
+using echinus::comparison::thread_seconds;
 
 double shortest_seconds(int repetitions, const std::function<void()>& body) {
     double shortest = std::numeric_limits<double>::infinity();

@@ -5,11 +5,8 @@
 #include <span>
 #include <vector>
 
-/// Processor time of the calling thread: other programs on the machine prolong it little. What they still
-/// add, through shared caches and the clock rate, the shortest of several repetitions is free of.
-double thread_seconds();
-
-/// Processor time of the shortest of several calls.
+/// Processor time of the shortest of several calls: what other programs on the machine add, through shared
+/// caches and the clock rate, it is nearly free of.
 double shortest_seconds(int repetitions, const std::function<void()>& body);
 
 /// Does its work for items [begin, end).

@@ -1,6 +1,6 @@
 #include "common/subjects.hpp"
 
-#include "support/point_sets.hpp"
+#include "comparison/point_sets.hpp"
 
 #include <echinus/mesh_io.hpp>
 
@@ -30,10 +30,10 @@ Subject subject(std::string name, TriangleMesh mesh, bool z_is_up) {
 
 std::vector<ParticleSet> Subject::sets(std::size_t count) const {
     const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(count)));
-    const test::Axis up = z_is_up ? test::Axis::Z : test::Axis::Y;
-    return {{"U", test::uniform_points(mesh, count)},
-            {"S", test::surface_points(mesh, count)},
-            {"C", test::cloth_points(mesh, side, side, up)}};
+    const comparison::Axis up = z_is_up ? comparison::Axis::Z : comparison::Axis::Y;
+    return {{"U", comparison::uniform_points(mesh, count)},
+            {"S", comparison::surface_points(mesh, count)},
+            {"C", comparison::cloth_points(mesh, side, side, up)}};
 }
 
 TriangleMesh torus_of(std::size_t face_count) {

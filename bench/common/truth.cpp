@@ -13,11 +13,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <fstream>
 #include <thread>
 
 using namespace echinus;
+using comparison::Truth;
 namespace fs = std::filesystem;
 
 namespace {
@@ -73,37 +73,11 @@ void judge(const Subject& subject, const ParticleSet& set, Truth& truth) {
 Truth truth_of(const Subject& subject, const ParticleSet& set, const fs::path& cache) {
     const fs::path path =
         cache / fmt::format("{}_{}_{:016x}.truth", subject.name, set.name, hash_of(subject, set));
-    Truth truth{std::vector<std::uint8_t>(set.points.size()), std::vector<float>(set.points.size())};
+    Truth truth{std::vector<std::uint8_t>(set.points.size()), std::vector<float>(set.points.size()), {}};
     if (read_cached(path, truth)) return truth;
     unpin();
     judge(subject, set, truth);
     pin_to_one_core();
     write_cached(path, truth);
     return truth;
-}
-
-ErrorSummary errors_of(const Truth& truth, double radius, std::span<const std::uint32_t> asked,
-                       std::span<const std::uint8_t> inside, std::span<const float> depth) {
-    ErrorSummary summary;
-    std::size_t wrong = 0;
-    std::vector<double> errors;
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-        const bool truly_inside = truth.inside[asked[i]] != 0;
-        const double distance = double{truth.distance[asked[i]]} / radius;
-        if ((inside[i] != 0) != truly_inside) {
-            ++wrong;
-            summary.farthest_wrong = std::max(summary.farthest_wrong, distance);
-        }
-        if (depth.empty() || !truly_inside) continue;
-        const double answered = inside[i] != 0 ? double{depth[i]} / radius : 0;
-        errors.push_back(std::fabs(answered - distance));
-    }
-    summary.wrong_share =
-        static_cast<double>(wrong) / static_cast<double>(std::max<std::size_t>(asked.size(), 1));
-    if (errors.empty()) return summary;
-    std::ranges::sort(errors);
-    for (const double error : errors) summary.depth_mean += error / static_cast<double>(errors.size());
-    summary.depth_99 = errors[static_cast<std::size_t>(0.99 * static_cast<double>(errors.size() - 1))];
-    summary.depth_worst = errors.back();
-    return summary;
 }

@@ -23,7 +23,7 @@ std::vector<std::string> compare(const Model& model, const Setting& setting) {
     ExactMapOptions search = one_thread();
     search.centre = CentreChoice::Search;
     const std::array maps{ExactMap::build(model.mesh, one_thread()), ExactMap::build(model.mesh, search)};
-    const std::vector<Vec3f> points = test::surface_points(model.mesh, setting.few_points());
+    const std::vector<Vec3f> points = comparison::surface_points(model.mesh, setting.few_points());
     std::array<std::vector<std::uint8_t>, 2> answers;
     const auto ns = race(points.size(), setting.repetitions,
                          std::array{asks_inside(maps[0].view(), points, answers[0]),

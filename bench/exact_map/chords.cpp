@@ -1,7 +1,7 @@
+#include "comparison/portable_random.hpp"
 #include "contestants.hpp"
 #include "exact_map/layout.hpp"
 #include "measurements.hpp"
-#include "support/portable_random.hpp"
 
 #include <fmt/format.h>
 
@@ -17,14 +17,14 @@ struct Chords {
     std::vector<Vec3f> from, to;
 };
 
-Vec3d random_direction(test::PortableRandom& random) {
+Vec3d random_direction(comparison::PortableRandom& random) {
     const Vec3d v{random.normal(), random.normal(), random.normal()};
     return v * (1 / length(v));
 }
 
 /// Of one length, any way.
 Chords short_chords(std::string name, const std::vector<Vec3f>& from, double chord_length) {
-    test::PortableRandom random(4);
+    comparison::PortableRandom random(4);
     Chords chords{std::move(name), from, {}};
     for (const Vec3f& point : from)
         chords.to.emplace_back(Vec3d(point) + random_direction(random) * chord_length);
@@ -96,11 +96,11 @@ void measure_chords(const Setting& setting, Values& values) {
         const std::size_t count = setting.few_points();
         const auto side = static_cast<std::size_t>(std::sqrt(count));
         const Chords kinds[] = {
-            short_chords("1 % R, from S", test::surface_points(model.mesh, count), 0.01 * model.radius),
-            short_chords("1 % R, from C", test::cloth_points(model.mesh, side, side, model.up),
+            short_chords("1 % R, from S", comparison::surface_points(model.mesh, count), 0.01 * model.radius),
+            short_chords("1 % R, from C", comparison::cloth_points(model.mesh, side, side, model.up),
                          0.01 * model.radius),
-            {"long, from U to U", test::uniform_points(model.mesh, count, 5),
-             test::uniform_points(model.mesh, count, 6)}};
+            {"long, from U to U", comparison::uniform_points(model.mesh, count, 5),
+             comparison::uniform_points(model.mesh, count, 6)}};
         for (const Chords& chords : kinds)
             rows.push_back(measure(model, map, embree, chords, setting.repetitions));
     }

@@ -1,7 +1,7 @@
+#include "comparison/plot.hpp"
 #include "contestants.hpp"
 #include "files/atomic_file.hpp"
 #include "measurements.hpp"
-#include "plot.hpp"
 
 #include <fmt/format.h>
 
@@ -9,6 +9,7 @@
 #include <array>
 
 using namespace echinus;
+using namespace echinus::comparison;
 
 namespace {
 
@@ -50,7 +51,7 @@ struct Curves {
 
 Curves sweep_divisions(const Model& model, const char* colour, const Setting& setting,
                        std::vector<std::vector<std::string>>& rows) {
-    const std::vector<Vec3f> points = test::surface_points(model.mesh, setting.few_points());
+    const std::vector<Vec3f> points = comparison::surface_points(model.mesh, setting.few_points());
     const EmbreeRival embree(model.mesh);
     const std::uint32_t by_default = ExactMap::build(model.mesh, one_thread()).view().divisions;
     Curves curves{{.name = model.name + ", exact map", .points = {}, .colour = colour},

@@ -1,7 +1,7 @@
+#include "comparison/plot.hpp"
 #include "contestants.hpp"
 #include "files/atomic_file.hpp"
 #include "measurements.hpp"
-#include "plot.hpp"
 
 #include <fmt/format.h>
 
@@ -10,6 +10,7 @@
 #include <cmath>
 
 using namespace echinus;
+using namespace echinus::comparison;
 
 namespace {
 
@@ -35,7 +36,7 @@ std::vector<std::string> measure(const TriangleMesh& mesh, const Setting& settin
     for (int i = 1; i < builds; ++i)
         embree_seconds = std::min(embree_seconds, EmbreeRival(mesh).build_seconds());
 
-    const std::vector<Vec3f> points = test::surface_points(mesh, setting.few_points() / 2);
+    const std::vector<Vec3f> points = comparison::surface_points(mesh, setting.few_points() / 2);
     std::vector<std::uint8_t> ours, theirs;
     const auto ns =
         race(points.size(), setting.repetitions,

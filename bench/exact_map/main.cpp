@@ -1,7 +1,7 @@
 // Measures the exact map beside Embree and fills docs/exact_map_options.md; scripts/measure runs it.
 
+#include "comparison/machine.hpp"
 #include "files/atomic_file.hpp"
-#include "machine.hpp"
 #include "measurements.hpp"
 
 #include <echinus/error.hpp>
@@ -41,7 +41,7 @@ void run(const Arguments& arguments) {
                           .repetitions = arguments.quick ? 2 : 5,
                           .most_faces = arguments.quick ? 64'000U : 4'100'000U};
     Values values;
-    values["machine"] = describe_machine();
+    values["machine"] = comparison::describe_machine();
     values["few_points"] = fmt::format("{}", setting.few_points());
     values["repetitions"] = fmt::format("{}", setting.repetitions);
     for (const Section& section : kSections) {

@@ -14,7 +14,7 @@ namespace {
 Model model(std::string name, TriangleMesh mesh) {
     const MeshReport report = inspect(mesh);
     const bool z_is_up = name == "horse_6k" || name == "human_mannequin";
-    return {std::move(name), std::move(mesh), z_is_up ? test::Axis::Z : test::Axis::Y,
+    return {std::move(name), std::move(mesh), z_is_up ? comparison::Axis::Z : comparison::Axis::Y,
             report.bounding_sphere.radius, report.closed};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "support/point_sets.hpp"
+#include "comparison/point_sets.hpp"
 
 #include <echinus/exact_map.hpp>
 
@@ -14,7 +14,7 @@
 struct Model {
     std::string name;
     echinus::TriangleMesh mesh;
-    echinus::test::Axis up;
+    echinus::comparison::Axis up;
     double radius; ///< of the bounding sphere
     bool closed;
 };

@@ -24,7 +24,7 @@ std::vector<std::string> measure(const Model& model, const Setting& setting) {
     const double build_ms =
         1e3 * shortest_seconds(setting.repetitions, [&] { (void)ExactMap::build(model.mesh, one_thread()); });
     std::vector<Vec3f> certain, uncertain;
-    for (const Vec3f& point : test::uniform_points(model.mesh, setting.few_points()))
+    for (const Vec3f& point : comparison::uniform_points(model.mesh, setting.few_points()))
         (classify(map, point).certain ? certain : uncertain).push_back(point);
     const ExactMapStatistics& statistics = map.statistics();
     return {model.name,

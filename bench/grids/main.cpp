@@ -1,7 +1,7 @@
 // The grids of a distance map at equal bytes: prints the table of docs/distance_map.md for a torus and for
 // the meshes that are given.
 
-#include "support/point_sets.hpp"
+#include "comparison/point_sets.hpp"
 
 #include <echinus/distance_map.hpp>
 #include <echinus/error.hpp>
@@ -82,8 +82,8 @@ std::vector<float> surface_errors(const DistanceMap& map, const ExactMap& judge,
 
 void measure(const std::string& name, const TriangleMesh& mesh) {
     const ExactMap judge = ExactMap::build(mesh);
-    const Truth everywhere(judge, test::uniform_points(mesh, kPointCount));
-    const Truth near(judge, test::surface_points(mesh, kPointCount));
+    const Truth everywhere(judge, comparison::uniform_points(mesh, kPointCount));
+    const Truth near(judge, comparison::surface_points(mesh, kPointCount));
     for (const System& system : systems(mesh)) {
         const DistanceMap map = DistanceMap::build(mesh, system.options);
         const std::vector<float> errors = surface_errors(map, judge, near);

@@ -9,6 +9,7 @@
 #include <array>
 
 using namespace echinus;
+using namespace echinus::comparison;
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "common/plot.hpp"
+#include "comparison/plot.hpp"
 #include "files/atomic_file.hpp"
 #include "page/page_parts.hpp"
 
@@ -8,6 +8,7 @@
 #include <cmath>
 
 using namespace echinus;
+using namespace echinus::comparison;
 
 namespace {
 

@@ -1,8 +1,8 @@
 // Measures the paper's map on the paper's models and fills docs/reproduction.md; scripts/reproduce runs it.
 
+#include "comparison/machine.hpp"
 #include "depths.hpp"
 #include "files/atomic_file.hpp"
-#include "machine.hpp"
 #include "signs.hpp"
 #include "simulations.hpp"
 #include "sizes.hpp"
@@ -38,17 +38,17 @@ std::vector<Subject> read_subjects(const Arguments& arguments) {
     std::vector<Subject> subjects;
     if (fs::exists(arguments.development_horse)) {
         report_progress("judging points around horse_6k");
-        subjects.emplace_back("horse_6k",
-                              "a standing horse of 6000 faces, the Cyberware horse simplified; z is up",
-                              read_mesh(arguments.development_horse), test::Axis::Z, arguments.side_count);
+        subjects.emplace_back(
+            "horse_6k", "a standing horse of 6000 faces, the Cyberware horse simplified; z is up",
+            read_mesh(arguments.development_horse), comparison::Axis::Z, arguments.side_count);
     }
     report_progress("judging points around Debian's horse");
     subjects.emplace_back("horse", "Debian's `glmark2-data`, doubled patches dropped; y is up",
-                          repair(read_mesh(arguments.debian_horse), RepairOptions::all()).mesh, test::Axis::Y,
-                          arguments.side_count);
+                          repair(read_mesh(arguments.debian_horse), RepairOptions::all()).mesh,
+                          comparison::Axis::Y, arguments.side_count);
     report_progress("judging points around the torus");
     subjects.emplace_back("torus", "60 x 24 segments, radii 1 and 0.4, about the z axis",
-                          make_torus(1, 0.4, 60, 24), test::Axis::Z, arguments.side_count);
+                          make_torus(1, 0.4, 60, 24), comparison::Axis::Z, arguments.side_count);
     return subjects;
 }
 
@@ -77,7 +77,7 @@ std::string sections(std::span<const Subject> subjects, const Values& values, co
 
 void run(const Arguments& arguments) {
     Values values;
-    values["machine"] = describe_machine();
+    values["machine"] = comparison::describe_machine();
     values["side"] = fmt::format("{0} x {0}", arguments.side_count);
     read_simulations(arguments.simulations, values);
     const std::vector<Subject> subjects = read_subjects(arguments);

@@ -121,10 +121,11 @@ void measure_smoothing(std::span<const Subject> subjects, Values& values) {
         rows.push_back({subject.name});
         const DistanceMap map = build(subject, 200, PoleAxis::X, VertexCorrection::None);
         for (const double deviation : kDeviations) {
-            const JudgedPoints set = judged("C",
-                                            test::cloth_points(subject.mesh, subject.side_count,
-                                                               subject.side_count, subject.up, deviation),
-                                            subject.judge);
+            const JudgedPoints set =
+                judged("C",
+                       comparison::cloth_points(subject.mesh, subject.side_count, subject.side_count,
+                                                subject.up, deviation),
+                       subject.judge);
             rows.back().push_back(fmt::format("{:.2f}", wrong_signs(map, set).all()));
         }
     }

@@ -14,10 +14,10 @@ JudgedPoints judged(std::string name, std::vector<Vec3f> points, const test::Exa
     return {std::move(name), std::move(points), std::move(inside)};
 }
 
-Subject::Subject(std::string name_, std::string origin_, TriangleMesh mesh_, test::Axis up_,
+Subject::Subject(std::string name_, std::string origin_, TriangleMesh mesh_, comparison::Axis up_,
                  std::size_t side_count_)
     : name(std::move(name_)), origin(std::move(origin_)), mesh(std::move(mesh_)), up(up_),
       side_count(side_count_), radius(inspect(mesh).bounding_sphere.radius),
-      judge(mesh), sets{judged("U", test::uniform_points(mesh, side_count * side_count), judge),
-                        judged("S", test::surface_points(mesh, side_count * side_count), judge),
-                        judged("C", test::cloth_points(mesh, side_count, side_count, up), judge)} {}
+      judge(mesh), sets{judged("U", comparison::uniform_points(mesh, side_count * side_count), judge),
+                        judged("S", comparison::surface_points(mesh, side_count * side_count), judge),
+                        judged("C", comparison::cloth_points(mesh, side_count, side_count, up), judge)} {}

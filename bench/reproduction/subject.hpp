@@ -1,7 +1,7 @@
 #pragma once
 
+#include "comparison/point_sets.hpp"
 #include "oracle/exact_judge.hpp"
-#include "support/point_sets.hpp"
 
 #include <array>
 #include <cstdint>
@@ -24,12 +24,12 @@ struct Subject {
     std::string name;
     std::string origin; ///< a clause for the page: where the model is from
     echinus::TriangleMesh mesh;
-    echinus::test::Axis up;
+    echinus::comparison::Axis up;
     std::size_t side_count; ///< C has side_count x side_count points, U and S as many
     double radius;          ///< of the bounding sphere
     echinus::test::ExactJudge judge;
     std::array<JudgedPoints, 3> sets; ///< U, S and C
 
-    Subject(std::string name, std::string origin, echinus::TriangleMesh mesh, echinus::test::Axis up,
+    Subject(std::string name, std::string origin, echinus::TriangleMesh mesh, echinus::comparison::Axis up,
             std::size_t side_count);
 };

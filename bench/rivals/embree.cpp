@@ -1,6 +1,6 @@
 #include "rivals/embree.hpp"
 
-#include "common/stopwatch.hpp"
+#include "comparison/clock.hpp"
 
 #include <embree3/rtcore.h>
 
@@ -148,7 +148,7 @@ struct EmbreeRival::Impl {
 
     explicit Impl(const TriangleMesh& mesh_) : mesh(mesh_) {
         rtcSetDeviceMemoryMonitorFunction(device, count_bytes, &bytes);
-        const double start = thread_seconds();
+        const double start = comparison::thread_seconds();
         scene = rtcNewScene(device);
         rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
         rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
@@ -163,7 +163,7 @@ struct EmbreeRival::Impl {
         rtcAttachGeometry(scene, geometry);
         rtcReleaseGeometry(geometry);
         rtcCommitScene(scene);
-        build_seconds = thread_seconds() - start;
+        build_seconds = comparison::thread_seconds() - start;
     }
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;

@@ -1,8 +1,8 @@
 #include "baselines/superquadric_map/fit.hpp"
 #include "baselines/superquadric_map/fit_residuals.hpp"
 #include "baselines/superquadric_map/superquadric.hpp"
+#include "comparison/portable_random.hpp"
 #include "support/expect_error.hpp"
-#include "support/portable_random.hpp"
 
 #include <echinus/mesh.hpp>
 
@@ -16,7 +16,7 @@
 
 using namespace echinus;
 using namespace echinus::baselines;
-using test::PortableRandom;
+using comparison::PortableRandom;
 
 namespace {
 

@@ -3,10 +3,10 @@
 #include "baselines/superquadric_map/sampling.hpp"
 #include "baselines/superquadric_map/segments.hpp"
 #include "baselines/superquadric_map/simplify.hpp"
+#include "comparison/portable_random.hpp"
 #include "directions/crossing.hpp"
 #include "support/expect_error.hpp"
 #include "support/mesh_assembly.hpp"
-#include "support/portable_random.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@
 
 using namespace echinus;
 using namespace echinus::baselines;
+using comparison::PortableRandom;
 using test::joined;
-using test::PortableRandom;
 using test::translated;
 
 namespace {

@@ -1,10 +1,10 @@
 // Real models. They lie beside the repository where it is developed and are not part of it; elsewhere these
 // tests are skipped.
 
+#include "comparison/point_sets.hpp"
 #include "oracle/exact_judge.hpp"
 #include "oracle/expect_right_map.hpp"
 #include "oracle/wrong_share.hpp"
-#include "support/point_sets.hpp"
 
 #include <echinus/distance_map.hpp>
 #include <echinus/mesh_io.hpp>
@@ -50,8 +50,8 @@ TEST_F(DevelopmentMeshes, TheHorseIsSeldomJudgedWrongly) {
     const TriangleMesh horse = read_mesh(kFolder / "horse_6k.obj");
     const test::ExactJudge judge(horse);
     const DistanceMap map = DistanceMap::build(horse, {.correction = VertexCorrection::None});
-    EXPECT_LT(test::wrong_share(map, judge, test::uniform_points(horse, 15'000)), 0.15);
-    EXPECT_LT(test::wrong_share(map, judge, test::surface_points(horse, 15'000)), 5);
+    EXPECT_LT(test::wrong_share(map, judge, comparison::uniform_points(horse, 15'000)), 0.15);
+    EXPECT_LT(test::wrong_share(map, judge, comparison::surface_points(horse, 15'000)), 5);
 }
 
 TEST_F(DevelopmentMeshes, ExactMapsAreRight) {

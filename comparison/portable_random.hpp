@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <random>
 
-namespace echinus::test {
+namespace echinus::comparison {
 
 /// Random numbers with the same bits on every machine. The standard fixes what its engines give but not what
 /// its distributions make of it, so those are our own, and the normal one takes no function of the C library.
@@ -45,4 +45,4 @@ class PortableRandom {
     std::mt19937_64 engine_;
 };
 
-} // namespace echinus::test
+} // namespace echinus::comparison

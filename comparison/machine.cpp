@@ -1,9 +1,11 @@
-#include "machine.hpp"
+#include "comparison/machine.hpp"
 
 #include <fmt/format.h>
 
 #include <fstream>
 #include <thread>
+
+namespace echinus::comparison {
 
 namespace {
 
@@ -27,3 +29,5 @@ std::string describe_machine() {
                        std::thread::hardware_concurrency(), value_of("/etc/os-release", "PRETTY_NAME", '='),
                        __VERSION__);
 }
+
+} // namespace echinus::comparison

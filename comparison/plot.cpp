@@ -1,10 +1,12 @@
-#include "plot.hpp"
+#include "comparison/plot.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+namespace echinus::comparison {
 
 namespace {
 
@@ -157,3 +159,5 @@ double fitted_exponent(const std::vector<PlotPoint>& points, double from) {
     }
     return (count * xy_sum - x_sum * y_sum) / (count * xx_sum - x_sum * x_sum);
 }
+
+} // namespace echinus::comparison

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+namespace echinus::comparison {
+
 /// A point of a curve, in the units of the axes.
 struct PlotPoint {
     double x, y;
@@ -32,3 +34,5 @@ std::string svg(const Plot& plot);
 
 /// Exponent b of y = a x^b by least squares of the logarithms, from the points with x >= from.
 double fitted_exponent(const std::vector<PlotPoint>& points, double from = 0);
+
+} // namespace echinus::comparison

@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+namespace echinus::comparison {
+
 /// Items [begin, end).
 struct Part {
     std::size_t begin, end;
@@ -47,3 +49,5 @@ std::vector<Part> parts_for(const std::function<void(Part)>& run, std::size_t it
                             double patience_seconds);
 
 double median_of(std::vector<double> values);
+
+} // namespace echinus::comparison

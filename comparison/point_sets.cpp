@@ -1,13 +1,13 @@
-#include "support/point_sets.hpp"
+#include "comparison/point_sets.hpp"
 
-#include "support/portable_random.hpp"
+#include "comparison/portable_random.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-namespace echinus::test {
+namespace echinus::comparison {
 
 namespace {
 
@@ -185,4 +185,4 @@ std::vector<Vec3f> cloth_points(const TriangleMesh& mesh, std::size_t columns, s
     return sheet.points();
 }
 
-} // namespace echinus::test
+} // namespace echinus::comparison

@@ -1,9 +1,11 @@
-#include "common/turns.hpp"
+#include "comparison/turns.hpp"
 
-#include "common/stopwatch.hpp"
+#include "comparison/clock.hpp"
 
 #include <algorithm>
 #include <cmath>
+
+namespace echinus::comparison {
 
 namespace {
 
@@ -99,3 +101,5 @@ std::vector<Pace> take_turns(const std::vector<Racer>& racers, const TurnOptions
     for (std::vector<double>& of_racer : pass_ns) paces.push_back(pace_of(std::move(of_racer)));
     return paces;
 }
+
+} // namespace echinus::comparison

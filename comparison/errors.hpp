@@ -1,0 +1,47 @@
+#pragma once
+
+#include <echinus/geometry.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// How far the answers of a system are from what is true.
+namespace echinus::comparison {
+
+/// What is true of a set of particles.
+struct Truth {
+    std::vector<std::uint8_t> inside; ///< [n]
+    std::vector<float> distance;      ///< [n] to the nearest point of the surface, in the mesh's unit
+    std::vector<Vec3f> way_out;       ///< [n] unit, from a particle inside to that point; empty if not known
+};
+
+/// What a system said about some of them. All arrays have the length of `asked`.
+struct Answers {
+    std::vector<std::uint32_t> asked; ///< the numbers of the particles
+    std::vector<std::uint8_t> inside;
+    std::vector<float> depth;  ///< positive inside; empty when only the sign was asked
+    std::vector<Vec3f> normal; ///< unit, or 0 where the system knows no way out; empty as above
+};
+
+/// Mean, ninety-ninth percentile and worst of an error; all 0 when there was nothing to judge.
+struct Spread {
+    double mean = 0, most = 0, worst = 0; ///< 99 % of errors are at most `most`
+};
+
+struct ErrorSummary {
+    std::size_t asked_count = 0;
+    double wrong_share = 0;    ///< of signs
+    double farthest_wrong = 0; ///< distance of a wrong particle from the surface, R
+    /// Of the depth, R: over particles that are inside, one that was missed counting as depth 0.
+    Spread depth;
+    /// Angle between normal and way out, degrees: over particles that are inside and known to be. No normal
+    /// counts as 90. Where two ways out are equally short, one of them is called true.
+    Spread normal;
+};
+
+/// @param radius  R of the mesh's bounding sphere: the unit of lengths
+ErrorSummary errors_of(const Truth& truth, double radius, const Answers& answers);
+
+} // namespace echinus::comparison
