@@ -6,6 +6,7 @@
 #include <echinus/any_map.hpp>
 #include <echinus/collider.hpp>
 #include <echinus/contact.hpp>
+#include <echinus/custom_map.hpp>
 #include <echinus/directions.hpp>
 #include <echinus/distance_map.hpp>
 #include <echinus/error.hpp>

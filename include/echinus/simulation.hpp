@@ -137,8 +137,8 @@ class Simulation {
   public:
     /// Allocates all that step() needs.
     /// @throws Error InvalidOptions when an option is out of range, the arrays of the deformable do not fit
-    /// together, a stick names a particle that does not exist, a number is not finite, or a collider's scale
-    /// is 0
+    /// together, a stick names a particle that does not exist, a number is not finite, a collider's scale is
+    /// 0, or its custom map a null pointer
     Simulation(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
     ~Simulation();
     Simulation(const Simulation& other);
@@ -150,12 +150,13 @@ class Simulation {
     /// their velocities, then iteration_count times all sticks and then collision of all particles with all
     /// colliders; at last the proof that no particle passed through an exact map. Allocates nothing.
     ///
-    /// A distance map pushes along its rays (docs/paper.md). An exact map pushes to the thickness over the
-    /// nearest point. Its particles are then swept from where they were proven free last to where they are,
-    /// as the moving collider sees it; one that would cross the surface is put before the crossing, where the
-    /// same sweep finds it free, or goes back to where it was free, carried along. So none is lost, however
-    /// fast it is or thin the model. Three exceptions: pinned particles are left alone; a particle that
-    /// begins inside is pushed to the nearest surface point, and kept outside from then on; one that two
+    /// A distance map pushes along its rays (docs/paper.md), and a custom map to the points that it names,
+    /// both gently: who is not inside is pushed no farther than it came. An exact map pushes to the thickness
+    /// over the nearest point. Its particles are then swept from where they were proven free last to where
+    /// they are, as the moving collider sees it; one that would cross the surface is put before the crossing,
+    /// where the same sweep finds it free, or goes back to where it was free, carried along. So none is lost,
+    /// however fast it is or thin the model. Three exceptions: pinned particles are left alone; a particle
+    /// that begins inside is pushed to the nearest surface point, and kept outside from then on; one that two
     /// exact maps squeeze so that it finds no room goes to where the first of them, or else the next, knows
     /// it to be free, and is counted as lost to the other.
     /// @throws Error Diverged, naming the frame; afterwards only reading is allowed

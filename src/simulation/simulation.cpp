@@ -13,7 +13,6 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -37,8 +36,21 @@ bool is_exact(const Collider& collider) {
     return std::holds_alternative<ExactMap>(collider.map);
 }
 
-/// Contacts are asked for in pieces that stay in the first-level cache.
-constexpr std::size_t kPieceSize = 256;
+/// How a collider without an exact map is asked for contacts: in pieces of so many particles, those within
+/// so many thicknesses.
+struct Asking {
+    std::size_t piece_size;
+    float reach_in_thicknesses;
+};
+
+/// In pieces that stay in the first-level cache, and as far along the rays as the thickness needs.
+constexpr Asking kAskDistanceMap{256, kReachInThicknesses};
+/// In larger ones, since it may have to set something up for each call.
+constexpr Asking kAskCustomMap{4096, 1};
+
+Asking asking_of(const Collider& collider) {
+    return std::holds_alternative<DistanceMap>(collider.map) ? kAskDistanceMap : kAskCustomMap;
+}
 
 } // namespace
 
@@ -53,6 +65,12 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
     for (const Collider& collider : colliders) previous_poses_.push_back(collider.pose);
     for (const Collider& collider : colliders)
         if (is_exact(collider)) exact_.emplace_back(collider, particles_, options);
+    for (const Collider& collider : colliders) {
+        if (is_exact(collider)) continue;
+        const std::size_t size = std::min(asking_of(collider).piece_size, deformable.particle_count());
+        places_.resize(std::max(places_.size(), size));
+    }
+    contacts_.resize(places_.size());
     unsettled_.reserve(exact_.size() * deformable.particle_count());
     resting_places_ = deformable.positions;
     const Sphere start = box_sphere(deformable.positions);
@@ -141,8 +159,8 @@ void Simulation::Solver::relax_sticks() {
 namespace {
 
 /// Is a particle deeper than it moved, although it began the frame outside? It then came through no surface
-/// that the map knows but through the side of a layer: at a silhouette neighbouring directions differ in
-/// their number of entries, and along the ray the way out may be far from the way in.
+/// that the map knows. With a distance map it came through the side of a layer: at a silhouette neighbouring
+/// directions differ in their number of entries, and along the ray the way out may be far from the way in.
 bool came_through_a_side(const Collider& collider, const Contact& contact, const Vec3f& start,
                          const Vec3f& motion) {
     return contact.inside && contact.depth > length(motion) && !contains(collider, start);
@@ -167,24 +185,24 @@ void Simulation::Solver::collide() {
         if (is_exact(colliders[i]))
             exact_[exact++].relax(particles_, profile);
         else
-            collide_radially(colliders[i], previous_poses_[i]);
+            collide_by_contacts(colliders[i], previous_poses_[i]);
     }
 }
 
-void Simulation::Solver::collide_radially(const Collider& collider, const RigidTransform& previous_pose) {
+void Simulation::Solver::collide_by_contacts(const Collider& collider, const RigidTransform& previous_pose) {
     const ResponseRules rules{static_cast<float>(options.thickness), static_cast<float>(options.friction)};
     const MaterialMotion material(previous_pose, collider.pose);
+    const Asking asking = asking_of(collider);
+    const float reach = asking.reach_in_thicknesses * rules.thickness;
     const std::size_t particle_count = deformable.particle_count();
-    std::array<Contact, kPieceSize> contacts;
-    std::array<Vec3f, kPieceSize> places;
-    for (std::size_t begin = 0; begin < particle_count; begin += kPieceSize) {
-        const std::size_t end = std::min(begin + kPieceSize, particle_count);
-        for (std::size_t i = begin; i < end; ++i) places[i - begin] = particles_.positions[i];
-        contacts_batch(collider, std::span<const Vec3f>(places).first(end - begin),
-                       kReachInThicknesses * rules.thickness, std::span(contacts).first(end - begin));
+    for (std::size_t begin = 0; begin < particle_count; begin += asking.piece_size) {
+        const std::size_t end = std::min(begin + asking.piece_size, particle_count);
+        for (std::size_t i = begin; i < end; ++i) places_[i - begin] = particles_.positions[i];
+        contacts_batch(collider, std::span<const Vec3f>(places_).first(end - begin), reach,
+                       std::span(contacts_).first(end - begin));
         for (std::size_t i = begin; i < end; ++i) {
-            const Contact& contact = contacts[i - begin];
-            const Vec3f& position = places[i - begin];
+            const Contact& contact = contacts_[i - begin];
+            const Vec3f& position = places_[i - begin];
             if (!needs_response(position, contact, rules.thickness)) continue;
             if (particles_.pinned(i)) continue;
             const Vec3f start = particles_.previous[i] + material.at(position);

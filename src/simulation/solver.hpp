@@ -34,7 +34,7 @@ class Simulation::Solver {
     void restore_goal_lengths();
     void relax_sticks();
     void collide();
-    void collide_radially(const Collider& collider, const RigidTransform& previous_pose);
+    void collide_by_contacts(const Collider& collider, const RigidTransform& previous_pose);
     void keep_free();
     void lead_to_free_place(std::uint32_t particle);
     bool is_free(std::uint32_t particle) const;
@@ -49,6 +49,8 @@ class Simulation::Solver {
     double substep_seconds_;
     std::vector<RigidTransform> previous_poses_; // of the colliders, one substep ago
     std::vector<ExactCollision> exact_;          // with each exact map, in the order of the colliders
+    std::vector<Vec3f> places_;                  // of a piece of the particles, and their contacts with a
+    std::vector<Contact> contacts_;              // collider without an exact map
     std::vector<std::uint32_t> unsettled_;       // particles, in keep_free()
     Vec3d start_centre_;
     double bound_ = 0;

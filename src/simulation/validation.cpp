@@ -2,7 +2,9 @@
 
 #include <echinus/error.hpp>
 
+#include <memory>
 #include <string>
+#include <variant>
 
 namespace echinus {
 
@@ -78,6 +80,9 @@ void require_valid(const std::vector<Collider>& colliders) {
             if (scale == 0 || !std::isfinite(scale))
                 fail("collider " + std::to_string(i) + " has a scale of " + std::to_string(scale) +
                      "; it must be finite and not 0");
+        const auto* custom = std::get_if<std::shared_ptr<const CustomMap>>(&collider.map);
+        if (custom != nullptr && *custom == nullptr)
+            fail("collider " + std::to_string(i) + " has a custom map that is a null pointer");
         if (!is_finite(collider.pose) || !echinus::is_finite(collider.linear_velocity) ||
             !echinus::is_finite(collider.angular_velocity))
             fail("collider " + std::to_string(i) + " has a pose or a velocity that is not finite");
