@@ -32,10 +32,18 @@ class Baseline {
     /// @param inside  [n] 1 or 0. @pre points.size() == inside.size()
     virtual void contains_batch(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const = 0;
 
-    /// How deep is each particle, and which way is out? One outside, or not finite, gets no_contact(). A
-    /// system that finds a particle inside and no way out says so: inside, with no normal and depth 0.
+    /// How deep is each particle, or how far outside within the margin, and which way is out? One farther
+    /// outside, or not finite, gets no_contact(). A system that finds a particle inside and no way out says
+    /// so: inside, with no normal and depth 0.
+    /// @param margin    by the system's own measure of distance; not negative
     /// @param contacts  [n] @pre points.size() == contacts.size()
-    virtual void contacts_batch(std::span<const Vec3f> points, std::span<Contact> contacts) const = 0;
+    virtual void contacts_batch(std::span<const Vec3f> points, float margin,
+                                std::span<Contact> contacts) const = 0;
+
+    /// Of the particles inside alone.
+    void contacts_batch(std::span<const Vec3f> points, std::span<Contact> contacts) const {
+        contacts_batch(points, 0, contacts);
+    }
 
   protected:
     Baseline() = default;
@@ -52,13 +60,13 @@ inline Contact no_contact(const Vec3f& point) {
     return none;
 }
 
-/// The answer for a particle inside at this depth, where the way out is straight along the normal.
+/// The answer for a particle at this depth, negative outside, where the surface is straight along the normal.
 inline Contact contact_along(const Vec3f& point, float depth, const Vec3f& normal) {
     Contact result;
     result.point = point + normal * depth;
     result.normal = normal;
     result.depth = depth;
-    result.inside = true;
+    result.inside = depth > 0;
     return result;
 }
 

@@ -8,6 +8,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
 #include <btBulletCollisionCommon.h>
 
+#include <algorithm>
 #include <limits>
 #include <string>
 #include <utility>
@@ -169,20 +170,27 @@ void BulletMesh::contains_batch(std::span<const Vec3f> points, std::span<std::ui
         inside[i] = shape_->contains(shape_->to_shape(points[i])) ? 1 : 0;
 }
 
-void BulletMesh::contacts_batch(std::span<const Vec3f> points, std::span<Contact> contacts) const {
+void BulletMesh::contacts_batch(std::span<const Vec3f> points, float margin,
+                                std::span<Contact> contacts) const {
     SphereAndMesh meeting(shape_->shape, shape_->reach);
+    // A sphere without a radius would meet nothing, and one beyond the mesh's diameter everything.
+    const double margin_in_radii = std::clamp(margin / shape_->radius, 1e-6, 4.0);
+    SphereAndMesh near_meeting(shape_->shape, static_cast<btScalar>(margin_in_radii));
     for (std::size_t i = 0; i < points.size(); ++i) {
         Contact& contact = contacts[i] = no_contact(points[i]);
         const btVector3 place = shape_->to_shape(points[i]);
-        if (!shape_->contains(place)) continue;
-        contact.inside = true;
-        const DeepestContact deepest = meeting.deepest_contact(place);
+        contact.inside = shape_->contains(place);
+        if (!contact.inside && !(margin > 0 && is_finite(points[i]))) continue;
+        const DeepestContact deepest = (contact.inside ? meeting : near_meeting).deepest_contact(place);
         if (deepest.face == Contact::kUnknownFace) continue; // beyond the reach
-        contact.point = shape_->from_shape(deepest.place);
+        const Vec3f on_surface = shape_->from_shape(deepest.place);
+        const Vec3f out = contact.inside ? on_surface - points[i] : points[i] - on_surface;
+        const float distance = length(out);
+        if (!contact.inside && !(distance > 0 && distance <= margin)) continue;
+        contact.point = on_surface;
         contact.face = deepest.face;
-        const Vec3f out = contact.point - points[i];
-        contact.depth = length(out);
-        if (contact.depth > 0) contact.normal = out * (1 / contact.depth);
+        contact.depth = contact.inside ? distance : -distance;
+        if (distance > 0) contact.normal = out * (1 / distance);
     }
 }
 

@@ -38,7 +38,9 @@ class BulletMesh final : public Baseline {
     std::string_view counted() const override { return "compressed tree, vertices and faces"; }
 
     void contains_batch(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const override;
-    void contacts_batch(std::span<const Vec3f> points, std::span<Contact> contacts) const override;
+    void contacts_batch(std::span<const Vec3f> points, float margin,
+                        std::span<Contact> contacts) const override;
+    using Baseline::contacts_batch;
 
   private:
     struct Shape;

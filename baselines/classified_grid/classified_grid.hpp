@@ -57,10 +57,9 @@ class ClassifiedGrid final : public Baseline {
 
     /// contact() of many points. @param margin  not negative, NaN counts as 0
     /// @pre points_local.size() == contacts.size()
-    void contacts_batch(std::span<const Vec3f> points_local, float margin, std::span<Contact> contacts) const;
-    void contacts_batch(std::span<const Vec3f> points_local, std::span<Contact> contacts) const override {
-        contacts_batch(points_local, 0, contacts);
-    }
+    void contacts_batch(std::span<const Vec3f> points_local, float margin,
+                        std::span<Contact> contacts) const override;
+    using Baseline::contacts_batch;
 
   private:
     explicit ClassifiedGrid(std::shared_ptr<const GridArrays> arrays) : arrays_(std::move(arrays)) {}

@@ -56,11 +56,11 @@ Vec3f place_of(const SampledField& field, std::size_t node) {
 }
 
 std::vector<float> signed_distances(const TriangleMesh& mesh, const SampledField& field,
-                                    unsigned thread_count) {
+                                    const DenseGridOptions& grid) {
     ExactMapOptions options;
-    options.thread_count = thread_count;
+    options.thread_count = grid.thread_count;
     const ExactMap map = ExactMap::build(mesh, options);
-    const float farthest = 4 * map.view().radius; // the grid ends before
+    const float farthest = 4 * map.view().radius + 2 * static_cast<float>(grid.padding); // it ends before
     std::vector<float> distances(static_cast<std::size_t>(field.slice()) *
                                  static_cast<std::size_t>(field.nodes[2]));
     std::vector<Vec3f> points;
@@ -70,7 +70,7 @@ std::vector<float> signed_distances(const TriangleMesh& mesh, const SampledField
         points.resize(count);
         contacts.resize(count);
         for (std::size_t i = 0; i < count; ++i) points[i] = place_of(field, begin + i);
-        echinus::contacts_batch(map.view(), points, farthest, contacts, {1, 1, 1}, thread_count);
+        echinus::contacts_batch(map.view(), points, farthest, contacts, {1, 1, 1}, grid.thread_count);
         for (std::size_t i = 0; i < count; ++i) distances[begin + i] = -contacts[i].depth;
     }
     return distances;
@@ -89,7 +89,7 @@ void store_as_snorm16(const std::vector<float>& distances, SampledField& field) 
 
 std::shared_ptr<const SampledField> sampled(const TriangleMesh& mesh, SampledField frame,
                                             const DenseGridOptions& options) {
-    std::vector<float> distances = signed_distances(mesh, frame, options.thread_count);
+    std::vector<float> distances = signed_distances(mesh, frame, options);
     if (frame.format == SampleFormat::Float32)
         frame.float32 = std::move(distances);
     else
@@ -113,29 +113,37 @@ double finest_spacing_within(const Box& box, std::size_t byte_budget, SampleForm
     return coarse_enough;
 }
 
-Box box_of_closed(const TriangleMesh& mesh) {
+Box padded_box(const TriangleMesh& mesh, double padding) {
     require_closed(mesh, "a dense grid");
-    return box_of(mesh);
+    Box box = box_of(mesh);
+    if (!(padding >= 0 && padding <= box.longest_side()))
+        throw Error(ErrorCode::InvalidOptions,
+                    "the padding of a dense grid is to be at least 0 and at most the mesh's longest side, " +
+                        std::to_string(box.longest_side()) + "; it is " + std::to_string(padding));
+    const Vec3d wider(padding, padding, padding);
+    box.low = Vec3f(Vec3d(box.low) - wider);
+    box.high = Vec3f(Vec3d(box.high) + wider);
+    return box;
 }
 
 } // namespace
 
 DenseGrid DenseGrid::with_samples(const TriangleMesh& mesh, std::uint32_t sample_count,
                                   const DenseGridOptions& options) {
-    const Box box = box_of_closed(mesh);
+    const Box box = padded_box(mesh, options.padding);
     const double spacing = spacing_of_samples(box, sample_count, kMostSamples);
     return DenseGrid(sampled(mesh, frame_of(box, spacing, options.format), options));
 }
 
 DenseGrid DenseGrid::with_bytes(const TriangleMesh& mesh, std::size_t byte_budget,
                                 const DenseGridOptions& options) {
-    const Box box = box_of_closed(mesh);
+    const Box box = padded_box(mesh, options.padding);
     const double spacing = finest_spacing_within(box, byte_budget, options.format);
     return DenseGrid(sampled(mesh, frame_of(box, spacing, options.format), options));
 }
 
 DenseGrid DenseGrid::with_spacing(const TriangleMesh& mesh, double spacing, const DenseGridOptions& options) {
-    const Box box = box_of_closed(mesh);
+    const Box box = padded_box(mesh, options.padding);
     return DenseGrid(sampled(mesh, frame_of(box, spacing, options.format), options));
 }
 

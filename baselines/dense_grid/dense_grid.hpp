@@ -25,11 +25,14 @@ enum class SampleFormat : std::uint8_t {
 struct DenseGridOptions {
     SampleFormat format = SampleFormat::Float32;
     unsigned thread_count = 1; ///< of the build; 0: all cores. The samples do not depend on it.
+    /// How far the grid reaches beyond the mesh's box on each side, in the mesh's unit; at most the longest
+    /// side. Beyond the grid there are no contacts: with 0 there are none above the mesh's highest point.
+    double padding = 0;
 };
 
-/// Signed distances at the nodes of a regular grid over the mesh's own box, read by trilinear interpolation:
-/// what one writes oneself when no library is at hand, and the speed to beat. The samples are exact, from
-/// ExactMap.
+/// Signed distances at the nodes of a regular grid over the mesh's own box, or a padded one, read by
+/// trilinear interpolation: what one writes oneself when no library is at hand, and the speed to beat. The
+/// samples are exact, from ExactMap.
 ///
 /// Wrong by interpolation. The signed distance of a solid changes by at most as much as one moves (its
 /// gradient has length 1: Osher and Fedkiw, "Level Set Methods and Dynamic Implicit Surfaces", 2003, chapter
@@ -45,12 +48,12 @@ class DenseGrid final : public Baseline {
     static constexpr std::size_t kMostNodes = std::size_t{1} << 30;
     static constexpr std::uint32_t kMostSamples = 1U << 20; ///< along the longest side
 
-    /// So many samples along the longest side of the mesh's box, and as close along the others. Time
+    /// So many samples along the longest side of the grid's box, and as close along the others. Time
     /// O(samples), each a nearest point.
     /// @param mesh  closed; inside is where the winding number is not 0
     /// @throws Error InvalidMesh as inspect() does, for an open mesh, or when the bounding radius lies
-    /// outside [1e-15, 1e15]; InvalidOptions unless sample_count lies in [2, kMostSamples] and there are
-    /// at most kMostNodes nodes
+    /// outside [1e-15, 1e15]; InvalidOptions for a padding out of range, or unless sample_count
+    /// lies in [2, kMostSamples] and there are at most kMostNodes nodes
     static DenseGrid with_samples(const TriangleMesh& mesh, std::uint32_t sample_count,
                                   const DenseGridOptions& options = {});
 
@@ -59,7 +62,7 @@ class DenseGrid final : public Baseline {
     static DenseGrid with_bytes(const TriangleMesh& mesh, std::size_t byte_budget,
                                 const DenseGridOptions& options = {});
 
-    /// @param spacing  of the nodes, in the mesh's unit; positive, at most the longest side
+    /// @param spacing  of the nodes, in the mesh's unit; positive, at most the grid's longest side
     /// @throws Error as above
     static DenseGrid with_spacing(const TriangleMesh& mesh, double spacing,
                                   const DenseGridOptions& options = {});
@@ -93,7 +96,9 @@ class DenseGrid final : public Baseline {
 
     void contains_batch(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const override;
     void contacts_batch(std::span<const Vec3f> points, const Contacts& contacts) const;
-    void contacts_batch(std::span<const Vec3f> points, std::span<Contact> contacts) const override;
+    void contacts_batch(std::span<const Vec3f> points, float margin,
+                        std::span<Contact> contacts) const override;
+    using Baseline::contacts_batch;
 
   private:
     explicit DenseGrid(std::shared_ptr<const SampledField> field) : field_(std::move(field)) {}

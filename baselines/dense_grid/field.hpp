@@ -8,7 +8,7 @@ namespace echinus::baselines {
 
 /// What a query reads. Samples lie [z][y][x].
 struct SampledField {
-    Vec3f low, high;          ///< the mesh's box; the first node is at its low corner
+    Vec3f low, high;          ///< the padded box; the first node is at its low corner
     float nodes_per_unit = 0; ///< 1 / spacing
     double spacing = 0;
     std::int32_t nodes[3]{};

@@ -102,16 +102,19 @@ void DenseGrid::contacts_batch(std::span<const Vec3f> points, const Contacts& co
     }
 }
 
-void DenseGrid::contacts_batch(std::span<const Vec3f> points, std::span<Contact> contacts) const {
+/// Beyond the box depth and normal are 0: no contact.
+void DenseGrid::contacts_batch(std::span<const Vec3f> points, float margin,
+                               std::span<Contact> contacts) const {
     assert(points.size() == contacts.size());
     Block block;
     for (std::size_t begin = 0; begin < points.size(); begin += Block::kSize) {
         const auto some = points.subspan(begin, std::min(Block::kSize, points.size() - begin));
         contacts_batch(some, block.first(some.size()));
         for (std::size_t i = 0; i < some.size(); ++i)
-            contacts[begin + i] = block.depths[i] > 0 ? contact_along(some[i], block.depths[i],
-                                                                      {block.x[i], block.y[i], block.z[i]})
-                                                      : no_contact(some[i]);
+            contacts[begin + i] =
+                block.depths[i] > -margin
+                    ? contact_along(some[i], block.depths[i], {block.x[i], block.y[i], block.z[i]})
+                    : no_contact(some[i]);
     }
 }
 

@@ -236,7 +236,8 @@ void EmbreeTree::contains_batch(std::span<const Vec3f> points, std::span<std::ui
     }
 }
 
-void EmbreeTree::contacts_batch(std::span<const Vec3f> points, std::span<Contact> contacts) const {
+void EmbreeTree::contacts_batch(std::span<const Vec3f> points, float margin,
+                                std::span<Contact> contacts) const {
     std::uint8_t inside[kPacket];
     for (std::size_t begin = 0; begin < points.size(); begin += kPacket) {
         const std::size_t count = std::min(kPacket, points.size() - begin);
@@ -244,22 +245,25 @@ void EmbreeTree::contacts_batch(std::span<const Vec3f> points, std::span<Contact
         for (std::size_t i = 0; i < count; ++i) {
             const Vec3f& point = points[begin + i];
             Contact& contact = contacts[begin + i] = no_contact(point);
-            if (inside[i] == 0) continue;
-            const auto [on_surface, distance, face] = nearest(point);
-            contact.inside = true;
+            const bool is_inside = inside[i] != 0;
+            if (!is_inside && !(margin > 0)) continue;
+            const auto [on_surface, distance, face] = nearest(point, is_inside ? kInfinity : margin);
+            if (face == Contact::kUnknownFace) continue;
+            const Vec3f out = is_inside ? on_surface - point : point - on_surface;
+            contact.inside = is_inside;
             contact.point = on_surface;
-            contact.depth = distance;
+            contact.depth = is_inside ? distance : -distance;
             contact.face = face;
-            contact.normal = distance > 0 ? (on_surface - point) * (1 / distance)
+            contact.normal = distance > 0 ? out * (1 / distance)
                                           : scene_->surface.normal(static_cast<std::uint32_t>(face));
         }
     }
 }
 
-EmbreeTree::Nearest EmbreeTree::nearest(const Vec3f& point) const {
+EmbreeTree::Nearest EmbreeTree::nearest(const Vec3f& point, float farthest) const {
     NearestSoFar found{scene_->surface, {point, kInfinity, Contact::kUnknownFace}};
     if (!is_finite(point)) return found.nearest;
-    RTCPointQuery query{point.x, point.y, point.z, 0, kInfinity};
+    RTCPointQuery query{point.x, point.y, point.z, 0, farthest};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(scene_->scene, &query, &context, visit_face, &found);

@@ -4,6 +4,7 @@
 
 #include <echinus/mesh.hpp>
 
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -46,16 +47,20 @@ class EmbreeTree final : public Baseline {
     void contains_one_by_one(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const;
     /// Rays in packets of sixteen, for which Embree has kernels of its own.
     void contains_batch(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const override;
-    /// The normal leads from a particle inside to the nearest point; a particle on it has that of the face.
-    void contacts_batch(std::span<const Vec3f> points, std::span<Contact> contacts) const override;
+    /// The normal leads from a particle inside to the nearest point, and from there to one outside; a
+    /// particle on it has that of the face.
+    void contacts_batch(std::span<const Vec3f> points, float margin,
+                        std::span<Contact> contacts) const override;
+    using Baseline::contacts_batch;
 
     struct Nearest {
         Vec3f point;
         float distance;
-        std::int32_t face; ///< the mesh's number, or Contact::kUnknownFace for a point that is not finite
+        /// The mesh's number; Contact::kUnknownFace for a point that is not finite or not so near.
+        std::int32_t face;
     };
-    /// The nearest point of the surface, from either side.
-    Nearest nearest(const Vec3f& point) const;
+    /// The nearest point of the surface, from either side, if it is nearer than `farthest`.
+    Nearest nearest(const Vec3f& point, float farthest = std::numeric_limits<float>::infinity()) const;
 
     /// Does a face cross the straight way between two points?
     bool crossed(const Vec3f& from, const Vec3f& to) const;

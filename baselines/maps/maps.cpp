@@ -26,8 +26,10 @@ class MapBaseline final : public Baseline {
     void contains_batch(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const override {
         echinus::contains_batch(map_.view(), points, inside);
     }
-    void contacts_batch(std::span<const Vec3f> points, std::span<Contact> contacts) const override {
-        echinus::contacts_batch(map_.view(), points, 0, contacts);
+    using Baseline::contacts_batch;
+    void contacts_batch(std::span<const Vec3f> points, float margin,
+                        std::span<Contact> contacts) const override {
+        echinus::contacts_batch(map_.view(), points, margin, contacts);
     }
 
   private:

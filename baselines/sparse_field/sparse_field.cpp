@@ -19,6 +19,9 @@ namespace echinus::baselines {
 namespace {
 
 constexpr float kVoxelsOutside = 3;
+/// So far outside all eight samples around a place are in the band: 3 less the diagonal of a voxel. Beyond it
+/// all is background and has no gradient.
+constexpr float kVoxelsKnown = kVoxelsOutside - 1.7321F;
 /// The low corner of the mesh's box in voxels: far enough from 0 for the voxels outside it, so that all lie
 /// in one inner node of the tree, whose table of children is most of a small grid.
 constexpr double kFirstVoxel = 8;
@@ -154,9 +157,11 @@ void SparseField::contains_batch(std::span<const Vec3f> points, std::span<std::u
     }
 }
 
-void SparseField::contacts_batch(std::span<const Vec3f> points, std::span<Contact> contacts) const {
+void SparseField::contacts_batch(std::span<const Vec3f> points, float margin,
+                                 std::span<Contact> contacts) const {
     openvdb::math::BoxStencil<openvdb::FloatGrid> stencil(*grid_->grid);
     const auto spacing = static_cast<float>(grid_->spacing);
+    const float farthest = std::min(margin / spacing, kVoxelsKnown);
     for (std::size_t i = 0; i < points.size(); ++i) {
         contacts[i] = no_contact(points[i]);
         const Vec3d voxel = grid_->in_voxels(points[i]);
@@ -165,7 +170,7 @@ void SparseField::contacts_batch(std::span<const Vec3f> points, std::span<Contac
         stencil.moveTo(place);
         const openvdb::Vec3s in_single(place);
         const float distance = stencil.interpolation(in_single);
-        if (!(distance < 0)) continue;
+        if (!(distance < 0 || (margin > 0 && distance <= farthest))) continue;
         openvdb::Vec3s normal = stencil.gradient(in_single);
         normal.normalize();
         contacts[i] = contact_along(points[i], -distance * spacing, {normal[0], normal[1], normal[2]});

@@ -72,9 +72,10 @@ void SuperquadricMap::contains_batch(std::span<const Vec3f> points, std::span<st
     for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = contains(points[i]) ? 1 : 0;
 }
 
-void SuperquadricMap::contacts_batch(std::span<const Vec3f> points, std::span<Contact> contacts) const {
+void SuperquadricMap::contacts_batch(std::span<const Vec3f> points, float margin,
+                                     std::span<Contact> contacts) const {
     assert(points.size() == contacts.size());
-    for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = contact(points[i]);
+    for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = contact(points[i], margin);
 }
 
 } // namespace echinus::baselines

@@ -119,7 +119,9 @@ class SuperquadricMap final : public Baseline {
     Contact contact(const Vec3f& point_local, float margin = 0) const noexcept;
 
     void contains_batch(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const override;
-    void contacts_batch(std::span<const Vec3f> points, std::span<Contact> contacts) const override;
+    void contacts_batch(std::span<const Vec3f> points, float margin,
+                        std::span<Contact> contacts) const override;
+    using Baseline::contacts_batch;
 
     /// What the map holds of the surface, and how well its superquadrics fit.
     const SuperquadricReport& report() const { return *report_; }

@@ -76,10 +76,10 @@ TriangleMesh make_mesh(const BoxModel& model);
 AnyMap build_map(const TriangleMesh& mesh, const MapOptions& options, unsigned thread_count = 0);
 
 /// The scene's collider, with a map of the scene's model.
-Collider make_collider(const Scene& scene, const AnyMap& map);
+Collider make_collider(const Scene& scene, const ColliderMap& map);
 
 /// The scene's cloth and collider, ready to step.
 /// @throws Error InvalidOptions
-Simulation make_simulation(const Scene& scene, const AnyMap& map);
+Simulation make_simulation(const Scene& scene, const ColliderMap& map);
 
 } // namespace echinus

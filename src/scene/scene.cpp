@@ -42,7 +42,7 @@ AnyMap build_map(const TriangleMesh& mesh, const MapOptions& options, unsigned t
     return DistanceMap::build(mesh, with_threads);
 }
 
-Collider make_collider(const Scene& scene, const AnyMap& map) {
+Collider make_collider(const Scene& scene, const ColliderMap& map) {
     return {.map = map,
             .pose = scene.pose,
             .scale = scene.scale,
@@ -50,7 +50,7 @@ Collider make_collider(const Scene& scene, const AnyMap& map) {
             .angular_velocity = scene.angular_velocity};
 }
 
-Simulation make_simulation(const Scene& scene, const AnyMap& map) {
+Simulation make_simulation(const Scene& scene, const ColliderMap& map) {
     Deformable cloth = make_cloth(scene.cloth);
     const Vec3d way = scene.cloth_velocity * (scene.simulation.time_step / scene.simulation.substep_count);
     for (std::size_t i = 0; i < cloth.particle_count(); ++i)

@@ -204,6 +204,32 @@ TEST(DenseGrid, DoesNotDependOnTheNumberOfThreads) {
     for (const Vec3f& p : points_in_cube(2000, 1)) ASSERT_EQ(one.sample(p).distance, four.sample(p).distance);
 }
 
+TEST(DenseGrid, SeesTheMeshFromBesideItsBoxWhenPadded) {
+    const TriangleMesh mesh = make_box({2, 2, 2});
+    DenseGridOptions padded;
+    padded.padding = 0.25;
+    const std::vector<Vec3f> points{{0.1F, 0.2F, 1.1F}, {-1.2F, 0.3F, 0.1F}, {0, 1.3F, 0}};
+    std::vector<Contact> contacts(points.size());
+    DenseGrid::with_samples(mesh, 26).contacts_batch(points, 0.5F, contacts);
+    for (const Contact& contact : contacts) EXPECT_FALSE(contact.found());
+    DenseGrid::with_samples(mesh, 26, padded).contacts_batch(points, 0.5F, contacts);
+    EXPECT_NEAR(contacts[0].depth, -0.1, 1e-3);
+    EXPECT_NEAR(contacts[1].depth, -0.2, 1e-3);
+    EXPECT_GT(contacts[0].normal.z, 0.999F);
+    EXPECT_LT(contacts[1].normal.x, -0.999F);
+    EXPECT_FALSE(contacts[2].found()); // beyond the padding
+}
+
+TEST(DenseGrid, RefusesPaddingThatIsNone) {
+    for (const double padding : {-0.1, 1.1, double{kNan}, double{kInfinity}}) {
+        DenseGridOptions options;
+        options.padding = padding;
+        expect_error(ErrorCode::InvalidOptions, "padding", [&] {
+            DenseGrid::with_samples(make_box({1, 1, 1}), 10, options);
+        });
+    }
+}
+
 TEST(DenseGrid, RefusesBadMeshes) {
     test::expect_bad_meshes_are_refused([](const TriangleMesh& mesh) { DenseGrid::with_samples(mesh, 10); });
     test::expect_bad_meshes_are_refused([](const TriangleMesh& mesh) { DenseGrid::with_bytes(mesh, 1000); });
