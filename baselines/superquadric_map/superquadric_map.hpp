@@ -82,7 +82,28 @@ struct SuperquadricMapOptions {
         0; ///< 0: all cores, for fits and samples. The bytes of the map do not depend on it.
 };
 
+struct FittedSegments;
 struct SegmentArrays;
+
+/// A model's segments, each with its superquadric: all of a map but its samples, and most of its build time.
+/// Fitted once, it serves maps of all resolutions. Immutable; copies share what was fitted.
+class SuperquadricSegments {
+  public:
+    /// @param mesh     as for SuperquadricMap::build()
+    /// @param options  grid and samples are not looked at
+    /// @throws Error as SuperquadricMap::build(), and what `progress` throws
+    static SuperquadricSegments fit(const TriangleMesh& mesh, const SuperquadricMapOptions& options = {},
+                                    const Progress& progress = {});
+
+    std::size_t count() const;
+
+  private:
+    friend class SuperquadricMap;
+    explicit SuperquadricSegments(std::shared_ptr<const FittedSegments> fitted)
+        : fitted_(std::move(fitted)) {}
+
+    std::shared_ptr<const FittedSegments> fitted_;
+};
 
 /// Immutable; copies share the arrays. Any number of threads may query one map. Points are in the frame and
 /// unit of the mesh.
@@ -98,6 +119,12 @@ class SuperquadricMap final : public Baseline {
     /// the coarsest grid exceeds the budget; and what `progress` throws, when HACD's memory is not freed
     static SuperquadricMap build(const TriangleMesh& mesh, const SuperquadricMapOptions& options = {},
                                  const Progress& progress = {});
+
+    /// The second half of build().
+    /// @param options  those of the segments are not looked at
+    /// @throws Error InvalidOptions as build(), and what `progress` throws
+    static SuperquadricMap sample(const SuperquadricSegments& segments,
+                                  const SuperquadricMapOptions& options = {}, const Progress& progress = {});
 
     /// All that a query reads: for each segment 76 bytes of pose, sizes and exponents, 8 bytes for each row
     /// and each column of its grid (sines and cosines to their powers, for normals), and 4 bytes a sample, 2

@@ -302,13 +302,24 @@ TEST(SuperquadricMap, TellsOfItsProgressAndStopsWhenTheListenerThrows) {
         if (stages.empty() || stages.back() != stage) stages.emplace_back(stage);
     };
     (void)SuperquadricMap::build(make_torus(1, 0.4, 20, 10), small_grid(3), note);
-    EXPECT_EQ(stages, (std::vector<std::string>{"simplify", "decompose", "fit and sample"}));
+    EXPECT_EQ(stages, (std::vector<std::string>{"simplify", "decompose", "fit", "sample"}));
     EXPECT_THROW((void)SuperquadricMap::build(make_torus(1, 0.4, 20, 10), small_grid(3),
                                               [](std::string_view stage, double) {
-                                                  if (stage == "fit and sample")
-                                                      throw std::runtime_error("stop");
+                                                  if (stage == "fit") throw std::runtime_error("stop");
                                               }),
                  std::runtime_error);
+}
+
+TEST(SuperquadricMap, IsTheSameWhetherItsSegmentsWereFittedForItOrForAnother) {
+    const TriangleMesh torus = make_torus(1, 0.4, 20, 10);
+    const SuperquadricSegments segments = SuperquadricSegments::fit(torus, with_segments(5));
+    ASSERT_GE(segments.count(), 5U);
+    (void)SuperquadricMap::sample(segments, small_grid());
+    SuperquadricMapOptions options = with_segments(5);
+    options.byte_budget = 20'000;
+    const SuperquadricMap map = SuperquadricMap::sample(segments, options);
+    EXPECT_LE(map.byte_count(), 20'000U);
+    expect_same_answers(map, SuperquadricMap::build(torus, options), torus);
 }
 
 TEST(SuperquadricMap, RefusesWhatItCannotBeBuiltAround) {
