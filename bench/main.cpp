@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include <map>
-#include <optional>
 
 using namespace echinus;
 namespace fs = std::filesystem;
@@ -26,23 +25,6 @@ const std::map<std::string, Records (*)(const Setting&)> kTasks{
     {"build", measure_build},       {"cloth", measure_cloth},       {"threads", measure_threads},
 };
 
-/// A bar for one piece of work after the other.
-class Progress {
-  public:
-    void operator()(const std::string& what, double fraction) {
-        if (what != what_) {
-            what_ = what;
-            bar_.reset();
-            bar_.emplace(what);
-        }
-        (*bar_)(fraction);
-    }
-
-  private:
-    std::string what_;
-    std::optional<ProgressBar> bar_;
-};
-
 struct Arguments {
     std::string task;
     fs::path meshes, debian_horse, scenes, truth_cache, target;
@@ -52,7 +34,7 @@ struct Arguments {
     bool record = false;
 };
 
-Setting setting_of(const Arguments& arguments, Progress& progress) {
+Setting setting_of(const Arguments& arguments, StageBars& progress) {
     return {.meshes = arguments.meshes,
             .debian_horse = arguments.debian_horse,
             .scenes = arguments.scenes,
@@ -62,7 +44,7 @@ Setting setting_of(const Arguments& arguments, Progress& progress) {
 }
 
 void measure(const Arguments& arguments) {
-    Progress progress;
+    StageBars progress;
     Setting setting = setting_of(arguments, progress);
     if (arguments.short_run)
         setting.effort = {.point_count = 40'000,
@@ -101,7 +83,7 @@ void print_all(const char* head, const std::vector<std::string>& sentences) {
 }
 
 Records measure_guard(const Arguments& arguments) {
-    Progress progress;
+    StageBars progress;
     Setting setting = setting_of(arguments, progress);
     pin_to_one_core();
     return measure_ratios(setting);

@@ -48,10 +48,24 @@ std::string number(double value) {
     return fmt::format("{:.3g}", value);
 }
 
+/// As text of a document.
+std::string escaped(const std::string& plain) {
+    std::string result;
+    for (const char c : plain) {
+        if (c == '&')
+            result += "&amp;";
+        else if (c == '<')
+            result += "&lt;";
+        else
+            result += c;
+    }
+    return result;
+}
+
 std::string text(double x, double y, const char* anchor, const std::string& content,
                  const std::string& more = {}) {
     return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more,
-                       content);
+                       escaped(content));
 }
 
 std::string line(double x1, double y1, double x2, double y2, const std::string& style) {
@@ -134,6 +148,7 @@ std::string svg(const Plot& plot) {
             low = {std::min(low.x, p.x), std::min(low.y, p.y)};
             high = {std::max(high.x, p.x), std::max(high.y, p.y)};
         }
+    if (high.x == 0) low = high = {1, 1}; // there is no point
     const Axis x(low.x, high.x, kLeft, kWidth - kRight);
     const Axis y(low.y, high.y, kHeight - kBottom, kTop);
     std::string result =

@@ -31,7 +31,6 @@ struct BuildArguments {
     MapKind kind = MapKind::Exact;
     ExactMapOptions exact;
     std::uint32_t cells_per_octant = 0;
-    ByteCountArgument budget;
     DistanceMapOptions distance;
     GridArgument directions{DistanceMapOptions{}.longitude_count, DistanceMapOptions{}.colatitude_count};
     std::vector<const CLI::Option*> exact_only, distance_only;    ///< options that belong to one kind
@@ -60,7 +59,6 @@ void refuse_options_of_the_other_kind(const BuildArguments& arguments) {
 ExactMapOptions exact_options_of(const BuildArguments& arguments) {
     ExactMapOptions options = arguments.exact;
     options.divisions = static_cast<std::uint32_t>(std::sqrt(arguments.cells_per_octant));
-    options.byte_budget = arguments.budget.bytes;
     options.thread_count = arguments.thread_count;
     return options;
 }
@@ -181,12 +179,11 @@ void add_exact_options(CLI::App& command, BuildArguments& arguments) {
                         "number of faces if not given")
             ->check(CLI::Range(1U, kMostCells))
             ->type_name("COUNT"),
-        command
-            .add_option("--budget", arguments.budget,
-                        "The most bytes of the map, as 300KB (units B, KB, MB, KiB, MiB): as many cells as "
-                        "keep within")
-            ->excludes("--cells-per-octant")
-            ->type_name("BYTES"),
+        add_byte_count(
+            command, "--budget", arguments.exact.byte_budget,
+            "The most bytes of the map, as 300KB (units B, KB, MB, KiB, MiB): as many cells as keep "
+            "within")
+            ->excludes("--cells-per-octant"),
         add_choice<InsideRule>(command, "--rule", arguments.exact.rule,
                                {{"nonzero", InsideRule::Nonzero}, {"parity", InsideRule::Parity}},
                                "What counts as inside where parts of the mesh overlap"),

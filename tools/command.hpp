@@ -12,6 +12,7 @@ void add_mesh_command(CLI::App& app);
 void add_info_command(CLI::App& app);
 void add_build_command(CLI::App& app);
 void add_query_command(CLI::App& app);
+void add_compare_command(CLI::App& app);
 void add_simulate_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 

@@ -54,6 +54,7 @@ void parse_and_run(int argc, char** argv) {
     add_info_command(app);
     add_build_command(app);
     add_query_command(app);
+    add_compare_command(app);
     add_simulate_command(app);
     add_render_command(app);
     app.footer("A file named - is standard input or standard output.\n"

@@ -28,3 +28,12 @@ void ProgressBar::operator()(double fraction) {
     drawn_ = true;
     last_drawn_ = now;
 }
+
+void StageBars::operator()(const std::string& stage, double fraction) {
+    if (stage != stage_ || !bar_) {
+        stage_ = stage;
+        bar_.reset();
+        bar_.emplace(stage);
+    }
+    (*bar_)(fraction);
+}

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 /// A bar on standard error that shows how much of a long task is done, and nothing at all when standard error
@@ -23,4 +24,16 @@ class ProgressBar {
     bool on_terminal_;
     bool drawn_ = false;
     Clock::time_point last_drawn_;
+};
+
+/// One bar after the other, for work in stages that each have a name.
+class StageBars {
+  public:
+    void operator()(const std::string& stage, double fraction);
+    /// Erases the last bar.
+    void finish() { bar_.reset(); }
+
+  private:
+    std::string stage_;
+    std::optional<ProgressBar> bar_;
 };

@@ -54,9 +54,13 @@ struct Resolutions {
         least = spherical ? DistanceMapOptions::kMinSampleCount : DistanceMapOptions::kMinDivisions;
         most = spherical ? DistanceMapOptions::kMaxSampleCount : DistanceMapOptions::kMaxDivisions;
     }
-    DistanceMap build(const TriangleMesh& mesh, std::uint32_t resolution) {
-        options.longitude_count = options.colatitude_count = options.divisions = resolution;
-        return DistanceMap::build(mesh, options);
+    DistanceMapOptions with(std::uint32_t resolution) const {
+        DistanceMapOptions result = options;
+        result.longitude_count = result.colatitude_count = result.divisions = resolution;
+        return result;
+    }
+    std::size_t bytes(const TriangleMesh& mesh, std::uint32_t resolution) const {
+        return DistanceMap::build(mesh, with(resolution)).view().byte_count();
     }
 };
 
@@ -75,36 +79,33 @@ std::unique_ptr<const Baseline> distance_map(const TriangleMesh& mesh, const Dis
 
 /// Bytes grow nearly as the square of the resolution, so that a map of any resolution foretells the next to
 /// try; bisection has the last word where it does not.
-std::unique_ptr<const Baseline> distance_map_with_bytes(const TriangleMesh& mesh, std::size_t byte_budget,
-                                                        const DistanceMapOptions& options) {
+DistanceMapOptions finest_within(const TriangleMesh& mesh, std::size_t byte_budget,
+                                 const DistanceMapOptions& options) {
     require_closed(mesh, "a comparison");
     Resolutions resolutions(options);
     std::uint32_t fits = resolutions.least, too_fine = resolutions.most + 1;
-    DistanceMap best = resolutions.build(mesh, fits);
-    if (best.view().byte_count() > byte_budget)
-        throw Error(ErrorCode::InvalidOptions, "the coarsest distance map takes " +
-                                                   std::to_string(best.view().byte_count()) +
+    std::size_t bytes = resolutions.bytes(mesh, fits), most_bytes = bytes;
+    if (bytes > byte_budget)
+        throw Error(ErrorCode::InvalidOptions, "the coarsest distance map takes " + std::to_string(bytes) +
                                                    " bytes; the budget is " + std::to_string(byte_budget));
-    const double wanted = static_cast<double>(byte_budget);
-    double bytes = static_cast<double>(best.view().byte_count());
+    const auto wanted = static_cast<double>(byte_budget);
     double resolution = resolutions.least;
     for (int builds = 0; builds < 12 && too_fine - fits > 1; ++builds) {
-        if (static_cast<double>(best.view().byte_count()) > 0.99 * wanted) break;
-        const double foretold = resolution * std::sqrt(wanted / bytes * 0.998);
+        if (static_cast<double>(most_bytes) > 0.99 * wanted) break;
+        const double foretold = resolution * std::sqrt(wanted / static_cast<double>(bytes) * 0.998);
         const double middle = (fits + 1.0 * too_fine) / 2;
         // Early on only what is foretold, since the middle of all resolutions is a huge map.
         const double next = builds < 6 ? foretold : std::min(foretold, middle);
         resolution = std::clamp(std::floor(next), fits + 1.0, too_fine - 1.0);
-        DistanceMap map = resolutions.build(mesh, static_cast<std::uint32_t>(resolution));
-        bytes = static_cast<double>(map.view().byte_count());
-        if (bytes > wanted) {
+        bytes = resolutions.bytes(mesh, static_cast<std::uint32_t>(resolution));
+        if (bytes > byte_budget) {
             too_fine = static_cast<std::uint32_t>(resolution);
         } else {
             fits = static_cast<std::uint32_t>(resolution);
-            best = std::move(map);
+            most_bytes = bytes;
         }
     }
-    return behind_interface(std::move(best));
+    return resolutions.with(fits);
 }
 
 } // namespace echinus::baselines

@@ -20,10 +20,12 @@ std::unique_ptr<const Baseline> distance_map(const TriangleMesh& mesh,
                                              const DistanceMapOptions& options = {});
 
 /// The finest grid of directions with which the map takes at most so many bytes, to about one part in a
-/// hundred: as many longitudes as colatitudes, or the divisions of an octahedron. Costs a few builds.
+/// hundred: as many longitudes as colatitudes, or the divisions of an octahedron or a cube. Costs a few
+/// builds.
 /// @param options  its counts are not looked at
+/// @return  the options with these counts
 /// @throws Error as above; InvalidOptions when the coarsest map exceeds the budget
-std::unique_ptr<const Baseline> distance_map_with_bytes(const TriangleMesh& mesh, std::size_t byte_budget,
-                                                        const DistanceMapOptions& options = {});
+DistanceMapOptions finest_within(const TriangleMesh& mesh, std::size_t byte_budget,
+                                 const DistanceMapOptions& options = {});
 
 } // namespace echinus::baselines

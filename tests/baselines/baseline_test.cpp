@@ -242,7 +242,7 @@ TEST(DistanceMapBaseline, UsesItsBudgetAndNoMore) {
         for (const std::size_t budget : {20'000U, 630'000U}) {
             DistanceMapOptions options;
             options.grid = grid;
-            const auto map = baselines::distance_map_with_bytes(mesh, budget, options);
+            const auto map = baselines::distance_map(mesh, baselines::finest_within(mesh, budget, options));
             EXPECT_LE(map->byte_count(), budget);
             EXPECT_GT(map->byte_count(), budget * 9 / 10);
         }
@@ -250,6 +250,6 @@ TEST(DistanceMapBaseline, UsesItsBudgetAndNoMore) {
 
 TEST(DistanceMapBaseline, RefusesABudgetThatTheCoarsestMapExceeds) {
     test::expect_error(ErrorCode::InvalidOptions, "budget", [] {
-        baselines::distance_map_with_bytes(make_box({1, 1, 1}), 50);
+        (void)baselines::finest_within(make_box({1, 1, 1}), 50);
     });
 }

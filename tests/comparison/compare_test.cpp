@@ -1,0 +1,141 @@
+#include "comparison/compare.hpp"
+#include "support/expect_error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+using namespace echinus;
+using namespace echinus::comparison;
+
+namespace {
+
+TriangleMesh torus() {
+    return make_torus(1, 0.4, 30, 12);
+}
+
+CompareOptions quick(std::vector<std::string> systems) {
+    CompareOptions options;
+    options.systems = std::move(systems);
+    options.byte_budget = 100'000;
+    options.point_count = 2500;
+    return options;
+}
+
+const SetFigures& on(const Figures& figures, const std::string& set) {
+    return *std::ranges::find(figures.sets, set, &SetFigures::set);
+}
+
+} // namespace
+
+TEST(Compare, FindsTheExactMapWithoutErrorAndASampledOneWith) {
+    const Comparison result = compare(torus(), quick({"exact", "dense", "distance"}));
+    ASSERT_EQ(result.systems.size(), 3U);
+    EXPECT_EQ(result.face_count, 720U);
+    EXPECT_NEAR(result.radius, 1.4, 1e-6);
+    for (const char* set : {"U", "S", "C"}) {
+        const SetFigures& exact = on(result.systems[0], set);
+        EXPECT_EQ(exact.errors.wrong_share, 0) << set;
+        EXPECT_LT(exact.errors.depth.worst, 1e-6) << set;
+        EXPECT_EQ(exact.errors.asked_count, 2500U) << set;
+    }
+    for (const std::size_t sampled : {1U, 2U}) {
+        EXPECT_GT(on(result.systems[sampled], "S").errors.wrong_share, 0.001);
+        EXPECT_LT(on(result.systems[sampled], "S").errors.wrong_share, 0.2);
+    }
+    // Along the ray from the centre is not the nearest way out, along the field's gradient is.
+    EXPECT_GT(on(result.systems[2], "S").errors.depth.mean, 2 * on(result.systems[1], "S").errors.depth.mean);
+}
+
+TEST(Compare, MeasuresWhatASystemTakes) {
+    const Comparison result = compare(torus(), quick({"dense", "exact"}));
+    EXPECT_EQ(result.systems[0].system->name, "dense"); // in the order that was asked for
+    for (const Figures& figures : result.systems) {
+        EXPECT_GT(figures.byte_count, 10'000U);
+        EXPECT_GT(figures.build_ms, 0);
+        EXPECT_FALSE(figures.counted.empty());
+        for (const SetFigures& set : figures.sets) {
+            EXPECT_GT(set.contains.ns, 0);
+            EXPECT_GT(set.contacts.ns, 0);
+        }
+    }
+}
+
+TEST(Compare, KeepsTheErrorsOfARunForTheNext) {
+    const CompareOptions options = quick({"dense", "distance"});
+    const Comparison a = compare(torus(), options), b = compare(torus(), options);
+    for (std::size_t k = 0; k < a.systems.size(); ++k)
+        for (std::size_t s = 0; s < a.set_names.size(); ++s) {
+            EXPECT_EQ(a.systems[k].sets[s].errors.wrong_share, b.systems[k].sets[s].errors.wrong_share);
+            EXPECT_EQ(a.systems[k].sets[s].errors.depth.mean, b.systems[k].sets[s].errors.depth.mean);
+            EXPECT_EQ(a.systems[k].sets[s].errors.normal.mean, b.systems[k].sets[s].errors.normal.mean);
+        }
+}
+
+TEST(Compare, DrawsCurvesThatFallWithTheBytes) {
+    CompareOptions options = quick({"dense", "exact"});
+    options.curve_length = 4;
+    const Comparison result = compare(torus(), options);
+    ASSERT_EQ(result.curves.size(), 2U);
+    const std::vector<Figures>& dense = result.curves[0];
+    ASSERT_EQ(dense.size(), 4U);
+    for (std::size_t k = 1; k < dense.size(); ++k) {
+        EXPECT_GT(dense[k].byte_count, dense[k - 1].byte_count);
+        EXPECT_LT(dense[k].sets[0].errors.depth.mean, dense[k - 1].sets[0].errors.depth.mean);
+    }
+    EXPECT_LE(dense.back().byte_count, 800'000U);
+    for (const Figures& figures : result.curves[1]) EXPECT_EQ(figures.sets[0].errors.wrong_share, 0);
+}
+
+TEST(Compare, LeavesOutWhoDoesNotFitAndSaysWhy) {
+    CompareOptions options = quick({"dense", "exact", "classified"});
+    options.byte_budget = 1000;
+    const Comparison result = compare(torus(), options);
+    ASSERT_EQ(result.refusals.size(), 1U);
+    EXPECT_EQ(result.refusals[0].system->name, "classified");
+    EXPECT_FALSE(result.refusals[0].reason.empty());
+    ASSERT_EQ(result.systems.size(), 2U);
+    EXPECT_LE(result.systems[0].byte_count, 1000U);
+    EXPECT_GT(result.systems[1].byte_count, 1000U); // the exact map takes what it takes
+}
+
+TEST(Compare, AsksASystemOnceThatIsNamedTwice) {
+    EXPECT_EQ(compare(torus(), quick({"exact", "exact"})).systems.size(), 1U);
+}
+
+TEST(Compare, RefusesWhatCannotBeCompared) {
+    TriangleMesh open = torus();
+    open.faces.pop_back();
+    test::expect_error(ErrorCode::InvalidMesh, "not closed", [&] { (void)compare(open, quick({"exact"})); });
+    TriangleMesh point = torus();
+    for (Vec3f& p : point.vertices) p = {1, 1, 1};
+    test::expect_error(ErrorCode::InvalidMesh, "", [&] { (void)compare(point, quick({"exact"})); });
+    test::expect_error(ErrorCode::InvalidMesh, "", [&] { (void)compare({}, quick({"exact"})); });
+    test::expect_error(ErrorCode::InvalidOptions, "octree",
+                       [&] { (void)compare(torus(), quick({"octree"})); });
+    CompareOptions options = quick({"exact"});
+    options.byte_budget = 0;
+    test::expect_error(ErrorCode::InvalidOptions, "budget", [&] { (void)compare(torus(), options); });
+    options = quick({"exact"});
+    options.point_count = 99;
+    test::expect_error(ErrorCode::InvalidOptions, "point_count", [&] { (void)compare(torus(), options); });
+}
+
+TEST(Compare, TellsOfItsProgressAndStopsWhenTheListenerThrows) {
+    CompareOptions options = quick({"exact"});
+    std::string stages;
+    options.report_progress = [&](const std::string& what, double fraction) {
+        EXPECT_GE(fraction, 0);
+        EXPECT_LE(fraction, 1.000001);
+        if (!stages.ends_with(what)) stages += "|" + what;
+    };
+    (void)compare(torus(), options);
+    EXPECT_EQ(stages,
+              "|judging the particles|building: exact map|asking about U|asking about S|asking about C");
+    options.report_progress = [](const std::string& what, double) {
+        if (what == "asking about S") throw std::runtime_error("stop");
+    };
+    EXPECT_THROW((void)compare(torus(), options), std::runtime_error);
+}

@@ -1,0 +1,140 @@
+#include "comparison_text.hpp"
+
+#include "comparison/columns.hpp"
+#include "comparison/machine.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+using namespace echinus;
+using namespace echinus::comparison;
+using nlohmann::ordered_json;
+
+namespace {
+
+// ---- JSON ----
+
+ordered_json to_json(const Spread& spread) {
+    return {{"mean", spread.mean}, {"percentile_99", spread.most}, {"worst", spread.worst}};
+}
+
+ordered_json to_json(const SetFigures& figures) {
+    return {{"contains_ns", figures.contains.ns},
+            {"contacts_ns", figures.contacts.ns},
+            {"wrong_share", figures.errors.wrong_share},
+            {"farthest_wrong_radii", figures.errors.farthest_wrong},
+            {"depth_error_radii", to_json(figures.errors.depth)},
+            {"normal_error_degrees", to_json(figures.errors.normal)}};
+}
+
+ordered_json to_json(const Figures& figures, std::size_t byte_budget) {
+    ordered_json sets = ordered_json::object();
+    for (const SetFigures& set : figures.sets) sets[set.set] = to_json(set);
+    return {{"name", figures.system->name},
+            {"title", figures.system->title},
+            {"bytes", figures.byte_count},
+            {"bytes_are", figures.counted},
+            {"over_budget", figures.byte_count > byte_budget},
+            {"build_ms", figures.build_ms},
+            {"sets", std::move(sets)}};
+}
+
+ordered_json curves_to_json(const Comparison& comparison, std::size_t byte_budget) {
+    ordered_json curves = ordered_json::array();
+    for (const std::vector<Figures>& sizes : comparison.curves) {
+        if (sizes.empty()) continue;
+        ordered_json points = ordered_json::array();
+        for (const Figures& figures : sizes) points.push_back(to_json(figures, byte_budget));
+        curves.push_back({{"name", sizes.front().system->name}, {"sizes", std::move(points)}});
+    }
+    return curves;
+}
+
+// ---- Text ----
+
+std::string centred(const std::string& text, std::size_t width) {
+    return fmt::format("{:^{}}", text, width);
+}
+
+/// Columns of one group stand together under its name, each as wide as its widest cell.
+std::string table_of(const std::vector<Column>& columns, const Comparison& comparison) {
+    constexpr std::size_t kGap = 2, kGroupGap = 3;
+    std::string groups, heads;
+    std::vector<std::string> rows(comparison.systems.size());
+    std::size_t name_width = 0;
+    for (const Figures& figures : comparison.systems)
+        name_width = std::max(name_width, figures.system->title.size());
+    const auto begin = [&](std::string& line, std::string_view name) {
+        line = fmt::format("{:<{}}", name, name_width);
+    };
+    begin(groups, "");
+    begin(heads, "");
+    for (std::size_t i = 0; i < rows.size(); ++i) begin(rows[i], comparison.systems[i].system->title);
+
+    for (std::size_t first = 0, last = 0; first < columns.size(); first = last) {
+        while (last < columns.size() && columns[last].group == columns[first].group) ++last;
+        std::string group_heads;
+        std::vector<std::string> group_rows(rows.size());
+        for (std::size_t k = first; k < last; ++k) {
+            std::vector<std::string> cells;
+            std::size_t width = columns[k].head.size();
+            for (const Figures& figures : comparison.systems) {
+                cells.push_back(columns[k].cell(figures));
+                width = std::max(width, cells.back().size());
+            }
+            width += k == first ? 0 : kGap;
+            group_heads += fmt::format("{:>{}}", columns[k].head, width);
+            for (std::size_t i = 0; i < rows.size(); ++i)
+                group_rows[i] += fmt::format("{:>{}}", cells[i], width);
+        }
+        const std::size_t width = std::max(group_heads.size(), columns[first].group.size());
+        const std::string gap(kGroupGap, ' ');
+        groups += gap + centred(columns[first].group, width);
+        heads += gap + fmt::format("{:>{}}", group_heads, width);
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            rows[i] += gap + fmt::format("{:>{}}", group_rows[i], width);
+    }
+    std::string text;
+    for (const std::string* line : {&groups, &heads})
+        text += line->substr(0, line->find_last_not_of(' ') + 1) + "\n";
+    for (const std::string& row : rows) text += row + "\n";
+    return text;
+}
+
+} // namespace
+
+ordered_json to_json(const Comparison& comparison, const CompareOptions& options,
+                     const std::string& mesh_name) {
+    ordered_json systems = ordered_json::array(), refusals = ordered_json::array();
+    for (const Figures& figures : comparison.systems)
+        systems.push_back(to_json(figures, options.byte_budget));
+    for (const Refusal& refusal : comparison.refusals)
+        refusals.push_back({{"name", refusal.system->name}, {"reason", refusal.reason}});
+    ordered_json result{{"mesh", mesh_name},
+                        {"faces", comparison.face_count},
+                        {"radius", comparison.radius},
+                        {"machine", describe_machine()},
+                        {"byte_budget", options.byte_budget},
+                        {"particles", options.point_count},
+                        {"systems", std::move(systems)},
+                        {"left_out", std::move(refusals)}};
+    if (!comparison.curves.empty()) result["curves"] = curves_to_json(comparison, options.byte_budget);
+    return result;
+}
+
+std::string to_text(const Comparison& comparison, const CompareOptions& options,
+                    const std::string& mesh_name) {
+    std::string text = fmt::format(
+        "{}: {} faces, R = {:.4g}; each system in at most {} bytes; {} particles in each of\n"
+        "U (everywhere in the bounding sphere), S (near the surface) and C (like a cloth)\n\n",
+        mesh_name, comparison.face_count, comparison.radius, options.byte_budget, options.point_count);
+    text += table_of(time_columns(comparison), comparison) + "\n";
+    text += table_of(error_columns(comparison), comparison);
+    const std::vector<std::string> remarks = remarks_on(comparison, options.byte_budget);
+    if (!remarks.empty()) text += "\n";
+    for (const std::string& remark : remarks) text += remark + "\n";
+    return text + "\nTimes are processor times on one thread, one call for a whole set. The judge is an "
+                  "exact map.\n";
+}
