@@ -280,4 +280,16 @@ struct SweepHit {
 /// infinity in a point: nothing is met.
 SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexcept;
 
+// ---- Looking at a map
+
+/// The mesh as the map holds it, on its lattice: without the faces that were dropped, which have no area
+/// there.
+struct ExactMapSurface {
+    TriangleMesh mesh; ///< local frame
+    /// [face_count] The longest list of a band that each face is in, which is what a query near it may have
+    /// to test; 0 for one that is in none, being seen edge-on.
+    std::vector<std::uint32_t> longest_list;
+};
+ExactMapSurface reconstruct_surface(const ExactMapView& map);
+
 } // namespace echinus

@@ -1,4 +1,3 @@
-#include "directions/lattice.hpp"
 #include "render/page.hpp"
 
 #include <echinus/error.hpp>
@@ -126,30 +125,12 @@ std::size_t class_of(std::uint32_t list_length) {
     return result;
 }
 
-/// [face_count] The longest list that each face is in; 0 for one that is in none, being seen edge-on.
-std::vector<std::uint32_t> longest_lists(const ExactMapView& map) {
-    std::vector<std::uint32_t> longest(map.face_count());
-    for (std::size_t band = 0; band + 1 < map.bands.size(); ++band) {
-        const std::uint32_t first = map.bands[band].first_reference;
-        const std::uint32_t last = map.bands[band + 1].first_reference;
-        for (std::uint32_t r = first; r < last; ++r) {
-            std::uint32_t& length = longest[map.references[r]];
-            length = std::max(length, last - first);
-        }
-    }
-    return longest;
-}
-
 /// The mesh as the map holds it, on its lattice.
 RenderedObject map_object(const ExactMapView& map) {
+    ExactMapSurface surface = reconstruct_surface(map);
     RenderedObject object;
-    const LatticeFrame frame(map.centre, map.radius);
-    for (const Vec3<std::int32_t>& vertex : map.vertices)
-        object.mesh.vertices.push_back(Vec3f(frame.to_local(Vec3d(vertex))));
-    for (std::size_t face = 0; face < map.face_count(); ++face)
-        object.mesh.faces.push_back(
-            {map.corners[3 * face], map.corners[3 * face + 1], map.corners[3 * face + 2]});
-    for (const std::uint32_t length : longest_lists(map))
+    object.mesh = std::move(surface.mesh);
+    for (const std::uint32_t length : surface.longest_list)
         object.face_colours.push_back(palette::kScale[class_of(length)]);
     return object;
 }
