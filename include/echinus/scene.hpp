@@ -60,6 +60,10 @@ Scene read_scene(const std::filesystem::path& path);
 /// The same from text; `name` stands for the path in errors.
 Scene parse_scene(std::string_view json, const std::string& name);
 
+/// What a scene has under `map`, alone; {} gives the defaults.
+/// @throws Error InvalidScene as above
+MapOptions parse_map_options(std::string_view json, const std::string& name);
+
 /// Where a model's file lies: the first of the folders that has it. An absolute name needs no folder.
 /// @throws Error Unreadable, naming the folders that were looked through
 std::filesystem::path find_model(const ModelFile& model, std::span<const std::filesystem::path> folders);

@@ -128,21 +128,19 @@ ExactMapOptions read_exact_map(JsonObject& map) {
     return options;
 }
 
-MapOptions read_map(JsonObject& scene) {
-    auto map = scene.object("map");
-    if (!map) return {};
+MapOptions read_map(JsonObject map) {
     MapOptions options;
-    if (map->read_word("kind", {"exact", "distance"}).value_or(0) == 0) {
-        refuse_keys_of_other_choice(*map,
+    if (map.read_word("kind", {"exact", "distance"}).value_or(0) == 0) {
+        refuse_keys_of_other_choice(map,
                                     {"grid", "divisions", "directions", "correction", "entries", "pole_axis"},
                                     "map.kind", "distance");
-        options = read_exact_map(*map);
+        options = read_exact_map(map);
     } else {
-        refuse_keys_of_other_choice(*map, {"cells_per_octant", "budget", "rule", "centre"}, "map.kind",
+        refuse_keys_of_other_choice(map, {"cells_per_octant", "budget", "rule", "centre"}, "map.kind",
                                     "exact");
-        options = read_distance_map(*map);
+        options = read_distance_map(map);
     }
-    map->finish();
+    map.finish();
     return options;
 }
 
@@ -299,7 +297,7 @@ Scene parse_scene(std::string_view json, const std::string& name) {
     Scene scene;
     scene.model = read_model(root);
     scene.repair = read_repair(root);
-    scene.map = read_map(root);
+    if (auto map = root.object("map")) scene.map = read_map(*std::move(map));
     read_collider(root, scene);
     read_cloth(root, scene);
     read_solver(root, scene.simulation);
@@ -307,6 +305,11 @@ Scene parse_scene(std::string_view json, const std::string& name) {
     read_end(root, scene);
     root.finish();
     return scene;
+}
+
+MapOptions parse_map_options(std::string_view json, const std::string& name) {
+    const nlohmann::json document = parse_json(json, name);
+    return read_map(JsonObject(document, name, "map"));
 }
 
 Scene read_scene(const fs::path& path) {
