@@ -39,7 +39,7 @@ struct LatticeFrame {
 
 /// The nearest lattice point. @pre components within 2^62
 inline LatticePoint rounded(const Vec3d& place) {
-    return {std::lrint(place.x), std::lrint(place.y), std::lrint(place.z)};
+    return {std::llrint(place.x), std::llrint(place.y), std::llrint(place.z)};
 }
 
 /// A unit vector scaled to the lattice's extent and snapped: what rays are cast along.

@@ -37,7 +37,7 @@ void add_face(const DistanceMapView& map, const Triangle& directions, std::uint3
 void add_layers(const DistanceMapView& map, std::span<const std::uint32_t> facet, MapSurface& surface) {
     const std::uint32_t count = entry_count_of(map, facet[0]);
     const auto has_other_count = [&](std::uint32_t d) { return entry_count_of(map, d) != count; };
-    if (std::ranges::any_of(facet, has_other_count)) return;
+    if (std::any_of(facet.begin(), facet.end(), has_other_count)) return;
     for (std::uint32_t k = 0; k < count; ++k)
         for (std::size_t i = 1; i + 1 < facet.size(); ++i)
             add_face(map, {facet[0], facet[i], facet[i + 1]}, k, surface);

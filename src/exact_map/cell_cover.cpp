@@ -102,7 +102,7 @@ std::uint64_t ones(std::int32_t first, std::int32_t last) {
 /// the row runs from a first triangle to a last.
 class OctantCover {
   public:
-    OctantCover(const OctahedralCells& cells, std::uint32_t octant, std::span<const Vec3d> polygon,
+    OctantCover(const OctahedralCells& cells, std::uint32_t octant, const Polygon& polygon,
                 const Plane& plane)
         : cells_(cells), octant_(octant), fine_n_(kPartsPerSide * cells.divisions()) {
         for (const Vec3d& p : polygon) {

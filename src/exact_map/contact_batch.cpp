@@ -17,6 +17,7 @@
 
 // After foreach_target.h, which includes this file once for each instruction set.
 #include "simd/dispatch.hpp"
+#include "simd/lanes-inl.hpp"
 
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
@@ -336,8 +337,9 @@ void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& 
     // Few enough for what is written to stay in a cache, enough for neighbours to be near.
     constexpr std::size_t kMostStations = 1 << 16;
     const std::size_t count = std::min(kMostStations, contacts.size());
-    const auto sides = std::make_unique_for_overwrite<Side[]>(contacts.size());
-    const auto stations = std::make_unique_for_overwrite<Station[]>(2 * count);
+    // Not std::make_unique, which would fill them.
+    const std::unique_ptr<Side[]> sides(new Side[contacts.size()]);
+    const std::unique_ptr<Station[]> stations(new Station[2 * count]);
     find_contacts(search, points_local, contacts,
                   {{sides.get(), contacts.size()}, {stations.get(), count}, {stations.get() + count, count}});
 }

@@ -73,7 +73,7 @@ Winding generalised_winding(const ExactMapView& map, std::uint32_t innermost_ban
     int crossings = 0;
     for (std::uint32_t band = innermost_band; band < bands.last; ++band)
         crossings += crossings_in_band(map, RaySide::Beyond, band, part, p);
-    return {std::lrint(crossings + border_part(map.border, map.vertices, p)), false};
+    return {std::llrint(crossings + border_part(map.border, map.vertices, p)), false};
 }
 
 /// Of a place beyond the lattice. Around a closed surface it is 0; an open one's fades only with distance.
@@ -81,7 +81,7 @@ Winding winding_beyond_lattice(const ExactMapView& map, const Vec3d& place) {
     if (map.border.empty() || !is_finite(place)) return {};
     const double largest = std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)});
     const double shrink = static_cast<double>(kLatticeExtent) / largest;
-    return {std::lrint(border_part(map.border, map.vertices, rounded(place * shrink), 1 / shrink)), false};
+    return {std::llrint(border_part(map.border, map.vertices, rounded(place * shrink), 1 / shrink)), false};
 }
 
 } // namespace

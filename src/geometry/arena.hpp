@@ -37,7 +37,7 @@ class Arena {
     void reset(std::size_t size) {
         if (size > capacity_) {
             data_.reset();
-            data_ = std::make_unique_for_overwrite<T[]>(size);
+            data_ = unwritten(size);
             capacity_ = size;
         }
         size_ = size;
@@ -58,15 +58,20 @@ class Arena {
     }
 
   private:
+    using Memory = std::unique_ptr<T[]>;
+
+    /// std::make_unique_for_overwrite, which the libc++ of Emscripten 3.1 has not yet.
+    static Memory unwritten(std::size_t size) { return Memory(new T[size]); }
+
     void grow(std::size_t least) {
         const std::size_t capacity = std::max(least, 2 * capacity_);
-        auto data = std::make_unique_for_overwrite<T[]>(capacity);
+        auto data = unwritten(capacity);
         std::copy_n(data_.get(), size_, data.get());
         data_ = std::move(data);
         capacity_ = capacity;
     }
 
-    std::unique_ptr<T[]> data_;
+    Memory data_;
     std::size_t size_ = 0, capacity_ = 0;
 };
 

@@ -1,7 +1,8 @@
+#include "geometry/bit_cast.hpp"
 #include "mesh/require_valid.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <limits>
 #include <numeric>
 
@@ -14,8 +15,8 @@ constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
 /// The bits of a position, with -0 as 0: equal for equal positions, and an order also for NaN.
 std::array<std::uint32_t, 3> position_key(const Vec3f& p) {
     // x + 0 is x, except that -0 + 0 is 0.
-    return {std::bit_cast<std::uint32_t>(p.x + 0.0F), std::bit_cast<std::uint32_t>(p.y + 0.0F),
-            std::bit_cast<std::uint32_t>(p.z + 0.0F)};
+    return {bit_cast<std::uint32_t>(p.x + 0.0F), bit_cast<std::uint32_t>(p.y + 0.0F),
+            bit_cast<std::uint32_t>(p.z + 0.0F)};
 }
 
 /// For each vertex the first vertex at the same position.

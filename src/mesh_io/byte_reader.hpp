@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/bit_cast.hpp"
 #include "mesh_io/mesh_source.hpp"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ class ByteReader {
         source_.bytes.copy(bytes.data(), sizeof(Number), require(sizeof(Number)));
         const bool host_is_little = std::endian::native == std::endian::little;
         if (host_is_little != (order_ == ByteOrder::LittleEndian)) std::reverse(bytes.begin(), bytes.end());
-        return std::bit_cast<Number>(bytes);
+        return echinus::bit_cast<Number>(bytes); // not std's, found by the argument
     }
 
     void skip(std::size_t byte_count) { require(byte_count); }

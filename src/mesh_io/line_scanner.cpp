@@ -1,8 +1,11 @@
 #include "mesh_io/line_scanner.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <string>
 
 namespace echinus {
 
@@ -15,10 +18,48 @@ std::string_view without_plus(std::string_view word) {
     return word;
 }
 
+#ifdef __cpp_lib_to_chars
+
+template <typename Number>
+std::from_chars_result read_number(std::string_view word, Number& value) {
+    return std::from_chars(word.data(), word.data() + word.size(), value);
+}
+
+#else // libc++ before 20, as Emscripten has it: strtof and strtod of musl round correctly and know no locale
+
+/// Would std::from_chars begin to read here? Beyond it, strtof reads blanks, a plus and hexadecimal numbers.
+bool begins_like_a_number(std::string_view word) {
+    if (!word.empty() && word[0] == '-') word.remove_prefix(1);
+    const bool is_hexadecimal = word.size() > 1 && (word[1] == 'x' || word[1] == 'X');
+    return !word.empty() && !is_hexadecimal && word[0] != '+' &&
+           kBlanks.find(word[0]) == std::string_view::npos;
+}
+
+template <typename Number>
+std::from_chars_result read_number(std::string_view word, Number& value) {
+    if constexpr (std::is_integral_v<Number>) {
+        return std::from_chars(word.data(), word.data() + word.size(), value);
+    } else {
+        if (!begins_like_a_number(word)) return {word.data(), std::errc::invalid_argument};
+        const std::string text(word); // with a zero at its end
+        char* end = nullptr;
+        errno = 0;
+        if constexpr (std::is_same_v<Number, float>)
+            value = std::strtof(text.c_str(), &end);
+        else
+            value = std::strtod(text.c_str(), &end);
+        const bool is_lost = value == 0 || std::isinf(value); // and not only rounded to a small number
+        return {word.data() + (end - text.c_str()),
+                errno == ERANGE && is_lost ? std::errc::result_out_of_range : std::errc{}};
+    }
+}
+
+#endif
+
 template <typename Number>
 std::errc parse_whole(std::string_view word, Number& value) {
     word = without_plus(word);
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const auto [end, error] = read_number(word, value);
     return error == std::errc{} && end != word.data() + word.size() ? std::errc::invalid_argument : error;
 }
 

@@ -36,7 +36,7 @@ constexpr std::array kInstructionSets {
 };
 
 bool is_available(const InstructionSet& set) {
-    return set.target == kScalar || (hwy::SupportedTargets() & HWY_TARGETS & set.target) != 0;
+    return set.target == kScalar || (HWY_SUPPORTED_TARGETS & HWY_TARGETS & set.target) != 0;
 }
 
 const InstructionSet* find(std::string_view name) {

@@ -6,6 +6,8 @@
 #define ECHINUS_LANES_INL
 #endif
 
+#include "simd/wasm_doubles-inl.hpp"
+
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();

@@ -1,0 +1,82 @@
+// Included once for each instruction set, as Highway wants it: no guard against a second time.
+#if defined(ECHINUS_WASM_DOUBLES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef ECHINUS_WASM_DOUBLES_INL
+#undef ECHINUS_WASM_DOUBLES_INL
+#else
+#define ECHINUS_WASM_DOUBLES_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <cstddef>
+
+#if HWY_TARGET == HWY_WASM && !HWY_HAVE_FLOAT64
+
+#include <wasm_simd128.h>
+
+/// Vectors of two doubles, which WebAssembly has and Highway's target for it (1.0) leaves out: the operations
+/// that our kernels use, under Highway's names and in its namespace, where its templates look for them.
+/// @pre vectors and masks are whole, 16 bytes, except where float and double meet
+HWY_BEFORE_NAMESPACE();
+namespace hwy::HWY_NAMESPACE {
+
+using WholeDoubles = Simd<double, 2, 0>;
+using WholeDoubleVec = Vec128<double, 2>;
+using WholeDoubleMask = Mask128<double, 2>;
+
+HWY_API WholeDoubleVec Set(WholeDoubles /*tag*/, double value) {
+    return {wasm_f64x2_splat(value)};
+}
+
+HWY_API WholeDoubleVec operator+(WholeDoubleVec a, WholeDoubleVec b) {
+    return {wasm_f64x2_add(a.raw, b.raw)};
+}
+HWY_API WholeDoubleVec operator-(WholeDoubleVec a, WholeDoubleVec b) {
+    return {wasm_f64x2_sub(a.raw, b.raw)};
+}
+HWY_API WholeDoubleVec operator*(WholeDoubleVec a, WholeDoubleVec b) {
+    return {wasm_f64x2_mul(a.raw, b.raw)};
+}
+HWY_API WholeDoubleVec operator/(WholeDoubleVec a, WholeDoubleVec b) {
+    return {wasm_f64x2_div(a.raw, b.raw)};
+}
+HWY_API WholeDoubleVec Sqrt(WholeDoubleVec v) {
+    return {wasm_f64x2_sqrt(v.raw)};
+}
+HWY_API WholeDoubleVec Abs(WholeDoubleVec v) {
+    return {wasm_f64x2_abs(v.raw)};
+}
+/// To the nearest whole number, halves to the even one.
+HWY_API WholeDoubleVec Round(WholeDoubleVec v) {
+    return {wasm_f64x2_nearest(v.raw)};
+}
+
+HWY_API WholeDoubleMask operator<(WholeDoubleVec a, WholeDoubleVec b) {
+    return {wasm_f64x2_lt(a.raw, b.raw)};
+}
+HWY_API WholeDoubleMask operator<=(WholeDoubleVec a, WholeDoubleVec b) {
+    return {wasm_f64x2_le(a.raw, b.raw)};
+}
+HWY_API WholeDoubleMask operator>(WholeDoubleVec a, WholeDoubleVec b) {
+    return {wasm_f64x2_gt(a.raw, b.raw)};
+}
+HWY_API WholeDoubleMask operator==(WholeDoubleVec a, WholeDoubleVec b) {
+    return {wasm_f64x2_eq(a.raw, b.raw)};
+}
+HWY_API WholeDoubleMask operator!=(WholeDoubleVec a, WholeDoubleVec b) {
+    return {wasm_f64x2_ne(a.raw, b.raw)};
+}
+
+HWY_API WholeDoubleVec PromoteTo(WholeDoubles /*tag*/, Vec128<float, 2> v) {
+    return {wasm_f64x2_promote_low_f32x4(v.raw)};
+}
+HWY_API Vec128<float, 2> DemoteTo(Simd<float, 2, 0> /*tag*/, WholeDoubleVec v) {
+    return {wasm_f32x4_demote_f64x2_zero(v.raw)};
+}
+
+} // namespace hwy::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
+
+#endif
