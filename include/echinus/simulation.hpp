@@ -180,6 +180,20 @@ class Simulation {
     /// @pre collider_index < colliders().size()
     void set_velocities(std::size_t collider_index, const Vec3d& linear, const Vec3d& angular);
 
+    /// Gives a particle a velocity, units per second, from which the next frame goes on as from any other:
+    /// sticks pull at it and colliders stop it, so a hand that drags particles, setting their velocities
+    /// before each frame to what would take them to it, drags nobody into a model. A pinned particle stays.
+    /// @pre particle < particle_count(), and the velocity is finite
+    void set_velocity(std::size_t particle, const Vec3d& velocity);
+
+    /// Wind for the time of one frame: of the velocity with which air moves across a face, along its normal,
+    /// particles take on the share rate * time_step, each as the mean over the faces around it. Along a face
+    /// air slips by. To be called before each frame; allocates the first time.
+    /// @param wind  of the air, units per second; 0 is air at rest, which brakes
+    /// @param rate  per second: the higher, the lighter the cloth. Not negative
+    /// @pre both are finite
+    void blow(const Vec3d& wind, double rate);
+
   private:
     class Solver; // src/simulation/solver.hpp
     std::unique_ptr<Solver> solver_;

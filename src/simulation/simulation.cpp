@@ -293,6 +293,14 @@ void Simulation::set_velocities(std::size_t collider_index, const Vec3d& linear,
     solver_->colliders[collider_index].angular_velocity = angular;
 }
 
+void Simulation::set_velocity(std::size_t particle, const Vec3d& velocity) {
+    solver_->set_velocity(particle, velocity);
+}
+
+void Simulation::blow(const Vec3d& wind, double rate) {
+    solver_->blow(wind, rate);
+}
+
 std::uint64_t Simulation::state_hash() const {
     const auto hash_of = [](const std::vector<Vec3f>& points, std::uint64_t seed) {
         return XXH64(points.data(), points.size() * sizeof(Vec3f), seed);

@@ -18,6 +18,8 @@ class Simulation::Solver {
     Solver(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
 
     void step();
+    void set_velocity(std::size_t particle, const Vec3d& velocity);
+    void blow(const Vec3d& wind, double rate);
     bool at_rest() const { return quiet_frame_count_ >= options.rest.frame_count; }
 
     Deformable deformable;
@@ -43,6 +45,18 @@ class Simulation::Solver {
     void judge_frame();
     void judge_rest();
 
+    /// What the faces around a particle would have it move.
+    struct Gust {
+        Vec3f sum;
+        std::uint32_t face_count = 0;
+
+        void add(const Vec3f& across) {
+            sum += across;
+            ++face_count;
+        }
+        Vec3f mean() const { return sum * (1 / static_cast<float>(face_count)); }
+    };
+
     Particles particles_;
     StickArrays sticks_;
     bool goals_give_way_;
@@ -54,6 +68,7 @@ class Simulation::Solver {
     std::vector<std::uint32_t> unsettled_;       // particles, in keep_free()
     Vec3d start_centre_;
     double bound_ = 0;
+    std::vector<Gust> gusts_;           // in blow()
     std::vector<Vec3f> resting_places_; // where each particle was, quiet_frame_count_ frames ago
     std::uint32_t quiet_frame_count_ = 0;
 };
