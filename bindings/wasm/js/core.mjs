@@ -1,0 +1,171 @@
+import { EchinusError, refuse } from './errors.mjs';
+import { importsFor } from './imports.mjs';
+
+const utf8 = new TextEncoder();
+const fromUtf8 = new TextDecoder();
+
+/**
+ * The instance of the WebAssembly file: its exports, its memory, and errors on their way out. Everything else is built
+ * on this.
+ */
+export class Core {
+    #exports = null;
+    #crash = null;
+    #views = { buffer: null };
+
+    /** A new instance of the compiled file. */
+    static async start(compiled) {
+        const core = new Core();
+        const instance = await WebAssembly.instantiate(compiled, importsFor(compiled, () => core.memory));
+        core.#exports = instance.exports;
+        core.#exports._initialize();
+        return core;
+    }
+
+    get memory() {
+        return this.#exports.memory;
+    }
+
+    /**
+     * Views of all memory. When memory grows, its old buffer is cut off from all views of it, so they are made anew; a
+     * view that somebody keeps across a call is empty afterwards.
+     */
+    get views() {
+        const buffer = this.memory.buffer;
+        if (this.#views.buffer !== buffer)
+            this.#views = {
+                buffer,
+                bytes: new Uint8Array(buffer),
+                words: new Uint32Array(buffer),
+                ints: new Int32Array(buffer),
+                floats: new Float32Array(buffer),
+            };
+        return this.#views;
+    }
+
+    /** Calls an export that cannot fail. */
+    call(name, ...args) {
+        if (this.#crash) throw this.#deadModule();
+        try {
+            return this.#exports[name](...args);
+        } catch (error) {
+            // A trap: a fault of the module, not of what it was given. Its memory may be in disorder.
+            this.#crash = error;
+            throw this.#deadModule();
+        }
+    }
+
+    #deadModule() {
+        return new EchinusError('Crashed', `the module has stopped (${this.#crash.message}); load() it again`, { cause: this.#crash });
+    }
+
+    /** Calls an export that gives 0 when it fails. @throws EchinusError with the library's sentence */
+    try(name, ...args) {
+        const result = this.call(name, ...args);
+        if (result === 0) throw new EchinusError(this.#textAt(this.call('last_error_code')), this.#textAt(this.call('last_error_sentence')));
+        return result >>> 0; // addresses beyond 2^31 arrive as negative numbers
+    }
+
+    #textAt(address) {
+        const { bytes } = this.views;
+        const start = address >>> 0;
+        return fromUtf8.decode(bytes.slice(start, bytes.indexOf(0, start)));
+    }
+
+    /** Takes memory. @throws EchinusError OutOfMemory */
+    take(byteCount) {
+        if (!(byteCount <= 0xffffffff)) throw new EchinusError('OutOfMemory', `the module cannot have ${byteCount} bytes of memory; at most 4 GiB`);
+        return this.try('memory_take', byteCount);
+    }
+    giveBack(address) {
+        if (!this.#crash) this.call('memory_give_back', address);
+    }
+
+    /** Calls `use` with the addresses of copies of typed arrays, which are gone afterwards. */
+    withCopies(arrays, use) {
+        const addresses = [];
+        try {
+            for (const array of arrays) addresses.push(this.take(Math.max(array.byteLength, 1)));
+            arrays.forEach((array, i) => this.views.bytes.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength), addresses[i]));
+            return use(...addresses);
+        } finally {
+            addresses.forEach((address) => this.giveBack(address));
+        }
+    }
+
+    /** Calls `use(address, byteCount, ...)` with texts in the module's memory. */
+    withTexts(texts, use) {
+        const encoded = texts.map((text) => utf8.encode(text));
+        return this.withCopies(encoded, (...addresses) => use(...addresses.flatMap((address, i) => [address, encoded[i].length])));
+    }
+
+    /** The text that an export makes. */
+    text(name, ...args) {
+        const text = this.try(name, ...args);
+        try {
+            const start = this.call('text_bytes', text) >>> 0;
+            return fromUtf8.decode(this.views.bytes.slice(start, start + this.call('text_size', text)));
+        } finally {
+            this.call('text_delete', text);
+        }
+    }
+    json(name, ...args) {
+        return JSON.parse(this.text(name, ...args));
+    }
+
+    // Copies of what lies in memory, for keeps.
+    copyWords(address, count) {
+        return this.views.words.slice(address >>> 2, (address >>> 2) + count);
+    }
+    copyFloats(address, count) {
+        return this.views.floats.slice(address >>> 2, (address >>> 2) + count);
+    }
+}
+
+/** When nobody holds an object any more that was not deleted, its memory is given back after all. */
+const forgotten = new FinalizationRegistry(({ core, destroyer, address }) => {
+    try {
+        core.call(destroyer, address);
+    } catch {
+        // The module has crashed: its memory goes as a whole.
+    }
+});
+
+/** An object of the library: its address, until it is deleted. */
+export class Handle {
+    #address;
+    #destroyer;
+
+    constructor(core, address, destroyer) {
+        this.#address = address;
+        this.#destroyer = destroyer;
+        Object.defineProperty(this, 'core', { value: core });
+        forgotten.register(this, { core, destroyer, address }, this);
+    }
+
+    /** @throws EchinusError Deleted */
+    get address() {
+        if (this.#address === 0) throw new EchinusError('Deleted', `this ${this.constructor.name} was deleted and cannot be used any more`);
+        return this.#address;
+    }
+
+    get deleted() {
+        return this.#address === 0;
+    }
+
+    delete() {
+        if (this.#address === 0) return;
+        const address = this.#address;
+        this.#address = 0;
+        forgotten.unregister(this);
+        this.core.call(this.#destroyer, address);
+    }
+}
+Handle.prototype[Symbol.dispose ?? Symbol.for('Symbol.dispose')] = Handle.prototype.delete;
+
+/** @throws EchinusError unless the value is an object of this kind and of this module */
+export function requireOwn(core, value, Kind) {
+    if (!(value instanceof Kind)) refuse(`a ${Kind.name} is needed here`);
+    if (value.core !== core) refuse(`this ${Kind.name} belongs to another instance of the module`);
+    return value.address;
+}

@@ -1,0 +1,517 @@
+/**
+ * Echinus for JavaScript: maps of rigid meshes, queries for many particles, and cloth. docs/wasm.md is the guide.
+ *
+ * Frames, units and words are those of the C++ library (docs/conventions.md). Whatever can fail throws an EchinusError.
+ * Everything that has a delete() holds memory of the module: delete it (or declare it with `using`) when it is no longer
+ * needed. What is forgotten is given back when it is collected, which may be late.
+ *
+ * Nothing here is asynchronous but load(): in a page, run long work in a worker. An instance belongs to the thread that
+ * loaded it.
+ */
+
+export type Vec3 = readonly [number, number, number] | Float32Array | Float64Array | readonly number[];
+
+/** `code` for a program, `message`, one sentence, for a person. */
+export class EchinusError extends Error {
+    readonly name: 'EchinusError';
+    readonly code: ErrorCode;
+}
+
+export type ErrorCode =
+    // as in echinus/error.hpp
+    | 'Unreadable' | 'WrongFormat' | 'Damaged' | 'UnsupportedVersion'
+    | 'InvalidMesh' | 'InvalidOptions' | 'InvalidScene'
+    | 'Diverged'
+    /** Memory does not suffice. The module lives on: delete something, or ask for less. */
+    | 'OutOfMemory'
+    /** An argument of a wrong kind or size. */
+    | 'InvalidArgument'
+    /** The object was deleted. */
+    | 'Deleted'
+    /** The host lacks what missingFeatures() names. */
+    | 'Unsupported'
+    /** The module has stopped by a fault of its own. Every further call throws this: load() it again. */
+    | 'Crashed'
+    | 'Internal';
+
+/** What the host lacks to run the module, for instance ['WebAssembly SIMD']; [] when it lacks nothing. */
+export function missingFeatures(): string[];
+
+/**
+ * Loads the module. Each call makes an instance with memory of its own; a compiled module is quick to load again and can
+ * be posted to workers.
+ * @param source  where echinus.wasm is; by default beside echinus.mjs
+ */
+export function load(source?: URL | string | Response | Promise<Response> | BufferSource | WebAssembly.Module): Promise<Echinus>;
+
+/** Holds memory of the module until delete(). Twice does no harm; any other use after it throws `Deleted`. */
+declare abstract class Deletable {
+    /** The module makes these. */
+    protected constructor();
+    readonly deleted: boolean;
+    delete(): void;
+    [Symbol.dispose](): void;
+}
+
+/** One instance of the module. */
+export class Echinus {
+    /** load() makes these. */
+    private constructor();
+
+    /** All memory that the instance has taken from the host. It never shrinks; at most 4 GiB. */
+    readonly memoryByteCount: number;
+    /** 'wasm', or 'scalar' for the reference: the same answers, slower. Of the whole instance. */
+    instructionSet: 'wasm' | 'scalar';
+
+    // Memory for batches.
+    makePoints(length: number): PointBuffer;
+    makeFlags(length: number): FlagBuffer;
+    makeContacts(length: number): ContactBuffer;
+
+    /**
+     * Copies the arrays.
+     * @param vertices  [3 vertex_count]
+     * @param faces     [3 face_count] vertices, counter-clockwise seen from outside
+     * @throws InvalidMesh when there is no face, an index is out of range or a used vertex is not finite
+     */
+    makeMesh(vertices: ArrayLike<number>, faces: ArrayLike<number>): Mesh;
+    /**
+     * Polygons are triangulated; each of k corners becomes k - 2 faces, in order.
+     * @param corners       vertices, polygon after polygon
+     * @param cornerCounts  [polygon_count]
+     */
+    makeMeshFromPolygons(vertices: ArrayLike<number>, corners: ArrayLike<number>, cornerCounts: ArrayLike<number>): Mesh;
+    /**
+     * Reads an OBJ, PLY, STL or OFF file, told by its name's ending, text or binary; vertices at equal positions are
+     * welded. glTF, GLB and 3DS: read them otherwise, hand in makeMesh() and weld().
+     * @throws WrongFormat, Damaged or InvalidMesh; the sentence begins with the name, and names line or byte
+     */
+    readMesh(bytes: ArrayBuffer | ArrayBufferView, name: string): Mesh;
+    /** About the z axis. @throws InvalidOptions */
+    makeTorus(majorRadius: number, minorRadius: number, majorSegments: number, minorSegments: number): Mesh;
+    makeSphere(radius: number, meridianCount: number, parallelCount: number): Mesh;
+    makeBox(size: Vec3, segments?: number): Mesh;
+
+    /**
+     * @param options  as under `map` in a scene (docs/scenes.md), as an object or a JSON text; {} is an exact map
+     * @throws InvalidScene for an option that does not exist or is out of range, InvalidMesh, InvalidOptions
+     */
+    buildMap(mesh: Mesh, options: DistanceMapOptions): DistanceMap;
+    buildMap(mesh: Mesh, options?: ExactMapOptions): ExactMap;
+    buildMap(mesh: Mesh, options?: MapOptions | string): AnyMap;
+    /**
+     * From the bytes of a map file, which are copied and checked.
+     * @param name  begins the sentences of errors
+     * @throws WrongFormat, UnsupportedVersion, Damaged
+     */
+    loadMap(bytes: ArrayBuffer | ArrayBufferView, name?: string): AnyMap;
+
+    /**
+     * @param scene  as in docs/scenes.md, as an object or as a JSON text, which may have comments
+     * @throws InvalidScene: names the key at fault, and the most similar one that exists
+     */
+    parseScene(scene: SceneDescription | string, name?: string): Scene;
+}
+
+// ---- Buffers
+
+/**
+ * Memory of the module that both sides read and write.
+ *
+ * A view lasts until memory grows, which any call into the module may cause; then the array that was handed out is
+ * empty, and the getter gives a new one. So keep the buffer and take `.view` when it is used: that costs a comparison.
+ */
+export class PointBuffer extends Deletable {
+    readonly length: number;
+    /** [3 length] x, y, z of one point after the other. */
+    readonly view: Float32Array;
+}
+export class FlagBuffer extends Deletable {
+    readonly length: number;
+    /** [length] 1 inside, 0 outside. */
+    readonly view: Uint8Array;
+}
+export class ContactBuffer extends Deletable {
+    static readonly BYTES: 36;
+    /** Numbers from one contact to the next, in `floats` and `ints`. */
+    static readonly STRIDE: 9;
+    static readonly POINT: 0;
+    static readonly NORMAL: 3;
+    static readonly DEPTH: 6;
+    static readonly FACE: 7;
+    /** In `bytes`. */
+    static readonly INSIDE: 32;
+    static readonly CERTAIN: 33;
+    static readonly FEATURE: 34;
+
+    readonly length: number;
+    /** [9 length] Of contact i: point at 9i, normal at 9i + 3, depth at 9i + 6. */
+    readonly floats: Float32Array;
+    /** [9 length] Of contact i: face at 9i + 7, -1 where it is not known. */
+    readonly ints: Int32Array;
+    /** [36 length] Of contact i: inside at 36i + 32, certain at 36i + 33, feature at 36i + 34. */
+    readonly bytes: Uint8Array;
+    /** A copy of one. */
+    at(index: number): Contact;
+}
+
+/** As in echinus/contact.hpp. */
+export interface Contact {
+    point: [number, number, number];
+    normal: [number, number, number];
+    /** Positive inside, negative outside, 0 for no contact. */
+    depth: number;
+    face: number;
+    inside: boolean;
+    certain: boolean;
+    feature: 'unknown' | 'face' | 'edge' | 'vertex';
+    /** Inside, or outside within the margin. */
+    found: boolean;
+}
+
+// ---- Meshes
+
+export class Mesh extends Deletable {
+    readonly vertexCount: number;
+    readonly faceCount: number;
+    /** [3 vertexCount] a copy. */
+    readonly vertices: Float32Array;
+    /** [3 faceCount] a copy. */
+    readonly faces: Uint32Array;
+
+    report(): MeshReport;
+    /** Every fault and where: to be drawn. */
+    faults(): MeshFaults;
+    /** Joins vertices at equal positions and drops those that no face uses; faces stay as they are. */
+    weld(): Mesh;
+    /** A mended copy. @param repairs  by default all */
+    repair(repairs?: readonly Repair[]): { mesh: Mesh; report: RepairReport };
+    /** Judges by brute force over all faces: 1 inside a closed mesh, 0 outside. */
+    windingNumber(point: Vec3): number;
+    unsignedDistance(point: Vec3): number;
+}
+
+export type Repair = 'duplicate_faces' | 'doubled_patches' | 'inside_out';
+
+export interface Fault {
+    count: number;
+    /** At most 8, ascending. */
+    firstFaces: number[];
+}
+export interface MeshReport {
+    faceCount: number;
+    vertexCount: number;
+    componentCount: number;
+    /** Every edge is balanced: as many faces run along it one way as the other. */
+    closed: boolean;
+    manifold: boolean;
+    borderEdges: Fault;
+    nonmanifoldEdges: Fault;
+    misorientedEdges: Fault;
+    duplicateFaces: Fault;
+    degenerateFaces: Fault;
+    /** Positive where faces turn outwards. */
+    signedVolume: number;
+    boundingSphere: { centre: [number, number, number]; radius: number };
+}
+export interface MeshFaults {
+    /** Of edges two vertices each. */
+    borderEdges: Uint32Array;
+    nonmanifoldEdges: Uint32Array;
+    misorientedEdges: Uint32Array;
+    /** Faces. */
+    duplicateFaces: Uint32Array;
+    degenerateFaces: Uint32Array;
+}
+export interface RepairReport {
+    duplicateFacesDropped: number[];
+    doubledPatchFacesDropped: number[];
+    componentsFlipped: number;
+}
+
+// ---- Maps
+
+/** Keys and limits: docs/scenes.md, `map`. */
+export interface ExactMapOptions {
+    kind?: 'exact';
+    cells_per_octant?: number;
+    /** Most bytes of the map. */
+    budget?: number;
+    rule?: 'nonzero' | 'parity';
+    centre?: 'sphere' | 'search';
+}
+export interface DistanceMapOptions {
+    kind: 'distance';
+    grid?: 'spherical' | 'octahedral' | 'cube';
+    /** Spherical: longitudes and colatitudes. */
+    directions?: readonly [number, number];
+    /** Octahedral and cube. */
+    divisions?: number;
+    correction?: 'none' | 'paper' | 'signed';
+    entries?: 'float32' | 'unorm16';
+    pole_axis?: 'x' | 'y' | 'z';
+}
+export type MapOptions = ExactMapOptions | DistanceMapOptions;
+export type AnyMap = ExactMap | DistanceMap;
+
+/** Points are in the frame of the mesh. NaN or infinity in a point: outside, no contact. */
+declare abstract class MapOfEitherKind extends Deletable {
+    /** All that a query reads. */
+    readonly byteCount: number;
+    readonly centre: [number, number, number];
+    /** Every vertex lies within it of the centre. */
+    readonly radius: number;
+
+    contains(point: Vec3): boolean;
+    /** @param margin  points outside get a contact, too, when the surface is at most this far */
+    contact(point: Vec3, margin?: number): Contact;
+    /**
+     * contains() for many. Copies nothing when the points are a PointBuffer; a Float32Array is copied first.
+     * @param count  of the points, from the first on; by default all
+     * @returns `inside`
+     */
+    containsBatch(points: PointBuffer | Float32Array, inside: FlagBuffer, count?: number): FlagBuffer;
+    /** contact() for many. @returns `contacts` */
+    contactsBatch(points: PointBuffer | Float32Array, margin: number, contacts: ContactBuffer, count?: number): ContactBuffer;
+
+    /** The bytes of a map file. */
+    save(): Uint8Array;
+}
+
+/** A stretch of a ray from the centre, in distances from it; the last ends at the bounding sphere. */
+export interface RayInterval {
+    from: number;
+    to: number;
+    inside: boolean;
+    certain: boolean;
+}
+
+export class ExactMap extends MapOfEitherKind {
+    readonly kind: 'exact';
+    readonly description: ExactMapDescription;
+    /** contains(), with the mark of certainty: false where an open mesh leaves it to the winding number. */
+    classify(point: Vec3): { inside: boolean; certain: boolean };
+    /** The first crossing of the straight way between two points with the surface. */
+    sweep(from: Vec3, to: Vec3): SweepHit;
+    /** What the map knows along a ray from its centre. @param direction  of any length but 0 */
+    ray(direction: Vec3): ExactRay;
+    /** The mesh on the map's lattice; of each face the longest list of a band that it is in. Delete the mesh. */
+    surface(): { mesh: Mesh; longestLists: Uint32Array };
+    /** For drawing: of each cell its bands, the faces in their lists, and unit vectors to its three corners (9 numbers). */
+    cells(): { bandCounts: Uint32Array; faceCounts: Uint32Array; corners: Float32Array };
+}
+
+export class DistanceMap extends MapOfEitherKind {
+    readonly kind: 'distance';
+    readonly description: DistanceMapDescription;
+    /** How many of the samples around a point entered the interpolation; 0 where no query looks. */
+    usableSampleCount(point: Vec3): number;
+    ray(direction: Vec3): DistanceRay;
+    /** The surface as the map sees it; of each face its layer, 0 for the nearest to the centre. Delete the mesh. */
+    surface(): { mesh: Mesh; layers: Uint32Array };
+}
+
+export interface SweepHit {
+    /** Along the way: 0 at its beginning, 1 at its end or when nothing is met. */
+    parameter: number;
+    point: [number, number, number];
+    normal: [number, number, number];
+    face: number;
+    entering: boolean;
+    found: boolean;
+}
+
+export interface ExactRay {
+    cell: number;
+    /** Unit vectors. */
+    cellCorners: [number, number, number][];
+    /** Where surface may lie; windingBelow: of the gap towards the centre, null where it is not one number. */
+    bands: { from: number; to: number; faceCount: number; windingBelow: number | null }[];
+    /** Distances of the surface. */
+    crossings: number[];
+    intervals: RayInterval[];
+}
+export interface DistanceRay {
+    /** The samples around the ray, by their index; an octahedral map's fourth is one of the other three. */
+    samples: number[];
+    /** How many entries each has. */
+    sampleEntryCounts: number[];
+    /** Those with as many entries as the nearest: the others are ignored. */
+    samplesUsed: boolean[];
+    /** The interpolated entries. */
+    crossings: number[];
+    intervals: RayInterval[];
+}
+
+interface MapDescription {
+    centre: [number, number, number];
+    radius: number;
+    byteCount: number;
+    /** 16 hexadecimal digits: mesh and options. */
+    sourceHash: string;
+    faceCount: number;
+    droppedFaces: number;
+}
+export interface ExactMapDescription extends MapDescription {
+    kind: 'exact';
+    divisions: number;
+    rule: 'nonzero' | 'parity';
+    closed: boolean;
+    cellCount: number;
+    bandCount: number;
+    referenceCount: number;
+    longestList: number;
+    meanList: number;
+    expectedTests: number;
+    certainShare: number;
+    uncertainDirections: number;
+}
+export interface DistanceMapDescription extends MapDescription {
+    kind: 'distance';
+    grid: 'spherical' | 'octahedral' | 'cube';
+    longitudeCount: number;
+    colatitudeCount: number;
+    divisions: number;
+    poleAxis: 'x' | 'y' | 'z';
+    entryFormat: 'float32' | 'unorm16';
+    correction: 'none' | 'paper' | 'signed';
+    centreInside: boolean;
+    directionCount: number;
+    entryCount: number;
+    /** How many directions have 0, 1, 2 ... entries. */
+    entryHistogram: number[];
+    maxEntries: number;
+    correctedEntries: number;
+    clampedEntries: number;
+    wrongParityShare: number;
+}
+
+// ---- Scenes and simulations
+
+/** Keys and limits: docs/scenes.md. Angles are degrees. */
+export interface SceneDescription {
+    model: string | { torus: object } | { sphere: object } | { box: object };
+    repair?: readonly Repair[];
+    map?: MapOptions;
+    collider?: {
+        position?: Vec3;
+        rotation?: { axis: Vec3; degrees: number };
+        scale?: number | Vec3;
+        linear_velocity?: Vec3;
+        angular_velocity?: Vec3;
+    };
+    cloth: {
+        size: readonly [number, number];
+        particles?: readonly [number, number];
+        position?: Vec3;
+        rotation?: { axis: Vec3; degrees: number };
+        velocity?: Vec3;
+        thickness?: number;
+        /** [column, row] of particles that stay where they are. */
+        pins?: readonly (readonly [number, number])[];
+    };
+    material?: {
+        friction?: number;
+        drag?: number;
+        structural?: number;
+        shear?: number;
+        bending?: number;
+        compliance?: { structural?: number; shear?: number; bending?: number };
+    };
+    gravity?: Vec3;
+    time_step?: number;
+    solver?: 'verlet' | 'xpbd';
+    iterations?: number;
+    substeps?: number;
+    frame_limit?: number;
+    at_rest?: { distance?: number; frames?: number };
+}
+
+/** A scene that was read and found right. */
+export class Scene extends Deletable {
+    /** The name of the model's file as the scene has it; null when the model is a generated shape. */
+    readonly modelFile: string | null;
+    readonly repair: Repair[];
+    readonly frameLimit: number;
+    /** Seconds. */
+    readonly timeStep: number;
+    readonly particleCount: number;
+    /** The generated shape, repaired as the scene says. @throws InvalidScene for a file: read that, and repair() it */
+    makeModel(): Mesh;
+    /** By the scene's options. */
+    buildMap(mesh: Mesh): AnyMap;
+    /** The scene's cloth and collider, ready to step. The map may be of another kind than the scene says. */
+    makeSimulation(map: AnyMap): Simulation;
+}
+
+/** Cloth on one collider. Same scene and map, same positions bit for bit, in every browser and in native C++. */
+export class Simulation extends Deletable {
+    readonly particleCount: number;
+    /** [3 particleCount] a view of the simulation's own memory: take it anew each time, as that of a buffer. Read only. */
+    readonly positions: Float32Array;
+    /** [3 particleCount] one substep ago. */
+    readonly previousPositions: Float32Array;
+    /** [3 face_count] particles; a copy, and always the same. */
+    readonly faces: Uint32Array;
+    readonly frame: number;
+    readonly atRest: boolean;
+    /** Units per second; infinite before the first frame. */
+    readonly largestSpeed: number;
+    /** 16 hexadecimal digits of all positions' bits. */
+    readonly stateHash: string;
+    /** Since the simulation began. */
+    readonly profile: SimulationProfile;
+    readonly collider: ColliderState;
+
+    /** @throws Diverged; afterwards only reading is allowed */
+    step(frameCount?: number): void;
+    /**
+     * A simulation of the same particles and collider as they are now, by the solver, material, thickness and gravity of
+     * another scene: for options that change while the cloth falls. Profile and frame begin anew. Delete the old one.
+     */
+    continueWith(scene: Scene): Simulation;
+    /** Steers the collider: it keeps these velocities until they are set again. Units and radians per second. */
+    setVelocities(linear: Vec3, angular: Vec3): void;
+
+    /**
+     * Gives a particle a velocity, units per second. To drag with the pointer, set it before each step, for the grabbed
+     * particle and its near neighbours, to (where the pointer wants it - where it is) / (about 5 time steps): sticks pull
+     * at them and the collider stops them, so nobody is dragged into the model.
+     */
+    setVelocity(particle: number, velocity: Vec3): void;
+    /**
+     * Wind for one frame, to be called before each step.
+     * @param wind  velocity of the air, units per second
+     * @param rate  how quickly the cloth takes on the wind's velocity across its faces, per second: 1 to 10 for cloth
+     */
+    blow(wind: Vec3, rate: number): void;
+
+    /** Which particles are inside the collider now, by its map. */
+    containsBatch(inside: FlagBuffer): FlagBuffer;
+    /** In world units: for instance for colours by depth. */
+    contactsBatch(margin: number, contacts: ContactBuffer): ContactBuffer;
+}
+
+/** As in echinus/simulation.hpp. Queries are those of particles in all relaxations. */
+export interface SimulationProfile {
+    integrationSeconds: number;
+    constraintSeconds: number;
+    collisionSeconds: number;
+    queryCount: number;
+    contactCount: number;
+    mapQueryCount: number;
+    rescuedCount: number;
+    lostCount: number;
+}
+
+/** point_world = rotation applied to (scale * point_local), + position. */
+export interface ColliderState {
+    position: [number, number, number];
+    /** A unit quaternion w, x, y, z. */
+    rotation: [number, number, number, number];
+    scale: [number, number, number];
+    linearVelocity: [number, number, number];
+    angularVelocity: [number, number, number];
+}
+
+export {};

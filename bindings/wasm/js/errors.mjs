@@ -1,0 +1,33 @@
+/** What the module throws: `code` for a program, `message`, one sentence, for a person. */
+export class EchinusError extends Error {
+    constructor(code, sentence, options) {
+        super(sentence, options);
+        this.name = 'EchinusError';
+        this.code = code;
+    }
+}
+
+/** Refuses an argument before it reaches the module. */
+export function refuse(sentence) {
+    throw new EchinusError('InvalidArgument', sentence);
+}
+
+/** A whole number that fits into 32 bits. */
+export function requireCount(value, what) {
+    if (!Number.isInteger(value) || value < 0 || value > 0xffffffff)
+        refuse(`${what} is ${String(value)}; it must be a whole number from 0 to 2^32 - 1`);
+    return value;
+}
+
+/** Three numbers; whether they have to be finite, the call decides. */
+export function requirePoint(value, what) {
+    if (value == null || value.length !== 3 || !Array.prototype.every.call(value, (c) => typeof c === 'number'))
+        refuse(`${what} must be three numbers`);
+    return value;
+}
+
+/** Three finite numbers. */
+export function requireFinite(value, what) {
+    if (!Array.prototype.every.call(requirePoint(value, what), Number.isFinite)) refuse(`${what} must be three finite numbers`);
+    return value;
+}

@@ -1,0 +1,112 @@
+import { ContactBuffer, FlagBuffer, requireWithin } from './buffers.mjs';
+import { Handle, requireOwn } from './core.mjs';
+import { refuse, requireCount, requireFinite } from './errors.mjs';
+import { asJson, requireMap, wrapMap } from './maps.mjs';
+import { Mesh } from './mesh.mjs';
+
+/** A scene that was read and found right. */
+export class Scene extends Handle {
+    constructor(core, json, name) {
+        super(core, core.withTexts([asJson(json), name], (...texts) => core.try('scene_parse', ...texts)), 'scene_delete');
+        Object.assign(this, core.json('scene_describe', this.address));
+    }
+
+    makeModel() {
+        return new Mesh(this.core, this.core.try('scene_make_model', this.address));
+    }
+    buildMap(mesh) {
+        return wrapMap(this.core, this.core.try('scene_build_map', this.address, requireOwn(this.core, mesh, Mesh)));
+    }
+    makeSimulation(map) {
+        return new Simulation(this.core, this.core.try('simulation_make', this.address, requireMap(this.core, map)));
+    }
+}
+
+export class Simulation extends Handle {
+    #positions = null;
+    #previousPositions = null;
+
+    constructor(core, address) {
+        super(core, address, 'simulation_delete');
+        Object.defineProperty(this, 'particleCount', { value: core.call('simulation_particle_count', address), enumerable: true });
+    }
+
+    /** From here on by the options of another scene; particles and collider stay as they are. */
+    continueWith(scene) {
+        return new Simulation(this.core, this.core.try('simulation_continue', this.address, requireOwn(this.core, scene, Scene)));
+    }
+
+    step(frameCount = 1) {
+        requireCount(frameCount, 'the number of frames');
+        this.core.try('simulation_step', this.address, frameCount);
+    }
+
+    // Views of the simulation's own memory: see Buffer in buffers.mjs.
+    get positions() {
+        const address = this.address;
+        if (this.#positions?.buffer !== this.core.memory.buffer) this.#positions = this.#view('simulation_positions', address);
+        return this.#positions;
+    }
+    get previousPositions() {
+        const address = this.address;
+        if (this.#previousPositions?.buffer !== this.core.memory.buffer)
+            this.#previousPositions = this.#view('simulation_previous_positions', address);
+        return this.#previousPositions;
+    }
+    #view(name, address) {
+        const first = this.core.call(name, address) >>> 0;
+        return new Float32Array(this.core.memory.buffer, first, 3 * this.particleCount);
+    }
+
+    /** A copy: three particles for each face. */
+    get faces() {
+        return this.core.copyWords(this.core.call('simulation_faces', this.address), 3 * this.core.call('simulation_face_count', this.address));
+    }
+    get frame() {
+        return this.core.call('simulation_frame', this.address);
+    }
+    get atRest() {
+        return this.core.call('simulation_at_rest', this.address) !== 0;
+    }
+    get largestSpeed() {
+        return this.core.call('simulation_largest_speed', this.address);
+    }
+    get stateHash() {
+        return BigInt.asUintN(64, this.core.call('simulation_state_hash', this.address)).toString(16).padStart(16, '0');
+    }
+    get profile() {
+        return this.core.json('simulation_profile', this.address);
+    }
+
+    get collider() {
+        return this.core.json('simulation_collider', this.address);
+    }
+    setVelocities(linear, angular) {
+        requireFinite(linear, 'the linear velocity');
+        requireFinite(angular, 'the angular velocity');
+        this.core.call('simulation_set_velocities', this.address, ...linear, ...angular);
+    }
+
+    setVelocity(particle, velocity) {
+        requireCount(particle, 'the particle');
+        if (particle >= this.particleCount) refuse(`there is no particle ${particle}; there are ${this.particleCount}`);
+        this.core.call('simulation_set_velocity', this.address, particle, ...requireFinite(velocity, 'the velocity'));
+    }
+    blow(wind, rate) {
+        if (!(rate >= 0 && rate < Infinity)) refuse(`the rate is ${String(rate)}; it must be a finite number, not negative`);
+        this.core.try('simulation_blow', this.address, ...requireFinite(wind, 'the wind'), rate);
+    }
+
+    containsBatch(inside) {
+        const flags = requireOwn(this.core, inside, FlagBuffer);
+        requireWithin(this.particleCount, inside.length, 'answers');
+        this.core.call('simulation_contains_batch', this.address, flags);
+        return inside;
+    }
+    contactsBatch(margin, contacts) {
+        const results = requireOwn(this.core, contacts, ContactBuffer);
+        requireWithin(this.particleCount, contacts.length, 'contacts');
+        this.core.call('simulation_contacts_batch', this.address, margin, results);
+        return contacts;
+    }
+}

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace echinus::wasm {
+
+/// Lists of numbers on their way to JavaScript; what each holds, the function that makes them says.
+struct Arrays {
+    std::array<std::vector<std::uint32_t>, 5> numbers;
+    std::array<std::vector<float>, 1> floats;
+};
+
+} // namespace echinus::wasm

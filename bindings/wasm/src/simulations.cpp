@@ -1,0 +1,184 @@
+// Scenes and simulations.
+
+#include "interface.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/scene.hpp>
+
+namespace echinus::wasm {
+
+namespace {
+
+json to_json(const Vec3d& v) {
+    return {v.x, v.y, v.z};
+}
+
+json to_json(const SceneModel& model) {
+    if (const auto* file = std::get_if<ModelFile>(&model)) return file->name;
+    return nullptr;
+}
+
+json describe(const Scene& scene) {
+    json repairs = json::array();
+    if (scene.repair.drop_duplicate_faces) repairs.push_back("duplicate_faces");
+    if (scene.repair.drop_doubled_patches) repairs.push_back("doubled_patches");
+    if (scene.repair.flip_inside_out) repairs.push_back("inside_out");
+    return {{"modelFile", to_json(scene.model)},
+            {"repair", repairs},
+            {"frameLimit", scene.frame_limit},
+            {"timeStep", scene.simulation.time_step},
+            {"particleCount", scene.cloth.column_count * scene.cloth.row_count}};
+}
+
+/// The mesh that the scene names by its shape, repaired as the scene says.
+/// @throws Error InvalidScene for a file
+TriangleMesh make_model(const Scene& scene) {
+    const auto make = [](const auto& model) -> TriangleMesh {
+        if constexpr (std::is_same_v<std::decay_t<decltype(model)>, ModelFile>)
+            throw Error(ErrorCode::InvalidScene,
+                        "the scene's model is the file " + model.name + ": read it and hand in its mesh");
+        else
+            return make_mesh(model);
+    };
+    return repair(std::visit(make, scene.model), scene.repair).mesh;
+}
+
+json to_json(const SimulationProfile& profile) {
+    return {{"integrationSeconds", profile.integration_seconds},
+            {"constraintSeconds", profile.constraint_seconds},
+            {"collisionSeconds", profile.collision_seconds},
+            {"queryCount", profile.query_count},
+            {"contactCount", profile.contact_count},
+            {"mapQueryCount", profile.map_query_count},
+            {"rescuedCount", profile.rescued_count},
+            {"lostCount", profile.lost_count}};
+}
+
+json to_json(const Collider& collider) {
+    const Rotation& r = collider.pose.rotation;
+    return {{"position", to_json(collider.pose.translation)},
+            {"rotation", {r.w, r.x, r.y, r.z}},
+            {"scale", to_json(collider.scale)},
+            {"linearVelocity", to_json(collider.linear_velocity)},
+            {"angularVelocity", to_json(collider.angular_velocity)}};
+}
+
+const Collider& collider_of(const Simulation& simulation) {
+    return simulation.colliders().front();
+}
+
+/// The scene's options for the particles and the collider of a simulation as they are now.
+Simulation continue_with(const Simulation& simulation, const Scene& scene) {
+    return Simulation(simulation.deformable(), simulation.colliders(), scene.simulation);
+}
+
+} // namespace
+
+ECHINUS_EXPORT(scene_parse)
+Scene* scene_parse(const char* text, std::uint32_t size, const char* name, std::uint32_t name_size) {
+    return make_handle(
+        [&] { return parse_scene(text_at(text, size), std::string(text_at(name, name_size))); });
+}
+ECHINUS_EXPORT(scene_describe) Text* scene_describe(const Scene* scene) {
+    return make_json([&] { return describe(*scene); });
+}
+ECHINUS_EXPORT(scene_make_model) TriangleMesh* scene_make_model(const Scene* scene) {
+    return make_handle([&] { return make_model(*scene); });
+}
+ECHINUS_EXPORT(scene_build_map) AnyMap* scene_build_map(const Scene* scene, const TriangleMesh* mesh) {
+    return make_handle([&] { return build_map(*mesh, scene->map); });
+}
+ECHINUS_EXPORT(scene_delete) void scene_delete(Scene* scene) {
+    delete scene;
+}
+
+ECHINUS_EXPORT(simulation_make) Simulation* simulation_make(const Scene* scene, const AnyMap* map) {
+    return make_handle([&] { return make_simulation(*scene, *map); });
+}
+ECHINUS_EXPORT(simulation_continue)
+Simulation* simulation_continue(const Simulation* simulation, const Scene* scene) {
+    return make_handle([&] { return continue_with(*simulation, *scene); });
+}
+ECHINUS_EXPORT(simulation_delete) void simulation_delete(Simulation* simulation) {
+    delete simulation;
+}
+
+ECHINUS_EXPORT(simulation_step) bool simulation_step(Simulation* simulation, std::uint32_t frame_count) {
+    return guarded([&] {
+        for (std::uint32_t i = 0; i < frame_count; ++i) simulation->step();
+        return true;
+    });
+}
+
+ECHINUS_EXPORT(simulation_particle_count)
+std::uint32_t simulation_particle_count(const Simulation* simulation) {
+    return static_cast<std::uint32_t>(simulation->positions().size());
+}
+ECHINUS_EXPORT(simulation_positions) const Vec3f* simulation_positions(const Simulation* simulation) {
+    return simulation->positions().data();
+}
+ECHINUS_EXPORT(simulation_previous_positions)
+const Vec3f* simulation_previous_positions(const Simulation* simulation) {
+    return simulation->deformable().previous_positions.data();
+}
+ECHINUS_EXPORT(simulation_faces) const Triangle* simulation_faces(const Simulation* simulation) {
+    return simulation->deformable().faces.data();
+}
+ECHINUS_EXPORT(simulation_face_count) std::uint32_t simulation_face_count(const Simulation* simulation) {
+    return static_cast<std::uint32_t>(simulation->deformable().faces.size());
+}
+
+ECHINUS_EXPORT(simulation_frame) std::uint32_t simulation_frame(const Simulation* simulation) {
+    return simulation->frame();
+}
+ECHINUS_EXPORT(simulation_at_rest) bool simulation_at_rest(const Simulation* simulation) {
+    return simulation->at_rest();
+}
+ECHINUS_EXPORT(simulation_largest_speed) double simulation_largest_speed(const Simulation* simulation) {
+    return simulation->largest_speed();
+}
+ECHINUS_EXPORT(simulation_state_hash) std::uint64_t simulation_state_hash(const Simulation* simulation) {
+    return simulation->state_hash();
+}
+ECHINUS_EXPORT(simulation_profile) Text* simulation_profile(const Simulation* simulation) {
+    return make_json([&] { return to_json(simulation->profile()); });
+}
+
+// ---- The collider of the scene
+
+ECHINUS_EXPORT(simulation_collider) Text* simulation_collider(const Simulation* simulation) {
+    return make_json([&] { return to_json(collider_of(*simulation)); });
+}
+ECHINUS_EXPORT(simulation_set_velocities)
+void simulation_set_velocities(Simulation* simulation, double linear_x, double linear_y, double linear_z,
+                               double angular_x, double angular_y, double angular_z) {
+    simulation->set_velocities(0, {linear_x, linear_y, linear_z}, {angular_x, angular_y, angular_z});
+}
+
+// ---- A hand and wind
+
+ECHINUS_EXPORT(simulation_set_velocity)
+void simulation_set_velocity(Simulation* simulation, std::uint32_t particle, double x, double y, double z) {
+    simulation->set_velocity(particle, {x, y, z});
+}
+ECHINUS_EXPORT(simulation_blow)
+bool simulation_blow(Simulation* simulation, double x, double y, double z, double rate) {
+    return guarded([&] {
+        simulation->blow({x, y, z}, rate);
+        return true;
+    });
+}
+
+/// Which particles are inside the collider now, by its map.
+ECHINUS_EXPORT(simulation_contains_batch)
+void simulation_contains_batch(const Simulation* simulation, std::uint8_t* inside) {
+    contains_batch(collider_of(*simulation), simulation->positions(),
+                   {inside, simulation->positions().size()});
+}
+ECHINUS_EXPORT(simulation_contacts_batch)
+void simulation_contacts_batch(const Simulation* simulation, float margin_world, Contact* contacts) {
+    contacts_batch(collider_of(*simulation), simulation->positions(), margin_world,
+                   {contacts, simulation->positions().size()});
+}
+
+} // namespace echinus::wasm

@@ -1,0 +1,18 @@
+# Libraries that are headers only, for a compiler that must not see the other headers of the machine that it runs on: a
+# folder with links to them alone, where find_path() looks, and modules for find_package().
+set(echinus_host_headers ${CMAKE_CURRENT_BINARY_DIR}/host_headers)
+file(MAKE_DIRECTORY ${echinus_host_headers}/include)
+foreach(entry IN ITEMS hwy flatbuffers nlohmann xxhash.h)
+  find_path(folder_of_${entry} ${entry} PATHS /usr/include /usr/local/include NO_CMAKE_FIND_ROOT_PATH NO_CACHE REQUIRED)
+  file(CREATE_LINK ${folder_of_${entry}}/${entry} ${echinus_host_headers}/include/${entry} SYMBOLIC)
+endforeach()
+list(APPEND CMAKE_FIND_ROOT_PATH ${echinus_host_headers})
+list(PREPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR}/host_headers)
+
+# echinus_header_library(NAME): the target NAME with the folder of links.
+function(echinus_header_library name)
+  if(NOT TARGET ${name})
+    add_library(${name} INTERFACE IMPORTED GLOBAL)
+    target_include_directories(${name} SYSTEM INTERFACE ${echinus_host_headers}/include)
+  endif()
+endfunction()

@@ -1,0 +1,2 @@
+echinus_header_library(nlohmann_json::nlohmann_json)
+set(nlohmann_json_FOUND TRUE)

@@ -1,0 +1,231 @@
+// What the module answers, and that its pieces fit together.
+import assert from 'node:assert/strict';
+import { readFileSync, readdirSync } from 'node:fs';
+import { join } from 'node:path';
+import { before, describe, test } from 'node:test';
+import { module, pseudoRandom, readScene, sourceFolder, start } from './support.mjs';
+
+let echinus;
+before(async () => { echinus = await start(); });
+
+/** A cube of edge 1 without its lid: vertices of corner i have the bits of i as coordinates. */
+const cubeVertices = Float32Array.from({ length: 24 }, (_, i) => (Math.floor(i / 3) >> (i % 3)) & 1);
+const openCubeSides = [[0, 2, 3, 1], [0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]];
+
+describe('A mesh', () => {
+    test('of polygons is cut into triangles, and its report finds the hole', () => {
+        const mesh = echinus.makeMeshFromPolygons(cubeVertices, openCubeSides.flat(), openCubeSides.map((side) => side.length));
+        const report = mesh.report();
+        assert.equal(report.faceCount, 10);
+        assert.equal(report.closed, false);
+        assert.equal(report.borderEdges.count, 4);
+        const edges = mesh.faults().borderEdges;
+        assert.deepEqual(new Set(edges), new Set([4, 5, 6, 7]), 'the corners of the missing lid');
+        assert.equal(edges.length, 8);
+    });
+    test('gives back the arrays that it was made of', () => {
+        const torus = echinus.makeTorus(1, 0.4, 8, 6);
+        const again = echinus.makeMesh(torus.vertices, torus.faces);
+        assert.deepEqual(again.vertices, torus.vertices);
+        assert.deepEqual(again.faces, torus.faces);
+        assert.equal(again.report().closed, true);
+    });
+    test('whose faces have vertices of their own is closed once it is welded', () => {
+        const torus = echinus.makeTorus(1, 0.4, 8, 6);
+        const { vertices, faces } = torus;
+        const soup = Float32Array.from({ length: 3 * faces.length }, (_, i) => vertices[3 * faces[Math.floor(i / 3)] + (i % 3)]);
+        const loose = echinus.makeMesh(soup, Uint32Array.from(faces.keys()));
+        assert.equal(loose.report().closed, false);
+        const welded = loose.weld();
+        assert.equal(welded.report().closed, true);
+        assert.equal(welded.vertexCount, torus.vertexCount);
+    });
+    test('with a face twice is mended, and the report says which went', () => {
+        const torus = echinus.makeTorus(1, 0.4, 8, 6);
+        const faces = [...torus.faces, ...torus.faces.subarray(0, 3)];
+        const { mesh, report } = echinus.makeMesh(torus.vertices, faces).repair(['duplicate_faces']);
+        assert.deepEqual(report.duplicateFacesDropped, [torus.faceCount]);
+        assert.equal(mesh.report().closed, true);
+    });
+    test('is read from the bytes of a file', () => {
+        const obj = 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .1e+1 0.5 1e-3\nf 1 2 3 4\nf 1 2 5\n';
+        const mesh = echinus.readMesh(new TextEncoder().encode(obj), 'A.OBJ');
+        assert.equal(mesh.faceCount, 3);
+        assert.ok(mesh.vertices.includes(Math.fround(1e-3)));
+    });
+    test('reads decimals as the nearest float', () => {
+        const random = pseudoRandom(5);
+        const numbers = Array.from({ length: 300 }, () => (random() - 0.5) * 10 ** Math.floor(60 * random() - 30));
+        const rows = numbers.map((x) => `v ${x} ${x.toExponential(20)} 1`);
+        const faces = numbers.slice(2).map((_, i) => `f ${i + 1} ${i + 2} ${i + 3}`);
+        const { vertices } = echinus.readMesh(new TextEncoder().encode([...rows, ...faces].join('\n')), 'a.obj');
+        numbers.forEach((x, i) => assert.deepEqual([...vertices.subarray(3 * i, 3 * i + 2)], [Math.fround(x), Math.fround(x)]));
+    });
+    test('judges points by its winding number and distance', () => {
+        const box = echinus.makeBox([2, 2, 2]);
+        assert.ok(Math.abs(box.windingNumber([0.1, 0.2, 0.3]) - 1) < 1e-9);
+        assert.ok(Math.abs(box.windingNumber([3, 0, 0])) < 1e-9);
+        assert.equal(box.unsignedDistance([3, 0, 0]), 2);
+    });
+});
+
+describe('A map', () => {
+    for (const options of [{}, { kind: 'distance' }, { kind: 'distance', grid: 'cube' }])
+        test(`with ${JSON.stringify(options)} agrees with the winding number of its mesh`, () => {
+            const mesh = echinus.makeTorus(1, 0.4, 24, 12);
+            const map = echinus.buildMap(mesh, options);
+            const random = pseudoRandom();
+            const count = 2000;
+            const points = echinus.makePoints(count);
+            for (let i = 0; i < 3 * count; ++i) points.view[i] = 3 * random() - 1.5;
+            const { view } = map.containsBatch(points, echinus.makeFlags(count));
+            let wrong = 0, inside = 0;
+            for (let i = 0; i < count; ++i) {
+                const expected = mesh.windingNumber(points.view.subarray(3 * i, 3 * i + 3)) > 0.5;
+                inside += expected;
+                wrong += expected !== (view[i] !== 0);
+            }
+            assert.ok(inside > 100);
+            assert.ok(map.kind === 'exact' ? wrong === 0 : wrong < count / 100, `${wrong} wrong`);
+        });
+    test('of exact kind classifies, sweeps, and describes itself', () => {
+        const map = echinus.buildMap(echinus.makeBox([2, 2, 2]));
+        assert.ok(map instanceof module.ExactMap);
+        assert.deepEqual(map.classify([0, 0, 0]), { inside: true, certain: true });
+        const hit = map.sweep([0.1, 0.2, 3], [0.1, 0.2, 0]);
+        assert.equal(hit.found, true);
+        assert.equal(hit.entering, true);
+        assert.ok(Math.abs(hit.parameter - 2 / 3) < 1e-5);
+        assert.equal(map.sweep([0, 0, 3], [0, 0, 2]).found, false);
+        assert.equal(map.description.closed, true);
+        assert.equal(map.description.faceCount, 12);
+        assert.equal(map.byteCount, map.description.byteCount);
+    });
+    test('has a surface with a class for each face, and cells with corners of length 1', () => {
+        const mesh = echinus.makeTorus(1, 0.4, 24, 12);
+        const exact = echinus.buildMap(mesh);
+        const surface = exact.surface();
+        assert.equal(surface.mesh.faceCount, mesh.faceCount);
+        assert.equal(Math.max(...surface.longestLists), exact.description.longestList);
+        const cells = exact.cells();
+        assert.equal(cells.bandCounts.length, exact.description.cellCount);
+        assert.equal(cells.corners.length, 9 * exact.description.cellCount);
+        assert.equal(cells.bandCounts.reduce((a, b) => a + b), exact.description.bandCount);
+        assert.ok(Math.abs(Math.hypot(...cells.corners.subarray(0, 3)) - 1) < 1e-6);
+        const distance = echinus.buildMap(mesh, { kind: 'distance' }).surface();
+        assert.deepEqual([...new Set(distance.layers)].sort(), [0, 1]);
+        assert.equal(distance.layers.length, distance.mesh.faceCount);
+    });
+    for (const options of [{}, { kind: 'distance' }, { kind: 'distance', grid: 'octahedral' }])
+        test(`with ${JSON.stringify(options)} agrees along a ray with contains()`, () => {
+            const map = echinus.buildMap(echinus.makeTorus(1, 0.4, 24, 12), options);
+            for (const direction of [[1, 0.1, 0.05], [-3, 2, 0.4], [0.01, 0.02, 5]]) {
+                const size = Math.hypot(...direction);
+                const ray = map.ray(direction);
+                assert.equal(ray.intervals[0].from, 0);
+                assert.equal(ray.intervals.at(-1).to, map.radius);
+                assert.equal(ray.intervals.length, ray.crossings.length + 1);
+                for (const { from, to, inside } of ray.intervals) {
+                    const middle = direction.map((c, k) => map.centre[k] + (c / size) * (from + to) / 2);
+                    assert.equal(map.contains(middle), inside);
+                }
+            }
+        });
+    test('of exact kind has every crossing of a ray in one of its bands', () => {
+        const { crossings, bands } = echinus.buildMap(echinus.makeTorus(1, 0.4, 24, 12)).ray([1, 0.3, 0.1]);
+        assert.equal(crossings.length, 2);
+        for (const crossing of crossings) assert.ok(bands.some(({ from, to }) => from <= crossing && crossing <= to));
+    });
+    test('takes a Float32Array as well as a buffer, and fewer points than there are', () => {
+        const map = echinus.buildMap(echinus.makeBox([2, 2, 2]));
+        const inside = echinus.makeFlags(2);
+        assert.deepEqual([...map.containsBatch(Float32Array.of(0, 0, 0, 5, 0, 0), inside).view], [1, 0]);
+        inside.view.fill(7);
+        map.containsBatch(Float32Array.of(0, 0, 0, 0, 0, 0), inside, 1);
+        assert.deepEqual([...inside.view], [1, 7]);
+    });
+});
+
+describe('Map files of every version', () => {
+    const folder = join(sourceFolder, 'tests/golden');
+    for (const name of readdirSync(folder).filter((file) => file.endsWith('.ech')))
+        test(`${name} is loaded, answers, and is saved as it was`, () => {
+            const bytes = readFileSync(join(folder, name));
+            const map = echinus.loadMap(bytes, name);
+            assert.ok(Buffer.from(map.save()).equals(bytes));
+            // The torus has its hole there; the boxes, the open one too, are around it.
+            assert.equal(map.contains(map.centre), !name.includes('torus'));
+        });
+});
+
+describe('A simulation', () => {
+    test('of a scene that ships comes to lie on its model with nobody inside', () => {
+        const scene = echinus.parseScene(readScene('torus_small.json'), 'torus_small.json');
+        const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
+        assert.equal(scene.particleCount, simulation.particleCount);
+        for (let i = 0; i < 40 && !simulation.atRest; ++i) simulation.step(10);
+        assert.equal(simulation.frame, 400);
+        const inside = simulation.containsBatch(echinus.makeFlags(simulation.particleCount)).view;
+        assert.equal(inside.reduce((a, b) => a + b), 0);
+        assert.equal(simulation.profile.lostCount, 0);
+        const contacts = simulation.contactsBatch(0.05, echinus.makeContacts(simulation.particleCount));
+        let touching = 0;
+        for (let i = 0; i < simulation.particleCount; ++i) touching += contacts.at(i).found;
+        assert.ok(touching > 50, `${touching} touch`);
+    });
+    test('moves its positions in place', () => {
+        const scene = echinus.parseScene(readScene('torus_small.json'));
+        const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
+        const { positions } = simulation;
+        const before = positions.slice();
+        simulation.step();
+        assert.equal(simulation.positions, positions, 'the same view');
+        assert.notDeepEqual(positions, before);
+        assert.deepEqual(simulation.previousPositions, before);
+    });
+    test('has a collider that turns when it is told to', () => {
+        const scene = echinus.parseScene(readScene('torus_small.json'));
+        const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
+        simulation.setVelocities([0, 0, 1], [0, 0, Math.PI]);
+        simulation.step(60);
+        const { position, rotation } = simulation.collider;
+        assert.ok(Math.abs(position[2] - 60 * scene.timeStep) < 1e-9);
+        assert.ok(Math.abs(rotation[0] - Math.cos(Math.PI / 8)) < 1e-9);
+    });
+    test('is dragged by a hand, but not into the model, and blown by wind', () => {
+        const scene = echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [20, 20], position: [0, 0, 0.5] }, gravity: [0, 0, 0] });
+        const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
+        const place = (i) => Array.from(simulation.positions.subarray(3 * i, 3 * i + 3));
+        for (let i = 0; i < 100; ++i) {
+            const way = [1, 0, -2].map((c, k) => c - place(190)[k]);
+            simulation.setVelocity(190, way.map((c) => c / (5 * scene.timeStep)));
+            simulation.step();
+        }
+        assert.ok(place(190)[2] < 0.45);
+        assert.equal(simulation.containsBatch(echinus.makeFlags(400)).view.includes(1), false);
+        const before = place(399);
+        for (let i = 0; i < 60; ++i) {
+            simulation.blow([0, 0, 5], 5);
+            simulation.step();
+        }
+        assert.ok(place(399)[2] > before[2] + 0.1);
+    });
+    test('goes on with other options from where it is', () => {
+        const description = { model: { torus: {} }, cloth: { size: [3, 3], particles: [20, 20], position: [0, 0, 0.5] } };
+        const scene = echinus.parseScene(description);
+        const first = scene.makeSimulation(scene.buildMap(scene.makeModel()));
+        first.step(5);
+        const light = echinus.parseScene({ ...description, gravity: [0, 0, 0] });
+        const second = first.continueWith(light);
+        assert.deepEqual(second.positions.slice(), first.positions.slice());
+        first.step(20);
+        second.step(20);
+        assert.ok(second.positions[2] > first.positions[2]);
+    });
+    test('of a scene with a file wants its mesh from outside', () => {
+        const scene = echinus.parseScene(readScene('horse_small.json').replace('horse_small', 'horse'), 'horse.json');
+        assert.equal(scene.modelFile, 'horse.3ds');
+        const map = scene.buildMap(echinus.makeSphere(0.5, 20, 10));
+        assert.equal(scene.makeSimulation(map).frame, 0);
+    });
+});

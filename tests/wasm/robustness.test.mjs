@@ -1,0 +1,323 @@
+// Lifetime, memory, errors, hostile input: nothing kills the module.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { Worker } from 'node:worker_threads';
+import { beforeEach, describe, test } from 'node:test';
+import { compiled, errorOf, module, moduleFolder, pseudoRandom, sourceFolder, start } from './support.mjs';
+
+let echinus;
+beforeEach(async () => { echinus = await start(); });
+
+/** The module still works. */
+function assertAlive() {
+    const mesh = echinus.makeBox([2, 2, 2]);
+    const map = echinus.buildMap(mesh);
+    assert.equal(map.contains([0, 0, 0]), true);
+    map.delete();
+    mesh.delete();
+}
+
+describe('An object that was deleted', () => {
+    test('refuses every use but another delete()', () => {
+        const mesh = echinus.makeBox([1, 1, 1]);
+        const map = echinus.buildMap(mesh);
+        const points = echinus.makePoints(4);
+        for (const object of [mesh, map, points]) {
+            assert.equal(object.deleted, false);
+            object.delete();
+            object.delete();
+            assert.equal(object.deleted, true);
+        }
+        for (const use of [() => mesh.report(), () => mesh.vertices, () => map.contains([0, 0, 0]), () => points.view, () => echinus.buildMap(mesh)])
+            assert.equal(errorOf(use).code, 'Deleted');
+        assertAlive();
+    });
+    test('gives its memory back', () => {
+        const torus = echinus.makeTorus(1, 0.4, 100, 50);
+        const build = () => echinus.buildMap(torus).delete();
+        for (let i = 0; i < 3; ++i) build();
+        const before = echinus.memoryByteCount;
+        for (let i = 0; i < 30; ++i) build();
+        assert.equal(echinus.memoryByteCount, before);
+    });
+    test('is deleted by the end of a block that disposes of it', () => {
+        const mesh = echinus.makeBox([1, 1, 1]);
+        mesh[Symbol.dispose ?? Symbol.for('Symbol.dispose')]();
+        assert.equal(mesh.deleted, true);
+    });
+    test('may have lent a map to a simulation, which keeps it', () => {
+        const scene = echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [20, 20], position: [0, 0, 0.5] } });
+        const map = scene.buildMap(scene.makeModel());
+        const simulation = scene.makeSimulation(map);
+        map.delete();
+        scene.delete();
+        simulation.step(30);
+        assert.equal(simulation.containsBatch(echinus.makeFlags(400)).view.includes(1), false);
+    });
+});
+
+describe('When memory grows', () => {
+    test('a buffer shows the same values through a new view', () => {
+        const points = echinus.makePoints(1000);
+        const held = points.view;
+        for (let i = 0; i < held.length; ++i) held[i] = i;
+        const before = echinus.memoryByteCount;
+        const large = echinus.makePoints(5_000_000);
+        assert.ok(echinus.memoryByteCount > before);
+        assert.equal(held.length, 0, 'the old view is cut off, not stale');
+        assert.equal(points.view.length, 3000);
+        assert.equal(points.view[2999], 2999);
+        large.delete();
+    });
+    test('contacts and positions do, too', () => {
+        const scene = echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [20, 20], position: [0, 0, 0.5] } });
+        const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
+        simulation.step(30);
+        const contacts = simulation.contactsBatch(0.1, echinus.makeContacts(400));
+        const was = { positions: simulation.positions.slice(), floats: contacts.floats.slice(), ints: contacts.ints.slice(), bytes: contacts.bytes.slice() };
+        echinus.makePoints(5_000_000);
+        assert.deepEqual(simulation.positions.slice(), was.positions);
+        assert.deepEqual(contacts.floats.slice(), was.floats);
+        assert.deepEqual(contacts.ints.slice(), was.ints);
+        assert.deepEqual(contacts.bytes.slice(), was.bytes);
+    });
+    test('in the middle of a batch over a Float32Array, the answers arrive', () => {
+        const map = echinus.buildMap(echinus.makeBox([2, 2, 2]));
+        const count = 3_000_000;
+        const inside = echinus.makeFlags(count);
+        const before = echinus.memoryByteCount;
+        map.containsBatch(new Float32Array(3 * count), inside);
+        assert.ok(echinus.memoryByteCount > before);
+        assert.equal(inside.view[count - 1], 1);
+    });
+});
+
+describe('Too much', () => {
+    test('of memory is an error, and the module lives on', () => {
+        assert.equal(errorOf(() => echinus.makePoints(0xffffffff)).code, 'OutOfMemory');
+        assert.equal(errorOf(() => echinus.makeFlags(0xfffffff0)).code, 'OutOfMemory');
+        assertAlive();
+    });
+    test('of faces is refused by the generator', () => {
+        assert.equal(errorOf(() => echinus.makeTorus(1, 0.4, 0xffffffff, 0xffffffff)).code, 'InvalidOptions');
+        assert.match(errorOf(() => echinus.makeTorus(1, 0.4, 1.5, 7)).message, /majorSegments is 1.5/);
+        assertAlive();
+    });
+    test('of a map that does not fit into 4 GiB is an error', { timeout: 300_000 }, () => {
+        const mesh = echinus.makeTorus(1, 0.4, 8, 6);
+        const error = errorOf(() => echinus.parseScene({ model: { box: { segments: 3344 } }, cloth: { size: [1, 1] } }).makeModel());
+        assert.equal(error.code, 'OutOfMemory');
+        assert.match(error.message, /memory does not suffice/);
+        assert.equal(mesh.report().closed, true);
+        assertAlive();
+    });
+});
+
+describe('Hostile input', () => {
+    const torusArrays = () => {
+        const torus = echinus.makeTorus(1, 0.4, 8, 6);
+        return [torus.vertices, torus.faces];
+    };
+
+    test('in meshes gives our sentence', () => {
+        const [vertices, faces] = torusArrays();
+        const broken = vertices.slice();
+        broken[7] = NaN;
+        const cases = [
+            [() => echinus.makeMesh(broken, faces), 'InvalidMesh', /not finite/],
+            [() => echinus.makeMesh(vertices, faces.map(() => 4_000_000_000)), 'InvalidMesh', /4000000000/],
+            [() => echinus.makeMesh([], []), 'InvalidMesh', /no faces/],
+            [() => echinus.makeMesh([1, 2], [0, 0, 0]), 'InvalidArgument', /three numbers/],
+            [() => echinus.makeMesh(vertices, [0, 1]), 'InvalidArgument', /faces/],
+            [() => echinus.makeMesh(vertices, [0, 1, -1]), 'InvalidArgument', /number 2 of faces is -1/],
+            [() => echinus.makeMesh(vertices, [0, 1, 1.5]), 'InvalidArgument', /1.5/],
+            [() => echinus.makeMesh(null, faces), 'InvalidArgument', /vertices/],
+            [() => echinus.makeMeshFromPolygons(vertices, [0, 1, 2], [4]), 'InvalidMesh', /add up to 4/],
+            [() => echinus.makeMeshFromPolygons(vertices, [0, 1, 2], [0xffffffff, 4]), 'InvalidMesh', /add up to/],
+            [() => echinus.makeMeshFromPolygons(vertices, [0, 1, 999], [3]), 'InvalidMesh', /999/],
+        ];
+        for (const [use, code, sentence] of cases) {
+            const error = errorOf(use);
+            assert.equal(error.code, code, error.message);
+            assert.match(error.message, sentence);
+        }
+        assertAlive();
+    });
+
+    test('in files gives our sentence with the name of the file', () => {
+        const text = (string) => new TextEncoder().encode(string);
+        const files = [
+            ['', 'a.obj', 'Damaged'], ['v 1 2\n', 'a.obj', 'Damaged'], ['v 1 2 x\nf 1 1 1', 'a.obj', 'Damaged'],
+            ['v 0x1 2 3\nf 1 1 1', 'a.obj', 'Damaged'], ['f 1 2 3\n', 'a.obj', 'InvalidMesh'], ['nonsense', 'a.obj', 'WrongFormat'],
+            ['v 1 2 3', 'a.glb', 'WrongFormat'], ['v 1 2 3', 'noending', 'WrongFormat'], ['OFF\n4000000000 4000000000 0\n', 'a.off', 'Damaged'],
+            ['ply\nformat binary_little_endian 1.0\nelement vertex 4294967295\nproperty float x\nend_header\n', 'a.ply', 'Damaged'],
+        ];
+        for (const [content, name, code] of files) {
+            const error = errorOf(() => echinus.readMesh(text(content), name));
+            assert.ok(error.message.startsWith(name), error.message);
+            assert.equal(error.code, code, error.message);
+        }
+        const error = errorOf(() => echinus.readMesh(new Uint8Array(200).fill(255), 'a.stl'));
+        assert.ok(error.message.startsWith('a.stl'), error.message);
+        assertAlive();
+    });
+
+    test('in map files, cut short or changed at any place, is found or harmless', () => {
+        const whole = new Uint8Array(readFileSync(join(sourceFolder, 'tests/golden/v1_box_exact.ech')));
+        const random = pseudoRandom(3);
+        let refused = 0;
+        const attack = (bytes) => {
+            try {
+                const map = echinus.loadMap(bytes, 'attack');
+                for (let i = 0; i < 20; ++i) map.contact([4 * random() - 2, 4 * random() - 2, 4 * random() - 2], 1);
+                map.delete();
+            } catch (error) {
+                assert.ok(['WrongFormat', 'UnsupportedVersion', 'Damaged'].includes(error.code), String(error));
+                assert.ok(error.message.startsWith('attack'), error.message);
+                ++refused;
+            }
+        };
+        for (let size = 0; size < whole.length; ++size) attack(whole.slice(0, size));
+        assert.equal(refused, whole.length, 'no part of it passes for the whole');
+        for (let i = 0; i < 2000; ++i) {
+            const bytes = whole.slice();
+            bytes[Math.floor(random() * bytes.length)] = Math.floor(random() * 256);
+            attack(bytes);
+        }
+        assertAlive();
+    });
+
+    test('in points is outside and has no contact', () => {
+        for (const options of [{}, { kind: 'distance' }]) {
+            const map = echinus.buildMap(echinus.makeBox([2, 2, 2]), options);
+            for (const c of [NaN, Infinity, -Infinity, 1e39, -1e300]) {
+                assert.equal(map.contains([c, 0, 0]), false);
+                assert.equal(map.contact([0, c, 0], 1e30).found, false);
+            }
+            assert.equal(map.contact([0.5, 0, 0], NaN).inside, true);
+        }
+        assertAlive();
+    });
+
+    test('in directions of rays is refused', () => {
+        const map = echinus.buildMap(echinus.makeBox([2, 2, 2]));
+        for (const direction of [[0, 0, 0], [NaN, 1, 1], [Infinity, 0, 0], [1e300, 0, 0]])
+            assert.equal(errorOf(() => map.ray(direction)).code, 'InvalidOptions');
+        assert.equal(errorOf(() => map.ray([1, 2])).code, 'InvalidArgument');
+        assert.equal(errorOf(() => map.ray('up')).code, 'InvalidArgument');
+    });
+
+    test('in sizes of batches is refused before anything is written', () => {
+        const map = echinus.buildMap(echinus.makeBox([2, 2, 2]));
+        const points = echinus.makePoints(10), few = echinus.makeFlags(9);
+        for (const use of [
+            () => map.containsBatch(points, few),
+            () => map.containsBatch(points, echinus.makeFlags(10), 11),
+            () => map.containsBatch(points, echinus.makeFlags(10), -1),
+            () => map.containsBatch(points, new Uint8Array(10)),
+            () => map.containsBatch([0, 0, 0], few),
+            () => map.containsBatch(new Float32Array(4), few),
+            () => map.contactsBatch(points, 0, few),
+            () => echinus.makePoints(-1),
+            () => echinus.makePoints(2.5),
+        ])
+            assert.equal(errorOf(use).code, 'InvalidArgument');
+        assertAlive();
+    });
+
+    test('in scenes names the key', () => {
+        const scene = { model: { torus: {} }, cloth: { size: [1, 1] } };
+        const cases = [
+            [{ ...scene, clothh: 1 }, /no key "clothh"; the nearest is "cloth"/],
+            [{ ...scene, material: { friction: -1 } }, /material.friction/],
+            [{ ...scene, material: { friction: NaN } }, /material.friction/],
+            [{ ...scene, cloth: { size: [1, 1], particles: [1e9, 1e9] } }, /cloth.particles/],
+            ['{"model": ', /parse|unexpected/],
+            ['['.repeat(100_000), /./],
+        ];
+        for (const [description, sentence] of cases) {
+            const error = errorOf(() => echinus.parseScene(description, 's.json'));
+            assert.equal(error.code, 'InvalidScene', error.message);
+            assert.match(error.message, sentence);
+            assert.ok(error.message.startsWith('s.json'));
+        }
+        assert.equal(errorOf(() => echinus.parseScene(undefined)).code, 'InvalidArgument');
+        assertAlive();
+    });
+
+    test('from another instance of the module is refused', async () => {
+        const other = await start();
+        const mesh = other.makeBox([1, 1, 1]);
+        assert.equal(errorOf(() => echinus.buildMap(mesh)).code, 'InvalidArgument');
+        assert.equal(errorOf(() => echinus.buildMap({})).code, 'InvalidArgument');
+    });
+});
+
+describe('A simulation', () => {
+    test('that diverges says in which frame, and can still be read', () => {
+        const scene = echinus.parseScene({
+            model: { torus: {} }, gravity: [0, 0, 1e9],
+            cloth: { size: [3, 3], particles: [10, 10], position: [0, 0, 5] },
+        });
+        const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
+        const error = errorOf(() => simulation.step(100_000));
+        assert.equal(error.code, 'Diverged');
+        assert.match(error.message, /frame \d+/);
+        assert.equal(simulation.positions.length, 300);
+        assertAlive();
+    });
+    test('refuses velocities that are not finite, and particles that it does not have', () => {
+        const scene = echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [10, 10] } });
+        const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
+        for (const use of [
+            () => simulation.setVelocity(100, [0, 0, 0]), () => simulation.setVelocity(-1, [0, 0, 0]), () => simulation.setVelocity(0, [NaN, 0, 0]),
+            () => simulation.setVelocities([0, 0, 0], [0, Infinity, 0]), () => simulation.blow([0, NaN, 0], 1), () => simulation.blow([0, 0, 0], -1),
+            () => simulation.step(-1), () => simulation.containsBatch(echinus.makeFlags(99)),
+        ])
+            assert.equal(errorOf(use).code, 'InvalidArgument');
+        simulation.step();
+    });
+});
+
+describe('The module', () => {
+    test('lacks nothing here, and says what it lacks where vectors are missing', async () => {
+        assert.deepEqual(module.missingFeatures(), []);
+        const { validate } = WebAssembly;
+        WebAssembly.validate = () => false;
+        try {
+            assert.deepEqual(module.missingFeatures(), ['WebAssembly SIMD', 'WebAssembly exceptions']);
+            await assert.rejects(module.load(compiled), { code: 'Unsupported' });
+        } finally {
+            WebAssembly.validate = validate;
+        }
+    });
+    test('loads from beside itself, from a file, bytes, a response, and a compiled module', async () => {
+        const bytes = readFileSync(join(moduleFolder, 'echinus.wasm'));
+        const streamed = new Response(bytes, { headers: { 'content-type': 'application/wasm' } });
+        for (const source of [undefined, new URL(`file://${join(moduleFolder, 'echinus.wasm')}`), bytes, new Response(bytes), streamed, compiled]) {
+            const instance = await module.load(source);
+            assert.equal(instance.instructionSet, 'wasm');
+        }
+        await assert.rejects(module.load(new Response('', { status: 404 })), { code: 'Unreadable' });
+    });
+    test('chooses between its kernels and the reference', () => {
+        echinus.instructionSet = 'scalar';
+        assert.equal(echinus.instructionSet, 'scalar');
+        assert.match(errorOf(() => { echinus.instructionSet = 'avx2'; }).message, /wasm, scalar/);
+        assert.equal(echinus.instructionSet, 'scalar');
+    });
+    test('works in a worker, to which the compiled module is posted', async () => {
+        const code = `
+            import { parentPort, workerData } from 'node:worker_threads';
+            const { load } = await import(workerData.url);
+            const echinus = await load(workerData.compiled);
+            parentPort.postMessage(echinus.buildMap(echinus.makeBox([2, 2, 2])).contains([0, 0, 0]));`;
+        const worker = new Worker(new URL(`data:text/javascript,${encodeURIComponent(code)}`), {
+            workerData: { url: `file://${join(moduleFolder, 'echinus.mjs')}`, compiled },
+        });
+        const answer = await new Promise((resolve, reject) => worker.once('message', resolve).once('error', reject));
+        assert.equal(answer, true);
+        await worker.terminate();
+    });
+});
