@@ -54,8 +54,11 @@ TEST(Steering, LeavesAPinnedParticleWhereItIs) {
 TEST(Steering, DragsNobodyIntoAModel) {
     const TriangleMesh torus = make_torus(1, 0.4, 24, 12);
     const Collider collider{.map = ExactMap::build(torus)};
-    const ClothOptions cloth{
-        .column_count = 20, .row_count = 20, .width = 3, .height = 3, .pose = {.translation = {0, 0, 0.5}}};
+    const ClothOptions cloth{.column_count = 20,
+                             .row_count = 20,
+                             .width = 3,
+                             .height = 3,
+                             .pose = {.rotation = {}, .translation = {0, 0, 0.5}}};
     Simulation simulation(make_cloth(cloth), {collider}, {});
     for (int i = 0; i < 100; ++i) {
         const std::size_t grabbed = 190;
