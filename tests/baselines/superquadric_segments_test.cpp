@@ -87,7 +87,7 @@ TEST(Simplify, SaysWhichFacesAreLeftAndLeavesOutThoseWithoutArea) {
 }
 
 TEST(Decompose, ReachesTheNumberOfSegmentsThatIsAskedFor) {
-    const TriangleMesh torus = make_torus(1, 0.4, 30, 12);
+    const TriangleMesh torus = make_torus(1, 0.4, 20, 8);
     for (const std::uint32_t count : {1U, 2U, 12U, 17U}) {
         const Decomposition decomposition = decompose(torus, {.segment_count = count});
         EXPECT_EQ(decomposition.segment_count, count);
@@ -96,12 +96,12 @@ TEST(Decompose, ReachesTheNumberOfSegmentsThatIsAskedFor) {
 }
 
 TEST(Decompose, LeavesAConvexSolidWholeAndCutsATorusTheFinerTheLessConcavityIsAllowed) {
-    EXPECT_EQ(decompose(make_sphere(1, 24, 12), {}).segment_count, 1U);
+    EXPECT_EQ(decompose(make_sphere(1, 16, 8), {}).segment_count, 1U);
     EXPECT_EQ(decompose(make_box({3, 1, 2}, 4), {}).segment_count, 1U);
     std::uint32_t coarser = 1;
     for (const double concavity : {0.2, 0.05, 0.02}) {
         const std::uint32_t count =
-            decompose(make_torus(1, 0.4, 30, 12), {.concavity = concavity}).segment_count;
+            decompose(make_torus(1, 0.4, 20, 8), {.concavity = concavity}).segment_count;
         EXPECT_GT(count, coarser);
         coarser = count;
     }
