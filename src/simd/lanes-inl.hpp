@@ -6,7 +6,7 @@
 #define ECHINUS_LANES_INL
 #endif
 
-#include "simd/wasm_doubles-inl.hpp"
+#include "simd/wasm_lanes-inl.hpp"
 
 #include <hwy/highway.h>
 

@@ -1,21 +1,23 @@
 // Included once for each instruction set, as Highway wants it: no guard against a second time.
-#if defined(ECHINUS_WASM_DOUBLES_INL) == defined(HWY_TARGET_TOGGLE)
-#ifdef ECHINUS_WASM_DOUBLES_INL
-#undef ECHINUS_WASM_DOUBLES_INL
+#if defined(ECHINUS_WASM_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef ECHINUS_WASM_LANES_INL
+#undef ECHINUS_WASM_LANES_INL
 #else
-#define ECHINUS_WASM_DOUBLES_INL
+#define ECHINUS_WASM_LANES_INL
 #endif
 
 #include <hwy/highway.h>
 
 #include <cstddef>
+#include <cstdint>
 
-#if HWY_TARGET == HWY_WASM && !HWY_HAVE_FLOAT64
+#if HWY_TARGET == HWY_WASM && !HWY_HAVE_FLOAT64 // of the version that this makes up for
 
 #include <wasm_simd128.h>
 
-/// Vectors of two doubles, which WebAssembly has and Highway's target for it (1.0) leaves out: the operations
-/// that our kernels use, under Highway's names and in its namespace, where its templates look for them.
+/// What WebAssembly has and Highway's target for it (1.0) leaves out, of what our kernels use: vectors of two
+/// doubles; and lookups of lanes by an instruction, where Highway moves byte by byte through memory. Under
+/// Highway's names and in its namespace, where its templates look for them.
 /// @pre vectors and masks are whole, 16 bytes, except where float and double meet
 HWY_BEFORE_NAMESPACE();
 namespace hwy::HWY_NAMESPACE {
@@ -72,6 +74,23 @@ HWY_API WholeDoubleVec PromoteTo(WholeDoubles /*tag*/, Vec128<float, 2> v) {
 }
 HWY_API Vec128<float, 2> DemoteTo(Simd<float, 2, 0> /*tag*/, WholeDoubleVec v) {
     return {wasm_f32x4_demote_f64x2_zero(v.raw)};
+}
+
+HWY_API Indices128<std::int32_t, 4> IndicesFromVec(Simd<std::int32_t, 4, 0> /*tag*/,
+                                                   Vec128<std::int32_t, 4> lanes) {
+    // Lane k begins at byte 4 k.
+    const auto first_bytes = wasm_i32x4_mul(lanes.raw, wasm_i32x4_splat(0x0404'0404));
+    return {wasm_i32x4_add(first_bytes, wasm_i32x4_splat(0x0302'0100))};
+}
+HWY_API Indices128<float, 4> IndicesFromVec(Simd<float, 4, 0> /*tag*/, Vec128<std::int32_t, 4> lanes) {
+    return {IndicesFromVec(Simd<std::int32_t, 4, 0>(), lanes).raw};
+}
+HWY_API Vec128<std::int32_t, 4> TableLookupLanes(Vec128<std::int32_t, 4> v,
+                                                 Indices128<std::int32_t, 4> from) {
+    return {wasm_i8x16_swizzle(v.raw, from.raw)};
+}
+HWY_API Vec128<float, 4> TableLookupLanes(Vec128<float, 4> v, Indices128<float, 4> from) {
+    return {wasm_i8x16_swizzle(v.raw, from.raw)};
 }
 
 } // namespace hwy::HWY_NAMESPACE
