@@ -76,7 +76,9 @@ class Tasks {
         return DistanceMapOptions{};
     }
     Simulation& simulation(const std::string& set, const AnyMap& map) {
-        return simulations_.try_emplace(set, make_simulation(scene_, map)).first->second;
+        const auto found = simulations_.find(set);
+        if (found != simulations_.end()) return found->second;
+        return simulations_.emplace(set, make_simulation(scene_, map)).first->second;
     }
 
     Scene scene_;

@@ -7,8 +7,8 @@ import { join } from 'node:path';
 import { start } from './support.mjs';
 
 const [program, scenePath, model, folder] = process.argv.slice(2);
-const TURNS = 25;
-const STEPS = 300;
+const TURNS = 15;
+const STEPS = 200;
 const NATIVE_SETS = ['scalar', 'sse4', 'avx2'];
 
 const native = spawn(program, [scenePath, model, folder], { stdio: ['pipe', 'pipe', 'inherit'] });
