@@ -1,0 +1,344 @@
+/** The page: brings the panel, the pictures and the worker together. */
+import type { Raycaster } from 'three';
+import { Client } from './client';
+import { Controls } from './panel/controls';
+import { byId } from './panel/elements';
+import { FigureStrip } from './panel/figures';
+import { showLegend, showMapFigures, showRay } from './panel/map_figures';
+import { beQuiet, enableClosing, say } from './panel/notice';
+import { count } from './panel/numbers';
+import { showReport } from './panel/report';
+import { enablePointer } from './pointer';
+import type { FromWorker, ModelNews } from './protocol';
+import { objText, saveAs } from './saving';
+import { SAMPLES, type Settings, fromLink, toLink } from './settings';
+import { ClothView } from './view/cloth_view';
+import { MapView } from './view/map_view';
+import { ModelView } from './view/model_view';
+import { Stage } from './view/stage';
+
+/** How many sets of arrays go back and forth: one is shown while the other is filled. */
+const FRAMES_UNDER_WAY = 2;
+
+class App {
+    #settings: Settings = fromLink(location.hash);
+    #file: { name: string; bytes: ArrayBuffer } | undefined;
+    #model: ModelNews | undefined;
+    #paused = false;
+    /** The number of the cloth on show; frames of earlier ones are dropped. */
+    #cloth = 0;
+    #framesAsked = 0;
+    #arrived: (FromWorker & { kind: 'frame' })[] = [];
+    #rayAsked = false;
+
+    readonly #stage = new Stage(byId<HTMLCanvasElement>('canvas'));
+    readonly #modelView = new ModelView();
+    readonly #clothView = new ClothView();
+    readonly #mapView = new MapView();
+    readonly #figures = new FigureStrip();
+    readonly #controls: Controls;
+    readonly #client = new Client((message) => this.#hear(message));
+
+    constructor() {
+        this.#stage.scene.add(this.#modelView.group, this.#clothView.mesh, this.#mapView.group);
+        this.#controls = new Controls(this.#settings, (settings, key) => this.#change(settings, key));
+        this.#bindButtons();
+        this.#bindKeys();
+        this.#bindFiles();
+        this.#bindPointer();
+        enableClosing();
+        // A link that is followed while the page is open.
+        addEventListener('hashchange', () => {
+            const settings = fromLink(location.hash);
+            if (toLink(settings) === toLink(this.#settings)) return;
+            this.#settings = settings;
+            this.#controls.show(settings);
+            this.#showView();
+            this.#open();
+        });
+        this.#showView();
+        this.#open();
+        this.#stage.renderer.setAnimationLoop(() => this.#draw());
+    }
+
+    // ---- The worker
+
+    #open(): void {
+        byId('subtitle').textContent = this.#file ? `Opening ${this.#file.name}` : 'Loading';
+        const { bytes, name } = this.#file ?? {};
+        // A copy goes: the worker may have to be begun anew, and mending reads the file again.
+        const file = name !== undefined && bytes ? { name, bytes: bytes.slice(0) } : undefined;
+        this.#client.tell({ kind: 'open', settings: this.#settings, page: document.baseURI, ...(file && { file }) }, file ? [file.bytes] : []);
+    }
+
+    #hear(message: FromWorker): void {
+        switch (message.kind) {
+            case 'model':
+                return this.#showModel(message);
+            case 'cloth':
+                ++this.#cloth;
+                this.#arrived = [];
+                this.#clothView.begin(message.faces);
+                this.#clothView.byDistance = this.#settings.colour === 'distance';
+                return;
+            case 'frame':
+                this.#framesAsked = Math.max(0, this.#framesAsked - 1);
+                if (message.cloth === this.#cloth) this.#arrived.push(message);
+                return;
+            case 'surface':
+                return showLegend(message, this.#mapView.showSurface(message));
+            case 'cut':
+                return this.#mapView.showCut(message);
+            case 'ray':
+                this.#rayAsked = false;
+                this.#mapView.showRay(message);
+                return showRay(message, this.#model!.radius);
+            case 'failed':
+                return this.#fail(message);
+        }
+    }
+
+    #fail({ sentence, code }: FromWorker & { kind: 'failed' }): void {
+        say(sentence);
+        this.#rayAsked = false;
+        this.#framesAsked = 0;
+        if (code === 'Diverged') this.#pause(true);
+        if (code === 'Crashed') {
+            // What has brought it down stays away: the page goes on with a sample.
+            this.#file = undefined;
+            this.#client.restart();
+            this.#cloth = 0;
+            if (this.#model) this.#open();
+        }
+        if (this.#model) {
+            this.#showTitle(this.#model);
+            if (this.#fileOpening) this.#file = this.#fileBefore;
+        }
+        this.#fileOpening = false;
+    }
+    #fileOpening = false;
+    #fileBefore: { name: string; bytes: ArrayBuffer } | undefined;
+
+    #showModel(model: ModelNews): void {
+        const another = model.name !== this.#model?.name || model.up !== this.#model.up || model.radius !== this.#model.radius;
+        this.#model = model;
+        if (this.#fileOpening) {
+            beQuiet();
+            this.#controls.showFile(model.name);
+        }
+        this.#fileOpening = false;
+        this.#modelView.show(model);
+        this.#mapView.begin(model);
+        if (another) this.#stage.lookAt(model.centre, model.radius, model.up);
+        this.#showTitle(model);
+        showReport(model);
+        showMapFigures(model.map);
+        this.#figures.showMap(model.map);
+        byId('map-note').textContent =
+            model.map.kind === 'exact'
+                ? 'Out by the shortest way. Nothing gets through: every step is proved.'
+                : 'Out along the ray from the centre, as in the paper: watch the cloth creep along a leg.';
+        byId('horse-notice').hidden = !SAMPLES.includes('horse');
+        if (this.#settings.view === 'map') this.#askForMap();
+    }
+
+    #showTitle(model: ModelNews): void {
+        byId('subtitle').textContent = `${model.name}, ${count(model.report.faceCount)} faces`;
+    }
+
+    #askForMap(): void {
+        this.#client.tell({ kind: 'surface' });
+        this.#client.tell({ kind: 'slice', height: this.#settings.slice });
+        // Something to see before the pointer comes.
+        this.#client.tell({ kind: 'ray', direction: [0.35, 0.5, 0.8] });
+    }
+
+    // ---- Frames
+
+    #draw(): void {
+        const next = this.#arrived.shift();
+        let spare;
+        if (next) {
+            spare = this.#clothView.show(next.arrays);
+            this.#modelView.follow(next.collider);
+            this.#figures.add(next.figures);
+            // What the tests wait for.
+            document.body.dataset.paused = String(next.figures.paused);
+            document.body.dataset.rest = String(next.figures.atRest);
+            document.body.dataset.frame = String(next.figures.frame);
+        }
+        if (this.#settings.view === 'cloth' && this.#model)
+            while (this.#framesAsked < FRAMES_UNDER_WAY && this.#arrived.length === 0) {
+                ++this.#framesAsked;
+                this.#client.tell({ kind: 'frame', ...(spare && { arrays: spare }) }, spare ? [spare.positions.buffer, spare.normals.buffer, spare.closeness.buffer] : []);
+                spare = undefined;
+            }
+        this.#stage.draw();
+        this.#figures.countDrawing();
+    }
+
+    // ---- What a visitor does
+
+    #change(settings: Settings, key: keyof Settings): void {
+        const before = this.#settings;
+        this.#settings = settings;
+        history.replaceState(null, '', `#${toLink(settings)}`);
+        if (key === 'model') this.#file = undefined;
+        if (key === 'view') return this.#showView();
+        if (key === 'slice') return this.#client.tell({ kind: 'slice', height: settings.slice });
+        if (key === 'model' || key === 'mend' || key === 'up') return this.#open();
+        this.#clothView.byDistance = settings.colour === 'distance';
+        this.#client.tell({ kind: 'change', settings });
+        if (before.particles !== settings.particles) this.#pause(false);
+    }
+
+    #showView(): void {
+        const map = this.#settings.view === 'map';
+        document.body.classList.toggle('view-map', map);
+        document.body.classList.toggle('view-cloth', !map);
+        this.#modelView.group.visible = !map;
+        this.#clothView.mesh.visible = !map;
+        this.#mapView.group.visible = map;
+        if (map && this.#model) this.#askForMap();
+    }
+
+    #pause(paused: boolean): void {
+        this.#paused = paused;
+        byId('pause').textContent = paused ? 'Go on' : 'Pause';
+        this.#client.tell({ kind: 'pause', paused });
+    }
+    #step(): void {
+        this.#pause(true);
+        this.#client.tell({ kind: 'step' });
+    }
+    #restart(): void {
+        beQuiet();
+        this.#client.tell({ kind: 'restart' });
+        this.#pause(false);
+    }
+    #switchView(): void {
+        const settings: Settings = { ...this.#settings, view: this.#settings.view === 'map' ? 'cloth' : 'map' };
+        this.#controls.show(settings);
+        this.#change(settings, 'view');
+    }
+
+    #bindButtons(): void {
+        const actions: Record<string, () => void> = {
+            pause: () => this.#pause(!this.#paused),
+            step: () => this.#step(),
+            restart: () => this.#restart(),
+            'save-picture': () => void this.#savePicture(),
+            'save-mesh': () => this.#saveMesh(),
+            'copy-link': () => void this.#copyLink(),
+        };
+        for (const [id, action] of Object.entries(actions)) byId(id).addEventListener('click', action);
+    }
+
+    #bindKeys(): void {
+        const actions: Record<string, () => void> = {
+            ' ': () => this.#pause(!this.#paused),
+            s: () => this.#step(),
+            r: () => this.#restart(),
+            m: () => this.#switchView(),
+            p: () => void this.#savePicture(),
+        };
+        addEventListener('keydown', (event) => {
+            // Keys that a control of the panel needs are its own.
+            const busy = event.target instanceof HTMLElement && event.target.matches('input, select, button, a');
+            if (busy || event.ctrlKey || event.metaKey || event.altKey) return;
+            const action = actions[event.key.toLowerCase()];
+            if (!action) return;
+            event.preventDefault();
+            action();
+        });
+    }
+
+    #bindFiles(): void {
+        const openFile = async (file: File) => {
+            this.#fileBefore = this.#file;
+            try {
+                this.#file = { name: file.name, bytes: await file.arrayBuffer() };
+            } catch {
+                return say(`${file.name}: the browser cannot read this file`);
+            }
+            this.#fileOpening = true;
+            this.#open();
+        };
+        const input = byId<HTMLInputElement>('file');
+        input.addEventListener('change', () => {
+            const [file] = input.files ?? [];
+            if (file) void openFile(file);
+            input.value = ''; // so that the same file can be chosen again
+        });
+        const stage = byId('drop');
+        addEventListener('dragover', (event) => {
+            event.preventDefault();
+            stage.hidden = false;
+        });
+        addEventListener('dragleave', (event) => (stage.hidden = event.relatedTarget === null ? true : stage.hidden));
+        addEventListener('drop', (event) => {
+            event.preventDefault();
+            stage.hidden = true;
+            const [file] = event.dataTransfer?.files ?? [];
+            if (file) void openFile(file);
+        });
+    }
+
+    #bindPointer(): void {
+        enablePointer(byId<HTMLCanvasElement>('canvas'), this.#stage, this.#clothView, {
+            grab: (particle, target) => {
+                byId('hint').classList.add('seen');
+                this.#client.tell({ kind: 'grab', particle, target });
+            },
+            drag: (target) => this.#client.tell({ kind: 'drag', target }),
+            release: () => this.#client.tell({ kind: 'release' }),
+            hover: (ray) => this.#lookUnder(ray),
+            obstacles: () => [this.#modelView.group],
+            mayGrab: () => this.#settings.view === 'cloth',
+        });
+    }
+
+    /** The ray of the map through what the pointer points at. One question at a time, or a slow one makes a queue. */
+    #lookUnder(ray: Raycaster): void {
+        if (this.#settings.view !== 'map' || this.#rayAsked || !this.#model) return;
+        const hit = this.#mapView.pick(ray);
+        if (!hit) return;
+        const [x, y, z] = this.#model.centre;
+        this.#rayAsked = true;
+        this.#client.tell({ kind: 'ray', direction: [hit.x - x, hit.y - y, hit.z - z] });
+    }
+
+    // ---- To keep
+
+    async #savePicture(): Promise<void> {
+        saveAs('echinus.png', await this.#stage.picture());
+    }
+
+    #saveMesh(): void {
+        const { positions, faces } = this.#clothView;
+        if (!positions || !this.#model) return say('there is no cloth to save yet');
+        const model = { name: 'model', vertices: this.#modelView.verticesNow(this.#model.vertices), faces: this.#model.faces };
+        const notices = ['Cloth and model, by Echinus'];
+        if (this.#model.name === 'horse.3ds')
+            notices.push('The object "model" is horse.3ds of glmark2-data, licence GPL-3 or later; it is not part of Echinus.');
+        const text = objText([{ name: 'cloth', vertices: positions, faces }, model], notices);
+        saveAs('echinus.obj', new Blob([text], { type: 'model/obj' }));
+    }
+
+    async #copyLink(): Promise<void> {
+        const link = `${location.origin}${location.pathname}#${toLink(this.#settings)}`;
+        const note = byId('link-note');
+        note.hidden = false;
+        try {
+            await navigator.clipboard.writeText(link);
+            note.textContent = 'Copied.';
+        } catch {
+            note.textContent = link; // where the clipboard is closed, to be copied by hand
+        }
+        if (this.#file) note.textContent += ' The file that you opened is not in it.';
+    }
+}
+
+export function begin(): void {
+    new App();
+}

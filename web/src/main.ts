@@ -1,0 +1,21 @@
+/** Begins the page, or says what this browser lacks. */
+import { missingFeatures } from 'echinus';
+
+const missing = missingFeatures();
+if (!document.createElement('canvas').getContext('webgl2')) missing.push('WebGL 2');
+
+if (missing.length === 0) {
+    const { begin } = await import('./app');
+    begin();
+} else {
+    const sentence = document.createElement('p');
+    sentence.textContent = `This page needs ${missing.join(' and ')}, which this browser lacks. Chrome and Edge from 95, Firefox from 100 and Safari from 16.4 have what it needs.`;
+    const title = document.createElement('h1');
+    title.textContent = 'Echinus';
+    const page = document.createElement('div');
+    page.className = 'lacking';
+    page.setAttribute('role', 'alert');
+    page.append(title, sentence);
+    document.body.replaceChildren(page);
+    document.body.style.display = 'block';
+}

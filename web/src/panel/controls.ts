@@ -1,0 +1,74 @@
+import { DEFAULTS, RANGES, SAMPLES, type Settings } from '../settings';
+import { byId } from './elements';
+import { count } from './numbers';
+
+type Control = HTMLInputElement | HTMLSelectElement;
+
+/** The panel's inputs, each named for the setting that it changes. */
+export class Controls {
+    readonly #inputs: Control[];
+    #settings: Settings;
+    #file: HTMLOptionElement | undefined;
+
+    /** @param changed  called with the settings after a visitor's change, and the key changed */
+    constructor(settings: Settings, changed: (settings: Settings, key: keyof Settings) => void) {
+        const model = byId('panel').querySelector<HTMLSelectElement>('select[name=model]')!;
+        model.append(...SAMPLES.map((name) => new Option(name[0].toUpperCase() + name.slice(1), name)));
+        this.#inputs = [...byId('panel').querySelectorAll<Control>('[name]')];
+        this.#settings = settings;
+        for (const input of this.#inputs)
+            input.addEventListener('input', () => {
+                const key = input.name as keyof Settings;
+                if (key === 'model') this.#forgetFile();
+                this.show({ ...this.#settings, [key]: valueOf(input, key) });
+                changed(this.#settings, key);
+            });
+        this.show(settings);
+    }
+
+    show(settings: Settings): void {
+        this.#settings = settings;
+        for (const input of this.#inputs) {
+            const key = input.name as keyof Settings;
+            const value = settings[key];
+            if (key === 'model' && this.#file) continue; // what is chosen is the file
+            if (input.type === 'radio') (input as HTMLInputElement).checked = input.value === value;
+            else if (input.type === 'checkbox') (input as HTMLInputElement).checked = value as boolean;
+            else if (isLogarithmic(input)) input.value = String(toShare(value as number));
+            else input.value = String(value);
+            const output = input.closest('label')?.querySelector('output');
+            if (output) output.textContent = describe(input, value as number);
+        }
+    }
+
+    /** A file in the place of a sample: an entry that is there while the file is open. */
+    showFile(name: string): void {
+        this.#forgetFile();
+        this.#file = new Option(name, 'file', false, true);
+        this.#file.hidden = true;
+        this.#inputs.find((input) => input.name === 'model')!.prepend(this.#file);
+        this.#file.selected = true;
+    }
+    #forgetFile(): void {
+        this.#file?.remove();
+        this.#file = undefined;
+    }
+}
+
+function valueOf(input: Control, key: keyof Settings): Settings[keyof Settings] {
+    if (input.type === 'checkbox') return (input as HTMLInputElement).checked;
+    if (isLogarithmic(input)) return fromShare(Number(input.value));
+    return typeof DEFAULTS[key] === 'number' ? Number(input.value) : (input.value as Settings[keyof Settings]);
+}
+
+function describe(input: Control, value: number): string {
+    if (input.name === 'particles') return count(Math.round(Math.sqrt(value)) ** 2);
+    if (input.name === 'slice' && value >= 1) return 'none';
+    return `${value.toFixed(value % 1 === 0 ? 0 : value % 0.1 < 1e-9 ? 1 : 2)}${input.dataset.unit ?? ''}`;
+}
+
+// Particles go by factors: the step from 1 000 to 2 000 matters as much as that from 10 000 to 20 000.
+const isLogarithmic = (input: Control): boolean => input.dataset.scale === 'log';
+const [FEWEST, MOST] = RANGES.particles;
+const toShare = (particles: number): number => Math.log(particles / FEWEST) / Math.log(MOST / FEWEST);
+const fromShare = (share: number): number => Math.round(Math.sqrt(FEWEST * (MOST / FEWEST) ** share)) ** 2;

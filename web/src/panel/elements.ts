@@ -1,0 +1,19 @@
+/** The element of index.html with this id. */
+export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
+    const element = document.getElementById(id);
+    if (!element) throw new Error(`index.html has no element "${id}"`);
+    return element as T;
+}
+
+export function make(tag: string, text: string, className = ''): HTMLElement {
+    const element = document.createElement(tag);
+    element.textContent = text;
+    element.className = className;
+    return element;
+}
+
+export function swatch(colour: number): HTMLElement {
+    const element = make('span', '', 'swatch');
+    element.style.background = `#${colour.toString(16).padStart(6, '0')}`;
+    return element;
+}

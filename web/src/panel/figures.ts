@@ -1,0 +1,60 @@
+import type { Figures, MapNews } from '../protocol';
+import { byId } from './elements';
+import { bytes, count, milliseconds, perSecond } from './numbers';
+
+/** How often the figures change: numbers that flicker cannot be read. */
+const PERIOD_MS = 250;
+
+/** What is averaged. */
+type Sums = Record<'stepMs' | 'constraintMs' | 'collisionMs' | 'queriesPerSecond', number>;
+const NOTHING: Readonly<Sums> = { stepMs: 0, constraintMs: 0, collisionMs: 0, queriesPerSecond: 0 };
+
+/** The strip of figures. Times are means over the steps since they were last written. */
+export class FigureStrip {
+    #drawn = 0;
+    #since = performance.now();
+    #steps = 0;
+    #sums: Sums = { ...NOTHING };
+    #mostInside = 0;
+
+    countDrawing(): void {
+        ++this.#drawn;
+        const now = performance.now();
+        if (now - this.#since < PERIOD_MS) return;
+        byId('figure-fps').textContent = ((1000 * this.#drawn) / (now - this.#since)).toFixed(0);
+        if (this.#steps > 0) this.#writeMeans();
+        this.#drawn = 0;
+        this.#since = now;
+    }
+
+    add(figures: Figures): void {
+        this.#steps += figures.stepCount;
+        for (const key of Object.keys(NOTHING) as (keyof Sums)[]) this.#sums[key] += figures.stepCount * figures[key];
+        // The largest since the last writing: one frame with a particle inside must not slip by.
+        this.#mostInside = Math.max(this.#mostInside, figures.inside);
+        if (figures.stepCount === 0) this.#writeInside();
+    }
+
+    showMap({ byteCount, buildMs }: MapNews): void {
+        byId('figure-bytes').textContent = bytes(byteCount);
+        byId('figure-build').textContent = milliseconds(buildMs);
+    }
+
+    #writeMeans(): void {
+        const mean = (key: keyof Sums) => this.#sums[key] / this.#steps;
+        byId('figure-step').textContent = milliseconds(mean('stepMs'));
+        byId('figure-constraints').textContent = milliseconds(mean('constraintMs'));
+        byId('figure-collision').textContent = milliseconds(mean('collisionMs'));
+        byId('figure-queries').textContent = perSecond(mean('queriesPerSecond'));
+        this.#writeInside();
+        this.#steps = 0;
+        this.#sums = { ...NOTHING };
+    }
+
+    #writeInside(): void {
+        const cell = byId('figure-inside');
+        cell.textContent = count(this.#mostInside);
+        cell.parentElement!.classList.toggle('some', this.#mostInside > 0);
+        this.#mostInside = 0;
+    }
+}

@@ -1,0 +1,60 @@
+import type { FromWorker, MapNews, SurfaceNews } from '../protocol';
+import { LAYERS, SCALE } from '../view/colours';
+import { byId, make, swatch } from './elements';
+import { bytes, count, milliseconds } from './numbers';
+
+/** The map in numbers. */
+export function showMapFigures({ description, byteCount, buildMs }: MapNews): void {
+    const rows: [string, string][] = [
+        ['memory', bytes(byteCount)],
+        ['built in', milliseconds(buildMs)],
+    ];
+    if (description.kind === 'exact')
+        rows.push(
+            ['cells', count(description.cellCount)],
+            ['bands', count(description.bandCount)],
+            ['longest list of faces', count(description.longestList)],
+            ['mean tests of a query near the surface', description.expectedTests.toFixed(2)],
+        );
+    else
+        rows.push(
+            ['directions', count(description.directionCount)],
+            ['distances stored', count(description.entryCount)],
+            ['most along one direction', count(description.maxEntries)],
+            ['distances corrected', count(description.correctedEntries)],
+        );
+    byId('map-figures').replaceChildren(
+        ...rows.map(([name, value]) => {
+            const row = document.createElement('tr');
+            row.append(make('th', name), make('td', value));
+            return row;
+        }),
+    );
+}
+
+/** What the colours of the surface mean, and how often the two kinds of map differ. */
+export function showLegend(surface: SurfaceNews, largest: number): void {
+    if (surface.mapKind === 'exact') {
+        const scale = make('div', '', 'scale');
+        scale.style.background = `linear-gradient(to right, ${SCALE.map((colour) => `#${colour.toString(16).padStart(6, '0')}`).join(', ')})`;
+        const ends = make('div', '', 'ends');
+        ends.append(make('span', '1'), make('span', String(largest)));
+        byId('legend').replaceChildren(make('span', 'Faces that a query near the surface may have to test'), scale, ends);
+        return;
+    }
+    const layers = make('div', '', 'layers');
+    for (let layer = 0; layer <= largest; ++layer) {
+        const item = make('span', `layer ${layer + 1}`);
+        item.prepend(swatch(LAYERS[layer % LAYERS.length]));
+        layers.append(item);
+    }
+    const differing = surface.disagreements.length / 3;
+    const note = make('p', `${count(differing)} of ${count(surface.sampleCount)} points in the bounding sphere lie on another side than by the exact map: drawn in red.`, 'note');
+    byId('legend').replaceChildren(layers, note);
+}
+
+export function showRay({ intervals }: FromWorker & { kind: 'ray' }, radius: number): void {
+    const inside = intervals.filter((interval) => interval.inside);
+    const places = inside.map(({ from, to }) => `${(from / radius).toFixed(3)} to ${(to / radius).toFixed(3)}\u2009R`);
+    byId('ray').textContent = places.length === 0 ? 'Outside all the way.' : `Inside from ${places.join(', from ')}.`;
+}

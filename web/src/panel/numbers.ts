@@ -1,0 +1,17 @@
+/** Numbers as the page writes them. */
+const grouped = new Intl.NumberFormat('en', { maximumFractionDigits: 0 });
+
+/** 10 000: thin spaces, which no country reads as a decimal point. */
+export const count = (value: number): string => grouped.format(value).replaceAll(',', '\u2009');
+
+export function milliseconds(value: number): string {
+    return `${value.toFixed(value < 10 ? 2 : value < 100 ? 1 : 0)}\u2009ms`;
+}
+
+export function bytes(value: number): string {
+    return value < 1e6 ? `${(value / 1e3).toFixed(value < 1e5 ? 1 : 0)}\u2009kB` : `${(value / 1e6).toFixed(1)}\u2009MB`;
+}
+
+export function perSecond(value: number): string {
+    return value >= 1e6 ? `${(value / 1e6).toFixed(1)}\u2009M` : `${(value / 1e3).toFixed(0)}\u2009k`;
+}

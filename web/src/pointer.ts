@@ -1,0 +1,62 @@
+import * as THREE from 'three';
+import type { Triple } from './protocol';
+import type { ClothView } from './view/cloth_view';
+import type { Stage } from './view/stage';
+
+export interface PointerWishes {
+    grab(particle: number, target: Triple): void;
+    drag(target: Triple): void;
+    release(): void;
+    /** The pointer moved over the canvas and holds nothing. */
+    hover(ray: THREE.Raycaster): void;
+    /** What can hide the cloth. */
+    obstacles(): THREE.Object3D[];
+    mayGrab(): boolean;
+}
+
+/** Pulls the cloth where the pointer takes hold of it, in the plane across the view; elsewhere the view turns. */
+export function enablePointer(canvas: HTMLCanvasElement, stage: Stage, cloth: ClothView, wishes: PointerWishes): void {
+    const ray = new THREE.Raycaster();
+    const plane = new THREE.Plane();
+    const target = new THREE.Vector3();
+    let holding: number | undefined;
+
+    const aim = ({ clientX, clientY }: PointerEvent) => {
+        const { left, top, width, height } = canvas.getBoundingClientRect();
+        ray.setFromCamera(new THREE.Vector2((2 * (clientX - left)) / width - 1, 1 - (2 * (clientY - top)) / height), stage.camera);
+    };
+
+    // Before the orbit controls hear of it, so that they can be told to stay still.
+    canvas.addEventListener(
+        'pointerdown',
+        (event) => {
+            if (event.button !== 0 || holding !== undefined || !wishes.mayGrab()) return;
+            aim(event);
+            const hit = cloth.pick(ray);
+            if (!hit) return;
+            const hidden = ray.intersectObjects(wishes.obstacles(), true).some(({ distance }) => distance < 0.99 * hit.distance);
+            if (hidden) return;
+            stage.orbiting = false;
+            holding = event.pointerId;
+            canvas.setPointerCapture(event.pointerId);
+            canvas.classList.add('dragging');
+            plane.setFromNormalAndCoplanarPoint(stage.camera.getWorldDirection(new THREE.Vector3()), hit.point);
+            wishes.grab(hit.particle, hit.point.toArray());
+        },
+        { capture: true },
+    );
+    canvas.addEventListener('pointermove', (event) => {
+        aim(event);
+        if (holding === undefined) return wishes.hover(ray);
+        if (event.pointerId === holding && ray.ray.intersectPlane(plane, target)) wishes.drag(target.toArray());
+    });
+    const release = (event: PointerEvent) => {
+        if (event.pointerId !== holding) return;
+        holding = undefined;
+        stage.orbiting = true;
+        canvas.classList.remove('dragging');
+        wishes.release();
+    };
+    canvas.addEventListener('pointerup', release);
+    canvas.addEventListener('pointercancel', release);
+}

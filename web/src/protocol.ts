@@ -1,0 +1,98 @@
+/**
+ * What the page and the worker say to each other. The worker holds the mesh, the maps and the cloth; the page draws.
+ * Large arrays are transferred, and come back to be filled again.
+ */
+import type { ColliderState, DistanceMapDescription, ExactMapDescription, MeshFaults, MeshReport, RayInterval, SimulationProfile } from 'echinus';
+import type { Axis, Settings } from './settings';
+
+export type Triple = [number, number, number];
+
+export type ToWorker =
+    | { kind: 'open'; settings: Settings; page: string; file?: { name: string; bytes: ArrayBuffer } }
+    | { kind: 'change'; settings: Settings }
+    | { kind: 'restart' }
+    | { kind: 'pause'; paused: boolean }
+    | { kind: 'step' }
+    /** A frame is wanted; its arrays are those of an earlier one, once there was one. */
+    | { kind: 'frame'; arrays?: FrameArrays }
+    | { kind: 'grab'; particle: number; target: Triple }
+    | { kind: 'drag'; target: Triple }
+    | { kind: 'release' }
+    | { kind: 'ray'; direction: Triple }
+    | { kind: 'surface' }
+    | { kind: 'slice'; height: number };
+
+export type FromWorker =
+    | ({ kind: 'model' } & ModelNews)
+    | { kind: 'cloth'; faces: Uint32Array; columns: number; rows: number }
+    | { kind: 'frame'; arrays: FrameArrays; figures: Figures; collider: ColliderState; cloth: number }
+    | ({ kind: 'surface' } & SurfaceNews)
+    | { kind: 'ray'; crossings: number[]; intervals: RayInterval[]; direction: Triple; outline: Triple[]; bands: [number, number][] }
+    | ({ kind: 'cut' } & Cut)
+    | { kind: 'failed'; sentence: string; code: string };
+
+export interface FrameArrays {
+    /** [3 particles] */
+    positions: Float32Array<ArrayBuffer>;
+    /** [3 particles] */
+    normals: Float32Array<ArrayBuffer>;
+    /** [particles] 1 on the surface of the model, falling to 0 at some thicknesses from it. */
+    closeness: Float32Array<ArrayBuffer>;
+}
+
+export interface ModelNews {
+    name: string;
+    vertices: Float32Array;
+    faces: Uint32Array;
+    report: MeshReport;
+    faults: MeshFaults;
+    /** Faces that mending dropped, and parts that it turned round. */
+    mendedFaces: number;
+    flippedParts: number;
+    centre: Triple;
+    radius: number;
+    up: Axis;
+    map: MapNews;
+}
+
+export interface MapNews {
+    kind: 'exact' | 'distance';
+    byteCount: number;
+    buildMs: number;
+    description: ExactMapDescription | DistanceMapDescription;
+}
+
+export interface SurfaceNews {
+    vertices: Float32Array;
+    faces: Uint32Array;
+    /** [faces] exact: the longest list that the face is in; distance: its layer. */
+    values: Uint32Array;
+    mapKind: 'exact' | 'distance';
+    /** [3 n] points at which the paper's map and the exact map differ, of sampleCount in the bounding sphere. */
+    disagreements: Float32Array;
+    sampleCount: number;
+}
+
+/** A plane across the model, and what the map says at its points. */
+export interface Cut {
+    /** Row by row: 1 inside. */
+    inside: Uint8Array;
+    side: number;
+    height: number;
+}
+
+export interface Figures {
+    frame: number;
+    paused: boolean;
+    atRest: boolean;
+    /** Per step, over the steps since the last frame; 0 when there was none. */
+    stepMs: number;
+    constraintMs: number;
+    collisionMs: number;
+    /** Particles asked about, per second of collision. */
+    queriesPerSecond: number;
+    /** Judged by the exact map, whichever map the cloth uses. */
+    inside: number;
+    stepCount: number;
+    profile: SimulationProfile;
+}

@@ -1,0 +1,80 @@
+/** All that a visitor can choose. A link holds it, the panel shows it, the worker obeys it. */
+export interface Settings {
+    model: Sample;
+    view: 'cloth' | 'map';
+    map: 'exact' | 'distance';
+    /** Of the cloth; rounded to a square number. */
+    particles: number;
+    friction: number;
+    /** What particles keep from the model, in hundredths of the model's radius. */
+    thickness: number;
+    /** Radii of the model per second. */
+    wind: number;
+    motion: 'still' | 'turning' | 'swinging';
+    /** Which axis of the model points up; 'auto' goes by the model. */
+    up: 'auto' | Axis;
+    /** Mend what Mesh.repair() can mend, before the map is built. */
+    mend: boolean;
+    colour: 'fabric' | 'distance';
+    /** Where the map is cut open, along the view's up axis: -1 to 1 radii. 1 leaves it whole. */
+    slice: number;
+}
+
+export type Sample = 'horse' | 'torus' | 'sphere';
+export type Axis = 'x' | 'y' | 'z';
+
+export const SAMPLES: readonly Sample[] = HAS_HORSE ? ['horse', 'torus', 'sphere'] : ['torus', 'sphere'];
+
+export const DEFAULTS: Readonly<Settings> = {
+    model: SAMPLES[0],
+    view: 'cloth',
+    map: 'exact',
+    particles: 10_000,
+    friction: 0.5,
+    thickness: 1,
+    wind: 0,
+    motion: 'still',
+    up: 'auto',
+    mend: true,
+    colour: 'fabric',
+    slice: 1,
+};
+
+const CHOICES: { [K in keyof Settings]?: readonly Settings[K][] } = {
+    model: SAMPLES,
+    view: ['cloth', 'map'],
+    map: ['exact', 'distance'],
+    motion: ['still', 'turning', 'swinging'],
+    up: ['auto', 'x', 'y', 'z'],
+    colour: ['fabric', 'distance'],
+};
+
+export const RANGES = {
+    particles: [100, 100_000],
+    friction: [0, 1.5],
+    thickness: [0.2, 5],
+    wind: [0, 10],
+    slice: [-1, 1],
+} as const satisfies { [K in keyof Settings]?: readonly [number, number] };
+
+/** What differs from the defaults, as the part of a link after #. */
+export function toLink(settings: Settings): string {
+    const changed = new URLSearchParams();
+    for (const key of Object.keys(DEFAULTS) as (keyof Settings)[])
+        if (settings[key] !== DEFAULTS[key]) changed.set(key, String(settings[key]));
+    return changed.toString();
+}
+
+/** The settings of a link. What it says that is not possible is left at its default: links outlive pages. */
+export function fromLink(hash: string): Settings {
+    const said = new URLSearchParams(hash.replace(/^#/, ''));
+    const settings: Record<string, unknown> = { ...DEFAULTS };
+    for (const [key, text] of said) {
+        const choices = CHOICES[key as keyof Settings] as readonly string[] | undefined;
+        const range = RANGES[key as keyof typeof RANGES] as readonly [number, number] | undefined;
+        if (choices?.includes(text)) settings[key] = text;
+        else if (range && text !== '' && Number.isFinite(Number(text))) settings[key] = Math.min(range[1], Math.max(range[0], Number(text)));
+        else if (key === 'mend') settings[key] = text !== 'false';
+    }
+    return settings as unknown as Settings;
+}

@@ -1,0 +1,14 @@
+/** The colours of the project's figures: namespace palette of echinus/render.hpp, where their sources are. */
+export const CLAY = 0xbdb5aa;
+export const CLOTH = 0xb4584e;
+export const CLOTH_BACK = 0xd39a7c;
+export const INK = 0x3a3936;
+export const LAYER_BACK = 0xe4ded4;
+export const LAYERS = [0x44aa99, 0xddcc77, 0xcc6677, 0x88ccee, 0xaa4499, 0x999933, 0x332288, 0x117733, 0x882255];
+export const SCALE = [0xfff7bc, 0xfec44f, 0xfb9a29, 0xcc4c02, 0x662506];
+
+/** What is wrong with a mesh, by kind: vivid, since it must be seen. */
+export const FAULT = { borderEdges: 0xd1242f, nonmanifoldEdges: 0x8250df, misorientedEdges: 0xbf8700, faces: 0xd1242f } as const;
+
+/** Paper and room behind everything. */
+export const BACKDROP = { light: 0xf3f1ec, dark: 0x1b1d21 };

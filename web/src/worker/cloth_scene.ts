@@ -1,0 +1,48 @@
+import type { SceneDescription } from 'echinus';
+import type { Axis, Settings } from '../settings';
+
+/** What a scene depends on besides the settings. */
+export interface Body {
+    centre: readonly number[];
+    radius: number;
+    up: Axis;
+    /** The highest vertex, along `up`. */
+    top: number;
+}
+
+export const UP: Record<Axis, [number, number, number]> = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
+
+/** What turns z, the cloth's own up, to another axis. */
+const FROM_Z: Record<Axis, { axis: [number, number, number]; degrees: number } | undefined> = {
+    x: { axis: [0, 1, 0], degrees: 90 },
+    y: { axis: [1, 0, 0], degrees: -90 },
+    z: undefined,
+};
+
+export const columnsOf = (particles: number): number => Math.max(2, Math.round(Math.sqrt(particles)));
+
+/**
+ * A cloth above the model. All lengths go by the model's radius, and gravity too: so a model in millimetres falls as
+ * quickly as one in metres.
+ */
+export function sceneFor(settings: Settings, body: Body): SceneDescription {
+    const { radius } = body;
+    const axis = { x: 0, y: 1, z: 2 }[body.up];
+    const position = [...body.centre] as [number, number, number];
+    const thickness = 0.01 * settings.thickness * radius;
+    position[axis] = body.top + 0.08 * radius + thickness;
+    const columns = columnsOf(settings.particles);
+    const rotation = FROM_Z[body.up];
+    return {
+        model: 'model.obj', // the map is made already; a scene needs a name
+        map: mapOptions(settings, body.up),
+        cloth: { size: [2.25 * radius, 2.25 * radius], particles: [columns, columns], position, thickness, ...(rotation && { rotation }) },
+        material: { friction: settings.friction },
+        gravity: UP[body.up].map((part) => -9.81 * radius * part) as [number, number, number],
+        at_rest: { distance: 0.001 * radius },
+    };
+}
+
+export function mapOptions(settings: Settings, up: Axis): { kind: 'exact' } | { kind: 'distance'; pole_axis: Axis } {
+    return settings.map === 'exact' ? { kind: 'exact' } : { kind: 'distance', pole_axis: up };
+}

@@ -1,0 +1,48 @@
+import type { Simulation } from 'echinus';
+import type { Triple } from '../protocol';
+
+/**
+ * A pointer that holds a particle and its near neighbours. It gives them velocities, so sticks still pull at them and the
+ * model still stops them: nobody can be dragged into it.
+ */
+export class Hand {
+    #held: { particle: number; offset: Triple }[] = [];
+    #target: Triple = [0, 0, 0];
+
+    get holds(): boolean {
+        return this.#held.length > 0;
+    }
+
+    grab(simulation: Simulation, columns: number, particle: number, target: Triple): void {
+        const { positions } = simulation;
+        const rows = positions.length / 3 / columns;
+        const reach = Math.max(1, Math.round(columns / 50)); // a hand is as large on a fine cloth as on a coarse one
+        const [column, row] = [particle % columns, Math.floor(particle / columns)];
+        this.#held = [];
+        this.#target = target;
+        for (let r = Math.max(0, row - reach); r <= Math.min(rows - 1, row + reach); ++r)
+            for (let c = Math.max(0, column - reach); c <= Math.min(columns - 1, column + reach); ++c) {
+                const held = r * columns + c;
+                const offset = [0, 1, 2].map((k) => positions[3 * held + k] - positions[3 * particle + k]) as Triple;
+                this.#held.push({ particle: held, offset });
+            }
+    }
+    drag(target: Triple): void {
+        this.#target = target;
+    }
+    release(): void {
+        this.#held = [];
+    }
+
+    /** To be called before each step. @param limit  largest speed, units per second */
+    pull(simulation: Simulation, timeStep: number, limit: number): void {
+        const { positions } = simulation;
+        for (const { particle, offset } of this.#held) {
+            // Five time steps to get there: quick to the eye, and soft enough for the sticks to follow.
+            const velocity = [0, 1, 2].map((k) => (this.#target[k] + offset[k] - positions[3 * particle + k]) / (5 * timeStep));
+            const speed = Math.hypot(...velocity);
+            const share = speed > limit ? limit / speed : 1;
+            simulation.setVelocity(particle, velocity.map((part) => share * part));
+        }
+    }
+}

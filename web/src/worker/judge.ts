@@ -1,0 +1,39 @@
+import type { ColliderState, Echinus, ExactMap, FlagBuffer, PointBuffer } from 'echinus';
+
+/** Counts the particles inside the model by the exact map, also for a cloth that moves by the paper's. */
+export class Judge {
+    readonly #map: ExactMap;
+    readonly #points: PointBuffer;
+    readonly #inside: FlagBuffer;
+
+    constructor(echinus: Echinus, map: ExactMap, particleCount: number) {
+        this.#map = map;
+        this.#points = echinus.makePoints(particleCount);
+        this.#inside = echinus.makeFlags(particleCount);
+    }
+
+    count(positions: Float32Array, collider: ColliderState): number {
+        intoFrameOf(collider, positions, this.#points.view);
+        const { view } = this.#map.containsBatch(this.#points, this.#inside);
+        let count = 0;
+        for (const flag of view) count += flag;
+        return count;
+    }
+
+    delete(): void {
+        this.#points.delete();
+        this.#inside.delete();
+    }
+}
+
+/** Points of the world in the frame of a collider of scale 1: the inverse rotation of what is left without its position. */
+function intoFrameOf({ position, rotation: [w, x, y, z] }: ColliderState, world: Float32Array, local: Float32Array): void {
+    for (let i = 0; i < world.length; i += 3) {
+        const px = world[i] - position[0], py = world[i + 1] - position[1], pz = world[i + 2] - position[2];
+        // p + 2 w (p x v) + 2 v x (v x p): Rodrigues' formula for the conjugate of (w, v).
+        const tx = 2 * (py * z - pz * y), ty = 2 * (pz * x - px * z), tz = 2 * (px * y - py * x);
+        local[i] = px + w * tx + (ty * z - tz * y);
+        local[i + 1] = py + w * ty + (tz * x - tx * z);
+        local[i + 2] = pz + w * tz + (tx * y - ty * x);
+    }
+}

@@ -1,0 +1,92 @@
+import type { Echinus, Mesh } from 'echinus';
+import type { Object3D } from 'three';
+import type { Axis, Sample } from '../settings';
+
+/** A mesh, and which way it stands by the custom of where it comes from. */
+export interface Model {
+    name: string;
+    mesh: Mesh;
+    up: Axis;
+}
+
+/** @param page  the address of the page, beside which the samples lie */
+export async function openSample(echinus: Echinus, sample: Sample, page: string): Promise<Model> {
+    switch (sample) {
+        case 'horse': {
+            const response = await fetch(new URL('./models/horse.3ds', page));
+            if (!response.ok) throw new Error(`horse.3ds: the server answers with status ${response.status}`);
+            return openFile(echinus, 'horse.3ds', await response.arrayBuffer());
+        }
+        case 'torus':
+            return { name: 'torus', mesh: echinus.makeTorus(1, 0.4, 60, 24), up: 'z' };
+        case 'sphere':
+            return { name: 'sphere', mesh: echinus.makeSphere(1, 60, 30), up: 'z' };
+    }
+}
+
+/**
+ * OBJ, PLY, STL and OFF are read by Echinus; 3DS and glTF by three.js, which is fetched only then.
+ * @throws Error with a sentence that begins with the file's name
+ */
+export async function openFile(echinus: Echinus, name: string, bytes: ArrayBuffer): Promise<Model> {
+    const ending = name.toLowerCase().split('.').pop();
+    switch (ending) {
+        case '3ds':
+            return { name, mesh: weldTriangles(echinus, name, await read3ds(name, bytes)), up: 'y' };
+        case 'glb':
+        case 'gltf':
+            return { name, mesh: weldTriangles(echinus, name, await readGltf(name, bytes)), up: 'y' };
+        default:
+            return { name, mesh: echinus.readMesh(bytes, name), up: ending === 'stl' || ending === 'off' ? 'z' : 'y' };
+    }
+}
+
+async function read3ds(name: string, bytes: ArrayBuffer): Promise<Object3D> {
+    const { TDSLoader } = await import('three/examples/jsm/loaders/TDSLoader.js');
+    return described(name, () => new TDSLoader().parse(bytes, ''));
+}
+
+async function readGltf(name: string, bytes: ArrayBuffer): Promise<Object3D> {
+    const { GLTFLoader } = await import('three/examples/jsm/loaders/GLTFLoader.js');
+    return described(name, async () => (await new GLTFLoader().parseAsync(bytes, '')).scene);
+}
+
+/** Readers other than ours name no file. */
+async function described<T>(name: string, read: () => T | Promise<T>): Promise<T> {
+    try {
+        return await read();
+    } catch (error) {
+        throw new Error(`${name}: cannot be read (${error instanceof Error ? error.message : String(error)})`);
+    }
+}
+
+/** All triangles under an object, in its frame, as one mesh. */
+function weldTriangles(echinus: Echinus, name: string, root: Object3D): Mesh {
+    const vertices: number[] = [];
+    const faces: number[] = [];
+    root.updateMatrixWorld(true);
+    root.traverse((object) => {
+        if (!isMesh(object)) return;
+        const { position } = object.geometry.attributes;
+        if (!position) return;
+        const first = vertices.length / 3;
+        const point = object.position.clone();
+        for (let i = 0; i < position.count; ++i) {
+            point.fromBufferAttribute(position, i).applyMatrix4(object.matrixWorld);
+            vertices.push(point.x, point.y, point.z);
+        }
+        const { index } = object.geometry;
+        const cornerCount = index ? index.count : position.count;
+        for (let i = 0; i + 2 < cornerCount; i += 3)
+            for (let k = 0; k < 3; ++k) faces.push(first + (index ? index.getX(i + k) : i + k));
+    });
+    if (faces.length === 0) throw new Error(`${name}: there is no triangle in it`);
+    const loose = echinus.makeMesh(vertices, faces);
+    try {
+        return loose.weld();
+    } finally {
+        loose.delete();
+    }
+}
+
+const isMesh = (object: Object3D): object is import('three').Mesh => 'isMesh' in object;

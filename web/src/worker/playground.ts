@@ -1,0 +1,282 @@
+import type { AnyMap, ContactBuffer, Echinus, ExactMap, Mesh, MeshFaults, MeshReport, Scene, Simulation, SimulationProfile } from 'echinus';
+import type { FrameArrays, Figures, MapNews, ModelNews, Triple } from '../protocol';
+import type { Axis, Settings } from '../settings';
+import { type Body, UP, columnsOf, mapOptions, sceneFor } from './cloth_scene';
+import { Hand } from './hand';
+import { Judge } from './judge';
+import type { Model } from './models';
+import { motionAt } from './motion';
+import { sheetNormals } from './normals';
+
+/**
+ * How long one frame may simulate: most of the time between frames, so that a slow display does not slow the cloth. Beyond
+ * that the cloth falls slower than real, rather than in jerks.
+ */
+const FRAME_BUDGET_MS = { least: 14, most: 100, share: 0.85 };
+
+/** One model, its maps, and the cloth on it. Everything it makes lives in the module's memory until delete(). */
+export class Playground {
+    readonly hand = new Hand();
+    readonly body: Body;
+    readonly exactMap: ExactMap;
+
+    readonly #echinus: Echinus;
+    readonly #name: string;
+    readonly #mesh: Mesh;
+    readonly #report: MeshReport;
+    readonly #faults: MeshFaults;
+    #mendedFaces = 0;
+    #flippedParts = 0;
+
+    #settings: Settings;
+    #map: AnyMap;
+    #mapNews: MapNews;
+    #scene!: Scene;
+    #simulation!: Simulation;
+    #judge!: Judge;
+    #contacts!: ContactBuffer;
+    /** Frames of simulations before the present one, which counts anew after continueWith(). */
+    #earlierFrames = 0;
+    #owedSeconds = 0;
+    #lastMs = 0;
+
+    /** Takes the model's mesh over. @throws EchinusError when no map can be made of it, or no cloth can lie on it */
+    constructor(echinus: Echinus, model: Model, settings: Settings) {
+        this.#echinus = echinus;
+        this.#settings = settings;
+        this.#name = model.name;
+        this.#mesh = settings.mend ? this.#mend(model.mesh) : model.mesh;
+        this.#report = this.#mesh.report();
+        this.#faults = this.#mesh.faults();
+        const { map, ms } = timed(() => echinus.buildMap(this.#mesh, { kind: 'exact' }));
+        this.exactMap = map;
+        this.#map = map;
+        this.#mapNews = newsOf(map, ms);
+        this.body = bodyOf(this.#mesh, map, settings.up === 'auto' ? model.up : settings.up);
+        this.#useMap();
+        this.restart();
+    }
+
+    delete(): void {
+        this.#dropCloth();
+        if (this.#map !== this.exactMap) this.#map.delete();
+        this.exactMap.delete();
+        this.#mesh.delete();
+    }
+
+    get columns(): number {
+        return columnsOf(this.#settings.particles);
+    }
+    get faces(): Uint32Array {
+        return this.#simulation.faces;
+    }
+    get map(): AnyMap {
+        return this.#map;
+    }
+    get settings(): Settings {
+        return this.#settings;
+    }
+
+    news(): ModelNews {
+        return {
+            name: this.#name,
+            vertices: this.#mesh.vertices,
+            faces: this.#mesh.faces,
+            report: this.#report,
+            faults: this.#faults,
+            mendedFaces: this.#mendedFaces,
+            flippedParts: this.#flippedParts,
+            centre: [...this.exactMap.centre] as Triple,
+            radius: this.exactMap.radius,
+            up: this.body.up,
+            map: this.#mapNews,
+        };
+    }
+
+    /** @returns whether the cloth began anew */
+    change(settings: Settings): boolean {
+        const before = this.#settings;
+        this.#settings = settings;
+        if (settings.map !== before.map) this.#useMap();
+        if (settings.map !== before.map || settings.particles !== before.particles) {
+            this.restart();
+            return true;
+        }
+        if (settings.friction !== before.friction || settings.thickness !== before.thickness) this.#continue();
+        return false;
+    }
+
+    restart(): void {
+        const scene = this.#echinus.parseScene(sceneFor(this.#settings, this.body));
+        const simulation = scene.makeSimulation(this.#map);
+        this.#dropCloth();
+        this.#scene = scene;
+        this.#simulation = simulation;
+        this.#judge = new Judge(this.#echinus, this.exactMap, simulation.particleCount);
+        this.#contacts = this.#echinus.makeContacts(simulation.particleCount);
+        this.#earlierFrames = 0;
+        this.#owedSeconds = 0;
+    }
+
+    /** Steps as many times as real time asks for, within FRAME_BUDGET_MS, and fills the arrays with the result. */
+    advance(paused: boolean, arrays: FrameArrays | undefined): { arrays: FrameArrays; figures: Figures } {
+        const now = performance.now();
+        // A page that was hidden has not simulated, and need not make up for it.
+        const elapsed = now - this.#lastMs;
+        this.#owedSeconds = Math.min(this.#owedSeconds + 0.001 * elapsed, 0.1);
+        this.#lastMs = now;
+        const budget = Math.min(FRAME_BUDGET_MS.most, Math.max(FRAME_BUDGET_MS.least, FRAME_BUDGET_MS.share * elapsed));
+        const before = this.#simulation.profile;
+        let stepCount = 0;
+        if (!paused && !this.#rests())
+            while (this.#owedSeconds >= this.#scene.timeStep && performance.now() - now < budget) {
+                this.#step();
+                this.#owedSeconds -= this.#scene.timeStep;
+                ++stepCount;
+            }
+        return this.#look(arrays, before, stepCount, performance.now() - now, paused);
+    }
+
+    /** One step, for a cloth that is paused. */
+    stepOnce(arrays: FrameArrays | undefined): { arrays: FrameArrays; figures: Figures } {
+        const before = this.#simulation.profile;
+        const { ms } = timed(() => this.#step());
+        return this.#look(arrays, before, 1, ms, true);
+    }
+
+    get collider() {
+        return this.#simulation.collider;
+    }
+
+    grab(particle: number, target: Triple): void {
+        if (particle < this.#simulation.particleCount) this.hand.grab(this.#simulation, this.columns, particle, target);
+    }
+
+    #step(): void {
+        const simulation = this.#simulation;
+        const { radius, up } = this.body;
+        const frame = this.#earlierFrames + simulation.frame;
+        const { linear, angular } = motionAt(this.#settings.motion, UP[up], frame * this.#scene.timeStep, this.body.centre, simulation.collider);
+        simulation.setVelocities(linear, angular);
+        if (this.#settings.wind > 0) simulation.blow(this.#wind(frame), 4);
+        this.hand.pull(simulation, this.#scene.timeStep, 12 * radius);
+        simulation.step();
+    }
+
+    /** From the side, in gusts: a steady wind would hold the cloth like a wall. By the frame, so that a link repeats it. */
+    #wind(frame: number): Triple {
+        const seconds = frame * this.#scene.timeStep;
+        const speed = this.#settings.wind * this.body.radius * (0.75 + 0.25 * Math.sin(2.1 * seconds) * Math.sin(0.8 * seconds));
+        const across: Record<Axis, Triple> = { x: [0, 0.94, 0.34], y: [0.34, 0, 0.94], z: [0.94, 0.34, 0] };
+        return across[this.body.up].map((part) => speed * part) as Triple;
+    }
+
+    /** Nothing moves the cloth any more: then the processor may rest as well. */
+    #rests(): boolean {
+        return this.#simulation.atRest && this.#settings.motion === 'still' && this.#settings.wind === 0 && !this.hand.holds;
+    }
+
+    #look(arrays: FrameArrays | undefined, before: SimulationProfile, stepCount: number, ms: number, paused: boolean) {
+        const simulation = this.#simulation;
+        const filled = fitted(arrays, simulation.particleCount);
+        filled.positions.set(simulation.positions);
+        sheetNormals(filled.positions, this.columns, filled.normals);
+        if (this.#settings.colour === 'distance') this.#measureCloseness(filled.closeness);
+        const after = simulation.profile;
+        const perStep = 1000 / Math.max(1, stepCount);
+        const collisionSeconds = after.collisionSeconds - before.collisionSeconds;
+        const figures: Figures = {
+            frame: this.#earlierFrames + simulation.frame,
+            paused,
+            atRest: this.#rests(),
+            stepMs: stepCount > 0 ? ms / stepCount : 0,
+            constraintMs: perStep * (after.constraintSeconds - before.constraintSeconds),
+            collisionMs: perStep * collisionSeconds,
+            queriesPerSecond: collisionSeconds > 0 ? (after.queryCount - before.queryCount) / collisionSeconds : 0,
+            inside: this.#judge.count(filled.positions, simulation.collider),
+            stepCount,
+            profile: after,
+        };
+        return { arrays: filled, figures };
+    }
+
+    #measureCloseness(closeness: Float32Array): void {
+        const thickness = 0.01 * this.#settings.thickness * this.body.radius;
+        const margin = 4 * thickness;
+        this.#simulation.contactsBatch(margin, this.#contacts);
+        const { floats } = this.#contacts;
+        // 0 is no contact within the margin; depths of contacts outside are negative distances.
+        for (let i = 0; i < closeness.length; ++i) {
+            const depth = floats[9 * i + 6];
+            closeness[i] = depth === 0 ? 0 : Math.min(1, Math.max(0, 1 + (depth + thickness) / (margin - thickness)));
+        }
+    }
+
+    #continue(): void {
+        const scene = this.#echinus.parseScene(sceneFor(this.#settings, this.body));
+        const simulation = this.#simulation.continueWith(scene);
+        this.#earlierFrames += this.#simulation.frame;
+        this.#simulation.delete();
+        this.#scene.delete();
+        this.#scene = scene;
+        this.#simulation = simulation;
+    }
+
+    #useMap(): void {
+        const previous = this.#map;
+        if (this.#settings.map === 'exact') {
+            this.#map = this.exactMap;
+            if (this.#mapNews.kind !== 'exact') this.#mapNews = newsOf(this.exactMap, this.#exactBuildMs);
+        } else {
+            const { map, ms } = timed(() => this.#echinus.buildMap(this.#mesh, mapOptions(this.#settings, this.body.up)));
+            if (this.#mapNews.kind === 'exact') this.#exactBuildMs = this.#mapNews.buildMs;
+            this.#map = map;
+            this.#mapNews = newsOf(map, ms);
+        }
+        if (previous !== this.exactMap && previous !== this.#map) previous.delete();
+    }
+    #exactBuildMs = 0;
+
+    #mend(mesh: Mesh): Mesh {
+        const { mesh: mended, report } = mesh.repair();
+        mesh.delete();
+        this.#mendedFaces = report.duplicateFacesDropped.length + report.doubledPatchFacesDropped.length;
+        this.#flippedParts = report.componentsFlipped;
+        return mended;
+    }
+
+    #dropCloth(): void {
+        this.hand.release();
+        this.#simulation?.delete();
+        this.#scene?.delete();
+        this.#judge?.delete();
+        this.#contacts?.delete();
+    }
+}
+
+function timed<T>(work: () => T): { map: T; ms: number } {
+    const begin = performance.now();
+    const map = work();
+    return { map, ms: performance.now() - begin };
+}
+
+function newsOf(map: AnyMap, buildMs: number): MapNews {
+    return { kind: map.kind, byteCount: map.byteCount, buildMs, description: map.description };
+}
+
+function bodyOf(mesh: Mesh, map: ExactMap, up: Axis): Body {
+    const axis = { x: 0, y: 1, z: 2 }[up];
+    const { vertices } = mesh;
+    let top = -Infinity;
+    for (let i = axis; i < vertices.length; i += 3) top = Math.max(top, vertices[i]);
+    return { centre: map.centre, radius: map.radius, up, top };
+}
+
+function fitted(arrays: FrameArrays | undefined, particleCount: number): FrameArrays {
+    if (arrays?.closeness.length === particleCount) return arrays;
+    return {
+        positions: new Float32Array(3 * particleCount),
+        normals: new Float32Array(3 * particleCount),
+        closeness: new Float32Array(particleCount),
+    };
+}

@@ -1,0 +1,103 @@
+/** The worker: one instance of the module, one playground, and a loop that the page drives frame by frame. */
+import { type Echinus, EchinusError, load } from 'echinus';
+import type { FrameArrays, FromWorker, ToWorker } from '../protocol';
+import { cutAt, lookAlong, surfaceOf } from './looking';
+import { openFile, openSample } from './models';
+import { Playground } from './playground';
+
+let echinus: Echinus | undefined;
+let playground: Playground | undefined;
+let paused = false;
+/** Counts cloths, so that the page can tell a late frame of an earlier one. */
+let cloth = 0;
+/** Files are read one after the other: an answer never overtakes the question before it. */
+let queue = Promise.resolve();
+
+self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
+    // Opening takes time; all else waits in line behind it, so that a change never meets half a playground.
+    queue = queue.then(() => handle(data)).catch(fail);
+};
+
+async function handle(message: ToWorker): Promise<void> {
+    switch (message.kind) {
+        case 'open':
+            return open(message);
+        case 'pause':
+            paused = message.paused;
+            return;
+    }
+    if (!playground || !echinus) return;
+    switch (message.kind) {
+        case 'change': {
+            const before = playground.settings;
+            const anew = playground.change(message.settings);
+            if (before.map !== message.settings.map) tellModel(playground);
+            if (anew) tellCloth(playground);
+            return;
+        }
+        case 'restart':
+            playground.restart();
+            return tellCloth(playground);
+        case 'step':
+            return tellFrame(playground.stepOnce(undefined));
+        case 'frame':
+            return tellFrame(advance(playground, message.arrays));
+        case 'grab':
+            return playground.grab(message.particle, message.target);
+        case 'drag':
+            return playground.hand.drag(message.target);
+        case 'release':
+            return playground.hand.release();
+        case 'ray':
+            return tell(lookAlong(playground, message.direction));
+        case 'surface':
+            return tell({ kind: 'surface', ...surfaceOf(echinus, playground) });
+        case 'slice':
+            return tell({ kind: 'cut', ...cutAt(echinus, playground, message.height) });
+    }
+}
+
+async function open({ settings, page, file }: ToWorker & { kind: 'open' }): Promise<void> {
+    echinus ??= await load();
+    const model = file ? await openFile(echinus, file.name, file.bytes) : await openSample(echinus, settings.model, page);
+    const opened = new Playground(echinus, model, settings);
+    playground?.delete(); // only now: a file that cannot be opened leaves what there was
+    playground = opened;
+    tellModel(playground);
+    tellCloth(playground);
+}
+
+/** A cloth that flew apart stops there; its last positions stay in sight. */
+function advance(playground: Playground, arrays: FrameArrays | undefined) {
+    try {
+        return playground.advance(paused, arrays);
+    } catch (error) {
+        paused = true;
+        fail(error);
+        return playground.advance(true, arrays);
+    }
+}
+
+function tellModel(playground: Playground): void {
+    tell({ kind: 'model', ...playground.news() });
+}
+function tellCloth(playground: Playground): void {
+    ++cloth;
+    tell({ kind: 'cloth', faces: playground.faces, columns: playground.columns, rows: playground.columns });
+}
+function tellFrame({ arrays, figures }: ReturnType<Playground['advance']>): void {
+    if (!playground) return;
+    tell({ kind: 'frame', arrays, figures, collider: playground.collider, cloth }, [
+        arrays.positions.buffer,
+        arrays.normals.buffer,
+        arrays.closeness.buffer,
+    ]);
+}
+
+function fail(error: unknown): void {
+    const sentence = error instanceof Error ? error.message : String(error);
+    tell({ kind: 'failed', sentence, code: error instanceof EchinusError ? error.code : 'Internal' });
+}
+function tell(message: FromWorker, transfer: Transferable[] = []): void {
+    self.postMessage(message, { transfer });
+}

@@ -1,0 +1,17 @@
+import { existsSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { defineConfig } from 'vite';
+
+const inProject = (path) => fileURLToPath(new URL(`../${path}`, import.meta.url));
+// scripts/web puts there what is copied into the page as it is: the horse, where it is installed, and licences.
+const publicDir = inProject('build/web/public');
+
+export default defineConfig({
+    base: './', // dist works in any folder of any host
+    publicDir,
+    define: { HAS_HORSE: existsSync(`${publicDir}/models/horse.3ds`) },
+    resolve: { alias: { echinus: inProject('build/wasm/echinus/echinus.mjs') } },
+    worker: { format: 'es' },
+    // What runs WebAssembly's vectors runs this.
+    build: { target: 'es2022', chunkSizeWarningLimit: 1000 },
+});
