@@ -3,6 +3,7 @@
 #include "comparison/machine.hpp"
 #include "depths.hpp"
 #include "files/atomic_file.hpp"
+#include "rivals.hpp"
 #include "signs.hpp"
 #include "simulations.hpp"
 #include "sizes.hpp"
@@ -89,6 +90,8 @@ void run(const Arguments& arguments) {
     }
     for (const char* table : {"sizes", "signs.short", "signs.all", "few"})
         values[table] = sections(subjects, values, table);
+    report_progress("superquadric maps and distance fields");
+    measure_rivals(subjects, values);
     report_progress("depths and shapes");
     measure_smoothing(subjects, values);
     measure_torus_shapes(values);
