@@ -9,7 +9,7 @@ import { beQuiet, enableClosing, say } from './panel/notice';
 import { count } from './panel/numbers';
 import { showReport } from './panel/report';
 import { enablePointer } from './pointer';
-import type { FromWorker, ModelNews } from './protocol';
+import type { FromWorker, MapNews, ModelNews, Triple } from './protocol';
 import { objText, saveAs } from './saving';
 import { SAMPLES, type Settings, fromLink, toLink } from './settings';
 import { ClothView } from './view/cloth_view';
@@ -19,6 +19,9 @@ import { Stage } from './view/stage';
 
 /** How many sets of arrays go back and forth: one is shown while the other is filled. */
 const FRAMES_UNDER_WAY = 2;
+
+/** How long the hint stays. */
+const HINT_MS = 12_000;
 
 class App {
     #settings: Settings = fromLink(location.hash);
@@ -47,6 +50,7 @@ class App {
         this.#bindFiles();
         this.#bindPointer();
         enableClosing();
+        setTimeout(() => byId('hint').classList.add('seen'), HINT_MS);
         // A link that is followed while the page is open.
         addEventListener('hashchange', () => {
             const settings = fromLink(location.hash);
@@ -87,6 +91,8 @@ class App {
                 return;
             case 'surface':
                 return showLegend(message, this.#mapView.showSurface(message));
+            case 'rebuilt':
+                return this.#showMap(message.map);
             case 'cut':
                 return this.#mapView.showCut(message);
             case 'ray':
@@ -132,14 +138,18 @@ class App {
         if (another) this.#stage.lookAt(model.centre, model.radius, model.up);
         this.#showTitle(model);
         showReport(model);
-        showMapFigures(model.map);
-        this.#figures.showMap(model.map);
+        this.#showMap(model.map);
         byId('map-note').textContent =
             model.map.kind === 'exact'
                 ? 'Out by the shortest way. Nothing gets through: every step is proved.'
                 : 'Out along the ray from the centre, as in the paper: watch the cloth creep along a leg.';
         byId('horse-notice').hidden = !SAMPLES.includes('horse');
         if (this.#settings.view === 'map') this.#askForMap();
+    }
+
+    #showMap(map: MapNews): void {
+        showMapFigures(map);
+        this.#figures.showMap(map);
     }
 
     #showTitle(model: ModelNews): void {
@@ -150,7 +160,7 @@ class App {
         this.#client.tell({ kind: 'surface' });
         this.#client.tell({ kind: 'slice', height: this.#settings.slice });
         // Something to see before the pointer comes.
-        this.#client.tell({ kind: 'ray', direction: [0.35, 0.5, 0.8] });
+        this.#client.tell({ kind: 'ray', direction: towardsTop(this.#model!) });
     }
 
     // ---- Frames
@@ -227,6 +237,7 @@ class App {
             pause: () => this.#pause(!this.#paused),
             step: () => this.#step(),
             restart: () => this.#restart(),
+            rebuild: () => this.#client.tell({ kind: 'rebuild' }),
             'save-picture': () => void this.#savePicture(),
             'save-mesh': () => this.#saveMesh(),
             'copy-link': () => void this.#copyLink(),
@@ -337,6 +348,14 @@ class App {
         }
         if (this.#file) note.textContent += ' The file that you opened is not in it.';
     }
+}
+
+/** From the centre to the highest vertex: of most models a ray with something to show. */
+function towardsTop({ vertices, centre, up }: ModelNews): Triple {
+    const axis = { x: 0, y: 1, z: 2 }[up];
+    let top = 0;
+    for (let i = 0; i < vertices.length; i += 3) if (vertices[i + axis] > vertices[top + axis]) top = i;
+    return [0, 1, 2].map((k) => vertices[top + k] - centre[k]) as Triple;
 }
 
 export function begin(): void {

@@ -20,6 +20,8 @@ export type ToWorker =
     | { kind: 'release' }
     | { kind: 'ray'; direction: Triple }
     | { kind: 'surface' }
+    /** The map in use once more, for its time alone. */
+    | { kind: 'rebuild' }
     | { kind: 'slice'; height: number };
 
 export type FromWorker =
@@ -27,6 +29,7 @@ export type FromWorker =
     | { kind: 'cloth'; faces: Uint32Array; columns: number; rows: number }
     | { kind: 'frame'; arrays: FrameArrays; figures: Figures; collider: ColliderState; cloth: number }
     | ({ kind: 'surface' } & SurfaceNews)
+    | { kind: 'rebuilt'; map: MapNews }
     | { kind: 'ray'; crossings: number[]; intervals: RayInterval[]; direction: Triple; outline: Triple[]; bands: [number, number][] }
     | ({ kind: 'cut' } & Cut)
     | { kind: 'failed'; sentence: string; code: string };

@@ -37,7 +37,7 @@ export class MapView {
         if (news.disagreements.length > 0) {
             const points = new THREE.BufferGeometry();
             points.setAttribute('position', new THREE.BufferAttribute(news.disagreements, 3));
-            const material = new THREE.PointsMaterial({ color: 0xd1242f, size: 3.5, sizeAttenuation: false, depthTest: false, transparent: true, opacity: 0.85 });
+            const material = new THREE.PointsMaterial({ clippingPlanes: planes, color: 0xd1242f, size: 3.5, sizeAttenuation: false, depthTest: false, transparent: true, opacity: 0.85 });
             this.#surface.add(new THREE.Points(points, material));
         }
         return largest;
@@ -48,7 +48,7 @@ export class MapView {
         this.#height = cut.height;
         const plane = this.#plane();
         for (const child of this.#surface.children)
-            if (child instanceof THREE.Mesh) (child.material as THREE.MeshStandardMaterial).clippingPlanes = [plane];
+            if (child instanceof THREE.Mesh || child instanceof THREE.Points) (child.material as THREE.Material).clippingPlanes = [plane];
         if (!this.#model || cut.height >= 1) return;
         const { radius, centre, up } = this.#model;
         const texture = new THREE.DataTexture(stainOf(cut), cut.side, cut.side);

@@ -12,8 +12,8 @@ export class Stage {
     readonly camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);
     readonly renderer: THREE.WebGLRenderer;
     #controls: OrbitControls;
-    readonly #sun = new THREE.DirectionalLight(0xfff4e6, 2.2);
-    readonly #sky = new THREE.HemisphereLight(0xffffff, 0x8d8478, 1.7);
+    readonly #sun = new THREE.DirectionalLight(0xfff4e6, 2.7);
+    readonly #sky = new THREE.HemisphereLight(0xffffff, 0x6f675d, 1.25);
     readonly #canvas: HTMLCanvasElement;
 
     constructor(canvas: HTMLCanvasElement) {
@@ -57,7 +57,8 @@ export class Stage {
         this.#controls.target.copy(middle);
         this.#controls.update();
 
-        this.#sun.position.copy(middle).addScaledVector(upward, 3 * radius).addScaledVector(sideways, 1.2 * radius).addScaledVector(forward, 2.4 * radius);
+        // Low and from the side: folds show by their shadows.
+        this.#sun.position.copy(middle).addScaledVector(upward, 2.2 * radius).addScaledVector(sideways, -0.6 * radius).addScaledVector(forward, 2.6 * radius);
         this.#sun.target.position.copy(middle);
         this.#sky.position.copy(upward);
     }

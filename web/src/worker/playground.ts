@@ -106,6 +106,14 @@ export class Playground {
         return false;
     }
 
+    /** Builds the map in use once more: the first time of all, the host has yet to compile the code well. */
+    rebuild(): MapNews {
+        const { map, ms } = timed(() => this.#echinus.buildMap(this.#mesh, mapOptions(this.#settings, this.body.up)));
+        this.#mapNews = newsOf(map, ms);
+        map.delete(); // the same bytes as the one in use
+        return this.#mapNews;
+    }
+
     restart(): void {
         const scene = this.#echinus.parseScene(sceneFor(this.#settings, this.body));
         const simulation = scene.makeSimulation(this.#map);

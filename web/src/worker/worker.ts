@@ -52,6 +52,8 @@ async function handle(message: ToWorker): Promise<void> {
             return tell(lookAlong(playground, message.direction));
         case 'surface':
             return tell({ kind: 'surface', ...surfaceOf(echinus, playground) });
+        case 'rebuild':
+            return tell({ kind: 'rebuilt', map: playground.rebuild() });
         case 'slice':
             return tell({ kind: 'cut', ...cutAt(echinus, playground, message.height) });
     }
