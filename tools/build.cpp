@@ -33,8 +33,9 @@ struct BuildArguments {
     std::uint32_t cells_per_octant = 0;
     DistanceMapOptions distance;
     GridArgument directions{DistanceMapOptions{}.longitude_count, DistanceMapOptions{}.colatitude_count};
-    std::vector<const CLI::Option*> exact_only, distance_only;    ///< options that belong to one kind
-    std::vector<const CLI::Option*> spherical_only, divided_only; ///< ... to some grids of a distance map
+    CentreChoice centre = CentreChoice::BoundingSphere;
+    std::vector<const CLI::Option*> exact_only, distance_only;  ///< options that belong to one kind
+    std::vector<const CLI::Option*> counted_only, divided_only; ///< ... to some grids of a distance map
     unsigned thread_count = 0;
     bool repair = false;
     bool allow_open = false;
@@ -48,17 +49,18 @@ void refuse_options_of_the_other_kind(const BuildArguments& arguments) {
         if (option->count() > 0)
             throw CLI::ValidationError(option->get_name(),
                                        std::string("belongs to --kind ") + (exact ? "distance" : "exact"));
-    const bool spherical = arguments.distance.grid == DirectionGrid::Spherical;
-    for (const CLI::Option* option : spherical ? arguments.divided_only : arguments.spherical_only)
+    const bool counted = has_poles(arguments.distance.grid);
+    for (const CLI::Option* option : counted ? arguments.divided_only : arguments.counted_only)
         if (option->count() > 0)
             throw CLI::ValidationError(option->get_name(),
                                        std::string("belongs to --grid ") +
-                                           (spherical ? "octahedral or cube" : "spherical"));
+                                           (counted ? "octahedral or cube" : "spherical or ellipsoidal"));
 }
 
 ExactMapOptions exact_options_of(const BuildArguments& arguments) {
     ExactMapOptions options = arguments.exact;
     options.divisions = static_cast<std::uint32_t>(std::sqrt(arguments.cells_per_octant));
+    options.centre = arguments.centre;
     options.thread_count = arguments.thread_count;
     return options;
 }
@@ -67,6 +69,7 @@ DistanceMapOptions distance_options_of(const BuildArguments& arguments) {
     DistanceMapOptions options = arguments.distance;
     options.longitude_count = arguments.directions.first;
     options.colatitude_count = arguments.directions.second;
+    options.centre = arguments.centre;
     options.thread_count = arguments.thread_count;
     return options;
 }
@@ -186,11 +189,7 @@ void add_exact_options(CLI::App& command, BuildArguments& arguments) {
             ->excludes("--cells-per-octant"),
         add_choice<InsideRule>(command, "--rule", arguments.exact.rule,
                                {{"nonzero", InsideRule::Nonzero}, {"parity", InsideRule::Parity}},
-                               "What counts as inside where parts of the mesh overlap"),
-        add_choice<CentreChoice>(command, "--centre", arguments.exact.centre,
-                                 {{"sphere", CentreChoice::BoundingSphere}, {"search", CentreChoice::Search}},
-                                 "Where the rays start: the bounding sphere's centre, or the place that "
-                                 "promises the fewest tests")};
+                               "What counts as inside where parts of the mesh overlap")};
 }
 
 void add_distance_options(CLI::App& command, BuildArguments& arguments) {
@@ -199,9 +198,11 @@ void add_distance_options(CLI::App& command, BuildArguments& arguments) {
         command, "--grid", options.grid,
         {{"spherical", DirectionGrid::Spherical},
          {"octahedral", DirectionGrid::Octahedral},
-         {"cube", DirectionGrid::Cube}},
+         {"cube", DirectionGrid::Cube},
+         {"ellipsoidal", DirectionGrid::Ellipsoidal}},
         "How to divide the directions: by longitude and colatitude, as the paper does; the sides of an "
-        "octahedron, which keeps flat faces flat; or the sides of a cube, evenly by angle");
+        "octahedron, which keeps flat faces flat; the sides of a cube, evenly by angle; or by longitude and "
+        "colatitude of an ellipsoid as long and as thin as the mesh");
     const CLI::Option* directions =
         command.add_option("--directions", arguments.directions, "Samples of longitude and colatitude")
             ->type_name("COUNTxCOUNT")
@@ -217,7 +218,7 @@ void add_distance_options(CLI::App& command, BuildArguments& arguments) {
     const CLI::Option* pole = add_choice<PoleAxis>(
         command, "--pole", options.pole_axis, {{"x", PoleAxis::X}, {"y", PoleAxis::Y}, {"z", PoleAxis::Z}},
         "Axis of the mesh through the poles of the grid");
-    arguments.spherical_only = {directions, pole};
+    arguments.counted_only = {directions, pole};
     arguments.divided_only = {divisions};
     arguments.distance_only = {
         grid,
@@ -243,6 +244,10 @@ void add_options(CLI::App& command, BuildArguments& arguments) {
         ->type_name("MAP");
     add_choice<MapKind>(command, "--kind", arguments.kind,
                         {{"exact", MapKind::Exact}, {"distance", MapKind::Distance}}, "Kind of map");
+    add_choice<CentreChoice>(command, "--centre", arguments.centre,
+                             {{"sphere", CentreChoice::BoundingSphere}, {"search", CentreChoice::Search}},
+                             "Where the rays start: the bounding sphere's centre, or the place that promises "
+                             "the fewest tests of an exact map, the fewest wrong answers of a distance map");
     command.add_option("--threads", arguments.thread_count, "Threads to build on; 0: all cores")
         ->check(CLI::Range(0U, 1024U))
         ->type_name("COUNT")

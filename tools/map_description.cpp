@@ -17,9 +17,8 @@ const char* name_of(echinus::PoleAxis axis) {
 }
 
 const char* name_of(echinus::DirectionGrid grid) {
-    using echinus::DirectionGrid;
-    if (grid == DirectionGrid::Spherical) return "spherical";
-    return grid == DirectionGrid::Octahedral ? "octahedral" : "cube";
+    constexpr const char* kNames[] = {"spherical", "octahedral", "cube", "ellipsoidal"};
+    return kNames[static_cast<std::size_t>(grid)];
 }
 
 const char* name_of(echinus::EntryFormat format) {
@@ -49,11 +48,15 @@ struct ExactMapBytes {
 };
 
 std::string directions_text(const DistanceMapView& map) {
-    if (map.grid != echinus::DirectionGrid::Spherical)
+    if (!has_poles(map.grid))
         return fmt::format("{}, edges of the {} cut into {}", map.direction_count(),
                            map.grid == echinus::DirectionGrid::Cube ? "cube" : "octahedron", map.divisions);
-    return fmt::format("{} x {} = {}, poles on {}", map.longitude_count, map.colatitude_count,
-                       map.direction_count(), name_of(map.pole_axis));
+    std::string text = fmt::format("{} x {} = {}, poles on {}", map.longitude_count, map.colatitude_count,
+                                   map.direction_count(), name_of(map.pole_axis));
+    if (map.grid == echinus::DirectionGrid::Ellipsoidal)
+        text +=
+            fmt::format(", axes scaled by {:.3f}, {:.3f} and {:.3f}", map.scale.x, map.scale.y, map.scale.z);
+    return text;
 }
 
 double mean_entries(const DistanceMapView& map) {
@@ -97,10 +100,12 @@ void add_own_keys(ordered_json& object, const DistanceMap& map) {
     const echinus::DistanceMapStatistics& statistics = map.statistics();
     object["directions"] = view.direction_count();
     object["grid"] = name_of(view.grid);
-    if (view.grid == echinus::DirectionGrid::Spherical) {
+    if (has_poles(view.grid)) {
         object["longitude_count"] = view.longitude_count;
         object["colatitude_count"] = view.colatitude_count;
         object["pole"] = name_of(view.pole_axis);
+        if (view.grid == echinus::DirectionGrid::Ellipsoidal)
+            object["scale"] = {view.scale.x, view.scale.y, view.scale.z};
     } else {
         object["divisions"] = view.divisions;
     }

@@ -39,9 +39,11 @@ class MapBaseline final : public Baseline {
 };
 
 std::unique_ptr<const Baseline> behind_interface(DistanceMap map) {
-    const bool spherical = map.view().grid == DirectionGrid::Spherical;
-    return std::make_unique<MapBaseline<DistanceMap>>(
-        std::move(map), spherical ? "distance" : "octahedral distance", "offsets and entries of directions");
+    constexpr const char* kNames[] = {"distance", "octahedral distance", "cube distance",
+                                      "ellipsoidal distance"};
+    const char* name = kNames[static_cast<std::size_t>(map.view().grid)];
+    return std::make_unique<MapBaseline<DistanceMap>>(std::move(map), name,
+                                                      "offsets and entries of directions");
 }
 
 /// A resolution is one number: longitudes and colatitudes, or divisions.
@@ -50,9 +52,9 @@ struct Resolutions {
     DistanceMapOptions options;
 
     explicit Resolutions(const DistanceMapOptions& wanted) : options(wanted) {
-        const bool spherical = options.grid == DirectionGrid::Spherical;
-        least = spherical ? DistanceMapOptions::kMinSampleCount : DistanceMapOptions::kMinDivisions;
-        most = spherical ? DistanceMapOptions::kMaxSampleCount : DistanceMapOptions::kMaxDivisions;
+        const bool by_counts = has_poles(options.grid);
+        least = by_counts ? DistanceMapOptions::kMinSampleCount : DistanceMapOptions::kMinDivisions;
+        most = by_counts ? DistanceMapOptions::kMaxSampleCount : DistanceMapOptions::kMaxDivisions;
     }
     DistanceMapOptions with(std::uint32_t resolution) const {
         DistanceMapOptions result = options;

@@ -1,5 +1,5 @@
-// The grids of a distance map at equal bytes: prints the table of docs/distance_map.md for a torus and for
-// the meshes that are given.
+// The grids of a distance map at equal bytes, and around which centre: prints the table of
+// docs/distance_map.md for a torus and for the meshes that are given.
 
 #include "comparison/point_sets.hpp"
 
@@ -23,23 +23,52 @@ constexpr std::size_t kPointCount = 500'000;
 
 struct System {
     std::string name;
-    DistanceMapOptions options;
+    DistanceMap map;
 };
 
-/// Spherical 200 x 200 about each axis, and of the other grids as fine a one as takes no more bytes than
-/// about z.
-std::vector<System> systems(const TriangleMesh& mesh) {
-    std::vector<System> result;
-    for (const auto& [name, axis] : {std::pair{"x", PoleAxis::X}, {"y", PoleAxis::Y}, {"z", PoleAxis::Z}})
-        result.push_back({std::string("spherical, poles on ") + name,
-                          {.correction = VertexCorrection::None, .pole_axis = axis}});
-    const std::size_t budget = DistanceMap::build(mesh, result.back().options).view().byte_count();
-    for (const auto& [name, grid] :
-         {std::pair{"octahedral ", DirectionGrid::Octahedral}, {"cube ", DirectionGrid::Cube}}) {
-        DistanceMapOptions options{.grid = grid, .divisions = 130, .correction = VertexCorrection::None};
-        while (DistanceMap::build(mesh, options).view().byte_count() > budget) --options.divisions;
-        result.push_back({name + std::to_string(options.divisions), options});
+/// The finest map of a kind that takes no more than so many bytes.
+System finest_within(std::size_t budget, const TriangleMesh& mesh, const std::string& kind,
+                     DistanceMapOptions options) {
+    const auto build = [&](std::uint32_t resolution) {
+        options.longitude_count = options.colatitude_count = options.divisions = resolution;
+        return DistanceMap::build(mesh, options);
+    };
+    std::uint32_t fits = 32, too_fine = 512;
+    while (too_fine - fits > 1) {
+        const std::uint32_t middle = (fits + too_fine) / 2;
+        (build(middle).view().byte_count() <= budget ? fits : too_fine) = middle;
     }
+    return {kind + ", " + std::to_string(fits), build(fits)};
+}
+
+/// Spherical 200 x 200 about each axis, and of all else the finest that takes no more bytes than about z.
+std::vector<System> systems(const TriangleMesh& mesh) {
+    constexpr std::pair<const char*, PoleAxis> kAxes[] = {
+        {"x", PoleAxis::X}, {"y", PoleAxis::Y}, {"z", PoleAxis::Z}};
+    const DistanceMapOptions plain{.correction = VertexCorrection::None};
+    std::vector<System> result;
+    for (const auto& [name, axis] : kAxes) {
+        DistanceMapOptions options = plain;
+        options.pole_axis = axis;
+        result.push_back({std::string("spherical, poles on ") + name, DistanceMap::build(mesh, options)});
+    }
+    const std::size_t budget = result.back().map.view().byte_count();
+    const auto add = [&](const std::string& kind, DirectionGrid grid, PoleAxis axis, CentreChoice centre) {
+        DistanceMapOptions options = plain;
+        options.grid = grid;
+        options.pole_axis = axis;
+        options.centre = centre;
+        result.push_back(finest_within(budget, mesh, kind, options));
+    };
+    constexpr CentreChoice kSphere = CentreChoice::BoundingSphere, kSearch = CentreChoice::Search;
+    add("octahedral", DirectionGrid::Octahedral, PoleAxis::Z, kSphere);
+    add("cube", DirectionGrid::Cube, PoleAxis::Z, kSphere);
+    for (const auto& [name, axis] : kAxes)
+        add(std::string("ellipsoidal, poles on ") + name, DirectionGrid::Ellipsoidal, axis, kSphere);
+    add("spherical, poles on z, searched centre", DirectionGrid::Spherical, PoleAxis::Z, kSearch);
+    add("octahedral, searched centre", DirectionGrid::Octahedral, PoleAxis::Z, kSearch);
+    add("cube, searched centre", DirectionGrid::Cube, PoleAxis::Z, kSearch);
+    add("ellipsoidal, poles on z, searched centre", DirectionGrid::Ellipsoidal, PoleAxis::Z, kSearch);
     return result;
 }
 
@@ -84,12 +113,11 @@ void measure(const std::string& name, const TriangleMesh& mesh) {
     const ExactMap judge = ExactMap::build(mesh);
     const Truth everywhere(judge, comparison::uniform_points(mesh, kPointCount));
     const Truth near(judge, comparison::surface_points(mesh, kPointCount));
-    for (const System& system : systems(mesh)) {
-        const DistanceMap map = DistanceMap::build(mesh, system.options);
+    for (const auto& [kind, map] : systems(mesh)) {
         const std::vector<float> errors = surface_errors(map, judge, near);
         double sum = 0;
         for (const float error : errors) sum += static_cast<double>(error);
-        std::printf("| %s | %s | %zu | %.3f | %.2f | %.4f | %.3f |\n", name.c_str(), system.name.c_str(),
+        std::printf("| %s | %s | %zu | %.3f | %.2f | %.4f | %.3f |\n", name.c_str(), kind.c_str(),
                     map.view().byte_count(), wrong_percent(map, everywhere), wrong_percent(map, near),
                     sum / static_cast<double>(errors.size()),
                     static_cast<double>(errors[errors.size() * 99 / 100]));

@@ -33,8 +33,9 @@ enum class VertexCorrection : std::uint8_t {
 /// How one entry is stored.
 enum class EntryFormat : std::uint8_t {
     Float32,
-    Unorm16, ///< r / R in steps of 1/65535, rounded to nearest: off by at most R / 131070 = 7.6e-6 R; half
-             ///< the bytes
+    /// In steps of 1/65535 of the largest entry that the grid allows, rounded to nearest; half the bytes. Off
+    /// by at most R / 131070 = 7.6e-6 R, on octahedral and ellipsoidal grids sqrt(3) times as much.
+    Unorm16,
 };
 
 struct DistanceMapOptions {
@@ -44,9 +45,9 @@ struct DistanceMapOptions {
     static constexpr std::uint32_t kMaxDivisions = 4096;
 
     DirectionGrid grid = DirectionGrid::Spherical; ///< which of the counts below are looked at
-    /// Spherical: samples of phi; memory and build time grow with the product of the two.
+    /// Spherical and ellipsoidal: samples of phi; memory and build time grow with the product of the two.
     std::uint32_t longitude_count = 200;
-    /// Spherical: samples of theta; doubling both divides the share of wrong signs by 2.5.
+    /// Spherical and ellipsoidal: samples of theta; doubling both divides the share of wrong signs by 2.5.
     std::uint32_t colatitude_count = 200;
     /// Octahedral: into how many an edge of the octahedron is cut. There are (2 divisions + 1)^2 samples: 100
     /// make as many bytes as 200 x 200. Cube: into how many an edge of the cube is cut, which makes
@@ -54,9 +55,10 @@ struct DistanceMapOptions {
     std::uint32_t divisions = 100;
     VertexCorrection correction =
         VertexCorrection::Signed;                    ///< None is unbiased; Signed misses fewer particles
-    EntryFormat entry_format = EntryFormat::Float32; ///< Unorm16 halves the entries, costs 7.6e-6 R
-    /// Spherical: samples crowd at the poles; put them where detail is.
+    EntryFormat entry_format = EntryFormat::Float32; ///< Unorm16 halves the entries
+    /// Spherical and ellipsoidal: samples crowd at the poles; put them where detail is.
     PoleAxis pole_axis = PoleAxis::Z;
+    CentreChoice centre = CentreChoice::BoundingSphere; ///< the paper's; Search builds twenty times as long
     unsigned thread_count = 0; ///< 0: all cores. The bytes of the map do not depend on it.
 };
 
@@ -81,10 +83,13 @@ struct DistanceMapView {
     Vec3f centre;     ///< C, local
     float radius = 0; ///< R: every vertex of the mesh lies within R of C
     DirectionGrid grid = DirectionGrid::Spherical;
-    std::uint32_t longitude_count = 0;  ///< spherical; 0 in other maps
-    std::uint32_t colatitude_count = 0; ///< spherical; 0 in other maps
-    std::uint32_t divisions = 0;        ///< octahedral and cube; 0 in a spherical map
-    PoleAxis pole_axis = PoleAxis::Z;   ///< spherical
+    std::uint32_t longitude_count = 0;  ///< spherical and ellipsoidal; 0 in other maps
+    std::uint32_t colatitude_count = 0; ///< the same
+    std::uint32_t divisions = 0;        ///< octahedral and cube; 0 in other maps
+    PoleAxis pole_axis = PoleAxis::Z;   ///< spherical and ellipsoidal
+    /// Ellipsoidal: by what x, y and z are multiplied before a direction's longitude and colatitude are
+    /// taken, each within [1/64, 1]. 1 in other maps.
+    Vec3f scale{1, 1, 1};
     EntryFormat entry_format = EntryFormat::Float32;
     VertexCorrection correction = VertexCorrection::None;
     bool centre_inside = false;
@@ -93,16 +98,15 @@ struct DistanceMapView {
     /// of column i and row j of side s of the cube (s (divisions + 1) + j) (divisions + 1) + i.
     std::span<const std::uint32_t> entry_offsets;
     /// [entry_count] or empty. Spherical and cube: distances from C. Octahedral: L1 radii |x| + |y| + |z|
-    /// around C.
+    /// around C. Ellipsoidal: distances from C in the scaled frame.
     std::span<const float> entries_float32;
     std::span<const std::uint16_t>
         entries_unorm16; ///< [entry_count] the same * 65535 / largest_entry(), or empty
 
     std::size_t direction_count() const;
-    /// R, or a little more than sqrt(3) R, which is the largest L1 radius in the bounding sphere.
-    float largest_entry() const {
-        return grid == DirectionGrid::Octahedral ? radius * kLargestL1Radius : radius;
-    }
+    /// R; octahedral: a little more than sqrt(3) R, the largest L1 radius in the bounding sphere;
+    /// ellipsoidal: R, or a little more than sqrt(3) times the smallest scale times R where that is less.
+    float largest_entry() const;
     std::size_t entry_count() const { return entry_offsets.empty() ? 0 : entry_offsets.back(); }
     /// All that a query reads.
     std::size_t byte_count() const {

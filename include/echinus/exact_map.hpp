@@ -1,6 +1,7 @@
 #pragma once
 
 #include <echinus/contact.hpp>
+#include <echinus/directions.hpp>
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 
@@ -29,15 +30,6 @@ enum class InsideRule : std::uint8_t {
     /// that are turned oppositely overlap, their numbers cancel.
     Nonzero,
     Parity, ///< an odd winding number: a part within a part is a hole
-};
-
-/// Where the rays start. Any centre gives the same answers; one that sees little of the surface edge-on gives
-/// shorter lists of faces.
-enum class CentreChoice : std::uint8_t {
-    BoundingSphere, ///< the centre of the smallest enclosing sphere: the finest lattice
-    /// The place that promises the fewest face tests per query, by a search that costs some twenty coarse
-    /// builds. Its lattice is coarser, by the growth of the radius.
-    Search,
 };
 
 struct ExactMapOptions {

@@ -27,7 +27,7 @@ class RayCaster {
   public:
     RayCaster(const LatticeMesh& lattice, const Grid& grid)
         : lattice_(lattice), grid_(grid), directions_(grid.lattice_directions()),
-          largest_(Grid::largest_entry(lattice.radius)) {
+          largest_(grid.largest_entry(lattice.radius)) {
         norms_.reserve(directions_.size());
         for (const LatticePoint& d : directions_)
             norms_.push_back(grid.radial_norm(Vec3d(d)) * lattice.frame.step);

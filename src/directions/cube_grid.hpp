@@ -1,6 +1,8 @@
 #pragma once
 
 #include "directions/angles.hpp"
+#include "directions/axis_order.hpp"
+#include "directions/bilinear_grid.hpp"
 #include "directions/lattice.hpp"
 #include "geometry/circle.hpp"
 
@@ -26,8 +28,8 @@ namespace echinus {
 /// samples on its border, so that samples on the cube's edges appear twice and those on its corners three
 /// times, and no cell looks across an edge.
 ///
-/// Interpolated is the distance, bilinearly, as on the paper's grid.
-class CubeGrid {
+/// Interpolated is the distance, as on the paper's grid.
+class CubeGrid : public BilinearGrid {
   public:
     explicit CubeGrid(std::uint32_t divisions)
         : n_(static_cast<std::int32_t>(divisions)), width_(divisions + 1) {}
@@ -41,15 +43,11 @@ class CubeGrid {
     /// (p, q, m) of a vector, m with the sign that it has in the mesh's frame.
     template <typename T>
     static Vec3<T> to_side(std::uint32_t side, const Vec3<T>& v) {
-        if (side < 2) return {v.y, v.z, v.x};
-        if (side < 4) return {v.z, v.x, v.y};
-        return v;
+        return turned_last(PoleAxis(side / 2), v);
     }
     template <typename T>
     static Vec3<T> from_side(std::uint32_t side, const Vec3<T>& v) {
-        if (side < 2) return {v.z, v.x, v.y};
-        if (side < 4) return {v.y, v.z, v.x};
-        return v;
+        return turned_back(PoleAxis(side / 2), v);
     }
     static bool is_negative(std::uint32_t side) { return side % 2 == 1; }
 
@@ -62,12 +60,7 @@ class CubeGrid {
         });
         return result;
     }
-    std::vector<LatticePoint> lattice_directions() const {
-        std::vector<LatticePoint> result;
-        result.reserve(direction_count());
-        for (const Vec3d& unit : directions()) result.push_back(lattice_direction(unit));
-        return result;
-    }
+    std::vector<LatticePoint> lattice_directions() const { return echinus::lattice_directions(directions()); }
     /// The solid angle of each sample, but for a factor that all share; on a side's border half of it, on its
     /// corners a quarter.
     std::vector<double> solid_angle_weights() const {
@@ -79,10 +72,6 @@ class CubeGrid {
         });
         return result;
     }
-
-    static double radial_norm(const Vec3d& d) { return length(d); }
-    /// The largest distance in a sphere.
-    static float largest_entry(float radius) { return radius; }
 
     struct Coordinates {
         float along_u, along_v; ///< in [0, n]
@@ -97,10 +86,7 @@ class CubeGrid {
         return {along(s.x, m), along(s.y, m), side};
     }
 
-    /// The four samples around a direction and where it lies between them.
-    struct Cell {
-        std::array<std::uint32_t, 4> corners; ///< (0,0), (1,0), (0,1), (1,1), the first number along U
-        float u, v;                           ///< in [0, 1]
+    struct Cell : BilinearGrid::Cell {
         std::uint32_t side;
     };
 
@@ -109,37 +95,12 @@ class CubeGrid {
         const std::int32_t j = std::clamp(static_cast<std::int32_t>(at.along_v), 0, n_ - 1);
         const std::uint32_t first =
             index(at.side, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
-        return {{first, first + 1, first + width_, first + width_ + 1},
-                at.along_u - static_cast<float>(i),
-                at.along_v - static_cast<float>(j),
+        return {{{first, first + 1, first + width_, first + width_ + 1},
+                 at.along_u - static_cast<float>(i),
+                 at.along_v - static_cast<float>(j)},
                 at.side};
     }
     Cell locate(const Vec3f& d) const { return cell_at(coordinates_of(d)); }
-
-    /// Bilinear, for the four corners.
-    static std::array<float, 4> weights(const Cell& cell) {
-        return {(1 - cell.u) * (1 - cell.v), cell.u * (1 - cell.v), (1 - cell.u) * cell.v, cell.u * cell.v};
-    }
-    static std::size_t reference_corner(const Cell& cell) {
-        return (cell.u > 0.5F ? 1U : 0U) + (cell.v > 0.5F ? 2U : 0U);
-    }
-    static bool is_sample(const Cell&, std::size_t) { return true; }
-
-    struct Derivatives {
-        std::array<float, 4> along_u, along_v;
-    };
-    static Derivatives weight_derivatives(const Cell& cell) {
-        return {{cell.v - 1, 1 - cell.v, -cell.v, cell.v}, {cell.u - 1, -cell.u, 1 - cell.u, cell.u}};
-    }
-
-    // Interpolated between samples is the distance itself.
-    static float interpolant(float entry, float) { return entry; }
-    static float interpolant_at(const Vec3d& d) { return static_cast<float>(length(d)); }
-    static float distance_of(float interpolated, const Coordinates&) { return interpolated; }
-    static bool is_farther(float interpolant, float other) { return interpolant > other; }
-    static float moved(float entry, float shift, bool outward) {
-        return outward ? entry + shift : entry - shift;
-    }
 
     /// The gradient of |x| - S(u, v) on the map's surface; u runs with the angle atan(p / m), whose gradient
     /// is (m, 0, -p) / (p^2 + m^2).

@@ -16,9 +16,11 @@ struct DirectionCap {
     double theta_min, theta_max;
     double phi_middle, phi_half_width; ///< a half width of pi or more is the whole circle
 
-    explicit DirectionCap(const std::array<Vec3d, 3>& corners) {
-        // Far above the rounding of these lines and of snapping a direction (1e-6), far below a cell.
-        constexpr double kMargin = 1e-5;
+    /// Far above the rounding of these lines and of snapping a direction (2e-6 rad), far below a cell.
+    static constexpr double kMargin = 1e-5;
+
+    /// @param margin  larger where the frame is stretched, and directions were snapped before
+    explicit DirectionCap(const std::array<Vec3d, 3>& corners, double margin = kMargin) {
         constexpr double kPiDouble = std::numbers::pi;
 
         std::array<Vec3d, 3> units;
@@ -29,7 +31,7 @@ struct DirectionCap {
         for (const Vec3d& unit : units) cosine = std::min(cosine, dot(axis, unit));
         // A cap of a quarter turn or more need not hold the great circles between its points: take all
         // directions.
-        const double radius = cosine > 0.01 ? std::acos(std::min(cosine, 1.0)) + kMargin : kPiDouble;
+        const double radius = cosine > 0.01 ? std::acos(std::min(cosine, 1.0)) + margin : kPiDouble;
 
         const double theta = std::atan2(std::hypot(axis.x, axis.y), axis.z);
         theta_min = theta - radius;
@@ -37,7 +39,7 @@ struct DirectionCap {
         const bool holds_a_pole = theta_min <= 0 || theta_max >= kPiDouble;
         phi_middle = std::atan2(axis.y, axis.x);
         phi_half_width =
-            holds_a_pole ? kPiDouble : std::asin(std::min(1.0, std::sin(radius) / std::sin(theta))) + kMargin;
+            holds_a_pole ? kPiDouble : std::asin(std::min(1.0, std::sin(radius) / std::sin(theta))) + margin;
     }
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "directions/cube_grid.hpp"
+#include "directions/ellipsoidal_grid.hpp"
 #include "directions/octahedral_grid.hpp"
 #include "directions/spherical_grid.hpp"
 
@@ -12,6 +13,6 @@ namespace echinus {
 /// cells and weights, what is interpolated, the gradient), a for_each_sample_near() beside it, its line here,
 /// one in with_grid() (distance_map/layout.hpp) and its counterpart for vectors of particles
 /// (distance_map/*_lanes-inl.hpp). Builds and queries know nothing else of it.
-using AnyGrid = std::variant<SphericalGrid, OctahedralGrid, CubeGrid>;
+using AnyGrid = std::variant<SphericalGrid, OctahedralGrid, CubeGrid, EllipsoidalGrid>;
 
 } // namespace echinus

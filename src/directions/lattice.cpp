@@ -75,6 +75,13 @@ LatticePoint lattice_direction(const Vec3d& unit) {
     return rounded(d);
 }
 
+std::vector<LatticePoint> lattice_directions(const std::vector<Vec3d>& units) {
+    std::vector<LatticePoint> result;
+    result.reserve(units.size());
+    for (const Vec3d& unit : units) result.push_back(lattice_direction(unit));
+    return result;
+}
+
 void LatticeSnapper::require_valid(std::span<const Vec3f> vertices) {
     if (used_.vertex_count() != vertices.size()) used_ = UsedVertices(faces_, vertices.size());
     used_.require_valid(vertices, faces_);

@@ -44,6 +44,8 @@ inline LatticePoint rounded(const Vec3d& place) {
 
 /// A unit vector scaled to the lattice's extent and snapped: what rays are cast along.
 LatticePoint lattice_direction(const Vec3d& unit);
+/// The same for many.
+std::vector<LatticePoint> lattice_directions(const std::vector<Vec3d>& units);
 
 /// A mesh on the integer lattice around its centre: what all exact predicates work on.
 struct LatticeMesh {

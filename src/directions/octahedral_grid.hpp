@@ -76,8 +76,8 @@ class OctahedralGrid {
     }
 
     static double radial_norm(const Vec3d& d) { return std::fabs(d.x) + std::fabs(d.y) + std::fabs(d.z); }
-    /// The largest radial coordinate in a sphere; a little more than sqrt(3) times the radius.
-    static float largest_entry(float radius) { return radius * kLargestL1Radius; }
+    /// The largest radial coordinate in a sphere: sqrt(3) times the radius, and a little more.
+    static float largest_entry(float radius) { return radius * 1.7320509F; }
 
     struct Coordinates {
         float along_u, along_v; ///< in [0, 2n]

@@ -1,10 +1,12 @@
 #pragma once
 
 #include "directions/direction_cap.hpp"
-#include "directions/spherical_grid.hpp"
+#include "directions/ellipsoidal_grid.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 
@@ -48,6 +50,18 @@ void for_each_sample_near(const SphericalGrid& grid, const std::array<LatticePoi
                           const Visit& visit) {
     const DirectionCap cap(
         {Vec3d(grid.to_grid(face[0])), Vec3d(grid.to_grid(face[1])), Vec3d(grid.to_grid(face[2]))});
+    for_each_sample_in(grid, cap, reach, visit);
+}
+
+/// The same in the frame where the samples are a sphere's: the face is scaled too. There an angle may be
+/// larger than in the mesh's frame, by the inverse of the smallest scale at most, hence the margin.
+template <typename Visit>
+void for_each_sample_near(const EllipsoidalGrid& grid, const std::array<LatticePoint, 3>& face, double reach,
+                          const Visit& visit) {
+    const Vec3d scale(grid.scale_in_grid());
+    std::array<Vec3d, 3> corners;
+    for (std::size_t c = 0; c < 3; ++c) corners[c] = product(Vec3d(grid.to_grid(face[c])), scale);
+    const DirectionCap cap(corners, DirectionCap::kMargin / static_cast<double>(grid.smallest_scale()));
     for_each_sample_in(grid, cap, reach, visit);
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include "directions/angles.hpp"
+#include "directions/axis_order.hpp"
+#include "directions/bilinear_grid.hpp"
 #include "directions/lattice.hpp"
 #include "geometry/circle.hpp"
 
@@ -21,7 +23,7 @@ namespace echinus {
 ///
 /// Inside this class vectors are in the grid's frame, whose z axis is the pole axis: to_grid() turns them
 /// there.
-class SphericalGrid {
+class SphericalGrid : public BilinearGrid {
   public:
     SphericalGrid(std::uint32_t longitude_count, std::uint32_t colatitude_count, PoleAxis pole_axis)
         : longitude_count_(longitude_count), colatitude_count_(colatitude_count), pole_axis_(pole_axis) {}
@@ -34,25 +36,11 @@ class SphericalGrid {
 
     template <typename T>
     Vec3<T> to_grid(const Vec3<T>& v) const {
-        switch (pole_axis_) {
-        case PoleAxis::X:
-            return {v.y, v.z, v.x};
-        case PoleAxis::Y:
-            return {v.z, v.x, v.y};
-        default:
-            return v;
-        }
+        return turned_last(pole_axis_, v);
     }
     template <typename T>
     Vec3<T> from_grid(const Vec3<T>& v) const {
-        switch (pole_axis_) {
-        case PoleAxis::X:
-            return {v.z, v.x, v.y};
-        case PoleAxis::Y:
-            return {v.y, v.z, v.x};
-        default:
-            return v;
-        }
+        return turned_back(pole_axis_, v);
     }
 
     std::size_t direction_count() const { return std::size_t{longitude_count_} * colatitude_count_; }
@@ -73,12 +61,7 @@ class SphericalGrid {
     }
 
     /// The directions in which rays are cast.
-    std::vector<LatticePoint> lattice_directions() const {
-        std::vector<LatticePoint> result;
-        result.reserve(direction_count());
-        for (const Vec3d& unit : directions()) result.push_back(lattice_direction(unit));
-        return result;
-    }
+    std::vector<LatticePoint> lattice_directions() const { return echinus::lattice_directions(directions()); }
 
     /// The solid angle of each sample, but for a factor that all share: the sine of the colatitude.
     std::vector<double> solid_angle_weights() const {
@@ -88,10 +71,6 @@ class SphericalGrid {
             result.insert(result.end(), longitude_count_, colatitude_point(j).sine);
         return result;
     }
-
-    static double radial_norm(const Vec3d& d) { return length(d); }
-    /// The largest distance in a sphere.
-    static float largest_entry(float radius) { return radius; }
 
     /// Longitude and colatitude in cells, counted from sample 0.
     struct Coordinates {
@@ -109,13 +88,7 @@ class SphericalGrid {
                 theta * (static_cast<float>(colatitude_count_) / kPi) - 0.5F};
     }
 
-    /// The four samples around a direction and where it lies between them.
-    struct Cell {
-        /// Direction indices of the corners (0,0), (1,0), (0,1), (1,1), the first number along phi.
-        std::array<std::uint32_t, 4> corners;
-        float u, v; ///< in [0, 1], along phi and theta
-    };
-
+    /// u runs along phi, v along theta.
     Cell cell_at(const Coordinates& at) const {
         const std::int32_t phi_floor = floor_to_int(at.along_phi);
         const std::int32_t j0 = floor_to_int(at.along_theta);
@@ -128,36 +101,6 @@ class SphericalGrid {
 
     /// @param d_grid  as for coordinates_of()
     Cell locate(const Vec3f& d_grid) const { return cell_at(coordinates_of(d_grid)); }
-
-    /// Bilinear, for the four corners.
-    static std::array<float, 4> weights(const Cell& cell) {
-        return {(1 - cell.u) * (1 - cell.v), cell.u * (1 - cell.v), (1 - cell.u) * cell.v, cell.u * cell.v};
-    }
-
-    /// "the sample which is closer to (phi_d, theta_d) as the reference sample" (section 2.2): distances
-    /// along phi and theta in cells.
-    static std::size_t reference_corner(const Cell& cell) {
-        return (cell.u > 0.5F ? 1U : 0U) + (cell.v > 0.5F ? 2U : 0U);
-    }
-    /// All four corners are samples that interpolation looks at.
-    static bool is_sample(const Cell&, std::size_t) { return true; }
-
-    struct Derivatives {
-        std::array<float, 4> along_u, along_v;
-    };
-    static Derivatives weight_derivatives(const Cell& cell) {
-        return {{cell.v - 1, 1 - cell.v, -cell.v, cell.v}, {cell.u - 1, -cell.u, 1 - cell.u, cell.u}};
-    }
-
-    // Interpolated between samples is the distance itself.
-    static float interpolant(float entry, float) { return entry; }
-    static float interpolant_at(const Vec3d& d) { return static_cast<float>(length(d)); }
-    static float distance_of(float interpolated, const Coordinates&) { return interpolated; }
-    static bool is_farther(float interpolant, float other) { return interpolant > other; }
-    /// An entry whose interpolant moves by `shift`.
-    static float moved(float entry, float shift, bool outward) {
-        return outward ? entry + shift : entry - shift;
-    }
 
     /// The gradient of |x| - S(phi, theta) on the map's surface: e_r - S_theta / S e_theta - S_phi / (S sin
     /// theta) e_phi.

@@ -2,8 +2,11 @@
 
 #include "directions/crossings.hpp"
 #include "directions/lattice.hpp"
+#include "distance_map/centre_search.hpp"
+#include "distance_map/centre_side.hpp"
 #include "distance_map/layout.hpp"
 #include "distance_map/vertex_correction.hpp"
+#include "distance_map/view_of.hpp"
 #include "mesh/mesh_hash.hpp"
 
 #include <echinus/error.hpp>
@@ -28,7 +31,7 @@ void require_within(const char* name, std::uint32_t count, std::uint32_t least, 
 
 void require_usable(const DistanceMapOptions& options) {
     using Bounds = DistanceMapOptions;
-    if (options.grid != DirectionGrid::Spherical)
+    if (!has_poles(options.grid))
         return require_within("divisions", options.divisions, Bounds::kMinDivisions, Bounds::kMaxDivisions);
     require_within("longitude_count", options.longitude_count, Bounds::kMinSampleCount,
                    Bounds::kMaxSampleCount);
@@ -36,44 +39,20 @@ void require_usable(const DistanceMapOptions& options) {
                    Bounds::kMaxSampleCount);
 }
 
-/// Is the centre inside, judged by the parity of each ray and weighed by the solid angle that the ray stands
-/// for? On a closed mesh all rays agree; on an open one the majority of the sphere decides.
-struct CentreSide {
-    bool inside;
-    float wrong_parity_share;
-};
-
-CentreSide side_of_centre(const Crossings& crossings, const std::vector<double>& solid_angles) {
-    double odd_weight = 0;
-    double weight = 0;
-    std::size_t odd_count = 0;
-    for (std::size_t d = 0; d < solid_angles.size(); ++d) {
-        const bool odd = (crossings.offsets[d + 1] - crossings.offsets[d]) % 2 == 1;
-        odd_weight += odd ? solid_angles[d] : 0;
-        weight += solid_angles[d];
-        odd_count += odd ? 1 : 0;
-    }
-    const std::size_t direction_count = solid_angles.size();
-    const bool inside = odd_weight > weight / 2;
-    const std::size_t wrong_count = inside ? direction_count - odd_count : odd_count;
-    return {inside, static_cast<float>(wrong_count) / static_cast<float>(direction_count)};
-}
-
-std::vector<double> solid_angle_weights(const AnyGrid& any_grid) {
-    return std::visit([](const auto& grid) { return grid.solid_angle_weights(); }, any_grid);
-}
-
 std::uint64_t hash_of(const TriangleMesh& mesh, const DistanceMapOptions& options) {
     std::array<std::uint32_t, 5> fields{
         options.longitude_count, options.colatitude_count, static_cast<std::uint32_t>(options.correction),
         static_cast<std::uint32_t>(options.entry_format), static_cast<std::uint32_t>(options.pole_axis)};
     constexpr std::uint32_t kOctahedral = ~0U, kCube = ~1U; // no counts of longitudes
-    if (options.grid != DirectionGrid::Spherical) {
+    constexpr std::uint32_t kEllipsoidal = 3;               // above every pole axis
+    if (options.grid == DirectionGrid::Ellipsoidal) {
+        fields[4] += kEllipsoidal;
+    } else if (options.grid != DirectionGrid::Spherical) {
         fields[0] = options.grid == DirectionGrid::Octahedral ? kOctahedral : kCube;
         fields[1] = options.divisions;
         fields[4] = 0;
     }
-    return mesh_hash(mesh, XXH64(fields.data(), sizeof fields, 0));
+    return mesh_hash(mesh, XXH64(fields.data(), sizeof fields, static_cast<std::uint64_t>(options.centre)));
 }
 
 std::uint32_t largest_count(const Crossings& crossings) {
@@ -102,34 +81,21 @@ std::shared_ptr<const OwnedArrays> store(Crossings&& crossings, EntryFormat form
     return arrays;
 }
 
-/// The part of a view that the options decide.
-DistanceMapView view_of(const DistanceMapOptions& options) {
-    DistanceMapView view;
-    view.grid = options.grid;
-    if (options.grid != DirectionGrid::Spherical) {
-        view.divisions = options.divisions;
-    } else {
-        view.longitude_count = options.longitude_count;
-        view.colatitude_count = options.colatitude_count;
-        view.pole_axis = options.pole_axis;
-    }
-    view.entry_format = options.entry_format;
-    view.correction = options.correction;
-    return view;
+LatticeMesh snap(const TriangleMesh& mesh, const DistanceMapOptions& options) {
+    return options.centre == CentreChoice::Search ? snap_around_best_centre(mesh, options)
+                                                  : snap_to_lattice(mesh);
 }
 
 } // namespace
 
 DistanceMap DistanceMap::build(const TriangleMesh& mesh, const DistanceMapOptions& options) {
     require_usable(options);
-    const LatticeMesh lattice = snap_to_lattice(mesh);
-    DistanceMapView view = view_of(options);
-    view.centre = lattice.centre;
-    view.radius = lattice.radius;
+    const LatticeMesh lattice = snap(mesh, options);
+    DistanceMapView view = view_of(options, lattice);
     const AnyGrid grid = with_grid(view, [](const auto& one) { return AnyGrid(one); });
 
     Crossings crossings = cast_rays(lattice, grid, options.thread_count);
-    const CentreSide centre = side_of_centre(crossings, solid_angle_weights(grid));
+    const CentreSide centre = side_of_centre(crossings, grid);
     view.centre_inside = centre.inside;
     const CorrectionCounts counts =
         correct_at_vertices(options.correction, lattice, grid, centre.inside, crossings);

@@ -1,6 +1,6 @@
 // CubeGrid for a vector of particles: the same members with the same bits.
 
-#include "distance_map/lanes-inl.hpp"
+#include "distance_map/bilinear_lanes-inl.hpp"
 
 #include <echinus/distance_map.hpp>
 
@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace echinus {
 namespace HWY_NAMESPACE {
 
-class CubeLanes {
+class CubeLanes : public BilinearLanes {
   public:
     explicit CubeLanes(const DistanceMapView& map)
         : n_(static_cast<std::int32_t>(map.divisions)), width_(n_ + 1),
@@ -41,9 +41,8 @@ class CubeLanes {
         return {along(s.x, m), along(s.y, m), side};
     }
 
-    struct Cell {
+    struct Cell : Place {
         IntLanes first; ///< the direction (0, 0)
-        FloatLanes u, v;
         Side side;
     };
 
@@ -58,51 +57,18 @@ class CubeLanes {
             choose(at.side.is_x, hn::Zero(kInt), choose(at.side.is_y, splat_int(2), splat_int(4)));
         const IntLanes side = hn::Add(axis, choose(at.side.negative, splat_int(1), hn::Zero(kInt)));
         const IntLanes row = hn::Add(hn::Mul(side, splat_int(width_)), j);
-        return {hn::Add(hn::Mul(row, splat_int(width_)), i), hn::Sub(along_u, hn::ConvertTo(kFloat, i)),
-                hn::Sub(along_v, hn::ConvertTo(kFloat, j)), at.side};
+        return {{hn::Sub(along_u, hn::ConvertTo(kFloat, i)), hn::Sub(along_v, hn::ConvertTo(kFloat, j))},
+                hn::Add(hn::Mul(row, splat_int(width_)), i),
+                at.side};
     }
 
     HWY_INLINE std::array<IntLanes, 4> corners(const Cell& cell) const {
         const IntLanes upper = hn::Add(cell.first, splat_int(width_));
         return {cell.first, hn::Add(cell.first, splat_int(1)), upper, hn::Add(upper, splat_int(1))};
     }
-    struct CornerRows {
-        IntLanes lower, upper; ///< the directions (0, 0) and (0, 1)
-        FloatMask exist;
-    };
     HWY_INLINE CornerRows corner_rows(const Cell& cell) const {
         return {cell.first, hn::Add(cell.first, splat_int(width_)), splat_mask(true)};
     }
-    static HWY_INLINE std::array<IntLanes, 4> corners_of_cell(const Cell&,
-                                                              const std::array<IntLanes, 4>& values) {
-        return values;
-    }
-
-    HWY_INLINE std::array<FloatLanes, 4> weights(const Cell& cell) const {
-        const FloatLanes left = hn::Sub(splat(1), cell.u);
-        const FloatLanes low = hn::Sub(splat(1), cell.v);
-        return {hn::Mul(left, low), hn::Mul(cell.u, low), hn::Mul(left, cell.v), hn::Mul(cell.u, cell.v)};
-    }
-    HWY_INLINE IntLanes of_reference(const Cell& cell, const std::array<IntLanes, 4>& values) const {
-        const FloatMask right = hn::Gt(cell.u, splat(0.5F));
-        const FloatMask high = hn::Gt(cell.v, splat(0.5F));
-        return choose(high, choose(right, values[3], values[2]), choose(right, values[1], values[0]));
-    }
-
-    struct Derivatives {
-        std::array<FloatLanes, 4> along_u, along_v;
-    };
-    HWY_INLINE Derivatives weight_derivatives(const Cell& cell) const {
-        const FloatLanes one = splat(1);
-        return {{hn::Sub(cell.v, one), hn::Sub(one, cell.v), hn::Neg(cell.v), cell.v},
-                {hn::Sub(cell.u, one), hn::Neg(cell.u), hn::Sub(one, cell.u), cell.u}};
-    }
-
-    static HWY_INLINE FloatLanes interpolant(FloatLanes entry) { return entry; }
-    static HWY_INLINE FloatLanes distance_of(FloatLanes interpolated, const Coordinates&) {
-        return interpolated;
-    }
-
     HWY_INLINE PointLanes surface_gradient(const PointLanes& e_r, const Cell& cell, FloatLanes distance,
                                            FloatLanes, FloatLanes slope_u, FloatLanes slope_v) const {
         const PointLanes s = to_side(cell.side, e_r);
@@ -133,10 +99,12 @@ class CubeLanes {
         return {is_x, is_y, hn::Lt(along, hn::Zero(kFloat))};
     }
     static HWY_INLINE PointLanes to_side(const Side& side, const PointLanes& v) {
-        return choose(side.is_x, {v.y, v.z, v.x}, choose(side.is_y, {v.z, v.x, v.y}, v));
+        return choose(side.is_x, turned_last(PoleAxis::X, v),
+                      choose(side.is_y, turned_last(PoleAxis::Y, v), v));
     }
     static HWY_INLINE PointLanes from_side(const Side& side, const PointLanes& v) {
-        return choose(side.is_x, {v.z, v.x, v.y}, choose(side.is_y, {v.y, v.z, v.x}, v));
+        return choose(side.is_x, turned_back(PoleAxis::X, v),
+                      choose(side.is_y, turned_back(PoleAxis::Y, v), v));
     }
     HWY_INLINE FloatLanes along(FloatLanes p, FloatLanes m) const {
         const FloatLanes n = splat(n_float_);

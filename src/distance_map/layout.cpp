@@ -12,6 +12,10 @@ std::size_t DistanceMapView::direction_count() const {
     return with_grid(*this, [](const auto& one) { return one.direction_count(); });
 }
 
+float DistanceMapView::largest_entry() const {
+    return with_grid(*this, [this](const auto& one) { return one.largest_entry(radius); });
+}
+
 std::vector<std::size_t> entry_histogram(const DistanceMapView& map) {
     std::vector<std::size_t> histogram;
     const std::size_t direction_count = map.direction_count();

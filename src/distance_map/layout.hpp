@@ -15,6 +15,8 @@ template <typename Use>
 decltype(auto) with_grid(const DistanceMapView& map, const Use& use) {
     if (map.grid == DirectionGrid::Octahedral) return use(OctahedralGrid(map.divisions));
     if (map.grid == DirectionGrid::Cube) return use(CubeGrid(map.divisions));
+    if (map.grid == DirectionGrid::Ellipsoidal)
+        return use(EllipsoidalGrid(map.longitude_count, map.colatitude_count, map.pole_axis, map.scale));
     return use(SphericalGrid(map.longitude_count, map.colatitude_count, map.pole_axis));
 }
 

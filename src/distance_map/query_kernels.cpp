@@ -20,8 +20,8 @@
 
 // After foreach_target.h, which includes this file once for each instruction set.
 #include "distance_map/cube_lanes-inl.hpp"
+#include "distance_map/ellipsoidal_lanes-inl.hpp"
 #include "distance_map/octahedral_lanes-inl.hpp"
-#include "distance_map/spherical_lanes-inl.hpp"
 #include "simd/compress-inl.hpp"
 #include "simd/dispatch.hpp"
 
@@ -587,6 +587,8 @@ void answer(const DistanceMapView& map, const StridedSpan<const Vec3f>& points, 
         answer_in_format<OctahedralLanes>(map, points, answers);
     else if (map.grid == DirectionGrid::Cube)
         answer_in_format<CubeLanes>(map, points, answers);
+    else if (map.grid == DirectionGrid::Ellipsoidal)
+        answer_in_format<EllipsoidalLanes>(map, points, answers);
     else
         answer_in_format<SphericalLanes>(map, points, answers);
 }

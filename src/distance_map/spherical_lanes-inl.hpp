@@ -1,6 +1,6 @@
 // SphericalGrid for a vector of particles: the same members with the same bits.
 
-#include "distance_map/lanes-inl.hpp"
+#include "distance_map/bilinear_lanes-inl.hpp"
 
 #include <echinus/distance_map.hpp>
 
@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace echinus {
 namespace HWY_NAMESPACE {
 
-class SphericalLanes {
+class SphericalLanes : public BilinearLanes {
   public:
     explicit SphericalLanes(const DistanceMapView& map)
         : pole_axis_(map.pole_axis), columns_(static_cast<std::int32_t>(map.longitude_count)),
@@ -24,26 +24,8 @@ class SphericalLanes {
           per_phi_(static_cast<float>(map.longitude_count) / (2 * kPi)),
           per_theta_(static_cast<float>(map.colatitude_count) / kPi) {}
 
-    HWY_INLINE PointLanes to_grid(const PointLanes& v) const {
-        switch (pole_axis_) {
-        case PoleAxis::X:
-            return {v.y, v.z, v.x};
-        case PoleAxis::Y:
-            return {v.z, v.x, v.y};
-        default:
-            return v;
-        }
-    }
-    HWY_INLINE PointLanes from_grid(const PointLanes& v) const {
-        switch (pole_axis_) {
-        case PoleAxis::X:
-            return {v.z, v.x, v.y};
-        case PoleAxis::Y:
-            return {v.y, v.z, v.x};
-        default:
-            return v;
-        }
-    }
+    HWY_INLINE PointLanes to_grid(const PointLanes& v) const { return turned_last(pole_axis_, v); }
+    HWY_INLINE PointLanes from_grid(const PointLanes& v) const { return turned_back(pole_axis_, v); }
 
     struct Coordinates {
         FloatLanes along_phi, along_theta;
@@ -57,9 +39,8 @@ class SphericalLanes {
         return {hn::Mul(phi, splat(per_phi_)), hn::Sub(hn::Mul(theta, splat(per_theta_)), splat(0.5F))};
     }
 
-    struct Cell {
+    struct Cell : Place {
         IntLanes i, j; ///< its corner (0, 0); j is -1 or the last row beyond a pole
-        FloatLanes u, v;
     };
 
     /// @param wanted  other lanes get some cell
@@ -69,9 +50,10 @@ class SphericalLanes {
         const IntLanes phi_floor = floor_to_int(along_phi);
         const IntLanes j = floor_to_int(along_theta);
         const FloatMask negative = as_mask(hn::Lt(phi_floor, hn::Zero(kInt)));
-        return {choose(negative, hn::Add(phi_floor, splat_int(columns_)), phi_floor), j,
-                hn::Sub(along_phi, hn::ConvertTo(kFloat, phi_floor)),
-                hn::Sub(along_theta, hn::ConvertTo(kFloat, j))};
+        return {{hn::Sub(along_phi, hn::ConvertTo(kFloat, phi_floor)),
+                 hn::Sub(along_theta, hn::ConvertTo(kFloat, j))},
+                choose(negative, hn::Add(phi_floor, splat_int(columns_)), phi_floor),
+                j};
     }
 
     HWY_INLINE std::array<IntLanes, 4> corners(const Cell& cell) const {
@@ -82,49 +64,13 @@ class SphericalLanes {
                 corner(next_i, next_j)};
     }
 
-    /// Where both corners of each row are neighbours in the arrays: everywhere but at the seam and the poles.
-    struct CornerRows {
-        IntLanes lower, upper; ///< the directions (0, 0) and (0, 1)
-        FloatMask exist;
-    };
+    /// Everywhere but at the seam and the poles.
     HWY_INLINE CornerRows corner_rows(const Cell& cell) const {
         const IntLanes lower = hn::Add(hn::Mul(cell.j, splat_int(columns_)), cell.i);
         const IntMask beyond_pole =
             hn::Or(hn::Lt(cell.j, hn::Zero(kInt)), hn::Gt(cell.j, splat_int(rows_ - 2)));
         const IntMask on_seam = hn::Gt(cell.i, splat_int(columns_ - 2));
         return {lower, hn::Add(lower, splat_int(columns_)), none_of(as_mask(hn::Or(beyond_pole, on_seam)))};
-    }
-
-    /// Values of the corners of the rows as corners(cell) orders them.
-    static HWY_INLINE std::array<IntLanes, 4> corners_of_cell(const Cell&,
-                                                              const std::array<IntLanes, 4>& values) {
-        return values;
-    }
-
-    HWY_INLINE std::array<FloatLanes, 4> weights(const Cell& cell) const {
-        const FloatLanes left = hn::Sub(splat(1), cell.u);
-        const FloatLanes low = hn::Sub(splat(1), cell.v);
-        return {hn::Mul(left, low), hn::Mul(cell.u, low), hn::Mul(left, cell.v), hn::Mul(cell.u, cell.v)};
-    }
-
-    HWY_INLINE IntLanes of_reference(const Cell& cell, const std::array<IntLanes, 4>& values) const {
-        const FloatMask right = hn::Gt(cell.u, splat(0.5F));
-        const FloatMask high = hn::Gt(cell.v, splat(0.5F));
-        return choose(high, choose(right, values[3], values[2]), choose(right, values[1], values[0]));
-    }
-
-    struct Derivatives {
-        std::array<FloatLanes, 4> along_u, along_v;
-    };
-    HWY_INLINE Derivatives weight_derivatives(const Cell& cell) const {
-        const FloatLanes one = splat(1);
-        return {{hn::Sub(cell.v, one), hn::Sub(one, cell.v), hn::Neg(cell.v), cell.v},
-                {hn::Sub(cell.u, one), hn::Neg(cell.u), hn::Sub(one, cell.u), cell.u}};
-    }
-
-    static HWY_INLINE FloatLanes interpolant(FloatLanes entry) { return entry; }
-    static HWY_INLINE FloatLanes distance_of(FloatLanes interpolated, const Coordinates&) {
-        return interpolated;
     }
 
     HWY_INLINE PointLanes surface_gradient(const PointLanes& e_r, const Cell&, FloatLanes distance,

@@ -114,7 +114,7 @@ CorrectionCounts correct(VertexCorrection correction, const LatticeMesh& lattice
             if (shift == 0) continue;
             // The entry below has its final value, the one above its old one: between them order is kept.
             const float lowest = i == first ? 0 : entries[i - 1];
-            const float highest = i + 1 == last ? Grid::largest_entry(lattice.radius) : entries[i + 1];
+            const float highest = i + 1 == last ? grid.largest_entry(lattice.radius) : entries[i + 1];
             const float wanted = Grid::moved(entries[i], shift, corrector.moves_outward(i - first));
             entries[i] = std::clamp(wanted, lowest, highest);
             ++counts.corrected_entries;

@@ -8,7 +8,8 @@ namespace echinus {
 
 static_assert(same_value(schema::DirectionGrid::Spherical, DirectionGrid::Spherical) &&
               same_value(schema::DirectionGrid::Octahedral, DirectionGrid::Octahedral) &&
-              same_value(schema::DirectionGrid::Cube, DirectionGrid::Cube));
+              same_value(schema::DirectionGrid::Cube, DirectionGrid::Cube) &&
+              same_value(schema::DirectionGrid::Ellipsoidal, DirectionGrid::Ellipsoidal));
 static_assert(same_value(schema::PoleAxis::X, PoleAxis::X) && same_value(schema::PoleAxis::Y, PoleAxis::Y) &&
               same_value(schema::PoleAxis::Z, PoleAxis::Z));
 static_assert(same_value(schema::EntryFormat::Float32, EntryFormat::Float32) &&
@@ -27,6 +28,7 @@ DistanceMapView read_view(const schema::DistanceMap& stored) {
     view.colatitude_count = stored.colatitude_count();
     view.grid = DirectionGrid(stored.grid());
     view.divisions = stored.divisions();
+    if (stored.scale() != nullptr) view.scale = from_stored(*stored.scale());
     view.pole_axis = PoleAxis(stored.pole_axis());
     view.entry_format = EntryFormat(stored.entry_format());
     view.correction = VertexCorrection(stored.vertex_correction());
@@ -67,11 +69,13 @@ flatbuffers::Offset<schema::DistanceMap> write_table(flatbuffers::FlatBufferBuil
     const auto entries_unorm16 = write_if_any(builder, view.entries_unorm16);
     const auto statistics = write_statistics(builder, map.statistics());
     const schema::Point centre = to_stored(view.centre);
+    const schema::Point scale = to_stored(view.scale);
     return schema::CreateDistanceMap(
         builder, &centre, view.radius, view.longitude_count, view.colatitude_count,
         schema::PoleAxis(view.pole_axis), schema::EntryFormat(view.entry_format),
         schema::VertexCorrection(view.correction), view.centre_inside, entry_offsets, entries_float32,
-        entries_unorm16, statistics, schema::DirectionGrid(view.grid), view.divisions);
+        entries_unorm16, statistics, schema::DirectionGrid(view.grid), view.divisions,
+        view.grid == DirectionGrid::Ellipsoidal ? &scale : nullptr);
 }
 
 DistanceMap read_table(const schema::DistanceMap& stored, std::uint64_t source_hash,

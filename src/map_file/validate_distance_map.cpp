@@ -1,3 +1,4 @@
+#include "directions/ellipsoidal_grid.hpp"
 #include "map_file/checker.hpp"
 #include "map_file/distance_map_table.hpp"
 
@@ -18,28 +19,36 @@ void check_sample_count(const Checker& checker, std::string_view field, std::uin
                         DistanceMapOptions::kMaxSampleCount);
 }
 
-/// What the other grid would need is 0.
+/// What another grid would need is 0.
 void check_counts(const Checker& checker, const DistanceMapView& map) {
-    if (map.grid == DirectionGrid::Spherical) {
+    if (has_poles(map.grid)) {
         check_sample_count(checker, "longitude_count", map.longitude_count);
         check_sample_count(checker, "colatitude_count", map.colatitude_count);
         checker.check_equal("divisions", map.divisions, 0);
     } else {
         checker.check_equal("longitude_count", map.longitude_count, 0);
         checker.check_equal("colatitude_count", map.colatitude_count, 0);
-        // Reciprocals of entries are to be finite: the bounds of a build, and room for rounding.
-        checker.check_range("radius", map.radius, 1e-15F, 4e15F);
         checker.check_range("divisions", map.divisions, DistanceMapOptions::kMinDivisions,
                             DistanceMapOptions::kMaxDivisions);
     }
+}
+
+/// Only an ellipsoid's frame is scaled.
+void check_scale(const Checker& checker, const DistanceMapView& map) {
+    const float least = map.grid == DirectionGrid::Ellipsoidal ? EllipsoidalGrid::kSmallestScale : 1.0F;
+    for (const float scale : {map.scale.x, map.scale.y, map.scale.z})
+        checker.check_range("scale", scale, least, 1.0F);
 }
 
 void check_scalars(const Checker& checker, const DistanceMapView& map) {
     if (!is_finite(map.centre)) checker.fail("centre is not finite");
     if (!std::isfinite(map.radius) || !(map.radius > 0))
         checker.fail("radius is not a positive finite number");
-    checker.check_enumerator("grid", map.grid, DirectionGrid::Cube);
+    checker.check_enumerator("grid", map.grid, DirectionGrid::Ellipsoidal);
     check_counts(checker, map);
+    check_scale(checker, map);
+    // Reciprocals and quotients of lengths are to be finite: the bounds of a build, and room for rounding.
+    if (map.grid != DirectionGrid::Spherical) checker.check_range("radius", map.radius, 1e-15F, 4e15F);
     checker.check_enumerator("pole_axis", map.pole_axis, PoleAxis::Z);
     checker.check_enumerator("entry_format", map.entry_format, EntryFormat::Unorm16);
     checker.check_enumerator("vertex_correction", map.correction, VertexCorrection::Signed);

@@ -87,14 +87,19 @@ void refuse_keys_of_other_choice(const JsonObject& object, std::initializer_list
         if (object.has(key)) object.refuse(key, "left out, or \"" + choice + "\" must be \"" + word + "\"");
 }
 
+void read_centre(JsonObject& map, CentreChoice& centre) {
+    if (auto word = map.read_word("centre", {"sphere", "search"})) centre = static_cast<CentreChoice>(*word);
+}
+
 DistanceMapOptions read_distance_map(JsonObject& map) {
     DistanceMapOptions options;
-    options.grid =
-        static_cast<DirectionGrid>(map.read_word("grid", {"spherical", "octahedral", "cube"}).value_or(0));
-    if (options.grid == DirectionGrid::Spherical)
+    options.grid = static_cast<DirectionGrid>(
+        map.read_word("grid", {"spherical", "octahedral", "cube", "ellipsoidal"}).value_or(0));
+    if (has_poles(options.grid))
         refuse_keys_of_other_choice(map, {"divisions"}, "map.grid", "octahedral\" or \"cube");
     else
-        refuse_keys_of_other_choice(map, {"directions", "pole_axis"}, "map.grid", "spherical");
+        refuse_keys_of_other_choice(map, {"directions", "pole_axis"}, "map.grid",
+                                    "spherical\" or \"ellipsoidal");
     map.read("divisions", options.divisions,
              {DistanceMapOptions::kMinDivisions, DistanceMapOptions::kMaxDivisions});
     Counts directions{options.longitude_count, options.colatitude_count};
@@ -108,6 +113,7 @@ DistanceMapOptions read_distance_map(JsonObject& map) {
         options.entry_format = static_cast<EntryFormat>(*word);
     if (auto word = map.read_word("pole_axis", {"x", "y", "z"}))
         options.pole_axis = static_cast<PoleAxis>(*word);
+    read_centre(map, options.centre);
     return options;
 }
 
@@ -123,8 +129,7 @@ ExactMapOptions read_exact_map(JsonObject& map) {
     options.byte_budget = budget;
     if (auto word = map.read_word("rule", {"nonzero", "parity"}))
         options.rule = static_cast<InsideRule>(*word);
-    if (auto word = map.read_word("centre", {"sphere", "search"}))
-        options.centre = static_cast<CentreChoice>(*word);
+    read_centre(map, options.centre);
     return options;
 }
 
@@ -136,8 +141,7 @@ MapOptions read_map(JsonObject map) {
                                     "map.kind", "distance");
         options = read_exact_map(map);
     } else {
-        refuse_keys_of_other_choice(map, {"cells_per_octant", "budget", "rule", "centre"}, "map.kind",
-                                    "exact");
+        refuse_keys_of_other_choice(map, {"cells_per_octant", "budget", "rule"}, "map.kind", "exact");
         options = read_distance_map(map);
     }
     map.finish();

@@ -113,7 +113,6 @@ TEST_F(BuildCommand, RefusesOptionsOfTheOtherKind) {
     refuse("--budget: belongs to --kind exact", {"--kind", "distance", "--budget", "1MB"});
     refuse("--cells-per-octant", {"--kind", "distance", "--cells-per-octant", "9"});
     refuse("--rule", {"--kind", "distance", "--rule", "parity"});
-    refuse("--centre", {"--kind", "distance", "--centre", "search"});
 }
 
 TEST_F(BuildCommand, TakesTheOptionsOfThePaperUnlessTold) {
@@ -161,7 +160,9 @@ TEST_F(BuildCommand, BuildsAnOctahedralGridAndRefusesTheOptionsOfTheOtherGrid) {
         expect_failure(2, words, options);
     };
     refuse("--divisions: belongs to --grid octahedral or cube", {"--divisions", "8"});
-    refuse("--pole: belongs to --grid spherical", {"--grid", "cube", "--pole", "x"});
+    refuse("--pole: belongs to --grid spherical or ellipsoidal", {"--grid", "cube", "--pole", "x"});
+    refuse("--divisions: belongs to --grid octahedral or cube",
+           {"--grid", "ellipsoidal", "--divisions", "8"});
     refuse("--directions: belongs to --grid spherical", {"--grid", "octahedral", "--directions", "24x12"});
     refuse("--pole: belongs to --grid spherical", {"--grid", "octahedral", "--pole", "x"});
     refuse("--divisions", {"--grid", "octahedral", "--divisions", "3"});
@@ -175,6 +176,30 @@ TEST_F(BuildCommand, BuildsACube) {
     EXPECT_TRUE(contains(load_distance_map(path("box.ech")), {0.99F, 0, 0}));
     EXPECT_NE(expect_success({"info", "box.ech"}).find("486, edges of the cube cut into 8"),
               std::string::npos);
+}
+
+TEST_F(BuildCommand, BuildsAnEllipsoidAroundTheMeshAndTellsItsScale) {
+    const json built =
+        json::parse(expect_success({"build", "box.obj", "--kind", "distance", "--grid", "ellipsoidal",
+                                    "--directions", "24x12", "--pole", "y", "-o", "box.ech", "--json"}));
+    EXPECT_EQ(built["grid"], "ellipsoidal");
+    EXPECT_EQ(built["pole"], "y");
+    const DistanceMap map = load_distance_map(path("box.ech"));
+    ASSERT_EQ(built["scale"].size(), 3U);
+    EXPECT_EQ(built["scale"][2], map.view().scale.z);
+    EXPECT_TRUE(contains(map, {0.99F, 0, 0}));
+    EXPECT_NE(expect_success({"info", "box.ech"}).find("24 x 12 = 288, poles on y, axes scaled by 1.000, "),
+              std::string::npos);
+}
+
+TEST_F(BuildCommand, PutsTheCentreOfEitherKindOfMapWhereItPromisesTheBetterMap) {
+    write("torus.obj", obj_text(make_torus(1, 0.3, 24, 12)));
+    for (const char* kind : {"exact", "distance"})
+        for (const char* centre : {"sphere", "search"}) {
+            const json built = json::parse(expect_success(
+                {"build", "torus.obj", "--kind", kind, "--centre", centre, "-o", "torus.ech", "--json"}));
+            EXPECT_EQ(built["centre_inside"], std::string(centre) == "search") << kind;
+        }
 }
 
 TEST_F(BuildCommand, GivesTheSameMapOnAnyNumberOfThreads) {

@@ -31,29 +31,6 @@ TEST(Crossings, HaveTheParityOfTheCentreOnEveryRayOfAClosedMesh) {
         }
 }
 
-TEST(Crossings, OfABoxLieOnItsSides) {
-    const SphericalGrid grid(50, 30, PoleAxis::Z);
-    const Crossings crossings = cast_rays(snap_to_lattice(make_box({2, 2, 2})), grid, 0);
-    std::size_t index = 0;
-    for (const Vec3d& d : grid.directions()) {
-        const double expected = 1 / std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-        ASSERT_EQ(crossings.offsets[index + 1] - crossings.offsets[index], 1U);
-        ASSERT_NEAR(crossings.distances[crossings.offsets[index]], expected, 1e-5);
-        ++index;
-    }
-}
-
-TEST(Crossings, AreTheSameForEveryNumberOfThreads) {
-    const LatticeMesh lattice = snap_to_lattice(make_torus(1, 0.4, 120, 48));
-    const SphericalGrid grid(100, 100, PoleAxis::X);
-    const Crossings one = cast_rays(lattice, grid, 1);
-    for (unsigned thread_count : {0U, 2U, 5U}) {
-        const Crossings many = cast_rays(lattice, grid, thread_count);
-        EXPECT_EQ(many.offsets, one.offsets);
-        EXPECT_EQ(many.distances, one.distances);
-    }
-}
-
 TEST(Crossings, StayInTheSphereAndAscend) {
     const LatticeMesh lattice = snap_to_lattice(make_torus(1, 0.4, 60, 24));
     const Crossings crossings = cast_rays(lattice, SphericalGrid(90, 45, PoleAxis::Y), 0);

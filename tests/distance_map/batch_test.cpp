@@ -1,3 +1,4 @@
+#include "support/grid_options.hpp"
 #include "support/hand_made_map.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/random_points.hpp"
@@ -96,17 +97,20 @@ TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesOnMapsOfMeshes) {
                 }
 }
 
-TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesOnOctahedralMapsAndCubes) {
+TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesOnMapsOfOtherGrids) {
     const TriangleMesh box = make_box({2, 3, 4});
     const TriangleMesh torus = make_torus(1, 0.4, 60, 24);
     for (const TriangleMesh* mesh : {&box, &torus})
         for (EntryFormat format : {EntryFormat::Float32, EntryFormat::Unorm16})
-            for (DirectionGrid grid : {DirectionGrid::Octahedral, DirectionGrid::Cube})
-                for (std::uint32_t divisions : {4U, 5U, 20U})
+            for (DirectionGrid grid :
+                 {DirectionGrid::Octahedral, DirectionGrid::Cube, DirectionGrid::Ellipsoidal})
+                for (std::uint32_t count : {4U, 5U, 20U})
                     for (VertexCorrection correction :
                          {VertexCorrection::None, VertexCorrection::Paper, VertexCorrection::Signed}) {
                         const DistanceMap map = DistanceMap::build(*mesh, {.grid = grid,
-                                                                           .divisions = divisions,
+                                                                           .longitude_count = count,
+                                                                           .colatitude_count = 2 * count,
+                                                                           .divisions = count,
                                                                            .correction = correction,
                                                                            .entry_format = format});
                         expect_batches_as_single_particles(map, mesh == &box ? "box" : "torus", 1000);
@@ -119,10 +123,11 @@ TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesOnAnySoundMap) {
         const std::uint32_t size = 4 + seed * 3;
         const DistanceMap map = test::random_map_parts(format, size, size + seed % 3, seed).map();
         expect_batches_as_single_particles(map, "random map " + std::to_string(seed), 1000);
-        const DistanceMap other = test::random_octahedral_map_parts(format, 4 + seed, seed).map();
-        expect_batches_as_single_particles(other, "random octahedral map " + std::to_string(seed), 1000);
-        const DistanceMap cube = test::random_cube_map_parts(format, 4 + seed, seed).map();
-        expect_batches_as_single_particles(cube, "random cube " + std::to_string(seed), 1000);
+        for (const DirectionGrid grid : test::kEveryGrid) {
+            const DistanceMap other = test::random_map_parts(format, grid, 4 + seed, seed).map();
+            expect_batches_as_single_particles(
+                other, std::string("random map, ") + test::name_of(grid) + ' ' + std::to_string(seed), 1000);
+        }
     }
 }
 
@@ -178,8 +183,7 @@ TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesForEachSizeAndStride) {
 }
 
 TEST(DistanceMapBatch, HasTheSameBitsOnAnyNumberOfThreads) {
-    for (const DirectionGrid grid :
-         {DirectionGrid::Spherical, DirectionGrid::Octahedral, DirectionGrid::Cube}) {
+    for (const DirectionGrid grid : test::kEveryGrid) {
         const DistanceMap map = DistanceMap::build(make_torus(1, 0.4, 60, 24), {.grid = grid});
         test::Random random(9);
         std::vector<Vec3f> points(150'001); // enough for several threads

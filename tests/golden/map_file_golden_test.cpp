@@ -14,9 +14,9 @@ namespace fs = std::filesystem;
 
 // Files of every version of the format, kept forever: what one release wrote, all later ones read.
 //
-// Distance maps are of a box of 2 x 3 x 4 around the origin with 8 x 6 directions, 9 x 9 on an octahedron or
-// 6 x 5 x 5 on a cube, exact maps of the same box, of that box without its last face, and of a torus, with 8
-// cells each; that of the torus has all indices in 32 bits.
+// Distance maps are of a box of 2 x 3 x 4 around the origin with 8 x 6 directions on a sphere or an
+// ellipsoid, 9 x 9 on an octahedron or 6 x 5 x 5 on a cube, exact maps of the same box, of that box without
+// its last face, and of a torus, with 8 cells each; that of the torus has all indices in 32 bits.
 
 namespace {
 
@@ -51,6 +51,13 @@ const Golden kGoldenCube{"v1_box_cube.ech",
                           .divisions = 4,
                           .correction = VertexCorrection::None,
                           .entry_format = EntryFormat::Float32}};
+
+const Golden kGoldenEllipsoidal{"v1_box_ellipsoidal.ech",
+                                {.grid = DirectionGrid::Ellipsoidal,
+                                 .longitude_count = 8,
+                                 .colatitude_count = 6,
+                                 .correction = VertexCorrection::None,
+                                 .entry_format = EntryFormat::Float32}};
 
 const char* const kGoldenExact = "v1_box_exact.ech";
 const char* const kGoldenExactOpen = "v1_open_box_exact.ech";
@@ -176,6 +183,20 @@ TEST(GoldenMapFile, OfVersion1WithACubeHoldsTheBox) {
     }
 }
 
+TEST(GoldenMapFile, OfVersion1WithAnEllipsoidalGridHoldsTheBox) {
+    const DistanceMap map = load_distance_map(path_of(kGoldenEllipsoidal.file));
+    expect_options(map, kGoldenEllipsoidal.options);
+    expect_box(map);
+    EXPECT_EQ(map.view().grid, DirectionGrid::Ellipsoidal);
+    EXPECT_EQ(map.view().scale.x, 1);
+    EXPECT_NEAR(map.view().scale.y, 2.0 / 3, 1e-5);
+    EXPECT_NEAR(map.view().scale.z, 2.0 / 4, 1e-5);
+    // In the scaled frame the box is a cube with the edge 2.
+    for (std::uint32_t j = 0; j < 6; ++j)
+        for (std::uint32_t i = 0; i < 8; ++i)
+            EXPECT_NEAR(map.view().entries_float32[j * 8 + i], box_distance({2, 2, 2}, i, j), 1e-5);
+}
+
 TEST(GoldenMapFile, OfVersion1WithAnExactMapHoldsTheBox) {
     const ExactMap map = load_exact_map(path_of(kGoldenExact));
     EXPECT_NEAR(map.view().radius, std::sqrt(29.0) / 2, 1e-5);
@@ -206,15 +227,17 @@ TEST(GoldenMapFile, OfVersion1WithAnExactMapInWideIndicesHoldsTheTorus) {
 }
 
 TEST(GoldenMapFile, IsWrittenBackByteForByte) {
-    for (const char* file : {kGoldenFloat32.file, kGoldenUnorm16.file, kGoldenOctahedral.file,
-                             kGoldenCube.file, kGoldenExact, kGoldenExactOpen, kGoldenExactWide}) {
+    for (const char* file :
+         {kGoldenFloat32.file, kGoldenUnorm16.file, kGoldenOctahedral.file, kGoldenCube.file,
+          kGoldenEllipsoidal.file, kGoldenExact, kGoldenExactOpen, kGoldenExactWide}) {
         expect_same_bytes(serialise(load_map(path_of(file))), file);
     }
 }
 
 TEST(GoldenMapFile, IsWhatTodaysBuildWritesOnAnyNumberOfThreads) {
     for (const unsigned thread_count : {1u, 3u}) {
-        for (Golden golden : {kGoldenFloat32, kGoldenUnorm16, kGoldenOctahedral, kGoldenCube}) {
+        for (Golden golden :
+             {kGoldenFloat32, kGoldenUnorm16, kGoldenOctahedral, kGoldenCube, kGoldenEllipsoidal}) {
             golden.options.thread_count = thread_count;
             expect_same_bytes(serialise(DistanceMap::build(make_box(kBoxSize), golden.options)), golden.file);
         }

@@ -1,4 +1,5 @@
 #include "support/expect_error.hpp"
+#include "support/grid_options.hpp"
 #include "support/map_file_attack.hpp"
 #include "support/sample_map.hpp"
 #include "support/temporary_folder.hpp"
@@ -39,6 +40,7 @@ void expect_same_map(const DistanceMap& a, const DistanceMap& b) {
     EXPECT_EQ(a.view().longitude_count, b.view().longitude_count);
     EXPECT_EQ(a.view().colatitude_count, b.view().colatitude_count);
     EXPECT_EQ(a.view().pole_axis, b.view().pole_axis);
+    EXPECT_EQ(a.view().scale, b.view().scale);
     EXPECT_EQ(a.view().entry_format, b.view().entry_format);
     EXPECT_EQ(a.view().correction, b.view().correction);
     EXPECT_EQ(a.view().centre_inside, b.view().centre_inside);
@@ -142,30 +144,51 @@ TEST(MapFile, WithstandsChangesOfEveryByte) {
     }
 }
 
-TEST(MapFile, ReadsBackEveryBitOfAnOctahedralMapAndOfACube) {
-    for (const EntryFormat format : kFormats) {
-        const DistanceMap map = random_octahedral_map_parts(format, 5, 3).map();
-        expect_same_map(map, load_bytes(serialise(map)));
-        const DistanceMap cube = random_cube_map_parts(format, 5, 3).map();
-        expect_same_map(cube, load_bytes(serialise(cube)));
+TEST(MapFile, ReadsBackEveryBitOnEveryGrid) {
+    for (const DirectionGrid grid : kEveryGrid)
+        for (const EntryFormat format : kFormats) {
+            const DistanceMap map = random_map_parts(format, grid, 5, 3).map();
+            expect_same_map(map, load_bytes(serialise(map)));
+        }
+}
+
+TEST(MapFile, WithstandsChangesOfEveryByteOnEveryGrid) {
+    for (const DirectionGrid grid : kEveryGrid) {
+        const EntryFormat format = has_poles(grid) ? EntryFormat::Float32 : EntryFormat::Unorm16;
+        auto bytes = serialise(random_map_parts(format, grid, 4, 4).map());
+        for (auto& byte : bytes) {
+            const std::byte original = byte;
+            for (const int flip : {0x01, 0x04, 0x40, 0x80, 0xff}) {
+                byte = original ^ std::byte(flip);
+                EXPECT_NO_THROW(attack_map_file(bytes))
+                    << name_of(grid) << " byte " << &byte - bytes.data() << " ^ " << flip;
+            }
+            byte = original;
+        }
     }
 }
 
-TEST(MapFile, WithstandsChangesOfEveryByteOfACube) {
-    auto bytes = serialise(random_cube_map_parts(EntryFormat::Unorm16, 4, 4).map());
-    for (auto& byte : bytes) {
-        const std::byte original = byte;
-        for (const int flip : {0x01, 0x04, 0x80}) {
-            byte = original ^ std::byte(flip);
-            EXPECT_NO_THROW(attack_map_file(bytes)) << "byte " << &byte - bytes.data() << " ^ " << flip;
-        }
-        byte = original;
-    }
+TEST(MapFile, NamesWhatContradictsTheMeaningOfAnEllipsoid) {
+    const auto expect_damaged = [](const char* words, const std::function<void(MapParts&)>& spoil) {
+        MapParts parts = random_map_parts(EntryFormat::Float32, DirectionGrid::Ellipsoidal, 5, 6);
+        spoil(parts);
+        expect_error(ErrorCode::Damaged, words, [&] { load_bytes(serialise(parts.map())); });
+    };
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    expect_damaged("scale is 1.5", [](MapParts& p) { p.view.scale.y = 1.5F; });
+    expect_damaged("scale is 0.0", [](MapParts& p) { p.view.scale.z = 0.0156F; });
+    expect_damaged("scale is -1", [](MapParts& p) { p.view.scale.x = -1; });
+    expect_damaged("scale is nan", [&](MapParts& p) { p.view.scale.x = kNan; });
+    expect_damaged("radius is", [](MapParts& p) { p.view.radius = 1e-40F; });
+    expect_damaged("divisions is 7 and not 0", [](MapParts& p) { p.view.divisions = 7; });
+    expect_damaged("colatitude_count is 3", [](MapParts& p) { p.view.colatitude_count = 3; });
+    expect_damaged("entries_float32[9]",
+                   [](MapParts& p) { p.entries_float32[9] = p.view.largest_entry() * 1.0001F; });
 }
 
 TEST(MapFile, NamesWhatContradictsTheMeaningOfACube) {
     const auto expect_damaged = [](const char* words, const std::function<void(MapParts&)>& spoil) {
-        MapParts parts = random_cube_map_parts(EntryFormat::Float32, 5, 6);
+        MapParts parts = random_map_parts(EntryFormat::Float32, DirectionGrid::Cube, 5, 6);
         spoil(parts);
         expect_error(ErrorCode::Damaged, words, [&] { load_bytes(serialise(parts.map())); });
     };
@@ -178,27 +201,13 @@ TEST(MapFile, NamesWhatContradictsTheMeaningOfACube) {
                    [](MapParts& p) { p.entries_float32[9] = p.view.largest_entry() * 1.0001F; });
 }
 
-TEST(MapFile, WithstandsChangesOfEveryByteOfAnOctahedralMap) {
-    for (const EntryFormat format : kFormats) {
-        auto bytes = serialise(random_octahedral_map_parts(format, 4, 4).map());
-        for (auto& byte : bytes) {
-            const std::byte original = byte;
-            for (const int flip : {0x01, 0x04, 0x40, 0x80, 0xff}) {
-                byte = original ^ std::byte(flip);
-                EXPECT_NO_THROW(attack_map_file(bytes)) << "byte " << &byte - bytes.data() << " ^ " << flip;
-            }
-            byte = original;
-        }
-    }
-}
-
 TEST(MapFile, NamesWhatContradictsTheMeaningOfAnOctahedralMap) {
     struct Case {
         const char* words;
         std::function<void(MapParts&)> spoil;
     };
     const Case cases[] = {
-        {"grid has the unknown value 3", [](MapParts& p) { p.view.grid = DirectionGrid(3); }},
+        {"grid has the unknown value 4", [](MapParts& p) { p.view.grid = DirectionGrid(4); }},
         {"longitude_count is 0", [](MapParts& p) { p.view.grid = DirectionGrid::Spherical; }},
         {"longitude_count is 7 and not 0", [](MapParts& p) { p.view.longitude_count = 7; }},
         {"colatitude_count is 7 and not 0", [](MapParts& p) { p.view.colatitude_count = 7; }},
@@ -209,7 +218,7 @@ TEST(MapFile, NamesWhatContradictsTheMeaningOfAnOctahedralMap) {
         {"entries_float32[9]", [](MapParts& p) { p.entries_float32[9] = p.view.largest_entry() * 1.0001F; }},
     };
     for (const Case& wrong : cases) {
-        MapParts parts = random_octahedral_map_parts(EntryFormat::Float32, 5, 6);
+        MapParts parts = random_map_parts(EntryFormat::Float32, DirectionGrid::Octahedral, 5, 6);
         wrong.spoil(parts);
         expect_error(ErrorCode::Damaged, wrong.words, [&] { load_bytes(serialise(parts.map())); });
     }

@@ -145,11 +145,16 @@ TEST(Scene, DividesTheDirectionsOfADistanceMapAsItSays) {
     EXPECT_EQ(options_of(R"(, "grid": "cube", "divisions": 30)").grid, DirectionGrid::Cube);
     EXPECT_EQ(options_of(R"(, "grid": "octahedral", "divisions": 30)").grid, DirectionGrid::Octahedral);
     EXPECT_EQ(options_of(R"(, "grid": "octahedral", "divisions": 30)").divisions, 30u);
+    EXPECT_EQ(options_of(R"(, "grid": "ellipsoidal", "pole_axis": "x")").grid, DirectionGrid::Ellipsoidal);
+    EXPECT_EQ(options_of(R"(, "grid": "ellipsoidal", "pole_axis": "x")").pole_axis, PoleAxis::X);
+    EXPECT_EQ(options_of("").centre, CentreChoice::BoundingSphere);
+    EXPECT_EQ(options_of(R"(, "centre": "search")").centre, CentreChoice::Search);
     EXPECT_EQ(
         refusal_of(R"(, "divisions": 30)"),
         R"(a.json: map.divisions is 30; it must be left out, or "map.grid" must be "octahedral" or "cube")");
-    EXPECT_EQ(refusal_of(R"(, "grid": "cube", "pole_axis": "x")"),
-              R"(a.json: map.pole_axis is "x"; it must be left out, or "map.grid" must be "spherical")");
+    EXPECT_EQ(
+        refusal_of(R"(, "grid": "cube", "pole_axis": "x")"),
+        R"(a.json: map.pole_axis is "x"; it must be left out, or "map.grid" must be "spherical" or "ellipsoidal")");
     EXPECT_NE(refusal_of(R"(, "grid": "cube", "divisions": 3)").find("map.divisions is 3"),
               std::string::npos);
     EXPECT_NE(refusal_of(R"(, "grid": "dodecahedral")").find("map.grid"), std::string::npos);

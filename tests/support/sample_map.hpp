@@ -39,7 +39,7 @@ inline MapParts random_map_parts_on(const DistanceMapView& grid, EntryFormat for
     parts.view.centre = {1.5F, -2.0F, 0.25F};
     parts.view.radius = 3.0F + static_cast<float>(random() % 1000) / 512;
     const auto pole_axis = PoleAxis(random() % 3);
-    if (grid.grid == DirectionGrid::Spherical) parts.view.pole_axis = pole_axis;
+    if (has_poles(grid.grid)) parts.view.pole_axis = pole_axis;
     parts.view.entry_format = format;
     parts.view.correction = VertexCorrection(random() % 3);
     parts.view.centre_inside = random() % 2 == 0;
@@ -75,17 +75,14 @@ inline MapParts random_map_parts(EntryFormat format, std::uint32_t longitude_cou
     return random_map_parts_on(grid, format, seed);
 }
 
-inline MapParts random_octahedral_map_parts(EntryFormat format, std::uint32_t divisions, std::uint32_t seed) {
+/// On a grid with as many longitudes and colatitudes, or divisions.
+inline MapParts random_map_parts(EntryFormat format, DirectionGrid kind, std::uint32_t count,
+                                 std::uint32_t seed) {
     DistanceMapView grid;
-    grid.grid = DirectionGrid::Octahedral;
-    grid.divisions = divisions;
-    return random_map_parts_on(grid, format, seed);
-}
-
-inline MapParts random_cube_map_parts(EntryFormat format, std::uint32_t divisions, std::uint32_t seed) {
-    DistanceMapView grid;
-    grid.grid = DirectionGrid::Cube;
-    grid.divisions = divisions;
+    grid.grid = kind;
+    (has_poles(kind) ? grid.longitude_count : grid.divisions) = count;
+    if (has_poles(kind)) grid.colatitude_count = count;
+    if (kind == DirectionGrid::Ellipsoidal) grid.scale = {0.25F, 1, 0.015625F};
     return random_map_parts_on(grid, format, seed);
 }
 

@@ -242,14 +242,15 @@ export interface ExactMapOptions {
 }
 export interface DistanceMapOptions {
     kind: 'distance';
-    grid?: 'spherical' | 'octahedral' | 'cube';
-    /** Spherical: longitudes and colatitudes. */
+    grid?: 'spherical' | 'octahedral' | 'cube' | 'ellipsoidal';
+    /** Spherical and ellipsoidal: longitudes and colatitudes. */
     directions?: readonly [number, number];
     /** Octahedral and cube. */
     divisions?: number;
     correction?: 'none' | 'paper' | 'signed';
     entries?: 'float32' | 'unorm16';
     pole_axis?: 'x' | 'y' | 'z';
+    centre?: 'sphere' | 'search';
 }
 export type MapOptions = ExactMapOptions | DistanceMapOptions;
 export type AnyMap = ExactMap | DistanceMap;

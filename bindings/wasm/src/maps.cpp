@@ -23,7 +23,7 @@ static_assert(sizeof(SweepHit) == 36 && offsetof(SweepHit, point) == 4 && offset
 
 namespace {
 
-const char* const kGridNames[] = {"spherical", "octahedral", "cube"};
+const char* const kGridNames[] = {"spherical", "octahedral", "cube", "ellipsoidal"};
 const char* const kCorrectionNames[] = {"none", "paper", "signed"};
 const char* const kEntryNames[] = {"float32", "unorm16"};
 const char* const kAxisNames[] = {"x", "y", "z"};

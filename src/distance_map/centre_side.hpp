@@ -1,0 +1,17 @@
+#pragma once
+
+#include "directions/crossings.hpp"
+#include "directions/grids.hpp"
+
+namespace echinus {
+
+/// Is the centre inside, judged by the parity of each ray and weighed by the solid angle that the ray stands
+/// for? On a closed mesh all rays agree; on an open one the majority of the sphere decides.
+struct CentreSide {
+    bool inside;
+    float wrong_parity_share; ///< of the directions
+};
+
+CentreSide side_of_centre(const Crossings& crossings, const AnyGrid& grid);
+
+} // namespace echinus

@@ -1,0 +1,192 @@
+#include "directions/crossing.hpp"
+#include "directions/crossings.hpp"
+#include "directions/cube_samples.hpp"
+#include "directions/octahedral_samples.hpp"
+#include "directions/samples_in_cap.hpp"
+#include "support/random_points.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+using namespace echinus;
+
+// What holds for every grid of directions.
+
+namespace {
+
+template <typename Grid>
+Grid make(std::uint32_t resolution);
+
+template <>
+SphericalGrid make(std::uint32_t resolution) {
+    return {4 * resolution, 2 * resolution, PoleAxis::Y};
+}
+template <>
+OctahedralGrid make(std::uint32_t resolution) {
+    return OctahedralGrid(resolution);
+}
+template <>
+CubeGrid make(std::uint32_t resolution) {
+    return CubeGrid(resolution);
+}
+template <>
+EllipsoidalGrid make(std::uint32_t resolution) {
+    return {4 * resolution, 2 * resolution, PoleAxis::X, {1, 0.125F, 0.5F}};
+}
+
+/// What an ellipsoid of the scale above suits.
+const Vec3d kBoxSize{0.5, 4, 1};
+
+/// Where a grid takes a direction to be: its samples by their weights.
+template <typename Grid>
+Vec3d weighted_corners(const typename Grid::Cell& cell, const std::vector<Vec3d>& directions) {
+    const std::array<float, 4> weights = Grid::weights(cell);
+    Vec3d sum;
+    for (std::size_t corner = 0; corner < 4; ++corner)
+        sum += directions[cell.corners[corner]] * static_cast<double>(weights[corner]);
+    return sum;
+}
+
+template <typename Grid>
+Vec3d of_radial_norm_1(const Grid& grid, const Vec3d& d) {
+    return d * (1 / grid.radial_norm(d));
+}
+
+/// Between crossing planes of symmetry, at edges of octahedra and cubes, about poles and seams.
+Vec3f direction_in_an_odd_place(test::Random& random, int n) {
+    Vec3f d = test::unit_vector(random);
+    if (n % 6 == 1) d.x *= 1e-4F;
+    if (n % 6 == 2) d.y *= -1e-4F;
+    if (n % 6 == 3) d.z *= 1e-4F;
+    if (n % 6 == 4) d.x = d.y * (1 + 1e-6F * static_cast<float>(n % 7 - 3));
+    if (n % 6 == 5) d.z = -d.x;
+    return d;
+}
+
+template <typename Grid>
+class EveryGrid : public testing::Test {};
+
+using Grids = testing::Types<SphericalGrid, OctahedralGrid, CubeGrid, EllipsoidalGrid>;
+TYPED_TEST_SUITE(EveryGrid, Grids);
+
+} // namespace
+
+TYPED_TEST(EveryGrid, LocatesADirectionAmongItsNeighbours) {
+    test::Random random(1);
+    for (const std::uint32_t resolution : {4U, 7U, 64U}) {
+        const TypeParam grid = make<TypeParam>(resolution);
+        const std::vector<Vec3d> directions = grid.directions();
+        // A chord is shorter than its arc by the square of a cell, which is widest in the longer axes of a
+        // stretched frame; about a pole samples of half the circle surround a direction.
+        const double cell = std::numbers::pi / 2 / resolution;
+        const double widest = std::is_same_v<TypeParam, EllipsoidalGrid> ? 8 : 1;
+        for (int n = 0; n < 20'000; ++n) {
+            const Vec3f d = direction_in_an_odd_place(random, n);
+            const auto at = grid.locate(grid.to_grid(d));
+            float total = 0;
+            for (const float weight : TypeParam::weights(at)) {
+                ASSERT_GE(weight, 0);
+                total += weight;
+            }
+            ASSERT_NEAR(total, 1, 1e-6);
+            const Vec3d found = weighted_corners<TypeParam>(at, directions);
+            ASSERT_LT(length(found - of_radial_norm_1(grid, Vec3d(d))), widest * (cell * cell + 2e-6)) << n;
+        }
+    }
+}
+
+TYPED_TEST(EveryGrid, LocatesEachOfItsSamplesAtItself) {
+    const TypeParam grid = make<TypeParam>(12);
+    const std::vector<Vec3d> directions = grid.directions();
+    for (const Vec3d& d : directions) {
+        const auto at = grid.locate(grid.to_grid(Vec3f(d)));
+        ASSERT_LT(length(weighted_corners<TypeParam>(at, directions) - d), 2e-5);
+        ASSERT_LT(length(directions[at.corners[TypeParam::reference_corner(at)]] - d), 1e-6);
+    }
+}
+
+TYPED_TEST(EveryGrid, TakesASampleThatWeighsMostForTheReference) {
+    test::Random random(2);
+    const TypeParam grid = make<TypeParam>(9);
+    for (int n = 0; n < 10'000; ++n) {
+        const auto at = grid.locate(direction_in_an_odd_place(random, n));
+        const std::array<float, 4> weights = TypeParam::weights(at);
+        const std::size_t reference = TypeParam::reference_corner(at);
+        for (const float weight : weights) ASSERT_LE(weight, weights[reference]);
+        ASSERT_TRUE(TypeParam::is_sample(at, reference));
+        for (std::size_t corner = 0; corner < 4; ++corner)
+            if (!TypeParam::is_sample(at, corner)) ASSERT_EQ(weights[corner], 0);
+    }
+}
+
+TYPED_TEST(EveryGrid, StaysInRangeAtTheCentreOnCoordinatePlanesAndFarAway) {
+    const TypeParam grid = make<TypeParam>(5);
+    for (float x : {0.0F, -0.0F, 1.0F, -1.0F, 1e-30F, -1e18F})
+        for (float y : {0.0F, -0.0F, 1.0F, -1.0F, -1e-30F, 1e18F})
+            for (float z : {0.0F, -0.0F, 1.0F, -1.0F, 1e-30F, -1e18F}) {
+                const auto at = grid.locate({x, y, z});
+                for (std::uint32_t corner : at.corners) ASSERT_LT(corner, grid.direction_count());
+                ASSERT_TRUE(at.u >= 0 && at.u <= 1 && at.v >= 0 && at.v <= 1);
+            }
+}
+
+TYPED_TEST(EveryGrid, VisitsAllSamplesInTheConeOfAFaceEachOnce) {
+    test::Random random(3);
+    for (const std::uint32_t resolution : {4U, 11U}) {
+        const TypeParam grid = make<TypeParam>(resolution);
+        const std::vector<LatticePoint> directions = grid.lattice_directions();
+        int met = 0;
+        for (int n = 0; n < 3000; ++n) {
+            std::array<LatticePoint, 3> face;
+            const float size = n % 3 == 0 ? 1 : 0.2F; // large ones span sides
+            const Vec3f middle = test::unit_vector(random);
+            for (LatticePoint& corner : face)
+                corner = lattice_direction(Vec3d(middle + test::in_cube(random, size)) * 0.4);
+            // Corners on samples, edges along planes of symmetry.
+            if (n % 5 == 0) face[0] = directions[static_cast<std::size_t>(n) % directions.size()];
+            const FaceCone cone(face[0], face[1], face[2]);
+            if (cone.edge_on()) continue;
+            std::vector<int> visits(directions.size());
+            for_each_sample_near(grid, face, 0, [&](std::uint32_t sample) { ++visits[sample]; });
+            for (std::size_t d = 0; d < directions.size(); ++d) {
+                ASSERT_LE(visits[d], 1);
+                if (!cone.meets(directions[d])) continue;
+                ASSERT_EQ(visits[d], 1) << n << ' ' << d;
+                ++met;
+            }
+        }
+        EXPECT_GT(met, 1000);
+    }
+}
+
+TYPED_TEST(EveryGrid, CrossesABoxOnItsSides) {
+    const TypeParam grid = make<TypeParam>(16);
+    const Crossings crossings = cast_rays(snap_to_lattice(make_box(kBoxSize)), grid, 0);
+    const std::vector<Vec3d> directions = grid.directions();
+    ASSERT_EQ(crossings.distances.size(), directions.size());
+    for (std::size_t d = 0; d < directions.size(); ++d) {
+        const Vec3d p = directions[d] * (2 * static_cast<double>(crossings.distances[d]));
+        EXPECT_NEAR(
+            std::max({std::fabs(p.x) / kBoxSize.x, std::fabs(p.y) / kBoxSize.y, std::fabs(p.z) / kBoxSize.z}),
+            1, 1e-4);
+    }
+}
+
+TYPED_TEST(EveryGrid, CrossesAMeshInTheSamePlacesOnAnyNumberOfThreads) {
+    TriangleMesh torus = make_torus(1, 0.4, 40, 20);
+    for (Vec3f& v : torus.vertices) v = {v.x / 8, v.y, v.z * 0.875F};
+    const LatticeMesh lattice = snap_to_lattice(torus);
+    const TypeParam grid = make<TypeParam>(20);
+    const Crossings one = cast_rays(lattice, grid, 1);
+    const Crossings many = cast_rays(lattice, grid, 3);
+    EXPECT_EQ(one.offsets, many.offsets);
+    EXPECT_EQ(one.distances, many.distances);
+    for (std::size_t d = 0; d + 1 < one.offsets.size(); ++d)
+        EXPECT_EQ((one.offsets[d + 1] - one.offsets[d]) % 2, 0U); // the centre lies outside
+    for (const float distance : one.distances)
+        EXPECT_TRUE(distance >= 0 && distance <= grid.largest_entry(lattice.radius));
+}

@@ -1,0 +1,194 @@
+#include "support/expect_error.hpp"
+#include "support/grid_options.hpp"
+#include "support/random_points.hpp"
+
+#include <echinus/distance_map.hpp>
+#include <echinus/error.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+using namespace echinus;
+using test::options_of;
+
+// What holds for maps on every grid of directions.
+
+namespace {
+
+class EveryMap : public testing::TestWithParam<DirectionGrid> {
+  protected:
+    DistanceMap build(const TriangleMesh& mesh, std::uint32_t resolution = 100,
+                      VertexCorrection correction = VertexCorrection::None,
+                      EntryFormat format = EntryFormat::Float32) const {
+        return DistanceMap::build(mesh, options_of(GetParam(), resolution, correction, format));
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(Grids, EveryMap, testing::ValuesIn(test::kEveryGrid),
+                         [](const auto& param_info) { return test::name_of(param_info.param); });
+
+} // namespace
+
+TEST_P(EveryMap, AgreesWithTheFormulasOfSphereAndTorus) {
+    test::Random random(4);
+    for (const EntryFormat format : {EntryFormat::Float32, EntryFormat::Unorm16})
+        for (const VertexCorrection correction : {VertexCorrection::None, VertexCorrection::Signed}) {
+            const DistanceMap sphere = build(make_sphere(1, 200, 100), 100, correction, format);
+            const DistanceMap torus = build(make_torus(1, 0.4, 200, 100), 100, correction, format);
+            EXPECT_FALSE(torus.view().centre_inside);
+            EXPECT_EQ(torus.statistics().wrong_parity_share, 0);
+            for (int n = 0; n < 20'000; ++n) {
+                const Vec3f p = test::in_cube(random, 1.8F);
+                if (std::fabs(length(p) - 1) > 1e-3F) ASSERT_EQ(contains(sphere, p), length(p) < 1);
+                const float distance = std::hypot(std::hypot(p.x, p.y) - 1, p.z) - 0.4F;
+                if (std::fabs(distance) > 0.03F) ASSERT_EQ(contains(torus, p), distance < 0);
+            }
+        }
+}
+
+TEST_P(EveryMap, HasTheDepthAndTheNormalOfASlantingBox) {
+    const Rotation tilt = Rotation::about({1, 2, 3}, 0.7);
+    const Vec3d size{1, 2, 3}; // its box, and with it an ellipsoid, is no cube either
+    TriangleMesh box = make_box(size * 2.0);
+    for (Vec3f& v : box.vertices) v = Vec3f(tilt.apply(Vec3d(v)));
+    const DistanceMap map = build(box);
+    test::Random random(2);
+    int checked = 0;
+    for (int n = 0; n < 40'000; ++n) {
+        const Vec3d in_unit_box(test::in_cube(random, 1));
+        const Vec3d in_box{in_unit_box.x * size.x, in_unit_box.y * size.y, in_unit_box.z * size.z};
+        std::array<double, 3> sides{std::fabs(in_unit_box.x), std::fabs(in_unit_box.y),
+                                    std::fabs(in_unit_box.z)};
+        std::sort(sides.begin(), sides.end());
+        if (sides[1] > 0.85 * sides[2] || sides[2] < 1e-3) continue; // the box's edges
+        ++checked;
+        const Contact c = contact(map, Vec3f(tilt.apply(in_box)));
+        ASSERT_TRUE(c.inside);
+        // Along the ray the side is farther than straight ahead.
+        ASSERT_NEAR(c.depth, length(in_box) * (1 / sides[2] - 1), 6e-3);
+        const Vec3d normal = tilt.inverse().apply(Vec3d(c.normal));
+        ASSERT_GT(std::max({std::fabs(normal.x), std::fabs(normal.y), std::fabs(normal.z)}), 0.998) << n;
+        ASSERT_GT(dot(normal, in_box), 0);
+    }
+    EXPECT_GT(checked, 10'000);
+}
+
+TEST_P(EveryMap, HasNoSeamAlongPlanesOfSymmetry) {
+    const DistanceMap torus = build(make_torus(1, 0.4, 60, 24), 40);
+    const float tiny = 1e-6F;
+    test::Random random(3);
+    const auto expect_no_seam = [&](const Vec3f& a, const Vec3f& b) {
+        if (usable_sample_count(torus, a) < 3 || usable_sample_count(torus, b) < 3) return;
+        if (usable_sample_count(torus, a) != usable_sample_count(torus, b)) return;
+        const Contact ca = contact(torus, a, 10), cb = contact(torus, b, 10);
+        EXPECT_NEAR(ca.depth, cb.depth, 1e-4F);
+        EXPECT_NEAR(length(ca.point - cb.point), 0, 1e-4F);
+    };
+    for (int n = 0; n < 5000; ++n) {
+        const Vec3f p = test::in_cube(random, 1.2F);
+        expect_no_seam({tiny, p.y, p.z}, {-tiny, p.y, p.z});
+        expect_no_seam({p.x, tiny, p.z}, {p.x, -tiny, p.z});
+        expect_no_seam({p.x, p.y, tiny}, {p.x, p.y, -tiny});
+        expect_no_seam({p.x, p.x * (1 + tiny), p.z}, {p.x, p.x * (1 - tiny), p.z});
+    }
+}
+
+TEST_P(EveryMap, AnswersAtTheCentreAlongZ) {
+    const DistanceMap box = build(make_box({2, 2, 2}));
+    const Contact c = contact(box, box.view().centre);
+    EXPECT_TRUE(c.inside);
+    // Distances to a flat side are bent over the half cell beside its foot, which is 0.01 rad.
+    EXPECT_NEAR(c.depth, 1, 2e-4F);
+    EXPECT_NEAR(c.point.z, 1, 2e-4F);
+    EXPECT_NEAR(c.normal.z, 1, 2e-4F);
+}
+
+TEST_P(EveryMap, RebuildsAClosedSurfaceThatLooksOutwards) {
+    const DistanceMap box = build(make_box({2, 3, 4}), 20);
+    const MeshReport report = inspect(reconstruct_surface(box).mesh);
+    EXPECT_TRUE(report.closed);
+    EXPECT_NEAR(report.signed_volume, 24, 1);
+}
+
+TEST_P(EveryMap, MovesVerticesOutwardsAndNeverIn) {
+    TriangleMesh mesh = make_sphere(1, 30, 15);
+    for (Vec3f& v : mesh.vertices) v.x *= 1.5F;
+    const DistanceMap plain = build(mesh, 20);
+    const DistanceMap corrected = build(mesh, 20, VertexCorrection::Signed);
+    EXPECT_GT(corrected.statistics().corrected_entries, 0U);
+    for (std::size_t i = 0; i < plain.view().entry_count(); ++i)
+        ASSERT_GE(corrected.view().entries_float32[i], plain.view().entries_float32[i]);
+    int checked = 0;
+    for (const Vec3f& v : mesh.vertices) {
+        if (length(v) > 0.9F * corrected.view().radius) continue; // cut short at the bounding sphere
+        EXPECT_TRUE(contains(corrected, v * 0.9999F));
+        ++checked;
+    }
+    EXPECT_GT(checked, 100);
+}
+
+TEST_P(EveryMap, RefusesCountsOutOfBounds) {
+    for (const std::uint32_t count : {0U, 3U, 8193U})
+        test::expect_error(ErrorCode::InvalidOptions, "", [&] {
+            DistanceMap::build(make_box({1, 1, 1}),
+                               {.grid = GetParam(), .longitude_count = count, .divisions = count});
+        });
+}
+
+TEST_P(EveryMap, HasASourceHashOfItsOwn) {
+    const TriangleMesh box = make_box({1, 1, 1});
+    DistanceMapOptions options = options_of(GetParam(), 10);
+    const std::uint64_t hash = DistanceMap::build(box, options).source_hash();
+    for (const DirectionGrid other : test::kEveryGrid)
+        if (other != GetParam())
+            EXPECT_NE(DistanceMap::build(box, options_of(other, 10)).source_hash(), hash);
+    options.centre = CentreChoice::Search;
+    EXPECT_NE(DistanceMap::build(box, options).source_hash(), hash);
+}
+
+TEST_P(EveryMap, KeepsEveryVertexInItsSphereWhateverTheCentre) {
+    for (const CentreChoice choice : {CentreChoice::BoundingSphere, CentreChoice::Search}) {
+        TriangleMesh mesh = make_torus(1, 0.3, 24, 12);
+        for (Vec3f& v : mesh.vertices) v = {v.x, v.y + 0.3F * v.x * v.x, 3 * v.z};
+        DistanceMapOptions options = options_of(GetParam(), 20);
+        options.centre = choice;
+        const DistanceMap map = DistanceMap::build(mesh, options);
+        for (const Vec3f& v : mesh.vertices)
+            EXPECT_LE(length(Vec3d(v) - Vec3d(map.view().centre)), static_cast<double>(map.view().radius));
+        EXPECT_EQ(map.statistics().wrong_parity_share, 0);
+    }
+}
+
+TEST_P(EveryMap, FindsACentreFromWhichLessOfAnLShapedSolidIsHidden) {
+    // From the corner of the L every ray leaves once; from the bounding sphere's centre, in the notch, it
+    // does not.
+    const TriangleMesh mesh = [] {
+        constexpr float kOutline[6][2] = {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
+        TriangleMesh l;
+        for (const float z : {0.0F, 1.0F})
+            for (const auto& [x, y] : kOutline) l.vertices.push_back({x, y, z});
+        for (const Triangle& face : {Triangle{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}}) {
+            l.faces.push_back({face[0], face[2], face[1]});
+            l.faces.push_back({face[0] + 6, face[1] + 6, face[2] + 6});
+        }
+        for (std::uint32_t i = 0; i < 6; ++i) {
+            const std::uint32_t next = (i + 1) % 6;
+            l.faces.push_back({i, next, next + 6});
+            l.faces.push_back({i, next + 6, i + 6});
+        }
+        return l;
+    }();
+    ASSERT_TRUE(inspect(mesh).closed);
+    DistanceMapOptions options = options_of(GetParam(), 40);
+    const auto share_of_one_entry = [&] {
+        const DistanceMap map = DistanceMap::build(mesh, options);
+        return static_cast<double>(entry_histogram(map)[1]) /
+               static_cast<double>(map.view().direction_count());
+    };
+    const double before = share_of_one_entry();
+    options.centre = CentreChoice::Search;
+    EXPECT_GT(share_of_one_entry(), before + 0.05);
+}
