@@ -33,9 +33,8 @@ enum class VertexCorrection : std::uint8_t {
 /// How one entry is stored.
 enum class EntryFormat : std::uint8_t {
     Float32,
-    /// In steps of 1/65535 of the largest entry that the grid allows, rounded to nearest; half the bytes. Off
-    /// by at most R / 131070 = 7.6e-6 R, on octahedral and ellipsoidal grids sqrt(3) times as much.
-    Unorm16,
+    Unorm16, ///< half the bytes: steps of 1/65535 of what the grid allows; off by at most R / 131070 = 7.6e-6
+             ///< R, on octahedral and ellipsoidal grids sqrt(3) times as much
 };
 
 struct DistanceMapOptions {

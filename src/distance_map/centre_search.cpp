@@ -64,7 +64,7 @@ class PlacesBesideSurface {
             const Vec3d place = face.corner + face.u * (i / cuts) + face.v * (j / cuts);
             outer_.push_back(Vec3f(place + step));
             inner_.push_back(Vec3f(place - step));
-            areas_.push_back(area / (double{cuts} * cuts));
+            areas_.push_back(area / (static_cast<double>(cuts) * cuts));
         };
         for (std::uint32_t i = 0; i < cuts; ++i)
             for (std::uint32_t j = 0; i + j < cuts; ++j) {
