@@ -68,6 +68,7 @@ class App {
     // ---- The worker
 
     #open(): void {
+        if (this.#paused) this.#pause(false);
         byId('subtitle').textContent = this.#file ? `Opening ${this.#file.name}` : 'Loading';
         const { bytes, name } = this.#file ?? {};
         // A copy goes: the worker may have to be begun anew, and mending reads the file again.
@@ -110,11 +111,17 @@ class App {
         this.#framesAsked = 0;
         if (code === 'Diverged') this.#pause(true);
         if (code === 'Crashed') {
-            // What has brought it down stays away: the page goes on with a sample.
+            // What has brought it down stays away: the page goes on with a sample, unless that is what did.
+            const wasWell = this.#model !== undefined;
+            this.#model = undefined;
             this.#file = undefined;
+            this.#fileOpening = false;
+            this.#controls.forgetFile();
+            this.#controls.show(this.#settings);
             this.#client.restart();
             this.#cloth = 0;
-            if (this.#model) this.#open();
+            if (wasWell) this.#open();
+            return;
         }
         if (this.#model) {
             this.#showTitle(this.#model);
@@ -255,8 +262,9 @@ class App {
         };
         addEventListener('keydown', (event) => {
             // Keys that a control of the panel needs are its own.
-            const busy = event.target instanceof HTMLElement && event.target.matches('input, select, button, a');
-            if (busy || event.ctrlKey || event.metaKey || event.altKey) return;
+            const typing = event.target instanceof HTMLElement && event.target.matches('select');
+            const pressing = event.key === ' ' && event.target instanceof HTMLElement && event.target.matches('input, button, a');
+            if (typing || pressing || event.ctrlKey || event.metaKey || event.altKey) return;
             const action = actions[event.key.toLowerCase()];
             if (!action) return;
             event.preventDefault();

@@ -83,6 +83,11 @@ test('an open mesh is said to be open, and its border is counted', async () => {
     await drop(page, 'open.obj', OPEN_TETRAHEDRON);
     await untilReport(page, '3 border edges');
     assert.match(await page.locator('#report').textContent(), /Open/);
+    await page.locator('input[name=map][value=distance]').check();
+    await page.waitForFunction(() => document.getElementById('map-note').textContent.includes('paper') || !document.getElementById('notice').hidden);
+    const frame = await page.evaluate(() => Number(document.body.dataset.frame));
+    await page.locator('#restart').click();
+    await untilFrame(page, Math.max(5, Math.min(20, frame)));
     await picture(page, 'open_mesh');
     await page.context().close();
 });
@@ -104,6 +109,17 @@ test('the saved mesh is an OBJ file of the cloth and the model', async () => {
     const text = await readFile(await download.path(), 'utf8');
     const { length } = text.match(/^v /gm);
     assert.equal(length, 400 + (await page.evaluate(() => Number(/faces, ([\d\u2009]+) vertices/.exec(document.getElementById('report').textContent)[1].replace('\u2009', '')))));
+    await page.context().close();
+});
+
+test('the saved picture is a PNG file of the canvas', async () => {
+    const page = await browser.open('#model=sphere&particles=400', SMALL);
+    await untilFrame(page, 2);
+    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#save-picture').click()]);
+    const bytes = await readFile(await download.path());
+    const { width, height } = await page.locator('#canvas').boundingBox();
+    assert.equal(bytes.toString('latin1', 1, 4), 'PNG');
+    assert.deepEqual([bytes.readUInt32BE(16), bytes.readUInt32BE(20)], [Math.round(width), Math.round(height)]);
     await page.context().close();
 });
 

@@ -19,7 +19,7 @@ export class Controls {
         for (const input of this.#inputs)
             input.addEventListener('input', () => {
                 const key = input.name as keyof Settings;
-                if (key === 'model') this.#forgetFile();
+                if (key === 'model') this.forgetFile();
                 this.show({ ...this.#settings, [key]: valueOf(input, key) });
                 changed(this.#settings, key);
             });
@@ -43,13 +43,14 @@ export class Controls {
 
     /** A file in the place of a sample: an entry that is there while the file is open. */
     showFile(name: string): void {
-        this.#forgetFile();
+        this.forgetFile();
         this.#file = new Option(name, 'file', false, true);
         this.#file.hidden = true;
         this.#inputs.find((input) => input.name === 'model')!.prepend(this.#file);
         this.#file.selected = true;
     }
-    #forgetFile(): void {
+    /** What is chosen is a sample again. */
+    forgetFile(): void {
         this.#file?.remove();
         this.#file = undefined;
     }

@@ -53,8 +53,9 @@ export function showLegend(surface: SurfaceNews, largest: number): void {
     byId('legend').replaceChildren(layers, note);
 }
 
-export function showRay({ intervals }: FromWorker & { kind: 'ray' }, radius: number): void {
+export function showRay({ intervals, bands }: FromWorker & { kind: 'ray' }, radius: number): void {
     const inside = intervals.filter((interval) => interval.inside);
     const places = inside.map(({ from, to }) => `${(from / radius).toFixed(3)} to ${(to / radius).toFixed(3)}\u2009R`);
-    byId('ray').textContent = places.length === 0 ? 'Outside all the way.' : `Inside from ${places.join(', from ')}.`;
+    const where = places.length === 0 ? 'Outside all the way.' : `Inside from ${places.join(', from ')}.`;
+    byId('ray').textContent = bands.length === 0 ? where : `${where} ${bands.length === 1 ? 'One band' : `${count(bands.length)} bands`}, in blue, in which the map looks for surface.`;
 }

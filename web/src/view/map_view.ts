@@ -1,6 +1,6 @@
 import * as THREE from 'three';
 import type { Cut, FromWorker, ModelNews, SurfaceNews, Triple } from '../protocol';
-import { CLOTH, INK, LAYERS, LAYER_BACK, SCALE } from './colours';
+import { BAND, CLOTH, INK, LAYERS, LAYER_BACK, SCALE } from './colours';
 import { clear } from './model_view';
 
 /** What a map holds: its surface in colour, a cut through it, a ray, and where two maps differ. */
@@ -70,7 +70,7 @@ export class MapView {
         this.#cut.add(sheet);
     }
 
-    /** The ray from the centre: thick where it is inside. */
+    /** The ray from the centre: thick where it is inside, with the bands in which the map looks for surface. */
     showRay(ray: FromWorker & { kind: 'ray' }): void {
         clear(this.#ray);
         if (!this.#model) return;
@@ -80,6 +80,7 @@ export class MapView {
         const at = (distance: number) => origin.clone().addScaledVector(direction, distance);
         for (const { from, to, inside } of ray.intervals)
             this.#ray.add(rod(at(from), at(to), (inside ? 0.009 : 0.0025) * radius, inside ? CLOTH : INK));
+        for (const [from, to] of ray.bands) this.#ray.add(rod(at(from), at(to), 0.022 * radius, BAND, 0.45));
         for (const crossing of ray.crossings) this.#ray.add(ball(at(crossing), 0.018 * radius, INK));
         if (ray.outline.length === 3) this.#ray.add(this.#outline(ray.outline, origin, radius));
     }
@@ -147,9 +148,9 @@ function stainOf({ inside, side }: Cut): Uint8Array<ArrayBuffer> {
     return pixels;
 }
 
-function rod(from: THREE.Vector3, to: THREE.Vector3, radius: number, colour: number): THREE.Mesh {
+function rod(from: THREE.Vector3, to: THREE.Vector3, radius: number, colour: number, opacity = 1): THREE.Mesh {
     const length = from.distanceTo(to);
-    const mesh = new THREE.Mesh(new THREE.CylinderGeometry(radius, radius, length, 10), ink(colour));
+    const mesh = new THREE.Mesh(new THREE.CylinderGeometry(radius, radius, length, 14), ink(colour, opacity));
     mesh.position.copy(from).lerp(to, 0.5);
     mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), to.clone().sub(from).normalize());
     mesh.renderOrder = 3;
@@ -162,4 +163,4 @@ function ball(at: THREE.Vector3, radius: number, colour: number): THREE.Mesh {
     return mesh;
 }
 /** Through the surface, which would hide nearly all of a ray. */
-const ink = (color: number) => new THREE.MeshBasicMaterial({ color, depthTest: false, transparent: true });
+const ink = (color: number, opacity = 1) => new THREE.MeshBasicMaterial({ color, opacity, depthTest: false, transparent: true });

@@ -97,6 +97,15 @@ export class Playground {
     change(settings: Settings): boolean {
         const before = this.#settings;
         this.#settings = settings;
+        try {
+            return this.#follow(settings, before);
+        } catch (error) {
+            this.#settings = before; // what there was goes on
+            throw error;
+        }
+    }
+
+    #follow(settings: Settings, before: Settings): boolean {
         if (settings.map !== before.map) this.#useMap();
         if (settings.map !== before.map || settings.particles !== before.particles) {
             this.restart();
