@@ -57,7 +57,7 @@ struct DistanceMapOptions {
     EntryFormat entry_format = EntryFormat::Float32; ///< Unorm16 halves the entries
     /// Spherical and ellipsoidal: samples crowd at the poles; put them where detail is.
     PoleAxis pole_axis = PoleAxis::Z;
-    CentreChoice centre = CentreChoice::BoundingSphere; ///< the paper's; Search builds twenty times as long
+    CentreChoice centre = CentreChoice::BoundingSphere; ///< the paper's; Search: five times the build time
     unsigned thread_count = 0; ///< 0: all cores. The bytes of the map do not depend on it.
 };
 
