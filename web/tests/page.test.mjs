@@ -92,6 +92,47 @@ test('an open mesh is said to be open, and its border is counted', async () => {
     await page.context().close();
 });
 
+/** A tetrahedron as the binary kind of glTF: a header, a JSON chunk, a chunk of numbers. */
+function tetrahedronGlb() {
+    const numbers = Buffer.concat([
+        Buffer.from(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1]).buffer),
+        Buffer.from(new Uint16Array([0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]).buffer),
+    ]);
+    const json = JSON.stringify({
+        asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0 }],
+        meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
+        buffers: [{ byteLength: numbers.length }],
+        bufferViews: [{ buffer: 0, byteOffset: 0, byteLength: 48 }, { buffer: 0, byteOffset: 48, byteLength: 24 }],
+        accessors: [
+            { bufferView: 0, componentType: 5126, count: 4, type: 'VEC3', min: [0, 0, 0], max: [1, 1, 1] },
+            { bufferView: 1, componentType: 5123, count: 12, type: 'SCALAR' },
+        ],
+    });
+    const text = Buffer.from(json.padEnd(4 * Math.ceil(json.length / 4)));
+    const words = (...values) => Buffer.from(new Uint32Array(values).buffer);
+    return Buffer.concat([
+        words(0x46546c67, 2, 28 + text.length + numbers.length), words(text.length, 0x4e4f534a), text, words(numbers.length, 0x004e4942), numbers,
+    ]);
+}
+
+test('a GLB file is opened', async () => {
+    const page = await browser.open('#model=torus&particles=400', SMALL);
+    await untilFrame(page, 1);
+    await drop(page, 'tetrahedron.glb', tetrahedronGlb());
+    await untilReport(page, '4 faces, 4 vertices, one part');
+    assert.match(await page.locator('#report').textContent(), /Closed/);
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+test('nobody gets into a model that swings in the wind', async () => {
+    const page = await browser.open('#model=torus&particles=900&motion=swinging&wind=6', SMALL);
+    await untilFrame(page, 300);
+    assert.equal(await figure(page, 'inside'), '0');
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
 test('a link gives the state that it was copied from', async () => {
     const page = await browser.open('#model=sphere&map=distance&particles=2500&friction=0.9&view=map', SMALL);
     await page.waitForFunction(() => document.getElementById('map-figures').textContent.includes('directions'));
