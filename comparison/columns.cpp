@@ -64,16 +64,19 @@ std::vector<Column> error_columns(const Comparison& comparison) {
     return columns;
 }
 
-std::vector<std::string> remarks_on(const Comparison& comparison, std::size_t byte_budget) {
+std::vector<std::string> remarks_on(const Comparison& comparison) {
     std::vector<std::string> remarks;
     for (const Figures& figures : comparison.systems)
-        if (figures.byte_count > byte_budget)
-            remarks.push_back(fmt::format("{}: more than {} bytes; {}.", figures.system->title, byte_budget,
-                                          figures.system->has_sizes
-                                              ? "its coarsest does not fit, so it has its usual size"
-                                              : "it comes in this size only"));
+        if (!figures.excess.empty())
+            remarks.push_back(
+                fmt::format("{}: more bytes than it may take; {}.", figures.system->title, figures.excess));
     for (const Refusal& refusal : comparison.refusals)
         remarks.push_back(fmt::format("{}: left out; {}.", refusal.system->title, refusal.reason));
+    if (comparison.parts_overlap)
+        remarks.push_back(
+            "Parts of the mesh overlap or lie in each other: to the judge, the exact map and the "
+            "fields their union is inside; Embree, Bullet and the distance maps count crossings, "
+            "so that what they have wrong is partly another meaning of inside.");
     return remarks;
 }
 

@@ -21,7 +21,8 @@ std::vector<Column> time_columns(const Comparison& comparison);
 /// Share of wrong signs for each set; errors of depth and normal on S, where they matter.
 std::vector<Column> error_columns(const Comparison& comparison);
 
-/// What a table needs beside it: who exceeds the budget and why, and who refused.
-std::vector<std::string> remarks_on(const Comparison& comparison, std::size_t byte_budget);
+/// What a table needs beside it: who exceeds the budget and why, who refused, and whether
+/// systems mean different things by inside.
+std::vector<std::string> remarks_on(const Comparison& comparison);
 
 } // namespace echinus::comparison

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace echinus::comparison {
@@ -57,6 +58,16 @@ std::vector<JudgedSet> make_sets(const TriangleMesh& mesh, const CompareOptions&
     return sets;
 }
 
+/// Does it matter whether crossings or windings are counted?
+bool parts_overlap(const TriangleMesh& mesh, const std::vector<JudgedSet>& sets) {
+    const ExactMap by_parity = ExactMap::build(mesh, {.rule = InsideRule::Parity});
+    return std::ranges::any_of(sets, [&](const JudgedSet& set) {
+        std::vector<std::uint8_t> inside(set.points.size());
+        contains_batch(by_parity.view(), set.points, inside, 0);
+        return inside != set.truth.inside;
+    });
+}
+
 // ---- What is built ----
 
 struct Competitor {
@@ -79,12 +90,13 @@ Competitor build_timed(const System& system, const Recipe& recipe) {
     result.figures = {&system,
                       result.structure->byte_count(),
                       std::string(result.structure->counted()),
+                      {},
                       1e3 * (median_of(times) + recipe.shared_seconds),
                       {}};
     return result;
 }
 
-/// A system around the mesh that is compared, and what it has been built as.
+/// A system around the mesh that is compared.
 struct Participant {
     const System* system;
     std::unique_ptr<Sizes> sizes;
@@ -117,19 +129,23 @@ struct Effort {
 };
 constexpr Effort kForTable{5, 1};
 constexpr Effort kForCurves{3, 0.5};
+constexpr double kPatience = 5; // seconds; who would take longer for a set is asked for parts spread over it
 
-/// Asks all competitors about a whole set in one call, in turns.
-/// @param ask  void (const Baseline&, std::span<const Vec3f> points)
+/// All competitors, asked for a set.
+/// @param ask  void (const Baseline&, Part of the set)
 template <typename Ask>
-std::vector<Pace> race(const std::vector<Competitor>& competitors, const JudgedSet& set, const Effort& effort,
-                       const std::function<void(double)>& report_progress, const Ask& ask) {
+std::vector<Racer> racers_for(const std::vector<Competitor>& competitors, std::size_t point_count,
+                              const Ask& ask) {
     std::vector<Racer> racers;
     for (const Competitor& competitor : competitors) {
-        const auto run = [&set, &ask, structure = competitor.structure.get()](Part part) {
-            ask(*structure, std::span(set.points).subspan(part.begin, part.size()));
-        };
-        racers.push_back({run, {{0, set.points.size()}}});
+        const auto run = [&ask, structure = competitor.structure.get()](Part part) { ask(*structure, part); };
+        racers.push_back({run, parts_for(run, point_count, kPatience)});
     }
+    return racers;
+}
+
+std::vector<Pace> race(const std::vector<Racer>& racers, const Effort& effort,
+                       const std::function<void(double)>& report_progress) {
     TurnOptions turns;
     turns.passes = effort.passes;
     turns.enough_seconds = effort.enough_seconds;
@@ -137,35 +153,46 @@ std::vector<Pace> race(const std::vector<Competitor>& competitors, const JudgedS
     return take_turns(racers, turns);
 }
 
-Answers answers_of(const std::vector<Contact>& contacts) {
+/// Sides as contains_batch() told them, ways out as contacts_batch() did.
+Answers answers_of(const std::vector<Part>& parts, const std::vector<std::uint8_t>& inside,
+                   const std::vector<Contact>& contacts) {
     Answers answers;
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-        answers.asked.push_back(static_cast<std::uint32_t>(i));
-        answers.inside.push_back(contacts[i].inside ? 1 : 0);
-        answers.depth.push_back(contacts[i].depth);
-        answers.normal.push_back(contacts[i].normal);
-    }
+    for (const Part& part : parts)
+        for (std::size_t i = part.begin; i < part.end; ++i) {
+            const bool found = contacts[i].inside;
+            answers.asked.push_back(static_cast<std::uint32_t>(i));
+            answers.inside.push_back(inside[i]);
+            answers.depth.push_back(found ? contacts[i].depth : 0);
+            answers.normal.push_back(found ? contacts[i].normal : Vec3f{});
+        }
     return answers;
 }
 
 void measure(const JudgedSet& set, double radius, const Effort& effort,
              const std::function<void(double)>& report_progress, std::vector<Competitor>& competitors) {
-    std::vector<std::uint8_t> inside(set.points.size());
-    std::vector<Contact> contacts(set.points.size());
-    const std::vector<Pace> sides = race(
-        competitors, set, effort, [&](double fraction) { report_progress(fraction / 2); },
-        [&](const baselines::Baseline& structure, std::span<const Vec3f> points) {
-            structure.contains_batch(points, std::span(inside).first(points.size()));
-        });
-    const std::vector<Pace> ways_out = race(
-        competitors, set, effort, [&](double fraction) { report_progress((1 + fraction) / 2); },
-        [&](const baselines::Baseline& structure, std::span<const Vec3f> points) {
-            structure.contacts_batch(points, std::span(contacts).first(points.size()));
-        });
+    const std::size_t count = set.points.size();
+    std::vector<std::uint8_t> inside(count);
+    std::vector<Contact> contacts(count);
+    const auto of = [](auto& all, Part part) { return std::span(all).subspan(part.begin, part.size()); };
+    const auto ask_sides = [&](const baselines::Baseline& structure, Part part) {
+        structure.contains_batch(of(set.points, part), of(inside, part));
+    };
+    const auto ask_contacts = [&](const baselines::Baseline& structure, Part part) {
+        structure.contacts_batch(of(set.points, part), of(contacts, part));
+    };
+    const std::vector<Pace> sides = race(racers_for(competitors, count, ask_sides), effort,
+                                         [&](double fraction) { report_progress(fraction / 2); });
+    const std::vector<Racer> racers = racers_for(competitors, count, ask_contacts);
+    const std::vector<Pace> ways_out =
+        race(racers, effort, [&](double fraction) { report_progress((1 + fraction) / 2); });
     for (std::size_t k = 0; k < competitors.size(); ++k) {
-        competitors[k].structure->contacts_batch(set.points, contacts);
+        for (const Part& part : racers[k].parts) { // the last who wrote was another
+            ask_sides(*competitors[k].structure, part);
+            ask_contacts(*competitors[k].structure, part);
+        }
+        const Answers answers = answers_of(racers[k].parts, inside, contacts);
         competitors[k].figures.sets.push_back(
-            {set.name, sides[k], ways_out[k], errors_of(set.truth, radius, answers_of(contacts))});
+            {set.name, sides[k], ways_out[k], errors_of(set.truth, radius, answers, kUndecided)});
     }
 }
 
@@ -192,22 +219,34 @@ std::vector<Competitor> build_all(std::vector<Participant>& participants, const 
     for (Participant& participant : participants) {
         const System& system = *participant.system;
         Stage(options, "building: " + std::string(system.title))(0);
+        std::string reason = "it comes in this size only";
         try {
             competitors.push_back(build_timed(system, participant.sizes->within(options.byte_budget)));
-            built.push_back(std::move(participant));
         } catch (const Error& error) {
             if (error.code() != ErrorCode::InvalidOptions) throw;
-            refusals.push_back({&system, error.what()});
+            reason = error.what();
+            const std::optional<Recipe> usual = participant.sizes->usual();
+            if (!usual) {
+                refusals.push_back({&system, reason});
+                continue;
+            }
+            competitors.push_back(build_timed(system, *usual));
         }
+        if (competitors.back().figures.byte_count > options.byte_budget)
+            competitors.back().figures.excess = reason;
+        built.push_back(std::move(participant));
     }
     participants = std::move(built);
+    if (competitors.empty())
+        throw Error(ErrorCode::InvalidOptions, "no system fits; " + refusals.front().reason);
     return competitors;
 }
 
 /// In ascending order.
 std::vector<std::size_t> budgets_of(const CompareOptions& options) {
     std::vector<std::size_t> budgets;
-    std::size_t budget = options.byte_budget * CompareOptions::kTopOfCurve;
+    std::size_t budget =
+        std::min(options.byte_budget * CompareOptions::kTopOfCurve, CompareOptions::kMostBytes);
     for (std::size_t k = 0; k < options.curve_length; ++k, budget /= 2) budgets.push_back(budget);
     std::ranges::reverse(budgets);
     return budgets;
@@ -226,6 +265,9 @@ std::vector<Competitor> build_sizes(Participant& participant, const CompareOptio
             if (error.code() != ErrorCode::InvalidOptions) throw; // too small a budget
         }
     }
+    if (sizes.empty())
+        if (const std::optional<Recipe> usual = participant.sizes->usual())
+            sizes.push_back(build_timed(*participant.system, *usual));
     return sizes;
 }
 
@@ -244,7 +286,10 @@ std::vector<std::vector<Figures>> measure_curves(std::vector<Participant>& parti
 }
 
 void require_usable(const CompareOptions& options) {
-    if (options.byte_budget == 0) throw Error(ErrorCode::InvalidOptions, "the byte budget is 0");
+    if (options.byte_budget == 0 || options.byte_budget > CompareOptions::kMostBytes)
+        throw Error(ErrorCode::InvalidOptions, "the byte budget is " + std::to_string(options.byte_budget) +
+                                                   ", outside [1, " +
+                                                   std::to_string(CompareOptions::kMostBytes) + "]");
     if (options.point_count < kFewestPoints)
         throw Error(ErrorCode::InvalidOptions,
                     "point_count is " + std::to_string(options.point_count) + ", below 100");
@@ -266,9 +311,11 @@ Comparison compare(const TriangleMesh& mesh, const CompareOptions& options) {
     require_solid(report);
     std::vector<Participant> participants = participants_of(mesh, options);
 
-    Comparison result{mesh.faces.size(), report.bounding_sphere.radius, {}, {}, {}, {}};
+    Comparison result{mesh.faces.size(), report.bounding_sphere.radius, {}, {}, {}, false, {}};
     Stage(options, "judging the particles")(0);
     const std::vector<JudgedSet> sets = make_sets(mesh, options);
+    const JudgedSet& near_surface = sets[1];
+    result.parts_overlap = parts_overlap(mesh, sets);
     std::vector<Competitor> competitors = build_all(participants, options, result.refusals);
     for (const JudgedSet& set : sets) {
         result.set_names.push_back(set.name);
@@ -276,7 +323,7 @@ Comparison compare(const TriangleMesh& mesh, const CompareOptions& options) {
     }
     for (Competitor& competitor : competitors) result.systems.push_back(std::move(competitor.figures));
     if (options.curve_length > 0)
-        result.curves = measure_curves(participants, sets[1], result.radius, options);
+        result.curves = measure_curves(participants, near_surface, result.radius, options);
     return result;
 }
 

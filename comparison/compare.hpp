@@ -16,6 +16,9 @@
 /// it is wrong.
 namespace echinus::comparison {
 
+/// In R: a little more than the exact map's lattice step.
+inline constexpr double kUndecided = 2e-6;
+
 struct CompareOptions {
     std::vector<std::string> systems{}; ///< their names; empty: all that this program has
     std::size_t byte_budget = 630'000;  ///< of each, the size of the paper's map of a horse
@@ -28,13 +31,16 @@ struct CompareOptions {
     std::function<void(const std::string& what, double fraction)> report_progress{};
 
     static constexpr std::size_t kTopOfCurve = 8;
+    static constexpr std::size_t kMostBytes = 1'000'000'000; ///< of a budget, and of what curves are made of
 };
 
 /// What was measured of a system with one set of particles.
 struct SetFigures {
     std::string set; ///< U, S or C (point_sets.hpp)
     Pace contains, contacts;
-    ErrorSummary errors; ///< of the answers of contacts_batch()
+    /// Signs of contains_batch(), depths and normals of contacts_batch(); of a system that would take long
+    /// for the whole set, of the particles that it was timed with.
+    ErrorSummary errors;
 };
 
 /// A system in one size.
@@ -42,6 +48,7 @@ struct Figures {
     const System* system;
     std::size_t byte_count;
     std::string counted; ///< what the bytes are
+    std::string excess;  ///< why it takes more bytes than the budget; empty when it does not
     double build_ms;     ///< processor time of all threads, the median of several builds where they are quick
     std::vector<SetFigures> sets;
 };
@@ -58,6 +65,9 @@ struct Comparison {
     std::vector<std::string> set_names;
     std::vector<Figures> systems; ///< each as large as the budget allows, on all sets
     std::vector<Refusal> refusals;
+    /// Do parts of the surface overlap, or lie in each other, where particles are? Systems that count
+    /// crossings, and not windings, then take other places for inside.
+    bool parts_overlap;
     /// Each on S alone, in ascending sizes; in the order of `systems`, of which those that have one size are
     /// a point. Empty without curves.
     std::vector<std::vector<Figures>> curves;
@@ -66,12 +76,14 @@ struct Comparison {
 /// Builds all systems around the mesh and asks them about the same particles, taking turns on one thread. The
 /// judge is an ExactMap, asked for the nearest point; that it is right shows echinus-check
 /// (docs/accuracy.md). Where parts of the surface overlap, depths inside are to the nearest surface, within
-/// the solid or not.
+/// the solid or not. The map is exact on its lattice: particles nearer to the surface than kUndecided R are
+/// on no wrong side.
 ///
 /// Times are processor times, and those of one run compare with each other alone. All else depends on mesh
 /// and options only.
 /// @throws Error InvalidMesh for a mesh that is not closed or has no area; InvalidOptions for a system that
-/// does not exist or is not there, a budget of 0 or fewer than 100 particles; and what report_progress throws
+/// does not exist or is not there, when none fits, for a budget of 0 or above kMostBytes, or fewer than 100
+/// particles; and what report_progress throws
 Comparison compare(const TriangleMesh& mesh, const CompareOptions& options = {});
 
 } // namespace echinus::comparison

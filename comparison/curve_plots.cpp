@@ -49,10 +49,18 @@ std::vector<Curve> curves_of(const Comparison& comparison, Measure x, Measure y)
 LineStyle line_style_of(const System& system) {
     // Paul Tol's "muted", and grey for those that come in one size.
     static constexpr std::pair<std::string_view, const char*> kColours[] = {
-        {"exact", "#0072b2"},         {"distance", "#56b4e9"},     {"distance-octahedral", "#332288"},
-        {"distance-cube", "#88ccee"}, {"superquadric", "#cc6677"}, {"dense", "#009e73"},
-        {"dense-16bit", "#117733"},   {"openvdb", "#ccbb44"},      {"classified", "#d55e00"},
-        {"embree", "#cc79a7"},        {"bullet", "#888888"},
+        {"exact", "#0072b2"},
+        {"distance", "#56b4e9"},
+        {"distance-octahedral", "#332288"},
+        {"distance-cube", "#88ccee"},
+        {"distance-ellipsoidal", "#44aa99"},
+        {"superquadric", "#cc6677"},
+        {"dense", "#009e73"},
+        {"dense-16bit", "#117733"},
+        {"openvdb", "#ccbb44"},
+        {"classified", "#d55e00"},
+        {"embree", "#cc79a7"},
+        {"bullet", "#888888"},
     };
     const auto found =
         std::ranges::find(kColours, system.name, [](const auto& entry) { return entry.first; });

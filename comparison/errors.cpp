@@ -28,7 +28,7 @@ double angle_between(const Vec3f& a, const Vec3f& b) {
 
 } // namespace
 
-ErrorSummary errors_of(const Truth& truth, double radius, const Answers& answers) {
+ErrorSummary errors_of(const Truth& truth, double radius, const Answers& answers, double undecided) {
     ErrorSummary summary;
     summary.asked_count = answers.asked.size();
     std::size_t wrong_count = 0;
@@ -37,7 +37,7 @@ ErrorSummary errors_of(const Truth& truth, double radius, const Answers& answers
         const std::uint32_t particle = answers.asked[i];
         const bool is_inside = truth.inside[particle] != 0, said_inside = answers.inside[i] != 0;
         const double distance = double{truth.distance[particle]} / radius;
-        if (said_inside != is_inside) {
+        if (said_inside != is_inside && distance >= undecided) {
             ++wrong_count;
             summary.farthest_wrong = std::max(summary.farthest_wrong, distance);
         }

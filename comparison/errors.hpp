@@ -41,7 +41,9 @@ struct ErrorSummary {
     Spread normal;
 };
 
-/// @param radius  R of the mesh's bounding sphere: the unit of lengths
-ErrorSummary errors_of(const Truth& truth, double radius, const Answers& answers);
+/// @param radius     R of the mesh's bounding sphere: the unit of lengths
+/// @param undecided  particles nearer to the surface than this, in R, are on no wrong side: what the truth
+/// itself does not know
+ErrorSummary errors_of(const Truth& truth, double radius, const Answers& answers, double undecided = 0);
 
 } // namespace echinus::comparison

@@ -57,15 +57,30 @@ decltype(System::on) plain(Within within) {
     };
 }
 
-Recipe exact(const TriangleMesh& mesh, std::size_t byte_budget) {
-    ExactMapOptions options{.byte_budget = byte_budget, .thread_count = 1};
-    try {
-        options.divisions = ExactMap::build(mesh, options).view().divisions;
-    } catch (const Error& error) {
-        if (error.code() != ErrorCode::InvalidOptions) throw;
+class ExactSizes final : public Sizes {
+  public:
+    explicit ExactSizes(const TriangleMesh& mesh) : mesh_(mesh) {}
+    Recipe within(std::size_t byte_budget) override {
+        const ExactMapOptions options{.byte_budget = byte_budget, .thread_count = 1};
+        return of(ExactMap::build(mesh_, options).view().divisions);
     }
-    options.byte_budget = 0;
-    return {[&mesh, options] { return baselines::exact_map(mesh, options); }, 0};
+    std::optional<Recipe> usual() override { return of(0); }
+
+  private:
+    Recipe of(std::uint32_t divisions) const {
+        return {[&mesh = mesh_, divisions] {
+                    return baselines::exact_map(mesh, {.divisions = divisions, .thread_count = 1});
+                },
+                0};
+    }
+
+    const TriangleMesh& mesh_;
+};
+
+decltype(System::on) exact() {
+    return [](const TriangleMesh& mesh, const SystemOptions&, const Progress&) {
+        return std::make_unique<ExactSizes>(mesh);
+    };
 }
 
 decltype(System::on) distance(DirectionGrid grid) {
@@ -170,10 +185,11 @@ decltype(System::on) bullet_if_there() {
 const std::vector<System>& all_systems() {
     using baselines::SampleFormat;
     static const std::vector<System> systems{
-        {"exact", "exact map", "", true, plain(&exact)},
+        {"exact", "exact map", "", true, exact()},
         {"distance", "distance map", "", true, distance(DirectionGrid::Spherical)},
         {"distance-octahedral", "distance map, octahedral", "", true, distance(DirectionGrid::Octahedral)},
         {"distance-cube", "distance map, cube", "", true, distance(DirectionGrid::Cube)},
+        {"distance-ellipsoidal", "distance map, ellipsoidal", "", true, distance(DirectionGrid::Ellipsoidal)},
         {"superquadric", "superquadric map", "libeigen3-dev, libbullet-dev and libbullet-extras-dev", true,
          superquadric_if_there()},
         {"dense", "dense grid", "", true, dense(SampleFormat::Float32)},

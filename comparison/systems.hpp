@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,10 +32,12 @@ class Sizes {
   public:
     virtual ~Sizes() = default;
 
-    /// The finest that takes at most so many bytes. A system that has no sizes is built as it is; so is the
-    /// exact map, at its usual size, where its coarsest would not fit.
+    /// The finest that takes at most so many bytes. A system that has no sizes is built as it is.
     /// @throws Error InvalidOptions when the coarsest exceeds the budget, or as the system's own build does
     virtual Recipe within(std::size_t byte_budget) = 0;
+
+    /// The size that people use, for a system that is worth a look even where its coarsest does not fit.
+    virtual std::optional<Recipe> usual() { return {}; }
 };
 
 struct SystemOptions {

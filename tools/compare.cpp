@@ -15,9 +15,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 using namespace echinus;
 using comparison::Axis;
@@ -84,6 +87,19 @@ void compare(CompareArguments& arguments) {
         print(to_text(result, arguments.options, arguments.mesh.name()));
 }
 
+/// "exact, dense" as two names. One argument, so that a mesh may follow it.
+std::vector<std::string> split_names(const std::string& text) {
+    std::vector<std::string> names;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        const std::string name = CLI::detail::trim_copy(text.substr(begin, end - begin));
+        if (name.empty()) throw CLI::ValidationError("--systems", "there is an empty name in '" + text + "'");
+        names.push_back(name);
+        begin = end + 1;
+    }
+    return names;
+}
+
 std::string names_of_systems() {
     std::string names;
     for (const comparison::System& system : comparison::all_systems())
@@ -95,9 +111,9 @@ void add_options(CLI::App& command, CompareArguments& arguments) {
     comparison::CompareOptions& options = arguments.options;
     command.add_option("MESH", arguments.mesh.path, "A closed mesh, or -")->required()->type_name("");
     command
-        .add_option("--systems", options.systems,
-                    "Which, with commas between; all without it: " + names_of_systems())
-        ->delimiter(',')
+        .add_option_function<std::string>(
+            "--systems", [&options](const std::string& text) { options.systems = split_names(text); },
+            "Which, with commas between; all without it: " + names_of_systems())
         ->type_name("NAMES");
     add_byte_count(command, "--bytes", options.byte_budget,
                    "The most that each may take (630KB, the size of the paper's map of a horse)");
@@ -120,6 +136,7 @@ void add_options(CLI::App& command, CompareArguments& arguments) {
     command
         .add_option("--html", arguments.page,
                     "Write a page with tables and plots, complete in one file, or -")
+        ->check([](const std::string& path) { return path.empty() ? "must name a file" : ""; })
         ->type_name("FILE");
     command.add_flag("--json", arguments.json, "Print one JSON object");
 }

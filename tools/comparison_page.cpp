@@ -138,7 +138,7 @@ std::string comparison_page(const Comparison& comparison, const CompareOptions& 
         options.byte_budget, options.point_count);
     html += "<h2>How long, how many bytes</h2>\n" + table_of(time_columns(comparison), comparison);
     html += "<h2>How wrong</h2>\n" + table_of(error_columns(comparison), comparison);
-    html += list_of(remarks_on(comparison, options.byte_budget));
+    html += list_of(remarks_on(comparison));
     if (!comparison.curves.empty())
         html +=
             "<h2>Over sizes, near the surface</h2>\n<p>Down and to the left is better. Dashed: not a map of "
@@ -150,11 +150,9 @@ std::string comparison_page(const Comparison& comparison, const CompareOptions& 
         "queries "
         "per particle, one call for a whole set on one thread, the systems taking turns, medians. {}.</p>\n"
         "<p>The judge is an exact map, so its own errors are 0 here by definition; Echinus proves it "
-        "against CGAL's exact arithmetic elsewhere. It is exact on a lattice with a step of 1.9e-6 R: where "
-        "a "
-        "tree differs from it for a few thousandths of a per cent, it is about particles nearer to the "
-        "surface "
-        "than that. The depth error of a particle inside is how far the "
+        "against CGAL's exact arithmetic elsewhere. It is exact on a lattice with a step of 1.9e-6 R; "
+        "particles nearer to the surface than 2e-6 R count as right. The depth error of a particle inside is "
+        "how far the "
         "answered "
         "depth is from the distance to the surface, 0 being answered where the particle was missed. The "
         "normal "

@@ -29,24 +29,24 @@ ordered_json to_json(const SetFigures& figures) {
             {"normal_error_degrees", to_json(figures.errors.normal)}};
 }
 
-ordered_json to_json(const Figures& figures, std::size_t byte_budget) {
+ordered_json to_json(const Figures& figures) {
     ordered_json sets = ordered_json::object();
     for (const SetFigures& set : figures.sets) sets[set.set] = to_json(set);
     return {{"name", figures.system->name},
             {"title", figures.system->title},
             {"bytes", figures.byte_count},
             {"bytes_are", figures.counted},
-            {"over_budget", figures.byte_count > byte_budget},
+            {"over_budget", !figures.excess.empty()},
             {"build_ms", figures.build_ms},
             {"sets", std::move(sets)}};
 }
 
-ordered_json curves_to_json(const Comparison& comparison, std::size_t byte_budget) {
+ordered_json curves_to_json(const Comparison& comparison) {
     ordered_json curves = ordered_json::array();
     for (const std::vector<Figures>& sizes : comparison.curves) {
         if (sizes.empty()) continue;
         ordered_json points = ordered_json::array();
-        for (const Figures& figures : sizes) points.push_back(to_json(figures, byte_budget));
+        for (const Figures& figures : sizes) points.push_back(to_json(figures));
         curves.push_back({{"name", sizes.front().system->name}, {"sizes", std::move(points)}});
     }
     return curves;
@@ -108,8 +108,7 @@ std::string table_of(const std::vector<Column>& columns, const Comparison& compa
 ordered_json to_json(const Comparison& comparison, const CompareOptions& options,
                      const std::string& mesh_name) {
     ordered_json systems = ordered_json::array(), refusals = ordered_json::array();
-    for (const Figures& figures : comparison.systems)
-        systems.push_back(to_json(figures, options.byte_budget));
+    for (const Figures& figures : comparison.systems) systems.push_back(to_json(figures));
     for (const Refusal& refusal : comparison.refusals)
         refusals.push_back({{"name", refusal.system->name}, {"reason", refusal.reason}});
     ordered_json result{{"mesh", mesh_name},
@@ -118,9 +117,10 @@ ordered_json to_json(const Comparison& comparison, const CompareOptions& options
                         {"machine", describe_machine()},
                         {"byte_budget", options.byte_budget},
                         {"particles", options.point_count},
+                        {"parts_overlap", comparison.parts_overlap},
                         {"systems", std::move(systems)},
                         {"left_out", std::move(refusals)}};
-    if (!comparison.curves.empty()) result["curves"] = curves_to_json(comparison, options.byte_budget);
+    if (!comparison.curves.empty()) result["curves"] = curves_to_json(comparison);
     return result;
 }
 
@@ -132,7 +132,7 @@ std::string to_text(const Comparison& comparison, const CompareOptions& options,
         mesh_name, comparison.face_count, comparison.radius, options.byte_budget, options.point_count);
     text += table_of(time_columns(comparison), comparison) + "\n";
     text += table_of(error_columns(comparison), comparison);
-    const std::vector<std::string> remarks = remarks_on(comparison, options.byte_budget);
+    const std::vector<std::string> remarks = remarks_on(comparison);
     if (!remarks.empty()) text += "\n";
     for (const std::string& remark : remarks) text += remark + "\n";
     return text + "\nTimes are processor times on one thread, one call for a whole set. The judge is an "

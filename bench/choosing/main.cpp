@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Arguments {
-    fs::path meshes, debian_horse, page_template, images, target;
+    fs::path meshes, page_template, images, target;
     std::size_t point_count = 200'000;
 };
 
@@ -43,7 +43,7 @@ void compare_all(std::vector<Model>& models, const Arguments& arguments) {
 }
 
 void run(const Arguments& arguments) {
-    std::vector<Model> models = read_models(arguments.meshes, arguments.debian_horse);
+    std::vector<Model> models = read_models(arguments.meshes);
     compare_all(models, arguments);
     const std::size_t budget = CompareOptions{}.byte_budget;
     write_file(arguments.images / "equal_bytes.svg", verdict_figure(models, budget));
@@ -53,7 +53,7 @@ void run(const Arguments& arguments) {
     write_file(arguments.target,
                fill_page(arguments.page_template, {{"machine", describe_machine()},
                                                    {"points", fmt::format("{}", arguments.point_count)},
-                                                   {"tables", tables_of(models, budget)}}));
+                                                   {"tables", tables_of(models)}}));
 }
 
 } // namespace
@@ -61,8 +61,7 @@ void run(const Arguments& arguments) {
 int main(int argument_count, char** argument_values) {
     CLI::App app{"Compares all systems on six meshes and writes the page on which to choose"};
     Arguments arguments;
-    app.add_option("--meshes", arguments.meshes, "Folder of development meshes; need not exist")->required();
-    app.add_option("--debian-horse", arguments.debian_horse, "horse.3ds of glmark2-data")->required();
+    app.add_option("--meshes", arguments.meshes, "Folder of development meshes")->required();
     app.add_option("--points", arguments.point_count, "Particles in a set")->capture_default_str();
     app.add_option("--template", arguments.page_template, "The page with its gaps")->required();
     app.add_option("--images", arguments.images, "Folder for the figures")->required();

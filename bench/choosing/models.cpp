@@ -2,15 +2,11 @@
 
 #include <echinus/mesh_io.hpp>
 
-#include <fmt/format.h>
-
-#include <cstdio>
-
 using namespace echinus;
 using comparison::Axis;
 namespace fs = std::filesystem;
 
-std::vector<Model> read_models(const fs::path& meshes, const fs::path& debian_horse) {
+std::vector<Model> read_models(const fs::path& meshes) {
     struct File {
         const char *name, *what, *file;
         Axis up;
@@ -24,14 +20,7 @@ std::vector<Model> read_models(const fs::path& meshes, const fs::path& debian_ho
     };
     std::vector<Model> models;
     for (const File& file : kFiles)
-        if (fs::exists(meshes / file.file))
-            models.push_back({file.name, file.what, file.up, read_mesh(meshes / file.file)});
-    if (models.empty()) {
-        fmt::print(stderr, "{}: no development meshes there: Debian's horse and the torus alone\n",
-                   meshes.string());
-        models.push_back({"horse", "Debian's, rearing", Axis::Y,
-                          repair(read_mesh(debian_horse), RepairOptions::all()).mesh});
-    }
+        models.push_back({file.name, file.what, file.up, read_mesh(meshes / file.file)});
     models.insert(models.begin() + 1, {"torus", "round, with a hole", Axis::Z, make_torus(1, 0.4, 60, 24)});
     return models;
 }

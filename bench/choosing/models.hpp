@@ -17,7 +17,7 @@ struct Model {
     echinus::comparison::Comparison result{};
 };
 
-/// horse_6k, torus, armadillo, liver, mannequin and scorpion; without the folder of development meshes the
-/// torus and Debian's horse, with a message on standard error.
-std::vector<Model> read_models(const std::filesystem::path& meshes,
-                               const std::filesystem::path& debian_horse);
+/// horse_6k, torus, armadillo, liver, mannequin and scorpion.
+/// @param meshes  the folder of development meshes; the page is about all of them
+/// @throws echinus::Error Unreadable when one is not there
+std::vector<Model> read_models(const std::filesystem::path& meshes);

@@ -30,12 +30,12 @@ std::string table_of(const Comparison& comparison) {
 
 } // namespace
 
-std::string tables_of(std::span<const Model> models, std::size_t byte_budget) {
+std::string tables_of(std::span<const Model> models) {
     std::string text;
     for (const Model& model : models) {
         text += fmt::format("{}### {}: {}, {} faces\n\n{}\n", text.empty() ? "" : "\n", model.name,
                             model.what, model.result.face_count, table_of(model.result));
-        const std::vector<std::string> remarks = remarks_on(model.result, byte_budget);
+        const std::vector<std::string> remarks = remarks_on(model.result);
         if (!remarks.empty()) text += "\n";
         for (const std::string& remark : remarks) text += "- " + remark + "\n";
     }

@@ -6,4 +6,4 @@
 #include <string>
 
 /// Of each model a heading and a Markdown table with a row for each system, and remarks.
-std::string tables_of(std::span<const Model> models, std::size_t byte_budget);
+std::string tables_of(std::span<const Model> models);

@@ -32,25 +32,25 @@ double wrong_percent(const Figures& figures) {
     return 100 * std::ranges::find(figures.sets, "S", &SetFigures::set)->errors.wrong_share;
 }
 
-std::string label_of(const Figures& figures, std::size_t byte_budget) {
+std::string label_of(const Figures& figures) {
     const double percent = wrong_percent(figures);
     std::string label = percent == 0 ? "none" : fmt::format("{:.3g} %", percent);
-    if (figures.byte_count > byte_budget)
+    if (!figures.excess.empty())
         label += fmt::format(", in {:.3g} MB", 1e-6 * static_cast<double>(figures.byte_count));
     return label;
 }
 
-std::string row_of(const Figures& figures, double x, double y, std::size_t byte_budget) {
+std::string row_of(const Figures& figures, double x, double y) {
     const auto [colour, rival] = line_style_of(*figures.system);
     const double length = bar_length(wrong_percent(figures));
-    const bool over = figures.byte_count > byte_budget;
+    const bool over = !figures.excess.empty();
     std::string svg = text(x + kNames - 8, y + 13, "end", std::string(figures.system->title),
                            rival ? "" : " font-weight=\"bold\"");
     if (length > 0)
         svg += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\" "
                            "fill-opacity=\"{}\" stroke=\"{}\"/>\n",
                            x + kNames, y + 3, length, kRow - 6, colour, over ? 0.25 : 1.0, colour);
-    return svg + text(x + kNames + length + 6, y + 13, "start", label_of(figures, byte_budget));
+    return svg + text(x + kNames + length + 6, y + 13, "start", label_of(figures));
 }
 
 /// The grid behind the bars, with its percentages above.
@@ -67,7 +67,7 @@ std::string axis(double x, double top, double bottom) {
     return svg;
 }
 
-std::string panel_of(const Model& model, double x, double y, std::size_t byte_budget) {
+std::string panel_of(const Model& model, double x, double y) {
     std::string svg = text(x + kNames, y + 16, "start", model.name, " font-size=\"15\" font-weight=\"bold\"");
     svg += text(x + kNames, y + 32, "start", fmt::format("{} faces; {}", model.result.face_count, model.what),
                 " fill=\"#666666\"");
@@ -75,7 +75,7 @@ std::string panel_of(const Model& model, double x, double y, std::size_t byte_bu
     svg += axis(x, y + kHead - 4, bottom);
     double row = y + kHead;
     for (const Figures& figures : model.result.systems) {
-        svg += row_of(figures, x, row, byte_budget);
+        svg += row_of(figures, x, row);
         row += kRow;
     }
     return svg;
@@ -101,6 +101,6 @@ std::string verdict_figure(std::span<const Model> models, std::size_t byte_budge
                 " font-size=\"17\" font-weight=\"bold\"");
     for (std::size_t k = 0; k < models.size(); ++k)
         svg += panel_of(models[k], kPanel * static_cast<double>(k % kAcross),
-                        kTitle + panel_height * static_cast<double>(k / kAcross), byte_budget);
+                        kTitle + panel_height * static_cast<double>(k / kAcross));
     return svg + "</svg>\n";
 }

@@ -93,6 +93,12 @@ TEST_F(CompareCommand, MeasuresCurvesWhereTheyAreWanted) {
     EXPECT_EQ(report["curves"][1]["sizes"].size(), 8U);
 }
 
+TEST_F(CompareCommand, TakesItsOptionsBeforeTheMeshAndSpacesBetweenNames) {
+    const json report = json::parse(
+        expect_success({"compare", "--points", "100", "--json", "--systems", "exact, dense", "torus.obj"}));
+    EXPECT_EQ(report["systems"].size(), 2U);
+}
+
 TEST_F(CompareCommand, ReadsStandardInput) {
     const std::string torus = content("torus.obj");
     const std::vector<std::string> arguments{"compare",   "-",     "--format", "obj",
@@ -110,6 +116,8 @@ TEST_F(CompareCommand, RefusesAnOpenMeshWithTheRemedy) {
 
 TEST_F(CompareCommand, RefusesWrongUse) {
     expect_failure(2, "there is no system 'octree'", {"compare", "torus.obj", "--systems", "octree"});
+    expect_failure(2, "--systems", {"compare", "torus.obj", "--systems", "dense,,exact"});
+    expect_failure(2, "--html", quick({"--html", ""}));
     expect_failure(2, "--bytes", {"compare", "torus.obj", "--bytes", "630"});
     expect_failure(2, "--points", {"compare", "torus.obj", "--points", "5"});
     expect_failure(2, "--json", quick({"--html", "-", "--json"}));

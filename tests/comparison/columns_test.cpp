@@ -11,7 +11,7 @@ using namespace echinus::comparison;
 namespace {
 
 Figures figures_of(const char* name, std::size_t bytes, double wrong_share) {
-    Figures figures{&system_named(name), bytes, "samples", 12.345, {}};
+    Figures figures{&system_named(name), bytes, "samples", {}, 12.345, {}};
     SetFigures near{"S", {7.25, 0, {}}, {123.4, 0, {}}, {}};
     near.errors.wrong_share = wrong_share;
     near.errors.depth = {0.000'000'1, 0.01, 0.5};
@@ -20,7 +20,7 @@ Figures figures_of(const char* name, std::size_t bytes, double wrong_share) {
 }
 
 Comparison small_comparison() {
-    return {720, 1.4, {"U", "S"}, {figures_of("dense", 630'000, 0.0329)}, {}, {}};
+    return {720, 1.4, {"U", "S"}, {figures_of("dense", 630'000, 0.0329)}, {}, false, {}};
 }
 
 std::string row(const std::vector<Column>& columns, const Figures& figures) {
@@ -40,11 +40,15 @@ TEST(Columns, ShowThreeDigitsAndADashForASetThatWasNotAsked) {
 
 TEST(Columns, HaveRemarksOnWhoExceedsTheBudgetAndWhoRefused) {
     Comparison comparison = small_comparison();
-    EXPECT_TRUE(remarks_on(comparison, 630'000).empty());
+    EXPECT_TRUE(remarks_on(comparison).empty());
+    comparison.systems[0].excess = "the coarsest has 9";
+    comparison.parts_overlap = true;
     comparison.refusals.push_back({&system_named("classified"), "too small"});
-    const std::vector<std::string> remarks = remarks_on(comparison, 100);
-    ASSERT_EQ(remarks.size(), 2U);
-    EXPECT_NE(remarks[0].find("dense grid: more than 100 bytes"), std::string::npos);
+    const std::vector<std::string> remarks = remarks_on(comparison);
+    ASSERT_EQ(remarks.size(), 3U);
+    EXPECT_NE(remarks[0].find("dense grid: more bytes than it may take; the coarsest has 9"),
+              std::string::npos);
+    EXPECT_NE(remarks[2].find("Parts of the mesh overlap"), std::string::npos);
     EXPECT_NE(remarks[1].find("classified grid: left out; too small"), std::string::npos);
 }
 

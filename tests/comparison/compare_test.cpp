@@ -98,7 +98,42 @@ TEST(Compare, LeavesOutWhoDoesNotFitAndSaysWhy) {
     EXPECT_FALSE(result.refusals[0].reason.empty());
     ASSERT_EQ(result.systems.size(), 2U);
     EXPECT_LE(result.systems[0].byte_count, 1000U);
-    EXPECT_GT(result.systems[1].byte_count, 1000U); // the exact map takes what it takes
+    EXPECT_GT(result.systems[1].byte_count, 1000U); // the exact map at its usual size
+    EXPECT_NE(result.systems[1].excess.find("coarsest"), std::string::npos);
+    EXPECT_TRUE(result.systems[0].excess.empty());
+    options.systems = {"classified"};
+    test::expect_error(ErrorCode::InvalidOptions, "no system fits", [&] { (void)compare(torus(), options); });
+}
+
+TEST(Compare, DrawsTheExactMapInAscendingSizesWithoutTheOnesThatDoNotFit) {
+    CompareOptions options = quick({"exact"});
+    options.byte_budget = 20'000;
+    options.curve_length = 8;
+    const Comparison result = compare(torus(), options);
+    for (std::size_t k = 1; k < result.curves[0].size(); ++k)
+        EXPECT_GT(result.curves[0][k].byte_count, result.curves[0][k - 1].byte_count);
+    ASSERT_FALSE(result.curves[0].empty());
+    EXPECT_LE(result.curves[0].back().byte_count, 160'000U);
+}
+
+/// A box is flat on top, so that half of the set C lies on it.
+TEST(Compare, CallsNobodyWrongAboutParticlesOnTheSurfaceItself) {
+    CompareOptions options = quick({"exact", "classified"});
+    options.byte_budget = 630'000;
+    for (const Figures& figures : compare(make_box({1, 1, 1}), options).systems)
+        for (const SetFigures& set : figures.sets) EXPECT_EQ(set.errors.wrong_share, 0) << set.set;
+    if (!system_named("embree").available()) GTEST_SKIP() << "without Embree";
+    options.systems = {"embree"};
+    EXPECT_EQ(on(compare(make_box({1, 1, 1}), options).systems[0], "C").errors.wrong_share, 0);
+}
+
+TEST(Compare, SaysWhenPartsOverlapSoThatInsideHasTwoMeanings) {
+    EXPECT_FALSE(compare(torus(), quick({"exact"})).parts_overlap);
+    TriangleMesh nested = make_box({1, 1, 1});
+    const TriangleMesh inner = make_box({0.5, 0.5, 0.5});
+    for (const Triangle& face : inner.faces) nested.faces.push_back({face[0] + 8, face[1] + 8, face[2] + 8});
+    nested.vertices.insert(nested.vertices.end(), inner.vertices.begin(), inner.vertices.end());
+    EXPECT_TRUE(compare(nested, quick({"exact"})).parts_overlap);
 }
 
 TEST(Compare, AsksASystemOnceThatIsNamedTwice) {
@@ -117,6 +152,8 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
                        [&] { (void)compare(torus(), quick({"octree"})); });
     CompareOptions options = quick({"exact"});
     options.byte_budget = 0;
+    test::expect_error(ErrorCode::InvalidOptions, "budget", [&] { (void)compare(torus(), options); });
+    options.byte_budget = CompareOptions::kMostBytes + 1;
     test::expect_error(ErrorCode::InvalidOptions, "budget", [&] { (void)compare(torus(), options); });
     options = quick({"exact"});
     options.point_count = 99;

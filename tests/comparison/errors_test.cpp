@@ -68,6 +68,14 @@ TEST(Errors, OfSignsAloneSayNothingOfDepths) {
     EXPECT_EQ(errors.depth.worst, 0);
 }
 
+TEST(Errors, AreNoWrongSidesOfParticlesThatTheTruthCannotPlace) {
+    Answers answers = right_answers();
+    answers.inside = {1, 0, 1, 1}; // at distances 2, 1 and 3
+    EXPECT_EQ(errors_of(half_space(), 10, answers).wrong_share, 0.75);
+    EXPECT_EQ(errors_of(half_space(), 10, answers, 0.15).wrong_share, 0.5);
+    EXPECT_EQ(errors_of(half_space(), 10, answers, 1).wrong_share, 0);
+}
+
 TEST(Errors, BoundNinetyNineOfAHundred) {
     Truth truth;
     Answers answers;

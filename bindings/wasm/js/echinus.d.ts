@@ -369,7 +369,7 @@ export interface ExactMapDescription extends MapDescription {
 }
 export interface DistanceMapDescription extends MapDescription {
     kind: 'distance';
-    grid: 'spherical' | 'octahedral' | 'cube';
+    grid: 'spherical' | 'octahedral' | 'cube' | 'ellipsoidal';
     longitudeCount: number;
     colatitudeCount: number;
     divisions: number;
