@@ -129,7 +129,9 @@ struct Effort {
 };
 constexpr Effort kForTable{5, 1};
 constexpr Effort kForCurves{3, 0.5};
-constexpr double kPatience = 5; // seconds; who would take longer for a set is asked for parts spread over it
+/// Seconds. Who seems to take longer for a set is asked for parts of it; by a trial in small calls, at which
+/// systems that gain by the number of particles in a call look slower than they are.
+constexpr double kPatience = 30;
 
 /// All competitors, asked for a set.
 /// @param ask  void (const Baseline&, Part of the set)

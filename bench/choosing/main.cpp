@@ -22,7 +22,7 @@ namespace {
 
 struct Arguments {
     fs::path meshes, page_template, images, target;
-    std::size_t point_count = 200'000;
+    std::size_t point_count = 100'000;
 };
 
 constexpr const char* kPlotFiles[] = {"choosing_sides_bytes.svg", "choosing_depths_bytes.svg",
