@@ -1,6 +1,6 @@
 /** The page: brings the panel, the pictures and the worker together. */
 import type { Raycaster } from 'three';
-import { Client } from './client';
+import type { Client } from './client';
 import { Controls } from './panel/controls';
 import { byId } from './panel/elements';
 import { FigureStrip } from './panel/figures';
@@ -40,9 +40,10 @@ class App {
     readonly #mapView = new MapView();
     readonly #figures = new FigureStrip();
     readonly #controls: Controls;
-    readonly #client = new Client((message) => this.#hear(message));
+    readonly #client: Client;
 
-    constructor() {
+    constructor(client: Client) {
+        this.#client = client;
         this.#stage.scene.add(this.#modelView.group, this.#clothView.mesh, this.#mapView.group);
         this.#controls = new Controls(this.#settings, (settings, key) => this.#change(settings, key));
         this.#bindButtons();
@@ -60,6 +61,7 @@ class App {
             this.#showView();
             this.#open();
         });
+        client.listen((message) => this.#hear(message));
         this.#showView();
         this.#open();
         this.#stage.renderer.setAnimationLoop(() => this.#draw());
@@ -366,6 +368,6 @@ function towardsTop({ vertices, centre, up }: ModelNews): Triple {
     return [0, 1, 2].map((k) => vertices[top + k] - centre[k]) as Triple;
 }
 
-export function begin(): void {
-    new App();
+export function begin(client: Client): void {
+    new App(client);
 }

@@ -1,13 +1,15 @@
 import type { FromWorker, ToWorker } from './protocol';
 
-/** The page's end of the worker. */
+/** The page's end of the worker, which begins at once: it has enough to do until there is somebody to listen. */
 export class Client {
-    #worker: Worker;
-    readonly #hear: (message: FromWorker) => void;
+    #early: FromWorker[] = [];
+    #hear: (message: FromWorker) => void = (message) => this.#early.push(message);
+    #worker = this.#start();
 
-    constructor(hear: (message: FromWorker) => void) {
+    listen(hear: (message: FromWorker) => void): void {
         this.#hear = hear;
-        this.#worker = this.#start();
+        this.#early.forEach(hear);
+        this.#early = [];
     }
 
     tell(message: ToWorker, transfer: Transferable[] = []): void {

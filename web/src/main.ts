@@ -1,12 +1,14 @@
 /** Begins the page, or says what this browser lacks. */
 import { missingFeatures } from 'echinus';
+import { Client } from './client';
 
 const missing = missingFeatures();
 if (!document.createElement('canvas').getContext('webgl2')) missing.push('WebGL 2');
 
 if (missing.length === 0) {
+    const client = new Client(); // loads the module while three.js is on its way
     const { begin } = await import('./app');
-    begin();
+    begin(client);
 } else {
     const sentence = document.createElement('p');
     sentence.textContent = `This page needs ${missing.join(' and ')}, which this browser lacks. Chrome and Edge from 95, Firefox from 100 and Safari from 16.4 have what it needs.`;

@@ -9,37 +9,42 @@ export interface Model {
     up: Axis;
 }
 
+/** What is left to do for a model once its bytes are there: the part that takes the module. */
+export type Reading = (echinus: Echinus) => Model;
+
 /** @param page  the address of the page, beside which the samples lie */
-export async function openSample(echinus: Echinus, sample: Sample, page: string): Promise<Model> {
+export async function fetchSample(sample: Sample, page: string): Promise<Reading> {
     switch (sample) {
         case 'horse': {
             const response = await fetch(new URL('./models/horse.3ds', page));
             if (!response.ok) throw new Error(`horse.3ds: the server answers with status ${response.status}`);
-            return openFile(echinus, 'horse.3ds', await response.arrayBuffer());
+            return prepareFile('horse.3ds', await response.arrayBuffer());
         }
         case 'torus':
-            return { name: 'torus', mesh: echinus.makeTorus(1, 0.4, 60, 24), up: 'z' };
+            return (echinus) => ({ name: 'torus', mesh: echinus.makeTorus(1, 0.4, 60, 24), up: 'z' });
         case 'sphere':
-            return { name: 'sphere', mesh: echinus.makeSphere(1, 60, 30), up: 'z' };
+            return (echinus) => ({ name: 'sphere', mesh: echinus.makeSphere(1, 60, 30), up: 'z' });
     }
 }
 
 /**
  * OBJ, PLY, STL and OFF are read by Echinus; 3DS and glTF by three.js, which is fetched only then.
- * @throws Error with a sentence that begins with the file's name
+ * @throws Error with a sentence that begins with the file's name; so does what it gives
  */
-export async function openFile(echinus: Echinus, name: string, bytes: ArrayBuffer): Promise<Model> {
+export async function prepareFile(name: string, bytes: ArrayBuffer): Promise<Reading> {
     const ending = name.toLowerCase().split('.').pop();
     switch (ending) {
         case '3ds':
-            return { name, mesh: weldTriangles(echinus, name, await read3ds(name, bytes)), up: 'y' };
+            return welding(name, await read3ds(name, bytes));
         case 'glb':
         case 'gltf':
-            return { name, mesh: weldTriangles(echinus, name, await readGltf(name, bytes)), up: 'y' };
+            return welding(name, await readGltf(name, bytes));
         default:
-            return { name, mesh: echinus.readMesh(bytes, name), up: ending === 'stl' || ending === 'off' ? 'z' : 'y' };
+            return (echinus) => ({ name, mesh: echinus.readMesh(bytes, name), up: ending === 'stl' || ending === 'off' ? 'z' : 'y' });
     }
 }
+
+const welding = (name: string, root: Object3D): Reading => (echinus) => ({ name, mesh: weldTriangles(echinus, name, root), up: 'y' });
 
 async function read3ds(name: string, bytes: ArrayBuffer): Promise<Object3D> {
     const { TDSLoader } = await import('three/examples/jsm/loaders/TDSLoader.js');

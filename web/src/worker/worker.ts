@@ -1,11 +1,20 @@
 /** The worker: one instance of the module, one playground, and a loop that the page drives frame by frame. */
-import { type Echinus, EchinusError, load } from 'echinus';
+import { EchinusError, load } from 'echinus';
 import type { FrameArrays, FromWorker, ToWorker } from '../protocol';
 import { cutAt, lookAlong, surfaceOf } from './looking';
-import { openFile, openSample } from './models';
+import { fetchSample, prepareFile } from './models';
 import { Playground } from './playground';
+import { warmUp } from './warm_up';
 
-let echinus: Echinus | undefined;
+/** The first model waits for nothing but the module. */
+let modelIsThere = false;
+/** Begun at once, while the page is still being loaded. */
+const starting = load().then(async (echinus) => {
+    await warmUp(echinus, () => modelIsThere);
+    return echinus;
+});
+starting.catch(() => {}); // whoever opens a model hears of it
+
 let playground: Playground | undefined;
 let paused = false;
 /** Counts cloths, so that the page can tell a late frame of an earlier one. */
@@ -26,7 +35,8 @@ async function handle(message: ToWorker): Promise<void> {
             paused = message.paused;
             return;
     }
-    if (!playground || !echinus) return;
+    if (!playground) return;
+    const echinus = await starting;
     switch (message.kind) {
         case 'change': {
             const before = playground.settings;
@@ -60,9 +70,10 @@ async function handle(message: ToWorker): Promise<void> {
 }
 
 async function open({ settings, page, file }: ToWorker & { kind: 'open' }): Promise<void> {
-    echinus ??= await load();
-    const model = file ? await openFile(echinus, file.name, file.bytes) : await openSample(echinus, settings.model, page);
-    const opened = new Playground(echinus, model, settings);
+    const read = await (file ? prepareFile(file.name, file.bytes) : fetchSample(settings.model, page));
+    modelIsThere = true;
+    const echinus = await starting;
+    const opened = new Playground(echinus, read(echinus), settings);
     playground?.delete(); // only now: a file that cannot be opened leaves what there was
     playground = opened;
     tellModel(playground);
