@@ -1,6 +1,7 @@
 // A cloth on a map of the user's own.
 
 #include "support/custom_maps.hpp"
+#include "support/draping.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/simulation.hpp>
@@ -17,14 +18,6 @@ namespace {
 
 constexpr double kThickness = 0.01;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-
-Deformable sheet_at(double height, double width, std::uint32_t count) {
-    return make_cloth({.column_count = count,
-                       .row_count = count,
-                       .width = width,
-                       .height = width,
-                       .pose = {Rotation{}, {0, 0, height}}});
-}
 
 /// An exact map that is asked as if it were the user's.
 class AskedExactMap final : public CustomMap {
@@ -45,7 +38,8 @@ class AskedExactMap final : public CustomMap {
 
 /// Does the simulation go through with it? All positions finite after some frames, or an orderly end.
 void expect_no_harm(const Contact& answer) {
-    Simulation simulation(sheet_at(0.2, 0.5, 9), {{.map = std::make_shared<test::ConstantAnswer>(answer)}},
+    Simulation simulation(test::sheet_at(0.2, 0.5, 9),
+                          {{.map = std::make_shared<test::ConstantAnswer>(answer)}},
                           {.thickness = kThickness});
     try {
         for (int i = 0; i < 30; ++i) simulation.step();
@@ -59,23 +53,16 @@ void expect_no_harm(const Contact& answer) {
 } // namespace
 
 TEST(CustomMapSimulation, BringsASheetToRestOutsideOfAnAnalyticBall) {
-    Simulation simulation(sheet_at(1.05, 2, 21), {{.map = std::make_shared<test::AnalyticBall>(1.0F)}},
+    Simulation simulation(test::sheet_at(1.05, 2, 21), {{.map = std::make_shared<test::AnalyticBall>(1.0F)}},
                           {.thickness = kThickness, .friction = 0.8});
-    while (!simulation.at_rest() && simulation.frame() < 6000) simulation.step();
-    EXPECT_TRUE(simulation.at_rest()) << "speed " << simulation.largest_speed();
-    std::size_t touching = 0;
-    for (const Vec3f& p : simulation.positions()) {
-        EXPECT_GT(length(p), 0.999);
-        touching += length(p) < 1 + 2 * kThickness ? 1 : 0;
-    }
-    EXPECT_GT(touching, simulation.positions().size() / 4);
+    test::run_to_rest(simulation, 6000);
+    test::expect_draped_over_unit_ball(simulation, kThickness);
 }
 
 TEST(CustomMapSimulation, LaysASheetAsFlatOnABoxAsTheMapBehindItDoes) {
     const auto asked = std::make_shared<AskedExactMap>(ExactMap::build(make_box({1, 1, 1})));
-    Simulation simulation(sheet_at(0.55, 0.5, 15), {{.map = asked}}, {.thickness = kThickness});
-    while (!simulation.at_rest() && simulation.frame() < 1000) simulation.step();
-    EXPECT_TRUE(simulation.at_rest()) << "speed " << simulation.largest_speed();
+    Simulation simulation(test::sheet_at(0.55, 0.5, 15), {{.map = asked}}, {.thickness = kThickness});
+    test::run_to_rest(simulation, 1000);
     for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(p.z, 0.5 + kThickness, 1e-3);
 }
 
@@ -83,7 +70,7 @@ TEST(CustomMapSimulation, PushesOutOfABallThatMovesAndTurns) {
     const Collider ball{.map = std::make_shared<test::AnalyticBall>(1.0F),
                         .linear_velocity = {0, 0, 0.5},
                         .angular_velocity = {0.3, 0.1, 0.5}};
-    Simulation simulation(sheet_at(1.02, 1, 15), {ball}, {.thickness = kThickness});
+    Simulation simulation(test::sheet_at(1.02, 1, 15), {ball}, {.thickness = kThickness});
     for (int i = 0; i < 240; ++i) simulation.step();
     const Vec3f centre(simulation.colliders()[0].pose.translation);
     EXPECT_NEAR(centre.z, 0.5, 1e-6);
@@ -97,7 +84,8 @@ TEST(CustomMapSimulation, PushesOutOfABallThatMovesAndTurns) {
 
 TEST(CustomMapSimulation, GivesTheSameStateEachTime) {
     const auto hash = [] {
-        Simulation simulation(sheet_at(1.05, 1, 15), {{.map = std::make_shared<test::AnalyticBall>(1.0F)}},
+        Simulation simulation(test::sheet_at(1.05, 1, 15),
+                              {{.map = std::make_shared<test::AnalyticBall>(1.0F)}},
                               {.thickness = kThickness});
         for (int i = 0; i < 100; ++i) simulation.step();
         return simulation.state_hash();
@@ -120,7 +108,7 @@ TEST(CustomMapSimulation, ComesToNoHarmByAnswersThatMakeNoSense) {
 TEST(CustomMapSimulation, LeavesAParticleInsideAloneThatItKnowsNoWayOutFor) {
     // As if there were no collider.
     const auto fallen = [](std::vector<Collider> colliders) {
-        Simulation simulation(sheet_at(0, 0.5, 5), std::move(colliders), {.thickness = kThickness});
+        Simulation simulation(test::sheet_at(0, 0.5, 5), std::move(colliders), {.thickness = kThickness});
         for (int i = 0; i < 20; ++i) simulation.step();
         return simulation.state_hash();
     };
@@ -130,7 +118,8 @@ TEST(CustomMapSimulation, LeavesAParticleInsideAloneThatItKnowsNoWayOutFor) {
 
 TEST(CustomMapSimulation, RefusesANullPointer) {
     try {
-        const Simulation simulation(sheet_at(0, 1, 5), {{.map = std::shared_ptr<const CustomMap>()}}, {});
+        const Simulation simulation(test::sheet_at(0, 1, 5), {{.map = std::shared_ptr<const CustomMap>()}},
+                                    {});
         FAIL();
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::InvalidOptions);

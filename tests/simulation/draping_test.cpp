@@ -1,3 +1,5 @@
+#include "support/draping.hpp"
+
 #include <echinus/simulation.hpp>
 
 #include <gtest/gtest.h>
@@ -14,20 +16,6 @@ DistanceMap map_of(const TriangleMesh& mesh) {
     return DistanceMap::build(mesh, {.longitude_count = 128, .colatitude_count = 128});
 }
 
-Deformable sheet_at(double height, double width, std::uint32_t count) {
-    return make_cloth({.column_count = count,
-                       .row_count = count,
-                       .width = width,
-                       .height = width,
-                       .pose = {Rotation{}, {0, 0, height}}});
-}
-
-/// Runs until rest; fails when that takes longer than `frame_limit`.
-void run_to_rest(Simulation& simulation, std::uint32_t frame_limit) {
-    while (!simulation.at_rest() && simulation.frame() < frame_limit) simulation.step();
-    EXPECT_TRUE(simulation.at_rest()) << "speed " << simulation.largest_speed();
-}
-
 /// Mean position of all particles.
 Vec3d middle(const Simulation& simulation) {
     Vec3d sum;
@@ -39,49 +27,31 @@ Vec3d middle(const Simulation& simulation) {
 
 TEST(Draping, LaysASheetFlatOnABoxAtItsThickness) {
     // The map of a flat side is exact to the sagitta between samples: 0.001 here.
-    Simulation simulation(sheet_at(0.55, 0.5, 15), {{.map = map_of(make_box({1, 1, 1}))}},
+    Simulation simulation(test::sheet_at(0.55, 0.5, 15), {{.map = map_of(make_box({1, 1, 1}))}},
                           {.thickness = kThickness});
-    run_to_rest(simulation, 1000);
+    test::run_to_rest(simulation, 1000);
     for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(p.z, 0.5 + kThickness, 2e-3);
     EXPECT_NEAR(middle(simulation).x, 0, 1e-3);
     EXPECT_NEAR(middle(simulation).y, 0, 1e-3);
 }
 
 TEST(Draping, BringsASheetOnASphereToRestOutside) {
-    Simulation simulation(sheet_at(1.05, 2, 21), {{.map = map_of(make_sphere(1, 80, 40))}},
+    Simulation simulation(test::sheet_at(1.05, 2, 21), {{.map = map_of(make_sphere(1, 80, 40))}},
                           {.thickness = kThickness, .friction = 0.8});
-    run_to_rest(simulation, 6000);
-    std::size_t touching = 0;
-    for (const Vec3f& p : simulation.positions()) {
-        EXPECT_GT(length(p), 0.999);
-        touching += length(p) < 1 + 2 * kThickness ? 1 : 0;
-    }
-    EXPECT_GT(touching, simulation.positions().size() / 4);
+    test::run_to_rest(simulation, 6000);
+    test::expect_draped_over_unit_ball(simulation, kThickness);
 }
 
 TEST(Draping, HoldsASheetOnASlopeThatFrictionCanHoldAndNotOnASteeperOne) {
     // Coulomb: it rests where the slope's tangent is below the friction.
     const DistanceMap box = map_of(make_box({2, 2, 1}));
-    const auto slid = [&](double angle_rad) {
-        const Rotation tilt = Rotation::about({1, 0, 0}, angle_rad);
-        const Deformable sheet = make_cloth({.column_count = 7,
-                                             .row_count = 7,
-                                             .width = 0.3,
-                                             .height = 0.3,
-                                             .pose = {tilt, tilt.apply({0, 0, 0.5 + kThickness})}});
-        Simulation simulation(sheet, {{.map = box, .pose = {tilt, {}}}},
-                              {.thickness = kThickness, .friction = 0.5});
-        const Vec3d before = middle(simulation);
-        for (int i = 0; i < 120; ++i) simulation.step();
-        return length(middle(simulation) - before);
-    };
-    EXPECT_LT(slid(std::atan(0.4)), 0.005);
-    EXPECT_GT(slid(std::atan(0.6)), 0.05);
+    EXPECT_LT(test::slid_down_slope(box, std::atan(0.4)), 0.005);
+    EXPECT_GT(test::slid_down_slope(box, std::atan(0.6)), 0.05);
 }
 
 TEST(Draping, CarriesASheetAlongWithAMovingCollider) {
     const Collider box{.map = map_of(make_box({2, 2, 1})), .linear_velocity = {0.3, 0, 0}};
-    Simulation simulation(sheet_at(0.5 + kThickness, 0.3, 7), {box},
+    Simulation simulation(test::sheet_at(0.5 + kThickness, 0.3, 7), {box},
                           {.thickness = kThickness, .friction = 0.8});
     for (int i = 0; i < 480; ++i) simulation.step();
     EXPECT_NEAR(simulation.colliders()[0].pose.translation.x, 0.6, 1e-9);
@@ -91,7 +61,7 @@ TEST(Draping, CarriesASheetAlongWithAMovingCollider) {
 
 TEST(Draping, TurnsASheetWithATurningColliderAndDoesNotFlingItOff) {
     const Collider box{.map = map_of(make_box({2, 2, 1})), .angular_velocity = {0, 0, 1}};
-    Simulation simulation(sheet_at(0.5 + kThickness, 0.3, 7), {box},
+    Simulation simulation(test::sheet_at(0.5 + kThickness, 0.3, 7), {box},
                           {.thickness = kThickness, .friction = 0.8});
     const Vec3f corner = simulation.positions()[0];
     for (int i = 0; i < 240; ++i) simulation.step();
@@ -101,7 +71,7 @@ TEST(Draping, TurnsASheetWithATurningColliderAndDoesNotFlingItOff) {
 
 TEST(Draping, LiftsASheetOnARisingCollider) {
     const Collider box{.map = map_of(make_box({2, 2, 1})), .linear_velocity = {0, 0, 0.5}};
-    Simulation simulation(sheet_at(0.5 + kThickness, 0.3, 7), {box}, {.thickness = kThickness});
+    Simulation simulation(test::sheet_at(0.5 + kThickness, 0.3, 7), {box}, {.thickness = kThickness});
     for (int i = 0; i < 240; ++i) simulation.step();
     for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(p.z, 1 + kThickness, 3e-3);
 }
@@ -130,7 +100,7 @@ TEST(Draping, LeavesPinnedParticlesAloneEvenInside) {
 
 TEST(Draping, AsksEveryColliderAboutEveryParticleInEveryRelaxation) {
     const Collider box{.map = map_of(make_box({1, 1, 1}))};
-    Simulation simulation(sheet_at(2, 0.5, 4), {box, box}, {.iteration_count = 7});
+    Simulation simulation(test::sheet_at(2, 0.5, 4), {box, box}, {.iteration_count = 7});
     simulation.step();
     EXPECT_EQ(simulation.profile().query_count, 16u * 2u * 7u);
     EXPECT_EQ(simulation.profile().contact_count, 0u);
@@ -139,7 +109,7 @@ TEST(Draping, AsksEveryColliderAboutEveryParticleInEveryRelaxation) {
 TEST(Draping, GivesTheSameBitsOnEveryRunAmongMovingColliders) {
     const auto hash = [] {
         const Collider torus{.map = map_of(make_torus(1, 0.4, 30, 16)), .angular_velocity = {0.2, 0.1, 0.5}};
-        Simulation simulation(sheet_at(0.45, 2, 20), {torus}, {.thickness = kThickness});
+        Simulation simulation(test::sheet_at(0.45, 2, 20), {torus}, {.thickness = kThickness});
         for (int i = 0; i < 100; ++i) simulation.step();
         EXPECT_GT(simulation.profile().contact_count, 0u);
         return simulation.state_hash();

@@ -1,6 +1,7 @@
 // Simulations with exact maps. Whether a particle is lost is judged from outside: by contains() and sweep()
 // of the collider, from where the particle was at the end of one frame to where it is at the end of the next.
 
+#include "support/draping.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/random_points.hpp"
 
@@ -17,27 +18,12 @@ namespace {
 
 constexpr double kThickness = 0.01;
 
-Deformable sheet_at(double height, double width, std::uint32_t count, const Vec3d& step = {}) {
-    Deformable sheet = make_cloth({.column_count = count,
-                                   .row_count = count,
-                                   .width = width,
-                                   .height = width,
-                                   .pose = {Rotation{}, {0, 0, height}}});
-    for (Vec3f& previous : sheet.previous_positions) previous = Vec3f(Vec3d(previous) - step);
-    return sheet;
-}
-
 Deformable particles_at(const std::vector<Vec3f>& places) {
     return {.positions = places,
             .previous_positions = places,
             .inverse_masses = std::vector<float>(places.size(), 1),
             .sticks = {},
             .faces = {}};
-}
-
-void run_to_rest(Simulation& simulation, std::uint32_t frame_limit) {
-    while (!simulation.at_rest() && simulation.frame() < frame_limit) simulation.step();
-    EXPECT_TRUE(simulation.at_rest()) << "speed " << simulation.largest_speed();
 }
 
 /// Steps, and counts the particles that are lost in this frame.
@@ -74,7 +60,7 @@ Simulation plate_and_sheet(bool keep_free) {
     const Collider plate{.map = ExactMap::build(make_box({1.5, 1.5, 0.001})),
                          .linear_velocity = {0.5, 0, 5},
                          .angular_velocity = {4, 18, 2}};
-    return Simulation(sheet_at(0.7, 1, 25, Vec3d{0, 0, -30} * kStep), {plate},
+    return Simulation(test::sheet_at(0.7, 1, 25, Vec3d{0, 0, -30} * kStep), {plate},
                       {.time_step = kStep, .thickness = kThickness, .keep_free = keep_free});
 }
 
@@ -158,17 +144,17 @@ TEST(ExactCollision, DoesNotAddToTheSpeedOfAParticle) {
 }
 
 TEST(ExactCollision, LaysASheetFlatOnABoxAtItsThickness) {
-    Simulation simulation(sheet_at(0.55, 0.5, 15), {{.map = ExactMap::build(make_box({1, 1, 1}))}},
+    Simulation simulation(test::sheet_at(0.55, 0.5, 15), {{.map = ExactMap::build(make_box({1, 1, 1}))}},
                           {.thickness = kThickness});
-    run_to_rest(simulation, 1000);
+    test::run_to_rest(simulation, 1000);
     for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(p.z, 0.5 + kThickness, 1e-3);
 }
 
 TEST(ExactCollision, BringsASheetOnASphereToRestOutside) {
     const TriangleMesh sphere = make_sphere(1, 80, 40);
-    Simulation simulation(sheet_at(1.05, 2, 21), {{.map = ExactMap::build(sphere)}},
+    Simulation simulation(test::sheet_at(1.05, 2, 21), {{.map = ExactMap::build(sphere)}},
                           {.thickness = kThickness, .friction = 0.8});
-    run_to_rest(simulation, 6000);
+    test::run_to_rest(simulation, 6000);
     std::size_t touching = 0;
     for (const Vec3f& p : simulation.positions()) {
         EXPECT_LT(winding_number(sphere, Vec3d(p)), 0.5);
@@ -179,28 +165,15 @@ TEST(ExactCollision, BringsASheetOnASphereToRestOutside) {
 
 TEST(ExactCollision, HoldsASheetOnASlopeThatFrictionCanHoldAndNotOnASteeperOne) {
     const ExactMap box = ExactMap::build(make_box({2, 2, 1}));
-    const auto slid = [&](double angle_rad) {
-        const Rotation tilt = Rotation::about({1, 0, 0}, angle_rad);
-        const Deformable sheet = make_cloth({.column_count = 7,
-                                             .row_count = 7,
-                                             .width = 0.3,
-                                             .height = 0.3,
-                                             .pose = {tilt, tilt.apply({0, 0, 0.5 + kThickness})}});
-        Simulation simulation(sheet, {{.map = box, .pose = {tilt, {}}}},
-                              {.thickness = kThickness, .friction = 0.5});
-        const Vec3f before = simulation.positions()[24];
-        for (int i = 0; i < 120; ++i) simulation.step();
-        return length(simulation.positions()[24] - before);
-    };
-    EXPECT_LT(slid(std::atan(0.4)), 0.005);
-    EXPECT_GT(slid(std::atan(0.6)), 0.05);
+    EXPECT_LT(test::slid_down_slope(box, std::atan(0.4)), 0.005);
+    EXPECT_GT(test::slid_down_slope(box, std::atan(0.6)), 0.05);
 }
 
 TEST(ExactCollision, CarriesTurnsAndLiftsASheetAlongWithItsCollider) {
     const Collider box{.map = ExactMap::build(make_box({2, 2, 1})),
                        .linear_velocity = {0.2, 0, 0.3},
                        .angular_velocity = {0, 0, 1}};
-    Simulation simulation(sheet_at(0.5 + kThickness, 0.3, 7), {box},
+    Simulation simulation(test::sheet_at(0.5 + kThickness, 0.3, 7), {box},
                           {.thickness = kThickness, .friction = 0.8});
     const Vec3f corner = simulation.positions()[0];
     for (int i = 0; i < 240; ++i) simulation.step();
@@ -235,7 +208,7 @@ TEST(ExactCollision, KeepsAParticleFreeOfTwoCollidersWhileThereIsRoom) {
     const ExactMap plate = ExactMap::build(make_box({1, 1, 0.1}));
     const Collider below{.map = plate, .pose = {Rotation{}, {0, 0, -0.052}}};
     const Collider above{.map = plate, .pose = {Rotation{}, {0, 0, 0.152}}, .linear_velocity = {0, 0, -1}};
-    Simulation simulation(sheet_at(0.02, 0.5, 8), {below, above}, {.thickness = kThickness});
+    Simulation simulation(test::sheet_at(0.02, 0.5, 8), {below, above}, {.thickness = kThickness});
     EXPECT_EQ(lost_in(simulation, 24), 0u);
     simulation.set_velocities(1, {}, {});
     EXPECT_EQ(lost_in(simulation, 60), 0u);
@@ -253,7 +226,7 @@ TEST(ExactCollision, CountsWhatTwoCollidersThatOverlapLeaveNoRoomFor) {
 }
 
 TEST(ExactCollision, AnswersParticlesThatHardlyMoveFromMemory) {
-    Simulation simulation(sheet_at(0.5 + kThickness, 0.5, 10),
+    Simulation simulation(test::sheet_at(0.5 + kThickness, 0.5, 10),
                           {{.map = ExactMap::build(make_box({1, 1, 1}))}}, {.thickness = kThickness});
     for (int i = 0; i < 100; ++i) simulation.step();
     EXPECT_EQ(simulation.profile().query_count, 100u * 100u * 10u);
@@ -264,7 +237,7 @@ TEST(ExactCollision, GivesTheSameBitsOnEveryRunAndInEveryCopy) {
     const auto start = [] {
         const Collider torus{.map = ExactMap::build(make_torus(1, 0.4, 30, 16)),
                              .angular_velocity = {0.2, 0.1, 0.5}};
-        return Simulation(sheet_at(0.45, 2, 20), {torus}, {.thickness = kThickness});
+        return Simulation(test::sheet_at(0.45, 2, 20), {torus}, {.thickness = kThickness});
     };
     Simulation first = start();
     Simulation second = start();
@@ -285,7 +258,7 @@ TEST(ExactCollision, GivesTheSameBitsUnderEachInstructionSet) {
         const Collider turning{
             .map = torus, .linear_velocity = {0, 0, 0.4}, .angular_velocity = {0.2, 0.1, 2}};
         const Collider still{.map = torus, .pose = {Rotation::about({1, 2, 3}, 1), {0.3, 0.2, -1}}};
-        Simulation simulation(sheet_at(0.45, 2, 23), {turning, still}, {.thickness = kThickness});
+        Simulation simulation(test::sheet_at(0.45, 2, 23), {turning, still}, {.thickness = kThickness});
         for (int i = 0; i < 100; ++i) simulation.step();
         EXPECT_GT(simulation.profile().contact_count, 0u);
         hashes.push_back(simulation.state_hash());

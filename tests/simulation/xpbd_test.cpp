@@ -1,6 +1,7 @@
 // What extended position-based dynamics promises: sticks are springs, whatever the number of relaxations and
 // the time step.
 
+#include "support/draping.hpp"
 #include "support/expect_error.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/random_points.hpp"
@@ -46,16 +47,6 @@ double sag(const Deformable& chain, SimulationOptions options) {
     const int frame_count = static_cast<int>(5 / options.time_step);
     for (int i = 0; i < frame_count; ++i) simulation.step();
     return chain.positions.back().z - simulation.positions().back().z;
-}
-
-Deformable sheet_at(double height, double width, std::uint32_t count, const Vec3d& step = {}) {
-    Deformable sheet = make_cloth({.column_count = count,
-                                   .row_count = count,
-                                   .width = width,
-                                   .height = width,
-                                   .pose = {Rotation{}, {0, 0, height}}});
-    for (Vec3f& previous : sheet.previous_positions) previous = Vec3f(Vec3d(previous) - step);
-    return sheet;
 }
 
 /// Of motion and of springs.
@@ -156,7 +147,7 @@ TEST(Xpbd, AddsNoEnergyToAFreeSheet) {
     for (const std::array<double, kStickKindCount>& compliance :
          {std::array{1e-6, 1e-5, 1e-3}, std::array{1e-3, 1e-2, 1e-1}, std::array{0.0, 0.0, 0.0}}) {
         test::Random random(11);
-        Deformable sheet = sheet_at(0, 1, 12);
+        Deformable sheet = test::sheet_at(0, 1, 12);
         for (Vec3f& previous : sheet.previous_positions) previous += test::in_cube(random, 0.001F);
         SimulationOptions options = small_steps();
         options.gravity = {};
@@ -174,7 +165,7 @@ TEST(Xpbd, AddsNoEnergyToAFreeSheet) {
 TEST(Xpbd, StretchesAHangingSheetLessInSubstepsThanInIterations) {
     // Macklin et al. 2019: the same work, another order.
     const auto stretch = [](SimulationOptions options) {
-        Deformable sheet = sheet_at(0, 1, 20);
+        Deformable sheet = test::sheet_at(0, 1, 20);
         for (std::size_t i = 0; i < 20; ++i) sheet.inverse_masses[i] = 0;
         options.compliance = {0, 0, 0};
         options.drag = 0.05;
@@ -199,7 +190,7 @@ TEST(Xpbd, DrapesASheetOverASphereAndABoxWithNoneInside) {
         options.thickness = kThickness;
         options.friction = 0.8;
         options.drag = 0.02; // the corners swing, and small steps damp them little
-        Simulation simulation(sheet_at(0.55, 1.2, 25), {{.map = ExactMap::build(mesh)}}, options);
+        Simulation simulation(test::sheet_at(0.55, 1.2, 25), {{.map = ExactMap::build(mesh)}}, options);
         while (!simulation.at_rest() && simulation.frame() < 2000) {
             simulation.step();
             if (simulation.frame() % 50 == 0) ASSERT_EQ(inside_count(simulation, mesh), 0u);
@@ -219,7 +210,7 @@ TEST(Xpbd, LosesNoParticleOfAFastSheetToAThinPlateThatMovesAndTurnsFast) {
         SimulationOptions options = small_steps(substeps);
         options.thickness = kThickness;
         const Vec3d step = Vec3d{0, 0, -30} * (options.time_step / substeps);
-        Simulation simulation(sheet_at(0.7, 1, 25, step), {plate}, options);
+        Simulation simulation(test::sheet_at(0.7, 1, 25, step), {plate}, options);
         for (int frame = 0; frame < 240; ++frame) {
             const std::vector<Vec3f> before(simulation.positions().begin(), simulation.positions().end());
             const RigidTransform pose_before = simulation.colliders()[0].pose;
@@ -241,7 +232,7 @@ TEST(Xpbd, CarriesTurnsAndLiftsASheetAlongWithItsCollider) {
     SimulationOptions options = small_steps();
     options.thickness = kThickness;
     options.friction = 0.8;
-    Simulation simulation(sheet_at(0.5 + kThickness, 0.3, 7), {box}, options);
+    Simulation simulation(test::sheet_at(0.5 + kThickness, 0.3, 7), {box}, options);
     const Vec3f corner = simulation.positions()[0];
     for (int i = 0; i < 240; ++i) simulation.step();
     const Vec3d expected = simulation.colliders()[0].pose.to_world(Vec3d(corner));
@@ -255,7 +246,7 @@ TEST(Xpbd, GivesTheSameBitsOnEveryRunInEveryCopyAndUnderEachInstructionSet) {
         SimulationOptions options = small_steps(5);
         options.iteration_count = 2;
         options.thickness = kThickness;
-        return Simulation(sheet_at(0.45, 2, 20), {collider}, options);
+        return Simulation(test::sheet_at(0.45, 2, 20), {collider}, options);
     };
     std::vector<std::uint64_t> hashes;
     test::under_each_instruction_set([&](std::string_view) {

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <echinus/simulation.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+namespace echinus::test {
+
+/// A square cloth that lies level, middle above the origin.
+/// @param step  by which each particle came here in the frame before
+inline Deformable sheet_at(double height, double width, std::uint32_t count, const Vec3d& step = {}) {
+    Deformable sheet = make_cloth({.column_count = count,
+                                   .row_count = count,
+                                   .width = width,
+                                   .height = width,
+                                   .pose = {Rotation{}, {0, 0, height}}});
+    for (Vec3f& previous : sheet.previous_positions) previous = Vec3f(Vec3d(previous) - step);
+    return sheet;
+}
+
+/// Runs until rest; fails when that takes longer than `frame_limit`.
+inline void run_to_rest(Simulation& simulation, std::uint32_t frame_limit) {
+    while (!simulation.at_rest() && simulation.frame() < frame_limit) simulation.step();
+    EXPECT_TRUE(simulation.at_rest()) << "speed " << simulation.largest_speed();
+}
+
+/// On a slope of this angle with a friction of 0.5, how far the middle of a small cloth slides in half a
+/// second.
+/// @param box  the map of make_box({2, 2, 1})
+inline float slid_down_slope(const ColliderMap& box, double angle_rad) {
+    constexpr double kThickness = 0.01;
+    constexpr std::uint32_t kSide = 7;
+    const Rotation tilt = Rotation::about({1, 0, 0}, angle_rad);
+    const Deformable sheet = make_cloth({.column_count = kSide,
+                                         .row_count = kSide,
+                                         .width = 0.3,
+                                         .height = 0.3,
+                                         .pose = {tilt, tilt.apply({0, 0, 0.5 + kThickness})}});
+    Simulation simulation(sheet, {{.map = box, .pose = {tilt, {}}}},
+                          {.thickness = kThickness, .friction = 0.5});
+    const std::size_t middle = kSide * kSide / 2;
+    const Vec3f before = simulation.positions()[middle];
+    for (int i = 0; i < 120; ++i) simulation.step();
+    return length(simulation.positions()[middle] - before);
+}
+
+/// All particles outside of the unit ball, and a good part of them on it.
+inline void expect_draped_over_unit_ball(const Simulation& simulation, double thickness) {
+    std::size_t touching = 0;
+    for (const Vec3f& p : simulation.positions()) {
+        EXPECT_GT(length(p), 0.999);
+        touching += length(p) < 1 + 2 * thickness ? 1 : 0;
+    }
+    EXPECT_GT(touching, simulation.positions().size() / 4);
+}
+
+} // namespace echinus::test
