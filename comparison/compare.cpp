@@ -44,6 +44,9 @@ Truth truth_of(const ExactMap& judge, const std::vector<Vec3f>& points) {
     return truth;
 }
 
+/// The place in make_sets() of the particles beside the surface, about which the curves are.
+constexpr std::size_t kNearSurface = 1;
+
 std::vector<JudgedSet> make_sets(const TriangleMesh& mesh, const CompareOptions& options) {
     const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(options.point_count)));
     const ExactMap judge = ExactMap::build(mesh);
@@ -316,7 +319,6 @@ Comparison compare(const TriangleMesh& mesh, const CompareOptions& options) {
     Comparison result{mesh.faces.size(), report.bounding_sphere.radius, {}, {}, {}, false, {}};
     Stage(options, "judging the particles")(0);
     const std::vector<JudgedSet> sets = make_sets(mesh, options);
-    const JudgedSet& near_surface = sets[1];
     result.parts_overlap = parts_overlap(mesh, sets);
     std::vector<Competitor> competitors = build_all(participants, options, result.refusals);
     for (const JudgedSet& set : sets) {
@@ -325,7 +327,7 @@ Comparison compare(const TriangleMesh& mesh, const CompareOptions& options) {
     }
     for (Competitor& competitor : competitors) result.systems.push_back(std::move(competitor.figures));
     if (options.curve_length > 0)
-        result.curves = measure_curves(participants, near_surface, result.radius, options);
+        result.curves = measure_curves(participants, sets[kNearSurface], result.radius, options);
     return result;
 }
 

@@ -1,5 +1,7 @@
 #include "comparison/plot.hpp"
 
+#include "comparison/markup.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,26 +50,6 @@ std::string number(double value) {
     return fmt::format("{:.3g}", value);
 }
 
-/// As text of a document.
-std::string escaped(const std::string& plain) {
-    std::string result;
-    for (const char c : plain) {
-        if (c == '&')
-            result += "&amp;";
-        else if (c == '<')
-            result += "&lt;";
-        else
-            result += c;
-    }
-    return result;
-}
-
-std::string text(double x, double y, const char* anchor, const std::string& content,
-                 const std::string& more = {}) {
-    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more,
-                       escaped(content));
-}
-
 std::string line(double x1, double y1, double x2, double y2, const std::string& style) {
     return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", x1, y1, x2, y2,
                        style);
@@ -93,20 +75,20 @@ std::string frame(const Plot& plot, const Axis& x, const Axis& y) {
     std::string result;
     for (const double tick : x.ticks()) {
         result += line(x.place(tick), kTop, x.place(tick), kHeight - kBottom, grid);
-        result += text(x.place(tick), kHeight - kBottom + 18, "middle", number(tick));
+        result += svg_text(x.place(tick), kHeight - kBottom + 18, "middle", number(tick));
     }
     for (const double tick : y.ticks()) {
         result += line(kLeft, y.place(tick), kWidth - kRight, y.place(tick), grid);
-        result += text(kLeft - 8, y.place(tick) + 4, "end", number(tick));
+        result += svg_text(kLeft - 8, y.place(tick) + 4, "end", number(tick));
     }
     result += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" "
                           "stroke=\"#444444\"/>\n",
                           kLeft, kTop, kWidth - kLeft - kRight, kHeight - kTop - kBottom);
-    result += text(kWidth / 2, 26, "middle", plot.title, " font-size=\"16\" font-weight=\"bold\"");
-    result += text((kLeft + kWidth - kRight) / 2, kHeight - 16, "middle", plot.x_label);
+    result += svg_text(kWidth / 2, 26, "middle", plot.title, " font-size=\"16\" font-weight=\"bold\"");
+    result += svg_text((kLeft + kWidth - kRight) / 2, kHeight - 16, "middle", plot.x_label);
     const double middle = (kTop + kHeight - kBottom) / 2;
-    return result + text(20, middle, "middle", plot.y_label,
-                         fmt::format(" transform=\"rotate(-90 20 {:.1f})\"", middle));
+    return result + svg_text(20, middle, "middle", plot.y_label,
+                             fmt::format(" transform=\"rotate(-90 20 {:.1f})\"", middle));
 }
 
 std::string drawn(const Curve& curve, const Axis& x, const Axis& y) {
@@ -130,11 +112,11 @@ std::string legend(const Plot& plot) {
             result += line(kBegin, y - 4, kBegin + 40, y - 4, stroke_of(curve));
         else
             result += disc(kBegin + 20, y - 4, curve.colour);
-        result += text(kBegin + 48, y, "start", curve.name);
+        result += svg_text(kBegin + 48, y, "start", curve.name);
         y += 18;
     }
     if (!plot.ring_meaning.empty())
-        result += ring(kBegin + 20, y - 4, "#444444") + text(kBegin + 48, y, "start", plot.ring_meaning);
+        result += ring(kBegin + 20, y - 4, "#444444") + svg_text(kBegin + 48, y, "start", plot.ring_meaning);
     return result;
 }
 

@@ -19,6 +19,7 @@ void add_render_command(CLI::App& app);
 /// Refuses --json together with a result that goes to standard output itself.
 inline void require_one_result(const std::filesystem::path& target, bool json) {
     if (json && target == kStandardStream) {
-        throw CLI::ValidationError("--json", "cannot be used with -o -, both print on standard output");
+        throw CLI::ValidationError(
+            "--json", "cannot be used where the result goes to standard output (-), both print there");
     }
 }

@@ -3,6 +3,7 @@
 #include "comparison/columns.hpp"
 #include "comparison/curve_plots.hpp"
 #include "comparison/machine.hpp"
+#include "comparison/markup.hpp"
 
 #include <fmt/format.h>
 
@@ -39,23 +40,6 @@ tbody th { text-align: left; font-weight: 500; }
 svg { width: 100%; height: auto; margin: 1rem 0; border-radius: 8px; }
 .quiet { color: var(--quiet); }
 )";
-
-std::string escaped(std::string_view text) {
-    std::string result;
-    for (const char c : text) {
-        if (c == '&')
-            result += "&amp;";
-        else if (c == '<')
-            result += "&lt;";
-        else if (c == '>')
-            result += "&gt;";
-        else if (c == '"')
-            result += "&quot;";
-        else
-            result += c;
-    }
-    return result;
-}
 
 /// RFC 4648, section 4.
 std::string base64(std::span<const std::uint8_t> bytes) {

@@ -22,7 +22,9 @@ ordered_json to_json(const Spread& spread) {
 
 ordered_json to_json(const SetFigures& figures) {
     return {{"contains_ns", figures.contains.ns},
+            {"contains_spread", figures.contains.spread},
             {"contacts_ns", figures.contacts.ns},
+            {"contacts_spread", figures.contacts.spread},
             {"wrong_share", figures.errors.wrong_share},
             {"farthest_wrong_radii", figures.errors.farthest_wrong},
             {"depth_error_radii", to_json(figures.errors.depth)},

@@ -1,6 +1,7 @@
 #include "verdict.hpp"
 
 #include "comparison/curve_plots.hpp"
+#include "comparison/markup.hpp"
 
 #include <fmt/format.h>
 
@@ -23,11 +24,6 @@ double bar_length(double percent) {
     return kBar * std::min(share, 1.0);
 }
 
-std::string text(double x, double y, const char* anchor, const std::string& content, const char* more = "") {
-    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more,
-                       content);
-}
-
 double wrong_percent(const Figures& figures) {
     return 100 * std::ranges::find(figures.sets, "S", &SetFigures::set)->errors.wrong_share;
 }
@@ -44,13 +40,13 @@ std::string row_of(const Figures& figures, double x, double y) {
     const auto [colour, rival] = line_style_of(*figures.system);
     const double length = bar_length(wrong_percent(figures));
     const bool over = !figures.excess.empty();
-    std::string svg = text(x + kNames - 8, y + 13, "end", std::string(figures.system->title),
-                           rival ? "" : " font-weight=\"bold\"");
+    std::string svg = svg_text(x + kNames - 8, y + 13, "end", std::string(figures.system->title),
+                               rival ? "" : " font-weight=\"bold\"");
     if (length > 0)
         svg += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\" "
                            "fill-opacity=\"{}\" stroke=\"{}\"/>\n",
                            x + kNames, y + 3, length, kRow - 6, colour, over ? 0.25 : 1.0, colour);
-    return svg + text(x + kNames + length + 6, y + 13, "start", label_of(figures));
+    return svg + svg_text(x + kNames + length + 6, y + 13, "start", label_of(figures));
 }
 
 /// The grid behind the bars, with its percentages above.
@@ -61,16 +57,17 @@ std::string axis(double x, double top, double bottom) {
         svg += fmt::format("<line x1=\"{0:.1f}\" y1=\"{1:.1f}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" "
                            "stroke=\"#dddddd\"/>\n",
                            place, top, bottom);
-        svg += text(place, top - 5, "middle", fmt::format("{:g}", percent),
-                    " font-size=\"10\" fill=\"#666666\"");
+        svg += svg_text(place, top - 5, "middle", fmt::format("{:g}", percent),
+                        " font-size=\"10\" fill=\"#666666\"");
     }
     return svg;
 }
 
 std::string panel_of(const Model& model, double x, double y) {
-    std::string svg = text(x + kNames, y + 16, "start", model.name, " font-size=\"15\" font-weight=\"bold\"");
-    svg += text(x + kNames, y + 32, "start", fmt::format("{} faces; {}", model.result.face_count, model.what),
-                " fill=\"#666666\"");
+    std::string svg =
+        svg_text(x + kNames, y + 16, "start", model.name, " font-size=\"15\" font-weight=\"bold\"");
+    svg += svg_text(x + kNames, y + 32, "start",
+                    fmt::format("{} faces; {}", model.result.face_count, model.what), " fill=\"#666666\"");
     const double bottom = y + kHead + kRow * static_cast<double>(model.result.systems.size());
     svg += axis(x, y + kHead - 4, bottom);
     double row = y + kHead;
@@ -95,10 +92,10 @@ std::string verdict_figure(std::span<const Model> models, std::size_t byte_budge
         "font-family=\"sans-serif\" font-size=\"12\" fill=\"#222222\">\n"
         "<rect width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n",
         width, height);
-    svg += text(width / 2, 26, "middle",
-                fmt::format("Particles near the surface on the wrong side, %, each system in {:.2f} MB",
-                            1e-6 * static_cast<double>(byte_budget)),
-                " font-size=\"17\" font-weight=\"bold\"");
+    svg += svg_text(width / 2, 26, "middle",
+                    fmt::format("Particles near the surface on the wrong side, %, each system in {:.2f} MB",
+                                1e-6 * static_cast<double>(byte_budget)),
+                    " font-size=\"17\" font-weight=\"bold\"");
     for (std::size_t k = 0; k < models.size(); ++k)
         svg += panel_of(models[k], kPanel * static_cast<double>(k % kAcross),
                         kTitle + panel_height * static_cast<double>(k / kAcross));
