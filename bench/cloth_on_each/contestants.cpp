@@ -108,6 +108,9 @@ std::vector<Contestant> build_contestants(const TriangleMesh& mesh, double thick
     all.push_back(asked("exact map, contacts only", "asked like the others", exact_map(mesh)));
     all.push_back(distance("distance map", "200 x 200 directions, the paper's", spherical(200), mesh));
     all.push_back(distance("distance map, larger", "260 x 260 directions", spherical(260), mesh));
+    DistanceMapOptions ellipsoidal = spherical(260);
+    ellipsoidal.grid = DirectionGrid::Ellipsoidal;
+    all.push_back(distance("ellipsoidal map", "260 x 260 directions", ellipsoidal, mesh));
     DistanceMapOptions octahedral;
     octahedral.grid = DirectionGrid::Octahedral;
     octahedral.divisions = 135;

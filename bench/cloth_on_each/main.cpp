@@ -92,13 +92,16 @@ void write_text(const fs::path& path, const std::string& text) {
     if (!file.flush()) throw Error(ErrorCode::Unwritable, path.string() + ": cannot be written");
 }
 
-/// So that a picture can be drawn anew without minutes of simulation: a mesh for each, and what they are.
+/// So that a picture can be drawn anew without minutes of simulation: a mesh for each that ran to its end,
+/// and what they are.
 void write_runs(const fs::path& folder, const std::vector<Triangle>& faces,
                 const std::vector<Contestant>& contestants, const std::vector<Outcome>& outcomes) {
     std::string list;
+    std::size_t count = 0;
     for (std::size_t i = 0; i < outcomes.size(); ++i) {
+        if (contestants[i].only_timed) continue;
         const Outcome& outcome = outcomes[i];
-        write_mesh(folder / fmt::format("{}.ply", i), {outcome.positions, faces});
+        write_mesh(folder / fmt::format("{}.ply", count++), {outcome.positions, faces});
         list +=
             fmt::format("{}\n{} {}, {} inside\n", contestants[i].label,
                         outcome.rested ? "rest in frame" : "frame", outcome.frames, outcome.inside_at_end);

@@ -20,7 +20,7 @@ struct Outcome {
 
 /// Frames in which all are timed, and every how manieth frame has its pushes judged.
 struct RaceOptions {
-    std::uint32_t frame_limit = 1200; ///< five seconds
+    std::uint32_t frame_limit = 4000; ///< 17 seconds
     std::uint32_t first_timed = 180, timed_count = 100;
     std::uint32_t judged_step = 20;
     /// Called every hundred frames with what has come of it so far, and at the end.
