@@ -1,5 +1,6 @@
 #include "comparison_page.hpp"
 
+#include "base64.hpp"
 #include "comparison/columns.hpp"
 #include "comparison/curve_plots.hpp"
 #include "comparison/machine.hpp"
@@ -7,8 +8,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
-#include <span>
 #include <string_view>
 
 using namespace echinus;
@@ -40,19 +39,6 @@ tbody th { text-align: left; font-weight: 500; }
 svg { width: 100%; height: auto; margin: 1rem 0; border-radius: 8px; }
 .quiet { color: var(--quiet); }
 )";
-
-/// RFC 4648, section 4.
-std::string base64(std::span<const std::uint8_t> bytes) {
-    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-        std::uint32_t group = 0;
-        for (std::size_t k = 0; k < 3; ++k) group = group << 8U | (k < count ? bytes[i + k] : 0U);
-        for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kDigits[group >> (18 - 6 * k) & 63U] : '=';
-    }
-    return text;
-}
 
 bool starts_group(const std::vector<Column>& columns, std::size_t k) {
     return k == 0 || columns[k].group != columns[k - 1].group;

@@ -1,5 +1,6 @@
 #include "scene_model.hpp"
 
+#include "files/mapped_file.hpp"
 #include "input_file.hpp"
 
 #include <echinus/error.hpp>
@@ -14,12 +15,9 @@ namespace {
 
 struct MeshOfModel {
     const fs::path& scene_path;
-    const std::vector<fs::path>& folders;
+    const std::optional<fs::path>& file;
 
-    TriangleMesh operator()(const ModelFile& file) const {
-        return read_mesh(naming_file(scene_path.string(), ErrorCode::Unreadable,
-                                     [&] { return find_model(file, folders); }));
-    }
+    TriangleMesh operator()(const ModelFile&) const { return read_mesh(file.value()); }
     TriangleMesh operator()(const auto& shape) const {
         try {
             return make_mesh(shape);
@@ -27,6 +25,13 @@ struct MeshOfModel {
             throw Error(ErrorCode::InvalidScene, scene_path.string() + ": \"model\": " + error.what());
         }
     }
+};
+
+struct NameOfModel {
+    std::string operator()(const ModelFile& file) const { return fs::path(file.name).filename().string(); }
+    std::string operator()(const TorusModel&) const { return "torus"; }
+    std::string operator()(const SphereModel&) const { return "sphere"; }
+    std::string operator()(const BoxModel&) const { return "box"; }
 };
 
 /// The push-out needs an inside; a hole would let cloth through, and the judge could not tell.
@@ -43,11 +48,31 @@ void require_closed(const TriangleMesh& mesh, const fs::path& scene_path) {
 
 } // namespace
 
-RepairedMesh load_model(const Scene& scene, const fs::path& scene_path, std::vector<fs::path> folders) {
+std::string model_name(const Scene& scene) {
+    return std::visit(NameOfModel{}, scene.model);
+}
+
+std::string notice_beside(const fs::path& model_file) {
+    const fs::path path = model_file.parent_path() / "NOTICE";
+    std::error_code ignored;
+    if (!fs::is_regular_file(path, ignored)) return {};
+    const MappedFile notice(path);
+    return {reinterpret_cast<const char*>(notice.bytes().data()), notice.bytes().size()};
+}
+
+std::optional<fs::path> model_file(const Scene& scene, const fs::path& scene_path,
+                                   std::vector<fs::path> folders) {
+    const auto* file = std::get_if<ModelFile>(&scene.model);
+    if (file == nullptr) return std::nullopt;
     folders.push_back(scene_path.parent_path().empty() ? "." : scene_path.parent_path());
     folders.push_back(scene_path.parent_path() / ".." / "models");
     folders.emplace_back("models");
-    RepairedMesh model = repair(std::visit(MeshOfModel{scene_path, folders}, scene.model), scene.repair);
+    return naming_file(scene_path.string(), ErrorCode::Unreadable,
+                       [&] { return find_model(*file, folders); });
+}
+
+RepairedMesh load_model(const Scene& scene, const fs::path& scene_path, const std::optional<fs::path>& file) {
+    RepairedMesh model = repair(std::visit(MeshOfModel{scene_path, file}, scene.model), scene.repair);
     require_closed(model.mesh, scene_path);
     return model;
 }

@@ -2,6 +2,7 @@
 #include "input_file.hpp"
 #include "output.hpp"
 #include "output_folder.hpp"
+#include "player_page.hpp"
 #include "point_cache.hpp"
 #include "progress.hpp"
 #include "scene_model.hpp"
@@ -25,62 +26,91 @@ constexpr const char* kFramesName = "frames";
 
 struct SimulateArguments {
     fs::path scene;
-    fs::path target;
+    fs::path target; ///< folder; empty: none
+    fs::path page;   ///< empty: none
+    fs::path player; ///< empty: the installed one
     std::vector<fs::path> model_folders;
     std::optional<std::uint32_t> frame_limit;
-    std::uint32_t frames_per_sample = 1;
+    std::optional<std::uint32_t> stride;
     unsigned thread_count = 0;
     bool obj = false;
     bool json = false;
 };
 
-/// The positions of the cloth in every saved frame: one point cache, or one OBJ for each.
-class Samples {
+/// The folder that is written, with the positions of the cloth in every saved frame: one point cache, or one
+/// OBJ for each.
+class ResultFolder {
   public:
-    Samples(const OutputFolder& folder, const Deformable& cloth, const SimulateArguments& arguments)
-        : frames_(folder.path_of(kFramesName)) {
-        if (arguments.obj) {
-            fs::create_directory(frames_);
+    ResultFolder(const fs::path& target, bool obj) : folder_(target), obj_(obj) {}
+
+    void begin(const Deformable& cloth, const TriangleMesh& collider, std::uint32_t stride) {
+        write_mesh(folder_.path_of("cloth.obj"), {cloth.positions, cloth.faces});
+        write_mesh(folder_.path_of("collider.obj"), collider);
+        if (obj_) {
+            fs::create_directory(folder_.path_of(kFramesName));
         } else {
-            cache_.emplace(folder.path_of(kCacheName), cloth.particle_count(), arguments.frames_per_sample);
+            cache_.emplace(folder_.path_of(kCacheName), cloth.particle_count(), stride);
         }
     }
-
     void add(const Simulation& simulation) {
         if (cache_) return cache_->add(simulation.positions());
         const Deformable& cloth = simulation.deformable();
-        write_mesh(frames_ / fmt::format("cloth_{:06}.obj", simulation.frame()),
+        write_mesh(folder_.path_of(kFramesName) / fmt::format("cloth_{:06}.obj", simulation.frame()),
                    {cloth.positions, cloth.faces});
     }
-    void commit() {
+    void commit(const nlohmann::ordered_json& report) {
         if (cache_) cache_->commit();
+        constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
+        write_file(folder_.path_of("report.json"), report.dump(2, ' ', false, kReplace) + "\n");
+        folder_.commit();
+        folder_.remove_old(obj_ ? kCacheName : kFramesName);
     }
 
   private:
-    fs::path frames_;
+    OutputFolder folder_;
+    bool obj_;
     std::optional<PointCacheWriter> cache_;
 };
 
-/// Steps until the cloth rests or the frame limit is reached, saving every so many frames; stops only after a
-/// frame that was saved, so that the last sample is the end.
-std::vector<SavedPose> run(Simulation& simulation, Samples& samples, std::uint32_t frame_limit,
-                           std::uint32_t frames_per_sample) {
+/// The page that is written. Made before the work, so that what is missing is missed at once.
+struct Page {
+    Page(const fs::path& target, const fs::path& player_path) : player(player_path), output(target) {}
+
+    Player player;
+    Output output;
+    std::optional<Recording> recording;
+};
+
+/// Where a simulation goes to: either, or both.
+struct Results {
+    std::optional<ResultFolder> folder;
+    std::optional<Page> page;
+
+    /// To be called at the start and after each step.
+    void watch(const Simulation& simulation, std::uint32_t stride) {
+        if (folder && simulation.frame() % stride == 0) folder->add(simulation);
+        if (page) page->recording->watch(simulation);
+    }
+};
+
+/// Steps until the cloth rests or the frame limit is reached; stops only after a frame that was saved, so
+/// that the last sample is the end.
+std::vector<SavedPose> run(Simulation& simulation, Results& results, std::uint32_t frame_limit,
+                           std::uint32_t stride) {
     ProgressBar progress("simulating");
     const Collider& collider = simulation.colliders().front();
     std::vector<SavedPose> poses{{0, collider.pose}};
-    samples.add(simulation);
+    results.watch(simulation, stride);
     while (simulation.frame() < frame_limit && !simulation.at_rest()) {
-        for (std::uint32_t i = 0; i < frames_per_sample; ++i) simulation.step();
-        samples.add(simulation);
+        for (std::uint32_t i = 0; i < stride; ++i) {
+            simulation.step();
+            results.watch(simulation, stride);
+        }
         if (collider.moves()) poses.push_back({simulation.frame(), collider.pose});
         progress(static_cast<double>(simulation.frame()) / frame_limit);
     }
+    if (results.page) results.page->recording->finish(simulation);
     return poses;
-}
-
-void write_report(const fs::path& path, const nlohmann::ordered_json& report) {
-    constexpr auto kReplace = nlohmann::ordered_json::error_handler_t::replace;
-    write_file(path, report.dump(2, ' ', false, kReplace) + "\n");
 }
 
 /// What is wrong with the options of a scene's map is wrong with the scene.
@@ -93,41 +123,70 @@ AnyMap map_of_scene(const Scene& scene, const TriangleMesh& mesh, const Simulate
     }
 }
 
+/// The exact map of the model, which judges the frames of a page: that of the scene, or its own.
+ExactMap judge_of(const AnyMap& map, const TriangleMesh& mesh, unsigned thread_count) {
+    if (const auto* exact = std::get_if<ExactMap>(&map)) return *exact;
+    return ExactMap::build(mesh, {.thread_count = thread_count});
+}
+
+void require_target(const SimulateArguments& arguments) {
+    if (arguments.target.empty() && arguments.page.empty())
+        throw CLI::ValidationError("simulate", "needs -o DIR, --html FILE, or both");
+    if (arguments.target.empty() && arguments.obj)
+        throw CLI::ValidationError("--obj", "is about the files in a folder, so it needs -o DIR");
+    require_one_result(arguments.page, arguments.json);
+}
+
 void simulate(const SimulateArguments& arguments) {
+    require_target(arguments);
     Scene scene = read_scene(arguments.scene);
     if (arguments.frame_limit) scene.frame_limit = *arguments.frame_limit;
-    OutputFolder folder(arguments.target);
-    const RepairedMesh model = load_model(scene, arguments.scene, arguments.model_folders);
-    Simulation simulation = make_simulation(scene, map_of_scene(scene, model.mesh, arguments));
-    const Deformable& cloth = simulation.deformable();
-    write_mesh(folder.path_of("cloth.obj"), {cloth.positions, cloth.faces});
-    write_mesh(folder.path_of("collider.obj"), scaled(model.mesh, scene.scale));
-
-    Samples samples(folder, cloth, arguments);
-    std::vector<SavedPose> poses = naming_file(arguments.scene.string(), ErrorCode::Diverged, [&] {
-        return run(simulation, samples, scene.frame_limit, arguments.frames_per_sample);
-    });
-    samples.commit();
-
-    const Collider& collider = simulation.colliders().front();
-    const std::string scene_name = arguments.scene.string();
-    const MeshReport model_report = inspect(model.mesh);
-    const SimulationResult result{
-        .scene_name = scene_name,
-        .simulation = simulation,
-        .model = model_report,
-        .collider_radius = inspect(scaled(model.mesh, scene.scale)).bounding_sphere.radius,
-        .verdict = judge(simulation.positions(), model.mesh, collider, arguments.thread_count),
-        .poses = std::move(poses)};
-    const nlohmann::ordered_json report = to_json(result);
-    write_report(folder.path_of("report.json"), report);
-    folder.commit();
-    folder.remove_old(arguments.obj ? kCacheName : kFramesName);
-    if (arguments.json) {
-        print_json(report);
-    } else {
-        print(to_text(result));
+    const std::uint32_t stride = arguments.stride.value_or(1);
+    const std::uint32_t page_stride =
+        arguments.stride.value_or(stride_for_display(scene.simulation.time_step));
+    Results results;
+    if (!arguments.target.empty()) results.folder.emplace(arguments.target, arguments.obj);
+    if (!arguments.page.empty()) {
+        require_playable(std::size_t{scene.cloth.column_count} * scene.cloth.row_count, scene.frame_limit,
+                         page_stride);
+        results.page.emplace(arguments.page, arguments.player);
     }
+
+    const std::optional<fs::path> file = model_file(scene, arguments.scene, arguments.model_folders);
+    const TriangleMesh mesh = load_model(scene, arguments.scene, file).mesh;
+    const AnyMap map = map_of_scene(scene, mesh, arguments);
+    Simulation simulation = make_simulation(scene, map);
+    const TriangleMesh collider_mesh = scaled(mesh, scene.scale);
+    if (results.folder) results.folder->begin(simulation.deformable(), collider_mesh, stride);
+    if (results.page)
+        results.page->recording.emplace(judge_of(map, mesh, arguments.thread_count), page_stride);
+    std::vector<SavedPose> poses = naming_file(arguments.scene.string(), ErrorCode::Diverged, [&] {
+        return run(simulation, results, scene.frame_limit, stride);
+    });
+
+    const std::string scene_name = arguments.scene.string();
+    const MeshReport model_report = inspect(mesh);
+    const SimulationResult result{.scene_name = scene_name,
+                                  .simulation = simulation,
+                                  .model = model_report,
+                                  .collider_radius = inspect(collider_mesh).bounding_sphere.radius,
+                                  .verdict = judge(simulation.positions(), mesh,
+                                                   simulation.colliders().front(), arguments.thread_count),
+                                  .poses = std::move(poses)};
+    const nlohmann::ordered_json report = to_json(result);
+    if (results.page)
+        write_player_page(results.page->output, results.page->player,
+                          {.result = result,
+                           .recording = *results.page->recording,
+                           .scene_name = arguments.scene.filename().string(),
+                           .model_name = model_name(scene),
+                           .notice = file ? notice_beside(*file) : "",
+                           .collider = collider_mesh});
+    if (results.folder) results.folder->commit(report);
+    if (arguments.json)
+        print_json(report);
+    else if (arguments.page != kStandardStream)
+        print(to_text(result));
 }
 
 void add_options(CLI::App& command, SimulateArguments& arguments) {
@@ -135,8 +194,19 @@ void add_options(CLI::App& command, SimulateArguments& arguments) {
     command
         .add_option("-o,--output", arguments.target,
                     "Folder for cloth.obj, cloth.pc2, collider.obj and report.json")
-        ->required()
         ->type_name("DIR");
+    const auto not_empty = [](const std::string& path) { return path.empty() ? "must name a file" : ""; };
+    command
+        .add_option("--html", arguments.page,
+                    "Write a page that plays the simulation, complete in one file, or -")
+        ->check(not_empty)
+        ->type_name("FILE");
+    command
+        .add_option(
+            "--player", arguments.player,
+            "The player that the page is made of, as scripts/web builds it; without it the installed one")
+        ->check(not_empty)
+        ->type_name("FILE");
     command
         .add_option(
             "--models", arguments.model_folders,
@@ -145,10 +215,11 @@ void add_options(CLI::App& command, SimulateArguments& arguments) {
     command.add_option("--frames", arguments.frame_limit, "Frame limit in place of the scene's")
         ->check(CLI::Range(1U, 1'000'000'000U))
         ->type_name("COUNT");
-    command.add_option("--every", arguments.frames_per_sample, "Save every so many frames")
+    command
+        .add_option("--every", arguments.stride,
+                    "Save every so many frames; without it all in a folder, and 60 per second in a page")
         ->check(CLI::Range(1U, 1'000'000U))
-        ->type_name("COUNT")
-        ->capture_default_str();
+        ->type_name("COUNT");
     command
         .add_option("--threads", arguments.thread_count,
                     "Threads to build the map and judge the end on; 0: all cores. The simulation runs on one")
@@ -165,6 +236,7 @@ void add_simulate_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("simulate", "Let a cloth fall on a model, until it rests");
     const auto arguments = std::make_shared<SimulateArguments>();
     add_options(*command, *arguments);
-    command->footer("Example:\n  echinus simulate scenes/horse.json -o out/horse");
+    command->footer("Examples:\n  echinus simulate scenes/horse.json -o out/horse\n"
+                    "  echinus simulate scenes/horse.json --html horse.html");
     command->callback([arguments] { simulate(*arguments); });
 }

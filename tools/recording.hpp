@@ -1,0 +1,47 @@
+#pragma once
+
+#include <echinus/exact_map.hpp>
+#include <echinus/simulation.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+/// A frame that was recorded.
+struct RecordedFrame {
+    std::uint32_t number;
+    std::vector<echinus::Vec3f> positions; ///< [particle_count] of the cloth, in the world
+    echinus::RigidTransform pose;          ///< of the collider
+    std::size_t inside_count;              ///< particles inside the model, by its exact map
+};
+
+/// What a page plays: a simulation's cloth and collider in some of its frames, the first and the last among
+/// them.
+class Recording {
+  public:
+    /// @param model   an exact map of the collider's mesh, which judges the particles whatever map moves them
+    /// @param stride  every so many frames, at least 1
+    Recording(echinus::ExactMap model, std::uint32_t stride) : model_(std::move(model)), stride_(stride) {}
+
+    /// Records the frame if it is due. To be called at the start and after each step.
+    void watch(const echinus::Simulation& simulation);
+    /// Records the last frame, due or not.
+    void finish(const echinus::Simulation& simulation);
+
+    const std::vector<RecordedFrame>& frames() const { return frames_; }
+
+  private:
+    void add(const echinus::Simulation& simulation);
+
+    echinus::ExactMap model_;
+    std::uint32_t stride_;
+    std::vector<RecordedFrame> frames_;
+};
+
+/// The least stride at which a recording has at most 60 frames per second of simulated time.
+std::uint32_t stride_for_display(double time_step);
+
+/// @param frame_limit  frames that the simulation may take
+/// @throws echinus::Error InvalidOptions when that could be more than a browser holds; the sentence names the
+/// stride that helps
+void require_playable(std::size_t particle_count, std::uint32_t frame_limit, std::uint32_t stride);
