@@ -1,7 +1,9 @@
 /** The page: brings the panel, the pictures and the worker together. */
 import type { Raycaster } from 'three';
 import type { Client } from './client';
+import { enableFiles } from './files';
 import { Controls } from './panel/controls';
+import { fillDepthLegend } from './panel/depth_legend';
 import { byId } from './panel/elements';
 import { FigureStrip } from './panel/figures';
 import { showLegend, showMapFigures, showRay } from './panel/map_figures';
@@ -9,7 +11,7 @@ import { beQuiet, enableClosing, say } from './panel/notice';
 import { count } from './panel/numbers';
 import { showReport } from './panel/report';
 import { enablePointer } from './pointer';
-import type { FromWorker, MapNews, ModelNews, Triple } from './protocol';
+import type { FromWorker, MapNews, ModelNews, SurfaceNews, Triple } from './protocol';
 import { objText, saveAs } from './saving';
 import { SAMPLES, type Settings, fromLink, toLink } from './settings';
 import { ClothView } from './view/cloth_view';
@@ -23,9 +25,17 @@ const FRAMES_UNDER_WAY = 2;
 /** How long the hint stays. */
 const HINT_MS = 12_000;
 
+interface OpenFile {
+    name: string;
+    bytes: ArrayBuffer;
+}
+
 class App {
     #settings: Settings = fromLink(location.hash);
-    #file: { name: string; bytes: ArrayBuffer } | undefined;
+    /** What is open, or being opened, in the place of a sample. */
+    #file: OpenFile | undefined;
+    /** What the model on show comes from. */
+    #shownFile: OpenFile | undefined;
     #model: ModelNews | undefined;
     #paused = false;
     /** The number of the cloth on show; frames of earlier ones are dropped. */
@@ -48,21 +58,29 @@ class App {
         this.#controls = new Controls(this.#settings, (settings, key) => this.#change(settings, key));
         this.#bindButtons();
         this.#bindKeys();
-        this.#bindFiles();
+        enableFiles((file) => void this.#openFile(file));
         this.#bindPointer();
         enableClosing();
+        fillDepthLegend();
         setTimeout(() => byId('hint').classList.add('seen'), HINT_MS);
         // A link that is followed while the page is open.
         addEventListener('hashchange', () => {
             const settings = fromLink(location.hash);
             if (toLink(settings) === toLink(this.#settings)) return;
             this.#settings = settings;
+            this.#inView = '';
             this.#controls.show(settings);
             this.#showView();
+            this.#showColours();
             this.#open();
         });
+        this.#stage.onArrival = () => {
+            const camera = this.#stage.standpoint;
+            if (camera !== this.#settings.camera) this.#setLink({ ...this.#settings, camera });
+        };
         client.listen((message) => this.#hear(message));
         this.#showView();
+        this.#showColours();
         this.#open();
         this.#stage.renderer.setAnimationLoop(() => this.#draw());
     }
@@ -86,14 +104,18 @@ class App {
                 ++this.#cloth;
                 this.#arrived = [];
                 this.#clothView.begin(message.faces);
-                this.#clothView.byDistance = this.#settings.colour === 'distance';
+                this.#clothView.byDepth = this.#settings.colour === 'depth';
                 return;
             case 'frame':
                 this.#framesAsked = Math.max(0, this.#framesAsked - 1);
                 if (message.cloth === this.#cloth) this.#arrived.push(message);
                 return;
             case 'surface':
-                return showLegend(message, this.#mapView.showSurface(message));
+                this.#surface = message;
+                this.#mapView.showSurface(message);
+                return this.#showSurface();
+            case 'map':
+                return this.#useMap(message.map);
             case 'rebuilt':
                 return this.#showMap(message.map);
             case 'cut':
@@ -102,57 +124,80 @@ class App {
                 this.#rayAsked = false;
                 this.#mapView.showRay(message);
                 return showRay(message, this.#model!.radius);
+            case 'missed':
+                this.#rayAsked = false;
+                return;
             case 'failed':
                 return this.#fail(message);
         }
     }
 
-    #fail({ sentence, code }: FromWorker & { kind: 'failed' }): void {
+    #fail({ sentence, code, settings }: FromWorker & { kind: 'failed' }): void {
         say(sentence);
         this.#rayAsked = false;
         this.#framesAsked = 0;
         if (code === 'Diverged') this.#pause(true);
-        if (code === 'Crashed') {
-            // What has brought it down stays away: the page goes on with a sample, unless that is what did.
-            const wasWell = this.#model !== undefined;
-            this.#model = undefined;
-            this.#file = undefined;
-            this.#fileOpening = false;
-            this.#controls.forgetFile();
-            this.#controls.show(this.#settings);
-            this.#client.restart();
-            this.#cloth = 0;
-            if (wasWell) this.#open();
-            return;
-        }
-        if (this.#model) {
-            this.#showTitle(this.#model);
-            if (this.#fileOpening) this.#file = this.#fileBefore;
-        }
-        this.#fileOpening = false;
+        if (code === 'Crashed') return this.#beginAgain();
+        if (settings) this.#takeBack(settings);
     }
-    #fileOpening = false;
-    #fileBefore: { name: string; bytes: ArrayBuffer } | undefined;
+
+    /** What has brought the module down stays away: the page goes on with a sample, unless that is what did. */
+    #beginAgain(): void {
+        const wasWell = this.#model !== undefined;
+        this.#model = undefined;
+        this.#file = undefined;
+        this.#shownFile = undefined;
+        this.#controls.showFile(undefined);
+        this.#controls.show(this.#settings);
+        this.#client.restart();
+        this.#cloth = 0;
+        if (wasWell) this.#open();
+    }
+
+    /** What was refused is not shown as if it held. @param inForce  what the worker goes by */
+    #takeBack(inForce: Settings): void {
+        const { view, shown, slice, camera } = this.#settings; // the page's own
+        this.#file = this.#shownFile;
+        this.#controls.showFile(this.#file?.name);
+        this.#setLink({ ...inForce, view, shown, slice, camera });
+        this.#controls.show(this.#settings);
+        this.#showColours();
+        if (this.#model) this.#showTitle(this.#model);
+    }
 
     #showModel(model: ModelNews): void {
-        const another = model.name !== this.#model?.name || model.up !== this.#model.up || model.radius !== this.#model.radius;
+        // A file that is still being opened is not this one.
+        if (!this.#file || this.#file.name === model.name) this.#shownFile = this.#file;
+        if (this.#file && this.#shownFile === this.#file) beQuiet();
+        this.#controls.showFile(this.#shownFile?.name);
         this.#model = model;
-        if (this.#fileOpening) {
-            beQuiet();
-            this.#controls.showFile(model.name);
-        }
-        this.#fileOpening = false;
         this.#modelView.show(model);
         this.#mapView.begin(model);
-        if (another) this.#stage.lookAt(model.centre, model.radius, model.up);
+        this.#pointCamera(model);
         this.#showTitle(model);
         showReport(model);
-        this.#showMap(model.map);
+        this.#useMap(model.map);
+        byId('horse-notice').hidden = !SAMPLES.includes('horse');
+    }
+
+    /** The same model again, for instance mended, is looked at from where one stands. */
+    #pointCamera({ name, centre, radius, up }: ModelNews): void {
+        const inView = JSON.stringify([name, centre, radius, up]);
+        if (inView === this.#inView) return;
+        this.#inView = inView;
+        this.#stage.lookAt(centre, radius, up);
+        if (this.#settings.camera) this.#stage.standpoint = this.#settings.camera;
+    }
+    #inView = '';
+
+    #useMap(map: MapNews): void {
+        this.#showMap(map);
         byId('map-note').textContent =
-            model.map.kind === 'exact'
+            map.kind === 'exact'
                 ? 'Out by the shortest way. Nothing gets through: every step is proved.'
                 : 'Out along the ray from the centre, as in the paper: watch the cloth creep along a leg.';
-        byId('horse-notice').hidden = !SAMPLES.includes('horse');
+        document.body.classList.toggle('map-exact', map.kind === 'exact');
+        document.body.classList.toggle('map-distance', map.kind === 'distance');
         if (this.#settings.view === 'map') this.#askForMap();
     }
 
@@ -189,7 +234,7 @@ class App {
         if (this.#settings.view === 'cloth' && this.#model)
             while (this.#framesAsked < FRAMES_UNDER_WAY && this.#arrived.length === 0) {
                 ++this.#framesAsked;
-                this.#client.tell({ kind: 'frame', ...(spare && { arrays: spare }) }, spare ? [spare.positions.buffer, spare.normals.buffer, spare.closeness.buffer] : []);
+                this.#client.tell({ kind: 'frame', ...(spare && { arrays: spare }) }, spare ? [spare.positions.buffer, spare.normals.buffer, spare.depths.buffer] : []);
                 spare = undefined;
             }
         this.#stage.draw();
@@ -200,16 +245,43 @@ class App {
 
     #change(settings: Settings, key: keyof Settings): void {
         const before = this.#settings;
-        this.#settings = settings;
-        history.replaceState(null, '', `#${toLink(settings)}`);
+        if (key === 'model' || key === 'up') settings = { ...settings, camera: '' };
+        this.#setLink(settings);
         if (key === 'model') this.#file = undefined;
-        if (key === 'view') return this.#showView();
-        if (key === 'slice') return this.#client.tell({ kind: 'slice', height: settings.slice });
-        if (key === 'model' || key === 'mend' || key === 'up') return this.#open();
-        this.#clothView.byDistance = settings.colour === 'distance';
+        switch (key) {
+            case 'view':
+                return this.#showView();
+            case 'slice':
+                return this.#client.tell({ kind: 'slice', height: settings.slice });
+            case 'shown':
+                return this.#showSurface();
+            case 'model':
+            case 'mend':
+            case 'up':
+                return this.#open();
+        }
+        this.#showColours();
         this.#client.tell({ kind: 'change', settings });
         if (before.particles !== settings.particles) this.#pause(false);
     }
+
+    #setLink(settings: Settings): void {
+        this.#settings = settings;
+        history.replaceState(null, '', `#${toLink(settings)}`);
+    }
+
+    #showColours(): void {
+        const byDepth = this.#settings.colour === 'depth';
+        this.#clothView.byDepth = byDepth;
+        byId('depth-legend').hidden = !byDepth;
+    }
+
+    #showSurface(): void {
+        if (!this.#surface) return;
+        this.#mapView.shown = this.#settings.shown;
+        showLegend(this.#surface, this.#settings.shown);
+    }
+    #surface: SurfaceNews | undefined;
 
     #showView(): void {
         const map = this.#settings.view === 'map';
@@ -236,9 +308,15 @@ class App {
         this.#pause(false);
     }
     #switchView(): void {
-        const settings: Settings = { ...this.#settings, view: this.#settings.view === 'map' ? 'cloth' : 'map' };
+        this.#choose('view', this.#settings.view === 'map' ? 'cloth' : 'map');
+    }
+    #switchMap(): void {
+        this.#choose('map', this.#settings.map === 'exact' ? 'distance' : 'exact');
+    }
+    #choose<K extends keyof Settings>(key: K, value: Settings[K]): void {
+        const settings = { ...this.#settings, [key]: value };
         this.#controls.show(settings);
-        this.#change(settings, 'view');
+        this.#change(settings, key);
     }
 
     #bindButtons(): void {
@@ -260,6 +338,7 @@ class App {
             s: () => this.#step(),
             r: () => this.#restart(),
             m: () => this.#switchView(),
+            x: () => this.#switchMap(),
             p: () => void this.#savePicture(),
         };
         addEventListener('keydown', (event) => {
@@ -274,35 +353,14 @@ class App {
         });
     }
 
-    #bindFiles(): void {
-        const openFile = async (file: File) => {
-            this.#fileBefore = this.#file;
-            try {
-                this.#file = { name: file.name, bytes: await file.arrayBuffer() };
-            } catch {
-                return say(`${file.name}: the browser cannot read this file`);
-            }
-            this.#fileOpening = true;
-            this.#open();
-        };
-        const input = byId<HTMLInputElement>('file');
-        input.addEventListener('change', () => {
-            const [file] = input.files ?? [];
-            if (file) void openFile(file);
-            input.value = ''; // so that the same file can be chosen again
-        });
-        const stage = byId('drop');
-        addEventListener('dragover', (event) => {
-            event.preventDefault();
-            stage.hidden = false;
-        });
-        addEventListener('dragleave', (event) => (stage.hidden = event.relatedTarget === null ? true : stage.hidden));
-        addEventListener('drop', (event) => {
-            event.preventDefault();
-            stage.hidden = true;
-            const [file] = event.dataTransfer?.files ?? [];
-            if (file) void openFile(file);
-        });
+    async #openFile(file: File): Promise<void> {
+        try {
+            this.#file = { name: file.name, bytes: await file.arrayBuffer() };
+        } catch {
+            return say(`${file.name}: the browser cannot read this file`);
+        }
+        this.#settings = { ...this.#settings, camera: '' };
+        this.#open();
     }
 
     #bindPointer(): void {
@@ -322,11 +380,12 @@ class App {
     /** The ray of the map through what the pointer points at. One question at a time, or a slow one makes a queue. */
     #lookUnder(ray: Raycaster): void {
         if (this.#settings.view !== 'map' || this.#rayAsked || !this.#model) return;
-        const hit = this.#mapView.pick(ray);
-        if (!hit) return;
-        const [x, y, z] = this.#model.centre;
+        const way = this.#mapView.wayOf(ray);
+        if (!way) return;
+        const { centre } = this.#model;
         this.#rayAsked = true;
-        this.#client.tell({ kind: 'ray', direction: [hit.x - x, hit.y - y, hit.z - z] });
+        if (this.#mapView.showsCells) this.#client.tell({ kind: 'ray', direction: [0, 1, 2].map((k) => way.from[k] - centre[k]) as Triple });
+        else this.#client.tell({ kind: 'point', ...way });
     }
 
     // ---- To keep

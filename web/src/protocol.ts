@@ -18,7 +18,10 @@ export type ToWorker =
     | { kind: 'grab'; particle: number; target: Triple }
     | { kind: 'drag'; target: Triple }
     | { kind: 'release' }
+    /** The map along a ray from its centre. */
     | { kind: 'ray'; direction: Triple }
+    /** The same, through the first point of the surface on a straight way. */
+    | { kind: 'point'; from: Triple; to: Triple }
     | { kind: 'surface' }
     /** The map in use once more, for its time alone. */
     | { kind: 'rebuild' }
@@ -29,18 +32,23 @@ export type FromWorker =
     | { kind: 'cloth'; faces: Uint32Array; columns: number; rows: number }
     | { kind: 'frame'; arrays: FrameArrays; figures: Figures; collider: ColliderState; cloth: number }
     | ({ kind: 'surface' } & SurfaceNews)
+    /** Another map is in use. */
+    | { kind: 'map'; map: MapNews }
     | { kind: 'rebuilt'; map: MapNews }
     | { kind: 'ray'; crossings: number[]; intervals: RayInterval[]; direction: Triple; outline: Triple[]; bands: [number, number][] }
+    /** There is no surface on the way. */
+    | { kind: 'missed' }
     | ({ kind: 'cut' } & Cut)
-    | { kind: 'failed'; sentence: string; code: string };
+    /** With the settings that are in force, once there is a model. */
+    | { kind: 'failed'; sentence: string; code: string; settings?: Settings };
 
 export interface FrameArrays {
     /** [3 particles] */
     positions: Float32Array<ArrayBuffer>;
     /** [3 particles] */
     normals: Float32Array<ArrayBuffer>;
-    /** [particles] 1 on the surface of the model, falling to 0 at some thicknesses from it. */
-    closeness: Float32Array<ArrayBuffer>;
+    /** [particles] depth of contact (depth.ts of the worker), where colours ask for it. */
+    depths: Float32Array<ArrayBuffer>;
 }
 
 export interface ModelNews {
@@ -74,6 +82,8 @@ export interface SurfaceNews {
     /** [3 n] points at which the paper's map and the exact map differ, of sampleCount in the bounding sphere. */
     disagreements: Float32Array;
     sampleCount: number;
+    /** Of an exact map: for each cell the faces in all its lists, and unit vectors to its three corners. */
+    cells?: { faceCounts: Uint32Array; corners: Float32Array };
 }
 
 /** A plane across the model, and what the map says at its points. */

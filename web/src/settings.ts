@@ -1,8 +1,15 @@
+import * as standpoint from './standpoint';
+
 /** All that a visitor can choose. A link holds it, the panel shows it, the worker obeys it. */
 export interface Settings {
     model: Sample;
     view: 'cloth' | 'map';
     map: 'exact' | 'distance';
+    /** Exact map: cells per octant of directions; 'auto' goes by the mesh. */
+    cells: (typeof CELLS)[number];
+    /** The paper's map: how directions are divided, and into about how many. */
+    grid: (typeof GRIDS)[number];
+    directions: number;
     /** Of the cloth; rounded to a square number. */
     particles: number;
     friction: number;
@@ -15,13 +22,19 @@ export interface Settings {
     up: 'auto' | Axis;
     /** Mend what Mesh.repair() can mend, before the map is built. */
     mend: boolean;
-    colour: 'fabric' | 'distance';
+    colour: 'fabric' | 'depth';
+    /** What the view of the map has in colours. */
+    shown: 'surface' | 'cells';
     /** Where the map is cut open, along the view's up axis: -1 to 1 radii. 1 leaves it whole. */
     slice: number;
+    /** Where the camera stands (standpoint.ts); '' is where the page puts it. */
+    camera: string;
 }
 
 export type Sample = 'horse' | 'torus' | 'sphere';
 export type Axis = 'x' | 'y' | 'z';
+export const CELLS = ['auto', '16', '64', '256', '1024', '4096', '16384', '65536'] as const;
+const GRIDS = ['spherical', 'octahedral', 'cube', 'ellipsoidal'] as const;
 
 export const SAMPLES: readonly Sample[] = HAS_HORSE ? ['horse', 'torus', 'sphere'] : ['torus', 'sphere'];
 
@@ -29,6 +42,9 @@ export const DEFAULTS: Readonly<Settings> = {
     model: SAMPLES[0],
     view: 'cloth',
     map: 'exact',
+    cells: 'auto',
+    grid: 'spherical',
+    directions: 40_000,
     particles: 10_000,
     friction: 0.5,
     thickness: 1,
@@ -37,19 +53,25 @@ export const DEFAULTS: Readonly<Settings> = {
     up: 'auto',
     mend: true,
     colour: 'fabric',
+    shown: 'surface',
     slice: 1,
+    camera: '',
 };
 
 const CHOICES: { [K in keyof Settings]?: readonly Settings[K][] } = {
     model: SAMPLES,
     view: ['cloth', 'map'],
     map: ['exact', 'distance'],
+    cells: CELLS,
+    grid: GRIDS,
     motion: ['still', 'turning', 'swinging'],
     up: ['auto', 'x', 'y', 'z'],
-    colour: ['fabric', 'distance'],
+    colour: ['fabric', 'depth'],
+    shown: ['surface', 'cells'],
 };
 
 export const RANGES = {
+    directions: [400, 640_000],
     particles: [100, 100_000],
     friction: [0, 1.5],
     thickness: [0.2, 5],
@@ -75,6 +97,7 @@ export function fromLink(hash: string): Settings {
         if (choices?.includes(text)) settings[key] = text;
         else if (range && text !== '' && Number.isFinite(Number(text))) settings[key] = Math.min(range[1], Math.max(range[0], Number(text)));
         else if (key === 'mend') settings[key] = text !== 'false';
+        else if (key === 'camera' && standpoint.fromText(text)) settings[key] = text;
     }
     return settings as unknown as Settings;
 }

@@ -1,4 +1,4 @@
-import { DEFAULTS, RANGES, SAMPLES, type Settings } from '../settings';
+import { CELLS, DEFAULTS, RANGES, SAMPLES, type Settings } from '../settings';
 import { byId } from './elements';
 import { count } from './numbers';
 
@@ -14,16 +14,20 @@ export class Controls {
     constructor(settings: Settings, changed: (settings: Settings, key: keyof Settings) => void) {
         const model = byId('panel').querySelector<HTMLSelectElement>('select[name=model]')!;
         model.append(...SAMPLES.map((name) => new Option(name[0].toUpperCase() + name.slice(1), name)));
+        byId('panel').querySelector<HTMLSelectElement>('select[name=cells]')!.append(...CELLS.map((cells) => new Option(cells === 'auto' ? 'by the mesh' : count(Number(cells)), cells)));
         this.#inputs = [...byId('panel').querySelectorAll<Control>('[name]')];
         this.#settings = settings;
         for (const input of this.#inputs)
-            input.addEventListener('input', () => {
-                const key = input.name as keyof Settings;
-                if (key === 'model') this.forgetFile();
-                this.show({ ...this.#settings, [key]: valueOf(input, key) });
-                changed(this.#settings, key);
-            });
+            input.addEventListener('input', () => this.#follow(input));
+        for (const input of this.#inputs)
+            input.addEventListener(input.dataset.event ?? 'input', () => changed(this.#settings, input.name as keyof Settings));
         this.show(settings);
+    }
+
+    #follow(input: Control): void {
+        const key = input.name as keyof Settings;
+        if (key === 'model') this.showFile(undefined);
+        this.show({ ...this.#settings, [key]: valueOf(input, key) });
     }
 
     show(settings: Settings): void {
@@ -34,42 +38,41 @@ export class Controls {
             if (key === 'model' && this.#file) continue; // what is chosen is the file
             if (input.type === 'radio') (input as HTMLInputElement).checked = input.value === value;
             else if (input.type === 'checkbox') (input as HTMLInputElement).checked = value as boolean;
-            else if (isLogarithmic(input)) input.value = String(toShare(value as number));
+            else if (isLogarithmic(input)) input.value = String(toShare(value as number, rangeOf(input)));
             else input.value = String(value);
             const output = input.closest('label')?.querySelector('output');
             if (output) output.textContent = describe(input, value as number);
         }
     }
 
-    /** A file in the place of a sample: an entry that is there while the file is open. */
-    showFile(name: string): void {
-        this.forgetFile();
+    /** A file in the place of a sample: an entry that is there while the file is open. Without a name, the sample. */
+    showFile(name: string | undefined): void {
+        this.#file?.remove();
+        this.#file = undefined;
+        if (name === undefined) return;
         this.#file = new Option(name, 'file', false, true);
         this.#file.hidden = true;
         this.#inputs.find((input) => input.name === 'model')!.prepend(this.#file);
         this.#file.selected = true;
     }
-    /** What is chosen is a sample again. */
-    forgetFile(): void {
-        this.#file?.remove();
-        this.#file = undefined;
-    }
 }
 
 function valueOf(input: Control, key: keyof Settings): Settings[keyof Settings] {
     if (input.type === 'checkbox') return (input as HTMLInputElement).checked;
-    if (isLogarithmic(input)) return fromShare(Number(input.value));
+    if (isLogarithmic(input)) return fromShare(Number(input.value), rangeOf(input));
     return typeof DEFAULTS[key] === 'number' ? Number(input.value) : (input.value as Settings[keyof Settings]);
 }
 
 function describe(input: Control, value: number): string {
-    if (input.name === 'particles') return count(Math.round(Math.sqrt(value)) ** 2);
+    if (isLogarithmic(input)) return count(Math.round(Math.sqrt(value)) ** 2);
     if (input.name === 'slice' && value >= 1) return 'none';
     return `${value.toFixed(value % 1 === 0 ? 0 : value % 0.1 < 1e-9 ? 1 : 2)}${input.dataset.unit ?? ''}`;
 }
 
-// Particles go by factors: the step from 1 000 to 2 000 matters as much as that from 10 000 to 20 000.
+// Particles and directions go by factors: the step from 1 000 to 2 000 matters as much as that from 10 000 to 20 000.
+// Both are squares of whole numbers.
+type Range = readonly [number, number];
 const isLogarithmic = (input: Control): boolean => input.dataset.scale === 'log';
-const [FEWEST, MOST] = RANGES.particles;
-const toShare = (particles: number): number => Math.log(particles / FEWEST) / Math.log(MOST / FEWEST);
-const fromShare = (share: number): number => Math.round(Math.sqrt(FEWEST * (MOST / FEWEST) ** share)) ** 2;
+const rangeOf = (input: Control): Range => RANGES[input.name as keyof typeof RANGES];
+const toShare = (value: number, [least, most]: Range): number => Math.log(value / least) / Math.log(most / least);
+const fromShare = (share: number, [least, most]: Range): number => Math.round(Math.sqrt(least * (most / least) ** share)) ** 2;

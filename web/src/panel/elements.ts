@@ -1,3 +1,5 @@
+import { SCALE } from '../view/colours';
+
 /** The element of index.html with this id. */
 export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
     const element = document.getElementById(id);
@@ -14,6 +16,15 @@ export function make(tag: string, text: string, className = ''): HTMLElement {
 
 export function swatch(colour: number): HTMLElement {
     const element = make('span', '', 'swatch');
-    element.style.background = `#${colour.toString(16).padStart(6, '0')}`;
+    element.style.background = css(colour);
     return element;
 }
+
+/** The palette's scale, from its light end to its dark one. */
+export function scaleBar(): HTMLElement {
+    const bar = make('div', '', 'scale');
+    bar.style.background = `linear-gradient(to right, ${SCALE.map(css).join(', ')})`;
+    return bar;
+}
+
+const css = (colour: number): string => `#${colour.toString(16).padStart(6, '0')}`;

@@ -1,6 +1,8 @@
 import type { FromWorker, MapNews, SurfaceNews } from '../protocol';
-import { LAYERS, SCALE } from '../view/colours';
-import { byId, make, swatch } from './elements';
+import type { Settings } from '../settings';
+import { LAYERS } from '../view/colours';
+import { largestOf } from '../view/coloured_faces';
+import { byId, make, scaleBar, swatch } from './elements';
 import { bytes, count, milliseconds } from './numbers';
 
 /** The map in numbers. */
@@ -32,25 +34,28 @@ export function showMapFigures({ description, byteCount, buildMs }: MapNews): vo
     );
 }
 
-/** What the colours of the surface mean, and how often the two kinds of map differ. */
-export function showLegend(surface: SurfaceNews, largest: number): void {
-    if (surface.mapKind === 'exact') {
-        const scale = make('div', '', 'scale');
-        scale.style.background = `linear-gradient(to right, ${SCALE.map((colour) => `#${colour.toString(16).padStart(6, '0')}`).join(', ')})`;
-        const ends = make('div', '', 'ends');
-        ends.append(make('span', '1'), make('span', String(largest)));
-        byId('legend').replaceChildren(make('span', 'Faces that a query near the surface may have to test'), scale, ends);
-        return;
-    }
+/** What the colours mean, and how often the two kinds of map differ. */
+export function showLegend(surface: SurfaceNews, shown: Settings['shown']): void {
+    if (surface.mapKind === 'distance') return byId('legend').replaceChildren(...layerLegend(surface));
+    if (shown === 'cells' && surface.cells) byId('legend').replaceChildren(...scaleLegend('Faces that a cell of directions lists', 0, largestOf(surface.cells.faceCounts)));
+    else byId('legend').replaceChildren(...scaleLegend('Faces that a query near the surface may have to test', 1, largestOf(surface.values)));
+}
+
+function scaleLegend(title: string, least: number, largest: number): HTMLElement[] {
+    const ends = make('div', '', 'ends');
+    ends.append(make('span', String(least)), make('span', String(largest)));
+    return [make('span', title), scaleBar(), ends];
+}
+
+function layerLegend({ values, disagreements, sampleCount }: SurfaceNews): HTMLElement[] {
     const layers = make('div', '', 'layers');
-    for (let layer = 0; layer <= largest; ++layer) {
+    for (let layer = 0; layer <= largestOf(values); ++layer) {
         const item = make('span', `layer ${layer + 1}`);
         item.prepend(swatch(LAYERS[layer % LAYERS.length]));
         layers.append(item);
     }
-    const differing = surface.disagreements.length / 3;
-    const note = make('p', `${count(differing)} of ${count(surface.sampleCount)} points in the bounding sphere lie on another side than by the exact map: drawn in red.`, 'note');
-    byId('legend').replaceChildren(layers, note);
+    const share = `${count(disagreements.length / 3)} of ${count(sampleCount)}`;
+    return [layers, make('p', `${share} points in the bounding sphere lie on another side than by the exact map: drawn in red.`, 'note')];
 }
 
 export function showRay({ intervals, bands }: FromWorker & { kind: 'ray' }, radius: number): void {

@@ -1,15 +1,15 @@
 import * as THREE from 'three';
 import type { FrameArrays } from '../protocol';
-import { CLOTH, CLOTH_BACK, SCALE } from './colours';
+import { CLOTH, CLOTH_BACK, FAULT, SCALE } from './colours';
 
-/** The cloth: red in front and sand behind, or coloured by its distance from the model. */
+/** The cloth: red in front and sand behind, or coloured by the depth of its contacts. */
 export class ClothView {
     readonly mesh: THREE.Group = new THREE.Group();
     #front: THREE.Mesh | undefined;
     #back: THREE.Mesh | undefined;
     #geometry = new THREE.BufferGeometry();
     #shown: FrameArrays | undefined;
-    #byDistance = false;
+    #byDepth = false;
 
     begin(faces: Uint32Array): void {
         this.#geometry.dispose();
@@ -34,12 +34,12 @@ export class ClothView {
         if (!this.#geometry.attributes.position) {
             this.#geometry.setAttribute('position', dynamic(arrays.positions, 3));
             this.#geometry.setAttribute('normal', dynamic(arrays.normals, 3));
-            this.#geometry.setAttribute('closeness', dynamic(arrays.closeness, 1));
+            this.#geometry.setAttribute('contactDepth', dynamic(arrays.depths, 1));
             for (const side of [this.#front, this.#back]) if (side) side.visible = true;
         } else {
             replace(this.#geometry, 'position', arrays.positions);
             replace(this.#geometry, 'normal', arrays.normals);
-            if (this.#byDistance) replace(this.#geometry, 'closeness', arrays.closeness);
+            if (this.#byDepth) replace(this.#geometry, 'contactDepth', arrays.depths);
         }
         return previous;
     }
@@ -51,9 +51,9 @@ export class ClothView {
         return this.#geometry.index?.array ?? [];
     }
 
-    set byDistance(on: boolean) {
-        this.#byDistance = on;
-        for (const side of [this.#front, this.#back]) if (side) (side.material as FabricMaterial).userData.byDistance.value = on ? 1 : 0;
+    set byDepth(on: boolean) {
+        this.#byDepth = on;
+        for (const side of [this.#front, this.#back]) if (side) (side.material as FabricMaterial).userData.byDepth.value = on ? 1 : 0;
     }
 
     /** The particle under a ray, and where the ray meets the cloth. */
@@ -73,26 +73,28 @@ export class ClothView {
 
 type FabricMaterial = THREE.MeshStandardMaterial;
 
-/** Matte. `closeness` of each particle goes through the palette's scale where colours are by distance. */
+/** Matte. Where colours are by depth, that of each particle goes through the palette's scale; inside it is the colour of faults. */
 function fabric(colour: number, side: THREE.Side): FabricMaterial {
     const material = new THREE.MeshStandardMaterial({ color: colour, roughness: 0.95, side });
-    const byDistance = { value: 0 };
-    material.userData.byDistance = byDistance;
+    const byDepth = { value: 0 };
+    material.userData.byDepth = byDepth;
     const scale = { value: SCALE.map((hex) => new THREE.Color(hex)) };
+    const inside = { value: new THREE.Color(FAULT.faces) };
     material.onBeforeCompile = (shader) => {
-        Object.assign(shader.uniforms, { byDistance, scale });
+        Object.assign(shader.uniforms, { byDepth, scale, inside });
         shader.vertexShader = shader.vertexShader
-            .replace('#include <common>', '#include <common>\nattribute float closeness;\nvarying float vCloseness;')
-            .replace('#include <begin_vertex>', '#include <begin_vertex>\nvCloseness = closeness;');
+            .replace('#include <common>', '#include <common>\nattribute float contactDepth;\nvarying float vContactDepth;')
+            .replace('#include <begin_vertex>', '#include <begin_vertex>\nvContactDepth = contactDepth;');
         shader.fragmentShader = shader.fragmentShader
-            .replace('#include <common>', '#include <common>\nuniform float byDistance;\nuniform vec3 scale[5];\nvarying float vCloseness;')
+            .replace('#include <common>', '#include <common>\nuniform float byDepth;\nuniform vec3 scale[5];\nuniform vec3 inside;\nvarying float vContactDepth;')
             .replace(
                 '#include <color_fragment>',
                 `#include <color_fragment>
-                float place = 4.0 * clamp(vCloseness, 0.0, 1.0);
+                float place = 4.0 * clamp(vContactDepth, 0.0, 1.0);
                 vec3 shade = scale[0];
                 for (int i = 0; i < 4; ++i) shade = mix(shade, scale[i + 1], clamp(place - float(i), 0.0, 1.0));
-                diffuseColor.rgb = mix(diffuseColor.rgb, shade, byDistance);`,
+                if (vContactDepth > 1.0) shade = inside;
+                diffuseColor.rgb = mix(diffuseColor.rgb, shade, byDepth);`,
             );
     };
     return material;

@@ -3,6 +3,8 @@ export const CLAY = 0xbdb5aa;
 export const CLOTH = 0xb4584e;
 export const CLOTH_BACK = 0xd39a7c;
 export const INK = 0x3a3936;
+/** Lines on the backdrop when that is dark. */
+export const CHALK = 0xd6d2ca;
 export const LAYER_BACK = 0xe4ded4;
 export const LAYERS = [0x44aa99, 0xddcc77, 0xcc6677, 0x88ccee, 0xaa4499, 0x999933, 0x332288, 0x117733, 0x882255];
 export const SCALE = [0xfff7bc, 0xfec44f, 0xfb9a29, 0xcc4c02, 0x662506];

@@ -1,12 +1,17 @@
 import * as THREE from 'three';
 import type { Cut, FromWorker, ModelNews, SurfaceNews, Triple } from '../protocol';
-import { BAND, CLOTH, INK, LAYERS, LAYER_BACK, SCALE } from './colours';
+import type { Settings } from '../settings';
+import { cellBall } from './cell_ball';
+import { colouredFaces, largestOf, scaleTo } from './coloured_faces';
+import { BAND, CHALK, CLOTH, FAULT, INK, LAYERS, LAYER_BACK } from './colours';
 import { clear } from './model_view';
 
 /** What a map holds: its surface in colour, a cut through it, a ray, and where two maps differ. */
 export class MapView {
     readonly group = new THREE.Group();
     readonly #surface = new THREE.Group();
+    /** Part of the surface's group. */
+    readonly #cells = new THREE.Group();
     readonly #cut = new THREE.Group();
     readonly #ray = new THREE.Group();
     #model: ModelNews | undefined;
@@ -24,31 +29,29 @@ export class MapView {
         for (const part of [this.#surface, this.#cut, this.#ray]) clear(part);
     }
 
-    /** @returns the value at which the scale of colours ends */
-    showSurface(news: SurfaceNews): number {
+    showSurface(news: SurfaceNews): void {
         clear(this.#surface);
-        const largest = Math.max(1, largestOf(news.values));
-        const colours = news.mapKind === 'exact' ? scaleTo(largest) : (layer: number) => new THREE.Color(LAYERS[layer % LAYERS.length]);
-        const geometry = perFace(news, colours);
-        const planes = [this.#plane()];
-        const front = new THREE.MeshStandardMaterial({ vertexColors: true, roughness: 0.9, side: THREE.FrontSide, clippingPlanes: planes });
-        const back = new THREE.MeshStandardMaterial({ color: LAYER_BACK, roughness: 0.9, side: THREE.BackSide, clippingPlanes: planes });
-        this.#surface.add(new THREE.Mesh(geometry, front), new THREE.Mesh(geometry, back));
-        if (news.disagreements.length > 0) {
-            const points = new THREE.BufferGeometry();
-            points.setAttribute('position', new THREE.BufferAttribute(news.disagreements, 3));
-            const material = new THREE.PointsMaterial({ clippingPlanes: planes, color: 0xd1242f, size: 3.5, sizeAttenuation: false, depthTest: false, transparent: true, opacity: 0.85 });
-            this.#surface.add(new THREE.Points(points, material));
-        }
-        return largest;
+        const colours = news.mapKind === 'exact' ? scaleTo(largestOf(news.values)) : (layer: number) => new THREE.Color(LAYERS[layer % LAYERS.length]);
+        this.#surface.add(...shell(colouredFaces(cornersOf(news), news.values, colours)));
+        if (news.disagreements.length > 0) this.#surface.add(dots(news.disagreements));
+        clear(this.#cells);
+        if (news.cells && this.#model) this.#cells.add(...shell(cellBall(news.cells, this.#model)));
+        this.#surface.add(this.#cells);
+        this.#clip();
+    }
+
+    set shown(what: Settings['shown']) {
+        this.#cells.visible = what === 'cells';
+    }
+    /** Cells hide the surface, where they are not cut away. */
+    get showsCells(): boolean {
+        return this.#cells.visible && this.#cells.children.length > 0;
     }
 
     showCut(cut: Cut): void {
         clear(this.#cut);
         this.#height = cut.height;
-        const plane = this.#plane();
-        for (const child of this.#surface.children)
-            if (child instanceof THREE.Mesh || child instanceof THREE.Points) (child.material as THREE.Material).clippingPlanes = [plane];
+        this.#clip();
         if (!this.#model || cut.height >= 1) return;
         const { radius, centre, up } = this.#model;
         const texture = new THREE.DataTexture(stainOf(cut), cut.side, cut.side);
@@ -79,23 +82,40 @@ export class MapView {
         const direction = new THREE.Vector3(...ray.direction).normalize();
         const at = (distance: number) => origin.clone().addScaledVector(direction, distance);
         for (const { from, to, inside } of ray.intervals)
-            this.#ray.add(rod(at(from), at(to), (inside ? 0.009 : 0.0025) * radius, inside ? CLOTH : INK));
+            this.#ray.add(rod(at(from), at(to), (inside ? 0.009 : 0.0025) * radius, inside ? CLOTH : lineColour()));
         for (const [from, to] of ray.bands) this.#ray.add(rod(at(from), at(to), 0.022 * radius, BAND, 0.45));
-        for (const crossing of ray.crossings) this.#ray.add(ball(at(crossing), 0.018 * radius, INK));
+        for (const crossing of ray.crossings) this.#ray.add(ball(at(crossing), 0.018 * radius, lineColour()));
         if (ray.outline.length === 3) this.#ray.add(this.#outline(ray.outline, origin, radius));
     }
 
-    /** The first point of the surface under a ray that the cut has left. */
-    pick(ray: THREE.Raycaster): THREE.Vector3 | undefined {
-        const kept = this.#plane();
-        return ray.intersectObjects(this.#surface.children.filter((child) => child instanceof THREE.Mesh)).find(({ point }) => kept.distanceToPoint(point) >= 0)?.point;
+    /** The way of a ray through what the cut has left of the bounding sphere. */
+    wayOf({ ray }: THREE.Raycaster): { from: Triple; to: Triple } | undefined {
+        if (!this.#model) return undefined;
+        const { centre, radius } = this.#model;
+        const toMiddle = new THREE.Vector3(...centre).sub(ray.origin).dot(ray.direction);
+        const half = Math.sqrt(radius * radius - ray.distanceSqToPoint(new THREE.Vector3(...centre)));
+        const plane = this.#plane();
+        // Where the ray meets the cut; below it, is what is kept, so it comes in there or goes out there.
+        const sinking = ray.direction.dot(plane.normal);
+        const cut = -plane.distanceToPoint(ray.origin) / sinking;
+        const from = Math.max(0, toMiddle - half, sinking > 0 ? cut : 0);
+        const to = Math.min(toMiddle + half, sinking < 0 ? cut : Infinity);
+        if (!(from < to)) return undefined; // also where it misses the sphere, and half is not a number
+        return { from: ray.at(from, new THREE.Vector3()).toArray(), to: ray.at(to, new THREE.Vector3()).toArray() };
+    }
+
+    #clip(): void {
+        const planes = [this.#plane()];
+        this.#surface.traverse((part) => {
+            if (part instanceof THREE.Mesh || part instanceof THREE.Points) (part.material as THREE.Material).clippingPlanes = planes;
+        });
     }
 
     /** The cell: its three edges on the bounding sphere, and the way to them. */
     #outline(corners: Triple[], origin: THREE.Vector3, radius: number): THREE.LineSegments {
         const far = corners.map((corner) => origin.clone().addScaledVector(new THREE.Vector3(...corner), radius));
         const geometry = new THREE.BufferGeometry().setFromPoints([0, 1, 2].flatMap((k) => [origin, far[k], far[k], far[(k + 1) % 3]]));
-        return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: INK, transparent: true, opacity: 0.55, depthTest: false }));
+        return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: lineColour(), transparent: true, opacity: 0.55, depthTest: false }));
     }
 
     /** Keeps what lies below the cut. */
@@ -108,37 +128,24 @@ export class MapView {
     }
 }
 
-/** Every face by itself, so that each has its own colour. */
-function perFace({ vertices, faces, values }: SurfaceNews, colourOf: (value: number) => THREE.Color): THREE.BufferGeometry {
-    const positions = new Float32Array(3 * faces.length);
-    const colours = new Float32Array(3 * faces.length);
-    for (let corner = 0; corner < faces.length; ++corner) {
-        for (let k = 0; k < 3; ++k) positions[3 * corner + k] = vertices[3 * faces[corner] + k];
-        if (corner % 3 === 0) {
-            const { r, g, b } = colourOf(values[corner / 3]);
-            for (let k = 0; k < 3; ++k) colours.set([r, g, b], 3 * (corner + k));
-        }
-    }
+function cornersOf({ vertices, faces }: SurfaceNews): Float32Array {
+    const corners = new Float32Array(3 * faces.length);
+    for (let i = 0; i < faces.length; ++i) for (let k = 0; k < 3; ++k) corners[3 * i + k] = vertices[3 * faces[i] + k];
+    return corners;
+}
+
+/** Coloured in front, paper behind. */
+function shell(geometry: THREE.BufferGeometry): THREE.Mesh[] {
+    const front = new THREE.MeshStandardMaterial({ vertexColors: true, roughness: 0.9, side: THREE.FrontSide });
+    const back = new THREE.MeshStandardMaterial({ color: LAYER_BACK, roughness: 0.9, side: THREE.BackSide });
+    return [new THREE.Mesh(geometry, front), new THREE.Mesh(geometry, back)];
+}
+
+function dots(positions: Float32Array): THREE.Points {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
-    geometry.setAttribute('color', new THREE.BufferAttribute(colours, 3));
-    geometry.computeVertexNormals();
-    return geometry;
-}
-
-function scaleTo(largest: number): (value: number) => THREE.Color {
-    const stops = SCALE.map((hex) => new THREE.Color(hex));
-    return (value) => {
-        const place = ((stops.length - 1) * Math.min(value, largest)) / largest;
-        const stop = Math.min(stops.length - 2, Math.floor(place));
-        return stops[stop].clone().lerp(stops[stop + 1], place - stop);
-    };
-}
-
-function largestOf(values: Uint32Array): number {
-    let largest = 0;
-    for (const value of values) largest = Math.max(largest, value);
-    return largest;
+    const material = new THREE.PointsMaterial({ color: FAULT.faces, size: 3.5, sizeAttenuation: false, depthTest: false, transparent: true, opacity: 0.85 });
+    return new THREE.Points(geometry, material);
 }
 
 /** Inside red, outside nearly nothing. */
@@ -162,5 +169,7 @@ function ball(at: THREE.Vector3, radius: number, colour: number): THREE.Mesh {
     mesh.renderOrder = 4;
     return mesh;
 }
+const lineColour = (): number => (matchMedia('(prefers-color-scheme: dark)').matches ? CHALK : INK);
+
 /** Through the surface, which would hide nearly all of a ray. */
 const ink = (color: number, opacity = 1) => new THREE.MeshBasicMaterial({ color, opacity, depthTest: false, transparent: true });

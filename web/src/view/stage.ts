@@ -2,9 +2,20 @@ import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Triple } from '../protocol';
 import type { Axis } from '../settings';
+import { type Standpoint, fromText, toText } from '../standpoint';
 import { BACKDROP } from './colours';
 
-const UP: Record<Axis, Triple> = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
+type Axes = readonly [THREE.Vector3, THREE.Vector3, THREE.Vector3];
+
+/** Up, the axis before it and the one after it. */
+function axesOf(up: Axis): Axes {
+    const [x, y, z] = [new THREE.Vector3(1, 0, 0), new THREE.Vector3(0, 1, 0), new THREE.Vector3(0, 0, 1)];
+    const axes: Record<Axis, Axes> = { x: [x, z, y], y: [y, x, z], z: [z, y, x] };
+    return axes[up];
+}
+
+/** How long the camera has to stand still until it counts as arrived. */
+const ARRIVAL_MS = 250;
 
 /** The canvas, the camera and the light: what is the same whatever is shown. */
 export class Stage {
@@ -15,6 +26,12 @@ export class Stage {
     readonly #sun = new THREE.DirectionalLight(0xfff4e6, 2.7);
     readonly #sky = new THREE.HemisphereLight(0xffffff, 0x6f675d, 1.25);
     readonly #canvas: HTMLCanvasElement;
+    /** What the camera was told to look at. */
+    #model = { centre: new THREE.Vector3(), radius: 1, axes: axesOf('z') };
+    #home = '';
+    #arrival = 0;
+    /** The camera was moved, and stands at `standpoint` now. */
+    onArrival = () => {};
 
     constructor(canvas: HTMLCanvasElement) {
         this.#canvas = canvas;
@@ -34,8 +51,10 @@ export class Stage {
 
     /** Puts the camera where all of a sphere, and the cloth above it, is in sight. */
     lookAt(centre: Triple, radius: number, up: Axis): void {
-        const [a, b, c] = UP[up];
-        this.camera.up.set(a, b, c);
+        const axes = axesOf(up);
+        const [upward, sideways, forward] = axes;
+        this.#model = { centre: new THREE.Vector3(...centre), radius, axes };
+        this.camera.up.copy(upward);
         // The controls take the camera's up when they are made.
         this.#controls.dispose();
         this.#controls = new OrbitControls(this.camera, this.#canvas);
@@ -44,9 +63,7 @@ export class Stage {
         this.#controls.minDistance = 0.2 * radius;
         this.#controls.maxDistance = 20 * radius;
 
-        const upward = new THREE.Vector3(a, b, c);
         const middle = new THREE.Vector3(...centre).addScaledVector(upward, 0.12 * radius);
-        const sideways = new THREE.Vector3(b, c, a), forward = new THREE.Vector3(c, a, b);
         // Narrow screens see less to the sides, so the camera steps back.
         const distance = 5.6 * radius * Math.max(1, 1.2 / this.camera.aspect);
         const from = sideways.clone().multiplyScalar(0.8).addScaledVector(forward, 0.55).addScaledVector(upward, 0.34).normalize();
@@ -56,11 +73,47 @@ export class Stage {
         this.camera.updateProjectionMatrix();
         this.#controls.target.copy(middle);
         this.#controls.update();
+        this.#home = toText(this.#stand());
+        this.#controls.addEventListener('change', () => {
+            clearTimeout(this.#arrival);
+            this.#arrival = window.setTimeout(() => this.onArrival(), ARRIVAL_MS);
+        });
 
         // Low and from the side: folds show by their shadows.
         this.#sun.position.copy(middle).addScaledVector(upward, 2.2 * radius).addScaledVector(sideways, -0.6 * radius).addScaledVector(forward, 2.6 * radius);
         this.#sun.target.position.copy(middle);
         this.#sky.position.copy(upward);
+    }
+
+    /** For a link (standpoint.ts); '' where lookAt() has put the camera. Anything else that is no standpoint changes nothing. */
+    get standpoint(): string {
+        const text = toText(this.#stand());
+        return text === this.#home ? '' : text;
+    }
+    set standpoint(text: string) {
+        const stand = fromText(text || this.#home);
+        if (!stand) return;
+        const { centre, radius, axes } = this.#model;
+        const [azimuth, elevation] = [stand.azimuth, stand.elevation].map(THREE.MathUtils.degToRad);
+        const away = [Math.sin(elevation), Math.cos(elevation) * Math.cos(azimuth), Math.cos(elevation) * Math.sin(azimuth)];
+        const moved = (from: THREE.Vector3, along: readonly number[], length: number) =>
+            axes.reduce((point, axis, k) => point.addScaledVector(axis, along[k] * length), from.clone());
+        this.#controls.target.copy(moved(centre, stand.target, radius));
+        this.camera.position.copy(moved(this.#controls.target, away, stand.distance * radius));
+        this.#controls.update();
+    }
+
+    #stand(): Standpoint {
+        const { centre, radius, axes } = this.#model;
+        const along = (from: THREE.Vector3, to: THREE.Vector3) => axes.map((axis) => axis.dot(to.clone().sub(from)) / radius) as Triple;
+        const { target } = this.#controls;
+        const [up, side, front] = along(target, this.camera.position);
+        return {
+            azimuth: THREE.MathUtils.radToDeg(Math.atan2(front, side)),
+            elevation: THREE.MathUtils.radToDeg(Math.atan2(up, Math.hypot(side, front))),
+            distance: Math.hypot(up, side, front),
+            target: along(centre, target),
+        };
     }
 
     set orbiting(enabled: boolean) {

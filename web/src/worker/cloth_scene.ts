@@ -21,6 +21,8 @@ const FROM_Z: Record<Axis, { axis: [number, number, number]; degrees: number } |
 
 export const columnsOf = (particles: number): number => Math.max(2, Math.round(Math.sqrt(particles)));
 
+export const thicknessOf = (settings: Settings, { radius }: Body): number => 0.01 * settings.thickness * radius;
+
 /**
  * A cloth above the model. All lengths go by the model's radius, and gravity too: so a model in millimetres falls as
  * quickly as one in metres.
@@ -29,20 +31,15 @@ export function sceneFor(settings: Settings, body: Body): SceneDescription {
     const { radius } = body;
     const axis = { x: 0, y: 1, z: 2 }[body.up];
     const position = [...body.centre] as [number, number, number];
-    const thickness = 0.01 * settings.thickness * radius;
+    const thickness = thicknessOf(settings, body);
     position[axis] = body.top + 0.08 * radius + thickness;
     const columns = columnsOf(settings.particles);
     const rotation = FROM_Z[body.up];
     return {
-        model: 'model.obj', // the map is made already; a scene needs a name
-        map: mapOptions(settings, body.up),
+        model: 'model.obj', // a scene needs a name; its map is made already
         cloth: { size: [2.25 * radius, 2.25 * radius], particles: [columns, columns], position, thickness, ...(rotation && { rotation }) },
         material: { friction: settings.friction },
         gravity: UP[body.up].map((part) => -9.81 * radius * part) as [number, number, number],
         at_rest: { distance: 0.001 * radius },
     };
-}
-
-export function mapOptions(settings: Settings, up: Axis): { kind: 'exact' } | { kind: 'distance'; pole_axis: Axis } {
-    return settings.map === 'exact' ? { kind: 'exact' } : { kind: 'distance', pole_axis: up };
 }

@@ -16,6 +16,7 @@ export function surfaceOf(echinus: Echinus, { map, exactMap, settings, body }: P
         mapKind: settings.map,
         disagreements: map.kind === 'exact' ? new Float32Array() : disagreements(echinus, exactMap, map, body.centre, body.radius),
         sampleCount: SAMPLE_COUNT,
+        ...(map.kind === 'exact' && { cells: map.cells() }),
     };
     mesh.delete();
     return news;
@@ -88,7 +89,15 @@ export function acrossUp(up: Triple): [Triple, Triple] {
     return [next(up), next(next(up))];
 }
 
-/** What the map in use knows along a ray from its centre. Lengths are in radii. */
+/** The ray through the first point of the surface on a straight way, if there is one. */
+export function lookAt(playground: Playground, from: Triple, to: Triple): FromWorker {
+    const { found, point } = playground.exactMap.sweep(from, to);
+    if (!found) return { kind: 'missed' };
+    const { centre } = playground.body;
+    return lookAlong(playground, [0, 1, 2].map((k) => point[k] - centre[k]) as Triple);
+}
+
+/** What the map in use knows along a ray from its centre. */
 export function lookAlong({ map }: Playground, direction: Triple): FromWorker {
     if (map.kind === 'distance') {
         const { crossings, intervals } = map.ray(direction);

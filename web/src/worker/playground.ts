@@ -1,9 +1,11 @@
 import type { AnyMap, ContactBuffer, Echinus, ExactMap, Mesh, MeshFaults, MeshReport, Scene, Simulation, SimulationProfile } from 'echinus';
 import type { FrameArrays, Figures, MapNews, ModelNews, Triple } from '../protocol';
 import type { Axis, Settings } from '../settings';
-import { type Body, UP, columnsOf, mapOptions, sceneFor } from './cloth_scene';
+import { type Body, UP, columnsOf, sceneFor, thicknessOf } from './cloth_scene';
+import { measureDepths } from './depth';
 import { Hand } from './hand';
 import { Judge } from './judge';
+import { Maps } from './maps';
 import type { Model } from './models';
 import { motionAt } from './motion';
 import { sheetNormals } from './normals';
@@ -18,7 +20,6 @@ const FRAME_BUDGET_MS = { least: 14, most: 100, share: 0.85 };
 export class Playground {
     readonly hand = new Hand();
     readonly body: Body;
-    readonly exactMap: ExactMap;
 
     readonly #echinus: Echinus;
     readonly #name: string;
@@ -28,11 +29,12 @@ export class Playground {
     #mendedFaces = 0;
     #flippedParts = 0;
 
+    readonly #maps: Maps;
+
     #settings: Settings;
-    #map: AnyMap;
-    #mapNews: MapNews;
     #scene!: Scene;
     #simulation!: Simulation;
+    #clothMap!: AnyMap;
     #judge!: Judge;
     #contacts!: ContactBuffer;
     /** Frames of simulations before the present one, which counts anew after continueWith(). */
@@ -48,19 +50,15 @@ export class Playground {
         this.#mesh = settings.mend ? this.#mend(model.mesh) : model.mesh;
         this.#report = this.#mesh.report();
         this.#faults = this.#mesh.faults();
-        const { map, ms } = timed(() => echinus.buildMap(this.#mesh, { kind: 'exact' }));
-        this.exactMap = map;
-        this.#map = map;
-        this.#mapNews = newsOf(map, ms);
-        this.body = bodyOf(this.#mesh, map, settings.up === 'auto' ? model.up : settings.up);
-        this.#useMap();
+        const up = settings.up === 'auto' ? model.up : settings.up;
+        this.#maps = new Maps(echinus, this.#mesh, up, settings);
+        this.body = bodyOf(this.#mesh, this.#maps.exact, up);
         this.restart();
     }
 
     delete(): void {
         this.#dropCloth();
-        if (this.#map !== this.exactMap) this.#map.delete();
-        this.exactMap.delete();
+        this.#maps.delete();
         this.#mesh.delete();
     }
 
@@ -71,7 +69,13 @@ export class Playground {
         return this.#simulation.faces;
     }
     get map(): AnyMap {
-        return this.#map;
+        return this.#maps.by(this.#settings).map;
+    }
+    get mapNews(): MapNews {
+        return this.#maps.by(this.#settings).news;
+    }
+    get exactMap(): ExactMap {
+        return this.#maps.exact;
     }
     get settings(): Settings {
         return this.#settings;
@@ -89,7 +93,7 @@ export class Playground {
             centre: [...this.exactMap.centre] as Triple,
             radius: this.exactMap.radius,
             up: this.body.up,
-            map: this.#mapNews,
+            map: this.mapNews,
         };
     }
 
@@ -106,8 +110,7 @@ export class Playground {
     }
 
     #follow(settings: Settings, before: Settings): boolean {
-        if (settings.map !== before.map) this.#useMap();
-        if (settings.map !== before.map || settings.particles !== before.particles) {
+        if (this.#maps.by(settings).map !== this.#clothMap || settings.particles !== before.particles) {
             this.restart();
             return true;
         }
@@ -117,16 +120,17 @@ export class Playground {
 
     /** Builds the map in use once more: the first time of all, the host has yet to compile the code well. */
     rebuild(): MapNews {
-        const { map, ms } = timed(() => this.#echinus.buildMap(this.#mesh, mapOptions(this.#settings, this.body.up)));
-        this.#mapNews = newsOf(map, ms);
+        const { map, news } = this.#maps.build(this.#settings);
         map.delete(); // the same bytes as the one in use
-        return this.#mapNews;
+        return news;
     }
 
     restart(): void {
         const scene = this.#echinus.parseScene(sceneFor(this.#settings, this.body));
-        const simulation = scene.makeSimulation(this.#map);
+        const { map } = this;
+        const simulation = scene.makeSimulation(map);
         this.#dropCloth();
+        this.#clothMap = map;
         this.#scene = scene;
         this.#simulation = simulation;
         this.#judge = new Judge(this.#echinus, this.exactMap, simulation.particleCount);
@@ -157,8 +161,9 @@ export class Playground {
     /** One step, for a cloth that is paused. */
     stepOnce(arrays: FrameArrays | undefined): { arrays: FrameArrays; figures: Figures } {
         const before = this.#simulation.profile;
-        const { ms } = timed(() => this.#step());
-        return this.#look(arrays, before, 1, ms, true);
+        const begin = performance.now();
+        this.#step();
+        return this.#look(arrays, before, 1, performance.now() - begin, true);
     }
 
     get collider() {
@@ -198,7 +203,7 @@ export class Playground {
         const filled = fitted(arrays, simulation.particleCount);
         filled.positions.set(simulation.positions);
         sheetNormals(filled.positions, this.columns, filled.normals);
-        if (this.#settings.colour === 'distance') this.#measureCloseness(filled.closeness);
+        if (this.#settings.colour === 'depth') measureDepths(simulation, thicknessOf(this.#settings, this.body), this.#contacts, filled.depths);
         const after = simulation.profile;
         const perStep = 1000 / Math.max(1, stepCount);
         const collisionSeconds = after.collisionSeconds - before.collisionSeconds;
@@ -217,18 +222,6 @@ export class Playground {
         return { arrays: filled, figures };
     }
 
-    #measureCloseness(closeness: Float32Array): void {
-        const thickness = 0.01 * this.#settings.thickness * this.body.radius;
-        const margin = 4 * thickness;
-        this.#simulation.contactsBatch(margin, this.#contacts);
-        const { floats } = this.#contacts;
-        // 0 is no contact within the margin; depths of contacts outside are negative distances.
-        for (let i = 0; i < closeness.length; ++i) {
-            const depth = floats[9 * i + 6];
-            closeness[i] = depth === 0 ? 0 : Math.min(1, Math.max(0, 1 + (depth + thickness) / (margin - thickness)));
-        }
-    }
-
     #continue(): void {
         const scene = this.#echinus.parseScene(sceneFor(this.#settings, this.body));
         const simulation = this.#simulation.continueWith(scene);
@@ -238,21 +231,6 @@ export class Playground {
         this.#scene = scene;
         this.#simulation = simulation;
     }
-
-    #useMap(): void {
-        const previous = this.#map;
-        if (this.#settings.map === 'exact') {
-            this.#map = this.exactMap;
-            if (this.#mapNews.kind !== 'exact') this.#mapNews = newsOf(this.exactMap, this.#exactBuildMs);
-        } else {
-            const { map, ms } = timed(() => this.#echinus.buildMap(this.#mesh, mapOptions(this.#settings, this.body.up)));
-            if (this.#mapNews.kind === 'exact') this.#exactBuildMs = this.#mapNews.buildMs;
-            this.#map = map;
-            this.#mapNews = newsOf(map, ms);
-        }
-        if (previous !== this.exactMap && previous !== this.#map) previous.delete();
-    }
-    #exactBuildMs = 0;
 
     #mend(mesh: Mesh): Mesh {
         const { mesh: mended, report } = mesh.repair();
@@ -271,16 +249,6 @@ export class Playground {
     }
 }
 
-function timed<T>(work: () => T): { map: T; ms: number } {
-    const begin = performance.now();
-    const map = work();
-    return { map, ms: performance.now() - begin };
-}
-
-function newsOf(map: AnyMap, buildMs: number): MapNews {
-    return { kind: map.kind, byteCount: map.byteCount, buildMs, description: map.description };
-}
-
 function bodyOf(mesh: Mesh, map: ExactMap, up: Axis): Body {
     const axis = { x: 0, y: 1, z: 2 }[up];
     const { vertices } = mesh;
@@ -290,10 +258,10 @@ function bodyOf(mesh: Mesh, map: ExactMap, up: Axis): Body {
 }
 
 function fitted(arrays: FrameArrays | undefined, particleCount: number): FrameArrays {
-    if (arrays?.closeness.length === particleCount) return arrays;
+    if (arrays?.depths.length === particleCount) return arrays;
     return {
         positions: new Float32Array(3 * particleCount),
         normals: new Float32Array(3 * particleCount),
-        closeness: new Float32Array(particleCount),
+        depths: new Float32Array(particleCount),
     };
 }

@@ -1,7 +1,7 @@
 /** The worker: one instance of the module, one playground, and a loop that the page drives frame by frame. */
 import { EchinusError, load } from 'echinus';
 import type { FrameArrays, FromWorker, ToWorker } from '../protocol';
-import { cutAt, lookAlong, surfaceOf } from './looking';
+import { cutAt, lookAlong, lookAt, surfaceOf } from './looking';
 import { fetchSample, prepareFile } from './models';
 import { Playground } from './playground';
 import { warmUp } from './warm_up';
@@ -39,9 +39,9 @@ async function handle(message: ToWorker): Promise<void> {
     const echinus = await starting;
     switch (message.kind) {
         case 'change': {
-            const before = playground.settings;
+            const before = playground.mapNews;
             const anew = playground.change(message.settings);
-            if (before.map !== message.settings.map) tellModel(playground);
+            if (playground.mapNews !== before) tell({ kind: 'map', map: playground.mapNews });
             if (anew) tellCloth(playground);
             return;
         }
@@ -60,6 +60,8 @@ async function handle(message: ToWorker): Promise<void> {
             return playground.hand.release();
         case 'ray':
             return tell(lookAlong(playground, message.direction));
+        case 'point':
+            return tell(lookAt(playground, message.from, message.to));
         case 'surface':
             return tell({ kind: 'surface', ...surfaceOf(echinus, playground) });
         case 'rebuild':
@@ -103,13 +105,13 @@ function tellFrame({ arrays, figures }: ReturnType<Playground['advance']>): void
     tell({ kind: 'frame', arrays, figures, collider: playground.collider, cloth }, [
         arrays.positions.buffer,
         arrays.normals.buffer,
-        arrays.closeness.buffer,
+        arrays.depths.buffer,
     ]);
 }
 
 function fail(error: unknown): void {
     const sentence = error instanceof Error ? error.message : String(error);
-    tell({ kind: 'failed', sentence, code: error instanceof EchinusError ? error.code : 'Internal' });
+    tell({ kind: 'failed', sentence, code: error instanceof EchinusError ? error.code : 'Internal', ...(playground && { settings: playground.settings }) });
 }
 function tell(message: FromWorker, transfer: Transferable[] = []): void {
     self.postMessage(message, { transfer });

@@ -1,0 +1,25 @@
+import { byId } from './panel/elements';
+
+/** A visitor gives the page a file: by the button of the panel, or by dropping it anywhere. */
+export function enableFiles(given: (file: File) => void): void {
+    const input = byId<HTMLInputElement>('file');
+    input.addEventListener('change', () => {
+        const [file] = input.files ?? [];
+        if (file) given(file);
+        input.value = ''; // so that the same file can be chosen again
+    });
+    const sign = byId('drop');
+    addEventListener('dragover', (event) => {
+        event.preventDefault();
+        sign.hidden = false;
+    });
+    addEventListener('dragleave', (event) => {
+        if (event.relatedTarget === null) sign.hidden = true; // out of the window
+    });
+    addEventListener('drop', (event) => {
+        event.preventDefault();
+        sign.hidden = true;
+        const [file] = event.dataTransfer?.files ?? [];
+        if (file) given(file);
+    });
+}

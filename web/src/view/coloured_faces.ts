@@ -1,0 +1,31 @@
+import * as THREE from 'three';
+import { SCALE } from './colours';
+
+/** Faces, each by itself, so that each has its own colour. @param positions  [9 faces] of their corners */
+export function colouredFaces(positions: Float32Array, values: Uint32Array, colourOf: (value: number) => THREE.Color): THREE.BufferGeometry {
+    const colours = new Float32Array(positions.length);
+    values.forEach((value, face) => {
+        const { r, g, b } = colourOf(value);
+        for (let corner = 0; corner < 3; ++corner) colours.set([r, g, b], 9 * face + 3 * corner);
+    });
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(positions, 3));
+    geometry.setAttribute('color', new THREE.BufferAttribute(colours, 3));
+    geometry.computeVertexNormals();
+    return geometry;
+}
+
+/** The palette's scale from 0 to the largest value. */
+export function scaleTo(largest: number): (value: number) => THREE.Color {
+    const stops = SCALE.map((hex) => new THREE.Color(hex));
+    return (value) => {
+        const place = ((stops.length - 1) * Math.min(value, largest)) / largest;
+        const stop = Math.min(stops.length - 2, Math.floor(place));
+        return stops[stop].clone().lerp(stops[stop + 1], place - stop);
+    };
+}
+
+/** Where the scale ends. */
+export function largestOf(values: Uint32Array): number {
+    return values.reduce((a, b) => Math.max(a, b), 1);
+}

@@ -1,0 +1,59 @@
+import type { AnyMap, Echinus, ExactMap, Mesh } from 'echinus';
+import type { MapNews } from '../protocol';
+import type { Axis, Settings } from '../settings';
+import { mapOptions } from './map_options';
+
+interface Built {
+    map: AnyMap;
+    news: MapNews;
+    /** What it was built by. */
+    options: string;
+}
+
+/** The maps of one mesh, which has to outlive them: the exact one always, the paper's once somebody asked for it. */
+export class Maps {
+    readonly #echinus: Echinus;
+    readonly #mesh: Mesh;
+    readonly #up: Axis;
+    readonly #built = new Map<Settings['map'], Built>();
+
+    /** @throws EchinusError when no exact map can be made of the mesh */
+    constructor(echinus: Echinus, mesh: Mesh, up: Axis, settings: Settings) {
+        this.#echinus = echinus;
+        this.#mesh = mesh;
+        this.#up = up;
+        this.by({ ...settings, map: 'exact' });
+    }
+
+    get exact(): ExactMap {
+        return this.#built.get('exact')!.map as ExactMap;
+    }
+
+    /** The map that the settings ask for; builds it unless the last of its kind was built by the same options. */
+    by(settings: Settings): Readonly<Built> {
+        const present = this.#built.get(settings.map);
+        if (present?.options === this.#optionsOf(settings)) return present;
+        const built = this.build(settings);
+        this.#built.set(settings.map, built);
+        present?.map.delete();
+        return built;
+    }
+
+    /** The caller's own, to be deleted. */
+    build(settings: Settings): Built {
+        const options = this.#optionsOf(settings);
+        const begin = performance.now();
+        const map = this.#echinus.buildMap(this.#mesh, options);
+        const buildMs = performance.now() - begin;
+        return { map, news: { kind: map.kind, byteCount: map.byteCount, buildMs, description: map.description }, options };
+    }
+
+    #optionsOf(settings: Settings): string {
+        return JSON.stringify(mapOptions(settings, this.#up));
+    }
+
+    delete(): void {
+        for (const { map } of this.#built.values()) map.delete();
+        this.#built.clear();
+    }
+}
