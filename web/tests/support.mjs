@@ -1,12 +1,17 @@
 // The built page behind a server of files, and Debian's Chromium looking at it.
 import { createServer } from 'node:http';
-import { mkdirSync } from 'node:fs';
+import { existsSync, mkdirSync, readFileSync, readdirSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
 import { extname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 
 const inProject = (path) => fileURLToPath(new URL(`../../${path}`, import.meta.url));
+/** Whether the page that is tried has the horse. */
+export const hasHorse = existsSync(inProject('web/dist/models/horse.3ds'));
+/** Software draws these pages; small ones leave it time for the cloth. */
+export const SMALL = { viewport: { width: 900, height: 480 } };
+
 const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm' };
 
 /** web/dist/ under a folder of its own, as a static host would have it. */
@@ -65,5 +70,29 @@ export const figure = (page, name) => page.locator(`#figure-${name}`).textConten
 /** Waits until the cloth has made so many time steps. */
 export const untilFrame = (page, frame) => page.waitForFunction((least) => Number(document.body.dataset.frame) >= least, frame, { timeout: 60_000 });
 
+/** Waits until the view of the map has its ray, which comes last. */
+export const untilRay = (page) => page.waitForFunction(() => document.getElementById('ray').textContent.includes('side'), null, { timeout: 60_000 });
+
 /** 31.5 ms, 84.2 kB and the like. */
 export const numberOf = (text) => Number(text.replace(/[^0-9.].*$/, ''));
+
+/** Of the time that the youngest thread of this name ran or could have run, the part that it ran; Linux keeps account. */
+export function shareOfProcessor(name) {
+    const threads = readdirSync('/proc').filter((process) => /^\d+$/.test(process)).flatMap((process) => threadsOf(process, name));
+    const { ran, waited } = threads.reduce((a, b) => (a.begin > b.begin ? a : b));
+    return ran / (ran + waited);
+}
+
+function threadsOf(process, name) {
+    try {
+        const folders = readdirSync(`/proc/${process}/task`).map((thread) => `/proc/${process}/task/${thread}`);
+        return folders.filter((folder) => readFileSync(`${folder}/comm`, 'utf8').startsWith(name)).map((folder) => {
+            const [ran, waited] = readFileSync(`${folder}/schedstat`, 'utf8').split(' ').map(Number);
+            // The name may have spaces: what follows it is counted from its bracket. Field 22 is when the thread began.
+            const begin = Number(readFileSync(`${folder}/stat`, 'utf8').split(') ')[1].split(' ')[19]);
+            return { begin, ran, waited };
+        });
+    } catch {
+        return []; // it has ended meanwhile
+    }
+}

@@ -1,0 +1,120 @@
+// The cloth under the visitor's hand.
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { after, before, test } from 'node:test';
+import { SMALL, figure, hasHorse, picture, startBrowser, untilFrame } from './support.mjs';
+
+let browser;
+before(async () => (browser = await startBrowser()));
+after(() => browser?.stop());
+
+test('the cloth comes to rest with no particle inside', async () => {
+    const page = await browser.open('#model=torus&particles=900', SMALL);
+    await page.waitForFunction(() => document.body.dataset.rest === 'true', null, { timeout: 120_000 });
+    assert.equal(await figure(page, 'inside'), '0');
+    await picture(page, 'rest');
+    await page.context().close();
+});
+
+// Some 2500 steps, asked of a worker of the page's own kind without drawing them.
+test('the cloth falls on the horse and comes to rest, and in no frame is a particle inside', { skip: !hasHorse && 'the horse is not installed' }, async () => {
+    const page = await browser.open('#model=sphere&particles=100&view=map', SMALL);
+    await page.locator('#map-figures td').first().waitFor();
+    const { frames, mostInside, atRest } = await page.evaluate(fallInWorker);
+    assert.equal(mostInside, 0);
+    assert.ok(atRest, `still moving after ${frames} frames`);
+    assert.ok(frames > 500, `${frames} frames are too few for a fall`);
+    await page.context().close();
+});
+
+/** Runs in the page. @returns once the cloth lies or has moved for too long */
+async function fallInWorker() {
+    const script = performance.getEntriesByType('resource').find(({ name }) => /worker-[^/]*\.js$/.test(name)).name;
+    const worker = new Worker(script, { type: 'module' });
+    const settings = { model: 'horse', view: 'cloth', map: 'exact', cells: 'auto', particles: 2500, friction: 0.5, thickness: 1, wind: 0, motion: 'still', up: 'auto', mend: true, colour: 'fabric' };
+    let mostInside = 0;
+    return new Promise((resolve, reject) => {
+        worker.onmessage = ({ data }) => {
+            if (data.kind === 'failed') reject(new Error(data.sentence));
+            if (data.kind === 'frame') {
+                const { frame, inside, atRest } = data.figures;
+                mostInside = Math.max(mostInside, inside);
+                if (atRest || frame >= 6000) {
+                    worker.terminate();
+                    return resolve({ frames: frame, mostInside, atRest });
+                }
+            }
+            if (data.kind === 'frame' || data.kind === 'cloth') worker.postMessage({ kind: 'step' });
+        };
+        worker.postMessage({ kind: 'open', settings, page: document.baseURI });
+    });
+}
+
+test('a pause holds the cloth, a step moves it by one frame, and it can be dropped again', async () => {
+    const page = await browser.open('#model=sphere&particles=400', SMALL);
+    await untilFrame(page, 20);
+    await page.keyboard.press('Space');
+    assert.equal(await page.locator('#pause').textContent(), 'Go on');
+    await page.waitForFunction(() => document.body.dataset.paused === 'true'); // frames that were under way are here
+    const frame = () => page.evaluate(() => Number(document.body.dataset.frame));
+    const held = await frame();
+    await page.waitForTimeout(300);
+    assert.equal(await frame(), held);
+    await page.locator('#step').click();
+    await page.waitForFunction((next) => Number(document.body.dataset.frame) === next, held + 1);
+    await page.locator('#restart').click();
+    await page.waitForFunction((before) => Number(document.body.dataset.frame) < before, held);
+    await page.context().close();
+});
+
+for (const motion of ['turning', 'swinging'])
+    test(`nobody gets into a model that is ${motion} in the wind`, async () => {
+        const page = await browser.open(`#model=torus&particles=900&motion=${motion}&wind=6`, SMALL);
+        await untilFrame(page, 300);
+        assert.equal(await figure(page, 'inside'), '0');
+        assert.deepEqual(page.complaints, []);
+        await page.context().close();
+    });
+
+/** The cloth's vertices, as they are saved. */
+async function clothOf(page) {
+    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#save-mesh').click()]);
+    const text = await readFile(await download.path(), 'utf8');
+    return text.slice(text.indexOf('o cloth'), text.indexOf('o model')).match(/^v .*$/gm).map((line) => line.split(' ').slice(1).map(Number));
+}
+
+for (const map of ['exact', 'distance'])
+    test(`a pull moves a cloth on the ${map} map, and wakes it where it was at rest`, async () => {
+        const page = await browser.open(`#model=torus&particles=400&map=${map}`, SMALL);
+        // The paper's map may tremble for ever.
+        if (map === 'exact') await page.waitForFunction(() => document.body.dataset.rest === 'true', null, { timeout: 120_000 });
+        else await untilFrame(page, 400);
+        const before = await clothOf(page);
+        const { x, y, width, height } = await page.locator('#canvas').boundingBox();
+        const frame = await page.evaluate(() => Number(document.body.dataset.frame));
+        await page.mouse.move(x + 0.5 * width, y + 0.5 * height);
+        await page.mouse.down();
+        assert.ok(await page.locator('#canvas.dragging').isVisible());
+        await page.mouse.move(x + 0.5 * width, y + 0.9 * height, { steps: 4 });
+        await untilFrame(page, frame + 60);
+        await page.waitForTimeout(400); // until the figures are written again
+        if (map === 'exact') assert.equal(await figure(page, 'inside'), '0', 'nobody is dragged into the model');
+        await picture(page, `dragged_${map}`);
+        await page.mouse.up();
+        await page.waitForFunction(() => !document.querySelector('#canvas.dragging'));
+        const moved = (await clothOf(page)).map((point, i) => Math.hypot(...point.map((c, k) => c - before[i][k])));
+        assert.ok(Math.max(...moved) > 0.2, `by at most ${Math.max(...moved)}`);
+        assert.deepEqual(page.complaints, []);
+        await page.context().close();
+    });
+
+test('the depth of contact is shown in colours with a legend', async () => {
+    const page = await browser.open('#model=torus&particles=2500&colour=depth&map=distance', SMALL);
+    await untilFrame(page, 160);
+    assert.ok(await page.locator('#depth-legend').isVisible());
+    await picture(page, 'depth');
+    await page.locator('select[name=colour]').selectOption('fabric');
+    assert.ok(!(await page.locator('#depth-legend').isVisible()));
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});

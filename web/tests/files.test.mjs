@@ -1,0 +1,112 @@
+// Files that a visitor opens.
+import assert from 'node:assert/strict';
+import { mkdtemp, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { tetrahedra, torusStl } from './meshes.mjs';
+import { SMALL, picture, startBrowser, untilFrame } from './support.mjs';
+
+const OPEN_TETRAHEDRON = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n';
+
+let browser;
+before(async () => (browser = await startBrowser()));
+after(() => browser?.stop());
+
+const choose = (page, name, content) => page.locator('#file').setInputFiles({ name, mimeType: 'application/octet-stream', buffer: Buffer.from(content) });
+const untilReport = (page, words) => page.waitForFunction((part) => document.getElementById('report').textContent.includes(part), words, { timeout: 120_000 });
+const untilTitle = (page, words) => page.waitForFunction((part) => document.getElementById('subtitle').textContent.startsWith(part), words);
+
+test('OBJ, PLY, STL, OFF and GLB files are opened', async () => {
+    const page = await browser.open('#model=torus&particles=400', SMALL);
+    await untilFrame(page, 1);
+    for (const [name, content] of Object.entries(tetrahedra())) {
+        await choose(page, name, content);
+        await untilTitle(page, `${name}, 4 faces`);
+        assert.match(await page.locator('#report').textContent(), /^4 faces, 4 vertices, one partClosed/, name);
+        assert.equal(await page.locator('select[name=model] option:checked').textContent(), name);
+    }
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+test('a file that is dropped on the page is opened', async () => {
+    const page = await browser.open('#model=torus&particles=400', SMALL);
+    await untilFrame(page, 1);
+    const transfer = await page.evaluateHandle((text) => {
+        const transfer = new DataTransfer();
+        transfer.items.add(new File([text], 'dropped.off'));
+        return transfer;
+    }, tetrahedra()['t.off']);
+    await page.dispatchEvent('#canvas', 'dragover', { dataTransfer: transfer });
+    assert.ok(await page.locator('#drop').isVisible());
+    await page.dispatchEvent('#canvas', 'drop', { dataTransfer: transfer });
+    await untilTitle(page, 'dropped.off, 4 faces');
+    assert.ok(!(await page.locator('#drop').isVisible()));
+    await page.context().close();
+});
+
+test('while a file of 50 MB is opened the page draws on, and then the model is there', async () => {
+    const folder = await mkdtemp(join(tmpdir(), 'echinus-'));
+    try {
+        const file = join(folder, 'large.stl');
+        await writeFile(file, torusStl(1000, 500));
+        const page = await browser.open('#model=torus&particles=100', SMALL);
+        await untilFrame(page, 20);
+        await page.evaluate(watchPauses);
+        const begin = performance.now();
+        await page.locator('#file').setInputFiles(file);
+        await untilReport(page, '1\u2009000\u2009000 faces');
+        const opening = performance.now() - begin;
+        const longest = await page.evaluate(() => globalThis.longestPause);
+        // Software draws here, and other work may share the processor: what counts is that most of the time is not lost.
+        assert.ok(longest < opening / 3, `a pause of ${longest} ms in ${opening} ms`);
+        assert.match(await page.locator('#report').textContent(), /500\u2009000 vertices, one partClosed/);
+        assert.deepEqual(page.complaints, []);
+        await page.context().close();
+    } finally {
+        await rm(folder, { recursive: true });
+    }
+});
+
+/** Runs in the page: keeps the longest time between two of its pictures. */
+function watchPauses() {
+    let last = performance.now();
+    globalThis.longestPause = 0;
+    const look = () => {
+        const now = performance.now();
+        globalThis.longestPause = Math.max(globalThis.longestPause, now - last);
+        last = now;
+        requestAnimationFrame(look);
+    };
+    requestAnimationFrame(look);
+}
+
+test('a broken file gives one sentence, and the page lives on', async () => {
+    const page = await browser.open('#model=torus&particles=400', SMALL);
+    await untilFrame(page, 5);
+    await choose(page, 'broken.obj', 'v 0 0 0\nf 1 2 9\n');
+    await page.locator('#notice').waitFor();
+    assert.match(await page.locator('#notice span').textContent(), /^broken\.obj.*2/);
+    await picture(page, 'broken_file');
+    const frame = await page.evaluate(() => Number(document.body.dataset.frame));
+    await untilFrame(page, frame + 20);
+    assert.match(await page.locator('#subtitle').textContent(), /^torus/);
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+test('an open mesh is said to be open, and its border is counted', async () => {
+    const page = await browser.open('#model=torus&particles=400', SMALL);
+    await untilFrame(page, 1);
+    await choose(page, 'open.obj', OPEN_TETRAHEDRON);
+    await untilReport(page, '3 border edges');
+    assert.match(await page.locator('#report').textContent(), /Open/);
+    await page.locator('input[name=map][value=distance]').check();
+    await page.waitForFunction(() => document.getElementById('map-note').textContent.includes('paper') || !document.getElementById('notice').hidden);
+    const frame = await page.evaluate(() => Number(document.body.dataset.frame));
+    await page.locator('#restart').click();
+    await untilFrame(page, Math.max(5, Math.min(20, frame)));
+    await picture(page, 'open_mesh');
+    await page.context().close();
+});

@@ -1,0 +1,88 @@
+// The view of the map.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { SMALL, figure, hasHorse, numberOf, picture, shareOfProcessor, startBrowser, untilFrame, untilRay } from './support.mjs';
+
+let browser;
+before(async () => (browser = await startBrowser()));
+after(() => browser?.stop());
+
+// The first build in a fresh page, with whatever the browser has yet to compile. So that a busy machine does not fail it, the
+// best of a few pages counts, and of its time the share that the worker had the processor of all that it was ready for it.
+test("the horse's map is built in under 50 ms", { skip: !hasHorse && 'the horse is not installed' }, async () => {
+    const times = [];
+    for (let turn = 0; turn < 6 && !(Math.min(...times) < 50); ++turn) {
+        const page = await browser.open('#particles=100', { viewport: { width: 390, height: 300 } });
+        await untilFrame(page, 1);
+        times.push(Math.round(numberOf(await figure(page, 'build')) * shareOfProcessor('DedicatedWorker')));
+        await page.context().close();
+    }
+    assert.ok(Math.min(...times) < 50, `${times.join(', ')} ms`);
+});
+
+test('the map is shown in colours with its figures, and built again when asked', async () => {
+    const page = await browser.open('#view=map');
+    await untilRay(page);
+    await page.waitForTimeout(500);
+    await picture(page, 'map');
+    await page.evaluate(() => (document.getElementById('figure-build').textContent = ''));
+    await page.locator('#rebuild').click();
+    await page.waitForFunction(() => document.getElementById('figure-build').textContent !== '');
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+/** What the table of the map's figures has beside a name. */
+const row = (page, name) => page.locator('#map-figures tr', { hasText: name }).locator('td').textContent();
+const untilRow = (page, name, value) =>
+    page.waitForFunction(
+        ([n, v]) => [...document.querySelectorAll('#map-figures tr')].some((r) => r.cells[0].textContent === n && r.cells[1].textContent === v), [name, value]);
+
+test('the cells of the exact map are shown, as many as were asked for', async () => {
+    const page = await browser.open('#model=torus&view=map&shown=cells&cells=64&slice=0.2&particles=100', SMALL);
+    await untilRow(page, 'cells', '512');
+    await untilRay(page);
+    assert.match(await page.locator('#legend').textContent(), /cell/);
+    await picture(page, 'cells');
+    await page.locator('select[name=cells]').selectOption('256');
+    await untilRow(page, 'cells', '2\u2009048');
+    await page.locator('select[name=shown]').selectOption('surface');
+    assert.match(await page.locator('#legend').textContent(), /query/);
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+test("the paper's map follows its options, and one key shows the other map in its place", async () => {
+    const page = await browser.open('#model=torus&view=map&map=distance&directions=2500&particles=100', SMALL);
+    await untilRow(page, 'directions', '2\u2009500');
+    await page.locator('select[name=grid]').selectOption('cube');
+    await untilRow(page, 'directions', '2\u2009400'); // six squares of 20 x 20
+    await page.keyboard.press('x');
+    await page.locator('#map-figures tr', { hasText: 'bands' }).waitFor();
+    assert.ok(await page.locator('input[name=map][value=exact]').isChecked());
+    await page.keyboard.press('x');
+    await untilRow(page, 'directions', '2\u2009400');
+    assert.equal(await row(page, 'most along one direction'), '4');
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+test('the ray goes through what the pointer points at', async () => {
+    const page = await browser.open('#model=sphere&view=map&particles=100', SMALL);
+    await untilRay(page);
+    const first = await page.locator('#ray').textContent();
+    const { x, y, width, height } = await page.locator('#canvas').boundingBox();
+    await page.mouse.move(x + 0.45 * width, y + 0.6 * height);
+    await page.waitForFunction((before) => document.getElementById('ray').textContent !== before, first);
+    assert.match(await page.locator('#ray').textContent(), /^Inside from 0\.000 to (0\.9|1\.0)/);
+    await page.context().close();
+});
+
+test("the paper's map is shown in layers, cut open, with the points where it differs", async () => {
+    const page = await browser.open('#view=map&map=distance&slice=0.1');
+    await page.waitForFunction(() => document.getElementById('legend').textContent.includes('layer 2') || document.getElementById('legend').textContent.includes('layer 1'));
+    await page.waitForTimeout(500);
+    await picture(page, 'map_distance');
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
