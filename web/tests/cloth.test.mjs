@@ -103,7 +103,7 @@ for (const map of ['exact', 'distance'])
         await page.mouse.up();
         await page.waitForFunction(() => !document.querySelector('#canvas.dragging'));
         const moved = (await clothOf(page)).map((point, i) => Math.hypot(...point.map((c, k) => c - before[i][k])));
-        assert.ok(Math.max(...moved) > 0.2, `by at most ${Math.max(...moved)}`);
+        assert.ok(Math.max(...moved) > 0.1, `by at most ${Math.max(...moved)}`);
         assert.deepEqual(page.complaints, []);
         await page.context().close();
     });

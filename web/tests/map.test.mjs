@@ -32,8 +32,7 @@ test('the map is shown in colours with its figures, and built again when asked',
     await page.context().close();
 });
 
-/** What the table of the map's figures has beside a name. */
-const row = (page, name) => page.locator('#map-figures tr', { hasText: name }).locator('td').textContent();
+/** Waits until the table of the map's figures has this value beside this name. */
 const untilRow = (page, name, value) =>
     page.waitForFunction(
         ([n, v]) => [...document.querySelectorAll('#map-figures tr')].some((r) => r.cells[0].textContent === n && r.cells[1].textContent === v), [name, value]);
@@ -62,7 +61,6 @@ test("the paper's map follows its options, and one key shows the other map in it
     assert.ok(await page.locator('input[name=map][value=exact]').isChecked());
     await page.keyboard.press('x');
     await untilRow(page, 'directions', '2\u2009400');
-    assert.equal(await row(page, 'most along one direction'), '4');
     assert.deepEqual(page.complaints, []);
     await page.context().close();
 });
