@@ -64,6 +64,7 @@ ordered_json description_of(const PlayedSimulation& played, const Lattice& latti
           {"centre", to_json(sphere.centre)},
           {"radius", sphere.radius}}},
         {"cloth_faces", simulation.deformable().faces.size()},
+        {"cloth_columns", played.cloth_columns},
         {"lattice_step", lattice.step},
         {"figures", figures_of(played.result)},
         {"frames", frames_of(played.recording, lattice, simulation.colliders().front().moves())},

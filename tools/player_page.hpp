@@ -7,6 +7,7 @@
 
 #include <echinus/mesh.hpp>
 
+#include <cstdint>
 #include <string>
 
 /// What a page tells and shows of a simulation.
@@ -16,6 +17,7 @@ struct PlayedSimulation {
     std::string scene_name; ///< without folders, since pages are handed on
     std::string model_name;
     std::string notice;                    ///< of the model's source; may be empty
+    std::uint32_t cloth_columns;           ///< particles in each row of the sheet
     const echinus::TriangleMesh& collider; ///< scaled, not moved
 };
 

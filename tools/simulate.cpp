@@ -181,6 +181,7 @@ void simulate(const SimulateArguments& arguments) {
                            .scene_name = arguments.scene.filename().string(),
                            .model_name = model_name(scene),
                            .notice = file ? notice_beside(*file) : "",
+                           .cloth_columns = scene.cloth.column_count,
                            .collider = collider_mesh});
     if (results.folder) results.folder->commit(report);
     if (arguments.json)

@@ -66,6 +66,7 @@ TEST_F(SimulatePage, HoldsThePlayerAndTheRecordingInItsPlace) {
     EXPECT_EQ(page.model_vertices.size(), 3 * 8u);
     EXPECT_EQ(page.model_faces.size(), 3 * 12u);
     EXPECT_EQ(page.cloth_faces.size(), 3 * 24u);
+    EXPECT_EQ(description["cloth_columns"], 5);
     EXPECT_EQ(description["figures"]["particles"], 20);
     EXPECT_GT(description["figures"]["ms_per_frame"]["total"], 0);
 }

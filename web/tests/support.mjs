@@ -38,15 +38,15 @@ export async function startBrowser() {
         args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
     });
     return {
-        /** A page that keeps what its console complains of in `complaints`. @param beforeLoad  runs in it before its own code */
-        async open(hash = '', { beforeLoad, ...options } = {}) {
+        /** A page that keeps what its console complains of in `complaints`. @param place  a link within the built page, or an address @param beforeLoad  runs in it before its own code */
+        async open(place = '', { beforeLoad, ...options } = {}) {
             const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true, ...options });
             const page = await context.newPage();
             if (beforeLoad) await page.addInitScript(beforeLoad);
             page.complaints = [];
             page.on('console', (message) => ['error', 'warning'].includes(message.type()) && !isOfTheDriver(message.text()) && page.complaints.push(message.text()));
             page.on('pageerror', (error) => page.complaints.push(String(error)));
-            await page.goto(`${address}${hash}`);
+            await page.goto(new URL(place, address).href);
             return page;
         },
         async stop() {

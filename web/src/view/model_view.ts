@@ -11,7 +11,7 @@ const CREASED_FACES = 60_000;
 export class ModelView {
     readonly group = new THREE.Group();
 
-    show({ vertices, faces, faults }: ModelNews): void {
+    show({ vertices, faces, faults }: Pick<ModelNews, 'vertices' | 'faces' | 'faults'>): void {
         clear(this.group);
         const geometry = new THREE.BufferGeometry();
         geometry.setAttribute('position', new THREE.BufferAttribute(vertices, 3));
@@ -25,7 +25,7 @@ export class ModelView {
         if (wrong.length > 0) this.group.add(marked(vertices, faces, wrong));
     }
 
-    follow({ position, rotation: [w, x, y, z] }: ColliderState): void {
+    follow({ position, rotation: [w, x, y, z] }: Pick<ColliderState, 'position' | 'rotation'>): void {
         this.group.position.set(...position);
         this.group.quaternion.set(x, y, z, w);
         this.group.updateMatrixWorld();

@@ -1,0 +1,60 @@
+import { byId, make } from '../panel/elements';
+import { count, milliseconds, perSecond } from '../panel/numbers';
+import type { Description, RecordedFrame } from './description';
+
+/** What does not change while it plays. */
+export function showAbout(description: Description): void {
+    const { scene, model, figures } = description;
+    document.title = `${scene}: a simulation by Echinus`;
+    byId('subtitle').textContent = `${scene}, recorded`;
+    byId('scene').textContent = scene;
+    byId('about').replaceChildren(...rowsOf(description).map(([name, value]) => row(name, value)));
+    byId('precision').textContent = precisionOf(description);
+    showMeans(figures);
+    byId('model-notice').hidden = model.notice === '';
+    byId('model-notice').querySelector('pre')!.textContent = model.notice;
+}
+
+/** What belongs to a frame. */
+export function showFrame({ number, inside }: RecordedFrame, timeStep: number): void {
+    const cell = byId('figure-inside');
+    cell.textContent = count(inside);
+    cell.parentElement!.classList.toggle('some', inside > 0);
+    byId('figure-time').textContent = `${(number * timeStep).toFixed(2)}\u2009s`;
+    byId('figure-frame').textContent = count(number);
+}
+
+function showMeans({ particles, ms_per_frame: ms, ns_per_query }: Description['figures']): void {
+    byId('figure-particles').textContent = count(particles);
+    byId('figure-step').textContent = milliseconds(ms.total);
+    byId('figure-constraints').textContent = milliseconds(ms.constraints);
+    byId('figure-collision').textContent = milliseconds(ms.collision);
+    byId('figure-queries').textContent = ns_per_query > 0 ? perSecond(1e9 / ns_per_query) : '\u2013';
+}
+
+function rowsOf({ model, figures, frames, cloth_faces, machine, version }: Description): [string, string][] {
+    const rest = figures.frames_to_rest;
+    return [
+        ['model', model.name],
+        ['its faces', count(model.faces)],
+        ['faces of the cloth', count(cloth_faces)],
+        ['push-out', figures.map_kind === 'exact' ? 'nearest, exact map' : 'radial, the paper\u2019s map'],
+        ['solver', `${figures.solver === 'xpbd' ? 'XPBD' : 'Verlet'}, ${figures.substeps} \u00d7 ${figures.iterations}`],
+        ['time steps of', milliseconds(1e3 * figures.time_step)],
+        ['at rest after', rest === null ? 'not yet' : `${count(rest)} steps`],
+        ['recorded frames', count(frames.length)],
+        ['machine', machine],
+        ['Echinus', version],
+    ];
+}
+
+function precisionOf({ lattice_step, model }: Description): string {
+    const error = 0.5 * lattice_step;
+    return `Positions are rounded, each coordinate by at most ${error.toPrecision(2)} (${(error / model.radius).toPrecision(2)}\u2009R).`;
+}
+
+function row(name: string, value: string): HTMLElement {
+    const element = document.createElement('tr');
+    element.append(make('th', name), make('td', value));
+    return element;
+}

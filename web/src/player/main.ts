@@ -1,0 +1,32 @@
+/** Begins the player, or says why it cannot. */
+import '../style.css';
+import './player.css';
+import { enableClosing, say } from '../panel/notice';
+import { Player } from './player';
+import { Recording } from './recording';
+
+const FORMAT = 1;
+
+/** The text of an element that `echinus simulate --html` writes. It goes from the page, being large. */
+function takeText(id: string): string | undefined {
+    const element = document.getElementById(id);
+    element?.remove();
+    return element?.textContent ?? undefined;
+}
+
+async function begin(): Promise<void> {
+    const description = takeText('description'), data = takeText('data');
+    if (description === undefined || data === undefined)
+        return say('This page holds no recording. The command "echinus simulate SCENE --html PAGE" writes one that does.');
+    if (typeof DecompressionStream === 'undefined' || !document.createElement('canvas').getContext('webgl2'))
+        return say('This page needs WebGL 2 and DecompressionStream. Chrome and Edge from 94, Firefox from 113 and Safari from 16.4 have both.');
+    const parsed = JSON.parse(description);
+    if (parsed.format !== FORMAT) return say(`This player reads recordings of format ${FORMAT}; this one has format ${parsed.format}.`);
+    const recording = await Recording.open(parsed, data);
+    new Player(recording);
+    await recording.readFrames();
+    document.body.dataset.read = 'true'; // what the tests wait for
+}
+
+enableClosing();
+begin().catch((error) => say(`The recording in this page cannot be read: ${error instanceof Error ? error.message : error}.`));

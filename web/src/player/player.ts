@@ -1,0 +1,100 @@
+/** The player: brings the recording, the picture and the controls together. */
+import { byId } from '../panel/elements';
+import { saveAs } from '../saving';
+import { Stage } from '../view/stage';
+import { showAbout, showFrame } from './about';
+import { Playback } from './playback';
+import type { Recording } from './recording';
+import { World } from './world';
+
+export class Player {
+    readonly #recording: Recording;
+    readonly #playback: Playback;
+    readonly #stage = new Stage(byId<HTMLCanvasElement>('canvas'));
+    readonly #world: World;
+    readonly #scrub = byId<HTMLInputElement>('scrub');
+    #shown = -1;
+    #last = performance.now();
+
+    constructor(recording: Recording) {
+        this.#recording = recording;
+        const { frames, figures } = recording.description;
+        this.#playback = new Playback(frames.map(({ number }) => number * figures.time_step));
+        this.#world = new World(this.#stage, recording);
+        this.#scrub.max = String(frames.length - 1);
+        showAbout(recording.description);
+        this.#bindControls();
+        this.#bindKeys();
+        this.#stage.renderer.setAnimationLoop(() => this.#draw());
+    }
+
+    #draw(): void {
+        const now = performance.now();
+        this.#playback.advance((now - this.#last) / 1000, this.#recording.frameCount);
+        this.#last = now;
+        if (this.#playback.frame !== this.#shown && this.#playback.frame < this.#recording.frameCount) this.#show(this.#playback.frame);
+        byId('pause').textContent = this.#playback.playing ? 'Pause' : 'Play';
+        this.#stage.draw();
+    }
+
+    #show(frame: number): void {
+        const { frames, figures } = this.#recording.description;
+        this.#world.show(frame);
+        showFrame(frames[frame], figures.time_step);
+        this.#scrub.value = String(frame);
+        this.#scrub.ariaValueText = `${(frames[frame].number * figures.time_step).toFixed(2)} seconds`;
+        this.#shown = frame;
+        document.body.dataset.frame = String(frame); // what the tests wait for
+    }
+
+    // ---- What a visitor does
+
+    #toggle(): void {
+        if (this.#playback.playing) this.#playback.pause();
+        else this.#playback.play();
+    }
+    #seek(frame: number): void {
+        this.#playback.pause();
+        // Those that are still being read cannot be shown.
+        this.#playback.seek(Math.min(frame, this.#recording.frameCount - 1));
+    }
+    #restart(): void {
+        this.#playback.seek(0);
+        this.#playback.play();
+    }
+    async #savePicture(): Promise<void> {
+        saveAs('echinus.png', await this.#stage.picture());
+    }
+
+    #bindControls(): void {
+        const actions: Record<string, () => void> = {
+            pause: () => this.#toggle(),
+            step: () => this.#seek(this.#playback.frame + 1),
+            restart: () => this.#restart(),
+            'save-picture': () => void this.#savePicture(),
+        };
+        for (const [id, action] of Object.entries(actions)) byId(id).addEventListener('click', action);
+        this.#scrub.addEventListener('input', () => this.#seek(Number(this.#scrub.value)));
+        const speed = byId<HTMLSelectElement>('speed');
+        speed.addEventListener('input', () => (this.#playback.speed = Number(speed.value)));
+    }
+
+    #bindKeys(): void {
+        const actions: Record<string, () => void> = {
+            ' ': () => this.#toggle(),
+            s: () => this.#seek(this.#playback.frame + 1),
+            arrowright: () => this.#seek(this.#playback.frame + 1),
+            arrowleft: () => this.#seek(this.#playback.frame - 1),
+            r: () => this.#restart(),
+            p: () => void this.#savePicture(),
+        };
+        addEventListener('keydown', (event) => {
+            // Keys that a control needs are its own.
+            const taken = event.target instanceof HTMLElement && event.target.matches(event.key === ' ' ? 'select, button, summary' : 'select, input');
+            const action = actions[event.key.toLowerCase()];
+            if (!action || taken || event.ctrlKey || event.metaKey || event.altKey) return;
+            event.preventDefault();
+            action();
+        });
+    }
+}
