@@ -51,7 +51,7 @@ export class World {
 const arraysFor = (particles: number): FrameArrays => ({
     positions: new Float32Array(3 * particles),
     normals: new Float32Array(3 * particles),
-    closeness: new Float32Array(particles),
+    depths: new Float32Array(particles),
 });
 
 /** The axis that points up, and the turn that brings a slanted gravity to it. */
