@@ -137,20 +137,28 @@ void require_target(const SimulateArguments& arguments) {
     require_one_result(arguments.page, arguments.json);
 }
 
+/// The frame stride of a page.
+std::uint32_t page_stride(const SimulateArguments& arguments, const Scene& scene) {
+    return arguments.stride.value_or(stride_for_display(scene.simulation.time_step));
+}
+
+/// Before the work, so that what cannot be written is refused at once.
+void open(Results& results, const SimulateArguments& arguments, const Scene& scene) {
+    if (!arguments.target.empty()) results.folder.emplace(arguments.target, arguments.obj);
+    if (!arguments.page.empty()) {
+        require_playable(std::size_t{scene.cloth.column_count} * scene.cloth.row_count, scene.frame_limit,
+                         page_stride(arguments, scene));
+        results.page.emplace(arguments.page, arguments.player);
+    }
+}
+
 void simulate(const SimulateArguments& arguments) {
     require_target(arguments);
     Scene scene = read_scene(arguments.scene);
     if (arguments.frame_limit) scene.frame_limit = *arguments.frame_limit;
     const std::uint32_t stride = arguments.stride.value_or(1);
-    const std::uint32_t page_stride =
-        arguments.stride.value_or(stride_for_display(scene.simulation.time_step));
     Results results;
-    if (!arguments.target.empty()) results.folder.emplace(arguments.target, arguments.obj);
-    if (!arguments.page.empty()) {
-        require_playable(std::size_t{scene.cloth.column_count} * scene.cloth.row_count, scene.frame_limit,
-                         page_stride);
-        results.page.emplace(arguments.page, arguments.player);
-    }
+    open(results, arguments, scene);
 
     const std::optional<fs::path> file = model_file(scene, arguments.scene, arguments.model_folders);
     const TriangleMesh mesh = load_model(scene, arguments.scene, file).mesh;
@@ -159,7 +167,8 @@ void simulate(const SimulateArguments& arguments) {
     const TriangleMesh collider_mesh = scaled(mesh, scene.scale);
     if (results.folder) results.folder->begin(simulation.deformable(), collider_mesh, stride);
     if (results.page)
-        results.page->recording.emplace(judge_of(map, mesh, arguments.thread_count), page_stride);
+        results.page->recording.emplace(judge_of(map, mesh, arguments.thread_count),
+                                        page_stride(arguments, scene));
     std::vector<SavedPose> poses = naming_file(arguments.scene.string(), ErrorCode::Diverged, [&] {
         return run(simulation, results, scene.frame_limit, stride);
     });

@@ -7,6 +7,9 @@ import { Playback } from './playback';
 import type { Recording } from './recording';
 import { World } from './world';
 
+/** Time passes in the recording by at most this much between two pictures, so that no slow one, such as the first, skips a part. */
+const LONGEST_PICTURE_S = 0.25;
+
 export class Player {
     readonly #recording: Recording;
     readonly #playback: Playback;
@@ -30,11 +33,16 @@ export class Player {
 
     #draw(): void {
         const now = performance.now();
-        this.#playback.advance((now - this.#last) / 1000, this.#recording.frameCount);
+        this.#playback.advance(Math.min((now - this.#last) / 1000, LONGEST_PICTURE_S), this.#recording.frameCount);
         this.#last = now;
         if (this.#playback.frame !== this.#shown && this.#playback.frame < this.#recording.frameCount) this.#show(this.#playback.frame);
-        byId('pause').textContent = this.#playback.playing ? 'Pause' : 'Play';
+        this.#showPlaying();
         this.#stage.draw();
+    }
+
+    #showPlaying(): void {
+        const word = this.#playback.playing ? 'Pause' : 'Play';
+        if (byId('pause').textContent !== word) byId('pause').textContent = word;
     }
 
     #show(frame: number): void {
