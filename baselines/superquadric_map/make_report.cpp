@@ -95,6 +95,18 @@ void measure_coverage(const TriangleMesh& mesh, const SegmentArrays& map, double
             report.uncovered_faces.push_back(face);
 }
 
+FitError fit_error(const SuperquadricReport& report) {
+    FitError error;
+    double area = 0;
+    for (const SegmentReport& segment : report.segments) {
+        error.mean += segment.area_share * segment.mean_fit_error;
+        area += segment.area_share;
+        error.largest = std::max(error.largest, segment.largest_fit_error);
+    }
+    if (area > 0) error.mean /= area;
+    return error;
+}
+
 std::string describe(const SuperquadricReport& report) {
     std::string text =
         "segment   faces   area   mean error  largest   empty   a1 a2 a3 (radii)      e1     e2\n";

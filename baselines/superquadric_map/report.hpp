@@ -36,6 +36,13 @@ struct SuperquadricReport {
     double buried_area_share = 0;
 };
 
+/// Radial distances from the fitted superquadrics to what they are fitted to, in radii of the segments.
+struct FitError {
+    double mean = 0; ///< over the mesh's area
+    double largest = 0;
+};
+FitError fit_error(const SuperquadricReport& report);
+
 /// A table for people: a line for each segment, then the surface that is not covered.
 std::string describe(const SuperquadricReport& report);
 

@@ -8,6 +8,8 @@
 #include "comparison/clock.hpp"
 #include "comparison/turns.hpp"
 
+#include <echinus/instruction_set.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,13 +30,15 @@ struct Rival {
     std::string name;
     std::unique_ptr<const Baseline> structure;
     double build_seconds;
+    std::string instruction_set{echinus::instruction_set()}; ///< that it is asked with
 };
 
 template <typename Build>
 Rival rival(std::string name, Build build) {
     const double start = process_seconds();
     auto structure = build();
-    return {std::move(name), std::move(structure), process_seconds() - start};
+    const double seconds = process_seconds() - start;
+    return {std::move(name), std::move(structure), seconds};
 }
 
 /// The paper's figures for a model.
@@ -77,13 +81,11 @@ Rival superquadric_rival(const Subject& subject, Rows& rows) {
             baselines::SuperquadricMap::build(subject.mesh, options));
     });
     const auto& map = static_cast<const baselines::SuperquadricMap&>(*result.structure);
-    double fit_error = 0;
-    for (const baselines::SegmentReport& segment : map.report().segments)
-        fit_error += 100 * segment.mean_fit_error / static_cast<double>(map.segment_count());
     rows.push_back({subject.name, fmt::format("{}", map.segment_count()), megabytes(map.byte_count()),
                     fmt::format("{:.2f}", static_cast<double>(map.byte_count()) / (1 << 20)),
                     fmt::format("{:.1f}", printed.superquadric_megabytes),
-                    fmt::format("{:.1f}", result.build_seconds), fmt::format("{:.1f}", fit_error),
+                    fmt::format("{:.1f}", result.build_seconds),
+                    fmt::format("{:.1f}", 100 * baselines::fit_error(map.report()).mean),
                     fmt::format("{:.1f}", 100 * map.report().uncovered_area_share)});
     add_wrong(map, subject, rows.back());
     return result;
@@ -116,8 +118,15 @@ Rival field_rival(const Subject& subject, baselines::SampleFormat format, Rows& 
 
 // ---- Speed ----
 
-Rival distance_map_rival(const Subject& subject) {
-    return rival("distance map", [&] { return baselines::distance_map(subject.mesh, {.thread_count = 1}); });
+Rival distance_map_rival(const Subject& subject, std::string name) {
+    return rival(std::move(name), [&] { return baselines::distance_map(subject.mesh, {.thread_count = 1}); });
+}
+
+/// One particle after the other, as the superquadric map is asked.
+Rival scalar_distance_map_rival(const Subject& subject) {
+    Rival result = distance_map_rival(subject, "distance map, scalar");
+    result.instruction_set = "scalar";
+    return result;
 }
 
 /// ns a particle, of all rivals on one model, which take turns.
@@ -129,13 +138,16 @@ void add_speeds(const Subject& subject, const std::vector<Rival>& rivals, Rows& 
     const auto race = [&](const JudgedPoints& set, const auto& ask) {
         std::vector<Racer> racers;
         for (const Rival& rival : rivals)
-            racers.push_back({[&set, &ask, structure = rival.structure.get()](Part part) {
-                                  ask(*structure, std::span(set.points).subspan(part.begin, part.size()));
+            racers.push_back({[&](Part part) {
+                                  use_instruction_set(rival.instruction_set);
+                                  ask(*rival.structure,
+                                      std::span(set.points).subspan(part.begin, part.size()));
                               },
                               {{0, set.points.size()}}});
         TurnOptions turns;
         turns.enough_seconds = 2;
         const std::vector<Pace> paces = take_turns(racers, turns);
+        use_instruction_set(rivals.front().instruction_set);
         for (std::size_t k = 0; k < paces.size(); ++k)
             rows[first_row + k].push_back(fmt::format("{:.0f}", paces[k].ns));
     };
@@ -163,7 +175,8 @@ void measure_rivals(std::span<const Subject> subjects, Values& values) {
         {"model", "system", "MB", "build, ms", "inside?, ns: U", "S", "C", "contact, ns: U", "S", "C"}};
     for (const Subject& subject : subjects) {
         std::vector<Rival> rivals;
-        rivals.push_back(distance_map_rival(subject));
+        rivals.push_back(distance_map_rival(subject, "distance map"));
+        rivals.push_back(scalar_distance_map_rival(subject));
 #ifdef ECHINUS_HAS_SUPERQUADRIC_MAP
         rivals.push_back(superquadric_rival(subject, superquadrics));
 #endif

@@ -7,8 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 using namespace echinus;
 using namespace echinus::baselines;
 
@@ -24,22 +22,6 @@ double wrong_percent(const SuperquadricMap& map, const ExactMap& exact, const st
     for (std::size_t i = 0; i < points.size(); ++i) wrong += said[i] != truth[i] ? 1 : 0;
     return 100 * static_cast<double>(wrong) / static_cast<double>(points.size());
 }
-
-/// Mean over the model's surface, and the worst, of the radial distance from the superquadric, in the
-/// segment's radii.
-struct FitError {
-    double mean = 0, largest = 0;
-
-    explicit FitError(const SuperquadricReport& report) {
-        double area = 0;
-        for (const SegmentReport& segment : report.segments) {
-            mean += segment.area_share * segment.mean_fit_error;
-            area += segment.area_share;
-            largest = std::max(largest, segment.largest_fit_error);
-        }
-        if (area > 0) mean /= area;
-    }
-};
 
 } // namespace
 
@@ -64,7 +46,7 @@ std::vector<std::string> measure(const std::string& name, const TriangleMesh& me
     const double seconds = comparison::process_seconds() - start;
     const ExactMap exact = ExactMap::build(mesh);
     const SuperquadricReport& report = map.report();
-    const FitError fit(report);
+    const FitError fit = fit_error(report);
     const auto percent = [](double share) { return fmt::format("{:.1f} %", 100 * share); };
     return {
         name,
