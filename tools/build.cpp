@@ -163,6 +163,7 @@ void print_result(const MapDescription& description, const BuiltMap& built, cons
 
 void build(const BuildArguments& arguments) {
     require_one_result(arguments.target, arguments.json);
+    require_another_file(arguments.mesh.path, arguments.target);
     refuse_options_of_the_other_kind(arguments);
     const BuiltMap built =
         naming_mesh(arguments.mesh.name(), [&] { return build_map(read_mesh(arguments.mesh), arguments); });

@@ -16,6 +16,13 @@ void add_compare_command(CLI::App& app);
 void add_simulate_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 
+/// Refuses a result that would take the place of what it is made of.
+inline void require_another_file(const std::filesystem::path& source, const std::filesystem::path& target) {
+    std::error_code not_there;
+    if (std::filesystem::equivalent(source, target, not_there))
+        throw CLI::ValidationError(target.string(), "this file is read; give the result another name");
+}
+
 /// Refuses --json together with a result that goes to standard output itself.
 inline void require_one_result(const std::filesystem::path& target, bool json) {
     if (json && target == kStandardStream) {

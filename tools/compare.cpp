@@ -67,6 +67,7 @@ Image picture_of(const TriangleMesh& mesh, Axis up) {
 void compare(CompareArguments& arguments) {
     arguments.mesh.require_format();
     require_one_result(arguments.page, arguments.json);
+    require_another_file(arguments.mesh.path, arguments.page);
     const TriangleMesh mesh = read_closed_mesh(arguments);
     if (arguments.curves || !arguments.page.empty()) arguments.options.curve_length = kCurveLength;
     std::optional<Output> page; // opened before the work, which takes minutes, so that it is not for nothing

@@ -38,6 +38,8 @@ void require_sound(const QueryArguments& arguments) {
         throw CLI::ValidationError("--margin", "must be a finite number and not negative");
     }
     require_one_result(arguments.target, arguments.json);
+    require_another_file(arguments.map, arguments.target);
+    require_another_file(arguments.points, arguments.target);
 }
 
 /// By the ending of the name; on standard output that of the points.

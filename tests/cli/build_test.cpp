@@ -44,6 +44,11 @@ TEST_F(BuildCommand, PrintsWhatItBuilt) {
     EXPECT_GE(built["build_ms"].get<double>(), 0);
 }
 
+TEST_F(BuildCommand, LeavesTheMeshAloneWhenItsNameIsGivenForTheMap) {
+    expect_failure(2, "box.obj: this file is read", small({"-o", "./box.obj"}));
+    EXPECT_EQ(content("box.obj"), box_text());
+}
+
 TEST_F(BuildCommand, BuildsAnExactMapUnlessTold) {
     const json built = json::parse(expect_success({"build", "box.obj", "-o", "box.ech", "--json"}));
     const ExactMap map = load_exact_map(path("box.ech"));

@@ -124,3 +124,9 @@ TEST_F(CompareCommand, RefusesWrongUse) {
     expect_failure(1, "no/such/folder", quick({"--html", "no/such/folder/page.html"}));
     expect_failure(1, "missing.obj", {"compare", "missing.obj"});
 }
+
+TEST_F(CompareCommand, LeavesTheMeshAloneWhenItsNameIsGivenForThePage) {
+    const std::string torus = content("torus.obj");
+    expect_failure(2, "torus.obj: this file is read", quick({"--html", "torus.obj"}));
+    EXPECT_EQ(content("torus.obj"), torus);
+}
