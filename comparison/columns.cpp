@@ -52,9 +52,11 @@ std::vector<Column> error_columns(const Comparison& comparison) {
     const auto add = [&](const char* group, double unit, Spread ErrorSummary::*error,
                          std::initializer_list<Statistic> parts) {
         for (const auto& [head, part] : parts) {
-            columns.push_back(of_set(group, "S", [unit, error, part = part](const SetFigures& f) {
-                return digits(unit * (f.errors.*error).*part);
-            }));
+            columns.push_back(
+                of_set(group, "S", [unit, error, part = part](const SetFigures& f) -> std::string {
+                    const Spread& spread = f.errors.*error;
+                    return spread.count == 0 ? "-" : digits(unit * spread.*part);
+                }));
             columns.back().head = head;
         }
     };

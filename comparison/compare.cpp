@@ -105,7 +105,13 @@ struct Participant {
     std::unique_ptr<Sizes> sizes;
 };
 
-std::vector<Participant> participants_of(const TriangleMesh& mesh, const CompareOptions& options) {
+/// Does a system say that it cannot have this size, or this mesh, which others can?
+bool is_refusal(const Error& error) {
+    return error.code() == ErrorCode::InvalidOptions || error.code() == ErrorCode::InvalidMesh;
+}
+
+std::vector<Participant> participants_of(const TriangleMesh& mesh, const CompareOptions& options,
+                                         std::vector<Refusal>& refusals) {
     std::vector<const System*> chosen;
     for (const std::string& name : options.systems)
         if (const System& system = system_named(name); std::ranges::find(chosen, &system) == chosen.end())
@@ -119,7 +125,12 @@ std::vector<Participant> participants_of(const TriangleMesh& mesh, const Compare
             if (options.report_progress)
                 options.report_progress(std::string(system->title) + ": " + std::string(stage), share);
         };
-        participants.push_back({system, system->on(mesh, options.system, progress)});
+        try {
+            participants.push_back({system, system->on(mesh, options.system, progress)});
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::InvalidMesh) throw; // options are the caller's mistake
+            refusals.push_back({system, error.what()});
+        }
     }
     return participants;
 }
@@ -228,9 +239,10 @@ std::vector<Competitor> build_all(std::vector<Participant>& participants, const 
         try {
             competitors.push_back(build_timed(system, participant.sizes->within(options.byte_budget)));
         } catch (const Error& error) {
-            if (error.code() != ErrorCode::InvalidOptions) throw;
+            if (!is_refusal(error)) throw;
             reason = error.what();
-            const std::optional<Recipe> usual = participant.sizes->usual();
+            const std::optional<Recipe> usual =
+                error.code() == ErrorCode::InvalidOptions ? participant.sizes->usual() : std::nullopt;
             if (!usual) {
                 refusals.push_back({&system, reason});
                 continue;
@@ -267,7 +279,7 @@ std::vector<Competitor> build_sizes(Participant& participant, const CompareOptio
             if (!sizes.empty() && size.figures.byte_count == sizes.back().figures.byte_count) continue;
             sizes.push_back(std::move(size));
         } catch (const Error& error) {
-            if (error.code() != ErrorCode::InvalidOptions) throw; // too small a budget
+            if (!is_refusal(error)) throw; // too small a budget
         }
     }
     if (sizes.empty())
@@ -314,9 +326,8 @@ Comparison compare(const TriangleMesh& mesh, const CompareOptions& options) {
     require_usable(options);
     const MeshReport report = inspect(mesh);
     require_solid(report);
-    std::vector<Participant> participants = participants_of(mesh, options);
-
     Comparison result{mesh.faces.size(), report.bounding_sphere.radius, {}, {}, {}, false, {}};
+    std::vector<Participant> participants = participants_of(mesh, options, result.refusals);
     Stage(options, "judging the particles")(0);
     const std::vector<JudgedSet> sets = make_sets(mesh, options);
     result.parts_overlap = parts_overlap(mesh, sets);

@@ -9,11 +9,14 @@ namespace echinus::comparison {
 
 namespace {
 
+/// R. Floats have steps of 6e-8 R there: below half a degree of this.
+constexpr double kFarEnoughForAWay = 1e-5;
+
 Spread spread_of(std::vector<double> errors) {
     if (errors.empty()) return {};
     std::ranges::sort(errors);
     const auto count = static_cast<double>(errors.size());
-    Spread spread{0, errors[static_cast<std::size_t>(0.99 * (count - 1))], errors.back()};
+    Spread spread{errors.size(), 0, errors[static_cast<std::size_t>(0.99 * (count - 1))], errors.back()};
     for (const double error : errors) spread.mean += error / count;
     return spread;
 }
@@ -44,7 +47,7 @@ ErrorSummary errors_of(const Truth& truth, double radius, const Answers& answers
         if (!is_inside || answers.depth.empty()) continue;
         const double depth = said_inside ? double{answers.depth[i]} / radius : 0;
         depth_errors.push_back(std::fabs(depth - distance));
-        if (said_inside && !truth.way_out.empty())
+        if (said_inside && !truth.way_out.empty() && distance >= kFarEnoughForAWay)
             angles.push_back(angle_between(answers.normal[i], truth.way_out[particle]));
     }
     if (summary.asked_count > 0)

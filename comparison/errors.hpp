@@ -27,6 +27,7 @@ struct Answers {
 
 /// Mean, ninety-ninth percentile and worst of an error; all 0 when there was nothing to judge.
 struct Spread {
+    std::size_t count = 0;                ///< of errors
     double mean = 0, most = 0, worst = 0; ///< 99 % of errors are at most `most`
 };
 
@@ -37,7 +38,8 @@ struct ErrorSummary {
     /// Of the depth, R: over particles that are inside, one that was missed counting as depth 0.
     Spread depth;
     /// Angle between normal and way out, degrees: over particles that are inside and known to be. No normal
-    /// counts as 90. Where two ways out are equally short, one of them is called true.
+    /// counts as 90. Where two ways out are equally short, one of them is called true. Not judged are
+    /// particles nearer to the surface than 1e-5 R, whose way out the rounding of its end turns.
     Spread normal;
 };
 

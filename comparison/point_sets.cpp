@@ -54,11 +54,12 @@ class Sheet {
         }
     }
 
-    std::vector<Vec3f> points() const {
+    /// The middle one of so many samples in either direction.
+    std::vector<Vec3f> points(std::size_t columns_each, std::size_t rows_each) const {
         std::vector<Vec3f> result;
-        result.reserve(heights_.size());
-        for (std::size_t row = 0; row < rows_; ++row)
-            for (std::size_t column = 0; column < columns_; ++column)
+        result.reserve(heights_.size() / (columns_each * rows_each));
+        for (std::size_t row = rows_each / 2; row < rows_; row += rows_each)
+            for (std::size_t column = columns_each / 2; column < columns_; column += columns_each)
                 result.emplace_back(from_sheet({x_of(column), y_of(row), heights_[row * columns_ + column]}));
         return result;
     }
@@ -140,6 +141,13 @@ class Sheet {
     std::vector<double> heights_; ///< [rows * columns]
 };
 
+/// Into how many a sample of a coarse sheet is divided: an odd number, so that there is one in its middle; so
+/// many that the boxes of smoothing, which are whole samples wide, come near to what is asked.
+std::size_t division_of(std::size_t sample_count) {
+    constexpr std::size_t kFine = 300;
+    return sample_count >= kFine ? 1 : 2 * (kFine / (2 * sample_count)) + 1;
+}
+
 } // namespace
 
 std::vector<Vec3f> uniform_points(const TriangleMesh& mesh, std::size_t count, std::uint64_t seed) {
@@ -180,9 +188,10 @@ std::vector<Vec3f> surface_points(const TriangleMesh& mesh, std::size_t count, d
 
 std::vector<Vec3f> cloth_points(const TriangleMesh& mesh, std::size_t columns, std::size_t rows, Axis up,
                                 double smoothing) {
-    Sheet sheet(mesh, columns, rows, up);
+    const std::size_t columns_each = division_of(columns), rows_each = division_of(rows);
+    Sheet sheet(mesh, columns * columns_each, rows * rows_each, up);
     sheet.smooth(smoothing);
-    return sheet.points();
+    return sheet.points(columns_each, rows_each);
 }
 
 } // namespace echinus::comparison

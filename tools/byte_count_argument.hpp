@@ -30,9 +30,10 @@ inline CLI::Option* add_byte_count(CLI::App& command, const std::string& option,
     const auto store = [option, &variable](const std::string& text) {
         const std::optional<std::size_t> bytes = parse_byte_count(text);
         if (!bytes)
-            throw CLI::ValidationError(option, "must be a number with one of the units B, KB, MB, KiB and "
-                                               "MiB, such as 300KB, not " +
-                                                   text);
+            throw CLI::ValidationError(option,
+                                       "must be a number of at least one byte with one of the units B, KB, "
+                                       "MB, KiB and MiB, such as 300KB, not " +
+                                           text);
         variable = *bytes;
     };
     return command.add_option_function<std::string>(option, store, description)->type_name("SIZE");

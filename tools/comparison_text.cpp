@@ -16,7 +16,9 @@ namespace {
 
 // ---- JSON ----
 
+/// Null where there was nothing to judge.
 ordered_json to_json(const Spread& spread) {
+    if (spread.count == 0) return nullptr;
     return {{"mean", spread.mean}, {"percentile_99", spread.most}, {"worst", spread.worst}};
 }
 

@@ -14,7 +14,7 @@ Figures figures_of(const char* name, std::size_t bytes, double wrong_share) {
     Figures figures{&system_named(name), bytes, "samples", {}, 12.345, {}};
     SetFigures near{"S", {7.25, 0, {}}, {123.4, 0, {}}, {}};
     near.errors.wrong_share = wrong_share;
-    near.errors.depth = {0.000'000'1, 0.01, 0.5};
+    near.errors.depth = {100, 0.000'000'1, 0.01, 0.5};
     figures.sets.push_back(near);
     return figures;
 }
@@ -31,11 +31,11 @@ std::string row(const std::vector<Column>& columns, const Figures& figures) {
 
 } // namespace
 
-TEST(Columns, ShowThreeDigitsAndADashForASetThatWasNotAsked) {
+TEST(Columns, ShowThreeDigitsAndADashWhereNothingWasAskedOrJudged) {
     const Comparison comparison = small_comparison();
     EXPECT_EQ(row(time_columns(comparison), comparison.systems[0]), "MB 0.630|ms 12.3|U -|S 7.25|U -|S 123|");
     EXPECT_EQ(row(error_columns(comparison), comparison.systems[0]),
-              "U -|S 3.29|mean <0.0001|99 % 1.00|worst 50.0|mean 0|99 % 0|");
+              "U -|S 3.29|mean <0.0001|99 % 1.00|worst 50.0|mean -|99 % -|");
 }
 
 TEST(Columns, HaveRemarksOnWhoExceedsTheBudgetAndWhoRefused) {

@@ -40,10 +40,13 @@ TEST(Compare, FindsTheExactMapWithoutErrorAndASampledOneWith) {
         EXPECT_EQ(exact.errors.wrong_share, 0) << set;
         EXPECT_LT(exact.errors.depth.worst, 1e-6) << set;
         EXPECT_EQ(exact.errors.asked_count, 2500U) << set;
+        EXPECT_GT(exact.errors.normal.count, 100U) << set;
+        EXPECT_LT(exact.errors.normal.mean, 0.1) << set; // the judge itself, rounded
     }
     for (const std::size_t sampled : {1U, 2U}) {
         EXPECT_GT(on(result.systems[sampled], "S").errors.wrong_share, 0.001);
         EXPECT_LT(on(result.systems[sampled], "S").errors.wrong_share, 0.2);
+        EXPECT_GT(on(result.systems[sampled], "C").errors.wrong_share, 0.001);
     }
     // Along the ray from the centre is not the nearest way out, along the field's gradient is.
     EXPECT_GT(on(result.systems[2], "S").errors.depth.mean, 2 * on(result.systems[1], "S").errors.depth.mean);
@@ -114,6 +117,33 @@ TEST(Compare, DrawsTheExactMapInAscendingSizesWithoutTheOnesThatDoNotFit) {
         EXPECT_GT(result.curves[0][k].byte_count, result.curves[0][k - 1].byte_count);
     ASSERT_FALSE(result.curves[0].empty());
     EXPECT_LE(result.curves[0].back().byte_count, 160'000U);
+}
+
+/// More parts than a superquadric map can be cut from in useful time.
+TriangleMesh crowd_of_tetrahedra() {
+    TriangleMesh mesh;
+    constexpr std::uint32_t kSide = 19; // 27 436 faces
+    for (std::uint32_t i = 0; i < kSide * kSide * kSide; ++i) {
+        const Vec3f corner{2.0F * static_cast<float>(i % kSide), 2.0F * static_cast<float>(i / kSide % kSide),
+                           2.0F * static_cast<float>(i / kSide / kSide)};
+        for (const Vec3f& step : {Vec3f{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
+            mesh.vertices.push_back(corner + step);
+        for (const Triangle& face : {Triangle{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}})
+            mesh.faces.push_back({4 * i + face[0], 4 * i + face[1], 4 * i + face[2]});
+    }
+    return mesh;
+}
+
+TEST(Compare, GoesOnWithoutASystemThatCannotHaveTheMesh) {
+    if (!std::ranges::find(all_systems(), "superquadric", &System::name)->available())
+        GTEST_SKIP() << "built without superquadric maps";
+    CompareOptions options = quick({"dense", "superquadric"});
+    options.point_count = 100;
+    const Comparison result = compare(crowd_of_tetrahedra(), options);
+    ASSERT_EQ(result.systems.size(), 1U);
+    ASSERT_EQ(result.refusals.size(), 1U);
+    EXPECT_EQ(result.refusals[0].system->name, "superquadric");
+    EXPECT_NE(result.refusals[0].reason.find("too long"), std::string::npos);
 }
 
 /// A box is flat on top, so that half of the set C lies on it.

@@ -27,6 +27,27 @@ TEST(Errors, AreAllZeroForRightAnswers) {
     EXPECT_EQ(errors.normal.worst, 0);
 }
 
+TEST(Errors, OfDepthAndNormalAreToldToBeOfNobodyWhereNobodyIsInside) {
+    const ErrorSummary outside = errors_of(half_space(), 10, {{2, 3}, {0, 0}, {0, 0}, {{}, {}}});
+    EXPECT_EQ(outside.depth.count, 0U);
+    EXPECT_EQ(outside.normal.count, 0U);
+    const ErrorSummary found = errors_of(half_space(), 10, right_answers());
+    EXPECT_EQ(found.depth.count, 2U);
+    EXPECT_EQ(found.normal.count, 2U);
+}
+
+TEST(Errors, OfNormalsAreNotThoseOfParticlesOnTheSurfaceItself) {
+    Truth truth = half_space();
+    truth.distance[0] = 5e-6F;
+    Answers answers = right_answers();
+    answers.depth[0] = 5e-6F;
+    answers.normal[0] = {0, 1, 0};
+    const ErrorSummary errors = errors_of(truth, 1, answers);
+    EXPECT_EQ(errors.normal.count, 1U);
+    EXPECT_EQ(errors.normal.worst, 0);
+    EXPECT_EQ(errors.depth.count, 2U);
+}
+
 TEST(Errors, CountAMissedParticleAsDepthZeroAndAnInventedOneAsAWrongSideAlone) {
     Answers answers = right_answers();
     answers.inside = {0, 1, 0, 1};
