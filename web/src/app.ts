@@ -25,17 +25,20 @@ const FRAMES_UNDER_WAY = 2;
 /** How long the hint stays. */
 const HINT_MS = 12_000;
 
-interface OpenFile {
-    name: string;
-    bytes: ArrayBuffer;
+/** A model that was asked for: a file, or else the sample of the settings. */
+interface Opening {
+    turn: number;
+    file: File | undefined;
 }
 
 class App {
+    /** What is asked for. The panel shows it, until the answer to the last turn tells what is in force. */
     #settings: Settings = fromLink(location.hash);
-    /** What is open, or being opened, in the place of a sample. */
-    #file: OpenFile | undefined;
-    /** What the model on show comes from. */
-    #shownFile: OpenFile | undefined;
+    #asked: Opening = { turn: 0, file: undefined };
+    /** Counts what is asked of the worker and changes what is in force there. */
+    #turn = 0;
+    /** What is on show, and what may yet come to be. */
+    #openings: Opening[] = [];
     #model: ModelNews | undefined;
     #paused = false;
     /** The number of the cloth on show; frames of earlier ones are dropped. */
@@ -58,7 +61,7 @@ class App {
         this.#controls = new Controls(this.#settings, (settings, key) => this.#change(settings, key));
         this.#bindButtons();
         this.#bindKeys();
-        enableFiles((file) => void this.#openFile(file));
+        enableFiles((file) => this.#openFile(file));
         this.#bindPointer();
         enableClosing();
         fillDepthLegend();
@@ -66,13 +69,13 @@ class App {
         // A link that is followed while the page is open.
         addEventListener('hashchange', () => {
             const settings = fromLink(location.hash);
-            if (toLink(settings) === toLink(this.#settings)) return;
+            if (toLink(settings) === toLink(this.#settings) && !this.#asked.file) return;
             this.#settings = settings;
             this.#inView = '';
             this.#controls.show(settings);
             this.#showView();
             this.#showColours();
-            this.#open();
+            this.#open(undefined); // no link holds a file
         });
         this.#stage.onArrival = () => {
             const camera = this.#stage.standpoint;
@@ -81,19 +84,21 @@ class App {
         client.listen((message) => this.#hear(message));
         this.#showView();
         this.#showColours();
-        this.#open();
+        this.#open(undefined);
         this.#stage.renderer.setAnimationLoop(() => this.#draw());
     }
 
     // ---- The worker
 
-    #open(): void {
+    #open(file: File | undefined): void {
+        beQuiet();
         if (this.#paused) this.#pause(false);
-        byId('subtitle').textContent = this.#file ? `Opening ${this.#file.name}` : 'Loading';
-        const { bytes, name } = this.#file ?? {};
-        // A copy goes: the worker may have to be begun anew, and mending reads the file again.
-        const file = name !== undefined && bytes ? { name, bytes: bytes.slice(0) } : undefined;
-        this.#client.tell({ kind: 'open', settings: this.#settings, page: document.baseURI, ...(file && { file }) }, file ? [file.bytes] : []);
+        byId('subtitle').textContent = file ? `Opening ${file.name}` : 'Loading';
+        this.#controls.showFile(file?.name);
+        this.#controls.show(this.#settings);
+        this.#asked = { turn: ++this.#turn, file };
+        this.#openings.push(this.#asked);
+        this.#client.tell({ kind: 'open', turn: this.#turn, settings: this.#settings, page: document.baseURI, ...(file && { file }) });
     }
 
     #hear(message: FromWorker): void {
@@ -129,47 +134,52 @@ class App {
                 return;
             case 'failed':
                 return this.#fail(message);
+            case 'settled':
+                return this.#settle(message);
         }
     }
 
-    #fail({ sentence, code, settings }: FromWorker & { kind: 'failed' }): void {
-        say(sentence);
+    #fail({ sentence, code, turn }: FromWorker & { kind: 'failed' }): void {
         this.#rayAsked = false;
         this.#framesAsked = 0;
+        if (turn !== undefined && turn < this.#asked.turn) return; // something else has been opened since
         if (code === 'Diverged') this.#pause(true);
-        if (code === 'Crashed') return this.#beginAgain();
-        if (settings) this.#takeBack(settings);
+        if (code === 'Crashed') this.#beginAgain();
+        say(sentence);
     }
 
     /** What has brought the module down stays away: the page goes on with a sample, unless that is what did. */
     #beginAgain(): void {
         const wasWell = this.#model !== undefined;
         this.#model = undefined;
-        this.#file = undefined;
-        this.#shownFile = undefined;
+        this.#openings = [];
+        this.#asked = { turn: 0, file: undefined };
+        this.#cloth = 0;
+        this.#arrived = [];
         this.#controls.showFile(undefined);
         this.#controls.show(this.#settings);
-        this.#client.restart();
-        this.#cloth = 0;
-        if (wasWell) this.#open();
+        byId('subtitle').textContent = '';
+        if (wasWell) this.#open(undefined);
     }
 
-    /** What was refused is not shown as if it held. @param inForce  what the worker goes by */
-    #takeBack(inForce: Settings): void {
-        const { view, shown, slice, camera } = this.#settings; // the page's own
-        this.#file = this.#shownFile;
-        this.#controls.showFile(this.#file?.name);
-        this.#setLink({ ...inForce, view, shown, slice, camera });
-        this.#controls.show(this.#settings);
+    /** What was refused is not shown as if it held, and what was taken is not shown as if it did not. */
+    #settle({ turn, inForce }: FromWorker & { kind: 'settled' }): void {
+        this.#openings = this.#openings.filter((opening) => opening.turn === inForce?.turn || opening.turn > turn);
+        if (turn !== this.#turn) return; // more has been asked for since
+        const shown = this.#openings[0];
+        const { view, shown: inColours, slice, camera } = this.#settings; // the page's own
+        const settings = inForce ? { ...inForce.settings, view, shown: inColours, slice, camera } : this.#settings;
+        if (shown === this.#asked && toLink(settings) === toLink(this.#settings)) return;
+        this.#asked = shown ?? { turn: 0, file: undefined };
+        this.#setLink(settings);
+        this.#controls.showFile(this.#asked.file?.name);
+        this.#controls.show(settings);
         this.#showColours();
         if (this.#model) this.#showTitle(this.#model);
+        else byId('subtitle').textContent = '';
     }
 
     #showModel(model: ModelNews): void {
-        // A file that is still being opened is not this one.
-        if (!this.#file || this.#file.name === model.name) this.#shownFile = this.#file;
-        if (this.#file && this.#shownFile === this.#file) beQuiet();
-        this.#controls.showFile(this.#shownFile?.name);
         this.#model = model;
         this.#modelView.show(model);
         this.#mapView.begin(model);
@@ -192,10 +202,7 @@ class App {
 
     #useMap(map: MapNews): void {
         this.#showMap(map);
-        byId('map-note').textContent =
-            map.kind === 'exact'
-                ? 'Out by the shortest way. Nothing gets through: every step is proved.'
-                : 'Out along the ray from the centre, as in the paper: watch the cloth creep along a leg.';
+        byId('map-note').textContent = mapNote(map.kind, this.#model!.report.closed);
         document.body.classList.toggle('map-exact', map.kind === 'exact');
         document.body.classList.toggle('map-distance', map.kind === 'distance');
         if (this.#settings.view === 'map') this.#askForMap();
@@ -247,7 +254,6 @@ class App {
         const before = this.#settings;
         if (key === 'model' || key === 'up') settings = { ...settings, camera: '' };
         this.#setLink(settings);
-        if (key === 'model') this.#file = undefined;
         switch (key) {
             case 'view':
                 return this.#showView();
@@ -256,12 +262,13 @@ class App {
             case 'shown':
                 return this.#showSurface();
             case 'model':
+                return this.#open(undefined);
             case 'mend':
             case 'up':
-                return this.#open();
+                return this.#open(this.#asked.file);
         }
         this.#showColours();
-        this.#client.tell({ kind: 'change', settings });
+        this.#client.tell({ kind: 'change', turn: ++this.#turn, settings });
         if (before.particles !== settings.particles) this.#pause(false);
     }
 
@@ -353,14 +360,9 @@ class App {
         });
     }
 
-    async #openFile(file: File): Promise<void> {
-        try {
-            this.#file = { name: file.name, bytes: await file.arrayBuffer() };
-        } catch {
-            return say(`${file.name}: the browser cannot read this file`);
-        }
+    #openFile(file: File): void {
         this.#settings = { ...this.#settings, camera: '' };
-        this.#open();
+        this.#open(file);
     }
 
     #bindPointer(): void {
@@ -415,8 +417,14 @@ class App {
         } catch {
             note.textContent = link; // where the clipboard is closed, to be copied by hand
         }
-        if (this.#file) note.textContent += ' The file that you opened is not in it.';
+        if (this.#asked.file) note.textContent += ' The file that you opened is not in it.';
     }
+}
+
+function mapNote(kind: MapNews['kind'], closed: boolean): string {
+    if (kind === 'distance') return 'Out along the ray from the centre, as in the paper: watch the cloth creep along a leg.';
+    if (closed) return 'Out by the shortest way. Nothing gets through: every step is proved.';
+    return 'Out by the shortest way. The mesh is open: near its gaps sides are estimated, and the cloth may get in there.';
 }
 
 /** From the centre to the highest vertex: of most models a ray with something to show. */

@@ -4,7 +4,7 @@ import type { FromWorker, ToWorker } from './protocol';
 export class Client {
     #early: FromWorker[] = [];
     #hear: (message: FromWorker) => void = (message) => this.#early.push(message);
-    #worker = this.#start();
+    #worker: Worker | undefined = this.#start();
 
     listen(hear: (message: FromWorker) => void): void {
         this.#hear = hear;
@@ -12,20 +12,21 @@ export class Client {
         this.#early = [];
     }
 
+    /** After a fault, this begins a new worker with a new module: not the fault itself, or one that does not load would begin for ever. */
     tell(message: ToWorker, transfer: Transferable[] = []): void {
+        this.#worker ??= this.#start();
         this.#worker.postMessage(message, transfer);
-    }
-
-    /** A new worker with a new module, when the old one has stopped by a fault of its own. */
-    restart(): void {
-        this.#worker.terminate();
-        this.#worker = this.#start();
     }
 
     #start(): Worker {
         const worker = new Worker(new URL('./worker/worker.ts', import.meta.url), { type: 'module' });
         worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.#hear(data);
-        worker.onerror = (event) => this.#hear({ kind: 'failed', sentence: `the simulation has stopped (${event.message || 'its worker did not start'})`, code: 'Crashed' });
+        worker.onerror = ({ message }) => {
+            worker.terminate();
+            this.#worker = undefined;
+            const sentence = message ? `the simulation has stopped (${message})` : 'the simulation did not start: a part of this page could not be loaded';
+            this.#hear({ kind: 'failed', sentence, code: 'Crashed' });
+        };
         return worker;
     }
 }

@@ -8,8 +8,9 @@ import type { Axis, Settings } from './settings';
 export type Triple = [number, number, number];
 
 export type ToWorker =
-    | { kind: 'open'; settings: Settings; page: string; file?: { name: string; bytes: ArrayBuffer } }
-    | { kind: 'change'; settings: Settings }
+    /** A file, or else the sample of the settings. This and a change are each a turn, which its answers name. */
+    | { kind: 'open'; turn: number; settings: Settings; page: string; file?: File }
+    | { kind: 'change'; turn: number; settings: Settings }
     | { kind: 'restart' }
     | { kind: 'pause'; paused: boolean }
     | { kind: 'step' }
@@ -39,8 +40,9 @@ export type FromWorker =
     /** There is no surface on the way. */
     | { kind: 'missed' }
     | ({ kind: 'cut' } & Cut)
-    /** With the settings that are in force, once there is a model. */
-    | { kind: 'failed'; sentence: string; code: string; settings?: Settings };
+    | { kind: 'failed'; sentence: string; code: string; turn?: number }
+    /** The last answer to a turn, whether it failed or not: the turn that opened the model on show, once there is one, and by what it goes. */
+    | { kind: 'settled'; turn: number; inForce?: { turn: number; settings: Settings } };
 
 export interface FrameArrays {
     /** [3 particles] */

@@ -1,6 +1,6 @@
 import { byId } from './elements';
 
-/** One sentence about what went wrong, until it is closed or something works again. */
+/** One sentence about what went wrong, until it is closed or something else is tried. */
 export function say(sentence: string): void {
     const notice = byId('notice');
     notice.querySelector('span')!.textContent = sentence;

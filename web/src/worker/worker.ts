@@ -2,7 +2,7 @@
 import { EchinusError, load } from 'echinus';
 import type { FrameArrays, FromWorker, ToWorker } from '../protocol';
 import { cutAt, lookAlong, lookAt, surfaceOf } from './looking';
-import { fetchSample, prepareFile } from './models';
+import { type Reading, fetchSample, prepareFile } from './models';
 import { Playground } from './playground';
 import { warmUp } from './warm_up';
 
@@ -16,6 +16,8 @@ const starting = load().then(async (echinus) => {
 starting.catch(() => {}); // whoever opens a model hears of it
 
 let playground: Playground | undefined;
+/** The turn that opened it. */
+let opened = 0;
 let paused = false;
 /** Counts cloths, so that the page can tell a late frame of an earlier one. */
 let cloth = 0;
@@ -24,8 +26,18 @@ let queue = Promise.resolve();
 
 self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
     // Opening takes time; all else waits in line behind it, so that a change never meets half a playground.
-    queue = queue.then(() => handle(data)).catch(fail);
+    queue = queue.then(() => answer(data));
 };
+
+async function answer(message: ToWorker): Promise<void> {
+    const turn = 'turn' in message ? message.turn : undefined;
+    try {
+        await handle(message);
+    } catch (error) {
+        fail(error, turn);
+    }
+    if (turn !== undefined) tell({ kind: 'settled', turn, ...(playground && { inForce: { turn: opened, settings: playground.settings } }) });
+}
 
 async function handle(message: ToWorker): Promise<void> {
     switch (message.kind) {
@@ -40,7 +52,9 @@ async function handle(message: ToWorker): Promise<void> {
     switch (message.kind) {
         case 'change': {
             const before = playground.mapNews;
-            const anew = playground.change(message.settings);
+            // What takes opening stays as it was opened: the change may have been asked for with a model that then failed.
+            const { model, mend, up } = playground.settings;
+            const anew = playground.change({ ...message.settings, model, mend, up });
             if (playground.mapNews !== before) tell({ kind: 'map', map: playground.mapNews });
             if (anew) tellCloth(playground);
             return;
@@ -71,15 +85,24 @@ async function handle(message: ToWorker): Promise<void> {
     }
 }
 
-async function open({ settings, page, file }: ToWorker & { kind: 'open' }): Promise<void> {
-    const read = await (file ? prepareFile(file.name, file.bytes) : fetchSample(settings.model, page));
+async function open({ turn, settings, page, file }: ToWorker & { kind: 'open' }): Promise<void> {
+    const read = await (file ? readFile(file) : fetchSample(settings.model, page));
     modelIsThere = true;
     const echinus = await starting;
-    const opened = new Playground(echinus, read(echinus), settings);
+    const next = new Playground(echinus, read(echinus), settings);
     playground?.delete(); // only now: a file that cannot be opened leaves what there was
-    playground = opened;
+    playground = next;
+    opened = turn;
     tellModel(playground);
     tellCloth(playground);
+}
+
+/** In line with all else, so that of two files the later one stays. */
+async function readFile(file: File): Promise<Reading> {
+    const bytes = await file.arrayBuffer().catch(() => {
+        throw new Error(`${file.name}: the browser cannot read this file`);
+    });
+    return prepareFile(file.name, bytes);
 }
 
 /** A cloth that flew apart stops there; its last positions stay in sight. */
@@ -109,9 +132,9 @@ function tellFrame({ arrays, figures }: ReturnType<Playground['advance']>): void
     ]);
 }
 
-function fail(error: unknown): void {
+function fail(error: unknown, turn?: number): void {
     const sentence = error instanceof Error ? error.message : String(error);
-    tell({ kind: 'failed', sentence, code: error instanceof EchinusError ? error.code : 'Internal', ...(playground && { settings: playground.settings }) });
+    tell({ kind: 'failed', sentence, code: error instanceof EchinusError ? error.code : 'Internal', ...(turn !== undefined && { turn }) });
 }
 function tell(message: FromWorker, transfer: Transferable[] = []): void {
     self.postMessage(message, { transfer });

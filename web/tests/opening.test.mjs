@@ -1,0 +1,142 @@
+// What is open, and what the panel says is, when things are asked for faster than they are answered, or fail.
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { after, before, test } from 'node:test';
+import { tetrahedra } from './meshes.mjs';
+import { SMALL, startBrowser, untilFrame } from './support.mjs';
+
+const GOOD = tetrahedra()['t.obj'];
+const BROKEN = 'v 0 0 0\nf 1 2 9\n';
+const OPEN = GOOD.slice(0, GOOD.lastIndexOf('f '));
+const LINK = '#model=torus&particles=400';
+
+let browser;
+before(async () => (browser = await startBrowser()));
+after(() => browser?.stop());
+
+const openPage = async () => {
+    const page = await browser.open(LINK, SMALL);
+    page.setDefaultTimeout(8000);
+    await untilFrame(page, 1);
+    return page;
+};
+const untilTitle = (page, words) => page.waitForFunction((part) => document.getElementById('subtitle').textContent.startsWith(part), words);
+const untilChosen = (page, name) => page.waitForFunction((text) => document.querySelector('select[name=model]').selectedOptions[0]?.textContent === text, name);
+const notice = (page) => page.locator('#notice span').textContent();
+
+/** Drops the files and then sets the inputs, all before the page can hear the answer to any. */
+const ask = (page, files, inputs = {}) =>
+    page.evaluate(([files, inputs]) => {
+        for (const [name, text] of files) {
+            const dataTransfer = new DataTransfer();
+            dataTransfer.items.add(new File([text], name));
+            document.getElementById('canvas').dispatchEvent(new DragEvent('drop', { bubbles: true, cancelable: true, dataTransfer }));
+        }
+        for (const [name, value] of Object.entries(inputs)) {
+            const input = document.querySelector(`[name=${name}]`);
+            input.value = value;
+            for (const event of ['input', 'change']) input.dispatchEvent(new Event(event, { bubbles: true }));
+        }
+    }, [files, inputs]);
+
+test('after a good file and at once a broken one, the good one is open and is what the panel goes by', async () => {
+    const page = await openPage();
+    await ask(page, [['good.obj', GOOD], ['broken.obj', BROKEN]]);
+    await page.locator('#notice').waitFor();
+    assert.match(await notice(page), /^broken\.obj/);
+    await untilChosen(page, 'good.obj');
+    await untilTitle(page, 'good.obj, 4 faces');
+    await page.locator('input[name=mend]').uncheck();
+    await untilTitle(page, 'good.obj, 4 faces');
+    assert.equal(await page.locator('select[name=model] option:checked').textContent(), 'good.obj');
+    assert.match(await page.evaluate(() => location.hash), /mend=false/);
+    await page.context().close();
+});
+
+test('of a large file and at once a small one, the small one stays', async () => {
+    const page = await openPage();
+    await page.evaluate(() => {
+        globalThis.titles = [];
+        const title = document.getElementById('subtitle');
+        new MutationObserver(() => globalThis.titles.push(title.textContent)).observe(title, { childList: true, characterData: true, subtree: true });
+    });
+    await ask(page, [['large.obj', '# nothing\n'.repeat(1_000_000) + GOOD], ['small.obj', GOOD]]);
+    await page.waitForFunction(() => ['large', 'small'].every((name) => globalThis.titles.includes(`${name}.obj, 4 faces`)));
+    await untilChosen(page, 'small.obj');
+    assert.match(await page.locator('#subtitle').textContent(), /^small\.obj/);
+    await page.context().close();
+});
+
+test('a link to a sample closes the file that is open', async () => {
+    const page = await openPage();
+    await ask(page, [['good.obj', GOOD]]);
+    await untilTitle(page, 'good.obj, 4 faces');
+    await page.evaluate(() => (location.hash = '#model=sphere&particles=400'));
+    await untilTitle(page, 'sphere');
+    assert.equal(await page.locator('select[name=model]').inputValue(), 'sphere');
+    await page.context().close();
+});
+
+test('a change asked for while a broken file is read holds, and the panel shows that it does', async () => {
+    const page = await openPage();
+    await ask(page, [['broken.obj', BROKEN]], { particles: Math.log(2500 / 100) / Math.log(1000) });
+    await page.locator('#notice').waitFor();
+    await untilChosen(page, 'Torus');
+    assert.match(await page.locator('#subtitle').textContent(), /^torus/);
+    assert.equal(await page.evaluate(() => location.hash), '#model=torus&particles=2500');
+    assert.equal(await page.locator('label:has([name=particles]) output').textContent(), '2\u2009500');
+    await page.waitForFunction(() => document.body.dataset.rest === 'false');
+    let count;
+    for (let turn = 0; turn < 20 && count !== 2500; ++turn) count = await particlesIn(page);
+    assert.equal(count, 2500);
+    await page.context().close();
+});
+
+/** As many as are saved. */
+async function particlesIn(page) {
+    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#save-mesh').click()]);
+    const text = await readFile(await download.path(), 'utf8');
+    return text.slice(text.indexOf('o cloth'), text.indexOf('o model')).match(/^v /gm).length;
+}
+
+test('a worker that does not load is said once, and not begun for ever', async () => {
+    const page = await browser.open(LINK, { ...SMALL, beforeLoad: withoutWorker });
+    await page.locator('#notice').waitFor();
+    assert.match(await notice(page), /^the simulation did not start/);
+    await page.waitForTimeout(500);
+    const begun = await page.evaluate(() => globalThis.workersBegun);
+    assert.ok(begun <= 2, `${begun} workers`); // one may fail before the page listens
+    assert.equal(await page.locator('#subtitle').textContent(), '');
+    await page.context().close();
+});
+
+/** Runs in the page: its worker's script is not there. */
+function withoutWorker() {
+    globalThis.workersBegun = 0;
+    globalThis.Worker = class extends Worker {
+        constructor(_, options) {
+            super(new URL('missing.js', document.baseURI), options);
+            ++globalThis.workersBegun;
+        }
+    };
+}
+
+test('that nothing gets through is said of closed meshes alone', async () => {
+    const page = await openPage();
+    assert.match(await page.locator('#map-note').textContent(), /Nothing gets through/);
+    await ask(page, [['open.obj', OPEN]]);
+    await untilTitle(page, 'open.obj, 3 faces');
+    assert.match(await page.locator('#map-note').textContent(), /The mesh is open/);
+    assert.doesNotMatch(await page.locator('#map-note').textContent(), /Nothing gets through/);
+    await page.context().close();
+});
+
+test('the word about a broken file goes when a sample is opened', async () => {
+    const page = await openPage();
+    await ask(page, [['broken.obj', BROKEN]]);
+    await page.locator('#notice').waitFor();
+    await page.locator('select[name=model]').selectOption('sphere');
+    await untilTitle(page, 'sphere');
+    assert.ok(!(await page.locator('#notice').isVisible()));
+    await page.context().close();
+});
