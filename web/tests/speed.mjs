@@ -1,0 +1,58 @@
+// How long the built page takes, for docs/web.md: from the address to the first falling cloth and the horse's first map,
+// each in a browser that has never seen the page; and a time step of 10 000 particles while they fall and come to lie,
+// beside the native program with the scalar reference. Run by scripts/web --speed:  speed.mjs PROGRAM SCENE
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { figure, numberOf, startBrowser, untilFrame } from './support.mjs';
+
+const [program, scene] = process.argv.slice(2);
+const LOADS = 7;
+/** Time steps: those of the first are still slow, as the browser compiles its best code. */
+const [FIRST_STEP, LAST_STEP] = [300, 1500];
+/** Little to draw, since software draws. */
+const TINY = { viewport: { width: 390, height: 300 } };
+
+const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
+const all = (values) => values.map((value) => value.toFixed(0)).join(', ');
+
+async function load() {
+    const browser = await startBrowser();
+    const begin = performance.now();
+    const page = await browser.open('', TINY);
+    await untilFrame(page, 1);
+    const times = { falling: performance.now() - begin, map: numberOf(await figure(page, 'build')) };
+    await browser.stop();
+    return times;
+}
+
+async function stepInPage() {
+    const browser = await startBrowser();
+    const page = await browser.open('#particles=10000', TINY);
+    const steps = [];
+    for (let frame = FIRST_STEP; frame < LAST_STEP; frame += 50) {
+        await untilFrame(page, frame);
+        steps.push(numberOf(await figure(page, 'step')));
+    }
+    await browser.stop();
+    return median(steps);
+}
+
+function stepOfNativeScalar() {
+    const folder = mkdtempSync(join(tmpdir(), 'echinus-'));
+    const options = ['simulate', scene, '-o', folder, '--frames', String(LAST_STEP), '--every', String(LAST_STEP), '--threads', '1'];
+    execFileSync(program, options, { env: { ...process.env, ECHINUS_INSTRUCTION_SET: 'scalar' }, stdio: 'ignore' });
+    const { ms_per_frame } = JSON.parse(readFileSync(join(folder, 'report.json'), 'utf8'));
+    rmSync(folder, { recursive: true });
+    return ms_per_frame;
+}
+
+const loads = [];
+for (let i = 0; i < LOADS; ++i) loads.push(await load());
+for (const [what, key] of [['first falling cloth', 'falling'], ["the horse's first map", 'map']]) {
+    const times = loads.map((times) => times[key]);
+    console.log(`${what}: ${median(times).toFixed(0)} ms (${all(times)})`);
+}
+const [page, native] = [await stepInPage(), stepOfNativeScalar()];
+console.log(`a time step: ${page.toFixed(1)} ms, native scalar ${native.toFixed(1)} ms on ${scene}: ${(page / native).toFixed(2)}`);
