@@ -135,6 +135,7 @@ void require_target(const SimulateArguments& arguments) {
     if (arguments.target.empty() && arguments.obj)
         throw CLI::ValidationError("--obj", "is about the files in a folder, so it needs -o DIR");
     require_one_result(arguments.page, arguments.json);
+    require_another_file(arguments.scene, arguments.page);
 }
 
 /// The frame stride of a page.
@@ -156,11 +157,14 @@ void simulate(const SimulateArguments& arguments) {
     require_target(arguments);
     Scene scene = read_scene(arguments.scene);
     if (arguments.frame_limit) scene.frame_limit = *arguments.frame_limit;
-    const std::uint32_t stride = arguments.stride.value_or(1);
+    // A page takes its frames from all, and so its last is the end; a folder's last must be one that is
+    // saved.
+    const std::uint32_t stride = arguments.target.empty() ? 1 : arguments.stride.value_or(1);
     Results results;
     open(results, arguments, scene);
 
     const std::optional<fs::path> file = model_file(scene, arguments.scene, arguments.model_folders);
+    if (file) require_another_file(*file, arguments.page);
     const TriangleMesh mesh = load_model(scene, arguments.scene, file).mesh;
     const AnyMap map = map_of_scene(scene, mesh, arguments);
     Simulation simulation = make_simulation(scene, map);

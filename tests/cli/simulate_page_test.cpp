@@ -71,6 +71,18 @@ TEST_F(SimulatePage, HoldsThePlayerAndTheRecordingInItsPlace) {
     EXPECT_GT(description["figures"]["ms_per_frame"]["total"], 0);
 }
 
+TEST_F(SimulatePage, EndsAtTheFrameLimitHoweverFewOfTheFramesItHas) {
+    const PlayerPage page = play("scene.json", {"--frames", "10", "--every", "500"});
+    EXPECT_EQ(page.description["figures"]["frames"], 10);
+    EXPECT_EQ(page.description["frames"].back()["number"], 10);
+}
+
+TEST_F(SimulatePage, LeavesTheSceneAloneWhenItsNameIsGivenForThePage) {
+    expect_failure(2, "scene.json: this file is read",
+                   {"simulate", "scene.json", "--html", "./scene.json", "--player", "player.html"});
+    EXPECT_EQ(content("scene.json"), kFallingSheet);
+}
+
 TEST_F(SimulatePage, HasThePositionsOfThePointCacheToHalfAStep) {
     const PlayerPage page = play("scene.json", {"-o", "run", "--every", "3"});
     ASSERT_EQ(page.positions.size(), 18u);

@@ -87,11 +87,12 @@ export function toLink(settings: Settings): string {
     return changed.toString();
 }
 
-/** The settings of a link. What it says that is not possible is left at its default: links outlive pages. */
+/** The settings of a link. Numbers are brought into their range; what else is not possible is left at its default: links outlive pages. */
 export function fromLink(hash: string): Settings {
     const said = new URLSearchParams(hash.replace(/^#/, ''));
     const settings: Record<string, unknown> = { ...DEFAULTS };
     for (const [key, text] of said) {
+        if (!Object.hasOwn(DEFAULTS, key)) continue;
         const choices = CHOICES[key as keyof Settings] as readonly string[] | undefined;
         const range = RANGES[key as keyof typeof RANGES] as readonly [number, number] | undefined;
         if (choices?.includes(text)) settings[key] = text;

@@ -4,7 +4,7 @@ import { mkdtemp, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { tetrahedra, torusStl } from './meshes.mjs';
+import { gltfTetrahedron, tetrahedra, torusStl } from './meshes.mjs';
 import { SMALL, picture, startBrowser, untilFrame } from './support.mjs';
 
 const OPEN_TETRAHEDRON = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n';
@@ -59,8 +59,8 @@ test('while a file of 50 MB is opened the page draws on, and then the model is t
         await untilReport(page, '1\u2009000\u2009000 faces');
         const opening = performance.now() - begin;
         const longest = await page.evaluate(() => globalThis.longestPause);
-        // Software draws here, and other work may share the processor: what counts is that most of the time is not lost.
-        assert.ok(longest < opening / 3, `a pause of ${longest} ms in ${opening} ms`);
+        // Of eleven seconds; where other work shares the processor both take longer.
+        assert.ok(longest < Math.max(1500, opening / 6), `a pause of ${longest} ms in ${opening} ms`);
         assert.match(await page.locator('#report').textContent(), /500\u2009000 vertices, one partClosed/);
         assert.deepEqual(page.complaints, []);
         await page.context().close();
@@ -104,9 +104,54 @@ test('an open mesh is said to be open, and its border is counted', async () => {
     assert.match(await page.locator('#report').textContent(), /Open/);
     await page.locator('input[name=map][value=distance]').check();
     await page.waitForFunction(() => document.getElementById('map-note').textContent.includes('paper') || !document.getElementById('notice').hidden);
-    const frame = await page.evaluate(() => Number(document.body.dataset.frame));
     await page.locator('#restart').click();
-    await untilFrame(page, Math.max(5, Math.min(20, frame)));
+    await page.waitForFunction(() => Number(document.body.dataset.frame) < 100);
+    await untilFrame(page, 100);
     await picture(page, 'open_mesh');
+    assert.ok((await pixelsOf(page, FAULT_RED)) > 100, 'the border is drawn');
+    await choose(page, 'closed.off', tetrahedra()['t.off']);
+    await untilReport(page, 'Closed');
+    await page.waitForTimeout(500);
+    assert.equal(await pixelsOf(page, FAULT_RED), 0);
+    await page.context().close();
+});
+
+/** Of view/colours.ts: what is wrong with a mesh. */
+const FAULT_RED = [0xd1, 0x24, 0x2f];
+
+/** How many pixels of the model's picture have about this colour. */
+async function pixelsOf(page, colour) {
+    const png = (await page.locator('#canvas').screenshot()).toString('base64');
+    return page.evaluate(async ([data, wanted]) => {
+        const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+        const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
+        context.drawImage(image, 0, 0);
+        const { data: bytes } = context.getImageData(0, 0, image.width, image.height);
+        let found = 0;
+        for (let i = 0; i < bytes.length; i += 4) if (wanted.every((part, k) => Math.abs(bytes[i + k] - part) < 12)) ++found;
+        return found;
+    }, [png, colour]);
+}
+
+test('nothing is fetched for a file that is opened, and its pictures are done without', async () => {
+    const page = await browser.open('#model=torus&particles=100', SMALL);
+    await untilFrame(page, 1);
+    const asked = [];
+    page.on('request', (request) => /elsewhere/.test(request.url()) && asked.push(request.url()));
+    await choose(page, 'textured.gltf', gltfTetrahedron({ texture: 'http://127.0.0.1:9/elsewhere.png' }));
+    await untilTitle(page, 'textured.gltf, 4 faces');
+    await choose(page, 'parts.gltf', gltfTetrahedron({ buffer: 'elsewhere.bin' }));
+    await page.locator('#notice').waitFor();
+    assert.match(await page.locator('#notice span').textContent(), /^parts\.gltf: .*elsewhere\.bin.*\.glb/);
+    assert.deepEqual(asked, []);
+    await page.context().close();
+});
+
+test('a file of a kind that is not read is told so, with the kinds that are', async () => {
+    const page = await browser.open('#model=torus&particles=100', SMALL);
+    await untilFrame(page, 1);
+    await choose(page, 'archive.zip', 'PK');
+    await page.locator('#notice').waitFor();
+    assert.match(await page.locator('#notice span').textContent(), /^archive\.zip: .*\.obj.*\.glb/);
     await page.context().close();
 });

@@ -78,8 +78,12 @@ test('the ray goes through what the pointer points at', async () => {
 
 test("the paper's map is shown in layers, cut open, with the points where it differs", async () => {
     const page = await browser.open('#view=map&map=distance&slice=0.1');
-    await page.waitForFunction(() => document.getElementById('legend').textContent.includes('layer 2') || document.getElementById('legend').textContent.includes('layer 1'));
+    await page.waitForFunction(() => document.getElementById('legend').textContent.includes('layer'));
+    await untilRay(page);
     await page.waitForTimeout(500);
+    const layers = (await page.locator('#legend').textContent()).match(/layer \d/g);
+    assert.deepEqual(layers, layers.map((_, k) => `layer ${k + 1}`));
+    assert.ok(layers.length > (hasHorse ? 2 : 1), `${layers.length} layers`);
     await picture(page, 'map_distance');
     assert.deepEqual(page.complaints, []);
     await page.context().close();

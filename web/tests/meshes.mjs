@@ -20,19 +20,39 @@ export function tetrahedra() {
     };
 }
 
-/** A tetrahedron as the binary kind of glTF: a header, a JSON chunk, a chunk of numbers. */
-function tetrahedronGlb() {
-    const numbers = Buffer.concat([Buffer.from(new Float32Array(CORNERS.flat()).buffer), Buffer.from(new Uint16Array(FACES.flat()).buffer)]);
-    const json = JSON.stringify({
-        asset: { version: '2.0' }, scene: 0, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0 }],
+/** The numbers of a tetrahedron as glTF has them: corners, then faces. */
+const gltfNumbers = () => Buffer.concat([Buffer.from(new Float32Array(CORNERS.flat()).buffer), Buffer.from(new Uint16Array(FACES.flat()).buffer)]);
+
+/** What describes them, without the place of the numbers and the scene that is to be shown, which need not be told. */
+function gltfDescription(buffer) {
+    return {
+        asset: { version: '2.0' }, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0 }],
         meshes: [{ primitives: [{ attributes: { POSITION: 0 }, indices: 1 }] }],
-        buffers: [{ byteLength: numbers.length }],
+        buffers: [{ byteLength: 72, ...buffer }],
         bufferViews: [{ buffer: 0, byteOffset: 0, byteLength: 48 }, { buffer: 0, byteOffset: 48, byteLength: 24 }],
         accessors: [
             { bufferView: 0, componentType: 5126, count: 4, type: 'VEC3', min: [0, 0, 0], max: [1, 1, 1] },
             { bufferView: 1, componentType: 5123, count: 12, type: 'SCALAR' },
         ],
-    });
+    };
+}
+
+/** A tetrahedron as the kind of glTF that is text, with a texture of another file, or its numbers in one. */
+export function gltfTetrahedron({ texture, buffer = `data:application/octet-stream;base64,${gltfNumbers().toString('base64')}` }) {
+    const description = gltfDescription({ uri: buffer });
+    if (texture) {
+        description.images = [{ uri: texture }];
+        description.textures = [{ source: 0 }];
+        description.materials = [{ pbrMetallicRoughness: { baseColorTexture: { index: 0 } } }];
+        description.meshes[0].primitives[0].material = 0;
+    }
+    return JSON.stringify(description);
+}
+
+/** A tetrahedron as the binary kind of glTF: a header, a JSON chunk, a chunk of numbers. */
+function tetrahedronGlb() {
+    const numbers = gltfNumbers();
+    const json = JSON.stringify({ scene: 0, ...gltfDescription({}) });
     const text = Buffer.from(json.padEnd(4 * Math.ceil(json.length / 4)));
     const words = (...values) => Buffer.from(new Uint32Array(values).buffer);
     return Buffer.concat([

@@ -66,7 +66,13 @@ function valueOf(input: Control, key: keyof Settings): Settings[keyof Settings] 
 function describe(input: Control, value: number): string {
     if (isLogarithmic(input)) return count(Math.round(Math.sqrt(value)) ** 2);
     if (input.name === 'slice' && value >= 1) return 'none';
-    return `${value.toFixed(value % 1 === 0 ? 0 : value % 0.1 < 1e-9 ? 1 : 2)}${input.dataset.unit ?? ''}`;
+    return `${value.toFixed(digitsOf(value))}${input.dataset.unit ?? ''}`;
+}
+
+/** Of at most two after the point, those that say something. */
+function digitsOf(value: number): number {
+    const hundredths = Math.round(100 * value);
+    return hundredths % 100 === 0 ? 0 : hundredths % 10 === 0 ? 1 : 2;
 }
 
 // Particles and directions go by factors: the step from 1 000 to 2 000 matters as much as that from 10 000 to 20 000.

@@ -28,7 +28,7 @@ export async function fetchSample(sample: Sample, page: string): Promise<Reading
 }
 
 /**
- * OBJ, PLY, STL and OFF are read by Echinus; 3DS and glTF by three.js, which is fetched only then.
+ * OBJ, PLY, STL and OFF are read by Echinus; 3DS and glTF by three.js, which is loaded only then.
  * @throws Error with a sentence that begins with the file's name; so does what it gives
  */
 export async function prepareFile(name: string, bytes: ArrayBuffer): Promise<Reading> {
@@ -39,8 +39,14 @@ export async function prepareFile(name: string, bytes: ArrayBuffer): Promise<Rea
         case 'glb':
         case 'gltf':
             return welding(name, await readGltf(name, bytes));
+        case 'obj':
+        case 'ply':
+            return (echinus) => ({ name, mesh: echinus.readMesh(bytes, name), up: 'y' });
+        case 'stl':
+        case 'off':
+            return (echinus) => ({ name, mesh: echinus.readMesh(bytes, name), up: 'z' });
         default:
-            return (echinus) => ({ name, mesh: echinus.readMesh(bytes, name), up: ending === 'stl' || ending === 'off' ? 'z' : 'y' });
+            throw new Error(`${name}: only models that end in .obj, .ply, .stl, .off, .3ds, .glb or .gltf can be opened`);
     }
 }
 
@@ -52,8 +58,23 @@ async function read3ds(name: string, bytes: ArrayBuffer): Promise<Object3D> {
 }
 
 async function readGltf(name: string, bytes: ArrayBuffer): Promise<Object3D> {
-    const { GLTFLoader } = await import('three/examples/jsm/loaders/GLTFLoader.js');
-    return described(name, async () => (await new GLTFLoader().parseAsync(bytes, '')).scene);
+    const [{ GLTFLoader }, { LoadingManager }] = await Promise.all([import('three/examples/jsm/loaders/GLTFLoader.js'), import('three')]);
+    const manager = new LoadingManager().setURLModifier(withinFile);
+    return described(name, async () => {
+        const { scene, scenes } = await new GLTFLoader(manager).parseAsync(bytes, '');
+        const root = scene ?? scenes[0]; // which of them to show need not be said
+        if (!root) throw new Error('there is no scene in it');
+        return root;
+    });
+}
+
+const ONE_PIXEL = 'data:image/gif;base64,R0lGODlhAQABAAAAACH5BAEAAAAALAAAAAABAAEAAAICRAEAOw==';
+
+/** A file that is opened has nothing fetched for it: pictures are not needed, and shapes must be in it. */
+function withinFile(address: string): string {
+    if (/^(data|blob):/.test(address)) return address;
+    if (/\.(png|jpe?g|webp|avif|ktx2|gif)$/i.test(address)) return ONE_PIXEL;
+    throw new Error(`it refers to ${address}, which is another file: save the model as one .glb`);
 }
 
 /** Readers other than ours name no file. */
