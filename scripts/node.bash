@@ -8,11 +8,12 @@ node_is_recent() {
     ((major > 22 || (major == 22 && minor >= 12) || (major == 20 && minor >= 19)))
 }
 
-# Puts a Node that is new enough in front of PATH, once fetched from the npm registry into build/node/, where the
-# machine's own is older. Not for npm: Debian's finds its parts only by Debian's Node.
+# Puts a Node that is new enough, with an npm of its own, in front of PATH where the machine's own is older; fetched once,
+# from the npm registry, into build/node/. Debian's npm cannot stand in: it finds its parts by Debian's Node alone, and
+# under that leaves out what asks for a newer one.
 use_recent_node() {
     node_is_recent && return
-    local version=22.23.3 platform package
+    local version=22.23.3 platform folder
     case "$(uname -m)" in
     x86_64) platform=x64 ;;
     aarch64) platform=arm64 ;;
@@ -21,10 +22,11 @@ use_recent_node() {
         return 1
         ;;
     esac
-    package=node-linux-$platform
-    if [ ! -x "build/node/$version/node_modules/$package/bin/node" ]; then
+    folder=$PWD/build/node/$version
+    if [ ! -e "$folder/complete" ]; then
         echo "web: fetching Node $version, since the one here is $(node --version)" >&2
-        npm --prefix "build/node/$version" install --no-save --no-audit --no-fund --loglevel=error "$package@$version"
+        npm --prefix "$folder" install --no-save --no-audit --no-fund --loglevel=error "node-linux-$platform@$version" npm@10.9.4
+        touch "$folder/complete"
     fi
-    PATH=$PWD/build/node/$version/node_modules/$package/bin:$PATH
+    PATH=$folder/node_modules/node-linux-$platform/bin:$folder/node_modules/.bin:$PATH
 }
