@@ -24,24 +24,19 @@ const untilTitle = (page, words) => page.waitForFunction((part) => document.getE
 const untilChosen = (page, name) => page.waitForFunction((text) => document.querySelector('select[name=model]').selectedOptions[0]?.textContent === text, name);
 const notice = (page) => page.locator('#notice span').textContent();
 
-/** Drops the files and then sets the inputs, all before the page can hear the answer to any. */
-const ask = (page, files, inputs = {}) =>
-    page.evaluate(([files, inputs]) => {
+/** Drops the files, all before the page can hear the answer to any. */
+const drop = (page, files) =>
+    page.evaluate((files) => {
         for (const [name, text] of files) {
             const dataTransfer = new DataTransfer();
             dataTransfer.items.add(new File([text], name));
             document.getElementById('canvas').dispatchEvent(new DragEvent('drop', { bubbles: true, cancelable: true, dataTransfer }));
         }
-        for (const [name, value] of Object.entries(inputs)) {
-            const input = document.querySelector(`[name=${name}]`);
-            input.value = value;
-            for (const event of ['input', 'change']) input.dispatchEvent(new Event(event, { bubbles: true }));
-        }
-    }, [files, inputs]);
+    }, files);
 
 test('after a good file and at once a broken one, the good one is open and is what the panel goes by', async () => {
     const page = await openPage();
-    await ask(page, [['good.obj', GOOD], ['broken.obj', BROKEN]]);
+    await drop(page, [['good.obj', GOOD], ['broken.obj', BROKEN]]);
     await page.locator('#notice').waitFor();
     assert.match(await notice(page), /^broken\.obj/);
     await untilChosen(page, 'good.obj');
@@ -60,7 +55,7 @@ test('of a large file and at once a small one, the small one stays', async () =>
         const title = document.getElementById('subtitle');
         new MutationObserver(() => globalThis.titles.push(title.textContent)).observe(title, { childList: true, characterData: true, subtree: true });
     });
-    await ask(page, [['large.obj', '# nothing\n'.repeat(1_000_000) + GOOD], ['small.obj', GOOD]]);
+    await drop(page, [['large.obj', '# nothing\n'.repeat(1_000_000) + GOOD], ['small.obj', GOOD]]);
     await page.waitForFunction(() => ['large', 'small'].every((name) => globalThis.titles.includes(`${name}.obj, 4 faces`)));
     await untilChosen(page, 'small.obj');
     assert.match(await page.locator('#subtitle').textContent(), /^small\.obj/);
@@ -69,7 +64,7 @@ test('of a large file and at once a small one, the small one stays', async () =>
 
 test('a link to a sample closes the file that is open', async () => {
     const page = await openPage();
-    await ask(page, [['good.obj', GOOD]]);
+    await drop(page, [['good.obj', GOOD]]);
     await untilTitle(page, 'good.obj, 4 faces');
     await page.evaluate(() => (location.hash = '#model=sphere&particles=400'));
     await untilTitle(page, 'sphere');
@@ -79,7 +74,8 @@ test('a link to a sample closes the file that is open', async () => {
 
 test('a change asked for while a broken file is read holds, and the panel shows that it does', async () => {
     const page = await openPage();
-    await ask(page, [['broken.obj', BROKEN]], { particles: Math.log(2500 / 100) / Math.log(1000) });
+    await page.evaluate(changeOnOpening);
+    await drop(page, [['broken.obj', BROKEN]]);
     await page.locator('#notice').waitFor();
     await untilChosen(page, 'Torus');
     assert.match(await page.locator('#subtitle').textContent(), /^torus/);
@@ -91,6 +87,18 @@ test('a change asked for while a broken file is read holds, and the panel shows 
     assert.equal(count, 2500);
     await page.context().close();
 });
+
+/** Runs in the page: sets 2500 particles as soon as a file has gone to the worker, before its answer can be heard. */
+function changeOnOpening() {
+    const title = document.getElementById('subtitle');
+    const input = document.querySelector('[name=particles]');
+    const observer = new MutationObserver(() => {
+        observer.disconnect();
+        input.value = Math.log(2500 / 100) / Math.log(1000);
+        for (const event of ['input', 'change']) input.dispatchEvent(new Event(event, { bubbles: true }));
+    });
+    observer.observe(title, { childList: true });
+}
 
 /** As many as are saved. */
 async function particlesIn(page) {
@@ -124,7 +132,7 @@ function withoutWorker() {
 test('that nothing gets through is said of closed meshes alone', async () => {
     const page = await openPage();
     assert.match(await page.locator('#map-note').textContent(), /Nothing gets through/);
-    await ask(page, [['open.obj', OPEN]]);
+    await drop(page, [['open.obj', OPEN]]);
     await untilTitle(page, 'open.obj, 3 faces');
     assert.match(await page.locator('#map-note').textContent(), /The mesh is open/);
     assert.doesNotMatch(await page.locator('#map-note').textContent(), /Nothing gets through/);
@@ -133,7 +141,7 @@ test('that nothing gets through is said of closed meshes alone', async () => {
 
 test('the word about a broken file goes when a sample is opened', async () => {
     const page = await openPage();
-    await ask(page, [['broken.obj', BROKEN]]);
+    await drop(page, [['broken.obj', BROKEN]]);
     await page.locator('#notice').waitFor();
     await page.locator('select[name=model]').selectOption('sphere');
     await untilTitle(page, 'sphere');
