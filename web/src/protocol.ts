@@ -2,7 +2,7 @@
  * What the page and the worker say to each other. The worker holds the mesh, the maps and the cloth; the page draws.
  * Large arrays are transferred, and come back to be filled again.
  */
-import type { ColliderState, DistanceMapDescription, ExactMapDescription, MeshFaults, MeshReport, RayInterval, SimulationProfile } from 'echinus';
+import type { ColliderState, DistanceMapDescription, ExactMapDescription, MeshFaults, MeshReport, RayInterval } from 'echinus';
 import type { Axis, Settings } from './settings';
 
 export type Triple = [number, number, number];
@@ -30,7 +30,7 @@ export type ToWorker =
 
 export type FromWorker =
     | ({ kind: 'model' } & ModelNews)
-    | { kind: 'cloth'; faces: Uint32Array; columns: number; rows: number }
+    | { kind: 'cloth'; faces: Uint32Array }
     | { kind: 'frame'; arrays: FrameArrays; figures: Figures; collider: ColliderState; cloth: number }
     | ({ kind: 'surface' } & SurfaceNews)
     /** Another map is in use. */
@@ -109,5 +109,4 @@ export interface Figures {
     /** Judged by the exact map, whichever map the cloth uses. */
     inside: number;
     stepCount: number;
-    profile: SimulationProfile;
 }

@@ -217,7 +217,6 @@ export class Playground {
             queriesPerSecond: collisionSeconds > 0 ? (after.queryCount - before.queryCount) / collisionSeconds : 0,
             inside: this.#judge.count(filled.positions, simulation.collider),
             stepCount,
-            profile: after,
         };
         return { arrays: filled, figures };
     }

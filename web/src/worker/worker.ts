@@ -121,7 +121,7 @@ function tellModel(playground: Playground): void {
 }
 function tellCloth(playground: Playground): void {
     ++cloth;
-    tell({ kind: 'cloth', faces: playground.faces, columns: playground.columns, rows: playground.columns });
+    tell({ kind: 'cloth', faces: playground.faces });
 }
 function tellFrame({ arrays, figures }: ReturnType<Playground['advance']>): void {
     if (!playground) return;
