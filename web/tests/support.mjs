@@ -38,6 +38,7 @@ export async function startBrowser() {
         args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
     });
     return {
+        address,
         /** A page that keeps what its console complains of in `complaints`. @param place  a link within the built page, or an address @param beforeLoad  runs in it before its own code */
         async open(place = '', { beforeLoad, ...options } = {}) {
             const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true, ...options });

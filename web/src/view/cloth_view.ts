@@ -1,45 +1,39 @@
 import * as THREE from 'three';
 import type { FrameArrays } from '../protocol';
 import { CLOTH, CLOTH_BACK, FAULT, SCALE } from './colours';
+import { matte } from './matte';
 
 /** The cloth: red in front and sand behind, or coloured by the depth of its contacts. */
 export class ClothView {
-    readonly mesh: THREE.Group = new THREE.Group();
-    #front: THREE.Mesh | undefined;
-    #back: THREE.Mesh | undefined;
-    #geometry = new THREE.BufferGeometry();
+    readonly #material = fabric();
+    readonly mesh = new THREE.Mesh(new THREE.BufferGeometry(), this.#material);
     #shown: FrameArrays | undefined;
     #byDepth = false;
 
+    constructor() {
+        this.mesh.frustumCulled = false; // it moves: a sphere around it would be wrong a frame later
+    }
+
     begin(faces: Uint32Array): void {
-        this.#geometry.dispose();
-        this.mesh.clear();
+        this.mesh.geometry.dispose();
         this.#shown = undefined;
-        this.#geometry = new THREE.BufferGeometry();
-        this.#geometry.setIndex(new THREE.BufferAttribute(faces, 1));
-        // Two sides, two materials: three.js gives one material one colour.
-        this.#front = new THREE.Mesh(this.#geometry, fabric(CLOTH, THREE.FrontSide));
-        this.#back = new THREE.Mesh(this.#geometry, fabric(CLOTH_BACK, THREE.BackSide));
-        this.mesh.add(this.#front, this.#back);
-        for (const side of [this.#front, this.#back]) {
-            side.frustumCulled = false; // it moves: a sphere around it would be wrong a frame later
-            side.visible = false;
-        }
+        this.mesh.geometry = new THREE.BufferGeometry();
+        this.mesh.geometry.setIndex(new THREE.BufferAttribute(faces, 1));
     }
 
     /** @returns the arrays shown until now, which the worker may fill again */
     show(arrays: FrameArrays): FrameArrays | undefined {
         const previous = this.#shown;
+        const { geometry } = this.mesh;
         this.#shown = arrays;
-        if (!this.#geometry.attributes.position) {
-            this.#geometry.setAttribute('position', dynamic(arrays.positions, 3));
-            this.#geometry.setAttribute('normal', dynamic(arrays.normals, 3));
-            this.#geometry.setAttribute('contactDepth', dynamic(arrays.depths, 1));
-            for (const side of [this.#front, this.#back]) if (side) side.visible = true;
+        if (!previous) {
+            geometry.setAttribute('position', dynamic(arrays.positions, 3));
+            geometry.setAttribute('normal', dynamic(arrays.normals, 3));
+            geometry.setAttribute('contactDepth', dynamic(arrays.depths, 1));
         } else {
-            replace(this.#geometry, 'position', arrays.positions);
-            replace(this.#geometry, 'normal', arrays.normals);
-            if (this.#byDepth) replace(this.#geometry, 'contactDepth', arrays.depths);
+            replace(geometry, 'position', arrays.positions);
+            replace(geometry, 'normal', arrays.normals);
+            if (this.#byDepth) replace(geometry, 'contactDepth', arrays.depths);
         }
         return previous;
     }
@@ -48,21 +42,21 @@ export class ClothView {
         return this.#shown?.positions;
     }
     get faces(): ArrayLike<number> {
-        return this.#geometry.index?.array ?? [];
+        return this.mesh.geometry.index?.array ?? [];
     }
 
     set byDepth(on: boolean) {
         this.#byDepth = on;
-        for (const side of [this.#front, this.#back]) if (side) (side.material as FabricMaterial).userData.byDepth.value = on ? 1 : 0;
+        this.#material.userData.byDepth.value = on ? 1 : 0;
     }
 
     /** The particle under a ray, and where the ray meets the cloth. */
     pick(ray: THREE.Raycaster): { particle: number; point: THREE.Vector3; distance: number } | undefined {
-        const { position } = this.#geometry.attributes;
-        if (!this.#front || !position) return undefined;
-        this.#geometry.computeBoundingSphere();
-        const both = [this.#front, this.#back as THREE.Mesh].flatMap((side) => ray.intersectObject(side, false));
-        const hit = both.sort((a, b) => a.distance - b.distance)[0];
+        const { geometry } = this.mesh;
+        const { position } = geometry.attributes;
+        if (!position) return undefined;
+        geometry.computeBoundingSphere();
+        const [hit] = ray.intersectObject(this.mesh, false);
         if (!hit?.face) return undefined;
         const corner = new THREE.Vector3();
         const away = (i: number) => corner.fromBufferAttribute(position as THREE.BufferAttribute, i).distanceTo(hit.point);
@@ -71,16 +65,16 @@ export class ClothView {
     }
 }
 
-type FabricMaterial = THREE.MeshStandardMaterial;
-
-/** Matte. Where colours are by depth, that of each particle goes through the palette's scale; inside it is the colour of faults. */
-function fabric(colour: number, side: THREE.Side): FabricMaterial {
-    const material = new THREE.MeshStandardMaterial({ color: colour, roughness: 0.95, side });
+/** Where colours are by depth, that of each particle goes through the palette's scale; inside it is the colour of faults. */
+function fabric(): THREE.MeshLambertMaterial {
+    const material = matte(CLOTH, CLOTH_BACK);
     const byDepth = { value: 0 };
     material.userData.byDepth = byDepth;
     const scale = { value: SCALE.map((hex) => new THREE.Color(hex)) };
     const inside = { value: new THREE.Color(FAULT.faces) };
-    material.onBeforeCompile = (shader) => {
+    const { onBeforeCompile } = material;
+    material.onBeforeCompile = (shader, renderer) => {
+        onBeforeCompile(shader, renderer);
         Object.assign(shader.uniforms, { byDepth, scale, inside });
         shader.vertexShader = shader.vertexShader
             .replace('#include <common>', '#include <common>\nattribute float contactDepth;\nvarying float vContactDepth;')
@@ -88,13 +82,13 @@ function fabric(colour: number, side: THREE.Side): FabricMaterial {
         shader.fragmentShader = shader.fragmentShader
             .replace('#include <common>', '#include <common>\nuniform float byDepth;\nuniform vec3 scale[5];\nuniform vec3 inside;\nvarying float vContactDepth;')
             .replace(
-                '#include <color_fragment>',
-                `#include <color_fragment>
-                float place = 4.0 * clamp(vContactDepth, 0.0, 1.0);
+                '#include <alphamap_fragment>',
+                `float place = 4.0 * clamp(vContactDepth, 0.0, 1.0);
                 vec3 shade = scale[0];
                 for (int i = 0; i < 4; ++i) shade = mix(shade, scale[i + 1], clamp(place - float(i), 0.0, 1.0));
                 if (vContactDepth > 1.0) shade = inside;
-                diffuseColor.rgb = mix(diffuseColor.rgb, shade, byDepth);`,
+                diffuseColor.rgb = mix(diffuseColor.rgb, shade, byDepth);
+                #include <alphamap_fragment>`,
             );
     };
     return material;

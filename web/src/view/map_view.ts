@@ -4,6 +4,7 @@ import type { Settings } from '../settings';
 import { cellBall } from './cell_ball';
 import { colouredFaces, largestOf, scaleTo } from './coloured_faces';
 import { BAND, CHALK, CLOTH, FAULT, INK, LAYERS, LAYER_BACK } from './colours';
+import { matte } from './matte';
 import { clear } from './model_view';
 
 /** What a map holds: its surface in colour, a cut through it, a ray, and where two maps differ. */
@@ -32,10 +33,10 @@ export class MapView {
     showSurface(news: SurfaceNews): void {
         clear(this.#surface);
         const colours = news.mapKind === 'exact' ? scaleTo(largestOf(news.values)) : (layer: number) => new THREE.Color(LAYERS[layer % LAYERS.length]);
-        this.#surface.add(...shell(colouredFaces(cornersOf(news), news.values, colours)));
+        this.#surface.add(shell(colouredFaces(cornersOf(news), news.values, colours)));
         if (news.disagreements.length > 0) this.#surface.add(dots(news.disagreements));
         clear(this.#cells);
-        if (news.cells && this.#model) this.#cells.add(...shell(cellBall(news.cells, this.#model)));
+        if (news.cells && this.#model) this.#cells.add(shell(cellBall(news.cells, this.#model)));
         this.#surface.add(this.#cells);
         this.#clip();
     }
@@ -135,10 +136,8 @@ function cornersOf({ vertices, faces }: SurfaceNews): Float32Array {
 }
 
 /** Coloured in front, paper behind. */
-function shell(geometry: THREE.BufferGeometry): THREE.Mesh[] {
-    const front = new THREE.MeshStandardMaterial({ vertexColors: true, roughness: 0.9, side: THREE.FrontSide });
-    const back = new THREE.MeshStandardMaterial({ color: LAYER_BACK, roughness: 0.9, side: THREE.BackSide });
-    return [new THREE.Mesh(geometry, front), new THREE.Mesh(geometry, back)];
+function shell(geometry: THREE.BufferGeometry): THREE.Mesh {
+    return new THREE.Mesh(geometry, matte(0xffffff, LAYER_BACK, { vertexColors: true }));
 }
 
 function dots(positions: Float32Array): THREE.Points {

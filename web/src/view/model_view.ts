@@ -3,6 +3,7 @@ import { toCreasedNormals } from 'three/examples/jsm/utils/BufferGeometryUtils.j
 import type { ColliderState } from 'echinus';
 import type { ModelNews } from '../protocol';
 import { CLAY, FAULT } from './colours';
+import { matte } from './matte';
 
 /** Beyond this many faces, creases are left out: they take seconds, and small faces look smooth anyway. */
 const CREASED_FACES = 60_000;
@@ -16,7 +17,7 @@ export class ModelView {
         const geometry = new THREE.BufferGeometry();
         geometry.setAttribute('position', new THREE.BufferAttribute(vertices, 3));
         geometry.setIndex(new THREE.BufferAttribute(faces, 1));
-        const clay = new THREE.MeshStandardMaterial({ color: CLAY, roughness: 0.9, side: THREE.DoubleSide });
+        const clay = matte(CLAY);
         this.group.add(new THREE.Mesh(faces.length / 3 <= CREASED_FACES ? toCreasedNormals(geometry, Math.PI / 4.5) : smooth(geometry), clay));
 
         for (const kind of ['borderEdges', 'nonmanifoldEdges', 'misorientedEdges'] as const)

@@ -35,10 +35,10 @@ export async function prepareFile(name: string, bytes: ArrayBuffer): Promise<Rea
     const ending = name.toLowerCase().split('.').pop();
     switch (ending) {
         case '3ds':
-            return welding(name, await read3ds(name, bytes));
+            return welding(name, await described(name, async () => (await import('./three_ds')).read3ds(bytes)));
         case 'glb':
         case 'gltf':
-            return welding(name, await readGltf(name, bytes));
+            return welding(name, await described(name, async () => (await import('./gltf')).readGltf(bytes)));
         case 'obj':
         case 'ply':
             return (echinus) => ({ name, mesh: echinus.readMesh(bytes, name), up: 'y' });
@@ -52,33 +52,8 @@ export async function prepareFile(name: string, bytes: ArrayBuffer): Promise<Rea
 
 const welding = (name: string, root: Object3D): Reading => (echinus) => ({ name, mesh: weldTriangles(echinus, name, root), up: 'y' });
 
-async function read3ds(name: string, bytes: ArrayBuffer): Promise<Object3D> {
-    const { TDSLoader } = await import('three/examples/jsm/loaders/TDSLoader.js');
-    return described(name, () => new TDSLoader().parse(bytes, ''));
-}
-
-async function readGltf(name: string, bytes: ArrayBuffer): Promise<Object3D> {
-    const [{ GLTFLoader }, { LoadingManager }] = await Promise.all([import('three/examples/jsm/loaders/GLTFLoader.js'), import('three')]);
-    const manager = new LoadingManager().setURLModifier(withinFile);
-    return described(name, async () => {
-        const { scene, scenes } = await new GLTFLoader(manager).parseAsync(bytes, '');
-        const root = scene ?? scenes[0]; // which of them to show need not be said
-        if (!root) throw new Error('there is no scene in it');
-        return root;
-    });
-}
-
-const ONE_PIXEL = 'data:image/gif;base64,R0lGODlhAQABAAAAACH5BAEAAAAALAAAAAABAAEAAAICRAEAOw==';
-
-/** A file that is opened has nothing fetched for it: pictures are not needed, and shapes must be in it. */
-function withinFile(address: string): string {
-    if (/^(data|blob):/.test(address)) return address;
-    if (/\.(png|jpe?g|webp|avif|ktx2|gif)$/i.test(address)) return ONE_PIXEL;
-    throw new Error(`it refers to ${address}, which is another file: save the model as one .glb`);
-}
-
 /** Readers other than ours name no file. */
-async function described<T>(name: string, read: () => T | Promise<T>): Promise<T> {
+async function described<T>(name: string, read: () => Promise<T>): Promise<T> {
     try {
         return await read();
     } catch (error) {

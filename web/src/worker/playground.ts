@@ -137,6 +137,7 @@ export class Playground {
         this.#contacts = this.#echinus.makeContacts(simulation.particleCount);
         this.#earlierFrames = 0;
         this.#owedSeconds = 0;
+        this.#lastMs = performance.now();
     }
 
     /** Steps as many times as real time asks for, within FRAME_BUDGET_MS, and fills the arrays with the result. */
