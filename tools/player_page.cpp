@@ -30,9 +30,9 @@ ordered_json to_json(const RigidTransform& pose) {
 ordered_json figures_of(const SimulationResult& result) {
     const ordered_json report = ::to_json(result);
     ordered_json figures;
-    for (const char* key : {"particles", "sticks", "solver", "substeps", "iterations", "time_step", "frames",
-                            "frames_to_rest", "ms_per_frame", "queries_per_frame", "ns_per_query", "map_kind",
-                            "inside_at_rest", "thickness", "gravity"})
+    for (const char* key :
+         {"particles", "sticks", "solver", "substeps", "iterations", "time_step", "frames", "frames_to_rest",
+          "ms_per_frame", "queries_per_frame", "ns_per_query", "map_kind", "thickness", "gravity"})
         figures[key] = report.at(key);
     return figures;
 }

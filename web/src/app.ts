@@ -1,7 +1,9 @@
 /** The page: brings the panel, the pictures and the worker together. */
 import type { Raycaster } from 'three';
+import { furthestAlong } from './axes';
 import type { Client } from './client';
 import { enableFiles } from './files';
+import { enableKeys } from './keys';
 import { Controls } from './panel/controls';
 import { fillDepthLegend } from './panel/depth_legend';
 import { byId } from './panel/elements';
@@ -340,23 +342,15 @@ class App {
     }
 
     #bindKeys(): void {
-        const actions: Record<string, () => void> = {
-            ' ': () => this.#pause(!this.#paused),
-            s: () => this.#step(),
-            r: () => this.#restart(),
+        // The view of the map does not show what these would do.
+        const ofCloth = (action: () => void) => () => this.#settings.view === 'cloth' && action();
+        enableKeys({
+            ' ': ofCloth(() => this.#pause(!this.#paused)),
+            s: ofCloth(() => this.#step()),
+            r: ofCloth(() => this.#restart()),
             m: () => this.#switchView(),
             x: () => this.#switchMap(),
             p: () => void this.#savePicture(),
-        };
-        addEventListener('keydown', (event) => {
-            // Keys that a control of the panel needs are its own.
-            const typing = event.target instanceof HTMLElement && event.target.matches('select');
-            const pressing = event.key === ' ' && event.target instanceof HTMLElement && event.target.matches('input, button, a');
-            if (typing || pressing || event.ctrlKey || event.metaKey || event.altKey) return;
-            const action = actions[event.key.toLowerCase()];
-            if (!action) return;
-            event.preventDefault();
-            action();
         });
     }
 
@@ -429,10 +423,7 @@ function mapNote(kind: MapNews['kind'], closed: boolean): string {
 
 /** From the centre to the highest vertex: of most models a ray with something to show. */
 function towardsTop({ vertices, centre, up }: ModelNews): Triple {
-    const axis = { x: 0, y: 1, z: 2 }[up];
-    let top = 0;
-    for (let i = 0; i < vertices.length; i += 3) if (vertices[i + axis] > vertices[top + axis]) top = i;
-    return [0, 1, 2].map((k) => vertices[top + k] - centre[k]) as Triple;
+    return furthestAlong(up, vertices).map((part, k) => part - centre[k]) as Triple;
 }
 
 export function begin(client: Client): void {

@@ -3,7 +3,8 @@
  * Large arrays are transferred, and come back to be filled again.
  */
 import type { ColliderState, DistanceMapDescription, ExactMapDescription, MeshFaults, MeshReport, RayInterval } from 'echinus';
-import type { Axis, Settings } from './settings';
+import type { Axis } from './axes';
+import type { Settings } from './settings';
 
 export type Triple = [number, number, number];
 

@@ -1,3 +1,4 @@
+import { AXES, type Axis } from './axes';
 import * as standpoint from './standpoint';
 
 /** All that a visitor can choose. A link holds it, the panel shows it, the worker obeys it. */
@@ -32,7 +33,6 @@ export interface Settings {
 }
 
 export type Sample = 'horse' | 'torus' | 'sphere';
-export type Axis = 'x' | 'y' | 'z';
 export const CELLS = ['auto', '16', '64', '256', '1024', '4096', '16384', '65536'] as const;
 const GRIDS = ['spherical', 'octahedral', 'cube', 'ellipsoidal'] as const;
 
@@ -65,7 +65,7 @@ const CHOICES: { [K in keyof Settings]?: readonly Settings[K][] } = {
     cells: CELLS,
     grid: GRIDS,
     motion: ['still', 'turning', 'swinging'],
-    up: ['auto', 'x', 'y', 'z'],
+    up: ['auto', ...AXES],
     colour: ['fabric', 'depth'],
     shown: ['surface', 'cells'],
 };

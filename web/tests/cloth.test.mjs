@@ -108,6 +108,53 @@ for (const map of ['exact', 'distance'])
         await page.context().close();
     });
 
+test('a finger pulls the cloth, and a finger beside it turns the view', async () => {
+    const page = await browser.open('#model=torus&particles=400', { ...SMALL, hasTouch: true });
+    await page.waitForFunction(() => document.body.dataset.rest === 'true', null, { timeout: 120_000 });
+    const before = await clothOf(page);
+    const { x, y, width, height } = await page.locator('#canvas').boundingBox();
+    const session = await page.context().newCDPSession(page);
+    const touch = (type, ...points) => session.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y]) => ({ x, y })) });
+    await touch('touchStart', [x + 0.5 * width, y + 0.5 * height]);
+    assert.ok(await page.locator('#canvas.dragging').isVisible());
+    await touch('touchMove', [x + 0.5 * width, y + 0.9 * height]);
+    await untilFrame(page, 60 + (await page.evaluate(() => Number(document.body.dataset.frame))));
+    await touch('touchEnd');
+    const moved = (await clothOf(page)).map((point, i) => Math.hypot(...point.map((c, k) => c - before[i][k])));
+    assert.ok(Math.max(...moved) > 0.1, `by at most ${Math.max(...moved)}`);
+    assert.equal(new URL(page.url()).hash, '#model=torus&particles=400', 'the view stood still');
+
+    await touch('touchStart', [x + 0.1 * width, y + 0.6 * height]);
+    await touch('touchMove', [x + 0.3 * width, y + 0.6 * height]);
+    await touch('touchEnd');
+    await page.waitForFunction(() => location.hash.includes('camera='));
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+test('friction, thickness and wind change while the cloth falls, which goes on, and nobody gets inside', async () => {
+    const page = await browser.open('#model=torus&particles=900', SMALL);
+    let frame = 60;
+    for (const [name, value] of [['thickness', 4], ['friction', 0], ['thickness', 0.2], ['wind', 5], ['friction', 1.5]]) {
+        await untilFrame(page, (frame += 60));
+        await page.locator(`input[name=${name}]`).fill(String(value));
+    }
+    await untilFrame(page, frame + 200);
+    assert.equal(await figure(page, 'inside'), '0');
+    assert.equal(new URL(page.url()).hash, '#model=torus&particles=900&friction=1.5&thickness=0.2&wind=5');
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+test('a cloth of 100 000 particles falls', async () => {
+    const page = await browser.open('#model=torus&particles=100000', SMALL);
+    await untilFrame(page, 30);
+    assert.equal(await figure(page, 'inside'), '0');
+    assert.equal((await clothOf(page)).length, 316 * 316); // the nearest square number
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
 test('the depth of contact is shown in colours with a legend', async () => {
     const page = await browser.open('#model=torus&particles=2500&colour=depth&map=distance', SMALL);
     await untilFrame(page, 160);

@@ -96,6 +96,15 @@ test('a broken file gives one sentence, and the page lives on', async () => {
     await page.context().close();
 });
 
+test('a file of which no map can be made is named, too', async () => {
+    const page = await browser.open('#model=torus&particles=400', SMALL);
+    await untilFrame(page, 1);
+    await choose(page, 'point.obj', 'v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\n');
+    await page.locator('#notice').waitFor();
+    assert.match(await page.locator('#notice span').textContent(), /^point\.obj: all vertices of the mesh lie on one point/);
+    await page.context().close();
+});
+
 test('an open mesh is said to be open, and its border is counted', async () => {
     const page = await browser.open('#model=torus&particles=400', SMALL);
     await untilFrame(page, 1);

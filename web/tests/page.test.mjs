@@ -87,6 +87,50 @@ test('a choice that cannot be had is not shown as if it held', { skip: !hasHorse
     await page.context().close();
 });
 
+test('the link that is copied is the one of the address', async () => {
+    const page = await browser.open('#model=torus&particles=400', { ...SMALL, permissions: ['clipboard-read', 'clipboard-write'] });
+    await untilFrame(page, 1);
+    await page.locator('input[name=friction]').fill('0.8');
+    await page.locator('#copy-link').click();
+    await page.locator('#link-note:has-text("Copied.")').waitFor();
+    assert.equal(await page.evaluate(() => navigator.clipboard.readText()), page.url());
+    assert.match(page.url(), /#model=torus&particles=400&friction=0\.8$/);
+    await page.context().close();
+});
+
+test('keys pause, step and drop the cloth and change the view and the map, and a list keeps its own', async () => {
+    const page = await browser.open('#model=sphere&particles=400', SMALL);
+    await untilFrame(page, 20);
+    const pausing = () => page.locator('#pause').textContent();
+    const frame = () => page.evaluate(() => Number(document.body.dataset.frame));
+    const untilLink = (part, there) => page.waitForFunction(([part, there]) => location.hash.includes(part) === there, [part, there]);
+    await page.keyboard.press('s');
+    assert.equal(await pausing(), 'Go on');
+    await page.waitForFunction(() => document.body.dataset.paused === 'true');
+    const held = await frame();
+    await page.keyboard.press('S');
+    await page.waitForFunction((next) => Number(document.body.dataset.frame) === next, held + 1);
+    await page.keyboard.press('r');
+    await page.waitForFunction((before) => Number(document.body.dataset.frame) < before, held);
+    assert.equal(await pausing(), 'Pause');
+    await page.keyboard.press('m');
+    await untilLink('view=map', true);
+    await page.keyboard.press('Space');
+    assert.equal(await pausing(), 'Pause', 'a cloth that is not in sight is left alone');
+    await page.keyboard.press('x');
+    await untilLink('map=distance', true);
+    await page.keyboard.press('m');
+    await untilLink('view=map', false);
+
+    await page.locator('select[name=model]').focus();
+    await page.keyboard.press('m');
+    await page.locator('input[name=friction]').focus();
+    await page.keyboard.press('Space');
+    assert.equal(await pausing(), 'Go on', 'a slider has no use for space');
+    assert.ok(!page.url().includes('view=map'), 'and a list has for letters');
+    await page.context().close();
+});
+
 test('the saved mesh is an OBJ file of the cloth and the model', async () => {
     const page = await browser.open('#model=sphere&particles=400', SMALL);
     await untilFrame(page, 2);
@@ -128,6 +172,14 @@ test('a browser without vectors is told what it lacks', async () => {
     const page = await browser.open('', { ...SMALL, beforeLoad: () => (WebAssembly.validate = () => false) });
     await page.locator('.lacking').waitFor();
     assert.match(await page.locator('.lacking').textContent(), /needs WebAssembly SIMD/);
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+test('a browser without WebGL is told so', async () => {
+    const page = await browser.open('', { ...SMALL, beforeLoad: () => (HTMLCanvasElement.prototype.getContext = () => null) });
+    await page.locator('.lacking').waitFor();
+    assert.match(await page.locator('.lacking').textContent(), /needs WebGL 2/);
     assert.deepEqual(page.complaints, []);
     await page.context().close();
 });

@@ -1,4 +1,5 @@
 /** The player: brings the recording, the picture and the controls together. */
+import { enableKeys } from '../keys';
 import { byId } from '../panel/elements';
 import { saveAs } from '../saving';
 import { Stage } from '../view/stage';
@@ -88,21 +89,13 @@ export class Player {
     }
 
     #bindKeys(): void {
-        const actions: Record<string, () => void> = {
+        enableKeys({
             ' ': () => this.#toggle(),
             s: () => this.#seek(this.#playback.frame + 1),
             arrowright: () => this.#seek(this.#playback.frame + 1),
             arrowleft: () => this.#seek(this.#playback.frame - 1),
             r: () => this.#restart(),
             p: () => void this.#savePicture(),
-        };
-        addEventListener('keydown', (event) => {
-            // Keys that a control needs are its own.
-            const taken = event.target instanceof HTMLElement && event.target.matches(event.key === ' ' ? 'select, button, summary' : 'select, input');
-            const action = actions[event.key.toLowerCase()];
-            if (!action || taken || event.ctrlKey || event.metaKey || event.altKey) return;
-            event.preventDefault();
-            action();
         });
     }
 }

@@ -1,6 +1,6 @@
 import * as THREE from 'three';
+import { AXES, type Axis } from '../axes';
 import type { FrameArrays } from '../protocol';
-import type { Axis } from '../settings';
 import { ClothView } from '../view/cloth_view';
 import { ModelView } from '../view/model_view';
 import type { Stage } from '../view/stage';
@@ -62,5 +62,5 @@ function upright(gravity: Description['figures']['gravity']): { axis: Axis; turn
     const sizes = up.toArray().map(Math.abs);
     const k = sizes.indexOf(Math.max(...sizes));
     const axis = new THREE.Vector3().setComponent(k, 1);
-    return { axis: (['x', 'y', 'z'] as const)[k], turn: new THREE.Quaternion().setFromUnitVectors(up, axis) };
+    return { axis: AXES[k], turn: new THREE.Quaternion().setFromUnitVectors(up, axis) };
 }

@@ -1,4 +1,5 @@
 import * as THREE from 'three';
+import { UNIT, following } from '../axes';
 import type { Cut, FromWorker, ModelNews, SurfaceNews, Triple } from '../protocol';
 import type { Settings } from '../settings';
 import { cellBall } from './cell_ball';
@@ -26,7 +27,7 @@ export class MapView {
 
     begin(model: ModelNews): void {
         this.#model = model;
-        this.#up.set(...({ x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] } as Record<string, Triple>)[model.up]);
+        this.#up.set(...UNIT[model.up]);
         for (const part of [this.#surface, this.#cut, this.#ray]) clear(part);
     }
 
@@ -62,14 +63,9 @@ export class MapView {
             new THREE.PlaneGeometry(2 * radius, 2 * radius),
             new THREE.MeshBasicMaterial({ map: texture, transparent: true, side: THREE.DoubleSide, depthWrite: false }),
         );
-        // Columns run along the axis after up, rows along the one after that: cutAt() of the worker.
-        const axes: Record<string, [Triple, Triple, Triple]> = {
-            x: [[0, 1, 0], [0, 0, 1], [1, 0, 0]],
-            y: [[0, 0, 1], [1, 0, 0], [0, 1, 0]],
-            z: [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
-        };
-        const [across, along, upward] = axes[up].map((axis) => new THREE.Vector3(...axis));
-        sheet.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(across, along, upward));
+        // As cutAt() of the worker lays columns and rows.
+        const [across, along] = following(up).map((axis) => new THREE.Vector3(...UNIT[axis]));
+        sheet.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(across, along, this.#up));
         sheet.position.set(...centre).addScaledVector(this.#up, cut.height * radius);
         this.#cut.add(sheet);
     }

@@ -1,7 +1,7 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import type { Axis } from '../axes';
 import type { Triple } from '../protocol';
-import type { Axis } from '../settings';
 import { type Standpoint, fromText, toText } from '../standpoint';
 import { BACKDROP } from './colours';
 

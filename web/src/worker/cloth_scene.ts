@@ -1,5 +1,6 @@
 import type { SceneDescription } from 'echinus';
-import type { Axis, Settings } from '../settings';
+import { AXES, type Axis, UNIT } from '../axes';
+import type { Settings } from '../settings';
 
 /** What a scene depends on besides the settings. */
 export interface Body {
@@ -9,8 +10,6 @@ export interface Body {
     /** The highest vertex, along `up`. */
     top: number;
 }
-
-export const UP: Record<Axis, [number, number, number]> = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 
 /** What turns z, the cloth's own up, to another axis. */
 const FROM_Z: Record<Axis, { axis: [number, number, number]; degrees: number } | undefined> = {
@@ -29,17 +28,16 @@ export const thicknessOf = (settings: Settings, { radius }: Body): number => 0.0
  */
 export function sceneFor(settings: Settings, body: Body): SceneDescription {
     const { radius } = body;
-    const axis = { x: 0, y: 1, z: 2 }[body.up];
     const position = [...body.centre] as [number, number, number];
     const thickness = thicknessOf(settings, body);
-    position[axis] = body.top + 0.08 * radius + thickness;
+    position[AXES.indexOf(body.up)] = body.top + 0.08 * radius + thickness;
     const columns = columnsOf(settings.particles);
     const rotation = FROM_Z[body.up];
     return {
         model: 'model.obj', // a scene needs a name; its map is made already
         cloth: { size: [2.25 * radius, 2.25 * radius], particles: [columns, columns], position, thickness, ...(rotation && { rotation }) },
         material: { friction: settings.friction },
-        gravity: UP[body.up].map((part) => -9.81 * radius * part) as [number, number, number],
+        gravity: UNIT[body.up].map((part) => -9.81 * radius * part) as [number, number, number],
         at_rest: { distance: 0.001 * radius },
     };
 }

@@ -1,6 +1,6 @@
 import type { DistanceMap, Echinus, ExactMap } from 'echinus';
+import { UNIT, following } from '../axes';
 import type { Cut, FromWorker, SurfaceNews, Triple } from '../protocol';
-import { UP } from './cloth_scene';
 import type { Playground } from './playground';
 
 const CUT_SIDE = 220;
@@ -65,7 +65,7 @@ function inUnitBall(i: number): Triple {
 
 /** What the map in use answers on a square across the bounding sphere. @param height  along up, in radii from the centre */
 export function cutAt(echinus: Echinus, { map, body: { centre, radius, up } }: Playground, height: number): Cut {
-    const [across, along] = acrossUp(UP[up]);
+    const [across, along] = following(up).map((axis) => UNIT[axis]);
     const count = CUT_SIDE * CUT_SIDE;
     const points = echinus.makePoints(count);
     const inside = echinus.makeFlags(count);
@@ -75,18 +75,12 @@ export function cutAt(echinus: Echinus, { map, body: { centre, radius, up } }: P
         for (let row = 0; row < CUT_SIDE; ++row)
             for (let column = 0; column < CUT_SIDE; ++column)
                 for (let k = 0; k < 3; ++k)
-                    view[3 * (row * CUT_SIDE + column) + k] = centre[k] + UP[up][k] * height * radius + across[k] * place(column) + along[k] * place(row);
+                    view[3 * (row * CUT_SIDE + column) + k] = centre[k] + UNIT[up][k] * height * radius + across[k] * place(column) + along[k] * place(row);
         return { inside: map.containsBatch(points, inside).view.slice(), side: CUT_SIDE, height };
     } finally {
         points.delete();
         inside.delete();
     }
-}
-
-/** The two axes that follow `up`, cyclically. */
-export function acrossUp(up: Triple): [Triple, Triple] {
-    const next = ([x, y, z]: Triple): Triple => [z, x, y];
-    return [next(up), next(next(up))];
 }
 
 /** The ray through the first point of the surface on a straight way, if there is one. */

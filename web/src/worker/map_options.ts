@@ -1,5 +1,6 @@
 import type { DistanceMapOptions, ExactMapOptions } from 'echinus';
-import type { Axis, Settings } from '../settings';
+import type { Axis } from '../axes';
+import type { Settings } from '../settings';
 
 /** What the settings say under `map` of a scene. @param up  where a grid with poles has them */
 export function mapOptions(settings: Settings, up: Axis): ExactMapOptions | DistanceMapOptions {

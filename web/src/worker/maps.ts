@@ -1,6 +1,7 @@
 import type { AnyMap, Echinus, ExactMap, Mesh } from 'echinus';
+import type { Axis } from '../axes';
 import type { MapNews } from '../protocol';
-import type { Axis, Settings } from '../settings';
+import type { Settings } from '../settings';
 import { mapOptions } from './map_options';
 
 interface Built {

@@ -1,6 +1,7 @@
 import type { Echinus, Mesh } from 'echinus';
 import type { Object3D } from 'three';
-import type { Axis, Sample } from '../settings';
+import type { Axis } from '../axes';
+import type { Sample } from '../settings';
 
 /** A mesh, and which way it stands by the custom of where it comes from. */
 export interface Model {

@@ -1,7 +1,8 @@
 import type { AnyMap, ContactBuffer, Echinus, ExactMap, Mesh, MeshFaults, MeshReport, Scene, Simulation, SimulationProfile } from 'echinus';
+import { AXES, type Axis, UNIT, furthestAlong } from '../axes';
 import type { FrameArrays, Figures, MapNews, ModelNews, Triple } from '../protocol';
-import type { Axis, Settings } from '../settings';
-import { type Body, UP, columnsOf, sceneFor, thicknessOf } from './cloth_scene';
+import type { Settings } from '../settings';
+import { type Body, columnsOf, sceneFor, thicknessOf } from './cloth_scene';
 import { measureDepths } from './depth';
 import { Hand } from './hand';
 import { Judge } from './judge';
@@ -179,7 +180,7 @@ export class Playground {
         const simulation = this.#simulation;
         const { radius, up } = this.body;
         const frame = this.#earlierFrames + simulation.frame;
-        const { linear, angular } = motionAt(this.#settings.motion, UP[up], frame * this.#scene.timeStep, this.body.centre, simulation.collider);
+        const { linear, angular } = motionAt(this.#settings.motion, UNIT[up], frame * this.#scene.timeStep, this.body.centre, simulation.collider);
         simulation.setVelocities(linear, angular);
         if (this.#settings.wind > 0) simulation.blow(this.#wind(frame), 4);
         this.hand.pull(simulation, this.#scene.timeStep, 12 * radius);
@@ -250,11 +251,7 @@ export class Playground {
 }
 
 function bodyOf(mesh: Mesh, map: ExactMap, up: Axis): Body {
-    const axis = { x: 0, y: 1, z: 2 }[up];
-    const { vertices } = mesh;
-    let top = -Infinity;
-    for (let i = axis; i < vertices.length; i += 3) top = Math.max(top, vertices[i]);
-    return { centre: map.centre, radius: map.radius, up, top };
+    return { centre: map.centre, radius: map.radius, up, top: furthestAlong(up, mesh.vertices)[AXES.indexOf(up)] };
 }
 
 function fitted(arrays: FrameArrays | undefined, particleCount: number): FrameArrays {

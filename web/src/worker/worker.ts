@@ -1,8 +1,9 @@
 /** The worker: one instance of the module, one playground, and a loop that the page drives frame by frame. */
-import { EchinusError, load } from 'echinus';
+import { type Echinus, EchinusError, load } from 'echinus';
 import type { FrameArrays, FromWorker, ToWorker } from '../protocol';
+import type { Settings } from '../settings';
 import { cutAt, lookAlong, lookAt, surfaceOf } from './looking';
-import { type Reading, fetchSample, prepareFile } from './models';
+import { type Model, type Reading, fetchSample, prepareFile } from './models';
 import { Playground } from './playground';
 import { warmUp } from './warm_up';
 
@@ -89,12 +90,22 @@ async function open({ turn, settings, page, file }: ToWorker & { kind: 'open' })
     const read = await (file ? readFile(file) : fetchSample(settings.model, page));
     modelIsThere = true;
     const echinus = await starting;
-    const next = new Playground(echinus, read(echinus), settings);
+    const next = playgroundOf(echinus, read(echinus), settings);
     playground?.delete(); // only now: a file that cannot be opened leaves what there was
     playground = next;
     opened = turn;
     tellModel(playground);
     tellCloth(playground);
+}
+
+/** What is wrong with a mesh is said of its file. */
+function playgroundOf(echinus: Echinus, model: Model, settings: Settings): Playground {
+    try {
+        return new Playground(echinus, model, settings);
+    } catch (error) {
+        if (error instanceof Error) error.message = `${model.name}: ${error.message}`;
+        throw error;
+    }
 }
 
 /** In line with all else, so that of two files the later one stays. */

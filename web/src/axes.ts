@@ -1,0 +1,20 @@
+import type { Triple } from './protocol';
+
+export const AXES = ['x', 'y', 'z'] as const;
+export type Axis = (typeof AXES)[number];
+
+export const UNIT: Record<Axis, Triple> = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
+
+/** The axes that follow one, cyclically. */
+export function following(axis: Axis): [Axis, Axis] {
+    const k = AXES.indexOf(axis);
+    return [AXES[(k + 1) % 3], AXES[(k + 2) % 3]];
+}
+
+/** The vertex that lies furthest along an axis, of [3 n] coordinates. */
+export function furthestAlong(axis: Axis, vertices: ArrayLike<number>): Triple {
+    const k = AXES.indexOf(axis);
+    let furthest = 0;
+    for (let i = 0; i < vertices.length; i += 3) if (vertices[i + k] > vertices[furthest + k]) furthest = i;
+    return [vertices[furthest], vertices[furthest + 1], vertices[furthest + 2]];
+}

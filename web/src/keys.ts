@@ -1,0 +1,17 @@
+/** Calls the action of a key, by `event.key` in lower case, unless the control that has the focus needs that key itself. */
+export function enableKeys(actions: Record<string, () => void>): void {
+    addEventListener('keydown', (event) => {
+        const action = actions[event.key.toLowerCase()];
+        if (!action || event.ctrlKey || event.metaKey || event.altKey || isOfControl(event)) return;
+        event.preventDefault();
+        action();
+    });
+}
+
+/** A list finds its entries by letters; what is pressed or ticked takes space; sliders and choices go by arrows. */
+function isOfControl({ key, target }: KeyboardEvent): boolean {
+    if (!(target instanceof HTMLElement)) return false;
+    if (target.matches('select')) return true;
+    if (key === ' ') return target.matches('button, summary, input:not([type=range])');
+    return key.startsWith('Arrow') && target.matches('input');
+}
