@@ -6,7 +6,8 @@ import { matte } from './matte';
 /** The cloth: red in front and sand behind, or coloured by the depth of its contacts. */
 export class ClothView {
     readonly #material = fabric();
-    readonly mesh = new THREE.Mesh(new THREE.BufferGeometry(), this.#material);
+    readonly mesh = new THREE.Mesh(sheet(NOTHING, NO_FACES), this.#material);
+    #faces: Uint32Array = NO_FACES;
     #shown: FrameArrays | undefined;
     #byDepth = false;
 
@@ -14,11 +15,11 @@ export class ClothView {
         this.mesh.frustumCulled = false; // it moves: a sphere around it would be wrong a frame later
     }
 
+    /** Another cloth, which shows itself with its first arrays. */
     begin(faces: Uint32Array): void {
-        this.mesh.geometry.dispose();
+        this.#faces = faces;
         this.#shown = undefined;
-        this.mesh.geometry = new THREE.BufferGeometry();
-        this.mesh.geometry.setIndex(new THREE.BufferAttribute(faces, 1));
+        this.#lay(sheet(NOTHING, NO_FACES));
     }
 
     /** @returns the arrays shown until now, which the worker may fill again */
@@ -26,11 +27,8 @@ export class ClothView {
         const previous = this.#shown;
         const { geometry } = this.mesh;
         this.#shown = arrays;
-        if (!previous) {
-            geometry.setAttribute('position', dynamic(arrays.positions, 3));
-            geometry.setAttribute('normal', dynamic(arrays.normals, 3));
-            geometry.setAttribute('contactDepth', dynamic(arrays.depths, 1));
-        } else {
+        if (!previous) this.#lay(sheet(arrays, this.#faces));
+        else {
             replace(geometry, 'position', arrays.positions);
             replace(geometry, 'normal', arrays.normals);
             if (this.#byDepth) replace(geometry, 'contactDepth', arrays.depths);
@@ -38,11 +36,16 @@ export class ClothView {
         return previous;
     }
 
+    #lay(geometry: THREE.BufferGeometry): void {
+        this.mesh.geometry.dispose();
+        this.mesh.geometry = geometry;
+    }
+
     get positions(): Float32Array | undefined {
         return this.#shown?.positions;
     }
     get faces(): ArrayLike<number> {
-        return this.mesh.geometry.index?.array ?? [];
+        return this.#faces;
     }
 
     set byDepth(on: boolean) {
@@ -54,7 +57,6 @@ export class ClothView {
     pick(ray: THREE.Raycaster): { particle: number; point: THREE.Vector3; distance: number } | undefined {
         const { geometry } = this.mesh;
         const { position } = geometry.attributes;
-        if (!position) return undefined;
         geometry.computeBoundingSphere();
         const [hit] = ray.intersectObject(this.mesh, false);
         if (!hit?.face) return undefined;
@@ -92,6 +94,19 @@ function fabric(): THREE.MeshLambertMaterial {
             );
     };
     return material;
+}
+
+/** No cloth yet: but with all that a cloth has, since three.js compiles the program at once, and by that. */
+const NO_FACES = new Uint32Array(0);
+const NOTHING: FrameArrays = { positions: new Float32Array(0), normals: new Float32Array(0), depths: new Float32Array(0) };
+
+function sheet({ positions, normals, depths }: FrameArrays, faces: Uint32Array): THREE.BufferGeometry {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setIndex(new THREE.BufferAttribute(faces, 1));
+    geometry.setAttribute('position', dynamic(positions, 3));
+    geometry.setAttribute('normal', dynamic(normals, 3));
+    geometry.setAttribute('contactDepth', dynamic(depths, 1));
+    return geometry;
 }
 
 function dynamic(array: Float32Array, itemSize: number): THREE.BufferAttribute {
