@@ -27,6 +27,10 @@ const FRAMES_UNDER_WAY = 2;
 /** How long the hint stays. */
 const HINT_MS = 12_000;
 
+/** What a key turns the view by, in degrees, and zooms by. */
+const TURN = 5;
+const ZOOM = 1.1;
+
 /** A model that was asked for: a file, or else the sample of the settings. */
 interface Opening {
     turn: number;
@@ -63,7 +67,7 @@ class App {
         this.#controls = new Controls(this.#settings, (settings, key) => this.#change(settings, key));
         this.#bindButtons();
         this.#bindKeys();
-        enableFiles((file) => this.#openFile(file));
+        enableFiles((file) => this.#open(file));
         this.#bindPointer();
         enableClosing();
         fillDepthLegend();
@@ -79,10 +83,8 @@ class App {
             this.#showColours();
             this.#open(undefined); // no link holds a file
         });
-        this.#stage.onArrival = () => {
-            const camera = this.#stage.standpoint;
-            if (camera !== this.#settings.camera) this.#setLink({ ...this.#settings, camera });
-        };
+        this.#stage.onArrival = () => this.#keepCamera();
+        this.#stage.onLoss = () => say('The browser has taken the graphics card away. If the picture does not come back, load the page again.');
         client.listen((message) => this.#hear(message));
         this.#showView();
         this.#showColours();
@@ -94,7 +96,6 @@ class App {
 
     #open(file: File | undefined): void {
         beQuiet();
-        if (this.#paused) this.#pause(false);
         byId('subtitle').textContent = file ? `Opening ${file.name}` : 'Loading';
         this.#controls.showFile(file?.name);
         this.#controls.show(this.#settings);
@@ -110,6 +111,7 @@ class App {
             case 'cloth':
                 ++this.#cloth;
                 this.#arrived = [];
+                if (this.#paused) this.#pause(false); // a new cloth falls
                 this.#clothView.begin(message.faces);
                 this.#clothView.byDepth = this.#settings.colour === 'depth';
                 return;
@@ -142,9 +144,10 @@ class App {
     }
 
     #fail({ sentence, code, turn }: FromWorker & { kind: 'failed' }): void {
-        this.#rayAsked = false;
-        this.#framesAsked = 0;
-        if (turn !== undefined && turn < this.#asked.turn) return; // something else has been opened since
+        if (turn === undefined) {
+            this.#rayAsked = false;
+            this.#framesAsked = 0; // it may have been for want of one of these
+        } else if (turn < this.#asked.turn) return; // something else has been opened since
         if (code === 'Diverged') this.#pause(true);
         if (code === 'Crashed') this.#beginAgain();
         say(sentence);
@@ -198,7 +201,8 @@ class App {
         if (inView === this.#inView) return;
         this.#inView = inView;
         this.#stage.lookAt(centre, radius, up);
-        if (this.#settings.camera) this.#stage.standpoint = this.#settings.camera;
+        if (this.#asked.file) this.#setLink({ ...this.#settings, camera: '' }); // it was for another model
+        else if (this.#settings.camera) this.#stage.standpoint = this.#settings.camera;
     }
     #inView = '';
 
@@ -253,7 +257,6 @@ class App {
     // ---- What a visitor does
 
     #change(settings: Settings, key: keyof Settings): void {
-        const before = this.#settings;
         if (key === 'model' || key === 'up') settings = { ...settings, camera: '' };
         this.#setLink(settings);
         switch (key) {
@@ -271,7 +274,11 @@ class App {
         }
         this.#showColours();
         this.#client.tell({ kind: 'change', turn: ++this.#turn, settings });
-        if (before.particles !== settings.particles) this.#pause(false);
+    }
+
+    #keepCamera(): void {
+        const camera = this.#stage.standpoint;
+        if (camera !== this.#settings.camera) this.#setLink({ ...this.#settings, camera });
     }
 
     #setLink(settings: Settings): void {
@@ -309,6 +316,7 @@ class App {
     }
     #step(): void {
         this.#pause(true);
+        ++this.#framesAsked; // the answer is a frame
         this.#client.tell({ kind: 'step' });
     }
     #restart(): void {
@@ -351,12 +359,13 @@ class App {
             m: () => this.#switchView(),
             x: () => this.#switchMap(),
             p: () => void this.#savePicture(),
+            arrowleft: () => this.#stage.turn(-TURN, 0),
+            arrowright: () => this.#stage.turn(TURN, 0),
+            arrowup: () => this.#stage.turn(0, TURN),
+            arrowdown: () => this.#stage.turn(0, -TURN),
+            '+': () => this.#stage.turn(0, 0, ZOOM),
+            '-': () => this.#stage.turn(0, 0, 1 / ZOOM),
         });
-    }
-
-    #openFile(file: File): void {
-        this.#settings = { ...this.#settings, camera: '' };
-        this.#open(file);
     }
 
     #bindPointer(): void {
@@ -368,7 +377,7 @@ class App {
             drag: (target) => this.#client.tell({ kind: 'drag', target }),
             release: () => this.#client.tell({ kind: 'release' }),
             hover: (ray) => this.#lookUnder(ray),
-            obstacles: () => [this.#modelView.group],
+            obstacle: this.#modelView.clay,
             mayGrab: () => this.#settings.view === 'cloth',
         });
     }
@@ -402,6 +411,7 @@ class App {
     }
 
     async #copyLink(): Promise<void> {
+        if (this.#model) this.#keepCamera(); // it may be on its way
         const link = `${location.origin}${location.pathname}#${toLink(this.#settings)}`;
         const note = byId('link-note');
         note.hidden = false;

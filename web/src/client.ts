@@ -18,12 +18,16 @@ export class Client {
         this.#worker.postMessage(message, transfer);
     }
 
+    stop(): void {
+        this.#worker?.terminate();
+        this.#worker = undefined;
+    }
+
     #start(): Worker {
         const worker = new Worker(new URL('./worker/worker.ts', import.meta.url), { type: 'module' });
         worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.#hear(data);
         worker.onerror = ({ message }) => {
-            worker.terminate();
-            this.#worker = undefined;
+            this.stop();
             const sentence = message ? `the simulation has stopped (${message})` : 'the simulation did not start: a part of this page could not be loaded';
             this.#hear({ kind: 'failed', sentence, code: 'Crashed' });
         };

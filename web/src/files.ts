@@ -10,6 +10,7 @@ export function enableFiles(given: (file: File) => void): void {
     });
     const sign = byId('drop');
     addEventListener('dragover', (event) => {
+        if (!event.dataTransfer?.types.includes('Files')) return;
         event.preventDefault();
         sign.hidden = false;
     });

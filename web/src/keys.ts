@@ -2,11 +2,14 @@
 export function enableKeys(actions: Record<string, () => void>): void {
     addEventListener('keydown', (event) => {
         const action = actions[event.key.toLowerCase()];
-        if (!action || event.ctrlKey || event.metaKey || event.altKey || isOfControl(event)) return;
+        if (!action || (event.repeat && !REPEATED.has(event.key.toLowerCase())) || event.ctrlKey || event.metaKey || event.altKey || isOfControl(event)) return;
         event.preventDefault();
         action();
     });
 }
+
+/** Held down, these act again and again: they step or turn by a little. */
+const REPEATED = new Set(['s', 'arrowleft', 'arrowright', 'arrowup', 'arrowdown', '+', '-']);
 
 /** A list finds its entries by letters; what is pressed or ticked takes space; sliders and choices go by arrows. */
 function isOfControl({ key, target }: KeyboardEvent): boolean {

@@ -1,19 +1,11 @@
-/** Begins the page, or says what this browser lacks. */
+/** Begins the page, or says why it cannot. */
 import { missingFeatures } from 'echinus';
 import { Client } from './client';
 
-const missing = missingFeatures();
-if (missing.length === 0) {
-    const client = new Client(); // loads the module while three.js is on its way
-    const { begin } = await import('./app');
-    // Of the page's one canvas, since a context takes long where there is no graphics card: three.js gets the same. Only
-    // now, since the worker does not begin while this waits.
-    if (document.querySelector('canvas')!.getContext('webgl2')) begin(client);
-    else missing.push('WebGL 2');
-}
-if (missing.length > 0) {
+/** In place of everything. */
+function sayInstead(words: string): void {
     const sentence = document.createElement('p');
-    sentence.textContent = `This page needs ${missing.join(' and ')}, which this browser lacks. Chrome and Edge from 95, Firefox from 100 and Safari from 16.4 have what it needs.`;
+    sentence.textContent = words;
     const title = document.createElement('h1');
     title.textContent = 'Echinus';
     const page = document.createElement('div');
@@ -23,3 +15,21 @@ if (missing.length > 0) {
     document.body.replaceChildren(page);
     document.body.style.display = 'block';
 }
+
+const sayWhatIsMissing = (features: string[]) =>
+    sayInstead(`This page needs ${features.join(' and ')}, which this browser lacks. Chrome and Edge from 95, Firefox from 100 and Safari from 16.4 have what it needs.`);
+
+async function begin(): Promise<void> {
+    const missing = missingFeatures();
+    if (missing.length > 0) return sayWhatIsMissing(missing);
+    const client = new Client(); // loads the module while three.js is on its way
+    const app = await import('./app').catch(() => undefined);
+    if (!app) return sayInstead('A part of this page could not be loaded: load the page again.');
+    // Of the page's one canvas, since a context takes long where there is no graphics card: three.js gets the same. Only
+    // now, since the worker does not begin while this waits.
+    if (document.querySelector('canvas')!.getContext('webgl2')) return app.begin(client);
+    client.stop();
+    sayWhatIsMissing(['WebGL 2']);
+}
+
+void begin();

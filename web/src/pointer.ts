@@ -10,16 +10,20 @@ export interface PointerWishes {
     /** The pointer moved over the canvas and holds nothing. */
     hover(ray: THREE.Raycaster): void;
     /** What can hide the cloth. */
-    obstacles(): THREE.Object3D[];
+    obstacle: THREE.Object3D;
     mayGrab(): boolean;
 }
 
-/** Pulls the cloth where the pointer takes hold of it, in the plane across the view; elsewhere the view turns. */
+/**
+ * Pulls the cloth where the pointer takes hold of it, in the plane across the view; elsewhere the view turns. A second
+ * finger lets go of the cloth: two of them zoom.
+ */
 export function enablePointer(canvas: HTMLCanvasElement, stage: Stage, cloth: ClothView, wishes: PointerWishes): void {
     const ray = new THREE.Raycaster();
     const plane = new THREE.Plane();
     const target = new THREE.Vector3();
-    let holding: number | undefined;
+    /** Of the pointer that holds the cloth, the last. */
+    let hold: PointerEvent | undefined;
 
     const aim = ({ clientX, clientY }: PointerEvent) => {
         const { left, top, width, height } = canvas.getBoundingClientRect();
@@ -30,14 +34,21 @@ export function enablePointer(canvas: HTMLCanvasElement, stage: Stage, cloth: Cl
     canvas.addEventListener(
         'pointerdown',
         (event) => {
-            if (event.button !== 0 || holding !== undefined || !wishes.mayGrab()) return;
+            if (hold && hold.pointerId !== event.pointerId) {
+                const first = hold;
+                release();
+                canvas.dispatchEvent(new PointerEvent('pointerdown', first)); // which the controls have not heard
+                return;
+            }
+            if (event.button !== 0 || !event.isPrimary || !event.isTrusted) return;
             aim(event);
+            if (!wishes.mayGrab()) return wishes.hover(ray); // a finger points by touching
             const hit = cloth.pick(ray);
             if (!hit) return;
-            const hidden = ray.intersectObjects(wishes.obstacles(), true).some(({ distance }) => distance < 0.99 * hit.distance);
+            const hidden = ray.intersectObject(wishes.obstacle, false).some(({ distance }) => distance < 0.99 * hit.distance);
             if (hidden) return;
             stage.orbiting = false;
-            holding = event.pointerId;
+            hold = event;
             canvas.setPointerCapture(event.pointerId);
             canvas.classList.add('dragging');
             plane.setFromNormalAndCoplanarPoint(stage.camera.getWorldDirection(new THREE.Vector3()), hit.point);
@@ -47,16 +58,17 @@ export function enablePointer(canvas: HTMLCanvasElement, stage: Stage, cloth: Cl
     );
     canvas.addEventListener('pointermove', (event) => {
         aim(event);
-        if (holding === undefined) return wishes.hover(ray);
-        if (event.pointerId === holding && ray.ray.intersectPlane(plane, target)) wishes.drag(target.toArray());
+        if (!hold) return wishes.hover(ray);
+        if (event.pointerId !== hold.pointerId) return;
+        hold = event;
+        if (ray.ray.intersectPlane(plane, target)) wishes.drag(target.toArray());
     });
-    const release = (event: PointerEvent) => {
-        if (event.pointerId !== holding) return;
-        holding = undefined;
+    const release = () => {
+        hold = undefined;
         stage.orbiting = true;
         canvas.classList.remove('dragging');
         wishes.release();
     };
-    canvas.addEventListener('pointerup', release);
-    canvas.addEventListener('pointercancel', release);
+    for (const kind of ['pointerup', 'pointercancel'] as const)
+        canvas.addEventListener(kind, (event) => event.pointerId === hold?.pointerId && release());
 }

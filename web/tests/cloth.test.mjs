@@ -128,6 +128,19 @@ test('a finger pulls the cloth, and a finger beside it turns the view', async ()
     await touch('touchMove', [x + 0.3 * width, y + 0.6 * height]);
     await touch('touchEnd');
     await page.waitForFunction(() => location.hash.includes('camera='));
+
+    // Two fingers zoom, also where the first has taken hold of the cloth.
+    const distance = async () => Number(new URL(page.url()).hash.match(/camera=[^_]*_[^_]*_([0-9.]+)/)[1]);
+    const far = await distance();
+    const [middle, level] = [x + 0.5 * width, y + 0.5 * height];
+    await touch('touchStart', [middle, level]);
+    assert.ok(await page.locator('#canvas.dragging').isVisible());
+    await touch('touchStart', [middle, level], [middle + 40, level]);
+    assert.ok(!(await page.locator('#canvas.dragging').isVisible()));
+    await touch('touchMove', [middle - 40, level], [middle + 80, level]);
+    await touch('touchEnd');
+    await page.waitForTimeout(1500); // until the camera has come to a stand
+    assert.ok((await distance()) < 0.7 * far, `${await distance()} after ${far}`);
     assert.deepEqual(page.complaints, []);
     await page.context().close();
 });

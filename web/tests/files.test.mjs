@@ -82,13 +82,18 @@ function watchPauses() {
     requestAnimationFrame(look);
 }
 
-test('a broken file gives one sentence, and the page lives on', async () => {
-    const page = await browser.open('#model=torus&particles=400', SMALL);
+test('a broken file gives one sentence, and the page lives on as it was', async () => {
+    const link = '#model=torus&particles=400&camera=30_20_4_0_0_0';
+    const page = await browser.open(link, SMALL);
     await untilFrame(page, 5);
+    await page.keyboard.press('Space');
     await choose(page, 'broken.obj', 'v 0 0 0\nf 1 2 9\n');
     await page.locator('#notice').waitFor();
     assert.match(await page.locator('#notice span').textContent(), /^broken\.obj.*2/);
     await picture(page, 'broken_file');
+    assert.equal(await page.locator('#pause').textContent(), 'Go on');
+    assert.equal(new URL(page.url()).hash, link);
+    await page.keyboard.press('Space');
     const frame = await page.evaluate(() => Number(document.body.dataset.frame));
     await untilFrame(page, frame + 20);
     assert.match(await page.locator('#subtitle').textContent(), /^torus/);
@@ -122,6 +127,20 @@ test('an open mesh is said to be open, and its border is counted', async () => {
     await untilReport(page, 'Closed');
     await page.waitForTimeout(500);
     assert.equal(await pixelsOf(page, FAULT_RED), 0);
+    await page.context().close();
+});
+
+test('the cloth on an open mesh can be pulled, however small the mesh is', async () => {
+    const page = await browser.open('#model=torus&particles=400', SMALL);
+    await untilFrame(page, 1);
+    await choose(page, 'small.obj', OPEN_TETRAHEDRON.replace(/^v .*$/gm, (line) => line.replace(/[\d.]+/g, (number) => String(0.01 * number))));
+    await untilReport(page, '3 border edges');
+    await page.waitForFunction(() => Number(document.body.dataset.frame) < 40);
+    await page.keyboard.press('Space'); // above the model
+    const { x, y, width, height } = await page.locator('#canvas').boundingBox();
+    await page.mouse.move(x + 0.5 * width, y + 0.3 * height);
+    await page.mouse.down();
+    assert.ok(await page.locator('#canvas.dragging').isVisible());
     await page.context().close();
 });
 

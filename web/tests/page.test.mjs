@@ -119,6 +119,8 @@ test('keys pause, step and drop the cloth and change the view and the map, and a
     assert.equal(await pausing(), 'Pause', 'a cloth that is not in sight is left alone');
     await page.keyboard.press('x');
     await untilLink('map=distance', true);
+    await page.keyboard.press('ArrowLeft');
+    await untilLink('camera=', true);
     await page.keyboard.press('m');
     await untilLink('view=map', false);
 
@@ -181,5 +183,14 @@ test('a browser without WebGL is told so', async () => {
     await page.locator('.lacking').waitFor();
     assert.match(await page.locator('.lacking').textContent(), /needs WebGL 2/);
     assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+test('a part of the page that does not arrive is said to be missing', async () => {
+    const page = await browser.open('about:blank', SMALL);
+    await page.route('**/assets/app-*.js', (route) => route.abort());
+    await page.goto(browser.address);
+    await page.locator('.lacking').waitFor();
+    assert.match(await page.locator('.lacking').textContent(), /could not be loaded: load the page again/);
     await page.context().close();
 });

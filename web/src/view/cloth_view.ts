@@ -5,8 +5,9 @@ import { matte } from './matte';
 
 /** The cloth: red in front and sand behind, or coloured by the depth of its contacts. */
 export class ClothView {
-    readonly #material = fabric();
-    readonly mesh = new THREE.Mesh(sheet(NOTHING, NO_FACES), this.#material);
+    /** Uniform: 1 where colours are by depth, 0 else. */
+    readonly #depthShare = { value: 0 };
+    readonly mesh = new THREE.Mesh(sheet(NOTHING, NO_FACES), fabric(this.#depthShare));
     #faces: Uint32Array = NO_FACES;
     #shown: FrameArrays | undefined;
     #byDepth = false;
@@ -50,7 +51,7 @@ export class ClothView {
 
     set byDepth(on: boolean) {
         this.#byDepth = on;
-        this.#material.userData.byDepth.value = on ? 1 : 0;
+        this.#depthShare.value = on ? 1 : 0;
     }
 
     /** The particle under a ray, and where the ray meets the cloth. */
@@ -68,10 +69,8 @@ export class ClothView {
 }
 
 /** Where colours are by depth, that of each particle goes through the palette's scale; inside it is the colour of faults. */
-function fabric(): THREE.MeshLambertMaterial {
+function fabric(byDepth: { value: number }): THREE.MeshLambertMaterial {
     const material = matte(CLOTH, CLOTH_BACK);
-    const byDepth = { value: 0 };
-    material.userData.byDepth = byDepth;
     const scale = { value: SCALE.map((hex) => new THREE.Color(hex)) };
     const inside = { value: new THREE.Color(FAULT.faces) };
     const { onBeforeCompile } = material;
@@ -84,7 +83,7 @@ function fabric(): THREE.MeshLambertMaterial {
         shader.fragmentShader = shader.fragmentShader
             .replace('#include <common>', '#include <common>\nuniform float byDepth;\nuniform vec3 scale[5];\nuniform vec3 inside;\nvarying float vContactDepth;')
             .replace(
-                '#include <alphamap_fragment>',
+                '#include <alphamap_fragment>', // after matte() has chosen the side's colour
                 `float place = 4.0 * clamp(vContactDepth, 0.0, 1.0);
                 vec3 shade = scale[0];
                 for (int i = 0; i < 4; ++i) shade = mix(shade, scale[i + 1], clamp(place - float(i), 0.0, 1.0));

@@ -34,7 +34,9 @@ export class MapView {
     showSurface(news: SurfaceNews): void {
         clear(this.#surface);
         const colours = news.mapKind === 'exact' ? scaleTo(largestOf(news.values)) : (layer: number) => new THREE.Color(LAYERS[layer % LAYERS.length]);
-        this.#surface.add(shell(colouredFaces(cornersOf(news), news.values, colours)));
+        // An exact map has the model's own faces, which may look inwards.
+        const inwards = news.mapKind === 'exact' && this.#model !== undefined && this.#model.report.signedVolume < 0;
+        this.#surface.add(shell(colouredFaces(cornersOf(news, inwards), news.values, colours)));
         if (news.disagreements.length > 0) this.#surface.add(dots(news.disagreements));
         clear(this.#cells);
         if (news.cells && this.#model) this.#cells.add(shell(cellBall(news.cells, this.#model)));
@@ -125,15 +127,21 @@ export class MapView {
     }
 }
 
-function cornersOf({ vertices, faces }: SurfaceNews): Float32Array {
+function cornersOf({ vertices, faces }: SurfaceNews, turned: boolean): Float32Array {
     const corners = new Float32Array(3 * faces.length);
-    for (let i = 0; i < faces.length; ++i) for (let k = 0; k < 3; ++k) corners[3 * i + k] = vertices[3 * faces[i] + k];
+    const order = turned ? [0, 2, 1] : [0, 1, 2];
+    for (let i = 0; i < faces.length; ++i) {
+        const vertex = 3 * faces[i - (i % 3) + order[i % 3]];
+        for (let k = 0; k < 3; ++k) corners[3 * i + k] = vertices[vertex + k];
+    }
     return corners;
 }
 
 /** Coloured in front, paper behind. */
 function shell(geometry: THREE.BufferGeometry): THREE.Mesh {
-    return new THREE.Mesh(geometry, matte(0xffffff, LAYER_BACK, { vertexColors: true }));
+    const material = matte(0xffffff, LAYER_BACK);
+    material.vertexColors = true;
+    return new THREE.Mesh(geometry, material);
 }
 
 function dots(positions: Float32Array): THREE.Points {

@@ -4,8 +4,8 @@ import * as THREE from 'three';
  * Matte, with a colour for what is seen from behind. One material for both sides, so that there is one mesh to draw and
  * one program to compile, which takes long where software draws.
  */
-export function matte(front: THREE.ColorRepresentation, back = front, options: THREE.MeshLambertMaterialParameters = {}): THREE.MeshLambertMaterial {
-    const material = new THREE.MeshLambertMaterial({ color: front, side: THREE.DoubleSide, ...options });
+export function matte(front: number, back = front): THREE.MeshLambertMaterial {
+    const material = new THREE.MeshLambertMaterial({ color: front, side: THREE.DoubleSide });
     const colourBehind = { value: new THREE.Color(back) };
     material.onBeforeCompile = (shader) => {
         shader.uniforms.colourBehind = colourBehind;

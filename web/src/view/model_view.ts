@@ -11,14 +11,18 @@ const CREASED_FACES = 60_000;
 /** The model as clay, with what is wrong with its mesh drawn on it. Moves with the collider. */
 export class ModelView {
     readonly group = new THREE.Group();
+    /** The model alone, without what is drawn on it. */
+    readonly clay = new THREE.Mesh(new THREE.BufferGeometry(), matte(CLAY));
 
     show({ vertices, faces, faults }: Pick<ModelNews, 'vertices' | 'faces' | 'faults'>): void {
+        this.group.remove(this.clay);
         clear(this.group);
+        this.clay.geometry.dispose();
         const geometry = new THREE.BufferGeometry();
         geometry.setAttribute('position', new THREE.BufferAttribute(vertices, 3));
         geometry.setIndex(new THREE.BufferAttribute(faces, 1));
-        const clay = matte(CLAY);
-        this.group.add(new THREE.Mesh(faces.length / 3 <= CREASED_FACES ? toCreasedNormals(geometry, Math.PI / 4.5) : smooth(geometry), clay));
+        this.clay.geometry = faces.length / 3 <= CREASED_FACES ? toCreasedNormals(geometry, Math.PI / 4.5) : smooth(geometry);
+        this.group.add(this.clay);
 
         for (const kind of ['borderEdges', 'nonmanifoldEdges', 'misorientedEdges'] as const)
             if (faults[kind].length > 0) this.group.add(edges(vertices, faults[kind], FAULT[kind]));

@@ -14,6 +14,9 @@ function axesOf(up: Axis): Axes {
     return axes[up];
 }
 
+/** Degrees. From straight above there is no saying which way is up. */
+const MOST_ELEVATION = 89;
+
 /** How long the camera has to stand still until it counts as arrived. */
 const ARRIVAL_MS = 250;
 
@@ -24,6 +27,8 @@ export class Stage {
     readonly renderer: THREE.WebGLRenderer;
     #controls: OrbitControls;
     readonly #sun = new THREE.DirectionalLight(0xfff4e6, 2.7);
+    /** From the camera: so that what is seen from below, away from sun and sky, has its colour. */
+    readonly #lamp = new THREE.DirectionalLight(0xffffff, 0.7);
     readonly #sky = new THREE.HemisphereLight(0xffffff, 0x6f675d, 1.25);
     readonly #canvas: HTMLCanvasElement;
     /** What the camera was told to look at. */
@@ -32,6 +37,8 @@ export class Stage {
     #arrival = 0;
     /** The camera was moved, and stands at `standpoint` now. */
     onArrival = () => {};
+    /** The browser has taken the graphics card away; three.js goes on once it gives it back. */
+    onLoss = () => {};
 
     constructor(canvas: HTMLCanvasElement) {
         this.#canvas = canvas;
@@ -39,12 +46,13 @@ export class Stage {
         this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
         this.renderer.localClippingEnabled = true;
         this.#controls = new OrbitControls(this.camera, canvas);
-        this.scene.add(this.#sun, this.#sun.target, this.#sky);
+        this.scene.add(this.#sun, this.#sun.target, this.#sky, this.#lamp, this.#lamp.target);
 
         const dark = matchMedia('(prefers-color-scheme: dark)');
         const paint = () => (this.scene.background = new THREE.Color(dark.matches ? BACKDROP.dark : BACKDROP.light));
         dark.addEventListener('change', paint);
         paint();
+        canvas.addEventListener('webglcontextlost', () => this.onLoss());
         new ResizeObserver(() => this.#fit()).observe(canvas);
         this.#fit();
     }
@@ -92,7 +100,10 @@ export class Stage {
     }
     set standpoint(text: string) {
         const stand = fromText(text || this.#home);
-        if (!stand) return;
+        if (stand) this.#put(stand);
+    }
+
+    #put(stand: Standpoint): void {
         const { centre, radius, axes } = this.#model;
         const [azimuth, elevation] = [stand.azimuth, stand.elevation].map(THREE.MathUtils.degToRad);
         const away = [Math.sin(elevation), Math.cos(elevation) * Math.cos(azimuth), Math.cos(elevation) * Math.sin(azimuth)];
@@ -101,6 +112,13 @@ export class Stage {
         this.#controls.target.copy(moved(centre, stand.target, radius));
         this.camera.position.copy(moved(this.#controls.target, away, stand.distance * radius));
         this.#controls.update();
+    }
+
+    /** Turns the view, by degrees, and takes the camera nearer or further. */
+    turn(azimuth: number, elevation: number, nearer = 1): void {
+        const stand = this.#stand();
+        const height = Math.min(MOST_ELEVATION, Math.max(-MOST_ELEVATION, stand.elevation + elevation));
+        this.#put({ ...stand, azimuth: stand.azimuth + azimuth, elevation: height, distance: stand.distance / nearer });
     }
 
     #stand(): Standpoint {
@@ -122,6 +140,8 @@ export class Stage {
 
     draw(): void {
         this.#controls.update();
+        this.#lamp.position.copy(this.camera.position);
+        this.#lamp.target.position.copy(this.#controls.target);
         this.renderer.render(this.scene, this.camera);
     }
 

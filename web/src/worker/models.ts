@@ -17,7 +17,9 @@ export type Reading = (echinus: Echinus) => Model;
 export async function fetchSample(sample: Sample, page: string): Promise<Reading> {
     switch (sample) {
         case 'horse': {
-            const response = await fetch(new URL('./models/horse.3ds', page));
+            const response = await fetch(new URL('./models/horse.3ds', page)).catch((error) => {
+                throw new Error(`horse.3ds: the server does not answer (${error.message})`);
+            });
             if (!response.ok) throw new Error(`horse.3ds: the server answers with status ${response.status}`);
             return prepareFile('horse.3ds', await response.arrayBuffer());
         }
@@ -51,7 +53,17 @@ export async function prepareFile(name: string, bytes: ArrayBuffer): Promise<Rea
     }
 }
 
-const welding = (name: string, root: Object3D): Reading => (echinus) => ({ name, mesh: weldTriangles(echinus, name, root), up: 'y' });
+const welding = (name: string, root: Object3D): Reading => (echinus) => ({ name, mesh: named(name, () => weldTriangles(echinus, root)), up: 'y' });
+
+/** What is wrong is said of the file. */
+export function named<T>(name: string, make: () => T): T {
+    try {
+        return make();
+    } catch (error) {
+        if (error instanceof Error) error.message = `${name}: ${error.message}`; // a new one would lack its code
+        throw error;
+    }
+}
 
 /** Readers other than ours name no file. */
 async function described<T>(name: string, read: () => Promise<T>): Promise<T> {
@@ -63,7 +75,7 @@ async function described<T>(name: string, read: () => Promise<T>): Promise<T> {
 }
 
 /** All triangles under an object, in its frame, as one mesh. */
-function weldTriangles(echinus: Echinus, name: string, root: Object3D): Mesh {
+function weldTriangles(echinus: Echinus, root: Object3D): Mesh {
     const vertices: number[] = [];
     const faces: number[] = [];
     root.updateMatrixWorld(true);
@@ -82,7 +94,7 @@ function weldTriangles(echinus: Echinus, name: string, root: Object3D): Mesh {
         for (let i = 0; i + 2 < cornerCount; i += 3)
             for (let k = 0; k < 3; ++k) faces.push(first + (index ? index.getX(i + k) : i + k));
     });
-    if (faces.length === 0) throw new Error(`${name}: there is no triangle in it`);
+    if (faces.length === 0) throw new Error('there is no triangle in it');
     const loose = echinus.makeMesh(vertices, faces);
     try {
         return loose.weld();

@@ -1,19 +1,23 @@
 /** The worker: one instance of the module, one playground, and a loop that the page drives frame by frame. */
-import { type Echinus, EchinusError, load } from 'echinus';
+import { EchinusError, load } from 'echinus';
 import type { FrameArrays, FromWorker, ToWorker } from '../protocol';
-import type { Settings } from '../settings';
 import { cutAt, lookAlong, lookAt, surfaceOf } from './looking';
-import { type Model, type Reading, fetchSample, prepareFile } from './models';
+import { type Reading, fetchSample, named, prepareFile } from './models';
 import { Playground } from './playground';
 import { warmUp } from './warm_up';
 
 /** The first model waits for nothing but the module. */
 let modelIsThere = false;
 /** Begun at once, while the page is still being loaded. */
-const starting = load().then(async (echinus) => {
-    await warmUp(echinus, () => modelIsThere);
-    return echinus;
-});
+const starting = load().then(
+    async (echinus) => {
+        await warmUp(echinus, () => modelIsThere);
+        return echinus;
+    },
+    (error) => {
+        throw new Error(`the WebAssembly module could not be loaded (${error.message}): load the page again`);
+    },
+);
 starting.catch(() => {}); // whoever opens a model hears of it
 
 let playground: Playground | undefined;
@@ -90,22 +94,13 @@ async function open({ turn, settings, page, file }: ToWorker & { kind: 'open' })
     const read = await (file ? readFile(file) : fetchSample(settings.model, page));
     modelIsThere = true;
     const echinus = await starting;
-    const next = playgroundOf(echinus, read(echinus), settings);
+    const model = read(echinus);
+    const next = named(model.name, () => new Playground(echinus, model, settings));
     playground?.delete(); // only now: a file that cannot be opened leaves what there was
     playground = next;
     opened = turn;
     tellModel(playground);
     tellCloth(playground);
-}
-
-/** What is wrong with a mesh is said of its file. */
-function playgroundOf(echinus: Echinus, model: Model, settings: Settings): Playground {
-    try {
-        return new Playground(echinus, model, settings);
-    } catch (error) {
-        if (error instanceof Error) error.message = `${model.name}: ${error.message}`;
-        throw error;
-    }
 }
 
 /** In line with all else, so that of two files the later one stays. */
