@@ -24,12 +24,12 @@ async function begin(): Promise<void> {
     if (missing.length > 0) return sayWhatIsMissing(missing);
     const client = new Client(); // loads the module while three.js is on its way
     const app = await import('./app').catch(() => undefined);
-    if (!app) return sayInstead('A part of this page could not be loaded: load the page again.');
     // Of the page's one canvas, since a context takes long where there is no graphics card: three.js gets the same. Only
     // now, since the worker does not begin while this waits.
-    if (document.querySelector('canvas')!.getContext('webgl2')) return app.begin(client);
+    if (app && document.querySelector('canvas')!.getContext('webgl2')) return app.begin(client);
     client.stop();
-    sayWhatIsMissing(['WebGL 2']);
+    if (app) sayWhatIsMissing(['WebGL 2']);
+    else sayInstead('A part of this page could not be loaded: load the page again.');
 }
 
 void begin();
