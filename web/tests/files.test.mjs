@@ -7,6 +7,7 @@ import { after, before, test } from 'node:test';
 import { gltfTetrahedron, tetrahedra, torusStl } from './meshes.mjs';
 import { SMALL, picture, startBrowser, untilFrame } from './support.mjs';
 
+const CLOSED = tetrahedra()['t.obj'];
 const OPEN_TETRAHEDRON = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n';
 
 let browser;
@@ -14,6 +15,12 @@ before(async () => (browser = await startBrowser()));
 after(() => browser?.stop());
 
 const choose = (page, name, content) => page.locator('#file').setInputFiles({ name, mimeType: 'application/octet-stream', buffer: Buffer.from(content) });
+/** The sentence about a file that cannot be opened. */
+const refusal = async (page, name, content) => {
+    await choose(page, name, content);
+    await page.locator('#notice').waitFor();
+    return page.locator('#notice span').textContent();
+};
 const untilReport = (page, words) => page.waitForFunction((part) => document.getElementById('report').textContent.includes(part), words, { timeout: 120_000 });
 const untilTitle = (page, words) => page.waitForFunction((part) => document.getElementById('subtitle').textContent.startsWith(part), words);
 
@@ -87,9 +94,7 @@ test('a broken file gives one sentence, and the page lives on as it was', async 
     const page = await browser.open(link, SMALL);
     await untilFrame(page, 5);
     await page.keyboard.press('Space');
-    await choose(page, 'broken.obj', 'v 0 0 0\nf 1 2 9\n');
-    await page.locator('#notice').waitFor();
-    assert.match(await page.locator('#notice span').textContent(), /^broken\.obj.*2/);
+    assert.match(await refusal(page, 'broken.obj', 'v 0 0 0\nf 1 2 9\n'), /^broken\.obj.*2/);
     await picture(page, 'broken_file');
     assert.equal(await page.locator('#pause').textContent(), 'Go on');
     assert.equal(new URL(page.url()).hash, link);
@@ -101,12 +106,28 @@ test('a broken file gives one sentence, and the page lives on as it was', async 
     await page.context().close();
 });
 
-test('a file of which no map can be made is named, too', async () => {
-    const page = await browser.open('#model=torus&particles=400', SMALL);
+for (const [kind, name, content, sentence] of [
+    ['of which no map can be made', 'point.obj', 'v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\n', /^point\.obj: all vertices of the mesh lie on one point/],
+    ['of a kind that is not read', 'archive.zip', 'PK', /^archive\.zip: .*\.obj.*\.glb/],
+])
+    test(`a file ${kind} is refused by its name, with the reason`, async () => {
+        const page = await browser.open('#model=torus&particles=100', SMALL);
+        await untilFrame(page, 1);
+        assert.match(await refusal(page, name, content), sentence);
+        await page.context().close();
+    });
+
+test('a closed mesh that is inside out is said to be so where it is not mended, and an open one is not', async () => {
+    const page = await browser.open('#model=torus&particles=100&mend=false', SMALL);
     await untilFrame(page, 1);
-    await choose(page, 'point.obj', 'v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\n');
-    await page.locator('#notice').waitFor();
-    assert.match(await page.locator('#notice span').textContent(), /^point\.obj: all vertices of the mesh lie on one point/);
+    const turned = (obj) => obj.replace(/^f (\d) (\d) (\d)$/gm, 'f $1 $3 $2');
+    const reports = [];
+    for (const [name, obj] of Object.entries({ closed: CLOSED, closed_turned: turned(CLOSED), open: OPEN_TETRAHEDRON, open_turned: turned(OPEN_TETRAHEDRON) })) {
+        await choose(page, `${name}.obj`, obj);
+        await untilTitle(page, `${name}.obj`);
+        reports.push(/Inside out/.test(await page.locator('#report').textContent()));
+    }
+    assert.deepEqual(reports, [false, true, false, false]);
     await page.context().close();
 });
 
@@ -174,18 +195,7 @@ test('nothing is fetched for a file that is opened, and its pictures are done wi
     page.on('request', (request) => /elsewhere/.test(request.url()) && asked.push(request.url()));
     await choose(page, 'textured.gltf', gltfTetrahedron({ texture: 'http://127.0.0.1:9/elsewhere.png' }));
     await untilTitle(page, 'textured.gltf, 4 faces');
-    await choose(page, 'parts.gltf', gltfTetrahedron({ buffer: 'elsewhere.bin' }));
-    await page.locator('#notice').waitFor();
-    assert.match(await page.locator('#notice span').textContent(), /^parts\.gltf: .*elsewhere\.bin.*\.glb/);
+    assert.match(await refusal(page, 'parts.gltf', gltfTetrahedron({ buffer: 'elsewhere.bin' })), /^parts\.gltf: .*elsewhere\.bin.*\.glb/);
     assert.deepEqual(asked, []);
-    await page.context().close();
-});
-
-test('a file of a kind that is not read is told so, with the kinds that are', async () => {
-    const page = await browser.open('#model=torus&particles=100', SMALL);
-    await untilFrame(page, 1);
-    await choose(page, 'archive.zip', 'PK');
-    await page.locator('#notice').waitFor();
-    assert.match(await page.locator('#notice span').textContent(), /^archive\.zip: .*\.obj.*\.glb/);
     await page.context().close();
 });

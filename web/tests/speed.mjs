@@ -1,6 +1,6 @@
 // How long the built page takes, for docs/web.md: from the address to the first falling cloth and the horse's first map, in
-// browsers that have never seen the page, ones that stand open and ones that begin with it; and a time step of 10 000 particles while they fall and come to lie,
-// beside the native program with the scalar reference. Run by scripts/web --speed:  speed.mjs PROGRAM SCENE
+// browsers that have never seen the page, ones that stand open and ones that begin with it; and a time step of 10 000
+// particles while they fall and come to lie, beside the native program with the scalar reference. Run by scripts/web --speed:  speed.mjs PROGRAM SCENE
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';

@@ -1,3 +1,4 @@
+import { isInsideOut } from '../inside_out';
 import type { ModelNews } from '../protocol';
 import { FAULT } from '../view/colours';
 import { byId, make, swatch } from './elements';
@@ -9,7 +10,7 @@ export function showReport({ report, mendedFaces, flippedParts }: ModelNews): vo
     const lines = [
         make('p', `${count(report.faceCount)} faces, ${count(report.vertexCount)} vertices, ${parts}`),
         make('p', report.closed ? 'Closed: inside and outside are exact' : 'Open: sides are estimated near the gaps', report.closed ? 'good' : 'bad'),
-        ...(report.closed && report.signedVolume < 0 ? [make('p', 'Inside out: its faces look inwards', 'bad')] : []),
+        ...(isInsideOut(report) ? [make('p', 'Inside out: its faces look inwards', 'bad')] : []),
         ...faultLine(report.borderEdges.count, 'border edges', FAULT.borderEdges),
         ...faultLine(report.nonmanifoldEdges.count, 'edges of more than two faces', FAULT.nonmanifoldEdges),
         ...faultLine(report.misorientedEdges.count, 'edges between faces turned apart', FAULT.misorientedEdges),

@@ -10,7 +10,6 @@ export class ClothView {
     readonly mesh = new THREE.Mesh(sheet(NOTHING, NO_FACES), fabric(this.#depthShare));
     #faces: Uint32Array = NO_FACES;
     #shown: FrameArrays | undefined;
-    #byDepth = false;
 
     constructor() {
         this.mesh.frustumCulled = false; // it moves: a sphere around it would be wrong a frame later
@@ -32,7 +31,7 @@ export class ClothView {
         else {
             replace(geometry, 'position', arrays.positions);
             replace(geometry, 'normal', arrays.normals);
-            if (this.#byDepth) replace(geometry, 'contactDepth', arrays.depths);
+            if (this.#depthShare.value > 0) replace(geometry, 'contactDepth', arrays.depths);
         }
         return previous;
     }
@@ -50,7 +49,6 @@ export class ClothView {
     }
 
     set byDepth(on: boolean) {
-        this.#byDepth = on;
         this.#depthShare.value = on ? 1 : 0;
     }
 

@@ -1,5 +1,6 @@
 import * as THREE from 'three';
 import { UNIT, following } from '../axes';
+import { isInsideOut } from '../inside_out';
 import type { Cut, FromWorker, ModelNews, SurfaceNews, Triple } from '../protocol';
 import type { Settings } from '../settings';
 import { cellBall } from './cell_ball';
@@ -35,7 +36,7 @@ export class MapView {
         clear(this.#surface);
         const colours = news.mapKind === 'exact' ? scaleTo(largestOf(news.values)) : (layer: number) => new THREE.Color(LAYERS[layer % LAYERS.length]);
         // An exact map has the model's own faces, which may look inwards.
-        const inwards = news.mapKind === 'exact' && this.#model !== undefined && this.#model.report.signedVolume < 0;
+        const inwards = news.mapKind === 'exact' && this.#model !== undefined && isInsideOut(this.#model.report);
         this.#surface.add(shell(colouredFaces(cornersOf(news, inwards), news.values, colours)));
         if (news.disagreements.length > 0) this.#surface.add(dots(news.disagreements));
         clear(this.#cells);

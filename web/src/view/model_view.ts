@@ -11,7 +11,7 @@ const CREASED_FACES = 60_000;
 /** The model as clay, with what is wrong with its mesh drawn on it. Moves with the collider. */
 export class ModelView {
     readonly group = new THREE.Group();
-    /** The model alone, without what is drawn on it. */
+    /** The model alone, without what is drawn on it. In the group once it has normals: three.js compiles its program at once, and by that. */
     readonly clay = new THREE.Mesh(new THREE.BufferGeometry(), matte(CLAY));
 
     show({ vertices, faces, faults }: Pick<ModelNews, 'vertices' | 'faces' | 'faults'>): void {
