@@ -1,12 +1,12 @@
 // Measures Echinus beside its rivals; scripts/bench runs it.
 
 #include "common/pinning.hpp"
-#include "comparison/machine.hpp"
 #include "files/atomic_file.hpp"
 #include "guard/guard.hpp"
 #include "measurements.hpp"
 #include "page/page_parts.hpp"
 #include "progress.hpp"
+#include "rivals/compare/machine.hpp"
 
 #include <echinus/error.hpp>
 

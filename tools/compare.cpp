@@ -1,4 +1,4 @@
-#include "comparison/compare.hpp"
+#include "rivals/compare/compare.hpp"
 
 #include "byte_count_argument.hpp"
 #include "choice.hpp"

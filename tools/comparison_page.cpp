@@ -1,10 +1,10 @@
 #include "comparison_page.hpp"
 
 #include "base64.hpp"
-#include "comparison/columns.hpp"
-#include "comparison/curve_plots.hpp"
-#include "comparison/machine.hpp"
-#include "comparison/markup.hpp"
+#include "rivals/compare/columns.hpp"
+#include "rivals/compare/curve_plots.hpp"
+#include "rivals/compare/machine.hpp"
+#include "rivals/compare/markup.hpp"
 
 #include <fmt/format.h>
 

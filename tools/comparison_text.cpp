@@ -1,7 +1,7 @@
 #include "comparison_text.hpp"
 
-#include "comparison/columns.hpp"
-#include "comparison/machine.hpp"
+#include "rivals/compare/columns.hpp"
+#include "rivals/compare/machine.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

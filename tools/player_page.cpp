@@ -1,8 +1,8 @@
 #include "player_page.hpp"
 
 #include "base64.hpp"
-#include "comparison/machine.hpp"
 #include "recording_code.hpp"
+#include "rivals/compare/machine.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

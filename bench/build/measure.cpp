@@ -1,8 +1,8 @@
 #include "build/system.hpp"
 #include "build/threads.hpp"
 #include "common/comparison.hpp"
-#include "comparison/clock.hpp"
 #include "measurements.hpp"
+#include "rivals/compare/clock.hpp"
 
 #include <fmt/format.h>
 

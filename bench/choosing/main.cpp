@@ -1,11 +1,11 @@
 // Compares all systems on six meshes at equal bytes and fills docs/choosing.md; scripts/choosing runs it.
 
 #include "common/page.hpp"
-#include "comparison/curve_plots.hpp"
-#include "comparison/machine.hpp"
 #include "files/atomic_file.hpp"
 #include "models.hpp"
 #include "progress.hpp"
+#include "rivals/compare/curve_plots.hpp"
+#include "rivals/compare/machine.hpp"
 #include "tables.hpp"
 #include "verdict.hpp"
 

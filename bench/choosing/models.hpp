@@ -1,6 +1,6 @@
 #pragma once
 
-#include "comparison/compare.hpp"
+#include "rivals/compare/compare.hpp"
 
 #include <echinus/mesh.hpp>
 

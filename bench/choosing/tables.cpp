@@ -1,7 +1,7 @@
 #include "tables.hpp"
 
 #include "common/page.hpp"
-#include "comparison/columns.hpp"
+#include "rivals/compare/columns.hpp"
 
 #include <fmt/format.h>
 

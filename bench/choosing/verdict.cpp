@@ -1,7 +1,7 @@
 #include "verdict.hpp"
 
-#include "comparison/curve_plots.hpp"
-#include "comparison/markup.hpp"
+#include "rivals/compare/curve_plots.hpp"
+#include "rivals/compare/markup.hpp"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
-#include "comparison/clock.hpp"
-#include "comparison/turns.hpp"
 #include "measurements.hpp"
+#include "rivals/compare/clock.hpp"
+#include "rivals/compare/turns.hpp"
 
 #include <echinus/mesh_io.hpp>
 #include <echinus/scene.hpp>

@@ -1,12 +1,12 @@
 #include "contestants.hpp"
 
-#include "baselines/bullet_mesh/bullet_mesh.hpp"
-#include "baselines/classified_grid/classified_grid.hpp"
-#include "baselines/dense_grid/dense_grid.hpp"
-#include "baselines/embree_tree/embree_tree.hpp"
-#include "baselines/maps/maps.hpp"
-#include "baselines/sparse_field/sparse_field.hpp"
-#include "baselines/superquadric_map/superquadric_map.hpp"
+#include "rivals/systems/bullet_mesh/bullet_mesh.hpp"
+#include "rivals/systems/classified_grid/classified_grid.hpp"
+#include "rivals/systems/dense_grid/dense_grid.hpp"
+#include "rivals/systems/embree_tree/embree_tree.hpp"
+#include "rivals/systems/maps/maps.hpp"
+#include "rivals/systems/sparse_field/sparse_field.hpp"
+#include "rivals/systems/superquadric_map/superquadric_map.hpp"
 
 #include <fmt/format.h>
 

@@ -20,7 +20,7 @@ struct Contestant {
     bool only_timed = false;
 };
 
-/// Every system of baselines/ around one mesh, at its usual settings; those that come in sizes at the
+/// Every system of rivals/systems/ around one mesh, at its usual settings; those that come in sizes at the
 /// paper's.
 /// @param thickness  of the scene, in the mesh's unit
 /// @throws Error as their builds do

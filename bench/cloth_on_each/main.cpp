@@ -1,14 +1,14 @@
-// The same cloth on each system: runs a scene with every system of baselines/ as the collider and writes the
-// tables of docs/cloth_on_each.md; or draws how the runs ended.
+// The same cloth on each system: runs a scene with every system of rivals/systems/ as the collider and writes
+// the tables of docs/cloth_on_each.md; or draws how the runs ended.
 //
 //   echinus_cloth_on_each run scenes/horse.json models/horse.3ds -o out/cloth_on_each
 //   echinus_cloth_on_each draw scenes/horse.json models/horse.3ds out/cloth_on_each -o sheet.png
 
-#include "comparison/clock.hpp"
-#include "comparison/machine.hpp"
 #include "contestants.hpp"
 #include "page.hpp"
 #include "race.hpp"
+#include "rivals/compare/clock.hpp"
+#include "rivals/compare/machine.hpp"
 #include "sheet.hpp"
 
 #include <echinus/error.hpp>

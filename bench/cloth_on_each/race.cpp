@@ -1,6 +1,6 @@
 #include "race.hpp"
 
-#include "comparison/clock.hpp"
+#include "rivals/compare/clock.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 #include "common/comparison.hpp"
 
-#include "comparison/clock.hpp"
+#include "rivals/compare/clock.hpp"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include "common/subjects.hpp"
 #include "common/system.hpp"
 #include "common/truth.hpp"
-#include "comparison/turns.hpp"
+#include "rivals/compare/turns.hpp"
 
 #include <functional>
 #include <string>

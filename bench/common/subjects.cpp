@@ -1,6 +1,6 @@
 #include "common/subjects.hpp"
 
-#include "comparison/point_sets.hpp"
+#include "rivals/compare/point_sets.hpp"
 
 #include <echinus/mesh_io.hpp>
 

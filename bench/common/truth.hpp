@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/subjects.hpp"
-#include "comparison/errors.hpp"
+#include "rivals/compare/errors.hpp"
 
 #include <filesystem>
 

@@ -1,4 +1,4 @@
-#include "baselines/classified_grid/classified_grid.hpp"
+#include "rivals/systems/classified_grid/classified_grid.hpp"
 
 #include "systems/ways.hpp"
 

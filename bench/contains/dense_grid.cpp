@@ -1,4 +1,4 @@
-#include "baselines/dense_grid/dense_grid.hpp"
+#include "rivals/systems/dense_grid/dense_grid.hpp"
 
 #include "systems/ways.hpp"
 

@@ -1,7 +1,7 @@
-#include "comparison/portable_random.hpp"
 #include "contestants.hpp"
 #include "exact_map/layout.hpp"
 #include "measurements.hpp"
+#include "rivals/compare/portable_random.hpp"
 
 #include <fmt/format.h>
 
@@ -31,7 +31,7 @@ Chords short_chords(std::string name, const std::vector<Vec3f>& from, double cho
     return chords;
 }
 
-/// As the shortcut of sweep() in src/exact_map/sweep.cpp decides it: both ends in one gap of one cell.
+/// As the shortcut of sweep() in src/exact_map/query/sweep.cpp decides it: both ends in one gap of one cell.
 bool in_one_gap(const ExactMapView& map, const Vec3f& from_local, const Vec3f& to_local) {
     const LatticePoint from = rounded(frame_of(map).to_lattice(from_local));
     const LatticePoint to = rounded(frame_of(map).to_lattice(to_local));

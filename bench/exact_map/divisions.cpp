@@ -1,7 +1,7 @@
-#include "comparison/plot.hpp"
 #include "contestants.hpp"
 #include "files/atomic_file.hpp"
 #include "measurements.hpp"
+#include "rivals/compare/plot.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // Measures the exact map beside Embree and fills docs/exact_map_options.md; scripts/measure runs it.
 
-#include "comparison/machine.hpp"
 #include "files/atomic_file.hpp"
 #include "measurements.hpp"
+#include "rivals/compare/machine.hpp"
 
 #include <echinus/error.hpp>
 

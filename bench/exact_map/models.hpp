@@ -1,6 +1,6 @@
 #pragma once
 
-#include "comparison/point_sets.hpp"
+#include "rivals/compare/point_sets.hpp"
 
 #include <echinus/exact_map.hpp>
 

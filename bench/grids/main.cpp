@@ -1,7 +1,7 @@
 // The grids of a distance map at equal bytes, and around which centre: prints the table of
 // docs/distance_map.md for a torus and for the meshes that are given.
 
-#include "comparison/point_sets.hpp"
+#include "rivals/compare/point_sets.hpp"
 
 #include <echinus/distance_map.hpp>
 #include <echinus/error.hpp>

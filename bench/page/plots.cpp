@@ -1,6 +1,6 @@
-#include "comparison/plot.hpp"
 #include "files/atomic_file.hpp"
 #include "page/page_parts.hpp"
+#include "rivals/compare/plot.hpp"
 
 #include <fmt/format.h>
 

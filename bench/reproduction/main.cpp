@@ -1,9 +1,9 @@
 // Measures the paper's map on the paper's models and fills docs/reproduction.md; scripts/reproduce runs it.
 
-#include "comparison/machine.hpp"
 #include "depths.hpp"
 #include "files/atomic_file.hpp"
 #include "rivals.hpp"
+#include "rivals/compare/machine.hpp"
 #include "signs.hpp"
 #include "simulations.hpp"
 #include "sizes.hpp"

@@ -1,12 +1,12 @@
 #include "rivals.hpp"
 
-#include "baselines/dense_grid/dense_grid.hpp"
-#include "baselines/maps/maps.hpp"
+#include "rivals/systems/dense_grid/dense_grid.hpp"
+#include "rivals/systems/maps/maps.hpp"
 #ifdef ECHINUS_HAS_SUPERQUADRIC_MAP
-#include "baselines/superquadric_map/superquadric_map.hpp"
+#include "rivals/systems/superquadric_map/superquadric_map.hpp"
 #endif
-#include "comparison/clock.hpp"
-#include "comparison/turns.hpp"
+#include "rivals/compare/clock.hpp"
+#include "rivals/compare/turns.hpp"
 
 #include <echinus/instruction_set.hpp>
 

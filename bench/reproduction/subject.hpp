@@ -1,7 +1,7 @@
 #pragma once
 
-#include "comparison/point_sets.hpp"
 #include "oracle/exact_judge.hpp"
+#include "rivals/compare/point_sets.hpp"
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include "rivals/embree.hpp"
 
-#include "baselines/common/nearest_on_triangle.hpp"
-#include "comparison/clock.hpp"
+#include "rivals/compare/clock.hpp"
+#include "rivals/systems/common/nearest_on_triangle.hpp"
 
 #include <embree3/rtcore.h>
 

@@ -1,7 +1,7 @@
 #include "measure.hpp"
 
-#include "comparison/clock.hpp"
-#include "comparison/point_sets.hpp"
+#include "rivals/compare/clock.hpp"
+#include "rivals/compare/point_sets.hpp"
 
 #include <echinus/exact_map.hpp>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "baselines/superquadric_map/superquadric_map.hpp"
+#include "rivals/systems/superquadric_map/superquadric_map.hpp"
 
 #include <echinus/mesh.hpp>
 

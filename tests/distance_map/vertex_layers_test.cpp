@@ -1,5 +1,5 @@
 #include "directions/crossing.hpp"
-#include "distance_map/vertex_layers.hpp"
+#include "distance_map/build/vertex_layers.hpp"
 
 #include <echinus/mesh.hpp>
 

@@ -1,4 +1,4 @@
-#include "comparison/point_sets.hpp"
+#include "rivals/compare/point_sets.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/mesh_assembly.hpp"
 #include "support/random_points.hpp"

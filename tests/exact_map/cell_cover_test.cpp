@@ -1,5 +1,5 @@
 #include "directions/crossing.hpp"
-#include "exact_map/cell_cover.hpp"
+#include "exact_map/build/cell_cover.hpp"
 
 #include <gtest/gtest.h>
 

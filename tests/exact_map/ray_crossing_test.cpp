@@ -1,5 +1,5 @@
-#include "exact_map/ray_crossing.hpp"
-#include "exact_map/segment_crossing.hpp"
+#include "exact_map/query/ray_crossing.hpp"
+#include "exact_map/query/segment_crossing.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "exact_map/split_faces.hpp"
+#include "exact_map/build/split_faces.hpp"
 
 #include <gtest/gtest.h>
 

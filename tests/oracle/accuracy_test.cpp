@@ -1,10 +1,10 @@
 // Would the judge of exact maps notice a wrong answer? A box gives true answers by formula; each test spoils
 // them in one way and finds that in the score and nothing else.
 
-#include "comparison/point_sets.hpp"
 #include "directions/lattice.hpp"
 #include "oracle/accuracy.hpp"
 #include "oracle/test_meshes.hpp"
+#include "rivals/compare/point_sets.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "oracle/adversarial_points.hpp"
 
-#include "comparison/portable_random.hpp"
+#include "rivals/compare/portable_random.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "oracle/check_points.hpp"
 
-#include "comparison/point_sets.hpp"
+#include "rivals/compare/point_sets.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,10 +1,10 @@
 // A classified grid is right about every particle, by CGAL's exact predicates.
 
-#include "baselines/classified_grid/classified_grid.hpp"
-#include "comparison/point_sets.hpp"
 #include "directions/lattice.hpp"
 #include "oracle/exact_judge.hpp"
 #include "oracle/test_meshes.hpp"
+#include "rivals/compare/point_sets.hpp"
+#include "rivals/systems/classified_grid/classified_grid.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "comparison/point_sets.hpp"
 #include "oracle/crossing_counter.hpp"
 #include "oracle/distance_tree.hpp"
 #include "oracle/exact_judge.hpp"
 #include "oracle/solid_angle_tree.hpp"
 #include "oracle/test_meshes.hpp"
+#include "rivals/compare/point_sets.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // Real models. They lie beside the repository where it is developed and are not part of it; elsewhere these
 // tests are skipped.
 
-#include "comparison/point_sets.hpp"
 #include "oracle/exact_judge.hpp"
 #include "oracle/expect_right_map.hpp"
 #include "oracle/wrong_share.hpp"
+#include "rivals/compare/point_sets.hpp"
 
 #include <echinus/distance_map.hpp>
 #include <echinus/mesh_io.hpp>

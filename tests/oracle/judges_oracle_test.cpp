@@ -1,6 +1,6 @@
-#include "comparison/point_sets.hpp"
 #include "oracle/exact_judge.hpp"
 #include "oracle/test_meshes.hpp"
+#include "rivals/compare/point_sets.hpp"
 
 #include <gtest/gtest.h>
 

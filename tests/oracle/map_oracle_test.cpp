@@ -1,7 +1,7 @@
-#include "comparison/point_sets.hpp"
 #include "oracle/exact_judge.hpp"
 #include "oracle/test_meshes.hpp"
 #include "oracle/wrong_share.hpp"
+#include "rivals/compare/point_sets.hpp"
 
 #include <echinus/distance_map.hpp>
 

@@ -1,7 +1,7 @@
 #include "oracle/nasty_meshes.hpp"
 
-#include "comparison/portable_random.hpp"
 #include "oracle/test_meshes.hpp"
+#include "rivals/compare/portable_random.hpp"
 
 #include <echinus/error.hpp>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "comparison/portable_random.hpp"
+#include "rivals/compare/portable_random.hpp"
 
 #include <echinus/distance_map.hpp>
 

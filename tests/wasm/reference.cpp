@@ -1,7 +1,7 @@
 // Writes what the JavaScript module must answer: meshes, particles and, by the scalar reference of this
 // machine, maps, answers and the states of simulations. tests/wasm/bits.test.mjs reads them.
 
-#include "comparison/point_sets.hpp"
+#include "rivals/compare/point_sets.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/instruction_set.hpp>

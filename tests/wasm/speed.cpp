@@ -1,7 +1,7 @@
 // The native side of tests/wasm/speed.mjs: writes a model and its particles, then does on demand what a line
 // of its input names, once, and answers with the processor time that it took.
 
-#include "comparison/point_sets.hpp"
+#include "rivals/compare/point_sets.hpp"
 
 #include <echinus/instruction_set.hpp>
 #include <echinus/mesh_io.hpp>

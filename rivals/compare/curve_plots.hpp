@@ -1,0 +1,24 @@
+#pragma once
+
+#include "rivals/compare/compare.hpp"
+#include "rivals/compare/plot.hpp"
+
+#include <string>
+#include <vector>
+
+namespace echinus::comparison {
+
+/// The colour of a system wherever it is drawn, as SVG writes it; of those that tell apart with every common
+/// kind of colour blindness. Dashed: not a map of Echinus.
+struct LineStyle {
+    std::string colour;
+    bool dashed;
+};
+LineStyle line_style_of(const System& system);
+
+/// Near the surface (the set S), each system a curve over its sizes: error against bytes and time against
+/// error, of signs and of depths. An error of 0 is drawn at the edge, which the axis says.
+/// @pre comparison.curves is not empty
+std::vector<Plot> curve_plots(const Comparison& comparison);
+
+} // namespace echinus::comparison

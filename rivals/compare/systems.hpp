@@ -1,0 +1,66 @@
+#pragma once
+
+#include "rivals/systems/baseline.hpp"
+
+#include <echinus/mesh.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace echinus::comparison {
+
+/// Told by a build that takes long what it does and how much of that is done, 0 to 1.
+using Progress = std::function<void(std::string_view stage, double share)>;
+
+using Built = std::unique_ptr<const baselines::Baseline>;
+
+/// How to build a system in a size that is settled, as often as one likes.
+struct Recipe {
+    std::function<Built()> build;
+    /// Processor time of what all sizes have in common and `build` need not do again, seconds.
+    double shared_seconds = 0;
+};
+
+/// One system around one mesh, in all its sizes.
+class Sizes {
+  public:
+    virtual ~Sizes() = default;
+
+    /// The finest that takes at most so many bytes. A system that has no sizes is built as it is.
+    /// @throws Error InvalidOptions when the coarsest exceeds the budget, or as the system's own build does
+    virtual Recipe within(std::size_t byte_budget) = 0;
+
+    /// The size that people use, for a system that is worth a look even where its coarsest does not fit.
+    virtual std::optional<Recipe> usual() { return {}; }
+};
+
+struct SystemOptions {
+    std::uint32_t segment_count = 0; ///< of the superquadric map; 0: as many as the shape asks for
+};
+
+/// A system that takes part.
+struct System {
+    std::string_view name;    ///< one word, as it is asked for: "dense-16bit"
+    std::string_view title;   ///< for people: "dense grid, 16 bit"
+    std::string_view package; ///< what it is built with, where that need not be there
+    bool has_sizes;           ///< does its number of bytes depend on a budget?
+    /// Empty when this program was built without the system. @param mesh  outlives what is returned
+    std::function<std::unique_ptr<Sizes>(const TriangleMesh& mesh, const SystemOptions&, const Progress&)> on;
+
+    bool available() const { return static_cast<bool>(on); }
+};
+
+/// All that there are, ours first; also those that this program was built without.
+const std::vector<System>& all_systems();
+
+/// @throws Error InvalidOptions for a name that no system has, naming those that do, and for a system that
+/// this program was built without, naming what it takes
+const System& system_named(std::string_view name);
+
+} // namespace echinus::comparison

@@ -1,0 +1,136 @@
+// The paper says: "the linear interpolation between the distance values S1 and S2 of the samples D1 and D2
+// yields lower distance than the actual distance of the vertex. ... In order to correct this error, the
+// distance values S1 and S2 are augmented by the error difference between the interpolated value and the
+// distance of the vertex."
+//
+// What it leaves open, and our reading:
+// - Which layer is the vertex's? It has as many crossings before it as the vertex has on its own ray. The
+// layer nearest to the vertex may be another one: that of the other side of a thin part.
+// - A vertex on a silhouette has faces that rays leave through and faces that they enter through, hence no
+// layer of its own.
+// - Vertices whose ray is crossed more or less often than one of the samples around it are left alone: that
+// is the paper's second error situation, which the query treats.
+// - Several vertices in one cell: each sample moves by the largest amount that one of them asks for.
+// - Increasing errs on the side of the solid only where the ray leaves it. Where it enters, Signed decreases.
+
+#include "distance_map/build/vertex_correction.hpp"
+
+#include "distance_map/build/vertex_layers.hpp"
+#include "distance_map/interpolation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace echinus {
+
+namespace {
+
+/// The uncorrected entries, as the query sees them.
+DistanceMapView as_map(const LatticeMesh& lattice, bool centre_inside, const Crossings& crossings) {
+    DistanceMapView map;
+    map.radius = lattice.radius;
+    map.centre_inside = centre_inside;
+    map.entry_offsets = crossings.offsets;
+    map.entries_float32 = crossings.distances;
+    return map;
+}
+
+/// Reckons in the grid's interpolant, the number that goes linearly between samples.
+template <typename Grid>
+class Corrector {
+  public:
+    Corrector(VertexCorrection correction, const LatticeMesh& lattice, const Grid& grid, bool centre_inside,
+              const Crossings& crossings)
+        : correction_(correction), step_(lattice.frame.step), grid_(grid), centre_inside_(centre_inside),
+          map_(as_map(lattice, centre_inside, crossings)), shifts_(crossings.distances.size()) {}
+
+    void consider(const LatticePoint& vertex, const VertexLayer& layer) {
+        if (!has_layer_of_its_own(layer)) return;
+        const Vec3d d = Vec3d(vertex) * step_;
+        const Interpolation<Grid> at = interpolation_at(map_, grid_, grid_.locate(grid_.to_grid(Vec3f(d))));
+        if (!(at.usable[0] && at.usable[1] && at.usable[2] && at.usable[3])) return;
+        if (at.entry_count != layer.crossing_count) return;
+        const std::uint32_t k = layer.crossings_before;
+        const float wanted = grid_.interpolant_at(d);
+        const float present = interpolated(map_, at, k);
+        const bool reached =
+            moves_outward(k) ? !Grid::is_farther(wanted, present) : !Grid::is_farther(present, wanted);
+        if (reached) return;
+        const float missing = std::fabs(wanted - present);
+        for (std::uint32_t first : at.first_entry) {
+            float& shift = shifts_[first + k];
+            shift = std::max(shift, missing);
+        }
+    }
+
+    /// [entry_count] by how much each entry moves; the way is given by its layer.
+    const std::vector<float>& shifts() const { return shifts_; }
+
+    bool moves_outward(std::uint32_t k) const {
+        return correction_ == VertexCorrection::Paper || is_outward(centre_inside_, k);
+    }
+
+  private:
+    /// On a mesh that is not closed, or is inside out in part, the way that the faces are crossed need not be
+    /// that of the layer; Signed, which goes by the layer, then leaves the vertex alone.
+    bool has_layer_of_its_own(const VertexLayer& layer) const {
+        if (layer.facing != Facing::Outward && layer.facing != Facing::Inward) return false;
+        if (layer.crossings_before >= layer.crossing_count) return false;
+        if (correction_ == VertexCorrection::Paper) return true;
+        return is_outward(centre_inside_, layer.crossings_before) == (layer.facing == Facing::Outward);
+    }
+
+    VertexCorrection correction_;
+    double step_;
+    const Grid& grid_;
+    bool centre_inside_;
+    DistanceMapView map_;
+    std::vector<float> shifts_;
+};
+
+/// Finds the faces around the rays of vertices. Any resolution gives the same layers; about as many
+/// directions as the map has suit its mesh.
+SphericalGrid finder_like(std::size_t direction_count) {
+    const auto side = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(direction_count)));
+    return {side, side, PoleAxis::Z};
+}
+
+template <typename Grid>
+CorrectionCounts correct(VertexCorrection correction, const LatticeMesh& lattice, const Grid& grid,
+                         bool centre_inside, Crossings& crossings) {
+    if (correction == VertexCorrection::None) return {};
+    Corrector<Grid> corrector(correction, lattice, grid, centre_inside, crossings);
+    const std::vector<VertexLayer> layers = layers_of_vertices(lattice, finder_like(grid.direction_count()));
+    for (std::size_t i = 0; i < layers.size(); ++i) corrector.consider(lattice.vertices[i], layers[i]);
+
+    CorrectionCounts counts;
+    std::vector<float>& entries = crossings.distances;
+    for (std::size_t d = 0; d + 1 < crossings.offsets.size(); ++d) {
+        const std::uint32_t first = crossings.offsets[d];
+        const std::uint32_t last = crossings.offsets[d + 1];
+        for (std::uint32_t i = first; i < last; ++i) {
+            const float shift = corrector.shifts()[i];
+            if (shift == 0) continue;
+            // The entry below has its final value, the one above its old one: between them order is kept.
+            const float lowest = i == first ? 0 : entries[i - 1];
+            const float highest = i + 1 == last ? grid.largest_entry(lattice.radius) : entries[i + 1];
+            const float wanted = Grid::moved(entries[i], shift, corrector.moves_outward(i - first));
+            entries[i] = std::clamp(wanted, lowest, highest);
+            ++counts.corrected_entries;
+            if (entries[i] != wanted) ++counts.clamped_entries;
+        }
+    }
+    return counts;
+}
+
+} // namespace
+
+CorrectionCounts correct_at_vertices(VertexCorrection correction, const LatticeMesh& lattice,
+                                     const AnyGrid& any_grid, bool centre_inside, Crossings& crossings) {
+    return std::visit(
+        [&](const auto& grid) { return correct(correction, lattice, grid, centre_inside, crossings); },
+        any_grid);
+}
+
+} // namespace echinus

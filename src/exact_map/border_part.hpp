@@ -1,0 +1,26 @@
+#pragma once
+
+#include "directions/lattice.hpp"
+
+#include <echinus/exact_map.hpp>
+
+#include <span>
+
+/// What the border of an open surface means for winding numbers.
+///
+/// Close the surface with a cone: a triangle from each border edge to the origin of the lattice. The rays
+/// from the origin see that cone edge-on and never cross it, so the signed crossings of a particle's ray
+/// beyond the particle are the winding number of the closed whole, an integer. The generalised winding number
+/// of the surface alone (Jacobson et al. 2013) is that integer less the cone's part:
+///
+///     w(p) = crossings_beyond(p) + border_part(p),  border_part = - sum of solid angles of the cone / 4 pi.
+///
+/// So a query needs the border, not the surface.
+namespace echinus {
+
+/// What the border adds to the signed crossings beyond the place share * d to make the generalised winding
+/// number. A place on the cone stands for one at d + (e, e^2, e^3), as everywhere.
+double border_part(std::span<const BorderEdge> border, std::span<const Vec3<std::int32_t>> vertices,
+                   const LatticePoint& d, double share = 1);
+
+} // namespace echinus

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "directions/lattice.hpp"
+#include "directions/octahedral_cells.hpp"
+#include "exact_map/build/band_builder.hpp"
+#include "exact_map/build/cell_intervals.hpp"
+#include "exact_map/build/index_storage.hpp"
+#include "geometry/arena.hpp"
+
+#include <echinus/exact_map.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace echinus {
+
+struct Bands {
+    Arena<std::uint32_t> offsets; ///< [cell_count + 1]
+    Arena<Band> bands;            ///< [band_count + 1]
+    IndexStorage references;      ///< faces; edge-on faces have none
+    Arena<std::uint16_t> reference_parts;
+    Arena<std::int16_t> winding_below; ///< [band_count]
+    Arena<CellVolume> volumes;         ///< [cell_count] of an open surface; none of a closed one
+};
+
+/// Faces of the band that the average reference belongs to: those that a query near the surface meets.
+double expected_tests(const Bands& bands);
+
+/// Finds the bands of every cell; keeps the memory that this takes for the next time.
+class BandFinder {
+  public:
+    /// Finds the bands of every cell and the winding numbers between them, and puts them where `result` has
+    /// memory from another time. Does not depend on the number of threads.
+    /// @param border  of the surface; empty when it is closed
+    /// @throws Error InvalidMesh when winding numbers or references are too large to be stored
+    void find(const LatticeMesh& lattice, std::span<const BorderEdge> border, const OctahedralCells& cells,
+              unsigned thread_count, Bands& result);
+
+  private:
+    /// Bands of consecutive cells in a worker's list, and where they go.
+    struct Block {
+        std::size_t worker;
+        std::size_t first_cell, cell_count;
+        std::size_t first_count; ///< of BandList::band_counts; further numbers of the list's arrays:
+        std::size_t first_band, band_count, first_reference, reference_count, first_volume;
+        std::size_t to_band, to_reference;
+    };
+
+    void find_blocks(std::span<const BorderEdge> border, const LatticeMesh& lattice,
+                     const OctahedralCells& cells, unsigned thread_count);
+    void make_room(std::size_t cell_count, std::size_t face_count, Bands& result);
+    void copy(const Block& block, Bands& result) const;
+
+    CellIntervals intervals_;
+    std::vector<BandList> lists_; ///< by worker
+    std::vector<Block> blocks_;   ///< ascending
+};
+
+} // namespace echinus

@@ -1,0 +1,263 @@
+// From a mesh to an exact map: onto the lattice, into a tree, into the cells.
+
+#include "exact_map/build/bands.hpp"
+#include "exact_map/build/border.hpp"
+#include "exact_map/build/centre_search.hpp"
+#include "exact_map/build/face_tree.hpp"
+#include "exact_map/build/index_storage.hpp"
+#include "exact_map/build/resolution.hpp"
+#include "exact_map/layout.hpp"
+#include "geometry/parallel.hpp"
+#include "mesh/is_closed.hpp"
+#include "mesh/mesh_hash.hpp"
+
+#include <echinus/error.hpp>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+namespace echinus {
+
+namespace {
+
+void require_sound(const ExactMapOptions& options) {
+    if (options.divisions > ExactMapOptions::kMaxDivisions)
+        throw Error(ErrorCode::InvalidOptions, "divisions is " + std::to_string(options.divisions) +
+                                                   ", more than " +
+                                                   std::to_string(ExactMapOptions::kMaxDivisions));
+    if (options.divisions != 0 && options.byte_budget != 0)
+        throw Error(ErrorCode::InvalidOptions,
+                    "divisions and byte_budget are both given; the one leaves no choice to the other");
+}
+
+std::uint64_t hash_of(std::span<const Vec3f> vertices, std::span<const Triangle> faces,
+                      const ExactMapOptions& options) {
+    const std::array<std::uint64_t, 4> fields{options.divisions, options.byte_budget,
+                                              static_cast<std::uint64_t>(options.rule),
+                                              static_cast<std::uint64_t>(options.centre)};
+    return mesh_hash(vertices, faces, XXH64(fields.data(), sizeof fields, 0));
+}
+
+struct OwnedArrays {
+    Bands bands;
+    std::vector<std::uint16_t> reaches;
+    std::vector<Vec3<std::int32_t>> vertices;
+    IndexStorage corners;
+    IndexStorage face_numbers;
+    std::vector<TreeNode> nodes;
+    std::vector<BorderEdge> border;
+};
+
+ExactMapView view_of(const OwnedArrays& arrays, const LatticeMesh& lattice, std::uint32_t divisions,
+                     InsideRule rule) {
+    ExactMapView view;
+    view.centre = lattice.centre;
+    view.radius = lattice.radius;
+    view.divisions = divisions;
+    view.rule = rule;
+    view.band_offsets = arrays.bands.offsets;
+    view.reaches = arrays.reaches;
+    view.bands = arrays.bands.bands;
+    view.winding_below = arrays.bands.winding_below;
+    view.references = arrays.bands.references.view();
+    view.reference_parts = arrays.bands.reference_parts;
+    view.vertices = std::span(arrays.vertices).subspan(1);
+    view.corners = arrays.corners.view();
+    view.face_numbers = arrays.face_numbers.view();
+    view.nodes = arrays.nodes;
+    view.border = arrays.border;
+    return view;
+}
+
+ExactMapStatistics statistics_of(std::size_t face_count, std::size_t dropped_faces, const Bands& bands) {
+    ExactMapStatistics statistics;
+    statistics.face_count = static_cast<std::uint32_t>(face_count);
+    statistics.dropped_faces = static_cast<std::uint32_t>(dropped_faces);
+    for (std::size_t band = 0; band + 1 < bands.bands.size(); ++band)
+        statistics.longest_list = std::max(statistics.longest_list, bands.bands[band + 1].first_reference -
+                                                                        bands.bands[band].first_reference);
+    const auto band_count = static_cast<float>(bands.bands.size() - 1);
+    statistics.mean_list = band_count > 0 ? static_cast<float>(bands.references.size()) / band_count : 0;
+    statistics.expected_tests = static_cast<float>(expected_tests(bands));
+    double uncertain = 0, uncertain_cells = 0, whole = 0;
+    for (const CellVolume& volume : bands.volumes) {
+        uncertain += volume.uncertain;
+        uncertain_cells += volume.uncertain > 0 ? volume.whole : 0;
+        whole += volume.whole;
+    }
+    if (whole > 0) {
+        statistics.certain_share = static_cast<float>(std::max(0.0, 1 - uncertain / whole));
+        statistics.uncertain_directions = static_cast<float>(uncertain_cells / whole);
+    }
+    return statistics;
+}
+
+/// The way from vertices to a map, with all that is worth keeping from one moment of a mesh to the next: what
+/// follows from the faces alone, the order of the tree, from which the next differs little, and memory.
+class MapMaker {
+  public:
+    /// @param faces  are to stay in place
+    MapMaker(std::span<const Triangle> faces, const ExactMapOptions& options)
+        : faces_(faces), options_(options), snapper_(faces) {}
+
+    ExactMap make(std::span<const Vec3f> vertices);
+
+  private:
+    void snap(std::span<const Vec3f> vertices);
+    void add_collapsed_faces();
+    void order_faces();
+    void set_surface(std::span<const Vec3f> vertices);
+    std::uint32_t set_bands();
+
+    std::span<const Triangle> faces_;
+    ExactMapOptions options_;
+    LatticeSnapper snapper_;
+    std::optional<bool> closed_; ///< with vertices apart; not known before the first map
+    LatticeMesh lattice_;        ///< faces in the order of the tree, once that is known
+    std::size_t dropped_faces_ = 0;
+    std::vector<Triangle> faces_before_; ///< to swap with the lattice's
+    std::vector<std::uint32_t> numbers_before_;
+    FaceTree tree_;
+    BandFinder finder_;
+    std::uint64_t source_hash_ = 0;
+    std::shared_ptr<OwnedArrays> arrays_;
+};
+
+void MapMaker::snap(std::span<const Vec3f> vertices) {
+    if (options_.centre == CentreChoice::Search)
+        snap_around_best_centre(snapper_, vertices, options_.thread_count, finder_, lattice_);
+    else
+        snapper_.snap(vertices, lattice_);
+    if (lattice_.faces.empty())
+        throw Error(ErrorCode::InvalidMesh, "no face is larger than a step of the lattice, " +
+                                                std::to_string(lattice_.frame.step) +
+                                                ": the mesh is a few specks in a large void");
+    dropped_faces_ = faces_.size() - lattice_.faces.size();
+    if (dropped_faces_ != 0) add_collapsed_faces();
+}
+
+/// Faces that shrank to a segment or a point on the lattice take no part in what is inside. But they are
+/// still the nearest surface for who is near them: a needle may consist of them.
+void MapMaker::add_collapsed_faces() {
+    std::vector<bool> kept(faces_.size());
+    for (std::uint32_t number : lattice_.face_numbers) kept[number] = true;
+    for (std::uint32_t number = 0; number < faces_.size(); ++number) {
+        if (kept[number]) continue;
+        lattice_.faces.push_back(faces_[number]);
+        lattice_.face_numbers.push_back(number);
+    }
+}
+
+/// Puts the faces of the lattice in the order of the tree, and stores them.
+void MapMaker::order_faces() {
+    std::swap(lattice_.faces, faces_before_);
+    std::swap(lattice_.face_numbers, numbers_before_);
+    lattice_.faces.resize(faces_.size());
+    lattice_.face_numbers.resize(faces_.size());
+    arrays_->corners.reset(3 * faces_.size(), lattice_.vertices.size());
+    arrays_->face_numbers.reset(faces_.size(), faces_.size());
+    parallel_for(faces_.size(), options_.thread_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            lattice_.faces[i] = faces_before_[tree_.order[i]];
+            lattice_.face_numbers[i] = numbers_before_[tree_.order[i]];
+        }
+        arrays_->corners.with_numbers([&]<typename Number>(Number* corners) {
+            for (std::size_t i = begin; i < end; ++i)
+                for (std::size_t k = 0; k < 3; ++k)
+                    corners[3 * i + k] = static_cast<Number>(lattice_.faces[i][k]);
+        });
+        arrays_->face_numbers.with_numbers([&]<typename Number>(Number* numbers) {
+            for (std::size_t i = begin; i < end; ++i)
+                numbers[i] = static_cast<Number>(lattice_.face_numbers[i]);
+        });
+    });
+}
+
+/// Everything of the arrays but the bands.
+void MapMaker::set_surface(std::span<const Vec3f> vertices) {
+    parallel_invoke(
+        options_.thread_count,
+        [&] {
+            source_hash_ = hash_of(vertices, faces_, options_);
+            if (!closed_) closed_ = is_closed(faces_, vertices.size());
+        },
+        [&] { build_face_tree(lattice_, options_.thread_count, tree_); });
+    order_faces();
+    arrays_->nodes = tree_.nodes;
+    arrays_->border.clear();
+    if (!*closed_) arrays_->border = find_border(lattice_);
+    arrays_->vertices.clear();
+    arrays_->vertices.reserve(1 + lattice_.vertices.size());
+    arrays_->vertices.emplace_back(); // so that vectors can read a number before the first
+    for (const LatticePoint& vertex : lattice_.vertices) arrays_->vertices.emplace_back(vertex);
+}
+
+/// Finds the bands for the wished number of cells. Returns the divisions.
+std::uint32_t MapMaker::set_bands() {
+    const bool open = !arrays_->border.empty();
+    const auto find = [&](std::uint32_t candidate) {
+        finder_.find(lattice_, arrays_->border, OctahedralCells(candidate), options_.thread_count,
+                     arrays_->bands);
+        set_reaches(arrays_->bands.offsets, arrays_->bands.bands, arrays_->reaches);
+    };
+    std::uint32_t divisions = options_.divisions;
+    if (options_.byte_budget != 0)
+        divisions = divisions_within(options_.byte_budget, faces_.size(), open, [&](std::uint32_t candidate) {
+            find(candidate);
+            return view_of(*arrays_, lattice_, candidate, options_.rule).byte_count();
+        });
+    else if (divisions == 0)
+        divisions = default_divisions(faces_.size(), open);
+    find(divisions);
+    return divisions;
+}
+
+ExactMap MapMaker::make(std::span<const Vec3f> vertices) {
+    if (arrays_.use_count() != 1) arrays_ = std::make_shared<OwnedArrays>(); // somebody reads the old ones
+    snap(vertices);
+    set_surface(vertices);
+    const std::uint32_t divisions = set_bands();
+    return {view_of(*arrays_, lattice_, divisions, options_.rule),
+            statistics_of(faces_.size(), dropped_faces_, arrays_->bands), source_hash_, arrays_};
+}
+
+} // namespace
+
+struct ExactMapBuilder::Memory {
+    Memory(std::vector<Triangle> faces_, const ExactMapOptions& options)
+        : faces(std::move(faces_)), maker(faces, options) {}
+
+    std::vector<Triangle> faces;
+    MapMaker maker;
+    std::optional<ExactMap> map;
+};
+
+ExactMapBuilder::ExactMapBuilder(std::vector<Triangle> faces, const ExactMapOptions& options) {
+    require_sound(options);
+    memory_ = std::make_unique<Memory>(std::move(faces), options);
+}
+ExactMapBuilder::~ExactMapBuilder() = default;
+ExactMapBuilder::ExactMapBuilder(ExactMapBuilder&&) noexcept = default;
+ExactMapBuilder& ExactMapBuilder::operator=(ExactMapBuilder&&) noexcept = default;
+
+const ExactMap& ExactMapBuilder::rebuild(std::span<const Vec3f> vertices) {
+    memory_->map.reset(); // which lets go of the arrays, unless somebody has a copy
+    return memory_->map.emplace(memory_->maker.make(vertices));
+}
+
+ExactMap::ExactMap(const ExactMapView& view, const ExactMapStatistics& statistics, std::uint64_t source_hash,
+                   std::shared_ptr<const void> storage)
+    : view_(view), statistics_(statistics), source_hash_(source_hash), storage_(std::move(storage)) {}
+
+ExactMap ExactMap::build(const TriangleMesh& mesh, const ExactMapOptions& options) {
+    require_sound(options);
+    return MapMaker(mesh.faces, options).make(mesh.vertices);
+}
+
+} // namespace echinus

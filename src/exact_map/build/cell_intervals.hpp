@@ -1,0 +1,60 @@
+#pragma once
+
+#include "directions/lattice.hpp"
+#include "directions/octahedral_cells.hpp"
+#include "exact_map/build/cell_cover.hpp"
+#include "geometry/arena.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace echinus {
+
+/// A face's range in a cell.
+struct Interval {
+    /// Lower and upper end in band units, rounded outwards, and the face, from the high bits to the low: the
+    /// order of intervals.
+    std::uint64_t key;
+    std::uint32_t cell;
+    std::uint16_t parts;
+    std::int8_t crossing; ///< of the ray through the cell's middle: 1 outwards, -1 inwards, 0 none
+    bool edge_on;         ///< no ray meets the face, but it does part the inside from the outside
+
+    std::uint16_t lower() const { return static_cast<std::uint16_t>(key >> 48); }
+    std::uint16_t upper() const { return static_cast<std::uint16_t>(key >> 32); }
+    std::uint32_t face() const { return static_cast<std::uint32_t>(key); }
+};
+static_assert(sizeof(Interval) == 16);
+
+/// The faces of every cell, and the memory that it takes to find them.
+class CellIntervals {
+  public:
+    /// Covers all faces and puts what was found by cells: each worker lists what it finds, and counts it by
+    /// cells, so that afterwards each knows where its own goes (a counting sort).
+    /// @throws Error InvalidMesh when there is too much
+    void find(const LatticeMesh& lattice, const OctahedralCells& cells, unsigned thread_count);
+
+    std::size_t count() const { return by_cell_.size(); }
+
+    /// A cell's intervals, in an order that depends on chance; the caller may sort them.
+    std::span<Interval> of(std::uint32_t cell) {
+        return std::span<Interval>(by_cell_).subspan(offsets_[cell], offsets_[cell + 1] - offsets_[cell]);
+    }
+
+  private:
+    struct Worker {
+        std::vector<CellCover> covers;
+        Arena<Interval> found;
+        std::vector<std::uint32_t> next; ///< [cell_count] how many in each cell; then, where the next goes
+    };
+
+    void cover_all_faces(const LatticeMesh& lattice, const OctahedralCells& cells, unsigned thread_count);
+    void set_offsets(std::size_t cell_count);
+
+    std::vector<Worker> workers_;
+    Arena<Interval> by_cell_;
+    Arena<std::uint32_t> offsets_; ///< [cell_count + 1]
+};
+
+} // namespace echinus

@@ -1,0 +1,251 @@
+#include "exact_map/build/face_tree.hpp"
+
+#include "exact_map/build/split_faces.hpp"
+#include "geometry/parallel.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+
+namespace echinus {
+
+namespace {
+
+constexpr std::size_t kWidth = TreeNode::kWidth;
+
+/// In the units of a node, rounded outwards. Rounding keeps the order, so boxes of boxes are as tight as
+/// boxes of faces.
+struct NodeBox {
+    std::int16_t low[3], high[3];
+
+    void add(const NodeBox& other) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            low[axis] = std::min(low[axis], other.low[axis]);
+            high[axis] = std::max(high[axis], other.high[axis]);
+        }
+    }
+};
+
+constexpr NodeBox empty_box() {
+    constexpr std::int16_t kLow = std::numeric_limits<std::int16_t>::min();
+    constexpr std::int16_t kHigh = std::numeric_limits<std::int16_t>::max();
+    return {{kHigh, kHigh, kHigh}, {kLow, kLow, kLow}};
+}
+
+std::int16_t divided_down(std::int64_t value) {
+    constexpr std::int64_t kUnit = ExactMapView::kBoxUnit;
+    return static_cast<std::int16_t>((value >= 0 ? value : value - (kUnit - 1)) / kUnit);
+}
+
+std::int16_t divided_up(std::int64_t value) {
+    return static_cast<std::int16_t>(-divided_down(-value));
+}
+
+NodeBox box_of_child(const TreeNode& node, std::size_t child) {
+    return {{node.low[0][child], node.low[1][child], node.low[2][child]},
+            {node.high[0][child], node.high[1][child], node.high[2][child]}};
+}
+
+void set_box_of_child(TreeNode& node, std::size_t child, const NodeBox& box) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        node.low[axis][child] = box.low[axis];
+        node.high[axis][child] = box.high[axis];
+    }
+}
+
+NodeBox box_of_node(const TreeNode& node) {
+    NodeBox box = box_of_child(node, 0);
+    for (std::size_t child = 1; child < kWidth; ++child) box.add(box_of_child(node, child));
+    return box;
+}
+
+TreeNode empty_node() {
+    TreeNode node{};
+    for (std::size_t child = 0; child < kWidth; ++child) set_box_of_child(node, child, empty_box());
+    return node;
+}
+
+/// Leaves that neighbouring children of a node are to hold, from child number `child` on.
+struct Branch {
+    std::size_t first_leaf, last_leaf; ///< half open
+    std::size_t leaves_per_child;      ///< a power of kWidth; the last child may have fewer
+    std::size_t node, child;
+
+    std::size_t leaf_count() const { return last_leaf - first_leaf; }
+    std::size_t child_count() const { return (leaf_count() + leaves_per_child - 1) / leaves_per_child; }
+};
+
+std::size_t leaves_per_child_of(std::size_t leaf_count) {
+    std::size_t leaves_per_child = 1;
+    while (leaves_per_child * kWidth < leaf_count) leaves_per_child *= kWidth;
+    return leaves_per_child;
+}
+
+/// Nodes of a tree over so many leaves, a power of kWidth; none over a single leaf.
+std::size_t nodes_of_full_tree(std::size_t leaf_count) {
+    return (leaf_count - 1) / (kWidth - 1);
+}
+
+std::size_t nodes_of_tree(std::size_t leaf_count) {
+    const std::size_t leaves_per_child = leaves_per_child_of(leaf_count);
+    const std::size_t full = leaf_count / leaves_per_child, rest = leaf_count % leaves_per_child;
+    return 1 + full * nodes_of_full_tree(leaves_per_child) + (rest > 0 ? nodes_of_tree(rest) : 0);
+}
+
+class TreeBuilder {
+  public:
+    TreeBuilder(const LatticeMesh& lattice, unsigned thread_count, FaceTree& tree)
+        : lattice_(lattice), thread_count_(thread_count), tree_(tree), items_(lattice.faces.size()) {
+        if (tree.order.size() != items_.size()) {
+            tree.order.resize(items_.size());
+            for (std::uint32_t face = 0; face < items_.size(); ++face) tree.order[face] = face;
+        }
+        tree.nodes.resize(nodes_of_tree(leaf_count()));
+    }
+
+    void build() {
+        parallel_for(items_.size(), thread_count_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) items_[i] = item_of(tree_.order[i]);
+        });
+        grow();
+        parallel_for(items_.size(), thread_count_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) tree_.order[i] = items_[i].face;
+        });
+    }
+
+  private:
+    std::size_t leaf_count() const { return (items_.size() + kWidth - 1) / kWidth; }
+
+    TreeItem item_of(std::uint32_t face) const {
+        constexpr std::int64_t kPositive = 3 * (kLatticeExtent + 1);
+        LatticePoint sum{kPositive, kPositive, kPositive}; // thrice the centroid
+        for (std::uint32_t vertex : lattice_.faces[face]) sum += lattice_.vertices[vertex];
+        return {{static_cast<std::uint32_t>(sum.x), static_cast<std::uint32_t>(sum.y),
+                 static_cast<std::uint32_t>(sum.z)},
+                face};
+    }
+
+    /// Splits branches level by level until there are enough for all threads, then grows each on one.
+    void grow() {
+        const std::size_t enough = thread_count_ == 1 ? 1 : 8 * worker_count(thread_count_);
+        std::vector<Branch> branches{branch_of_node(0, 0, leaf_count())};
+        std::vector<Branch> nodes; // of which a branch was made, and where their boxes go
+        for (bool done = false; branches.size() < enough && !done;) {
+            done = true;
+            std::vector<Branch> next;
+            split_all(branches);
+            for (const Branch& branch : branches) {
+                if (branch.child_count() > 1) {
+                    const auto [left, right] = halves(branch);
+                    next.insert(next.end(), {left, right});
+                    done = false;
+                } else if (branch.leaves_per_child > 1) {
+                    nodes.push_back(branch);
+                    next.push_back(
+                        branch_of_node(add_child_node(branch), branch.first_leaf, branch.last_leaf));
+                    done = false;
+                } else {
+                    next.push_back(branch);
+                }
+            }
+            branches = std::move(next);
+        }
+        parallel_for(branches.size(), thread_count_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) grow(branches[i]);
+        });
+        for (std::size_t i = nodes.size(); i-- > 0;) finish_child_node(nodes[i]);
+    }
+
+    void split_all(const std::vector<Branch>& branches) {
+        parallel_for(branches.size(), thread_count_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                if (branches[i].child_count() > 1) split(branches[i]);
+        });
+    }
+
+    void grow(const Branch& branch) {
+        if (branch.child_count() > 1) {
+            split(branch);
+            const auto [left, right] = halves(branch);
+            grow(left);
+            grow(right);
+        } else if (branch.leaves_per_child > 1) {
+            grow(branch_of_node(add_child_node(branch), branch.first_leaf, branch.last_leaf));
+            finish_child_node(branch);
+        } else {
+            add_leaf(branch);
+        }
+    }
+
+    /// The branch that holds all children of a new node.
+    Branch branch_of_node(std::size_t node, std::size_t first_leaf, std::size_t last_leaf) {
+        tree_.nodes[node] = empty_node();
+        return {first_leaf, last_leaf, leaves_per_child_of(last_leaf - first_leaf), node, 0};
+    }
+
+    static std::pair<Branch, Branch> halves(const Branch& branch) {
+        const std::size_t left_count = branch.child_count() / 2;
+        const std::size_t middle_leaf = branch.first_leaf + left_count * branch.leaves_per_child;
+        Branch left = branch, right = branch;
+        left.last_leaf = right.first_leaf = middle_leaf;
+        right.child += left_count;
+        return {left, right};
+    }
+
+    void split(const Branch& branch) {
+        const std::size_t middle_leaf = halves(branch).second.first_leaf;
+        split_at_longest_side(items_of(branch), (middle_leaf - branch.first_leaf) * kWidth);
+    }
+
+    std::span<TreeItem> items_of(const Branch& branch) {
+        const std::size_t first = branch.first_leaf * kWidth;
+        const std::size_t last = std::min(branch.last_leaf * kWidth, items_.size());
+        return std::span(items_).subspan(first, last - first);
+    }
+
+    /// Nodes are numbered depth first, and all children before the last are full. @returns the number
+    std::size_t add_child_node(const Branch& branch) {
+        const std::size_t node = branch.node + 1 + branch.child * nodes_of_full_tree(branch.leaves_per_child);
+        tree_.nodes[branch.node].children[branch.child] = static_cast<std::uint32_t>(node);
+        return node;
+    }
+
+    void finish_child_node(const Branch& branch) {
+        TreeNode& node = tree_.nodes[branch.node];
+        set_box_of_child(node, branch.child, box_of_node(tree_.nodes[node.children[branch.child]]));
+    }
+
+    /// Orders a leaf's faces by number: how they come out of the splits is arbitrary.
+    void add_leaf(const Branch& branch) {
+        const std::span<TreeItem> items = items_of(branch);
+        sort_by_face(items);
+        TreeNode& node = tree_.nodes[branch.node];
+        node.children[branch.child] = TreeNode::kLeaf + static_cast<std::uint32_t>(branch.first_leaf);
+        set_box_of_child(node, branch.child, box_of(items));
+    }
+
+    NodeBox box_of(std::span<const TreeItem> items) const {
+        LatticePoint low = lattice_.vertices[lattice_.faces[items[0].face][0]], high = low;
+        for (const TreeItem& item : items)
+            for (std::uint32_t vertex : lattice_.faces[item.face]) {
+                const LatticePoint& v = lattice_.vertices[vertex];
+                low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+                high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+            }
+        return {{divided_down(low.x), divided_down(low.y), divided_down(low.z)},
+                {divided_up(high.x), divided_up(high.y), divided_up(high.z)}};
+    }
+
+    const LatticeMesh& lattice_;
+    unsigned thread_count_;
+    FaceTree& tree_;
+    std::vector<TreeItem> items_;
+};
+
+} // namespace
+
+void build_face_tree(const LatticeMesh& lattice, unsigned thread_count, FaceTree& tree) {
+    TreeBuilder(lattice, thread_count, tree).build();
+}
+
+} // namespace echinus

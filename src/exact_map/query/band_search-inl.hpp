@@ -1,0 +1,224 @@
+// Included once for each instruction set, as Highway wants it: no guard against a second time.
+#if defined(ECHINUS_BAND_SEARCH_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef ECHINUS_BAND_SEARCH_INL
+#undef ECHINUS_BAND_SEARCH_INL
+#else
+#define ECHINUS_BAND_SEARCH_INL
+#endif
+
+#include "exact_map/layout.hpp"
+#include "exact_map/query/cell_lanes-inl.hpp"
+#include "simd/compress-inl.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#if HWY_TARGET != HWY_SCALAR // where the reference is used instead
+HWY_BEFORE_NAMESPACE();
+namespace echinus::HWY_NAMESPACE {
+
+/// Particles of a piece of a batch that have something in common, and the band in question. Written a whole
+/// vector at a time, of which only the first few count.
+struct BandGroup {
+    static constexpr std::size_t kCapacity = 512; ///< particles of a piece
+    static constexpr std::size_t kMargin = 16;    ///< lanes of the widest vector
+
+    std::size_t size = 0;
+    alignas(64) std::array<std::int32_t, kCapacity + kMargin> slots; ///< numbers in the piece
+    alignas(64) std::array<std::int32_t, kCapacity + kMargin> bands;
+
+    void add(IntMask mask, IntLanes slot, IntLanes band) {
+        constexpr Ints i;
+        const Compressor compress(mask);
+        hn::StoreU(compress(band), i, &bands[size]);
+        hn::StoreU(compress(slot), i, &slots[size]);
+        size += compress.count();
+    }
+};
+
+/// Finds the gap or the band that particles are in, as many at once as there are lanes.
+///
+/// Numbers that belong to a cell or a band are fetched by loads in a loop of their own, and not by
+/// instructions that gather: these are slower on many processors.
+class BandSearch {
+  public:
+    explicit BandSearch(const ExactMapView& map) : map_(map) {}
+
+    BandGroup in_bands;              ///< with their bands
+    std::size_t outermost_count = 0; ///< so many of in_bands are in the outermost of their cell
+    BandGroup in_gaps;               ///< with the band beyond the gap; not those beyond all bands
+    /// Who may be in one or the other, perhaps some twice; of an open surface, also who is beyond all bands.
+    std::span<const std::int32_t> unsure() const { return {unsure_.data(), unsure_count_}; }
+
+    /// @param count  of particles: whole vectors, at most BandGroup::kCapacity
+    /// @param load   gives the points of lanes, from a particle on
+    template <typename Load>
+    void find(std::size_t count, const Load& load) {
+        in_bands.size = in_gaps.size = below_.size = unsure_count_ = 0;
+        locate(count, load);
+        compare_with_reach(count);
+        compare_with_outermost();
+        compare_with_inner();
+    }
+
+  private:
+    static constexpr float kSurelyOnLattice = static_cast<float>(kLatticeExtent) - 1;
+    static constexpr float kSurelyBeyondLattice = static_cast<float>(kLatticeExtent) + 2;
+    /// An L1 norm that no place in the bounding sphere has.
+    static constexpr float kBeyondSphere = 1.75F * static_cast<float>(kLatticeExtent);
+    /// One that no band reaches to, whatever its 16 bits say.
+    static constexpr float kBeyondBands = 2.0F * (UINT16_MAX + 1) * ExactMapView::kBandUnit;
+    template <typename T>
+    using Column = std::array<T, BandGroup::kCapacity>;
+
+    void leave_unsure(IntLanes slots, IntMask mask) {
+        constexpr Ints i;
+        if (hn::AllFalse(i, mask)) [[likely]]
+            return;
+        const Compressor compress(mask);
+        hn::StoreU(compress(slots), i, &unsure_[unsure_count_]);
+        unsure_count_ += compress.count();
+    }
+
+    static IntLanes slots_from(std::size_t slot) { return hn::Iota(Ints(), static_cast<std::int32_t>(slot)); }
+
+    template <typename Load>
+    void locate(std::size_t count, const Load& load) {
+        constexpr Floats f;
+        constexpr Ints i;
+        for (std::size_t slot = 0; slot < count; slot += hn::Lanes(f)) {
+            const CellLanes at = locate_(load(slot));
+            const FloatMask on_lattice = hn::Lt(at.farthest, hn::Set(f, kSurelyOnLattice));
+            const FloatMask located = hn::And(at.sure, on_lattice);
+            hn::Store(hn::IfThenElse(located, at.l1, hn::Set(f, kBeyondBands)), f, &l1_[slot]);
+            hn::Store(hn::IfThenElseZero(hn::RebindMask(i, located), at.cell), i, &cells_[slot]);
+            if (is_open_) continue; // then who is not located counts as beyond all bands
+            const FloatMask far = hn::Or(hn::Ge(at.l1, hn::Set(f, kBeyondSphere)),
+                                         hn::Gt(at.farthest, hn::Set(f, kSurelyBeyondLattice)));
+            leave_unsure(slots_from(slot), hn::RebindMask(i, hn::Not(hn::Or(located, far))));
+        }
+    }
+
+    /// Of a band, in lattice steps.
+    struct Limits {
+        FloatLanes lower, upper;
+    };
+
+    static Limits limits(IntLanes both) {
+        constexpr Floats f;
+        constexpr Ints i;
+        const auto upper = hn::ShiftRight<16>(hn::BitCast(hn::RebindToUnsigned<Ints>(), both));
+        const FloatLanes unit = hn::Set(f, ExactMapView::kBandUnit);
+        return {hn::Mul(hn::ConvertTo(f, hn::And(both, hn::Set(i, UINT16_MAX))), unit),
+                hn::Mul(hn::ConvertTo(f, hn::BitCast(i, upper)), unit)};
+    }
+
+    /// Both limits of a band in one number, as limits() takes them.
+    std::int32_t limits_of(std::uint32_t band) const {
+        const Band& limits = map_.bands[band];
+        return static_cast<std::int32_t>(std::uint32_t{limits.upper} << 16 | limits.lower);
+    }
+
+    /// Is a particle surely on one side of a limit?
+    static IntMask surely_beyond(FloatLanes l1, FloatLanes limit) {
+        return hn::RebindMask(Ints(), hn::Ge(l1, hn::Add(limit, hn::Set(Floats(), CellLanes::kL1Error))));
+    }
+    static IntMask surely_below(FloatLanes l1, FloatLanes limit) {
+        return hn::RebindMask(Ints(), hn::Lt(l1, hn::Sub(limit, hn::Set(Floats(), CellLanes::kL1Error))));
+    }
+
+    /// Most particles are beyond all bands of their cell: of no more than its reach is then read.
+    void compare_with_reach(std::size_t count) {
+        constexpr Ints i;
+        for (std::size_t slot = 0; slot < count; ++slot)
+            limits_[slot] = map_.reaches[static_cast<std::size_t>(cells_[slot])];
+        for (std::size_t slot = 0; slot < count; slot += hn::Lanes(i)) {
+            const FloatLanes l1 = hn::Load(Floats(), &l1_[slot]);
+            const FloatLanes reach = hn::Mul(hn::ConvertTo(Floats(), hn::Load(i, &limits_[slot])),
+                                             hn::Set(Floats(), ExactMapView::kBandUnit));
+            const IntMask beyond = surely_beyond(l1, reach);
+            if (is_open_) [[unlikely]]
+                leave_unsure(slots_from(slot), beyond);
+            // With the cell for the moment: its bands are looked up next. A cell without bands has no such
+            // particle, since nobody is sure of a cell who is less than kL1Error from the centre.
+            below_.add(hn::Not(beyond), slots_from(slot), hn::Load(i, &cells_[slot]));
+        }
+    }
+
+    void compare_with_outermost() {
+        constexpr Floats f;
+        constexpr Ints i;
+        const std::size_t count = below_.size;
+        for (std::size_t k = 0; k < count; ++k) {
+            const auto slot = static_cast<std::size_t>(below_.slots[k]);
+            const auto cell = static_cast<std::size_t>(below_.bands[k]);
+            const std::uint32_t band = map_.band_offsets[cell + 1] - 1;
+            first_bands_[slot] = static_cast<std::int32_t>(map_.band_offsets[cell]);
+            bands_[k] = static_cast<std::int32_t>(band);
+            limits_[k] = limits_of(band);
+            inner_l1_[k] = l1_[slot];
+        }
+        below_.size = 0;
+        for (std::size_t k = 0; k < count; k += hn::Lanes(i)) {
+            const IntMask valid = hn::FirstN(i, count - k);
+            const FloatLanes l1 = hn::Load(f, &inner_l1_[k]);
+            const auto [lower, upper] = limits(hn::Load(i, &limits_[k]));
+            const IntLanes slots = hn::Load(i, &below_.slots[k]), bands = hn::Load(i, &bands_[k]);
+            const IntMask below = surely_below(l1, lower);
+            const IntMask in_band = hn::And(surely_beyond(l1, lower), surely_below(l1, upper));
+            in_bands.add(hn::And(valid, in_band), slots, bands);
+            below_.add(hn::And(valid, below), slots, bands);
+            leave_unsure(slots, hn::AndNot(hn::Or(in_band, below), valid));
+        }
+        outermost_count = in_bands.size;
+    }
+
+    /// Of those below a band, compares with the next one inwards, until none is left.
+    void compare_with_inner() {
+        constexpr Floats f;
+        constexpr Ints i;
+        while (below_.size > 0) {
+            const std::size_t count = below_.size;
+            for (std::size_t k = 0; k < count; ++k) {
+                const auto slot = static_cast<std::size_t>(below_.slots[k]);
+                const bool innermost = below_.bands[k] == first_bands_[slot];
+                const std::int32_t band = below_.bands[k] - (innermost ? 0 : 1);
+                inner_l1_[k] = l1_[slot];
+                bands_[k] = band;
+                limits_[k] = innermost ? 0 : limits_of(static_cast<std::uint32_t>(band));
+            }
+            below_.size = 0; // what is added lies before what is read
+            for (std::size_t k = 0; k < count; k += hn::Lanes(i)) {
+                const IntMask valid = hn::FirstN(i, count - k);
+                const IntLanes slots = hn::Load(i, &below_.slots[k]), above = hn::Load(i, &below_.bands[k]);
+                const IntLanes bands = hn::Load(i, &bands_[k]);
+                const FloatLanes l1 = hn::Load(f, &inner_l1_[k]);
+                const auto [lower, upper] = limits(hn::Load(i, &limits_[k]));
+                const IntMask in_gap = surely_beyond(l1, upper), below = surely_below(l1, lower);
+                const IntMask in_band = hn::And(surely_beyond(l1, lower), surely_below(l1, upper));
+                in_gaps.add(hn::And(valid, in_gap), slots, above);
+                in_bands.add(hn::And(valid, in_band), slots, bands);
+                below_.add(hn::And(valid, below), slots, bands);
+                leave_unsure(slots, hn::AndNot(hn::Or(hn::Or(in_gap, below), in_band), valid));
+            }
+        }
+    }
+
+    const ExactMapView& map_;
+    bool is_open_ = !map_.border.empty();
+    LocateLanes locate_{map_.centre, frame_of(map_), map_.divisions};
+
+    alignas(64) Column<float> l1_, inner_l1_;
+    alignas(64) Column<std::int32_t> cells_, first_bands_, bands_, limits_;
+    BandGroup below_; ///< a limit that they were compared with
+    std::array<std::int32_t, 2 * BandGroup::kCapacity + BandGroup::kMargin> unsure_;
+    std::size_t unsure_count_ = 0;
+};
+
+} // namespace echinus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
+
+#endif

@@ -1,0 +1,348 @@
+// Three passes: the sides of all particles; the nearest faces of those that want one, in an order in which
+// neighbours follow each other; and what there is to say of these faces.
+
+#include "exact_map/query/contact_batch.hpp"
+
+#include "exact_map/query/nearest_faces.hpp"
+#include "exact_map/query/spatial_order.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "exact_map/query/contact_batch.cpp"
+#include <hwy/foreach_target.h>
+
+// After foreach_target.h, which includes this file once for each instruction set.
+#include "simd/dispatch.hpp"
+#include "simd/lanes-inl.hpp"
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+
+namespace echinus {
+#ifndef ECHINUS_CONTACT_BLOCK
+#define ECHINUS_CONTACT_BLOCK
+namespace {
+
+/// Some particles whose contacts are wanted.
+struct ContactBlock {
+    static constexpr std::size_t kCapacity = 256;
+
+    std::size_t size = 0;
+    std::array<std::uint32_t, kCapacity> particles;
+    std::array<Vec3f, kCapacity> points_local;
+    std::array<Side, kCapacity> sides;
+    std::array<NearestSearch, kCapacity> searches;
+    std::array<std::uint32_t, kCapacity> faces;
+    std::array<Contact, kCapacity> contacts;
+
+    void add(const ContactSearch& search, std::uint32_t particle, const Vec3f& point_local, Side side) {
+        particles[size] = particle;
+        points_local[size] = point_local;
+        sides[size] = side;
+        searches[size] = {search.place_of(point_local), search.farthest(side)};
+        ++size;
+    }
+
+    /// Of one whose nearest face is known, by the reference.
+    void set_contact(const ContactSearch& search, std::size_t i) {
+        contacts[i] = search.contact_at(
+            points_local[i], sides[i],
+            nearest_point_on_face(search.map(), faces[i], searches[i].place, search.stretch()));
+    }
+};
+
+} // namespace
+#endif
+} // namespace echinus
+
+HWY_BEFORE_NAMESPACE();
+namespace echinus::HWY_NAMESPACE {
+
+#if HWY_TARGET != HWY_SCALAR
+
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Doubles = hn::ScalableTag<double>;
+using DoubleLanes = hn::Vec<Doubles>;
+using DoubleMask = hn::Mask<Doubles>;
+constexpr std::size_t kMostLanes = 8;
+
+/// Vec3d of several particles at once: the same operations in the same order, hence the same bits.
+struct Vec3Lanes {
+    DoubleLanes x, y, z;
+};
+
+Vec3Lanes plus(const Vec3Lanes& a, const Vec3Lanes& b) {
+    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+Vec3Lanes minus(const Vec3Lanes& a, const Vec3Lanes& b) {
+    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+Vec3Lanes times(const Vec3Lanes& a, DoubleLanes s) {
+    return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
+}
+DoubleLanes dot(const Vec3Lanes& a, const Vec3Lanes& b) {
+    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+Vec3Lanes cross(const Vec3Lanes& a, const Vec3Lanes& b) {
+    return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+            hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+Vec3Lanes if_then_else(DoubleMask mask, const Vec3Lanes& a, const Vec3Lanes& b) {
+    return {hn::IfThenElse(mask, a.x, b.x), hn::IfThenElse(mask, a.y, b.y), hn::IfThenElse(mask, a.z, b.z)};
+}
+Vec3Lanes same(const Vec3d& v) {
+    constexpr Doubles d;
+    return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
+}
+
+/// ContactSearch::contact_at() of several particles at once.
+class ContactLanes {
+  public:
+    explicit ContactLanes(const ContactSearch& search)
+        : search_(search), map_(search.map()), stretch_(same(search.stretch())),
+          centre_(same(search.frame().centre)), step_(hn::Set(Doubles(), search.frame().step)) {}
+
+    void measure(ContactBlock& block) {
+        for (std::size_t first = 0; first < block.size; first += hn::Lanes(Doubles())) {
+            const std::size_t count = std::min(hn::Lanes(Doubles()), block.size - first);
+            load(block, first, count);
+            measure_loaded();
+            for (std::size_t lane = 0; lane < count; ++lane) store(block, first + lane, lane);
+        }
+    }
+
+  private:
+    using Row = std::array<double, kMostLanes>;
+    struct Rows {
+        alignas(64) Row x, y, z;
+
+        Vec3Lanes lanes() const {
+            constexpr Doubles d;
+            return {hn::Load(d, x.data()), hn::Load(d, y.data()), hn::Load(d, z.data())};
+        }
+        void set(const Vec3Lanes& v) {
+            constexpr Doubles d;
+            hn::Store(v.x, d, x.data());
+            hn::Store(v.y, d, y.data());
+            hn::Store(v.z, d, z.data());
+        }
+        void set(std::size_t lane, const Vec3d& v) {
+            x[lane] = v.x;
+            y[lane] = v.y;
+            z[lane] = v.z;
+        }
+        Vec3f operator[](std::size_t lane) const {
+            return {static_cast<float>(x[lane]), static_cast<float>(y[lane]), static_cast<float>(z[lane])};
+        }
+    };
+
+    void load(const ContactBlock& block, std::size_t first, std::size_t count) {
+        for (std::size_t lane = 0; lane < count; ++lane) {
+            const std::size_t i = first + lane;
+            const std::size_t face = block.faces[i] == kNoFace ? 0 : block.faces[i];
+            for (std::size_t k = 0; k < 3; ++k)
+                corners_[k].set(lane, Vec3d(map_.vertices[map_.corners[3 * face + k]]));
+            places_.set(lane, block.searches[i].place);
+            signs_[lane] = (block.sides[i] & kInside) != 0 ? 1 : -1;
+        }
+    }
+
+    /// The point of a segment that is nearest to the origin, as a share of the way.
+    static DoubleLanes nearest_share(const Vec3Lanes& start, const Vec3Lanes& edge) {
+        constexpr Doubles d;
+        const DoubleLanes zero = hn::Zero(d), one = hn::Set(d, 1), length_sq = dot(edge, edge);
+        const DoubleLanes share = hn::Div(hn::Neg(dot(start, edge)), length_sq);
+        const DoubleLanes clamped =
+            hn::IfThenElse(hn::Lt(share, zero), zero, hn::IfThenElse(hn::Gt(share, one), one, share));
+        return hn::IfThenElseZero(hn::Gt(length_sq, zero), clamped);
+    }
+
+    void measure_loaded() {
+        constexpr Doubles d;
+        const Vec3Lanes place = places_.lanes();
+        const auto around_place = [&](const Rows& corner) {
+            const Vec3Lanes offset = minus(corner.lanes(), place);
+            return Vec3Lanes{hn::Mul(offset.x, stretch_.x), hn::Mul(offset.y, stretch_.y),
+                             hn::Mul(offset.z, stretch_.z)};
+        };
+        const std::array<Vec3Lanes, 3> corners{around_place(corners_[0]), around_place(corners_[1]),
+                                               around_place(corners_[2])};
+        const Vec3Lanes normal = cross(minus(corners[1], corners[0]), minus(corners[2], corners[1]));
+        const DoubleLanes zero = hn::Zero(d), one = hn::Set(d, 1);
+        Vec3Lanes nearest{zero, zero, zero};
+        DoubleLanes nearest_sq = hn::Set(d, std::numeric_limits<double>::infinity());
+        DoubleMask above = hn::Eq(zero, zero), on_edge = hn::Ne(zero, zero);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3Lanes& start = corners[k];
+            const Vec3Lanes edge = minus(corners[(k + 1) % 3], start);
+            above = hn::And(above, hn::Gt(dot(cross(normal, start), edge), zero));
+            const DoubleLanes share = nearest_share(start, edge);
+            const Vec3Lanes candidate = plus(start, times(edge, share));
+            const DoubleLanes distance_sq = dot(candidate, candidate);
+            const DoubleMask nearer = hn::Lt(distance_sq, nearest_sq);
+            nearest_sq = hn::IfThenElse(nearer, distance_sq, nearest_sq);
+            nearest = if_then_else(nearer, candidate, nearest);
+            const DoubleMask within = hn::And(hn::Gt(share, zero), hn::Lt(share, one));
+            on_edge = hn::Or(hn::And(nearer, within), hn::AndNot(nearer, on_edge));
+        }
+        const Vec3Lanes on_plane = times(normal, hn::Div(dot(corners[0], normal), dot(normal, normal)));
+        nearest = if_then_else(above, on_plane, nearest);
+        hn::Store(hn::IfThenElse(above, hn::Set(d, double(Feature::Face)),
+                                 hn::IfThenElse(on_edge, hn::Set(d, double(Feature::Edge)),
+                                                hn::Set(d, double(Feature::Vertex)))),
+                  d, features_.data());
+        const DoubleLanes distance = hn::Sqrt(dot(nearest, nearest));
+
+        const Vec3Lanes point = plus(place, {hn::Div(nearest.x, stretch_.x), hn::Div(nearest.y, stretch_.y),
+                                             hn::Div(nearest.z, stretch_.z)});
+        points_.set(plus(centre_, times(point, step_)));
+        const DoubleLanes sign = hn::Load(d, signs_.data());
+        const DoubleLanes depth = hn::Mul(hn::Mul(distance, hn::Set(d, search_.unit())), step_);
+        hn::Store(hn::Mul(depth, sign), d, depths_.data());
+        const Vec3Lanes offset = minus(point, place);
+        const DoubleMask is_near = hn::Le(hn::Sqrt(dot(offset, offset)), hn::Set(d, kSnapping));
+        hn::Store(hn::IfThenElseZero(is_near, one), d, is_near_.data());
+        const Vec3Lanes in_world{hn::Mul(offset.x, stretch_.x), hn::Mul(offset.y, stretch_.y),
+                                 hn::Mul(offset.z, stretch_.z)};
+        normals_.set(times(in_world, hn::Div(sign, distance)));
+    }
+
+    void store(ContactBlock& block, std::size_t i, std::size_t lane) const {
+        if (block.faces[i] == kNoFace) return;
+        if (is_near_[lane] != 0) [[unlikely]] { // the normal is a sum over faces
+            block.set_contact(search_, i);
+            return;
+        }
+        Contact& contact = block.contacts[i];
+        contact.point = points_[lane];
+        contact.normal = normals_[lane];
+        contact.depth = static_cast<float>(depths_[lane]);
+        contact.face = static_cast<std::int32_t>(map_.face_numbers[block.faces[i]]);
+        contact.inside = (block.sides[i] & kInside) != 0;
+        contact.certain = (block.sides[i] & kUncertain) == 0;
+        contact.feature = static_cast<Feature>(static_cast<int>(features_[lane]));
+    }
+
+    const ContactSearch& search_;
+    const ExactMapView& map_;
+    Vec3Lanes stretch_, centre_;
+    DoubleLanes step_;
+
+    // The particles at hand.
+    std::array<Rows, 3> corners_{};
+    Rows places_{}, points_{}, normals_{};
+    alignas(64) Row signs_{}, depths_{}, features_{}, is_near_{};
+};
+
+} // namespace
+
+void measure_contacts(const ContactSearch& search, ContactBlock& block) {
+    ContactLanes(search).measure(block);
+}
+
+#else
+
+void measure_contacts(const ContactSearch& search, ContactBlock& block) {
+    for (std::size_t i = 0; i < block.size; ++i)
+        if (block.faces[i] != kNoFace) block.set_contact(search, i);
+}
+
+#endif
+
+} // namespace echinus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace echinus {
+
+namespace {
+
+HWY_EXPORT(measure_contacts);
+
+/// @param contacts  of the batch
+void answer(const ContactSearch& search, ContactBlock& block, std::span<Contact> contacts) {
+    const std::span<const NearestSearch> searches(block.searches.data(), block.size);
+    find_nearest_faces(search.map(), search.stretch(), searches, {block.faces.data(), block.size});
+    ECHINUS_DISPATCH(measure_contacts)(search, block);
+    for (std::size_t i = 0; i < block.size; ++i) {
+        Contact& contact = contacts[block.particles[i]];
+        if (block.faces[i] != kNoFace)
+            contact = block.contacts[i];
+        else
+            ContactSearch::set_no_contact(contact, block.points_local[i], block.sides[i]);
+    }
+    block.size = 0;
+}
+
+/// Memory for the particles of a batch.
+struct ContactMemory {
+    std::span<Side> sides;              ///< as many as the batch has particles
+    std::span<Station> stations, spare; ///< so many are put in order at a time
+};
+
+void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
+                   std::span<Contact> contacts, const ContactMemory& memory) {
+    const std::span<Side> sides = memory.sides;
+    find_sides(search.map(), points_local, sides);
+    const MortonCurve curve(search.map().centre, search.map().radius);
+    ContactBlock block;
+    std::size_t count = 0; // of stations
+    const auto answer_stations = [&] {
+        sort_by_key(memory.stations.first(count), memory.spare.first(count));
+        for (std::size_t k = 0; k < count; ++k) {
+            const Station& station = memory.stations[k];
+            // Neighbours in space are not neighbours in memory: what is read and written next is sent for.
+            constexpr std::size_t kAhead = 16;
+            const std::uint32_t next = memory.stations[std::min(k + kAhead, count - 1)].particle;
+            hwy::Prefetch(&points_local[next]);
+            hwy::Prefetch(&sides[next]);
+            hwy::Prefetch(&contacts[station.particle]);
+            hwy::Prefetch(&contacts[station.particle].feature); // perhaps on another line
+            block.add(search, station.particle, points_local[station.particle], sides[station.particle]);
+            if (block.size == ContactBlock::kCapacity) answer(search, block, contacts);
+        }
+        answer(search, block, contacts);
+        count = 0;
+    };
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        if (!search.is_wanted(points_local[i], sides[i])) {
+            ContactSearch::set_no_contact(contacts[i], points_local[i], sides[i]);
+            continue;
+        }
+        memory.stations[count++] = {curve.key(points_local[i]), static_cast<std::uint32_t>(i)};
+        if (count == memory.stations.size()) answer_stations();
+    }
+    answer_stations();
+}
+
+} // namespace
+
+void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
+                   std::span<Contact> contacts) {
+    constexpr std::size_t kFew =
+        256; // a solver asks for few particles many times: no memory is taken for them
+    if (contacts.size() <= kFew) {
+        std::array<Side, kFew> sides;
+        std::array<Station, kFew> stations, spare;
+        find_contacts(search, points_local, contacts, {{sides.data(), contacts.size()}, stations, spare});
+        return;
+    }
+    // Few enough for what is written to stay in a cache, enough for neighbours to be near.
+    constexpr std::size_t kMostStations = 1 << 16;
+    const std::size_t count = std::min(kMostStations, contacts.size());
+    // Not std::make_unique, which would fill them.
+    const std::unique_ptr<Side[]> sides(new Side[contacts.size()]);
+    const std::unique_ptr<Station[]> stations(new Station[2 * count]);
+    find_contacts(search, points_local, contacts,
+                  {{sides.get(), contacts.size()}, {stations.get(), count}, {stations.get() + count, count}});
+}
+
+} // namespace echinus
+#endif

@@ -1,0 +1,111 @@
+#pragma once
+
+#include "exact_map/layout.hpp"
+#include "exact_map/query/nearest.hpp"
+#include "exact_map/query/sides.hpp"
+#include "exact_map/query/winding.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace echinus {
+
+inline Containment containment_at(const ExactMapView& map, const LatticeFrame& frame,
+                                  const Vec3f& point_local) {
+    const Winding winding = winding_at(map, frame, point_local);
+    return {is_inside(map.rule, winding.number), winding.certain};
+}
+
+/// Two snapped positions differ from the true ones by at most sqrt(3) lattice steps together.
+inline constexpr double kSnapping = 2;
+
+/// Contacts in a stretched world. The stretch is taken apart into one number, which is the unit of lengths,
+/// and what is left for the axes, at most 1.
+class ContactSearch {
+  public:
+    ContactSearch(const ExactMapView& map, const Vec3d& stretch, float margin)
+        : map_(map), frame_(frame_of(map)),
+          unit_(std::max({std::fabs(stretch.x), std::fabs(stretch.y), std::fabs(stretch.z)})),
+          stretch_(stretch * (1 / unit_)), margin_(margin > 0 ? margin / (unit_ * frame_.step) : 0) {}
+
+    Contact operator()(const Vec3f& point_local) const {
+        const Containment found =
+            is_finite(point_local) ? containment_at(map_, frame_, point_local) : Containment{};
+        const Side side = side_of(found);
+        if (!is_wanted(point_local, side)) return no_contact(point_local, side);
+        const auto nearest = nearest_point(map_, place_of(point_local), stretch_, farthest(side));
+        return nearest ? contact_at(point_local, side, *nearest) : no_contact(point_local, side);
+    }
+
+    const ExactMapView& map() const { return map_; }
+    const LatticeFrame& frame() const { return frame_; }
+    double unit() const { return unit_; }
+    const Vec3d& stretch() const { return stretch_; }
+    Vec3d place_of(const Vec3f& point_local) const { return frame_.to_lattice(point_local); }
+
+    /// Is there a nearest point to be looked for?
+    bool is_wanted(const Vec3f& point_local, Side side) const {
+        return ((side & kInside) != 0 || margin_ > 0) && is_finite(point_local);
+    }
+    /// How far, in lattice steps.
+    double farthest(Side side) const { return (side & kInside) != 0 ? kEverywhere : margin_; }
+
+    static Contact no_contact(const Vec3f& point_local, Side side) {
+        Contact result;
+        set_no_contact(result, point_local, side);
+        return result;
+    }
+    /// The same in place, member by member: a whole contact made elsewhere is copied by wide loads that have
+    /// to wait for the narrow stores before them.
+    static void set_no_contact(Contact& contact, const Vec3f& point_local, Side side) {
+        contact.point = point_local;
+        contact.normal = {};
+        contact.depth = 0;
+        contact.face = Contact::kUnknownFace;
+        contact.inside = false;
+        contact.certain = (side & kUncertain) == 0;
+        contact.feature = Feature::Unknown;
+    }
+
+    Contact contact_at(const Vec3f& point_local, Side side, const NearestPoint& nearest) const {
+        Contact result;
+        const bool inside = (side & kInside) != 0;
+        result.inside = inside;
+        result.certain = (side & kUncertain) == 0;
+        result.point = Vec3f(frame_.to_local(nearest.point));
+        const double distance = nearest.distance * unit_ * frame_.step;
+        result.depth = static_cast<float>(inside ? distance : -distance);
+        result.normal = outward_normal(nearest, place_of(point_local), inside);
+        result.face = static_cast<std::int32_t>(map_.face_numbers[nearest.face]);
+        result.feature = nearest.feature;
+        return result;
+    }
+
+  private:
+    Vec3f outward_normal(const NearestPoint& nearest, const Vec3d& place, bool inside) const {
+        const Vec3d offset = nearest.point - place;
+        if (length(offset) <= kSnapping)
+            return outward(nearest.point, pseudonormal(map_, nearest, stretch_, kSnapping));
+        const Vec3d in_world{offset.x * stretch_.x, offset.y * stretch_.y, offset.z * stretch_.z};
+        return Vec3f(in_world * ((inside ? 1 : -1) / nearest.distance));
+    }
+
+    /// Turns a normal of the faces to where it leads out of the solid: faces may be turned the other way.
+    Vec3f outward(const Vec3d& point, const Vec3f& normal) const {
+        constexpr double kClear = 2 * kSnapping;
+        const Vec3d along{normal.x / stretch_.x, normal.y / stretch_.y, normal.z / stretch_.z};
+        const Vec3d clear = along * (kClear / length(along));
+        const auto inside_at = [&](const Vec3d& place) {
+            return is_inside(map_.rule, winding_at(map_, rounded(place)).number);
+        };
+        return inside_at(point + clear) && !inside_at(point - clear) ? -normal : normal;
+    }
+
+    const ExactMapView& map_;
+    LatticeFrame frame_;
+    double unit_;
+    Vec3d stretch_;
+    double margin_; ///< in lattice steps
+};
+
+} // namespace echinus

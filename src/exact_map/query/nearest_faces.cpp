@@ -1,0 +1,393 @@
+#include "exact_map/query/nearest_faces.hpp"
+
+#include "exact_map/query/nearest.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "exact_map/query/nearest_faces.cpp"
+#include <hwy/foreach_target.h>
+
+// After foreach_target.h, which includes this file once for each instruction set.
+#include "exact_map/query/leaf_lanes-inl.hpp"
+#include "simd/dispatch.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace echinus::HWY_NAMESPACE {
+
+namespace {
+
+std::uint32_t nearest_by_reference(const ExactMapView& map, const Vec3d& stretch,
+                                   const NearestSearch& search) {
+    const auto nearest = nearest_point(map, search.place, stretch, search.farthest);
+    return nearest ? nearest->face : kNoFace;
+}
+
+} // namespace
+
+#if HWY_TARGET != HWY_SCALAR
+
+namespace {
+
+constexpr std::size_t kMostLanes = 16;
+
+/// The faces that may be the nearest to some of the places at hand.
+class Candidates {
+  public:
+    void clear() { size_ = 0; }
+    std::size_t size() const { return size_; }
+    bool full() const { return size_ == kCapacity; }
+
+    void add(std::uint32_t face, FloatLanes lower) {
+        faces_[size_] = face;
+        hn::Store(lower, Floats(), lowers_[size_].data());
+        ++size_;
+    }
+
+    /// Drops those that are too far for every place.
+    void keep_within(FloatLanes upper) {
+        constexpr Floats f;
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < size_; ++i) {
+            const FloatLanes lower = hn::Load(f, lowers_[i].data());
+            if (hn::AllFalse(f, hn::Le(lower, upper))) continue;
+            faces_[kept] = faces_[i];
+            hn::Store(lower, f, lowers_[kept].data());
+            ++kept;
+        }
+        size_ = kept;
+    }
+
+    std::uint32_t face(std::size_t i) const { return faces_[i]; }
+    /// A bit for each place that the face may be the nearest to.
+    std::uint32_t places_within(std::size_t i, FloatLanes upper) const {
+        constexpr Floats f;
+        std::array<std::uint8_t, 8> bits{};
+        hn::StoreMaskBits(f, hn::Le(hn::Load(f, lowers_[i].data()), upper), bits.data());
+        return bits[0] | std::uint32_t{bits[1]} << 8;
+    }
+
+  private:
+    static constexpr std::size_t kCapacity = 64;
+
+    std::size_t size_ = 0;
+    std::array<std::uint32_t, kCapacity> faces_;
+    alignas(64) std::array<std::array<float, kMostLanes>, kCapacity> lowers_;
+};
+
+/// As many searches as there are lanes, on one way through the tree. Leaves once met are kept ready for the
+/// searches that follow.
+class NearestFaceFinder {
+  public:
+    /// @param all  searches; one at least
+    NearestFaceFinder(const ExactMapView& map, const Vec3d& stretch, std::span<const NearestSearch> all)
+        : map_(map), stretch_(stretch), stretch_float_(stretch), origin_(rounded_origin(all.front().place)) {
+        for (const NearestSearch& search : all) {
+            if (!is_within_range(search)) continue;
+            const Vec3d offset = search.place - Vec3d(origin_);
+            reach_ = std::max(
+                reach_, static_cast<float>(std::fabs(offset.x) + std::fabs(offset.y) + std::fabs(offset.z)));
+        }
+        leaf_of_slot_.fill(kNoFace);
+    }
+
+    /// @param searches  one at least, and no more than there are lanes
+    void find(std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) {
+        const bool within_range = std::all_of(searches.begin(), searches.end(), is_within_range);
+        if (within_range) start(searches);
+        if (!within_range || !search()) {
+            for (std::size_t i = 0; i < searches.size(); ++i)
+                faces[i] = nearest_by_reference(map_, stretch_, searches[i]);
+            return;
+        }
+        choose(searches, faces);
+    }
+
+  private:
+    static constexpr double kMostSquared = 1e30;
+
+    /// Places farther off are left to the reference.
+    static constexpr double kRange = kEverywhere / 2;
+
+    static bool is_within_range(const NearestSearch& search) {
+        const Vec3d& p = search.place;
+        return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) < kRange;
+    }
+
+    static Vec3<std::int32_t> rounded_origin(const Vec3d& place) {
+        const auto within = [](double coordinate) {
+            return static_cast<std::int32_t>(std::clamp(coordinate, -kRange, kRange));
+        };
+        return {within(place.x), within(place.y), within(place.z)};
+    }
+    static constexpr float kRoundedUp = 1 + 0x1p-20F;
+
+    void start(std::span<const NearestSearch> searches) {
+        constexpr Floats f;
+        alignas(64) std::array<std::array<float, kMostLanes>, 4> rows;
+        for (std::size_t lane = 0; lane < hn::Lanes(f); ++lane) {
+            const NearestSearch& search = searches[std::min(lane, searches.size() - 1)];
+            const Vec3d offset = search.place - Vec3d(origin_);
+            rows[0][lane] = static_cast<float>(offset.x);
+            rows[1][lane] = static_cast<float>(offset.y);
+            rows[2][lane] = static_cast<float>(offset.z);
+            rows[3][lane] = static_cast<float>(std::min(search.farthest * search.farthest, kMostSquared));
+        }
+        flat_ = {hn::Load(f, rows[0].data()), hn::Load(f, rows[1].data()), hn::Load(f, rows[2].data())};
+        places_ = {hn::Mul(flat_.x, hn::Set(f, stretch_float_.x)),
+                   hn::Mul(flat_.y, hn::Set(f, stretch_float_.y)),
+                   hn::Mul(flat_.z, hn::Set(f, stretch_float_.z))};
+        upper_ = hn::Mul(hn::Load(f, rows[3].data()), hn::Set(f, kRoundedUp));
+        low_ = {least(flat_.x), least(flat_.y), least(flat_.z)};
+        high_ = {most(flat_.x), most(flat_.y), most(flat_.z)};
+        stretched_low_ = {least(places_.x), least(places_.y), least(places_.z)};
+        stretched_high_ = {most(places_.x), most(places_.y), most(places_.z)};
+        farthest_upper_ = most(upper_);
+        candidates_.clear();
+    }
+
+    static float least(FloatLanes v) { return hn::GetLane(hn::MinOfLanes(Floats(), v)); }
+    static float most(FloatLanes v) { return hn::GetLane(hn::MaxOfLanes(Floats(), v)); }
+
+    /// A child of a node, and a lower bound of its squared distance from all places.
+    struct Waiting {
+        float distance_sq;
+        std::uint32_t node, child;
+    };
+
+    /// Returns false where the candidates became too many.
+    bool search() {
+        const std::uint32_t seed = last_leaf_;
+        if (seed != kNoFace && !visit_leaf(seed)) return false;
+        std::size_t count = push_children(0, 0);
+        while (count > 0) {
+            const Waiting next = waiting_[--count];
+            if (next.distance_sq > farthest_upper_) continue;
+            const std::uint32_t child = map_.nodes[next.node].children[next.child];
+            if ((child & TreeNode::kLeaf) == 0) {
+                count = push_children(child, count);
+                continue;
+            }
+            const std::uint32_t first =
+                (child - TreeNode::kLeaf) * static_cast<std::uint32_t>(TreeNode::kWidth);
+            if (first == seed || is_far(next)) continue;
+            if (!visit_leaf(first)) return false;
+        }
+        return true;
+    }
+
+    /// Pushes the children that are not too far, the nearest on top. Returns how many are waiting.
+    std::size_t push_children(std::uint32_t node, std::size_t count) {
+        alignas(32) std::array<float, TreeNode::kWidth> distances_sq;
+        measure_children(map_.nodes[node], distances_sq.data());
+        const std::size_t before = count;
+        for (std::uint32_t child = 0; child < TreeNode::kWidth; ++child) {
+            if (!(distances_sq[child] <= farthest_upper_)) continue;
+            std::size_t place = count++;
+            for (; place > before && waiting_[place - 1].distance_sq < distances_sq[child]; --place)
+                waiting_[place] = waiting_[place - 1];
+            waiting_[place] = {distances_sq[child], node, child};
+        }
+        return count;
+    }
+
+    /// Between the box around all places and the boxes of a node's children; far where there is no child.
+    void measure_children(const TreeNode& node, float* distances_sq) const {
+        using Boxes = hn::CappedTag<float, TreeNode::kWidth>;
+        constexpr Boxes d;
+        constexpr hn::RebindToSigned<Boxes> i;
+        constexpr hn::Rebind<std::int16_t, Boxes> shorts;
+        const auto unit = hn::Set(d, static_cast<float>(ExactMapView::kBoxUnit));
+        for (std::size_t lane = 0; lane < TreeNode::kWidth; lane += hn::Lanes(d)) {
+            const auto bound = [&](const std::int16_t* bounds) {
+                return hn::Mul(hn::ConvertTo(d, hn::PromoteTo(i, hn::LoadU(shorts, bounds + lane))), unit);
+            };
+            auto sum = hn::Zero(d);
+            const auto add_axis = [&](std::size_t axis, std::int32_t origin, float low, float high,
+                                      float stretch) {
+                const auto from = hn::Set(d, static_cast<float>(origin));
+                const auto child_low = hn::Sub(bound(node.low[axis]), from);
+                const auto child_high = hn::Sub(bound(node.high[axis]), from);
+                const auto gap =
+                    hn::Max(hn::Sub(child_low, hn::Set(d, high)), hn::Sub(hn::Set(d, low), child_high));
+                const auto clear =
+                    hn::Mul(hn::Max(hn::Sub(gap, hn::Set(d, kBoxSlack)), hn::Zero(d)), hn::Set(d, stretch));
+                sum = hn::MulAdd(clear, clear, sum);
+            };
+            add_axis(0, origin_.x, low_.x, high_.x, stretch_float_.x);
+            add_axis(1, origin_.y, low_.y, high_.y, stretch_float_.y);
+            add_axis(2, origin_.z, low_.z, high_.z, stretch_float_.z);
+            const auto none = hn::Gt(bound(node.low[0]), bound(node.high[0]));
+            hn::Store(hn::IfThenElse(none, hn::Set(d, std::numeric_limits<float>::infinity()), sum), d,
+                      distances_sq + lane);
+        }
+    }
+
+    /// Is a box too far from every single place?
+    bool is_far(const Waiting& waiting) const {
+        constexpr Floats f;
+        const TreeNode& node = map_.nodes[waiting.node];
+        FloatLanes sum = hn::Zero(f);
+        const auto add_axis = [&](std::size_t axis, std::int32_t origin, FloatLanes place, float stretch) {
+            const auto bound = [&](const std::int16_t(&bounds)[TreeNode::kWidth]) {
+                return hn::Set(f,
+                               static_cast<float>(bounds[waiting.child] * ExactMapView::kBoxUnit - origin));
+            };
+            const FloatLanes gap =
+                hn::Max(hn::Sub(bound(node.low[axis]), place), hn::Sub(place, bound(node.high[axis])));
+            const FloatLanes clear =
+                hn::Mul(hn::Max(hn::Sub(gap, hn::Set(f, kBoxSlack)), hn::Zero(f)), hn::Set(f, stretch));
+            sum = hn::MulAdd(clear, clear, sum);
+        };
+        add_axis(0, origin_.x, flat_.x, stretch_float_.x);
+        add_axis(1, origin_.y, flat_.y, stretch_float_.y);
+        add_axis(2, origin_.z, flat_.z, stretch_float_.z);
+        return hn::AllTrue(f, hn::Gt(sum, upper_));
+    }
+
+    const LeafLanes& leaf_at(std::uint32_t first, std::uint32_t count) {
+        const std::size_t slot = first / TreeNode::kWidth % kKeptLeaves;
+        if (leaf_of_slot_[slot] != first) {
+            leaf_of_slot_[slot] = first;
+            leaves_[slot].prepare(map_, first, count, origin_, stretch_float_, reach_);
+        }
+        return leaves_[slot];
+    }
+
+    bool visit_leaf(std::uint32_t first) {
+        constexpr Floats f;
+        const auto count = std::min(static_cast<std::uint32_t>(TreeNode::kWidth),
+                                    static_cast<std::uint32_t>(map_.face_count()) - first);
+        const LeafLanes& leaf = leaf_at(first, count);
+        alignas(32) std::array<float, TreeNode::kWidth> distances_sq;
+        leaf.distances_sq_to_box(stretched_low_, stretched_high_, distances_sq);
+        for (std::uint32_t lane = 0; lane < count; ++lane) {
+            if (!(distances_sq[lane] <= farthest_upper_)) continue;
+            const auto [lower, upper] = leaf.distances_sq(lane, places_);
+            if (hn::AllFalse(f, hn::Le(lower, upper_))) continue;
+            if (candidates_.full()) candidates_.keep_within(upper_);
+            if (candidates_.full()) return false;
+            candidates_.add(first + lane, lower);
+            if (!hn::AllFalse(f, hn::Lt(upper, upper_))) last_leaf_ = first;
+            upper_ = hn::Min(upper_, upper);
+        }
+        farthest_upper_ = most(upper_);
+        return true;
+    }
+
+    /// Of each place's candidates the one that the reference takes.
+    void choose(std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) const {
+        std::array<double, kMostLanes> distances_sq;
+        std::uint32_t measured = 0; // places whose face's distance is known
+        std::fill(faces.begin(), faces.end(), kNoFace);
+        const std::uint32_t asked = (1U << searches.size()) - 1;
+        for (std::size_t i = 0; i < candidates_.size(); ++i) {
+            const std::uint32_t face = candidates_.face(i);
+            for (std::uint32_t rest = candidates_.places_within(i, upper_) & asked; rest != 0;
+                 rest &= rest - 1) {
+                const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
+                const NearestSearch& search = searches[lane];
+                const bool bounded = search.farthest < kEverywhere;
+                if (faces[lane] == kNoFace && !bounded) { // there must be one, and this may be it
+                    faces[lane] = face;
+                    continue;
+                }
+                const auto distance_to = [&](std::uint32_t other) {
+                    return distance_sq_to_face(map_, other, search.place, stretch_);
+                };
+                if (faces[lane] != kNoFace && (measured >> lane & 1) == 0)
+                    distances_sq[lane] = distance_to(faces[lane]);
+                measured |= 1U << lane;
+                const double distance_sq = distance_to(face);
+                const bool nearer = faces[lane] == kNoFace
+                                        ? distance_sq <= search.farthest * search.farthest
+                                        : distance_sq < distances_sq[lane] ||
+                                              (distance_sq == distances_sq[lane] && face < faces[lane]);
+                if (!nearer) continue;
+                faces[lane] = face;
+                distances_sq[lane] = distance_sq;
+            }
+        }
+    }
+
+    static constexpr float kBoxSlack = 1; ///< lattice steps, more than is rounded
+
+    const ExactMapView& map_;
+    Vec3d stretch_;
+    Vec3f stretch_float_;
+    std::uint32_t last_leaf_ = kNoFace; ///< its first face; where the last places found their nearest
+
+    Vec3<std::int32_t> origin_; ///< on the lattice, near all places
+    float reach_ = 0;           ///< no place's coordinates, taken together, are farther from it
+
+    // The places at hand.
+    PointLanes flat_ = at_origin(), places_ = at_origin(); ///< before and after stretching
+    Vec3f low_, high_;                                     ///< the box around them, before stretching
+    Vec3f stretched_low_, stretched_high_;
+    FloatLanes upper_;         ///< squared distance within which the nearest face of each surely lies
+    float farthest_upper_ = 0; ///< most of those
+
+    static constexpr std::size_t kKeptLeaves = 32;
+    std::array<std::uint32_t, kKeptLeaves> leaf_of_slot_; ///< first face, or kNoFace
+    std::array<LeafLanes, kKeptLeaves> leaves_;
+
+    Candidates candidates_;
+    static constexpr std::size_t kMaxDepth = 12; // as in walk_near_leaves()
+    std::array<Waiting, kMaxDepth * TreeNode::kWidth> waiting_;
+};
+
+} // namespace
+
+void find_nearest_faces(const ExactMapView& map, const Vec3d& stretch,
+                        std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) {
+    if (searches.empty()) return;
+    // Flatter, and products of lengths leave the range of single precision.
+    constexpr double kFlattest = 1e-6;
+    if (std::min({std::fabs(stretch.x), std::fabs(stretch.y), std::fabs(stretch.z)}) < kFlattest) {
+        for (std::size_t i = 0; i < searches.size(); ++i)
+            faces[i] = nearest_by_reference(map, stretch, searches[i]);
+        return;
+    }
+    NearestFaceFinder finder(map, stretch, searches);
+    const std::size_t lanes = hn::Lanes(Floats());
+    for (std::size_t begin = 0; begin < searches.size(); begin += lanes) {
+        const std::size_t count = std::min(lanes, searches.size() - begin);
+        finder.find(searches.subspan(begin, count), faces.subspan(begin, count));
+    }
+}
+
+#else
+
+void find_nearest_faces(const ExactMapView& map, const Vec3d& stretch,
+                        std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) {
+    for (std::size_t i = 0; i < searches.size(); ++i)
+        faces[i] = nearest_by_reference(map, stretch, searches[i]);
+}
+
+#endif
+
+} // namespace echinus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace echinus {
+
+namespace {
+
+HWY_EXPORT(find_nearest_faces);
+
+} // namespace
+
+void find_nearest_faces(const ExactMapView& map, const Vec3d& stretch,
+                        std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) noexcept {
+    assert(searches.size() == faces.size());
+    ECHINUS_DISPATCH(find_nearest_faces)(map, stretch, searches, faces);
+}
+
+} // namespace echinus
+#endif

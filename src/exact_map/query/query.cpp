@@ -1,0 +1,54 @@
+// What is inside, and the nearest way out.
+
+#include "exact_map/query/contact_batch.hpp"
+#include "exact_map/query/contact_search.hpp"
+#include "exact_map/query/sides.hpp"
+#include "geometry/parallel.hpp"
+#include "simd/dispatch.hpp"
+
+#include <cassert>
+#include <new>
+
+namespace echinus {
+
+bool contains(const ExactMapView& map, Vec3f point_local) noexcept {
+    return classify(map, point_local).inside;
+}
+
+Containment classify(const ExactMapView& map, Vec3f point_local) noexcept {
+    return containment_at(map, frame_of(map), point_local);
+}
+
+Contact contact(const ExactMapView& map, Vec3f point_local, float margin, const Vec3d& stretch) noexcept {
+    return ContactSearch(map, stretch, margin)(point_local);
+}
+
+void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
+                    std::span<std::uint8_t> inside, unsigned thread_count) noexcept {
+    assert(points_local.size() == inside.size());
+    for_each_piece(inside.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        const std::span<Side> sides = inside.subspan(begin, end - begin);
+        find_sides(map, points_local.subspan(begin, end - begin), sides);
+        if (map.border.empty()) return;
+        for (Side& side : sides) side &= kInside;
+    });
+}
+
+void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local, float margin,
+                    std::span<Contact> contacts, const Vec3d& stretch, unsigned thread_count) noexcept {
+    assert(points_local.size() == contacts.size());
+    const ContactSearch search(map, stretch, margin);
+    for_each_piece(contacts.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        if (use_kernels()) {
+            try {
+                find_contacts(search, points_local.subspan(begin, end - begin),
+                              contacts.subspan(begin, end - begin));
+                return;
+            } catch (const std::bad_alloc&) { // the reference needs no memory
+            }
+        }
+        for (std::size_t i = begin; i < end; ++i) contacts[i] = search(points_local[i]);
+    });
+}
+
+} // namespace echinus

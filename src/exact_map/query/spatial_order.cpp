@@ -1,0 +1,44 @@
+#include "exact_map/query/spatial_order.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace echinus {
+
+namespace {
+
+/// Moves bits apart: bit k goes to 3 k. @param bits  MortonCurve::kBitsPerAxis of them
+std::uint32_t spread(std::uint32_t bits) {
+    bits = (bits | bits << 8) & 0x0700F;
+    bits = (bits | bits << 4) & 0x430C3;
+    return (bits | bits << 2) & 0x49249;
+}
+
+} // namespace
+
+MortonCurve::MortonCurve(const Vec3f& centre, float radius)
+    : low_(centre - Vec3f{radius, radius, radius}), cells_per_unit_((kLast + 1) / (2 * radius)) {}
+
+std::uint32_t MortonCurve::key(const Vec3f& point_local) const noexcept {
+    const auto cell = [&](float coordinate, float low) {
+        const float place = (coordinate - low) * cells_per_unit_;
+        return static_cast<std::uint32_t>(std::min(std::max(0.0F, place), static_cast<float>(kLast)));
+    };
+    return spread(cell(point_local.x, low_.x)) | spread(cell(point_local.y, low_.y)) << 1 |
+           spread(cell(point_local.z, low_.z)) << 2;
+}
+
+void sort_by_key(std::span<Station> stations, std::span<Station> spare) noexcept {
+    constexpr int kDigitBits = 11;
+    constexpr std::uint32_t kMask = (1U << kDigitBits) - 1;
+    static_assert(3 * MortonCurve::kBitsPerAxis <= 2 * kDigitBits); // so that two passes do
+    for (int shift = 0; shift < 2 * kDigitBits; shift += kDigitBits) {
+        std::array<std::uint32_t, kMask + 2> starts{};
+        for (const Station& station : stations) ++starts[(station.key >> shift & kMask) + 1];
+        for (std::size_t digit = 1; digit < starts.size(); ++digit) starts[digit] += starts[digit - 1];
+        for (const Station& station : stations) spare[starts[station.key >> shift & kMask]++] = station;
+        std::swap(stations, spare);
+    }
+}
+
+} // namespace echinus

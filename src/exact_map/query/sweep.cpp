@@ -1,0 +1,153 @@
+// Where a particle's way first meets the surface: the face tree's boxes along the way, nearest first, and an
+// exact test of each face.
+
+#include "exact_map/layout.hpp"
+#include "exact_map/query/face_tree_walk.hpp"
+#include "exact_map/query/segment_crossing.hpp"
+#include "exact_map/query/winding.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace echinus {
+
+namespace {
+
+/// A step beyond the lattice: an end that is cut off there is outside, and what contains() takes to lie on
+/// the lattice is not cut off.
+constexpr std::int64_t kLatticeLimit = kLatticeExtent + 1;
+constexpr auto kLimit = static_cast<double>(kLatticeLimit);
+
+/// Moves one end of a segment towards the other, to where the lattice begins: beyond there is no surface.
+/// Measured from the other end, so that one that lies on the lattice leaves the cut exact, however far away
+/// this one is.
+/// @return false when the whole segment lies beyond
+bool cut_to_lattice(Vec3d& end, const Vec3d& other) {
+    double share = 1;
+    for (double Vec3d::*c : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
+        if (std::fabs(end.*c) <= kLimit) continue;
+        const double limit = end.*c > 0 ? kLimit : -kLimit;
+        if (end.*c > 0 ? other.*c > limit : other.*c < limit) return false;
+        share = std::min(share, (limit - other.*c) / (end.*c - other.*c));
+    }
+    if (share < 1) end = other + (end - other) * share;
+    return true;
+}
+
+LatticePoint clamped(const LatticePoint& p) {
+    const auto clamp = [](std::int64_t c) { return std::clamp(c, -kLatticeLimit, kLatticeLimit); };
+    return {clamp(p.x), clamp(p.y), clamp(p.z)};
+}
+
+/// Parameters at which a segment enters the boxes of a node's children, from below; more than 1 for those
+/// that it does not meet. Boxes are widened by a step, far more than single precision loses.
+class BoxEntries {
+  public:
+    BoxEntries(const LatticePoint& from, const LatticePoint& to) : from_(from), way_(to - from) {}
+
+    ChildDistances operator()(const TreeNode& node) const {
+        ChildDistances result;
+        for (std::size_t k = 0; k < TreeNode::kWidth; ++k) {
+            float enter = 0, leave = 1;
+            clip(node.low[0][k], node.high[0][k], from_.x, way_.x, enter, leave);
+            clip(node.low[1][k], node.high[1][k], from_.y, way_.y, enter, leave);
+            clip(node.low[2][k], node.high[2][k], from_.z, way_.z, enter, leave);
+            result[k] = enter <= leave ? enter : kMissed;
+        }
+        return result;
+    }
+
+  private:
+    static constexpr float kMissed = 2;
+    static constexpr float kUnit = ExactMapView::kBoxUnit;
+    static constexpr float kSlack = 1;
+    /// Of parameters: a division and a multiplication are off by 2^-23.
+    static constexpr float kParameterSlack = 1e-6F;
+
+    static void clip(std::int16_t low, std::int16_t high, float from, float way, float& enter, float& leave) {
+        const float to_low = low * kUnit - kSlack - from;
+        const float to_high = high * kUnit + kSlack - from;
+        if (way == 0) {
+            if (to_low > 0 || to_high < 0) leave = -1;
+            return;
+        }
+        const float near = (way > 0 ? to_low : to_high) / way - kParameterSlack;
+        const float far = (way > 0 ? to_high : to_low) / way + kParameterSlack;
+        enter = near > enter ? near : enter;
+        leave = far < leave ? far : leave;
+    }
+
+    Vec3f from_, way_;
+};
+
+struct FaceCrossing {
+    SegmentCrossing crossing;
+    std::uint32_t face;
+};
+
+std::optional<FaceCrossing> first_crossing(const ExactMapView& map, const LatticePoint& from,
+                                           const LatticePoint& to) {
+    std::optional<FaceCrossing> first;
+    float bound = 1;
+    walk_near_leaves(map, bound, BoxEntries(from, to), [&](const LeafFaces& faces) {
+        for (std::uint32_t face = faces.first; face < faces.last; ++face) {
+            const auto crossing = crossing_with_face(face_corners(map, face), from, to);
+            if (!crossing || (first && !crossing->before(first->crossing))) continue;
+            first = FaceCrossing{*crossing, face};
+            bound = static_cast<float>(crossing->parameter()) + 1e-6F;
+        }
+    });
+    return first;
+}
+
+/// Both ends in one gap of one cell: what lies between planes through the centre and between two planes
+/// across is convex, so the whole way does, and no surface with it. Most ways of a cloth's particles end
+/// here.
+bool stays_in_gap(const ExactMapView& map, const LatticePoint& from, const LatticePoint& to) {
+    const OctahedralCells cells(map.divisions);
+    const std::uint32_t cell = cells.locate(from).cell;
+    if (cell != cells.locate(to).cell) return false;
+    const BandRange bands = bands_of_cell(map, cell);
+    const std::int64_t t_from = band_unit_of(l1_norm(from));
+    const std::int64_t t_to = band_unit_of(l1_norm(to));
+    for (std::uint32_t band = bands.first; band < bands.last; ++band) {
+        if (t_from >= map.bands[band].upper && t_to >= map.bands[band].upper) continue;
+        return t_from < map.bands[band].lower && t_to < map.bands[band].lower;
+    }
+    return true;
+}
+
+} // namespace
+
+SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexcept {
+    SweepHit hit;
+    hit.point = to_local;
+    if (!is_finite(from_local) || !is_finite(to_local)) return hit;
+    const LatticeFrame frame = frame_of(map);
+    const Vec3d from_place = frame.to_lattice(from_local), to_place = frame.to_lattice(to_local);
+    Vec3d start = from_place, end = to_place;
+    if (!cut_to_lattice(start, end) || !cut_to_lattice(end, start)) return hit;
+    const LatticePoint from = clamped(rounded(start));
+    const LatticePoint to = clamped(rounded(end));
+    if (from == to || stays_in_gap(map, from, to)) return hit;
+    const std::optional<FaceCrossing> first = first_crossing(map, from, to);
+    if (!first) return hit;
+    const double share = std::clamp(first->crossing.parameter(), 0.0, 1.0);
+    const Vec3d place = start + (end - start) * share;
+    const double parameter = std::min(1.0, length(place - from_place) / length(to_place - from_place));
+    // Faces may be turned the other way: what counts is which side of this one is solid.
+    const std::int64_t before = winding_at(map, from).number;
+    const std::int64_t after = before + (first->crossing.entering() ? 1 : -1);
+    const bool inside_before = is_inside(map.rule, before), inside_after = is_inside(map.rule, after);
+    const bool turned =
+        first->crossing.entering() ? inside_before && !inside_after : inside_after && !inside_before;
+    const Vec3d normal = Vec3d(first->crossing.normal) * (turned ? -1.0 : 1.0);
+    hit.parameter = static_cast<float>(parameter);
+    hit.point = Vec3f(frame.to_local(place));
+    hit.normal = Vec3f(normal * (1 / length(normal)));
+    hit.face = static_cast<std::int32_t>(map.face_numbers[first->face]);
+    hit.entering = inside_after && !inside_before;
+    return hit;
+}
+
+} // namespace echinus

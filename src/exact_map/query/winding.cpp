@@ -1,0 +1,114 @@
+#include "exact_map/query/winding.hpp"
+
+#include "exact_map/border_part.hpp"
+#include "exact_map/layout.hpp"
+#include "exact_map/query/ray_crossing.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace echinus {
+
+namespace {
+
+/// The lists of a map with the width of their numbers known.
+template <typename Face, typename Vertex>
+struct Lists {
+    const ExactMapView& map;
+    const Face* references;
+    const Vertex* corners;
+
+    const std::int32_t* corner(std::uint32_t face, std::size_t k) const {
+        return &map.vertices[corners[3 * std::size_t{face} + k]].x;
+    }
+
+    /// Signed crossings of a particle's ray with references [first, last), on one side of the particle.
+    /// @param part  of its cell in which the particle lies
+    int crossings(RaySide side, std::uint32_t first, std::uint32_t last, std::uint32_t part,
+                  const LatticePoint& p) const {
+        const CrossingFilter filter(p);
+        constexpr std::uint32_t kPieceSize = 64;
+        std::array<Face, kPieceSize> faces;
+        int sum = 0;
+        for (std::uint32_t begin = first; begin < last; begin += kPieceSize) {
+            const std::uint32_t end = std::min(begin + kPieceSize, last);
+            std::uint32_t count = 0; // of the faces that touch the part; listed without a branch
+            for (std::uint32_t r = begin; r < end; ++r) {
+                faces[count] = references[r];
+                count += std::uint32_t{map.reference_parts[r]} >> part & 1U;
+            }
+            for (std::uint32_t i = 0; i < count; ++i) {
+                const std::uint32_t face = faces[i];
+                const auto [crossing, sure] = filter(side, corner(face, 0), corner(face, 1), corner(face, 2));
+                sum += sure ? crossing : crossing_on(side, face_corners(map, face), p);
+            }
+        }
+        return sum;
+    }
+};
+
+/// Clang deduces the parameters of an aggregate only if told how.
+template <typename Face, typename Vertex>
+Lists(const ExactMapView&, const Face*, const Vertex*) -> Lists<Face, Vertex>;
+
+int crossings_in_band(const ExactMapView& map, RaySide side, std::uint32_t band, std::uint32_t part,
+                      const LatticePoint& p) {
+    const auto crossings = [&](const auto& lists) {
+        return lists.crossings(side, map.bands[band].first_reference, map.bands[band + 1].first_reference,
+                               part, p);
+    };
+    const auto with_corners = [&](const auto* references) {
+        return map.corners.wide.empty() ? crossings(Lists{map, references, map.corners.narrow.data()})
+                                        : crossings(Lists{map, references, map.corners.wide.data()});
+    };
+    return map.references.wide.empty() ? with_corners(map.references.narrow.data())
+                                       : with_corners(map.references.wide.data());
+}
+
+/// The generalised winding number of an open surface, rounded. @param innermost_band  first that lies beyond
+/// p
+Winding generalised_winding(const ExactMapView& map, std::uint32_t innermost_band, const BandRange& bands,
+                            std::uint32_t part, const LatticePoint& p) {
+    int crossings = 0;
+    for (std::uint32_t band = innermost_band; band < bands.last; ++band)
+        crossings += crossings_in_band(map, RaySide::Beyond, band, part, p);
+    return {std::llrint(crossings + border_part(map.border, map.vertices, p)), false};
+}
+
+/// Of a place beyond the lattice. Around a closed surface it is 0; an open one's fades only with distance.
+Winding winding_beyond_lattice(const ExactMapView& map, const Vec3d& place) {
+    if (map.border.empty() || !is_finite(place)) return {};
+    const double largest = std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)});
+    const double shrink = static_cast<double>(kLatticeExtent) / largest;
+    return {std::llrint(border_part(map.border, map.vertices, rounded(place * shrink), 1 / shrink)), false};
+}
+
+} // namespace
+
+Winding winding_at(const ExactMapView& map, const LatticePoint& p) noexcept {
+    const auto [cell, part] = OctahedralCells(map.divisions).locate(p);
+    const std::int64_t t = band_unit_of(l1_norm(p));
+    if (t >= map.reaches[cell] && map.border.empty()) return {};
+    const BandRange bands = bands_of_cell(map, cell);
+    std::uint32_t band = bands.first;
+    while (band < bands.last && t >= map.bands[band].upper) ++band;
+    if (band == bands.last) return generalised_winding(map, band, bands, part, p);
+    const bool in_gap = t < map.bands[band].lower;
+    const int winding = in_gap ? map.winding_below[band] : winding_beyond(map, band, bands);
+    if (winding == ExactMapView::kUncertain) return generalised_winding(map, band, bands, part, p);
+    if (in_gap) return {winding};
+    if (winding == ExactMapView::kSplit)
+        return {map.winding_below[band] - crossings_in_band(map, RaySide::Before, band, part, p)};
+    return {winding + crossings_in_band(map, RaySide::Beyond, band, part, p)};
+}
+
+Winding winding_at(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local) noexcept {
+    constexpr double kLimit = static_cast<double>(kLatticeExtent) + 0.5; // what is rounded into the lattice
+    const Vec3d place = frame.to_lattice(point_local);
+    const bool on_lattice =
+        (std::fabs(place.x) <= kLimit) & (std::fabs(place.y) <= kLimit) & (std::fabs(place.z) <= kLimit);
+    return on_lattice ? winding_at(map, rounded(place)) : winding_beyond_lattice(map, place);
+}
+
+} // namespace echinus
