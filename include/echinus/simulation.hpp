@@ -178,13 +178,13 @@ class Simulation {
 
     /// Steers a collider: it keeps these velocities until they are set again.
     /// @pre collider_index < colliders().size()
-    void set_velocities(std::size_t collider_index, const Vec3d& linear, const Vec3d& angular);
+    void set_collider_velocity(std::size_t collider_index, const Vec3d& linear, const Vec3d& angular);
 
     /// Gives a particle a velocity, units per second, from which the next frame goes on as from any other:
     /// sticks pull at it and colliders stop it, so a hand that drags particles, setting their velocities
     /// before each frame to what would take them to it, drags nobody into a model. A pinned particle stays.
     /// @pre particle < particle_count(), and the velocity is finite
-    void set_velocity(std::size_t particle, const Vec3d& velocity);
+    void set_particle_velocity(std::size_t particle, const Vec3d& velocity);
 
     /// Wind for the time of one frame: of the velocity with which air moves across a face, along its normal,
     /// particles take on the share rate * time_step, each as the mean over the faces around it. Along a face

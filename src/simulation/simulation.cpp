@@ -288,13 +288,14 @@ const SimulationProfile& Simulation::profile() const {
     return solver_->profile;
 }
 
-void Simulation::set_velocities(std::size_t collider_index, const Vec3d& linear, const Vec3d& angular) {
+void Simulation::set_collider_velocity(std::size_t collider_index, const Vec3d& linear,
+                                       const Vec3d& angular) {
     solver_->colliders[collider_index].linear_velocity = linear;
     solver_->colliders[collider_index].angular_velocity = angular;
 }
 
-void Simulation::set_velocity(std::size_t particle, const Vec3d& velocity) {
-    solver_->set_velocity(particle, velocity);
+void Simulation::set_particle_velocity(std::size_t particle, const Vec3d& velocity) {
+    solver_->set_particle_velocity(particle, velocity);
 }
 
 void Simulation::blow(const Vec3d& wind, double rate) {

@@ -18,7 +18,7 @@ class Simulation::Solver {
     Solver(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
 
     void step();
-    void set_velocity(std::size_t particle, const Vec3d& velocity);
+    void set_particle_velocity(std::size_t particle, const Vec3d& velocity);
     void blow(const Vec3d& wind, double rate);
     bool at_rest() const { return quiet_frame_count_ >= options.rest.frame_count; }
 

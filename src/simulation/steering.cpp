@@ -7,7 +7,7 @@
 namespace echinus {
 
 /// The velocity is what the particle moved in the last substep.
-void Simulation::Solver::set_velocity(std::size_t particle, const Vec3d& velocity) {
+void Simulation::Solver::set_particle_velocity(std::size_t particle, const Vec3d& velocity) {
     if (particles_.pinned(particle)) return;
     const Vec3f before(Vec3d(particles_.positions[particle]) - velocity * substep_seconds_);
     particles_.previous.set(particle, before);

@@ -210,7 +210,7 @@ TEST(ExactCollision, KeepsAParticleFreeOfTwoCollidersWhileThereIsRoom) {
     const Collider above{.map = plate, .pose = {Rotation{}, {0, 0, 0.152}}, .linear_velocity = {0, 0, -1}};
     Simulation simulation(test::sheet_at(0.02, 0.5, 8), {below, above}, {.thickness = kThickness});
     EXPECT_EQ(lost_in(simulation, 24), 0u);
-    simulation.set_velocities(1, {}, {});
+    simulation.set_collider_velocity(1, {}, {});
     EXPECT_EQ(lost_in(simulation, 60), 0u);
     EXPECT_EQ(simulation.profile().lost_count, 0u);
 }

@@ -32,7 +32,7 @@ TEST(Steering, GivesAParticleItsVelocity) {
                            .sticks = {},
                            .faces = {}},
                           {}, kWeightless);
-    simulation.set_velocity(0, {10, 0, -20});
+    simulation.set_particle_velocity(0, {10, 0, -20});
     simulation.step();
     EXPECT_NEAR(simulation.positions()[0].x, 1.1, 1e-6);
     EXPECT_NEAR(simulation.positions()[0].z, 2.8, 1e-6);
@@ -42,7 +42,7 @@ TEST(Steering, GivesAParticleItsVelocity) {
 TEST(Steering, LeavesAPinnedParticleWhereItIs) {
     Simulation simulation = sheet(kWeightless, {0});
     const Vec3f before = simulation.positions()[0];
-    simulation.set_velocity(0, {10, 0, 0});
+    simulation.set_particle_velocity(0, {10, 0, 0});
     for (int i = 0; i < 10; ++i) {
         simulation.blow({0, 0, 10}, 5);
         simulation.step();
@@ -64,7 +64,7 @@ TEST(Steering, DragsNobodyIntoAModel) {
         const std::size_t grabbed = 190;
         // Through the ring's tube to the other side.
         const Vec3d way = Vec3d{1, 0, -2} - Vec3d(simulation.positions()[grabbed]);
-        simulation.set_velocity(grabbed, way * (0.2 / simulation.options().time_step));
+        simulation.set_particle_velocity(grabbed, way * (0.2 / simulation.options().time_step));
         simulation.step();
     }
     for (const Vec3f& position : simulation.positions()) EXPECT_FALSE(contains(collider, position));
@@ -92,7 +92,8 @@ TEST(Steering, WindGivesItsShareInOneFrame) {
 
 TEST(Steering, AirAtRestBrakesAndNeverTurnsRound) {
     Simulation simulation = sheet(kWeightless);
-    for (std::size_t i = 0; i < simulation.positions().size(); ++i) simulation.set_velocity(i, {0, 0, 1});
+    for (std::size_t i = 0; i < simulation.positions().size(); ++i)
+        simulation.set_particle_velocity(i, {0, 0, 1});
     simulation.blow({}, 1e9);
     EXPECT_NEAR(mean_velocity(simulation).z, 0, 1e-5);
 }

@@ -186,7 +186,7 @@ describe('A simulation', () => {
     test('has a collider that turns when it is told to', () => {
         const scene = echinus.parseScene(readScene('torus_small.json'));
         const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
-        simulation.setVelocities([0, 0, 1], [0, 0, Math.PI]);
+        simulation.setColliderVelocity([0, 0, 1], [0, 0, Math.PI]);
         simulation.step(60);
         const { position, rotation } = simulation.collider;
         assert.ok(Math.abs(position[2] - 60 * scene.timeStep) < 1e-9);
@@ -198,7 +198,7 @@ describe('A simulation', () => {
         const place = (i) => Array.from(simulation.positions.subarray(3 * i, 3 * i + 3));
         for (let i = 0; i < 100; ++i) {
             const way = [1, 0, -2].map((c, k) => c - place(190)[k]);
-            simulation.setVelocity(190, way.map((c) => c / (5 * scene.timeStep)));
+            simulation.setParticleVelocity(190, way.map((c) => c / (5 * scene.timeStep)));
             simulation.step();
         }
         assert.ok(place(190)[2] < 0.45);

@@ -271,8 +271,8 @@ describe('A simulation', () => {
         const scene = echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [10, 10] } });
         const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
         for (const use of [
-            () => simulation.setVelocity(100, [0, 0, 0]), () => simulation.setVelocity(-1, [0, 0, 0]), () => simulation.setVelocity(0, [NaN, 0, 0]),
-            () => simulation.setVelocities([0, 0, 0], [0, Infinity, 0]), () => simulation.blow([0, NaN, 0], 1), () => simulation.blow([0, 0, 0], -1),
+            () => simulation.setParticleVelocity(100, [0, 0, 0]), () => simulation.setParticleVelocity(-1, [0, 0, 0]), () => simulation.setParticleVelocity(0, [NaN, 0, 0]),
+            () => simulation.setColliderVelocity([0, 0, 0], [0, Infinity, 0]), () => simulation.blow([0, NaN, 0], 1), () => simulation.blow([0, 0, 0], -1),
             () => simulation.step(-1), () => simulation.containsBatch(echinus.makeFlags(99)),
         ])
             assert.equal(errorOf(use).code, 'InvalidArgument');

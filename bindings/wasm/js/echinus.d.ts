@@ -472,14 +472,14 @@ export class Simulation extends Deletable {
      */
     continueWith(scene: Scene): Simulation;
     /** Steers the collider: it keeps these velocities until they are set again. Units and radians per second. */
-    setVelocities(linear: Vec3, angular: Vec3): void;
+    setColliderVelocity(linear: Vec3, angular: Vec3): void;
 
     /**
      * Gives a particle a velocity, units per second. To drag with the pointer, set it before each step, for the grabbed
      * particle and its near neighbours, to (where the pointer wants it - where it is) / (about 5 time steps): sticks pull
      * at them and the collider stops them, so nobody is dragged into the model.
      */
-    setVelocity(particle: number, velocity: Vec3): void;
+    setParticleVelocity(particle: number, velocity: Vec3): void;
     /**
      * Wind for one frame, to be called before each step.
      * @param wind  velocity of the air, units per second

@@ -81,16 +81,16 @@ export class Simulation extends Handle {
     get collider() {
         return this.core.json('simulation_collider', this.address);
     }
-    setVelocities(linear, angular) {
+    setColliderVelocity(linear, angular) {
         requireFinite(linear, 'the linear velocity');
         requireFinite(angular, 'the angular velocity');
-        this.core.call('simulation_set_velocities', this.address, ...linear, ...angular);
+        this.core.call('simulation_set_collider_velocity', this.address, ...linear, ...angular);
     }
 
-    setVelocity(particle, velocity) {
+    setParticleVelocity(particle, velocity) {
         requireCount(particle, 'the particle');
         if (particle >= this.particleCount) refuse(`there is no particle ${particle}; there are ${this.particleCount}`);
-        this.core.call('simulation_set_velocity', this.address, particle, ...requireFinite(velocity, 'the velocity'));
+        this.core.call('simulation_set_particle_velocity', this.address, particle, ...requireFinite(velocity, 'the velocity'));
     }
     blow(wind, rate) {
         if (!(rate >= 0 && rate < Infinity)) refuse(`the rate is ${String(rate)}; it must be a finite number, not negative`);

@@ -149,17 +149,18 @@ ECHINUS_EXPORT(simulation_profile) Text* simulation_profile(const Simulation* si
 ECHINUS_EXPORT(simulation_collider) Text* simulation_collider(const Simulation* simulation) {
     return make_json([&] { return to_json(collider_of(*simulation)); });
 }
-ECHINUS_EXPORT(simulation_set_velocities)
-void simulation_set_velocities(Simulation* simulation, double linear_x, double linear_y, double linear_z,
-                               double angular_x, double angular_y, double angular_z) {
-    simulation->set_velocities(0, {linear_x, linear_y, linear_z}, {angular_x, angular_y, angular_z});
+ECHINUS_EXPORT(simulation_set_collider_velocity)
+void simulation_set_collider_velocity(Simulation* simulation, double linear_x, double linear_y,
+                                      double linear_z, double angular_x, double angular_y, double angular_z) {
+    simulation->set_collider_velocity(0, {linear_x, linear_y, linear_z}, {angular_x, angular_y, angular_z});
 }
 
 // ---- A hand and wind
 
-ECHINUS_EXPORT(simulation_set_velocity)
-void simulation_set_velocity(Simulation* simulation, std::uint32_t particle, double x, double y, double z) {
-    simulation->set_velocity(particle, {x, y, z});
+ECHINUS_EXPORT(simulation_set_particle_velocity)
+void simulation_set_particle_velocity(Simulation* simulation, std::uint32_t particle, double x, double y,
+                                      double z) {
+    simulation->set_particle_velocity(particle, {x, y, z});
 }
 ECHINUS_EXPORT(simulation_blow)
 bool simulation_blow(Simulation* simulation, double x, double y, double z, double rate) {

@@ -42,7 +42,7 @@ export class Hand {
             const velocity = [0, 1, 2].map((k) => (this.#target[k] + offset[k] - positions[3 * particle + k]) / (5 * timeStep));
             const speed = Math.hypot(...velocity);
             const share = speed > limit ? limit / speed : 1;
-            simulation.setVelocity(particle, velocity.map((part) => share * part));
+            simulation.setParticleVelocity(particle, velocity.map((part) => share * part));
         }
     }
 }

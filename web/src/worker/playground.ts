@@ -181,7 +181,7 @@ export class Playground {
         const { radius, up } = this.body;
         const frame = this.#earlierFrames + simulation.frame;
         const { linear, angular } = motionAt(this.#settings.motion, UNIT[up], frame * this.#scene.timeStep, this.body.centre, simulation.collider);
-        simulation.setVelocities(linear, angular);
+        simulation.setColliderVelocity(linear, angular);
         if (this.#settings.wind > 0) simulation.blow(this.#wind(frame), 4);
         this.hand.pull(simulation, this.#scene.timeStep, 12 * radius);
         simulation.step();
