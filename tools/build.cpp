@@ -185,7 +185,7 @@ void add_exact_options(CLI::App& command, BuildArguments& arguments) {
             ->type_name("COUNT"),
         add_byte_count(
             command, "--budget", arguments.exact.byte_budget,
-            "The most bytes of the map, as 300KB (units B, KB, MB, KiB, MiB): as many cells as keep "
+            "The most bytes of the map, as 300KB (units B, KB, MB, GB, KiB, MiB, GiB): as many cells as keep "
             "within")
             ->excludes("--cells-per-octant"),
         add_choice<InsideRule>(command, "--rule", arguments.exact.rule,

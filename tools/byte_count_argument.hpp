@@ -11,8 +11,13 @@
 
 /// A number of bytes written with its unit, as "300KB" or "0.3MB"; nothing for any other text.
 inline std::optional<std::size_t> parse_byte_count(std::string_view text) {
-    constexpr std::pair<std::string_view, double> kUnits[] = {
-        {"B", 1}, {"KB", 1e3}, {"MB", 1e6}, {"KiB", 1024}, {"MiB", 1024 * 1024}};
+    constexpr std::pair<std::string_view, double> kUnits[] = {{"B", 1},
+                                                              {"KB", 1e3},
+                                                              {"MB", 1e6},
+                                                              {"GB", 1e9},
+                                                              {"KiB", 1024},
+                                                              {"MiB", 1024 * 1024},
+                                                              {"GiB", 1024 * 1024 * 1024}};
     constexpr double kMost = 1e15; // so that it is a number of bytes
     double number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -30,10 +35,10 @@ inline CLI::Option* add_byte_count(CLI::App& command, const std::string& option,
     const auto store = [option, &variable](const std::string& text) {
         const std::optional<std::size_t> bytes = parse_byte_count(text);
         if (!bytes)
-            throw CLI::ValidationError(option,
-                                       "must be a number of at least one byte with one of the units B, KB, "
-                                       "MB, KiB and MiB, such as 300KB, not " +
-                                           text);
+            throw CLI::ValidationError(
+                option, "must be a number of bytes, at least one and at most 1000000GB, with "
+                        "one of the units B, KB, MB, GB, KiB, MiB and GiB, such as 300KB, not " +
+                            text);
         variable = *bytes;
     };
     return command.add_option_function<std::string>(option, store, description)->type_name("SIZE");

@@ -90,6 +90,17 @@ TEST_F(BuildCommand, KeepsWithinABudgetInAnyUnit) {
     }
 }
 
+TEST_F(BuildCommand, TakesABudgetOfGigabytes) {
+    const auto built = [&](const char* budget) {
+        json map =
+            json::parse(expect_success({"build", "box.obj", "--budget", budget, "-o", "box.ech", "--json"}));
+        return map["divisions"].get<int>();
+    };
+    EXPECT_EQ(built("1GB"), built("1000MB"));
+    EXPECT_EQ(built("0.00002GB"), built("20KB"));
+    EXPECT_EQ(built("0.00002GiB"), built("21.5KB"));
+}
+
 TEST_F(BuildCommand, ObeysTheOptionsOfAnExactMap) {
     TriangleMesh nested = make_box({2, 3, 4});
     const TriangleMesh inner = make_box({1, 1, 1});
@@ -271,7 +282,8 @@ TEST_F(BuildCommand, RefusesOptionsThatMakeNoSense) {
     refuse("--cells-per-octant", {"--cells-per-octant", "0"});
     refuse("--cells-per-octant", {"--cells-per-octant", "262145"});
     refuse("--budget", {"--budget", "300"});
-    refuse("--budget", {"--budget", "300GB"});
+    refuse("--budget", {"--budget", "300TB"});
+    refuse("at most 1000000GB", {"--budget", "1000001GB"});
     refuse("--budget", {"--budget", "-1KB"});
     refuse("--budget", {"--budget", "nanKB"});
     refuse("coarsest", {"--budget", "100B"});
