@@ -1,5 +1,5 @@
-// Looking before building: what is wrong with a mesh, and mending it on request.
-// Usage: 02_mesh_report [MESH]; without a file, a box with one face too many and turned inside out.
+// Inspect a mesh for faults, and repair it on request.
+// Usage: 02_mesh_report [MESH]; without a file, a box that has a duplicate face and is inside out.
 
 #include <echinus/mesh.hpp>
 #include <echinus/mesh_io.hpp>

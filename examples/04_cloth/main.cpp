@@ -1,4 +1,4 @@
-// A cloth falls on a ball until friction stops it; then every particle is judged by brute force.
+// A cloth falls on a ball and comes to rest; brute force then counts the particles inside.
 
 #include <echinus/echinus.hpp>
 
@@ -15,8 +15,7 @@ int main() try {
     ClothOptions sheet{.column_count = 20, .row_count = 20, .width = 2.4, .height = 2.4};
     sheet.pose.translation = {0, 0, 1.1};
 
-    Simulation simulation(make_cloth(sheet), {Collider{.map = DistanceMap::build(ball)}},
-                          {.thickness = 0.02});
+    Simulation simulation(make_cloth(sheet), {Collider{.map = ExactMap::build(ball)}}, {.thickness = 0.02});
     while (!simulation.at_rest() && simulation.frame() < kFrameLimit) simulation.step();
 
     const auto inside_count = std::ranges::count_if(
@@ -24,7 +23,7 @@ int main() try {
     std::printf("%s after %u frames; %td of %zu particles inside the ball\n",
                 simulation.at_rest() ? "at rest" : "still moving", simulation.frame(), inside_count,
                 simulation.positions().size());
-} catch (const std::exception& error) { // for one, a cloth that flies apart: Error Diverged
+} catch (const std::exception& error) { // for example a cloth that flies apart: ErrorCode::Diverged
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
 }

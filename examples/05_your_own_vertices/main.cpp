@@ -1,5 +1,5 @@
-// Positions inside somebody else's vertex struct are read where they lie, and a model that stands elsewhere,
-// larger and turned, keeps the map that it has.
+// Positions are read in place from your own vertex structs, and a model that is moved, turned and scaled
+// keeps the map it was built with.
 
 #include <echinus/echinus.hpp>
 
@@ -19,7 +19,7 @@ struct Vertex { // as an engine might have it
 
 int main() {
     using namespace echinus;
-    Collider box{.map = DistanceMap::build(make_box({1, 1, 1}))};
+    Collider box{.map = ExactMap::build(make_box({1, 1, 1}))};
     box.pose = {Rotation::about({0, 0, 1}, std::numbers::pi / 4), {100, 0, 0}};
     box.scale = {2, 2, 2}; // now a cube of edge length 2 that stands on x = 100, turned by 45 degrees
 
