@@ -16,10 +16,10 @@ constexpr std::size_t kPieceSize = 256;
 
 ExactCollision::ExactCollision(const Collider& collider, const Particles& particles,
                                const SimulationOptions& options)
-    : now_(collider, collider.pose, options), frame_start_pose_(collider.pose), known_(particles),
-      free_places_(now_, particles), to_ask_(particles.count()), unsettled_(2 * particles.count()),
-      keep_free_(options.keep_free) {
-    carried_.resize(particles.count());
+    : options_(options), now_(collider, collider.pose, options), frame_start_pose_(collider.pose),
+      known_(particles), free_places_(now_, particles), to_ask_(particles.count()),
+      unproven_(2 * particles.count()) {
+    moved_along_.resize(particles.count());
 }
 
 void ExactCollision::begin_frame(const Collider& collider) {
@@ -28,9 +28,8 @@ void ExactCollision::begin_frame(const Collider& collider) {
     moves_ = collider.moves();
 }
 
-void ExactCollision::begin_substep(const Collider& collider, const RigidTransform& previous_pose,
-                                   const SimulationOptions& options) {
-    now_ = ColliderNow(collider, previous_pose, options);
+void ExactCollision::begin_substep(const Collider& collider, const RigidTransform& previous_pose) {
+    now_ = ColliderNow(collider, previous_pose, options_);
     if (moves_) known_.follow(now_);
 }
 
@@ -50,7 +49,7 @@ void ExactCollision::ask(Particles& particles, SimulationProfile& profile) {
     float reach = least_reach;
     std::size_t left = 0;
     for (const std::uint32_t i : to_ask_.all()) {
-        if (!meet_on_the_way(i, particles, now_.local.point_to_local(particles.positions[i]), profile))
+        if (!meet_on_the_way(i, particles, profile))
             to_ask_.particles[left++] = i;
         else
             profile.contact_count += push_one(known_, now_, i, particles) ? 1 : 0;
@@ -107,25 +106,58 @@ void ExactCollision::remember(std::size_t i, const Vec3f& position, const Contac
     known_.remember_plane(i, now_, nearest.normal, dot(over_plane, nearest.normal));
 }
 
-bool ExactCollision::meet_on_the_way(std::size_t i, const Particles& particles, const Vec3f& position_local,
-                                     SimulationProfile& profile) {
-    if (!keep_free_ || !free_places_.has(i)) return false;
+bool ExactCollision::meet_on_the_way(std::size_t i, const Particles& particles, SimulationProfile& profile) {
+    if (!options_.keep_free || !free_places_.has(i)) return false;
     const Vec3f position = particles.positions[i];
     if (length(position - known_.asked_at[i]) < known_.clearance[i]) return false;
     ++profile.map_query_count;
-    const Vec3f free_local = free_places_.local(i, particles);
-    const SweepHit hit = sweep(now_.map, free_local, position_local);
+    const SweptParticle particle = swept(i, particles);
+    const SweepHit hit = particle.crossing();
     if (!hit.found()) return false;
-    const Vec3f normal = free_normal(free_local, hit, position_local);
+    const Vec3f normal = particle.free_normal(hit);
     known_.remember(i, now_, position, 0);
     const Vec3f over_plane = known_.asked_at_body[i] - now_.to_body(hit.point);
     known_.remember_plane(i, now_, normal, dot(over_plane, normal));
     return true;
 }
 
-Vec3f ExactCollision::free_normal(const Vec3f& free_local, const SweepHit& hit, const Vec3f& to_local) const {
-    const Vec3f normal = now_.local.scaled_normal(hit.normal);
-    return dot(to_local - free_local, hit.normal) > 0 ? -normal : normal;
+std::span<const std::uint32_t> ExactCollision::find_unproven(const Particles& particles) {
+    if (moves_) {
+        const FrameChange before(frame_start_pose_, {1, 1, 1});
+        for (std::size_t i = 0; i < particles.count(); ++i)
+            moved_along_.set(i, now_.body.point_to_world(before.point_to_local(particles.frame_start[i])));
+    }
+    const PointArrays& free_now = moves_ ? moved_along_ : particles.frame_start;
+    unproven_.count = 0;
+    list_unproven(known_, now_, particles.positions, free_now, unproven_);
+    // What was just compared with the frame's start says nothing about these.
+    for (const std::uint32_t i : free_places_.exceptions())
+        if (is_known_free(known_, now_, i, particles.positions[i], free_now[i])) unproven_.add(i);
+    const auto is_proven = [&](std::uint32_t i) { return particles.pinned(i) || !is_unproven(i, particles); };
+    const auto begin = unproven_.particles.begin();
+    const auto end = begin + static_cast<std::ptrdiff_t>(unproven_.count);
+    unproven_.count = static_cast<std::size_t>(std::remove_if(begin, end, is_proven) - begin);
+    return unproven_.all();
+}
+
+bool ExactCollision::is_unproven(std::size_t i, const Particles& particles) const {
+    return swept(i, particles).is_unproven();
+}
+
+bool ExactCollision::is_lost(std::size_t i, const Particles& particles) const {
+    return free_places_.has(i) && swept(i, particles).is_lost();
+}
+
+void ExactCollision::rescue(std::size_t i, Particles& particles) const {
+    if (const auto place = swept(i, particles).rescued()) particles.put(i, *place);
+}
+
+void ExactCollision::take_back(std::size_t i, Particles& particles) const {
+    if (const auto place = swept(i, particles).taken_back()) particles.put(i, *place);
+}
+
+void ExactCollision::end_frame(const Particles& particles) {
+    free_places_.end_frame(now_, particles, options_.keep_free);
 }
 
 } // namespace echinus

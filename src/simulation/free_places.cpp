@@ -1,7 +1,5 @@
 #include "simulation/free_places.hpp"
 
-#include <utility>
-
 namespace echinus {
 
 FreePlaces::FreePlaces(const ColliderNow& collider, const Particles& particles)
@@ -26,19 +24,23 @@ bool FreePlaces::mark_lost(std::size_t i) {
     return true;
 }
 
-void FreePlaces::end_frame(const ColliderNow& collider, const Particles& particles, bool want_back) {
-    const auto is_free_now = [&](std::uint32_t i) {
-        const bool lost = std::exchange(lost_[i], std::uint8_t{0}) != 0;
-        if (!lost && has(i)) return true;
-        if ((!lost || !want_back) && collider.outside(particles.positions[i])) return true;
-        if (!has(i)) return false;
-        stored_[i] = local(i, particles);
-        states_[i] = State::Stored;
-        return false;
-    };
+bool FreePlaces::is_free_now(std::uint32_t i, const ColliderNow& collider, const Particles& particles,
+                             bool wanted_back) const {
+    const bool lost = lost_[i] != 0;
+    if (has(i) && !lost) return true;
+    if (lost && wanted_back) return false;
+    return collider.outside(particles.positions[i]);
+}
+
+void FreePlaces::end_frame(const ColliderNow& collider, const Particles& particles, bool wanted_back) {
     std::erase_if(exceptions_, [&](std::uint32_t i) {
-        const bool free = is_free_now(i);
+        const bool free = is_free_now(i, collider, particles, wanted_back);
+        if (!free && has(i)) {
+            stored_[i] = local(i, particles);
+            states_[i] = State::Stored;
+        }
         if (free) states_[i] = State::FrameStart;
+        lost_[i] = 0;
         return free;
     });
 }

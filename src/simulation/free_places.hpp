@@ -10,9 +10,10 @@
 
 namespace echinus {
 
-/// Where each particle was proven last to be outside of one collider.
+/// Where each particle was free last, by one collider with an exact map. A particle that begins outside is
+/// free there; one that begins inside has no such place yet.
 ///
-/// Nearly always that is where it was when the frame began; other places are stored.
+/// Nearly always that is where the particle was when the frame began; other places are stored.
 class FreePlaces {
   public:
     FreePlaces(const ColliderNow& collider, const Particles& particles);
@@ -28,15 +29,19 @@ class FreePlaces {
     /// The particles with another place than that at the frame's start, or none.
     std::span<const std::uint32_t> exceptions() const { return exceptions_; }
 
-    /// The particle ends this frame where it must not be. @return whether that is news
+    /// The particle ends this frame lost. @return false when that was said before in this frame
     bool mark_lost(std::size_t i);
 
-    /// The frame ends: who is free where it is has a new place. One that never was free has if it is outside
-    /// by now, and a lost one if it is outside and not wanted back.
-    void end_frame(const ColliderNow& collider, const Particles& particles, bool want_back);
+    /// Every particle that is not lost is free where it is now, except one that was never free and is still
+    /// inside. A lost one keeps its place if it is `wanted_back`; otherwise it is free again once it is
+    /// outside.
+    void end_frame(const ColliderNow& collider, const Particles& particles, bool wanted_back);
 
   private:
     enum class State : std::uint8_t { FrameStart, Stored, Never };
+
+    bool is_free_now(std::uint32_t i, const ColliderNow& collider, const Particles& particles,
+                     bool wanted_back) const;
 
     FrameChange frame_start_; ///< of the map
     std::vector<State> states_;

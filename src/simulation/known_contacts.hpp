@@ -12,13 +12,13 @@ namespace echinus {
 
 /// What is known of the surface around each particle since the map was asked last: a ball without surface,
 /// and a contact plane where one was near. As long as a particle stays in the ball, at its distance from the
-/// surface, nobody need ask again: the distance changes by no more than the particle moves.
+/// surface, the map need not be asked again: the distance changes by no more than the particle moves.
 ///
 /// Kept in the body frame, and for the present substep in the world.
 struct KnownContacts {
     /// Stands for no plane.
     static constexpr float kNoPlane = std::numeric_limits<float>::infinity();
-    /// A pinned particle has this clearance: nobody asks. Its square is finite.
+    /// A pinned particle has this clearance, so that the map is never asked. Its square is finite.
     static constexpr float kNeverAsk = 1e18F;
 
     PointArrays asked_at_body, asked_at; ///< where the particle was when the map was asked
@@ -61,13 +61,13 @@ bool push_one(const KnownContacts& known, const ColliderNow& collider, std::size
               Particles& particles) noexcept;
 
 /// Lists the particles of which it is not known that they are free: those for which not both the place where
-/// they are and the one that was proven free last lie in the ball without surface, which is convex.
+/// they are and the one where they were free last lie in the ball without surface, which is convex.
 /// @param free_places  in the world, carried along with the collider
 void list_unproven(const KnownContacts& known, const ColliderNow& collider, const PointArrays& positions,
                    const PointArrays& free_places, ParticleList& unproven) noexcept;
 
-/// list_unproven() for one particle.
-bool proven(const KnownContacts& known, const ColliderNow& collider, std::size_t i, const Vec3f& position,
-            const Vec3f& free_place) noexcept;
+/// Is the particle not one of those that list_unproven() lists?
+bool is_known_free(const KnownContacts& known, const ColliderNow& collider, std::size_t i,
+                   const Vec3f& position, const Vec3f& free_place) noexcept;
 
 } // namespace echinus

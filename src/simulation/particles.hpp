@@ -34,6 +34,11 @@ struct PointArrays {
     }
 };
 
+/// Where a particle is put, and where it was one substep before: its velocity.
+struct Placement {
+    Vec3f position, previous;
+};
+
 /// The particles of a deformable while a frame is computed.
 struct Particles {
     PointArrays positions;
@@ -50,6 +55,10 @@ struct Particles {
     }
     std::size_t count() const { return mobility.size(); }
     bool pinned(std::size_t i) const { return mobility[i] == 0; }
+    void put(std::size_t i, const Placement& place) {
+        positions.set(i, place.position);
+        previous.set(i, place.previous);
+    }
 };
 
 } // namespace echinus

@@ -198,8 +198,8 @@ std::size_t push_known(const KnownContacts& known, const ColliderNow& collider, 
     return ECHINUS_DISPATCH(push_lanes)(known, collider, particles, to_ask);
 }
 
-bool proven(const KnownContacts& known, const ColliderNow& collider, std::size_t i, const Vec3f& position,
-            const Vec3f& free_place) noexcept {
+bool is_known_free(const KnownContacts& known, const ColliderNow& collider, std::size_t i,
+                   const Vec3f& position, const Vec3f& free_place) noexcept {
     const Vec3f moved = position - known.asked_at[i];
     const Vec3f free_moved = free_place - known.asked_at[i];
     const float clearance = known.clearance[i];
@@ -219,7 +219,7 @@ void list_unproven(const KnownContacts& known, const ColliderNow& collider, cons
         return;
     }
     for (std::uint32_t i = 0; i < particle_count; ++i)
-        if (!proven(known, collider, i, positions[i], free_places[i])) unproven.add(i);
+        if (!is_known_free(known, collider, i, positions[i], free_places[i])) unproven.add(i);
 }
 
 } // namespace echinus

@@ -1,0 +1,17 @@
+#include "simulation/collision.hpp"
+
+#include "simulation/contact_collision.hpp"
+#include "simulation/exact_collision.hpp"
+
+#include <variant>
+
+namespace echinus {
+
+std::unique_ptr<Collision> make_collision(const Collider& collider, const Particles& particles,
+                                          const SimulationOptions& options) {
+    if (std::holds_alternative<ExactMap>(collider.map))
+        return std::make_unique<ExactCollision>(collider, particles, options);
+    return std::make_unique<ContactCollision>(collider, particles, options);
+}
+
+} // namespace echinus

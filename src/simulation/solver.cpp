@@ -1,0 +1,161 @@
+#include "simulation/solver.hpp"
+
+#include "simulation/stopwatch.hpp"
+#include "simulation/validation.hpp"
+
+#include <echinus/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace echinus {
+
+namespace {
+
+Sphere box_sphere(std::span<const Vec3f> points) {
+    Vec3d low(points.front());
+    Vec3d high = low;
+    for (const Vec3f& p : points) {
+        low = {std::min(low.x, double{p.x}), std::min(low.y, double{p.y}), std::min(low.z, double{p.z})};
+        high = {std::max(high.x, double{p.x}), std::max(high.y, double{p.y}), std::max(high.z, double{p.z})};
+    }
+    return {(low + high) * 0.5, length(high - low) / 2};
+}
+
+/// x' = x + (1 - drag) (x - x_previous) + a dt^2 (Jakobsen 2001, section 2), of one coordinate. Plain arrays
+/// that do not overlap and no branch, for the compiler's vectors.
+/// @param mobility  1, or 0 of a particle that is pinned
+void integrate_coordinate(float* __restrict positions, float* __restrict previous,
+                          const float* __restrict mobility, std::size_t count, float keep, float fall) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const float position = positions[i];
+        const float way = (position - previous[i]) * keep * mobility[i];
+        previous[i] = position;
+        positions[i] = position + way + fall * mobility[i];
+    }
+}
+
+} // namespace
+
+Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colliders_in,
+                           const SimulationOptions& options_in)
+    : deformable((require_valid(options_in), require_valid(deformable_in), require_valid(colliders_in),
+                  std::move(deformable_in))),
+      colliders(std::move(colliders_in)), options(options_in),
+      largest_speed(std::numeric_limits<double>::infinity()), particles_(deformable),
+      sticks_(weighted_sticks(deformable, options)), collisions_(colliders, particles_, options),
+      rest_(options.rest, deformable.positions), goals_give_way_(sticks_.gives_way()),
+      substep_seconds_(options.time_step / options.substep_count) {
+    const Sphere start = box_sphere(deformable.positions);
+    start_centre_ = start.centre;
+    // A single particle has no extent; its bound is then in the caller's unit.
+    bound_ = options.bound > 0 ? options.bound : 1e4 * (start.radius > 0 ? 2 * start.radius : 1);
+}
+
+void Simulation::Solver::step() {
+    begin_frame();
+    for (std::uint32_t substep = 0; substep < options.substep_count; ++substep) {
+        integrate(substep == 0 ? 1 - options.drag : 1);
+        move_colliders();
+        restore_goal_lengths();
+        for (std::uint32_t iteration = 0; iteration < options.iteration_count; ++iteration) {
+            relax_sticks();
+            collide();
+        }
+    }
+    keep_free();
+    publish();
+    ++frame;
+    judge_frame();
+}
+
+void Simulation::Solver::begin_frame() {
+    const Stopwatch stopwatch(profile.integration_seconds);
+    particles_.frame_start = particles_.positions;
+    collisions_.begin_frame(colliders);
+}
+
+/// @param share_kept  of the velocity
+void Simulation::Solver::integrate(double share_kept) {
+    const Stopwatch stopwatch(profile.integration_seconds);
+    const Vec3f fall(options.gravity * (substep_seconds_ * substep_seconds_));
+    const auto keep = static_cast<float>(share_kept);
+    PointArrays& now = particles_.positions;
+    PointArrays& before = particles_.previous;
+    const float* mobility = particles_.mobility.data();
+    integrate_coordinate(now.x.data(), before.x.data(), mobility, particles_.count(), keep, fall.x);
+    integrate_coordinate(now.y.data(), before.y.data(), mobility, particles_.count(), keep, fall.y);
+    integrate_coordinate(now.z.data(), before.z.data(), mobility, particles_.count(), keep, fall.z);
+}
+
+void Simulation::Solver::move_colliders() {
+    const Stopwatch stopwatch(profile.collision_seconds);
+    collisions_.begin_substep(colliders, substep_seconds_);
+}
+
+/// Multipliers begin at 0 in each substep (Macklin et al. 2016, algorithm 1).
+void Simulation::Solver::restore_goal_lengths() {
+    const Stopwatch stopwatch(profile.constraint_seconds);
+    if (goals_give_way_)
+        std::copy(sticks_.rest_lengths.begin(), sticks_.rest_lengths.end(), sticks_.goal_lengths.begin());
+}
+
+void Simulation::Solver::relax_sticks() {
+    const Stopwatch stopwatch(profile.constraint_seconds);
+    relax(sticks_, particles_.positions);
+}
+
+void Simulation::Solver::collide() {
+    const Stopwatch stopwatch(profile.collision_seconds);
+    collisions_.relax(particles_, profile);
+}
+
+void Simulation::Solver::keep_free() {
+    const Stopwatch stopwatch(profile.collision_seconds);
+    collisions_.keep_free(particles_, profile);
+}
+
+void Simulation::Solver::publish() {
+    const Stopwatch stopwatch(profile.integration_seconds);
+    particles_.positions.store(deformable.positions);
+    particles_.previous.store(deformable.previous_positions);
+}
+
+void Simulation::Solver::judge_frame() {
+    const Stopwatch stopwatch(profile.integration_seconds);
+    const double bound_sq = bound_ * bound_;
+    float largest_motion_sq = 0;
+    for (std::size_t i = 0; i < deformable.particle_count(); ++i) {
+        const Vec3f& position = deformable.positions[i];
+        const Vec3d from_start = Vec3d(position) - start_centre_;
+        // Written so that NaN fails it.
+        if (!(dot(from_start, from_start) <= bound_sq))
+            throw Error(ErrorCode::Diverged, "the simulation diverged in frame " + std::to_string(frame) +
+                                                 ": particle " + std::to_string(i) +
+                                                 " left all bounds; try a smaller time step or stiffness");
+        const Vec3f motion = position - deformable.previous_positions[i];
+        largest_motion_sq = std::max(largest_motion_sq, dot(motion, motion));
+    }
+    largest_speed = std::sqrt(double{largest_motion_sq}) / substep_seconds_;
+    rest_.watch(deformable.positions);
+}
+
+/// The velocity is what the particle moved in the last substep.
+void Simulation::Solver::set_particle_velocity(std::size_t particle, const Vec3d& velocity) {
+    if (particles_.pinned(particle)) return;
+    const Vec3f before(Vec3d(particles_.positions[particle]) - velocity * substep_seconds_);
+    particles_.previous.set(particle, before);
+    deformable.previous_positions[particle] = before;
+}
+
+void Simulation::Solver::blow(const Vec3d& wind, double rate) {
+    // No more than all of the difference, however long a frame is.
+    const auto share = static_cast<float>(std::min(rate * options.time_step, 1.0));
+    wind_.blow(deformable.faces, Vec3f(wind * substep_seconds_), share, particles_);
+    particles_.previous.store(deformable.previous_positions);
+}
+
+} // namespace echinus
