@@ -11,7 +11,7 @@ make_maps() {
     "$echinus" build "$out/torus.obj" "${common[@]}" -o "$out/torus.ech" >"$out/torus_map.json"
 }
 
-drape() { # horse or torus; every fifth of 120 frames a second is kept, as many as a film has
+drape() { # horse or torus; every fifth of 240 frames a second is kept, twice as many as a film has
     "$echinus" simulate "scenes/$1_distance.json" --every 5 -o "$out/$1"
 }
 
