@@ -63,6 +63,24 @@ TEST(VertexCorrection, MakesTheMapReachEveryVertexOfAConvexMesh) {
     EXPECT_GT(missed_before, 10);
 }
 
+// The paper: interpolation between samples of different faces "appears only in samples around the vertices of
+// the object". It appears along whole edges, which no correction at vertices reaches (docs/paper.md).
+TEST(VertexCorrection, LeavesTheErrorAlongEdgesFarFromTheirEnds) {
+    const TriangleMesh box = make_box({1, 0.8, 0.6});
+    const DistanceMap plain = build(box, VertexCorrection::None);
+    const DistanceMap paper = build(box, VertexCorrection::Paper);
+    const DistanceMap corrected = build(box, VertexCorrection::Signed);
+    for (int i = -10; i <= 10; ++i) {
+        const Vec3f under_an_edge{0.495F, 0.395F, 0.005F * static_cast<float>(i)};
+        EXPECT_FALSE(contains(plain, under_an_edge));
+        EXPECT_FALSE(contains(paper, under_an_edge));
+        EXPECT_FALSE(contains(corrected, under_an_edge));
+    }
+    const Vec3f under_a_vertex{0.495F, 0.395F, 0.295F};
+    EXPECT_FALSE(contains(plain, under_a_vertex));
+    EXPECT_TRUE(contains(paper, under_a_vertex));
+}
+
 TEST(VertexCorrection, CountsWhatItClampsAtTheSphere) {
     // The vertices of a sphere mesh lie at R already, so that the samples around them cannot grow by all that
     // is missing.
