@@ -153,9 +153,8 @@ std::string to_text(const SimulationResult& result) {
     add("queries", fmt::format("{:.0f} per frame, {:.1f} ns each; {:.0f} took the map to answer",
                                rates.queries_per_frame, rates.ns_per_query, rates.map_queries_per_frame));
     if (is_exact(simulation))
-        add("particles lost",
-            fmt::format("{}; {} times led back to the free side", simulation.profile().lost_count,
-                        simulation.profile().rescued_count));
+        add("particles lost", fmt::format("{}; rescued {} times", simulation.profile().lost_count,
+                                          simulation.profile().rescued_count));
     add("particles inside", fmt::format("{} ({}), by winding number", result.verdict.inside_count,
                                         percent(static_cast<double>(result.verdict.inside_count) /
                                                 static_cast<double>(particle_count))));

@@ -13,7 +13,8 @@
 #include <variant>
 
 /// The set-up of a simulation as JSON (docs/scenes.md has every key). Library echinus::scene (needs
-/// nlohmann-json). It reads no meshes: who has echinus::io, or a mesh from elsewhere, hands the map in.
+/// nlohmann-json). It reads no meshes: the caller reads the model, with echinus::io or otherwise, and hands
+/// in its map.
 namespace echinus {
 
 struct ModelFile {

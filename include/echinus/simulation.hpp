@@ -105,8 +105,8 @@ struct SimulationOptions {
     /// length of the push, and never reversed. 0 is ice.
     double friction = 0.5;
     RestCondition rest{};
-    /// false: particles that cross the surface of an exact map are counted as lost and left there. Only for
-    /// showing what the sweep after the constraints is good for.
+    /// false: no particle is rescued; those that cross the surface of an exact map are counted as lost and
+    /// left there. Only for showing what the proof at the end of a frame is good for.
     bool keep_free = true;
     /// A particle farther than this from the middle of where the deformable began ends the simulation as
     /// diverged, units. 0: 10 000 times the deformable's extent at the start.
@@ -123,11 +123,12 @@ struct SimulationProfile {
     /// Of them, those that took the map to answer; beside an exact map a particle that has hardly moved is
     /// answered from memory.
     std::uint64_t map_query_count = 0;
-    /// After the constraints, of all frames, particles and exact maps: those led back to the free side, ...
+    /// Times that a particle was rescued: not free of all exact maps after the constraints of a frame, though
+    /// it was once, and put back to a free place. docs/conventions.md defines free, rescued and lost.
     std::uint64_t rescued_count = 0;
-    /// ... and those lost: inside at the end of the frame, or on the other side of a surface, by the chord
-    /// from the last free place to this one as the collider sees it. A particle counts again in each frame
-    /// that it ends inside. One that began inside and was never outside yet does not count.
+    /// Times that a particle was lost: it ended a frame not free of an exact map, though it was once. It
+    /// counts once for each such map, and again in each frame that it ends so. A particle that began inside
+    /// and was never outside yet does not count.
     std::uint64_t lost_count = 0;
 };
 
@@ -151,14 +152,23 @@ class Simulation {
     /// colliders; at last the proof that no particle passed through an exact map. Allocates nothing.
     ///
     /// A distance map pushes along its rays (docs/paper.md), and a custom map to the points that it names,
-    /// both gently: who is not inside is pushed no farther than it came. An exact map pushes to the thickness
-    /// over the nearest point. Its particles are then swept from where they were proven free last to where
-    /// they are, as the moving collider sees it; one that would cross the surface is put before the crossing,
-    /// where the same sweep finds it free, or goes back to where it was free, carried along. So none is lost,
-    /// however fast it is or thin the model. Three exceptions: pinned particles are left alone; a particle
-    /// that begins inside is pushed to the nearest surface point, and kept outside from then on; one that two
-    /// exact maps squeeze so that it finds no room goes to where the first of them, or else the next, knows
-    /// it to be free, and is counted as lost to the other.
+    /// both gently: a particle that is not inside is pushed no farther than it came. An exact map pushes to
+    /// the thickness over the nearest point. At the end of the frame each particle is swept from where it was
+    /// free last to where it is, as the moving collider sees it. A particle that is not free is rescued: it
+    /// is put before the crossing, where the same sweep finds it free, or goes back to where it was free,
+    /// moved along with the collider.
+    ///
+    /// So no particle passes through an exact map, however fast it is or thin the model: with one exact map
+    /// lost_count stays 0. The limits of that promise:
+    /// - It is about particles. An edge of the model may stick out between them.
+    /// - Distance maps and custom maps are not swept; nothing is promised for them.
+    /// - Pinned particles are left where they are.
+    /// - A particle that begins inside is pushed to the nearest surface point, and kept outside once it is
+    ///   outside.
+    /// - A particle that several exact maps squeeze until it finds no room goes to where the first of them,
+    ///   or else the next, knows it to be free, and counts as lost to the others.
+    /// - Far from the origin, where floats are too coarse for the room around the last free place, a particle
+    ///   may find none, and counts as lost.
     /// @throws Error Diverged, naming the frame; afterwards only reading is allowed
     void step();
 
@@ -182,7 +192,8 @@ class Simulation {
 
     /// Gives a particle a velocity, units per second, from which the next frame goes on as from any other:
     /// sticks pull at it and colliders stop it, so a hand that drags particles, setting their velocities
-    /// before each frame to what would take them to it, drags nobody into a model. A pinned particle stays.
+    /// before each frame to what would take them to it, drags none of them into a model. A pinned particle
+    /// stays.
     /// @pre particle < particle_count(), and the velocity is finite
     void set_particle_velocity(std::size_t particle, const Vec3d& velocity);
 

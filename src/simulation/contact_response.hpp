@@ -37,7 +37,7 @@ Vec3f wanted_push(const Vec3f& position, const Contact& contact, float thickness
 /// The part of the wanted push that is carried out. Going back is free: as far as the particle came against
 /// the push in this frame, it is pushed. The rest of the push would be new motion. Outside the surface it is
 /// left out: there the map's answer may change from one cell of directions to the next, and a particle that
-/// were thrown would never rest. Inside, a tenth of it in every relaxation leads the particle out.
+/// was thrown by it would never rest. Inside, a tenth of it in every relaxation leads the particle out.
 /// @param motion  since the last frame, relative to the collider's material
 Vec3f granted_push(const Vec3f& wanted, const Vec3f& motion, bool inside);
 
@@ -46,14 +46,14 @@ Vec3f granted_push(const Vec3f& wanted, const Vec3f& motion, bool inside);
 Vec3f apply_friction(const Vec3f& motion, const Vec3f& normal, float grip);
 
 /// What an exact contact leaves of a particle's motion, and how much of the push was not a way back but new
-/// motion: the particle is put where it belongs, and its velocity hears nothing of the excess.
+/// motion: the particle is put where it belongs, and the excess is not added to its velocity.
 struct PushedOut {
     Vec3f motion;
     float excess;
 };
 
 /// Pushes by `missing` along the normal, all at once, since the nearest point is where it seems to be. Then
-/// friction, in proportion to the part of the push that led back.
+/// friction, in proportion to the part of the push that was a way back.
 /// @param motion  since the last frame, relative to the collider's material
 PushedOut push_out(const Vec3f& motion, const Vec3f& normal, float missing, float friction);
 

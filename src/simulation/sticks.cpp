@@ -126,7 +126,7 @@ StickArrays weighted_sticks(const Deformable& deformable, const SimulationOption
         sticks.b.push_back(stick.b);
         sticks.share_a.push_back(static_cast<float>(shares.a));
         sticks.share_b.push_back(static_cast<float>(shares.b));
-        // In a single relaxation the goal gives way when nobody asks for it any more.
+        // After the last relaxation the goal is not used any more.
         const bool asked_again = options.iteration_count > 1;
         sticks.yield.push_back(asked_again ? static_cast<float>(shares.yield) : 0.0F);
         sticks.rest_lengths.push_back(stick.rest_length);

@@ -477,7 +477,7 @@ export class Simulation extends Deletable {
     /**
      * Gives a particle a velocity, units per second. To drag with the pointer, set it before each step, for the grabbed
      * particle and its near neighbours, to (where the pointer wants it - where it is) / (about 5 time steps): sticks pull
-     * at them and the collider stops them, so nobody is dragged into the model.
+     * at them and the collider stops them, so none of them is dragged into the model.
      */
     setParticleVelocity(particle: number, velocity: Vec3): void;
     /**
@@ -501,7 +501,9 @@ export interface SimulationProfile {
     queryCount: number;
     contactCount: number;
     mapQueryCount: number;
+    /** How often a particle was put back to a free place at the end of a frame. */
     rescuedCount: number;
+    /** How often a particle ended a frame inside an exact map or beyond its surface, though it was free before: 0. */
     lostCount: number;
 }
 
