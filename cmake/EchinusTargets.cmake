@@ -12,7 +12,9 @@ endif()
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND PROJECT_IS_TOP_LEVEL)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+  # Without this ccache keeps nothing that is compiled with a precompiled header.
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+    ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE_PROGRAM})
 endif()
 
 add_library(echinus_options INTERFACE)
@@ -38,7 +40,10 @@ endif()
 function(echinus_add_library name)
   add_library(echinus_${name})
   add_library(echinus::${name} ALIAS echinus_${name})
-  set_target_properties(echinus_${name} PROPERTIES EXPORT_NAME ${name} VERSION ${PROJECT_VERSION} SOVERSION 0)
+  # Before 1.0 a minor version may change declarations, and so has a soname of its own.
+  set_target_properties(echinus_${name} PROPERTIES EXPORT_NAME ${name}
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   target_compile_features(echinus_${name} PUBLIC cxx_std_20)
   target_include_directories(echinus_${name}
     PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
@@ -49,5 +54,9 @@ endfunction()
 
 # For all who compile kernels. SSSE3 without SSE4, and what AVX3_DL adds to AVX-512, would be compiled for nobody.
 # Vectors of SVE, whose length is not known, cannot be members of anything; Arm processors that have it have NEON, too.
-set(ECHINUS_HIGHWAY_TARGETS
-  "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128)")
+set(echinus_disabled_targets HWY_SSSE3 HWY_AVX3_DL HWY_SVE HWY_SVE2 HWY_SVE_256 HWY_SVE2_128)
+if(ECHINUS_SANITIZE) # two instruction sets see what a third would, and kernels take longest to compile
+  list(APPEND echinus_disabled_targets HWY_AVX3)
+endif()
+list(JOIN echinus_disabled_targets "|" echinus_disabled_targets)
+set(ECHINUS_HIGHWAY_TARGETS "HWY_DISABLED_TARGETS=(${echinus_disabled_targets})")

@@ -2,13 +2,14 @@
 
 #include <echinus/distance_map.hpp>
 #include <echinus/exact_map.hpp>
+#include <echinus/export.hpp>
 
 #include <concepts>
 #include <type_traits>
 #include <variant>
 
 /// Two maps, one vocabulary: who need not care which kind of map there is, asks here.
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 using AnyMap = std::variant<DistanceMap, ExactMap>;
 

@@ -4,6 +4,7 @@
 #include <echinus/contact.hpp>
 #include <echinus/custom_map.hpp>
 #include <echinus/exact_map.hpp>
+#include <echinus/export.hpp>
 #include <echinus/geometry.hpp>
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 #include <variant>
 
 /// A map placed in the world. Points, normals, depths and margins are in world units and world axes here.
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 /// What a collider asks: a map of either kind, or one of the user's own.
 struct ColliderMap : std::variant<DistanceMap, ExactMap, std::shared_ptr<const CustomMap>> {

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <echinus/export.hpp>
 #include <echinus/geometry.hpp>
 
 #include <cstdint>
 
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 /// Which part of a triangle the nearest point lies on.
 enum class Feature : std::uint8_t {

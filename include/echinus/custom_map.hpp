@@ -1,12 +1,13 @@
 #pragma once
 
 #include <echinus/contact.hpp>
+#include <echinus/export.hpp>
 #include <echinus/geometry.hpp>
 
 #include <cstdint>
 #include <span>
 
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 /// A structure of the user's own that a collider asks in place of a map: a field of distances, an analytic
 /// shape, another library. Derive from it and hand a collider a shared pointer to it (collider.hpp).

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <echinus/export.hpp>
+
 #include <cstdint>
 
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 /// How a distance map divides the directions around its centre.
 enum class DirectionGrid : std::uint8_t {

@@ -2,6 +2,7 @@
 
 #include <echinus/contact.hpp>
 #include <echinus/directions.hpp>
+#include <echinus/export.hpp>
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 
@@ -18,7 +19,7 @@
 /// between samples it can be wrong; docs/reproduction.md says how often.
 ///
 /// All points are in the frame and unit of the mesh that the map was built from ("local").
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 /// What is done about mesh vertices that linear interpolation between samples passes by (the paper's figure
 /// 1b).

@@ -16,3 +16,4 @@
 #include <echinus/map_file.hpp>
 #include <echinus/mesh.hpp>
 #include <echinus/simulation.hpp>
+#include <echinus/version.hpp>

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <echinus/export.hpp>
+
 #include <stdexcept>
 #include <string>
 
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 /// What went wrong, for a program; the sentence in Error::what() is for a person.
 enum class ErrorCode {

@@ -2,6 +2,7 @@
 
 #include <echinus/contact.hpp>
 #include <echinus/directions.hpp>
+#include <echinus/export.hpp>
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 
@@ -21,7 +22,7 @@
 /// particle are snapped to it, and from there on no sign is rounded (docs/accuracy.md).
 ///
 /// All points are in the frame and unit of the mesh that the map was built from ("local").
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 /// Which places are inside, told by the winding number of the surface around them. The rules differ only
 /// where parts of the surface overlap, are nested, inverted or doubled.

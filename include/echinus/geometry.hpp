@@ -1,5 +1,7 @@
 #pragma once
 
+#include <echinus/export.hpp>
+
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -7,7 +9,7 @@
 
 /// Points, spheres, poses and views: the few value types that every other header speaks.
 /// The frame is right-handed. Lengths are in the caller's unit.
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 template <typename T>
 struct Vec3 {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <echinus/export.hpp>
+
 #include <string_view>
 #include <vector>
 
@@ -9,7 +11,7 @@
 /// after the other. Unless told, the first that the machine has is used; the environment variable
 /// ECHINUS_INSTRUCTION_SET, read once, names another. A name there that this machine does not have is passed
 /// over: instruction_set() tells what is in use.
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 /// Those that this machine has and this library was compiled for, the widest first; the last is "scalar".
 std::vector<std::string_view> available_instruction_sets();

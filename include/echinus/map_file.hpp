@@ -1,6 +1,7 @@
 #pragma once
 
 #include <echinus/any_map.hpp>
+#include <echinus/export.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +14,7 @@
 
 /// Map files (docs/file_format.md). A file is verified before use, in structure and in meaning, and then read
 /// in place.
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 inline constexpr std::uint32_t kMapFileVersion = 1;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <echinus/export.hpp>
 #include <echinus/geometry.hpp>
 
 #include <array>
@@ -9,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 /// Three vertex indices, counter-clockwise seen from outside.
 using Triangle = std::array<std::uint32_t, 3>;

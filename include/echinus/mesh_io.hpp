@@ -1,11 +1,12 @@
 #pragma once
 
+#include <echinus/export.hpp>
 #include <echinus/mesh.hpp>
 
 #include <filesystem>
 
 /// Mesh files. Library echinus::io (needs Assimp); who uses only echinus::core does without.
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 /// Reads OBJ, PLY (text and binary), STL (text and binary), OFF, glTF, GLB and 3DS, told apart by the file
 /// name's ending. All meshes of the file are joined (node transforms applied), polygons are triangulated,

@@ -2,6 +2,7 @@
 
 #include <echinus/distance_map.hpp>
 #include <echinus/exact_map.hpp>
+#include <echinus/export.hpp>
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 
@@ -17,7 +18,7 @@
 /// Pictures by ray tracing on the processor: no window, no GPU. Library echinus::render (needs Embree 3 and
 /// libpng). All light and the backdrop are fixed: a picture is decided by the objects, their colours and the
 /// camera.
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 // ---- What is drawn ----
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <echinus/any_map.hpp>
+#include <echinus/export.hpp>
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 #include <echinus/simulation.hpp>
@@ -15,7 +16,7 @@
 /// The set-up of a simulation as JSON (docs/scenes.md has every key). Library echinus::scene (needs
 /// nlohmann-json). It reads no meshes: the caller reads the model, with echinus::io or otherwise, and hands
 /// in its map.
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 struct ModelFile {
     std::string name; ///< as written in the scene, for instance "horse.3ds"; see find_model()

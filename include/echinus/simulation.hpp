@@ -1,6 +1,7 @@
 #pragma once
 
 #include <echinus/collider.hpp>
+#include <echinus/export.hpp>
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 
@@ -15,7 +16,7 @@
 /// simulations use (section 2.3): particles moved by Verlet integration, sticks between them relaxed one
 /// after the other, and collision with rigid models inside every relaxation. Or by extended position-based
 /// dynamics, XPBD (Macklin et al. 2016), in small steps (Macklin et al. 2019), where sticks are springs.
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 /// What a stick stands for; each kind has its own stiffness.
 enum class StickKind : std::uint8_t {

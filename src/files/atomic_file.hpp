@@ -1,11 +1,13 @@
 #pragma once
 
+#include <echinus/export.hpp>
+
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <string_view>
 
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 /// A file that appears whole or not at all: bytes go to a temporary name in the target's folder, commit()
 /// renames. Without commit() the destructor removes the temporary file and the old target stays. A target

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <echinus/export.hpp>
+
 #include <cstddef>
 #include <filesystem>
 #include <span>
 #include <vector>
 
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 /// The bytes of a file, mapped into memory where the system and the kind of file allow it, otherwise read (a
 /// pipe, /dev/stdin). They start at an address that is a multiple of 16.

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <echinus/export.hpp>
+
 #include <cstddef>
 #include <functional>
 
-namespace echinus {
+namespace ECHINUS_EXPORT echinus {
 
 /// Calls `body(begin, end)` for consecutive ranges that together are [0, count), on up to `thread_count`
 /// threads (0: all cores). Ranges differ between runs and machines, so a body must not let its result depend
