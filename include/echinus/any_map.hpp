@@ -8,8 +8,10 @@
 #include <type_traits>
 #include <variant>
 
+ECHINUS_EXPORT_BEGIN
+
 /// Two maps, one vocabulary: who need not care which kind of map there is, asks here.
-namespace ECHINUS_EXPORT echinus {
+namespace echinus {
 
 using AnyMap = std::variant<DistanceMap, ExactMap>;
 
@@ -45,3 +47,5 @@ void contacts_batch(const Map& map, StridedSpan<const Vec3f> points_local, float
 }
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

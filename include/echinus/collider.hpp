@@ -12,8 +12,10 @@
 #include <span>
 #include <variant>
 
+ECHINUS_EXPORT_BEGIN
+
 /// A map placed in the world. Points, normals, depths and margins are in world units and world axes here.
-namespace ECHINUS_EXPORT echinus {
+namespace echinus {
 
 /// What a collider asks: a map of either kind, or one of the user's own.
 struct ColliderMap : std::variant<DistanceMap, ExactMap, std::shared_ptr<const CustomMap>> {
@@ -87,3 +89,5 @@ SweepHit sweep(const Collider& collider, const RigidTransform& previous_pose, Ve
                Vec3f to_world) noexcept;
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

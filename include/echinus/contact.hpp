@@ -5,7 +5,9 @@
 
 #include <cstdint>
 
-namespace ECHINUS_EXPORT echinus {
+ECHINUS_EXPORT_BEGIN
+
+namespace echinus {
 
 /// Which part of a triangle the nearest point lies on.
 enum class Feature : std::uint8_t {
@@ -38,3 +40,5 @@ struct Contact {
 };
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

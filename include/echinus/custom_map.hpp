@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <span>
 
-namespace ECHINUS_EXPORT echinus {
+ECHINUS_EXPORT_BEGIN
+
+namespace echinus {
 
 /// A structure of the user's own that a collider asks in place of a map: a field of distances, an analytic
 /// shape, another library. Derive from it and hand a collider a shared pointer to it (collider.hpp).
@@ -49,3 +51,5 @@ class CustomMap {
 };
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 
-namespace ECHINUS_EXPORT echinus {
+ECHINUS_EXPORT_BEGIN
+
+namespace echinus {
 
 /// How a distance map divides the directions around its centre.
 enum class DirectionGrid : std::uint8_t {
@@ -44,3 +46,5 @@ enum class CentreChoice : std::uint8_t {
 };
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

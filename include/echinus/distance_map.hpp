@@ -13,13 +13,15 @@
 #include <span>
 #include <vector>
 
+ECHINUS_EXPORT_BEGIN
+
 /// The paper's map: around the centre C of the model's bounding sphere a grid of directions, and for each
 /// direction the sorted distances of all points where its ray meets the surface (Vogiannou et al., "Distance
 /// Maps for Collision Detection of Deformable Models", section 2). A sampled map: near silhouettes and
 /// between samples it can be wrong; docs/reproduction.md says how often.
 ///
 /// All points are in the frame and unit of the mesh that the map was built from ("local").
-namespace ECHINUS_EXPORT echinus {
+namespace echinus {
 
 /// What is done about mesh vertices that linear interpolation between samples passes by (the paper's figure
 /// 1b).
@@ -205,3 +207,5 @@ struct MapSurface {
 MapSurface reconstruct_surface(const DistanceMapView& map);
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

@@ -5,7 +5,9 @@
 #include <stdexcept>
 #include <string>
 
-namespace ECHINUS_EXPORT echinus {
+ECHINUS_EXPORT_BEGIN
+
+namespace echinus {
 
 /// What went wrong, for a program; the sentence in Error::what() is for a person.
 enum class ErrorCode {
@@ -36,3 +38,5 @@ class Error : public std::runtime_error {
 };
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

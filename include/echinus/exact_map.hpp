@@ -13,6 +13,8 @@
 #include <span>
 #include <vector>
 
+ECHINUS_EXPORT_BEGIN
+
 /// The map that is always right. Directions around the centre are divided into cells; for each cell the
 /// radial intervals in which surface lies, its *bands*, are stored, rounded outwards, with the faces that
 /// pass through. Between bands there is no surface, so a comparison answers; in a band the band's faces are
@@ -22,7 +24,7 @@
 /// particle are snapped to it, and from there on no sign is rounded (docs/accuracy.md).
 ///
 /// All points are in the frame and unit of the mesh that the map was built from ("local").
-namespace ECHINUS_EXPORT echinus {
+namespace echinus {
 
 /// Which places are inside, told by the winding number of the surface around them. The rules differ only
 /// where parts of the surface overlap, are nested, inverted or doubled.
@@ -286,3 +288,5 @@ struct ExactMapSurface {
 ExactMapSurface reconstruct_surface(const ExactMapView& map);
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

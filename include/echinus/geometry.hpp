@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <type_traits>
 
+ECHINUS_EXPORT_BEGIN
+
 /// Points, spheres, poses and views: the few value types that every other header speaks.
 /// The frame is right-handed. Lengths are in the caller's unit.
-namespace ECHINUS_EXPORT echinus {
+namespace echinus {
 
 template <typename T>
 struct Vec3 {
@@ -127,3 +129,5 @@ class StridedSpan {
 };
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

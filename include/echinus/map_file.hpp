@@ -12,9 +12,11 @@
 #include <string>
 #include <vector>
 
+ECHINUS_EXPORT_BEGIN
+
 /// Map files (docs/file_format.md). A file is verified before use, in structure and in meaning, and then read
 /// in place.
-namespace ECHINUS_EXPORT echinus {
+namespace echinus {
 
 inline constexpr std::uint32_t kMapFileVersion = 1;
 
@@ -60,3 +62,5 @@ MapFileNotes load_map_file_notes(const std::filesystem::path& path);
 bool is_map_file(const std::filesystem::path& path) noexcept;
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

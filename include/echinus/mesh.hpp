@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
-namespace ECHINUS_EXPORT echinus {
+ECHINUS_EXPORT_BEGIN
+
+namespace echinus {
 
 /// Three vertex indices, counter-clockwise seen from outside.
 using Triangle = std::array<std::uint32_t, 3>;
@@ -139,3 +141,5 @@ TriangleMesh make_sphere(double radius, std::uint32_t meridian_count, std::uint3
 TriangleMesh make_box(const Vec3d& size, std::uint32_t segments = 1);
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

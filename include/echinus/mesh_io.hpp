@@ -5,8 +5,10 @@
 
 #include <filesystem>
 
+ECHINUS_EXPORT_BEGIN
+
 /// Mesh files. Library echinus::io (needs Assimp); who uses only echinus::core does without.
-namespace ECHINUS_EXPORT echinus {
+namespace echinus {
 
 /// Reads OBJ, PLY (text and binary), STL (text and binary), OFF, glTF, GLB and 3DS, told apart by the file
 /// name's ending. All meshes of the file are joined (node transforms applied), polygons are triangulated,
@@ -30,3 +32,5 @@ TriangleMesh read_mesh(const std::filesystem::path& path);
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

@@ -15,10 +15,12 @@
 #include <string_view>
 #include <vector>
 
+ECHINUS_EXPORT_BEGIN
+
 /// Pictures by ray tracing on the processor: no window, no GPU. Library echinus::render (needs Embree 3 and
 /// libpng). All light and the backdrop are fixed: a picture is decided by the objects, their colours and the
 /// camera.
-namespace ECHINUS_EXPORT echinus {
+namespace echinus {
 
 // ---- What is drawn ----
 
@@ -173,3 +175,5 @@ Image draw_map_figure(const TriangleMesh& model, const ExactMapView& map, const 
                       const RenderOptions& options = {});
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

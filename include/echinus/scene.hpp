@@ -13,10 +13,12 @@
 #include <string_view>
 #include <variant>
 
+ECHINUS_EXPORT_BEGIN
+
 /// The set-up of a simulation as JSON (docs/scenes.md has every key). Library echinus::scene (needs
 /// nlohmann-json). It reads no meshes: the caller reads the model, with echinus::io or otherwise, and hands
 /// in its map.
-namespace ECHINUS_EXPORT echinus {
+namespace echinus {
 
 struct ModelFile {
     std::string name; ///< as written in the scene, for instance "horse.3ds"; see find_model()
@@ -89,3 +91,5 @@ Collider make_collider(const Scene& scene, const ColliderMap& map);
 Simulation make_simulation(const Scene& scene, const ColliderMap& map);
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

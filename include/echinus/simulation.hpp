@@ -12,11 +12,13 @@
 #include <span>
 #include <vector>
 
+ECHINUS_EXPORT_BEGIN
+
 /// Deformable models after Jakobsen, "Advanced Character Physics" (GDC 2001), the method that the paper's
 /// simulations use (section 2.3): particles moved by Verlet integration, sticks between them relaxed one
 /// after the other, and collision with rigid models inside every relaxation. Or by extended position-based
 /// dynamics, XPBD (Macklin et al. 2016), in small steps (Macklin et al. 2019), where sticks are springs.
-namespace ECHINUS_EXPORT echinus {
+namespace echinus {
 
 /// What a stick stands for; each kind has its own stiffness.
 enum class StickKind : std::uint8_t {
@@ -212,3 +214,5 @@ class Simulation {
 };
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

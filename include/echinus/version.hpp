@@ -8,7 +8,9 @@
 #define ECHINUS_VERSION_PATCH 0
 #define ECHINUS_VERSION_STRING "0.2.0"
 
-namespace ECHINUS_EXPORT echinus {
+ECHINUS_EXPORT_BEGIN
+
+namespace echinus {
 
 /// The version of the library that the program runs with, such as "0.2.0"; with a shared library it may
 /// differ from ECHINUS_VERSION_STRING in the last number. Before 1.0 a new minor version may change
@@ -16,3 +18,5 @@ namespace ECHINUS_EXPORT echinus {
 const char* version() noexcept;
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <string_view>
 
-namespace ECHINUS_EXPORT echinus {
+ECHINUS_EXPORT_BEGIN
+
+namespace echinus {
 
 /// A file that appears whole or not at all: bytes go to a temporary name in the target's folder, commit()
 /// renames. Without commit() the destructor removes the temporary file and the old target stays. A target
@@ -40,3 +42,5 @@ class AtomicFile {
 void write_file(const std::filesystem::path& target, std::string_view content);
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

@@ -7,7 +7,9 @@
 #include <span>
 #include <vector>
 
-namespace ECHINUS_EXPORT echinus {
+ECHINUS_EXPORT_BEGIN
+
+namespace echinus {
 
 /// The bytes of a file, mapped into memory where the system and the kind of file allow it, otherwise read (a
 /// pipe, /dev/stdin). They start at an address that is a multiple of 16.
@@ -30,3 +32,5 @@ class MappedFile {
 };
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

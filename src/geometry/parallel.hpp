@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <functional>
 
-namespace ECHINUS_EXPORT echinus {
+ECHINUS_EXPORT_BEGIN
+
+namespace echinus {
 
 /// Calls `body(begin, end)` for consecutive ranges that together are [0, count), on up to `thread_count`
 /// threads (0: all cores). Ranges differ between runs and machines, so a body must not let its result depend
@@ -40,3 +42,5 @@ void parallel_invoke(unsigned thread_count, const std::function<void()>& first,
                      const std::function<void()>& second);
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END

@@ -12,7 +12,6 @@ namespace echinus {
 namespace {
 
 constexpr std::size_t kLanes = TreeNode::kWidth;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Vec3d stretched(const Vec3d& v, const Vec3d& stretch) {
     return {v.x * stretch.x, v.y * stretch.y, v.z * stretch.z};
