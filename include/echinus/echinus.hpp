@@ -11,6 +11,7 @@
 #include <echinus/distance_map.hpp>
 #include <echinus/error.hpp>
 #include <echinus/exact_map.hpp>
+#include <echinus/exact_map_view.hpp>
 #include <echinus/geometry.hpp>
 #include <echinus/instruction_set.hpp>
 #include <echinus/map_file.hpp>

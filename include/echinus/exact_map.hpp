@@ -2,13 +2,13 @@
 
 #include <echinus/contact.hpp>
 #include <echinus/directions.hpp>
+#include <echinus/exact_map_view.hpp>
 #include <echinus/export.hpp>
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -25,15 +25,6 @@ ECHINUS_EXPORT_BEGIN
 ///
 /// All points are in the frame and unit of the mesh that the map was built from ("local").
 namespace echinus {
-
-/// Which places are inside, told by the winding number of the surface around them. The rules differ only
-/// where parts of the surface overlap, are nested, inverted or doubled.
-enum class InsideRule : std::uint8_t {
-    /// Every winding number but 0: the union of parts that are turned alike, or do not overlap. Where parts
-    /// that are turned oppositely overlap, their numbers cancel.
-    Nonzero,
-    Parity, ///< an odd winding number: a part within a part is a hole
-};
 
 struct ExactMapOptions {
     static constexpr std::uint32_t kMaxDivisions = 512;
@@ -62,94 +53,6 @@ struct ExactMapStatistics {
     float certain_share = 1;
     /// Share of directions, by solid angle, that hold a place where it is not.
     float uncertain_directions = 0;
-};
-
-/// Indices that are stored in 16 bits where they fit. At most one of the two spans is used.
-struct IndexArray {
-    std::span<const std::uint16_t> narrow;
-    std::span<const std::uint32_t> wide;
-
-    std::size_t size() const { return narrow.size() + wide.size(); }
-    std::size_t size_bytes() const { return narrow.size_bytes() + wide.size_bytes(); }
-    std::uint32_t operator[](std::size_t i) const { return wide.empty() ? narrow[i] : wide[i]; }
-};
-
-/// A radial interval of one cell in which surface lies, [lower, upper) in units of ExactMapView::kBandUnit
-/// lattice steps of the L1 norm |x| + |y| + |z|.
-struct Band {
-    std::uint16_t lower, upper;
-    std::uint32_t first_reference; ///< its faces: references[first_reference] up to the next band's first
-};
-static_assert(sizeof(Band) == 8);
-
-/// Boxes around the faces of up to eight subtrees: a node of a tree that is eight wide, so that all eight
-/// boxes are compared at once.
-struct TreeNode {
-    static constexpr std::size_t kWidth = 8;
-    static constexpr std::uint32_t kLeaf = 0x8000'0000;
-
-    /// Corners in units of ExactMapView::kBoxUnit lattice steps, rounded outwards. A child that does not
-    /// exist has low > high.
-    std::int16_t low[3][kWidth], high[3][kWidth];
-    /// A node, or kLeaf + a group of up to kWidth faces: leaf g holds the faces from kWidth g on.
-    std::uint32_t children[kWidth];
-};
-static_assert(sizeof(TreeNode) == 128);
-
-/// An edge of the surface's border: `multiplicity` more faces run from a to b than from b to a.
-struct BorderEdge {
-    std::uint32_t a, b; ///< vertices
-    std::int32_t multiplicity;
-};
-static_assert(sizeof(BorderEdge) == 12);
-
-/// A map as plain arrays, wherever they lie. Owns nothing, copies cheaply, and is what all queries take.
-/// validate() in src/map_file checks the invariants for untrusted bytes.
-struct ExactMapView {
-    static constexpr int kBandUnit = 16;
-    static constexpr int kBoxUnit = 32;
-    /// Stands for the winding number of a gap that is not constant, for want of a closed surface.
-    static constexpr std::int16_t kUncertain = std::numeric_limits<std::int16_t>::min();
-    /// Stands for the winding number between the two halves of a long band that was split: there is no gap.
-    /// The faces of the lower half tell how a ray crosses the surface up to a particle in it, those of the
-    /// upper how it does beyond.
-    static constexpr std::int16_t kSplit = kUncertain + 1;
-
-    Vec3f centre;     ///< C, local
-    float radius = 0; ///< R: every vertex of the mesh lies within R of C
-    std::uint32_t divisions = 0;
-    InsideRule rule = InsideRule::Nonzero;
-    std::span<const std::uint32_t> band_offsets; ///< [cell_count + 1]
-    /// [cell_count] The upper limit of each cell's last band, 0 where there is none: most particles lie
-    /// beyond it, and need to know no more.
-    std::span<const std::uint16_t> reaches;
-    /// [band_count + 1] by cell, then outwards; the last is a sentinel. A band without faces is possible: it
-    /// parts two gaps of an open surface.
-    std::span<const Band> bands;
-    /// [band_count] Winding number of the gap between a band and the one below it, or kUncertain or kSplit.
-    /// Beyond a cell's last band it is 0.
-    std::span<const std::int16_t> winding_below;
-    IndexArray references; ///< [reference_count] faces
-    /// [reference_count] Which of the 16 parts of its cell a face touches, a bit each
-    /// (src/directions/octahedral_cells.hpp). A query looks only at the faces of its own part.
-    std::span<const std::uint16_t> reference_parts;
-    /// [vertex_count] on the lattice. Four bytes before the first can be read, so that a vector of four
-    /// numbers holds any vertex as its last three.
-    std::span<const Vec3<std::int32_t>> vertices;
-    IndexArray corners;                 ///< [3 face_count] vertices of each face
-    IndexArray face_numbers;            ///< [face_count] the mesh's number of each face
-    std::span<const TreeNode> nodes;    ///< the first is the root
-    std::span<const BorderEdge> border; ///< empty when the surface is closed
-
-    std::size_t cell_count() const { return std::size_t{8} * divisions * divisions; }
-    std::size_t face_count() const { return face_numbers.size(); }
-    /// All that a query reads, mesh and tree included.
-    std::size_t byte_count() const {
-        return band_offsets.size_bytes() + reaches.size_bytes() + bands.size_bytes() +
-               winding_below.size_bytes() + references.size_bytes() + reference_parts.size_bytes() +
-               vertices.size_bytes() + corners.size_bytes() + face_numbers.size_bytes() + nodes.size_bytes() +
-               border.size_bytes();
-    }
 };
 
 /// An exact map that owns its arrays, or keeps alive the file that they lie in. Immutable; copies share the
@@ -184,28 +87,6 @@ class ExactMap {
     ExactMapStatistics statistics_;
     std::uint64_t source_hash_ = 0;
     std::shared_ptr<const void> storage_;
-};
-
-/// Builds maps of a surface whose vertices move while its triangles stay, such as an animated body: memory is
-/// used again from one map to the next. Not for several threads at once.
-class ExactMapBuilder {
-  public:
-    /// @throws Error InvalidOptions as ExactMap::build() does
-    ExactMapBuilder(std::vector<Triangle> faces, const ExactMapOptions& options);
-    ~ExactMapBuilder();
-    ExactMapBuilder(ExactMapBuilder&&) noexcept;
-    ExactMapBuilder& operator=(ExactMapBuilder&&) noexcept;
-
-    /// The map of the faces with these vertices: the same, bit for bit, as ExactMap::build() of them. Centre,
-    /// radius, lattice and resolution are found anew.
-    /// The builder keeps the map. A map that was copied from it keeps its arrays; without a copy the next
-    /// rebuild() writes into the same memory, and views of the old map end.
-    /// @throws Error as ExactMap::build() does; the builder then holds no map and can be used again
-    const ExactMap& rebuild(std::span<const Vec3f> vertices);
-
-  private:
-    struct Memory;
-    std::unique_ptr<Memory> memory_;
 };
 
 // ---- Queries. noexcept, any number of threads; of a single particle, without allocation
@@ -274,6 +155,30 @@ struct SweepHit {
 /// one mind with contains(): when it finds nothing, the winding number is the same at both ends. NaN or
 /// infinity in a point: nothing is met.
 SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexcept;
+
+// ---- A surface that moves
+
+/// Builds maps of a surface whose vertices move while its triangles stay, such as an animated body: memory is
+/// used again from one map to the next. Not for several threads at once.
+class ExactMapBuilder {
+  public:
+    /// @throws Error InvalidOptions as ExactMap::build() does
+    ExactMapBuilder(std::vector<Triangle> faces, const ExactMapOptions& options);
+    ~ExactMapBuilder();
+    ExactMapBuilder(ExactMapBuilder&&) noexcept;
+    ExactMapBuilder& operator=(ExactMapBuilder&&) noexcept;
+
+    /// The map of the faces with these vertices: the same, bit for bit, as ExactMap::build() of them. Centre,
+    /// radius, lattice and resolution are found anew.
+    /// The builder keeps the map. A map that was copied from it keeps its arrays; without a copy the next
+    /// rebuild() writes into the same memory, and views of the old map end.
+    /// @throws Error as ExactMap::build() does; the builder then holds no map and can be used again
+    const ExactMap& rebuild(std::span<const Vec3f> vertices);
+
+  private:
+    struct Memory;
+    std::unique_ptr<Memory> memory_;
+};
 
 // ---- Looking at a map
 

@@ -3,7 +3,7 @@
 #include "directions/lattice.hpp"
 #include "directions/octahedral_cells.hpp"
 
-#include <echinus/exact_map.hpp>
+#include <echinus/exact_map_view.hpp>
 
 #include <array>
 #include <cstdint>

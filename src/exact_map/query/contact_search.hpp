@@ -5,6 +5,8 @@
 #include "exact_map/query/sides.hpp"
 #include "exact_map/query/winding.hpp"
 
+#include <echinus/exact_map.hpp>
+
 #include <algorithm>
 #include <cmath>
 

@@ -2,7 +2,8 @@
 
 #include "directions/lattice.hpp"
 
-#include <echinus/exact_map.hpp>
+#include <echinus/contact.hpp>
+#include <echinus/exact_map_view.hpp>
 
 #include <cstdint>
 #include <optional>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <echinus/exact_map.hpp>
+#include <echinus/exact_map_view.hpp>
 
 #include <cstdint>
 #include <span>

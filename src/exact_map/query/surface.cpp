@@ -1,5 +1,7 @@
 #include "exact_map/layout.hpp"
 
+#include <echinus/exact_map.hpp>
+
 #include <algorithm>
 
 namespace echinus {

@@ -6,6 +6,8 @@
 #include "exact_map/query/segment_crossing.hpp"
 #include "exact_map/query/winding.hpp"
 
+#include <echinus/exact_map.hpp>
+
 #include <algorithm>
 #include <cmath>
 

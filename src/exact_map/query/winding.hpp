@@ -2,7 +2,7 @@
 
 #include "directions/lattice.hpp"
 
-#include <echinus/exact_map.hpp>
+#include <echinus/exact_map_view.hpp>
 
 #include <cstdint>
 
