@@ -53,7 +53,8 @@ Curves sweep_divisions(const Model& model, const char* colour, const Setting& se
                        std::vector<std::vector<std::string>>& rows) {
     const std::vector<Vec3f> points = comparison::surface_points(model.mesh, setting.few_points());
     const EmbreeRival embree(model.mesh);
-    const std::uint32_t by_default = ExactMap::build(model.mesh, one_thread()).view().divisions;
+    const ExactMap usual = ExactMap::build(model.mesh, one_thread());
+    const std::uint32_t by_default = usual.view().divisions;
     Curves curves{{.name = model.name + ", exact map", .points = {}, .colour = colour},
                   {.name = model.name + ", Embree", .points = {}, .colour = colour, .dashed = true}};
     double embree_ns = 1e9;

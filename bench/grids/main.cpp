@@ -36,7 +36,8 @@ System finest_within(std::size_t budget, const TriangleMesh& mesh, const std::st
     std::uint32_t fits = 32, too_fine = 512;
     while (too_fine - fits > 1) {
         const std::uint32_t middle = (fits + too_fine) / 2;
-        (build(middle).view().byte_count() <= budget ? fits : too_fine) = middle;
+        const DistanceMap map = build(middle);
+        (map.view().byte_count() <= budget ? fits : too_fine) = middle;
     }
     return {kind + ", " + std::to_string(fits), build(fits)};
 }

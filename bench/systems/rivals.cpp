@@ -24,9 +24,11 @@ System dense_grid(Task task, std::string name, const TriangleMesh& mesh, std::si
 
 void list_dense_grids(Task task, const Subject& subject, std::vector<System>& list) {
     const TriangleMesh& mesh = subject.mesh;
-    if (task == Task::Contacts)
+    if (task == Task::Contacts) {
+        const DistanceMap map = DistanceMap::build(mesh);
         list.push_back(dense_grid(task, "dense grid as many bytes as the distance map", mesh,
-                                  DistanceMap::build(mesh).view().byte_count()));
+                                  map.view().byte_count()));
+    }
     // The bytes that the paper gives for its map of the horse.
     list.push_back(dense_grid(task, "dense grid 0.63 MB", mesh, 630'000));
     if (subject.large) return;
@@ -53,7 +55,8 @@ System library(Task task, const char* name, const TriangleMesh& mesh) {
 
 void list_rivals(Task task, const Subject& subject, std::vector<System>& list) {
     const TriangleMesh& mesh = subject.mesh;
-    list.push_back(classified_grid(task, mesh, ExactMap::build(mesh).view().byte_count()));
+    const ExactMap map = ExactMap::build(mesh);
+    list.push_back(classified_grid(task, mesh, map.view().byte_count()));
     list_dense_grids(task, subject, list);
 #ifdef ECHINUS_BENCH_VDB
     if (!subject.large) {

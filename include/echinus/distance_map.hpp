@@ -136,10 +136,13 @@ class DistanceMap {
     DistanceMap(const DistanceMapView& view, const DistanceMapStatistics& statistics,
                 std::uint64_t source_hash, std::shared_ptr<const void> storage);
 
-    const DistanceMapView& view() const { return view_; }
-    operator const DistanceMapView&() const {
-        return view_;
-    } // NOLINT: a map may stand wherever a view is asked for
+    /// A map converts to its view, so it can be passed to every query. A view must not outlive the arrays of
+    /// its map; so a temporary map gives none.
+    const DistanceMapView& view() const& { return view_; }
+    const DistanceMapView& view() const&& = delete;
+    operator const DistanceMapView&() const& { return view_; }
+    operator const DistanceMapView&() const&& = delete;
+
     const DistanceMapStatistics& statistics() const { return statistics_; }
     /// Identifies the mesh and the options that the map was built from; thread_count does not enter.
     std::uint64_t source_hash() const { return source_hash_; }

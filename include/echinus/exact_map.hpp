@@ -74,10 +74,13 @@ class ExactMap {
     ExactMap(const ExactMapView& view, const ExactMapStatistics& statistics, std::uint64_t source_hash,
              std::shared_ptr<const void> storage);
 
-    const ExactMapView& view() const { return view_; }
-    operator const ExactMapView&() const {
-        return view_;
-    } // NOLINT: a map may stand wherever a view is asked for
+    /// A map converts to its view, so it can be passed to every query. A view must not outlive the arrays of
+    /// its map; so a temporary map gives none.
+    const ExactMapView& view() const& { return view_; }
+    const ExactMapView& view() const&& = delete;
+    operator const ExactMapView&() const& { return view_; }
+    operator const ExactMapView&() const&& = delete;
+
     const ExactMapStatistics& statistics() const { return statistics_; }
     /// Identifies the mesh and the options that the map was built from; thread_count does not enter.
     std::uint64_t source_hash() const { return source_hash_; }

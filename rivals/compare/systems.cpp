@@ -62,7 +62,8 @@ class ExactSizes final : public Sizes {
     explicit ExactSizes(const TriangleMesh& mesh) : mesh_(mesh) {}
     Recipe within(std::size_t byte_budget) override {
         const ExactMapOptions options{.byte_budget = byte_budget, .thread_count = 1};
-        return of(ExactMap::build(mesh_, options).view().divisions);
+        const ExactMap map = ExactMap::build(mesh_, options);
+        return of(map.view().divisions);
     }
     std::optional<Recipe> usual() override { return of(0); }
 

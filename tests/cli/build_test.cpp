@@ -111,7 +111,7 @@ TEST_F(BuildCommand, ObeysTheOptionsOfAnExactMap) {
         const json built = json::parse(expect_success(
             {"build", "nested.obj", "--rule", rule, "--centre", "search", "-o", "nested.ech", "--json"}));
         EXPECT_EQ(built["rule"], rule);
-        return contains(load_exact_map(path("nested.ech")), {0.1F, 0.1F, 0.1F});
+        return contains(load_map(path("nested.ech")), {0.1F, 0.1F, 0.1F});
     };
     EXPECT_TRUE(centre_inside("nonzero"));
     EXPECT_FALSE(centre_inside("parity"));
@@ -168,7 +168,7 @@ TEST_F(BuildCommand, BuildsAnOctahedralGridAndRefusesTheOptionsOfTheOtherGrid) {
     EXPECT_EQ(built["divisions"], 8);
     EXPECT_EQ(built["directions"], 17 * 17);
     EXPECT_FALSE(built.contains("longitude_count"));
-    EXPECT_TRUE(contains(load_distance_map(path("box.ech")), {0.99F, 0, 0}));
+    EXPECT_TRUE(contains(load_map(path("box.ech")), {0.99F, 0, 0}));
     EXPECT_NE(expect_success({"info", "box.ech"}).find("289, edges of the octahedron cut into 8"),
               std::string::npos);
     const auto refuse = [&](const std::string& words, std::vector<std::string> options) {
@@ -189,7 +189,7 @@ TEST_F(BuildCommand, BuildsACube) {
                                                    "--divisions", "8", "-o", "box.ech", "--json"}));
     EXPECT_EQ(built["grid"], "cube");
     EXPECT_EQ(built["directions"], 6 * 9 * 9);
-    EXPECT_TRUE(contains(load_distance_map(path("box.ech")), {0.99F, 0, 0}));
+    EXPECT_TRUE(contains(load_map(path("box.ech")), {0.99F, 0, 0}));
     EXPECT_NE(expect_success({"info", "box.ech"}).find("486, edges of the cube cut into 8"),
               std::string::npos);
 }

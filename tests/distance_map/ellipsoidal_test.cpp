@@ -39,7 +39,8 @@ TEST(EllipsoidalMap, ScalesTheBoxOfTheMeshToACubeWhoseEdgeIsItsShortest) {
     EXPECT_EQ(map.view().scale.x, 1);
     EXPECT_NEAR(map.view().scale.y, 0.5 / 3, 1e-5);
     EXPECT_NEAR(map.view().scale.z, 0.5, 1e-5);
-    EXPECT_EQ(ellipsoidal(make_box({2, 2, 2})).view().scale, (Vec3f{1, 1, 1}));
+    const DistanceMap cube = ellipsoidal(make_box({2, 2, 2}));
+    EXPECT_EQ(cube.view().scale, (Vec3f{1, 1, 1}));
 }
 
 TEST(EllipsoidalMap, OfAnEllipsoidHasTheSameEntryEverywhere) {

@@ -13,6 +13,8 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <type_traits>
+#include <utility>
 
 using namespace echinus;
 using namespace echinus::test;
@@ -73,6 +75,21 @@ std::size_t root_field_position(const std::vector<std::byte>& bytes, std::size_t
 using MapFileOnDisk = TemporaryFolderTest;
 
 } // namespace
+
+TEST(MapView, IsOfANamedMapAndNeverOfATemporaryOne) {
+    const auto check = []<typename Map, typename View>(const Map*, const View*) {
+        static_assert(std::is_convertible_v<const Map&, const View&>);
+        static_assert(std::is_convertible_v<const Map&, View>);
+        static_assert(requires(const Map& map) { map.view(); });
+        static_assert(!std::is_convertible_v<Map, const View&>);
+        static_assert(!std::is_convertible_v<const Map, View>);
+        static_assert(!std::is_constructible_v<View, Map>);
+        static_assert(!requires(Map&& map) { std::move(map).view(); });
+        static_assert(!requires(const Map&& map) { std::move(map).view(); });
+    };
+    check(static_cast<const ExactMap*>(nullptr), static_cast<const ExactMapView*>(nullptr));
+    check(static_cast<const DistanceMap*>(nullptr), static_cast<const DistanceMapView*>(nullptr));
+}
 
 TEST(MapFile, ReadsBackEveryBit) {
     for (std::uint32_t seed = 0; seed < 50; ++seed) {

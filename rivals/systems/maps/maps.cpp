@@ -62,7 +62,8 @@ struct Resolutions {
         return result;
     }
     std::size_t bytes(const TriangleMesh& mesh, std::uint32_t resolution) const {
-        return DistanceMap::build(mesh, with(resolution)).view().byte_count();
+        const DistanceMap map = DistanceMap::build(mesh, with(resolution));
+        return map.view().byte_count();
     }
 };
 

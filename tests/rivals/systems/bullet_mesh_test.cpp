@@ -15,7 +15,8 @@ TEST(BulletMesh, TellsNearlyAllSidesThatTheExactMapTells) {
     for (const TriangleMesh& mesh : {make_torus(0.7, 0.3, 24, 12), make_box({1, 2, 0.3}, 2)}) {
         const std::vector<Vec3f> points = comparison::uniform_points(mesh, 5000);
         std::vector<std::uint8_t> truth(points.size()), answers(points.size(), 2);
-        contains_batch(ExactMap::build(mesh), points, truth);
+        const ExactMap judge = ExactMap::build(mesh);
+        contains_batch(judge, points, truth);
         BulletMesh::build(mesh).contains_batch(points, answers);
         std::size_t wrong = 0;
         for (std::size_t i = 0; i < points.size(); ++i) wrong += truth[i] != answers[i];

@@ -29,7 +29,8 @@ std::vector<TriangleMesh> meshes() {
 /// How many of the points are not on the side that the exact map tells.
 std::size_t wrong_sides(const TriangleMesh& mesh, const std::vector<Vec3f>& points, RaySides sides) {
     std::vector<std::uint8_t> truth(points.size()), answers(points.size());
-    contains_batch(ExactMap::build(mesh), points, truth);
+    const ExactMap judge = ExactMap::build(mesh);
+    contains_batch(judge, points, truth);
     EmbreeTree::build(mesh, sides).contains_batch(points, answers);
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < points.size(); ++i) wrong += truth[i] != answers[i];
