@@ -12,16 +12,6 @@ using namespace echinus;
 
 namespace {
 
-void ask_contacts(const ExactMap& map, const std::vector<Vec3f>& points, std::span<Contact> contacts,
-                  unsigned thread_count) {
-    contacts_batch(map.view(), points, 0, contacts, {1, 1, 1}, thread_count);
-}
-
-void ask_contacts(const DistanceMap& map, const std::vector<Vec3f>& points, std::span<Contact> contacts,
-                  unsigned thread_count) {
-    contacts_batch(map.view(), points, 0, contacts, thread_count);
-}
-
 template <typename Map>
 void list_batches_of(const char* name, const Map& map, const std::vector<Vec3f>& points,
                      std::vector<BuildWay>& ways) {
@@ -32,7 +22,7 @@ void list_batches_of(const char* name, const Map& map, const std::vector<Vec3f>&
         ways.push_back({name, "contains_batch on S", thread_count,
                         [=] { contains_batch(map.view(), *shared_points, *inside, thread_count); }});
         ways.push_back({name, "contacts_batch on S", thread_count,
-                        [=] { ask_contacts(map, *shared_points, *contacts, thread_count); }});
+                        [=] { contacts_batch(map.view(), *shared_points, 0, *contacts, thread_count); }});
     }
 }
 

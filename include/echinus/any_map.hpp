@@ -5,7 +5,6 @@
 #include <echinus/export.hpp>
 
 #include <concepts>
-#include <type_traits>
 #include <variant>
 
 ECHINUS_EXPORT_BEGIN
@@ -37,13 +36,11 @@ void contains_batch(const Map& map, StridedSpan<const Vec3f> points_local, std::
 template <std::same_as<AnyMap> Map>
 void contacts_batch(const Map& map, StridedSpan<const Vec3f> points_local, float margin,
                     std::span<Contact> contacts, unsigned thread_count = 1) noexcept {
-    const auto answer = [&](const auto& kind) {
-        if constexpr (std::same_as<std::remove_cvref_t<decltype(kind)>, ExactMap>)
-            contacts_batch(kind.view(), points_local, margin, contacts, {1, 1, 1}, thread_count);
-        else
+    std::visit(
+        [&](const auto& kind) {
             contacts_batch(kind.view(), points_local, margin, contacts, thread_count);
-    };
-    std::visit(answer, map);
+        },
+        map);
 }
 
 } // namespace echinus

@@ -119,13 +119,9 @@ Containment classify(const ExactMapView& map, Vec3f point_local) noexcept;
 /// surface point. For a particle within two lattice steps of the surface, where snapping would leave this to
 /// chance, it is the angle-weighted pseudonormal of the faces that meet there (Baerentzen and Aanaes 2005).
 ///
-/// @param margin   particles outside get a contact too when the surface is at most this far; not negative,
-///                 NaN counts as 0
-/// @param stretch  the world's scale along the map's axes: the distance that is least, and depth and margin,
-///                 are those of the stretched mesh; `point` stays local and `normal` is that of the stretched
-///                 mesh. Not 0; negative mirrors
-Contact contact(const ExactMapView& map, Vec3f point_local, float margin = 0,
-                const Vec3d& stretch = {1, 1, 1}) noexcept;
+/// @param margin  particles outside get a contact too when the surface is at most this far; not negative,
+///                NaN counts as 0
+Contact contact(const ExactMapView& map, Vec3f point_local, float margin = 0) noexcept;
 
 /// contains() for many points, by vector instructions (instruction_set.hpp): the same answers, many times
 /// faster, from 8 points on. Takes 90 KB of the stack; on one thread it does not allocate.
@@ -139,8 +135,7 @@ void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 /// contact().
 /// @pre points_local.size() == contacts.size()
 void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local, float margin,
-                    std::span<Contact> contacts, const Vec3d& stretch = {1, 1, 1},
-                    unsigned thread_count = 1) noexcept;
+                    std::span<Contact> contacts, unsigned thread_count = 1) noexcept;
 
 /// Where a particle's way first meets the surface.
 struct SweepHit {

@@ -34,7 +34,7 @@ Vec3f way_out_of(const Vec3f& point, const Contact& nearest) {
 
 Truth truth_of(const ExactMap& judge, const std::vector<Vec3f>& points) {
     std::vector<Contact> nearest(points.size());
-    contacts_batch(judge.view(), points, std::numeric_limits<float>::infinity(), nearest, {1, 1, 1}, 0);
+    contacts_batch(judge.view(), points, std::numeric_limits<float>::infinity(), nearest, 0);
     Truth truth;
     for (std::size_t i = 0; i < points.size(); ++i) {
         truth.inside.push_back(nearest[i].inside ? 1 : 0);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "collider/frame_change.hpp"
+#include "exact_map/query/stretched_contact.hpp"
 
 #include <echinus/collider.hpp>
 
@@ -29,10 +30,10 @@ class ExactQueries {
         contains_batch(map_, points_local, inside);
     }
     Contact ask_contact(const Vec3f& point_local) const {
-        return contact(map_, point_local, margin_, frame_.scale());
+        return stretched_contact(map_, point_local, margin_, frame_.scale());
     }
     void ask_contacts(std::span<const Vec3f> points_local, std::span<Contact> contacts) const {
-        contacts_batch(map_, points_local, margin_, contacts, frame_.scale());
+        stretched_contacts_batch(map_, points_local, margin_, contacts, frame_.scale());
     }
     void to_world(Contact& contact, const Vec3f&, const Vec3f& point_world) const {
         if (!contact.found()) {

@@ -1,5 +1,7 @@
 #include "simulation/exact_collision.hpp"
 
+#include "exact_map/query/stretched_contact.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -91,7 +93,8 @@ void ExactCollision::ask_for_nearest(std::span<const std::uint32_t> asked,
                                      std::span<const Vec3f> places_local, float reach, Particles& particles,
                                      SimulationProfile& profile) {
     std::array<Contact, kPieceSize> contacts;
-    contacts_batch(now_.map, places_local, reach, std::span(contacts).first(asked.size()), now_.scale);
+    stretched_contacts_batch(now_.map, places_local, reach, std::span(contacts).first(asked.size()),
+                             now_.scale);
     for (std::size_t n = 0; n < asked.size(); ++n) {
         remember(asked[n], particles.positions[asked[n]], contacts[n], reach);
         if (contacts[n].found()) profile.contact_count += push_one(known_, now_, asked[n], particles) ? 1 : 0;

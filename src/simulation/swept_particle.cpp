@@ -1,5 +1,6 @@
 #include "simulation/swept_particle.hpp"
 
+#include "exact_map/query/stretched_contact.hpp"
 #include "simulation/contact_response.hpp"
 
 #include <cmath>
@@ -22,7 +23,7 @@ bool SweptParticle::is_free_at(const Vec3f& place_local) const {
 bool SweptParticle::is_unproven() const {
     if (!was_free_) return contains(now_.map, position_local_);
     if (!is_free_at(position_local_)) return true;
-    return contact(now_.map, position_local_, now_.guard, now_.scale).found();
+    return stretched_contact(now_.map, position_local_, now_.guard, now_.scale).found();
 }
 
 Vec3f SweptParticle::free_normal(const SweepHit& crossing) const {
@@ -44,7 +45,7 @@ std::optional<Placement> SweptParticle::rescued_before(const SweepHit& crossing)
 
 /// A particle that crossed nothing, but is nearer to the surface than the guard.
 std::optional<Placement> SweptParticle::rescued_from_guard() const {
-    const Contact nearest = contact(now_.map, position_local_, now_.guard, now_.scale);
+    const Contact nearest = stretched_contact(now_.map, position_local_, now_.guard, now_.scale);
     if (nearest.found())
         if (const auto found = first_free({4 * now_.guard, 2 * now_.guard}, nearest.point, nearest.normal))
             return found;
@@ -55,7 +56,7 @@ std::optional<Placement> SweptParticle::rescued_from_guard() const {
 
 /// A particle that began inside: to the nearest point, and beyond.
 std::optional<Placement> SweptParticle::rescued_from_inside() const {
-    const Contact nearest = contact(now_.map, position_local_, 0, now_.scale);
+    const Contact nearest = stretched_contact(now_.map, position_local_, 0, now_.scale);
     return first_free({now_.thickness, now_.thickness / 8, 4 * now_.guard, 2 * now_.guard}, nearest.point,
                       nearest.normal);
 }
@@ -85,7 +86,7 @@ std::optional<Placement> SweptParticle::put(const Vec3f& target_body, const Vec3
 std::optional<Placement> SweptParticle::taken_back() const {
     if (!was_free_) return std::nullopt;
     const Vec3f moved_along = now_.body.point_to_world(now_.to_body(free_local_));
-    const Contact nearest = contact(now_.map, free_local_, now_.thickness, now_.scale);
+    const Contact nearest = stretched_contact(now_.map, free_local_, now_.thickness, now_.scale);
     const Vec3f out = now_.body.normal_to_world(nearest.normal);
     // Rounding to float may lead through a surface that is very near: away from it, by more and more.
     float gap = 0;

@@ -1,3 +1,4 @@
+#include "exact_map/query/stretched_contact.hpp"
 #include "rivals/compare/point_sets.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/mesh_assembly.hpp"
@@ -113,7 +114,7 @@ std::vector<Contact> one_by_one(const ExactMapView& map, StridedSpan<const Vec3f
                                 const Vec3d& stretch) {
     std::vector<Contact> contacts;
     for (std::size_t i = 0; i < points.size(); ++i)
-        contacts.push_back(contact(map, points[i], margin, stretch));
+        contacts.push_back(stretched_contact(map, points[i], margin, stretch));
     return contacts;
 }
 
@@ -121,7 +122,7 @@ void expect_same_contacts(const std::vector<Contact>& expected, const ExactMapVi
                           StridedSpan<const Vec3f> points, float margin, const Vec3d& stretch,
                           unsigned thread_count) {
     std::vector<Contact> contacts(points.size());
-    contacts_batch(map, points, margin, contacts, stretch, thread_count);
+    stretched_contacts_batch(map, points, margin, contacts, stretch, thread_count);
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < contacts.size(); ++i)
         if (!same_bits(contacts[i], expected[i]) && ++wrong <= 3)

@@ -1,3 +1,4 @@
+#include "exact_map/query/stretched_contact.hpp"
 #include "support/mesh_assembly.hpp"
 #include "support/random_points.hpp"
 
@@ -91,7 +92,7 @@ TEST(ExactMapContact, HasTheNormalOfTheNearestFaceOnAPlateWithoutThickness) {
 
 TEST(ExactMapContact, LeadsOutOfAWorldThatIsStretchedOutOfShape) {
     const ExactMap map = ExactMap::build(make_box({1, 1, 1}));
-    const Contact c = contact(map, {0.1F, 0.2F, -0.4F}, 0, {1, 1, 1e-7});
+    const Contact c = stretched_contact(map, {0.1F, 0.2F, -0.4F}, 0, {1, 1, 1e-7});
     EXPECT_NEAR(c.point.z, -0.5F, 1e-4F);
     EXPECT_NEAR(c.normal.z, -1, 1e-4F);
 }

@@ -1,3 +1,4 @@
+#include "exact_map/query/stretched_contact.hpp"
 #include "property/generators.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -159,7 +160,7 @@ RC_GTEST_PROP(ExactMap, FindsTheNearestPointOfAStretchedWorld, ()) {
     for (int n = 0; n < kPointCount; ++n) {
         const Vec3f p = random_point(mesh, map, random);
         const Vec3d in_world{p.x * stretch.x, p.y * stretch.y, p.z * stretch.z};
-        const Contact c = contact(map, p, 1e30F, stretch);
+        const Contact c = stretched_contact(map, p, 1e30F, stretch);
         RC_ASSERT(c.found());
         const double tolerance = 1e-5 * map.view().radius;
         RC_ASSERT(std::fabs(std::fabs(c.depth) - unsigned_distance(world, in_world)) <= tolerance);

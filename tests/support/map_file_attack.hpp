@@ -1,5 +1,7 @@
 #pragma once
 
+#include "exact_map/query/stretched_contact.hpp"
+
 #include <echinus/error.hpp>
 #include <echinus/map_file.hpp>
 
@@ -69,9 +71,9 @@ inline void attack_map(const ExactMap& map) {
     contains_batch(view, points, inside);
     std::vector<Contact> contacts(points.size());
     contacts_batch(view, points, view.radius, contacts);
-    contacts_batch(view, points, view.radius * 0.01F, contacts, {2, -1, 0.5});
-    contacts_batch(view, points, 3e38F, contacts, {1e-3, 1, 1e3});
-    contacts_batch(view, points, 0, contacts, {1e-300, 1e300, 1});
+    stretched_contacts_batch(view, points, view.radius * 0.01F, contacts, {2, -1, 0.5});
+    stretched_contacts_batch(view, points, 3e38F, contacts, {1e-3, 1, 1e3});
+    stretched_contacts_batch(view, points, 0, contacts, {1e-300, 1e300, 1});
     for (std::size_t i = 0; i < points.size(); ++i) {
         demand(classify(view, points[i]).inside == contains(view, points[i]),
                "classify and contains disagree");

@@ -70,7 +70,7 @@ std::vector<float> signed_distances(const TriangleMesh& mesh, const SampledField
         points.resize(count);
         contacts.resize(count);
         for (std::size_t i = 0; i < count; ++i) points[i] = place_of(field, begin + i);
-        echinus::contacts_batch(map.view(), points, farthest, contacts, {1, 1, 1}, grid.thread_count);
+        echinus::contacts_batch(map.view(), points, farthest, contacts, grid.thread_count);
         for (std::size_t i = 0; i < count; ++i) distances[begin + i] = -contacts[i].depth;
     }
     return distances;

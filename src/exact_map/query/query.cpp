@@ -3,6 +3,7 @@
 #include "exact_map/query/contact_batch.hpp"
 #include "exact_map/query/contact_search.hpp"
 #include "exact_map/query/sides.hpp"
+#include "exact_map/query/stretched_contact.hpp"
 #include "geometry/parallel.hpp"
 #include "simd/dispatch.hpp"
 
@@ -19,7 +20,12 @@ Containment classify(const ExactMapView& map, Vec3f point_local) noexcept {
     return containment_at(map, frame_of(map), point_local);
 }
 
-Contact contact(const ExactMapView& map, Vec3f point_local, float margin, const Vec3d& stretch) noexcept {
+Contact contact(const ExactMapView& map, Vec3f point_local, float margin) noexcept {
+    return stretched_contact(map, point_local, margin, {1, 1, 1});
+}
+
+Contact stretched_contact(const ExactMapView& map, const Vec3f& point_local, float margin,
+                          const Vec3d& stretch) noexcept {
     return ContactSearch(map, stretch, margin)(point_local);
 }
 
@@ -35,7 +41,13 @@ void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 }
 
 void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local, float margin,
-                    std::span<Contact> contacts, const Vec3d& stretch, unsigned thread_count) noexcept {
+                    std::span<Contact> contacts, unsigned thread_count) noexcept {
+    stretched_contacts_batch(map, points_local, margin, contacts, {1, 1, 1}, thread_count);
+}
+
+void stretched_contacts_batch(const ExactMapView& map, const StridedSpan<const Vec3f>& points_local,
+                              float margin, std::span<Contact> contacts, const Vec3d& stretch,
+                              unsigned thread_count) noexcept {
     assert(points_local.size() == contacts.size());
     const ContactSearch search(map, stretch, margin);
     for_each_piece(contacts.size(), thread_count, [&](std::size_t begin, std::size_t end) {
