@@ -26,8 +26,8 @@ void list_dense_grids(Task task, const Subject& subject, std::vector<System>& li
     const TriangleMesh& mesh = subject.mesh;
     if (task == Task::Contacts) {
         const DistanceMap map = DistanceMap::build(mesh);
-        list.push_back(dense_grid(task, "dense grid as many bytes as the distance map", mesh,
-                                  map.view().byte_count()));
+        list.push_back(
+            dense_grid(task, "dense grid as many bytes as the distance map", mesh, map.view().byte_count()));
     }
     // The bytes that the paper gives for its map of the horse.
     list.push_back(dense_grid(task, "dense grid 0.63 MB", mesh, 630'000));

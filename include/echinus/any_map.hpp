@@ -37,9 +37,7 @@ template <std::same_as<AnyMap> Map>
 void contacts_batch(const Map& map, StridedSpan<const Vec3f> points_local, float margin,
                     std::span<Contact> contacts, unsigned thread_count = 1) noexcept {
     std::visit(
-        [&](const auto& kind) {
-            contacts_batch(kind.view(), points_local, margin, contacts, thread_count);
-        },
+        [&](const auto& kind) { contacts_batch(kind.view(), points_local, margin, contacts, thread_count); },
         map);
 }
 

@@ -139,8 +139,8 @@ void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 
 /// Where a particle's way first meets the surface.
 struct SweepHit {
-    float parameter = 1; ///< along the way: 0 at `from`, 1 at `to`; 1 when nothing is met
-    Vec3f point;         ///< from + parameter (to - from), local; `to` when nothing is met
+    float fraction = 1; ///< of the segment: 0 at `from`, 1 at `to`; 1 when nothing is met
+    Vec3f point;        ///< from + fraction (to - from), local; `to` when nothing is met
     Vec3f normal; ///< unit normal of the face, out of the solid; 0 when nothing is met. Of a face with solid
                   ///< on both sides, or on none, out of its front
     std::int32_t face = Contact::kUnknownFace; ///< the mesh's number

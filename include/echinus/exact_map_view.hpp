@@ -79,7 +79,7 @@ struct ExactMapView {
     std::span<const std::uint32_t> band_offsets; ///< [cell_count + 1]
     /// [cell_count] The upper limit of each cell's last band, 0 where there is none: most particles lie
     /// beyond it, and need to know no more.
-    std::span<const std::uint16_t> reaches;
+    std::span<const std::uint16_t> outer_limits;
     /// [band_count + 1] by cell, then outwards; the last is a sentinel. A band without faces is possible: it
     /// parts two gaps of an open surface.
     std::span<const Band> bands;
@@ -102,7 +102,7 @@ struct ExactMapView {
     std::size_t face_count() const { return face_numbers.size(); }
     /// All that a query reads, mesh and tree included.
     std::size_t byte_count() const {
-        return band_offsets.size_bytes() + reaches.size_bytes() + bands.size_bytes() +
+        return band_offsets.size_bytes() + outer_limits.size_bytes() + bands.size_bytes() +
                winding_below.size_bytes() + references.size_bytes() + reference_parts.size_bytes() +
                vertices.size_bytes() + corners.size_bytes() + face_numbers.size_bytes() + nodes.size_bytes() +
                border.size_bytes();

@@ -38,13 +38,13 @@ inline BandRange bands_of_cell(const ExactMapView& map, std::uint32_t cell) {
     return {map.band_offsets[cell], map.band_offsets[cell + 1]};
 }
 
-/// Sets ExactMapView::reaches.
-inline void set_reaches(std::span<const std::uint32_t> band_offsets, std::span<const Band> bands,
-                        std::vector<std::uint16_t>& reaches) {
-    reaches.resize(band_offsets.size() - 1);
-    for (std::size_t cell = 0; cell < reaches.size(); ++cell) {
+/// Sets ExactMapView::outer_limits.
+inline void set_outer_limits(std::span<const std::uint32_t> band_offsets, std::span<const Band> bands,
+                             std::vector<std::uint16_t>& outer_limits) {
+    outer_limits.resize(band_offsets.size() - 1);
+    for (std::size_t cell = 0; cell < outer_limits.size(); ++cell) {
         const std::uint32_t end = band_offsets[cell + 1];
-        reaches[cell] = end > band_offsets[cell] ? bands[end - 1].upper : std::uint16_t{0};
+        outer_limits[cell] = end > band_offsets[cell] ? bands[end - 1].upper : std::uint16_t{0};
     }
 }
 

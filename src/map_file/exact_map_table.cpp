@@ -107,11 +107,12 @@ ExactMap read_table(const schema::ExactMap& stored, std::uint64_t source_hash,
     validate(view, statistics, name);
     struct Kept {
         std::shared_ptr<const void> file;
-        std::vector<std::uint16_t> reaches;
+        std::vector<std::uint16_t> outer_limits;
     };
     const auto kept = std::make_shared<Kept>(Kept{std::move(storage), {}});
-    set_reaches(view.band_offsets, view.bands, kept->reaches); // told by the bands, so files lack them
-    view.reaches = kept->reaches;
+    set_outer_limits(view.band_offsets, view.bands,
+                     kept->outer_limits); // told by the bands, so files lack them
+    view.outer_limits = kept->outer_limits;
     return {view, statistics, source_hash, kept};
 }
 

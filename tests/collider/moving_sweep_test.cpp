@@ -62,7 +62,7 @@ TEST(MovingSweep, MeetsTheSurfaceWhenDenseSamplingInTimeDoes) {
         const SweepHit hit = sweep(scene.now, scene.before, from, to);
         const double sampled = first_inside(scene, from, to, 400);
         // Chord and way differ by 0.1 %, and a surface may be grazed.
-        if (hit.found() != (sampled <= 1) || std::fabs(hit.parameter - std::min(sampled, 1.0)) > 0.02) {
+        if (hit.found() != (sampled <= 1) || std::fabs(hit.fraction - std::min(sampled, 1.0)) > 0.02) {
             ++unlike;
             continue;
         }
@@ -87,7 +87,7 @@ TEST(MovingSweep, MeetsAThinPlateThatPassesOverAParticleAtRest) {
     now.pose = risen;
     const SweepHit hit = sweep(now, scene.before, particle, particle);
     ASSERT_TRUE(hit.found());
-    EXPECT_NEAR(hit.parameter, 0.4995, 1e-4);
+    EXPECT_NEAR(hit.fraction, 0.4995, 1e-4);
     const Vec3d up = now.pose.rotation.apply({0, 0, 1});
     EXPECT_NEAR(length(Vec3d(hit.normal) - up), 0, 1e-5);
     EXPECT_NEAR(length(now.pose.to_local(Vec3d(hit.point)) - Vec3d{0.1, 0.2, 0.0005}), 0, 1e-5);
@@ -116,7 +116,7 @@ TEST(MovingSweep, MeetsNothingWithADistanceMapOrWithPointsThatAreNone) {
     const SweepHit nothing = sweep(without.now, without.before, far, centre);
     EXPECT_FALSE(nothing.found());
     EXPECT_EQ(nothing.point, centre);
-    EXPECT_EQ(nothing.parameter, 1);
+    EXPECT_EQ(nothing.fraction, 1);
     const Moved exact = moved(ExactMap::build(box), {1, 1, 1}, {}, {});
     EXPECT_TRUE(sweep(exact.now, exact.before, far, centre).found());
     constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();

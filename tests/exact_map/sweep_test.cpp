@@ -51,10 +51,10 @@ TEST(ExactMapSweep, FindsTheFirstCrossingThatAnyFaceHas) {
                 const double end =
                     std::min(unsigned_distance(mesh, Vec3d(from)), unsigned_distance(mesh, Vec3d(to)));
                 ASSERT_LT(end, 1e-5 * map.view().radius);
-            } else if (hit.found() && std::fabs(hit.parameter - expected) > tolerance) {
+            } else if (hit.found() && std::fabs(hit.fraction - expected) > tolerance) {
                 // A grazed edge may be missed by a hair.
-                ASSERT_LT(unsigned_distance(
-                              mesh, Vec3d(from) + Vec3d(step) * std::min<double>(hit.parameter, expected)),
+                ASSERT_LT(unsigned_distance(mesh, Vec3d(from) +
+                                                      Vec3d(step) * std::min<double>(hit.fraction, expected)),
                           1e-5 * map.view().radius);
             }
         }
@@ -81,7 +81,7 @@ TEST(ExactMapSweep, IsOfOneMindWithContainsOnVerticesEdgesAndFaces) {
         ASSERT_EQ(hit.entering, !starts_inside);
         ASSERT_NEAR(unsigned_distance(mesh, Vec3d(hit.point)), 0, 1e-5);
         for (float share : {0.1F, 0.5F, 0.9F}) {
-            const Vec3f before = between(from, to, hit.parameter * share);
+            const Vec3f before = between(from, to, hit.fraction * share);
             if (unsigned_distance(mesh, Vec3d(before)) > 1e-5)
                 ASSERT_EQ(contains(map, before), starts_inside);
         }
@@ -94,7 +94,7 @@ TEST(ExactMapSweep, CutsWaysThatBeginAndEndFarAway) {
     ASSERT_TRUE(hit.found());
     EXPECT_TRUE(hit.entering);
     EXPECT_NEAR(hit.point.x, -1, 0.1); // float has no finer step there
-    EXPECT_NEAR(hit.parameter, 0.5F, 1e-6F);
+    EXPECT_NEAR(hit.fraction, 0.5F, 1e-6F);
     EXPECT_EQ(hit.normal, (Vec3f{-1, 0, 0}));
     EXPECT_FALSE(sweep(map, {-1e6F, 5, 0}, {1e6F, 5, 0}).found());
 }

@@ -84,7 +84,7 @@ TEST(MapView, IsOfANamedMapAndNeverOfATemporaryOne) {
         static_assert(!std::is_convertible_v<Map, const View&>);
         static_assert(!std::is_convertible_v<const Map, View>);
         static_assert(!std::is_constructible_v<View, Map>);
-        static_assert(!requires(Map&& map) { std::move(map).view(); });
+        static_assert(!requires(Map && map) { std::move(map).view(); });
         static_assert(!requires(const Map&& map) { std::move(map).view(); });
     };
     check(static_cast<const ExactMap*>(nullptr), static_cast<const ExactMapView*>(nullptr));

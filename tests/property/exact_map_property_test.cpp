@@ -181,7 +181,7 @@ RC_GTEST_PROP(ExactMap, SweepsAreOfOneMindWithContains, ()) {
             continue;
         }
         RC_ASSERT(hit.entering == !contains(map, from));
-        RC_ASSERT(hit.parameter >= 0 && hit.parameter <= 1);
+        RC_ASSERT(hit.fraction >= 0 && hit.fraction <= 1);
         RC_ASSERT(unsigned_distance(mesh, Vec3d(hit.point)) <= 1e-5 * map.view().radius);
     }
 }

@@ -1,3 +1,4 @@
+#include "exact_map/query/stretched_contact.hpp"
 #include "simulation/known_contacts.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/random_points.hpp"
@@ -29,7 +30,7 @@ KnownContacts known_of(const Particles& particles, const ColliderNow& collider, 
         if (particles.pinned(i)) continue;
         const Vec3f position = particles.positions[i];
         const Contact nearest =
-            contact(collider.map, collider.local.point_to_local(position), reach, collider.scale);
+            stretched_contact(collider.map, collider.local.point_to_local(position), reach, collider.scale);
         known.remember(i, collider, position, !nearest.found() ? reach : nearest.inside ? 0 : -nearest.depth);
         if (!nearest.found()) continue;
         const Vec3f over_plane = known.asked_at_body[i] - collider.to_body(nearest.point);

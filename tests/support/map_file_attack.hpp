@@ -79,7 +79,7 @@ inline void attack_map(const ExactMap& map) {
                "classify and contains disagree");
         for (const std::size_t stride : {1, 7}) {
             const SweepHit hit = sweep(view, points[i], points[(i + stride) % points.size()]);
-            demand(hit.parameter >= 0 && hit.parameter <= 1, "a sweep ends beyond its way");
+            demand(hit.fraction >= 0 && hit.fraction <= 1, "a sweep ends beyond its way");
         }
     }
 }

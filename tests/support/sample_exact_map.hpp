@@ -14,7 +14,7 @@ struct ExactMapParts {
     ExactMapStatistics statistics;
     std::uint64_t source_hash = 0;
     std::vector<std::uint32_t> band_offsets;
-    std::vector<std::uint16_t> reaches;
+    std::vector<std::uint16_t> outer_limits;
     std::vector<Band> bands;
     std::vector<std::int16_t> winding_below;
     std::vector<std::uint16_t> reference_parts;
@@ -38,7 +38,8 @@ struct ExactMapParts {
     explicit ExactMapParts(const ExactMap& map)
         : view(map.view()), statistics(map.statistics()), source_hash(map.source_hash()),
           band_offsets(view.band_offsets.begin(), view.band_offsets.end()),
-          reaches(view.reaches.begin(), view.reaches.end()), bands(view.bands.begin(), view.bands.end()),
+          outer_limits(view.outer_limits.begin(), view.outer_limits.end()),
+          bands(view.bands.begin(), view.bands.end()),
           winding_below(view.winding_below.begin(), view.winding_below.end()),
           reference_parts(view.reference_parts.begin(), view.reference_parts.end()),
           vertices(view.vertices.begin(), view.vertices.end()), nodes(view.nodes.begin(), view.nodes.end()),
@@ -56,7 +57,7 @@ struct ExactMapParts {
         const auto storage = std::make_shared<const ExactMapParts>(*this);
         ExactMapView all = view;
         all.band_offsets = storage->band_offsets;
-        all.reaches = storage->reaches;
+        all.outer_limits = storage->outer_limits;
         all.bands = storage->bands;
         all.winding_below = storage->winding_below;
         all.references = storage->references.view();

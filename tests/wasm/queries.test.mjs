@@ -95,7 +95,7 @@ describe('A map', () => {
         const hit = map.sweep([0.1, 0.2, 3], [0.1, 0.2, 0]);
         assert.equal(hit.found, true);
         assert.equal(hit.entering, true);
-        assert.ok(Math.abs(hit.parameter - 2 / 3) < 1e-5);
+        assert.ok(Math.abs(hit.fraction - 2 / 3) < 1e-5);
         assert.equal(map.sweep([0, 0, 3], [0, 0, 2]).found, false);
         assert.equal(map.description.closed, true);
         assert.equal(map.description.faceCount, 12);

@@ -314,7 +314,7 @@ export class DistanceMap extends MapOfEitherKind {
 
 export interface SweepHit {
     /** Along the way: 0 at its beginning, 1 at its end or when nothing is met. */
-    parameter: number;
+    fraction: number;
     point: [number, number, number];
     normal: [number, number, number];
     face: number;

@@ -115,7 +115,7 @@ export class ExactMap extends Map {
             const f = result >>> 2;
             const face = ints[f + 7];
             return {
-                parameter: floats[f],
+                fraction: floats[f],
                 point: Array.from(floats.subarray(f + 1, f + 4)),
                 normal: Array.from(floats.subarray(f + 4, f + 7)),
                 face,

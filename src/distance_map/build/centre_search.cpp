@@ -21,9 +21,9 @@ namespace {
 class PlacesBesideSurface {
   public:
     PlacesBesideSurface(const TriangleMesh& mesh, float offset) {
-        constexpr double kFewest = 4000;
+        constexpr double kMinPlaces = 4000;
         const auto cuts = static_cast<std::uint32_t>(
-            std::ceil(std::sqrt(kFewest / static_cast<double>(mesh.faces.size()))));
+            std::ceil(std::sqrt(kMinPlaces / static_cast<double>(mesh.faces.size()))));
         for (const Triangle& face : mesh.faces) {
             const Vec3d a(mesh.vertices[face[0]]);
             add({a, Vec3d(mesh.vertices[face[1]]) - a, Vec3d(mesh.vertices[face[2]]) - a}, cuts,

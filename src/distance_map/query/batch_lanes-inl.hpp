@@ -74,7 +74,7 @@ struct ContactAnswers {
 /// Particles of a piece of a batch that are left for later, by their number in the batch.
 class Leftovers {
   public:
-    static constexpr std::size_t kMost = 256;
+    static constexpr std::size_t kCapacity = 256;
 
     HWY_INLINE void add(FloatMask mask, std::size_t first) {
         if (hn::AllFalse(kFloat, mask)) return;
@@ -101,7 +101,7 @@ class Leftovers {
     }
 
   private:
-    std::int32_t numbers_[kMost + kLanes];
+    std::int32_t numbers_[kCapacity + kLanes];
     std::size_t count_ = 0;
 };
 
@@ -122,9 +122,9 @@ bool is_contiguous(const StridedSpan<const Vec3f>& points) {
 template <typename Kernel, typename Answers>
 void answer_all(const Kernel& kernel, const StridedSpan<const Vec3f>& points, Answers answers) {
     const bool contiguous = is_contiguous(points);
-    Vec3f copies[Leftovers::kMost];
-    for (std::size_t begin = 0; begin < points.size(); begin += Leftovers::kMost) {
-        const std::size_t count = std::min(Leftovers::kMost, points.size() - begin);
+    Vec3f copies[Leftovers::kCapacity];
+    for (std::size_t begin = 0; begin < points.size(); begin += Leftovers::kCapacity) {
+        const std::size_t count = std::min(Leftovers::kCapacity, points.size() - begin);
         if (!contiguous)
             for (std::size_t i = 0; i < count; ++i) copies[i] = points[begin + i];
         answer_piece(kernel, contiguous ? &points[begin] : copies, count, answers);

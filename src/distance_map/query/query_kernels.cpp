@@ -22,9 +22,10 @@ GridKernels kernels_of(DirectionGrid grid) noexcept {
 } // namespace
 
 bool kernels_read(const DistanceMapView& map) noexcept {
-    constexpr std::size_t kFewest = 4;                  // a row
-    constexpr std::size_t kMost = std::size_t{1} << 30; // offsets in bytes of 16-bit entries have 31 bits
-    return map.entry_count() >= kFewest && map.entry_count() < kMost;
+    constexpr std::size_t kMinEntries = 4; // a row
+    constexpr std::size_t kMaxEntries = std::size_t{1}
+                                        << 30; // offsets in bytes of 16-bit entries have 31 bits
+    return map.entry_count() >= kMinEntries && map.entry_count() < kMaxEntries;
 }
 
 void contains_by_kernel(const DistanceMapView& map, const StridedSpan<const Vec3f>& points_local,

@@ -65,7 +65,7 @@ struct Contacts {
 /// The first four entries of each sample: rows[corner].at[k].
 template <typename Grid, typename Entries>
 struct LoadedEntries {
-    static constexpr std::int32_t kMost = 4;
+    static constexpr std::int32_t kMaxEntries = 4;
 
     const Grid& grid;
     const Entries& entries;
@@ -100,7 +100,7 @@ struct LoadedEntries {
 /// Any entries.
 template <typename Grid, typename Entries>
 struct GatheredEntries {
-    static constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+    static constexpr std::int32_t kMaxEntries = std::numeric_limits<std::int32_t>::max();
 
     const Grid& grid;
     const Entries& entries;
@@ -273,7 +273,7 @@ class Kernel {
         const Samples<Grid>& samples = found.samples;
         Intervals intervals{hn::Zero(kInt), hn::Zero(kFloat), splat(map_.radius)};
         FloatMask looking = hn::And(found.known, as_mask(hn::Gt(samples.entry_count, hn::Zero(kInt))));
-        for (std::int32_t k = 0; k < EntriesAt::kMost && !hn::AllFalse(kFloat, looking); ++k) {
+        for (std::int32_t k = 0; k < EntriesAt::kMaxEntries && !hn::AllFalse(kFloat, looking); ++k) {
             const FloatLanes distance = grid_.distance_of(interpolated(samples, entries_at(k)), rays.at);
             const FloatMask beyond = hn::AndNot(hn::Gt(distance, rays.length), looking);
             intervals.above = choose(hn::AndNot(beyond, looking), distance, intervals.above);

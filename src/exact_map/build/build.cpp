@@ -46,7 +46,7 @@ std::uint64_t hash_of(std::span<const Vec3f> vertices, std::span<const Triangle>
 
 struct OwnedArrays {
     Bands bands;
-    std::vector<std::uint16_t> reaches;
+    std::vector<std::uint16_t> outer_limits;
     std::vector<Vec3<std::int32_t>> vertices;
     IndexStorage corners;
     IndexStorage face_numbers;
@@ -62,7 +62,7 @@ ExactMapView view_of(const OwnedArrays& arrays, const LatticeMesh& lattice, std:
     view.divisions = divisions;
     view.rule = rule;
     view.band_offsets = arrays.bands.offsets;
-    view.reaches = arrays.reaches;
+    view.outer_limits = arrays.outer_limits;
     view.bands = arrays.bands.bands;
     view.winding_below = arrays.bands.winding_below;
     view.references = arrays.bands.references.view();
@@ -204,7 +204,7 @@ std::uint32_t MapMaker::set_bands() {
     const auto find = [&](std::uint32_t candidate) {
         finder_.find(lattice_, arrays_->border, OctahedralCells(candidate), options_.thread_count,
                      arrays_->bands);
-        set_reaches(arrays_->bands.offsets, arrays_->bands.bands, arrays_->reaches);
+        set_outer_limits(arrays_->bands.offsets, arrays_->bands.bands, arrays_->outer_limits);
     };
     std::uint32_t divisions = options_.divisions;
     if (options_.byte_budget != 0)

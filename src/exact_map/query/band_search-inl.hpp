@@ -133,7 +133,7 @@ class BandSearch {
     void compare_with_reach(std::size_t count) {
         constexpr Ints i;
         for (std::size_t slot = 0; slot < count; ++slot)
-            limits_[slot] = map_.reaches[static_cast<std::size_t>(cells_[slot])];
+            limits_[slot] = map_.outer_limits[static_cast<std::size_t>(cells_[slot])];
         for (std::size_t slot = 0; slot < count; slot += hn::Lanes(i)) {
             const FloatLanes l1 = hn::Load(Floats(), &l1_[slot]);
             const FloatLanes reach = hn::Mul(hn::ConvertTo(Floats(), hn::Load(i, &limits_[slot])),

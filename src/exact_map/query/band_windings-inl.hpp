@@ -63,7 +63,7 @@ class BandWindings {
   private:
     static constexpr std::uint32_t kLanes = hn::MaxLanes(Ints());
     static constexpr std::size_t kMargin = 2 * BandGroup::kMargin;
-    static constexpr std::size_t kMostPairs = 8 * BandGroup::kCapacity; // twice what is usual
+    static constexpr std::size_t kPairCapacity = 8 * BandGroup::kCapacity; // twice what is usual
     static constexpr std::uint32_t kBefore = 0x8000'0000;
 
     /// What a particle's crossings are added to.
@@ -97,13 +97,13 @@ class BandWindings {
                 before = beyond == ExactMapView::kSplit ? -1 : 0;
                 winding = beyond ^ ((beyond ^ below) & before); // nothing to guess for a processor
             }
-            const bool left_out = (winding == ExactMapView::kUncertain) | (end - begin > kMostPairs) |
+            const bool left_out = (winding == ExactMapView::kUncertain) | (end - begin > kPairCapacity) |
                                   (end + kMargin > reference_count); // beyond lists is read, too
             if (left_out) [[unlikely]] {
                 sums_[k] = {kUnsettled, 1, pair_count_};
                 continue;
             }
-            if (pair_count_ + (end - begin) > kMostPairs) [[unlikely]]
+            if (pair_count_ + (end - begin) > kPairCapacity) [[unlikely]]
                 break;
             const auto particle = static_cast<std::int32_t>(static_cast<std::uint32_t>(k) |
                                                             (static_cast<std::uint32_t>(before) & kBefore));
@@ -261,9 +261,9 @@ class BandWindings {
     const ExactMapView& map_;
     std::array<Sum, BandGroup::kCapacity> sums_;
     std::size_t pair_count_ = 0;
-    alignas(64) std::array<std::int32_t, kMostPairs + kMargin> pair_corners_;     ///< the first of each face
-    alignas(64) std::array<std::int32_t, kMostPairs + kMargin> pair_particles_;   ///< perhaps with kBefore
-    alignas(64) std::array<std::uint8_t, kMostPairs + kMargin> raised_crossings_; ///< crossing_on() + 1
+    alignas(64) std::array<std::int32_t, kPairCapacity + kMargin> pair_corners_;   ///< the first of each face
+    alignas(64) std::array<std::int32_t, kPairCapacity + kMargin> pair_particles_; ///< perhaps with kBefore
+    alignas(64) std::array<std::uint8_t, kPairCapacity + kMargin> raised_crossings_; ///< crossing_on() + 1
 };
 
 } // namespace echinus::HWY_NAMESPACE

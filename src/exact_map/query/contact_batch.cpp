@@ -71,7 +71,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Doubles = hn::ScalableTag<double>;
 using DoubleLanes = hn::Vec<Doubles>;
 using DoubleMask = hn::Mask<Doubles>;
-constexpr std::size_t kMostLanes = 8;
+constexpr std::size_t kMaxLanes = 8;
 
 /// Vec3d of several particles at once: the same operations in the same order, hence the same bits.
 struct Vec3Lanes {
@@ -119,7 +119,7 @@ class ContactLanes {
     }
 
   private:
-    using Row = std::array<double, kMostLanes>;
+    using Row = std::array<double, kMaxLanes>;
     struct Rows {
         alignas(64) Row x, y, z;
 
@@ -150,7 +150,7 @@ class ContactLanes {
             for (std::size_t k = 0; k < 3; ++k)
                 corners_[k].set(lane, Vec3d(map_.vertices[map_.corners[3 * face + k]]));
             places_.set(lane, block.searches[i].place);
-            signs_[lane] = (block.sides[i] & kInside) != 0 ? 1 : -1;
+            signs_[lane] = (block.sides[i] & kInsideBit) != 0 ? 1 : -1;
         }
     }
 
@@ -225,8 +225,8 @@ class ContactLanes {
         contact.normal = normals_[lane];
         contact.depth = static_cast<float>(depths_[lane]);
         contact.face = static_cast<std::int32_t>(map_.face_numbers[block.faces[i]]);
-        contact.inside = (block.sides[i] & kInside) != 0;
-        contact.certain = (block.sides[i] & kUncertain) == 0;
+        contact.inside = (block.sides[i] & kInsideBit) != 0;
+        contact.certain = (block.sides[i] & kUncertainBit) == 0;
         contact.feature = static_cast<Feature>(static_cast<int>(features_[lane]));
     }
 
@@ -283,8 +283,8 @@ void answer(const ContactSearch& search, ContactBlock& block, std::span<Contact>
 
 /// Memory for the particles of a batch.
 struct ContactMemory {
-    std::span<Side> sides;              ///< as many as the batch has particles
-    std::span<Station> stations, spare; ///< so many are put in order at a time
+    std::span<Side> sides;                 ///< one for each particle of the batch
+    std::span<KeyedParticle> queue, spare; ///< equally long: this many particles are sorted at a time
 };
 
 void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
@@ -293,55 +293,56 @@ void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& 
     find_sides(search.map(), points_local, sides);
     const MortonCurve curve(search.map().centre, search.map().radius);
     ContactBlock block;
-    std::size_t count = 0; // of stations
-    const auto answer_stations = [&] {
-        sort_by_key(memory.stations.first(count), memory.spare.first(count));
-        for (std::size_t k = 0; k < count; ++k) {
-            const Station& station = memory.stations[k];
-            // Neighbours in space are not neighbours in memory: what is read and written next is sent for.
+    std::size_t queued = 0;
+    const auto answer_queue = [&] {
+        const std::span<KeyedParticle> queue = memory.queue.first(queued);
+        sort_by_key(queue, memory.spare.first(queued));
+        for (std::size_t k = 0; k < queue.size(); ++k) {
+            // Neighbours in space are not neighbours in memory: what is read and written soon is fetched now.
             constexpr std::size_t kAhead = 16;
-            const std::uint32_t next = memory.stations[std::min(k + kAhead, count - 1)].particle;
-            hwy::Prefetch(&points_local[next]);
-            hwy::Prefetch(&sides[next]);
-            hwy::Prefetch(&contacts[station.particle]);
-            hwy::Prefetch(&contacts[station.particle].feature); // perhaps on another line
-            block.add(search, station.particle, points_local[station.particle], sides[station.particle]);
+            const std::uint32_t later = queue[std::min(k + kAhead, queue.size() - 1)].particle;
+            hwy::Prefetch(&points_local[later]);
+            hwy::Prefetch(&sides[later]);
+            const std::uint32_t particle = queue[k].particle;
+            hwy::Prefetch(&contacts[particle]);
+            hwy::Prefetch(&contacts[particle].feature); // perhaps on another line
+            block.add(search, particle, points_local[particle], sides[particle]);
             if (block.size == ContactBlock::kCapacity) answer(search, block, contacts);
         }
         answer(search, block, contacts);
-        count = 0;
+        queued = 0;
     };
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         if (!search.is_wanted(points_local[i], sides[i])) {
             ContactSearch::set_no_contact(contacts[i], points_local[i], sides[i]);
             continue;
         }
-        memory.stations[count++] = {curve.key(points_local[i]), static_cast<std::uint32_t>(i)};
-        if (count == memory.stations.size()) answer_stations();
+        memory.queue[queued++] = {curve.key(points_local[i]), static_cast<std::uint32_t>(i)};
+        if (queued == memory.queue.size()) answer_queue();
     }
-    answer_stations();
+    answer_queue();
 }
 
 } // namespace
 
 void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
                    std::span<Contact> contacts) {
-    constexpr std::size_t kFew =
-        256; // a solver asks for few particles many times: no memory is taken for them
-    if (contacts.size() <= kFew) {
-        std::array<Side, kFew> sides;
-        std::array<Station, kFew> stations, spare;
-        find_contacts(search, points_local, contacts, {{sides.data(), contacts.size()}, stations, spare});
+    // A solver asks for few particles many times: they take no memory but the stack's.
+    constexpr std::size_t kStackCapacity = 256;
+    if (contacts.size() <= kStackCapacity) {
+        std::array<Side, kStackCapacity> sides;
+        std::array<KeyedParticle, kStackCapacity> queue, spare;
+        find_contacts(search, points_local, contacts, {{sides.data(), contacts.size()}, queue, spare});
         return;
     }
-    // Few enough for what is written to stay in a cache, enough for neighbours to be near.
-    constexpr std::size_t kMostStations = 1 << 16;
-    const std::size_t count = std::min(kMostStations, contacts.size());
+    // Few enough for what is written to stay in a cache, enough for neighbours to be close to each other.
+    constexpr std::size_t kQueueCapacity = 1 << 16;
+    const std::size_t count = std::min(kQueueCapacity, contacts.size());
     // Not std::make_unique, which would fill them.
     const std::unique_ptr<Side[]> sides(new Side[contacts.size()]);
-    const std::unique_ptr<Station[]> stations(new Station[2 * count]);
+    const std::unique_ptr<KeyedParticle[]> queue(new KeyedParticle[2 * count]);
     find_contacts(search, points_local, contacts,
-                  {{sides.get(), contacts.size()}, {stations.get(), count}, {stations.get() + count, count}});
+                  {{sides.get(), contacts.size()}, {queue.get(), count}, {queue.get() + count, count}});
 }
 
 } // namespace echinus

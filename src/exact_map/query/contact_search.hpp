@@ -47,10 +47,10 @@ class ContactSearch {
 
     /// Is there a nearest point to be looked for?
     bool is_wanted(const Vec3f& point_local, Side side) const {
-        return ((side & kInside) != 0 || margin_ > 0) && is_finite(point_local);
+        return ((side & kInsideBit) != 0 || margin_ > 0) && is_finite(point_local);
     }
     /// How far, in lattice steps.
-    double farthest(Side side) const { return (side & kInside) != 0 ? kEverywhere : margin_; }
+    double farthest(Side side) const { return (side & kInsideBit) != 0 ? kEverywhere : margin_; }
 
     static Contact no_contact(const Vec3f& point_local, Side side) {
         Contact result;
@@ -65,15 +65,15 @@ class ContactSearch {
         contact.depth = 0;
         contact.face = Contact::kUnknownFace;
         contact.inside = false;
-        contact.certain = (side & kUncertain) == 0;
+        contact.certain = (side & kUncertainBit) == 0;
         contact.feature = Feature::Unknown;
     }
 
     Contact contact_at(const Vec3f& point_local, Side side, const NearestPoint& nearest) const {
         Contact result;
-        const bool inside = (side & kInside) != 0;
+        const bool inside = (side & kInsideBit) != 0;
         result.inside = inside;
-        result.certain = (side & kUncertain) == 0;
+        result.certain = (side & kUncertainBit) == 0;
         result.point = Vec3f(frame_.to_local(nearest.point));
         const double distance = nearest.distance * unit_ * frame_.step;
         result.depth = static_cast<float>(inside ? distance : -distance);

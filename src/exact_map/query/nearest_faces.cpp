@@ -34,7 +34,7 @@ std::uint32_t nearest_by_reference(const ExactMapView& map, const Vec3d& stretch
 
 namespace {
 
-constexpr std::size_t kMostLanes = 16;
+constexpr std::size_t kMaxLanes = 16;
 
 /// The faces that may be the nearest to some of the places at hand.
 class Candidates {
@@ -77,7 +77,7 @@ class Candidates {
 
     std::size_t size_ = 0;
     std::array<std::uint32_t, kCapacity> faces_;
-    alignas(64) std::array<std::array<float, kMostLanes>, kCapacity> lowers_;
+    alignas(64) std::array<std::array<float, kMaxLanes>, kCapacity> lowers_;
 };
 
 /// As many searches as there are lanes, on one way through the tree. Leaves once met are kept ready for the
@@ -109,7 +109,7 @@ class NearestFaceFinder {
     }
 
   private:
-    static constexpr double kMostSquared = 1e30;
+    static constexpr double kMaxDistanceSq = 1e30;
 
     /// Places farther off are left to the reference.
     static constexpr double kRange = kEverywhere / 2;
@@ -129,14 +129,14 @@ class NearestFaceFinder {
 
     void start(std::span<const NearestSearch> searches) {
         constexpr Floats f;
-        alignas(64) std::array<std::array<float, kMostLanes>, 4> rows;
+        alignas(64) std::array<std::array<float, kMaxLanes>, 4> rows;
         for (std::size_t lane = 0; lane < hn::Lanes(f); ++lane) {
             const NearestSearch& search = searches[std::min(lane, searches.size() - 1)];
             const Vec3d offset = search.place - Vec3d(origin_);
             rows[0][lane] = static_cast<float>(offset.x);
             rows[1][lane] = static_cast<float>(offset.y);
             rows[2][lane] = static_cast<float>(offset.z);
-            rows[3][lane] = static_cast<float>(std::min(search.farthest * search.farthest, kMostSquared));
+            rows[3][lane] = static_cast<float>(std::min(search.farthest * search.farthest, kMaxDistanceSq));
         }
         flat_ = {hn::Load(f, rows[0].data()), hn::Load(f, rows[1].data()), hn::Load(f, rows[2].data())};
         places_ = {hn::Mul(flat_.x, hn::Set(f, stretch_float_.x)),
@@ -282,7 +282,7 @@ class NearestFaceFinder {
 
     /// Of each place's candidates the one that the reference takes.
     void choose(std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) const {
-        std::array<double, kMostLanes> distances_sq;
+        std::array<double, kMaxLanes> distances_sq;
         std::uint32_t measured = 0; // places whose face's distance is known
         std::fill(faces.begin(), faces.end(), kNoFace);
         const std::uint32_t asked = (1U << searches.size()) - 1;

@@ -36,7 +36,7 @@ void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
         const std::span<Side> sides = inside.subspan(begin, end - begin);
         find_sides(map, points_local.subspan(begin, end - begin), sides);
         if (map.border.empty()) return;
-        for (Side& side : sides) side &= kInside;
+        for (Side& side : sides) side &= kInsideBit;
     });
 }
 

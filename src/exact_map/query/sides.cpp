@@ -58,14 +58,14 @@ class SideFinder {
             answer_in_gaps();
             place_in_bands();
             answer_in_bands();
-            for (const std::int32_t slot : search_.unsure()) refer(slot);
+            for (const std::int32_t slot : search_.unsure()) fall_back_to_scalar(slot);
         }
     }
 
     std::size_t particle_of(std::int32_t slot) const { return begin_ + static_cast<std::size_t>(slot); }
 
     /// Leaves a particle to the reference.
-    void refer(std::int32_t slot) {
+    void fall_back_to_scalar(std::int32_t slot) {
         const std::size_t particle = particle_of(slot);
         sides_[particle] = side_of(classify(map_, points_[particle]));
     }
@@ -92,9 +92,9 @@ class SideFinder {
         for (std::size_t k = 0; k < group.size; ++k) {
             const std::int16_t winding = map_.winding_below[static_cast<std::uint32_t>(group.bands[k])];
             if (winding == ExactMapView::kUncertain) [[unlikely]]
-                refer(group.slots[k]);
+                fall_back_to_scalar(group.slots[k]);
             else
-                sides_[particle_of(group.slots[k])] = is_inside(map_.rule, winding) ? kInside : 0;
+                sides_[particle_of(group.slots[k])] = is_inside(map_.rule, winding) ? kInsideBit : 0;
         }
     }
 
@@ -125,9 +125,9 @@ class SideFinder {
         windings_.find(search_.in_bands, search_.outermost_count,
                        [=, this](std::size_t k, std::int32_t winding) {
                            if (winding == BandWindings::kUnsettled) [[unlikely]]
-                               refer(slots[k]);
+                               fall_back_to_scalar(slots[k]);
                            else
-                               sides[slots[k]] = is_inside(rule, winding) ? kInside : 0;
+                               sides[slots[k]] = is_inside(rule, winding) ? kInsideBit : 0;
                        });
     }
 
@@ -174,8 +174,8 @@ HWY_EXPORT(find_sides);
 void find_sides(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                 std::span<Side> sides) noexcept {
     assert(points_local.size() == sides.size());
-    constexpr std::size_t kFewest = 8; // one vector takes as long as the reference for so many
-    if (use_kernels() && sides.size() >= kFewest) {
+    constexpr std::size_t kMinKernelBatch = 8; // one vector takes as long as the reference for so many
+    if (use_kernels() && sides.size() >= kMinKernelBatch) {
         ECHINUS_DISPATCH(find_sides)(map, points_local, sides);
         return;
     }

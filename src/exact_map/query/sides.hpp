@@ -11,11 +11,12 @@ namespace echinus {
 
 /// What classify() says, in bits.
 using Side = std::uint8_t;
-inline constexpr Side kInside = 1;
-inline constexpr Side kUncertain = 2;
+inline constexpr Side kInsideBit = 1;
+inline constexpr Side kUncertainBit = 2;
 
 inline Side side_of(const Containment& containment) {
-    return static_cast<Side>((containment.inside ? kInside : 0) | (containment.certain ? 0 : kUncertain));
+    return static_cast<Side>((containment.inside ? kInsideBit : 0) |
+                             (containment.certain ? 0 : kUncertainBit));
 }
 
 /// The side of every particle; the same as by classify(), whatever the instruction set.

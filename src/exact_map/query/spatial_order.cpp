@@ -7,7 +7,7 @@ namespace echinus {
 
 namespace {
 
-/// Moves bits apart: bit k goes to 3 k. @param bits  MortonCurve::kBitsPerAxis of them
+/// Spreads bits: bit k goes to bit 3 k. @param bits  MortonCurve::kBitsPerAxis of them
 std::uint32_t spread(std::uint32_t bits) {
     bits = (bits | bits << 8) & 0x0700F;
     bits = (bits | bits << 4) & 0x430C3;
@@ -28,16 +28,17 @@ std::uint32_t MortonCurve::key(const Vec3f& point_local) const noexcept {
            spread(cell(point_local.z, low_.z)) << 2;
 }
 
-void sort_by_key(std::span<Station> stations, std::span<Station> spare) noexcept {
+void sort_by_key(std::span<KeyedParticle> particles, std::span<KeyedParticle> spare) noexcept {
     constexpr int kDigitBits = 11;
     constexpr std::uint32_t kMask = (1U << kDigitBits) - 1;
     static_assert(3 * MortonCurve::kBitsPerAxis <= 2 * kDigitBits); // so that two passes do
     for (int shift = 0; shift < 2 * kDigitBits; shift += kDigitBits) {
         std::array<std::uint32_t, kMask + 2> starts{};
-        for (const Station& station : stations) ++starts[(station.key >> shift & kMask) + 1];
+        for (const KeyedParticle& particle : particles) ++starts[(particle.key >> shift & kMask) + 1];
         for (std::size_t digit = 1; digit < starts.size(); ++digit) starts[digit] += starts[digit - 1];
-        for (const Station& station : stations) spare[starts[station.key >> shift & kMask]++] = station;
-        std::swap(stations, spare);
+        for (const KeyedParticle& particle : particles)
+            spare[starts[particle.key >> shift & kMask]++] = particle;
+        std::swap(particles, spare);
     }
 }
 

@@ -9,13 +9,13 @@
 
 namespace echinus {
 
-/// A particle and where it is on a curve through the bounding cube.
-struct Station {
+/// A particle and its cell's number on a Morton curve.
+struct KeyedParticle {
     std::uint32_t key;
     std::uint32_t particle;
 };
 
-/// Morton's curve through the cells of a cube: places with near numbers are near each other.
+/// The Morton curve through the cells of a cube: cells with close numbers are close to each other.
 class MortonCurve {
   public:
     static constexpr int kBitsPerAxis = 7;
@@ -33,7 +33,7 @@ class MortonCurve {
     float cells_per_unit_;
 };
 
-/// Sorts by key; those of one key stay in order. @param spare  as long
-void sort_by_key(std::span<Station> stations, std::span<Station> spare) noexcept;
+/// Sorts by key, stably. @param spare  as long as `particles`
+void sort_by_key(std::span<KeyedParticle> particles, std::span<KeyedParticle> spare) noexcept;
 
 } // namespace echinus

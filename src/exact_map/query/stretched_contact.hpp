@@ -9,8 +9,8 @@
 /// contact() and contacts_batch() of exact_map.hpp in a world that is scaled along the map's axes, for
 /// colliders.
 ///
-/// The distance that is least, the depth, the normal and the margin are those of the stretched mesh; points are
-/// local.
+/// The distance that is least, the depth, the normal and the margin are those of the stretched mesh; points
+/// are local.
 /// @param stretch  the world's scale along the map's axes: not 0; a negative one mirrors
 namespace echinus {
 

@@ -136,7 +136,7 @@ SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexce
     if (!first) return hit;
     const double share = std::clamp(first->crossing.parameter(), 0.0, 1.0);
     const Vec3d place = start + (end - start) * share;
-    const double parameter = std::min(1.0, length(place - from_place) / length(to_place - from_place));
+    const double fraction = std::min(1.0, length(place - from_place) / length(to_place - from_place));
     // Faces may be turned the other way: what counts is which side of this one is solid.
     const std::int64_t before = winding_at(map, from).number;
     const std::int64_t after = before + (first->crossing.entering() ? 1 : -1);
@@ -144,7 +144,7 @@ SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexce
     const bool turned =
         first->crossing.entering() ? inside_before && !inside_after : inside_after && !inside_before;
     const Vec3d normal = Vec3d(first->crossing.normal) * (turned ? -1.0 : 1.0);
-    hit.parameter = static_cast<float>(parameter);
+    hit.fraction = static_cast<float>(fraction);
     hit.point = Vec3f(frame.to_local(place));
     hit.normal = Vec3f(normal * (1 / length(normal)));
     hit.face = static_cast<std::int32_t>(map.face_numbers[first->face]);

@@ -89,7 +89,7 @@ Winding winding_beyond_lattice(const ExactMapView& map, const Vec3d& place) {
 Winding winding_at(const ExactMapView& map, const LatticePoint& p) noexcept {
     const auto [cell, part] = OctahedralCells(map.divisions).locate(p);
     const std::int64_t t = band_unit_of(l1_norm(p));
-    if (t >= map.reaches[cell] && map.border.empty()) return {};
+    if (t >= map.outer_limits[cell] && map.border.empty()) return {};
     const BandRange bands = bands_of_cell(map, cell);
     std::uint32_t band = bands.first;
     while (band < bands.last && t >= map.bands[band].upper) ++band;
