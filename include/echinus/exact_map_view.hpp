@@ -8,9 +8,11 @@
 #include <limits>
 #include <span>
 
+ECHINUS_EXPORT_BEGIN
+
 /// The arrays of an exact map (exact_map.hpp), for those who look into one or store one. Queries need nothing
 /// from this header.
-namespace ECHINUS_EXPORT echinus {
+namespace echinus {
 
 /// Which places are inside, told by the winding number of the surface around them. The rules differ only
 /// where parts of the surface overlap, are nested, inverted or doubled.
@@ -110,3 +112,5 @@ struct ExactMapView {
 };
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END
