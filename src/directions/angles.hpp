@@ -6,18 +6,18 @@
 #include <numbers>
 
 /// Angles from our own polynomials: the C library's atan2, sin and cos differ between systems in the last
-/// bit, and maps and answers are promised to be the same everywhere.
+/// bit, while maps and answers must be the same everywhere.
 namespace echinus {
 
 inline constexpr float kPi = std::numbers::pi_v<float>;
 
-/// atan(ratio) / ratio on [0, 1] as a polynomial of ratio^2, minimax to 4e-8; the highest power first.
+/// atan(ratio) / ratio on [0, 1] as a polynomial in ratio^2, minimax to 4e-8; the highest power first.
 inline constexpr std::array<float, 8> kAtanCoefficients{-0.0040545650F, 0.0218629502F,  -0.0559123196F,
                                                         0.0964219445F,  -0.1390862912F, 0.1994656622F,
                                                         -0.3332985938F, 0.9999993443F};
 
-/// The angle of (x, y), counter-clockwise from the x axis, in [-pi, pi]. Off by at most 4e-7 rad, a 40 000th
-/// of a cell of 200 samples. atan2(0, 0) is 0; the sign of a zero y tells pi from -pi. Not for NaN or
+/// The angle of (x, y), counter-clockwise from the x axis, in [-pi, pi]. Error at most 4e-7 rad, a 40 000th
+/// of a cell of 200 samples. atan2(0, 0) is 0; the sign of a zero y distinguishes pi from -pi. Not for NaN or
 /// infinity.
 inline float atan2_polynomial(float y, float x) {
     const float ax = std::fabs(x);

@@ -5,7 +5,7 @@
 
 namespace echinus {
 
-/// Turns coordinates cyclically, until that along `axis` is the last: a rotation, which keeps bits.
+/// Rotates coordinates cyclically until the one along `axis` is the last; the bits stay the same.
 template <typename T>
 Vec3<T> turned_last(PoleAxis axis, const Vec3<T>& v) {
     switch (axis) {
@@ -18,7 +18,7 @@ Vec3<T> turned_last(PoleAxis axis, const Vec3<T>& v) {
     }
 }
 
-/// The inverse: X and Y undo each other.
+/// The inverse: X and Y are inverse to each other.
 template <typename T>
 Vec3<T> turned_back(PoleAxis axis, const Vec3<T>& v) {
     if (axis == PoleAxis::Z) return v;

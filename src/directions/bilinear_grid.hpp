@@ -8,8 +8,8 @@
 
 namespace echinus {
 
-/// What grids of squares have in common: between the four samples around a direction the distance is
-/// interpolated, bilinearly.
+/// What grids of squares have in common: the distance is interpolated bilinearly between the four samples
+/// around a direction.
 class BilinearGrid {
   public:
     /// The four samples around a direction and where it lies between them.
@@ -27,7 +27,7 @@ class BilinearGrid {
     static std::size_t reference_corner(const Cell& cell) {
         return (cell.u > 0.5F ? 1U : 0U) + (cell.v > 0.5F ? 2U : 0U);
     }
-    /// All four corners are samples that interpolation looks at.
+    /// Interpolation uses all four corners.
     static bool is_sample(const Cell&, std::size_t) { return true; }
 
     struct Derivatives {
@@ -41,7 +41,7 @@ class BilinearGrid {
     /// The largest distance in a sphere.
     static float largest_entry(float radius) { return radius; }
 
-    // Interpolated between samples is the distance itself.
+    // The interpolated quantity is the distance itself.
     static float interpolant(float entry, float) { return entry; }
     static float interpolant_at(const Vec3d& d) { return static_cast<float>(length(d)); }
     template <typename Coordinates>
@@ -49,7 +49,7 @@ class BilinearGrid {
         return interpolated;
     }
     static bool is_farther(float interpolant, float other) { return interpolant > other; }
-    /// An entry whose interpolant moves by `shift`.
+    /// An entry after its interpolant moved by `shift`.
     static float moved(float entry, float shift, bool outward) {
         return outward ? entry + shift : entry - shift;
     }

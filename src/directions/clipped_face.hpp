@@ -15,7 +15,7 @@ class ClippedFace {
         std::copy(corners.begin(), corners.end(), corners_.begin());
     }
 
-    /// Keeps what has n.p >= 0.
+    /// Keeps the part with n.p >= 0.
     void cut(const Vec3d& n) {
         std::array<Vec3d, kMost> kept;
         std::size_t kept_size = 0;
@@ -36,7 +36,7 @@ class ClippedFace {
     const Vec3d* end() const { return corners_.data() + size_; }
 
   private:
-    static constexpr std::size_t kMost = 3 + 4 + 1; // each of up to four planes adds a corner at most
+    static constexpr std::size_t kMost = 3 + 4 + 1; // each of up to four planes adds at most one corner
     std::array<Vec3d, kMost> corners_;
     std::size_t size_;
 };

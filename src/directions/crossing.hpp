@@ -19,8 +19,8 @@ inline int sign_of_perturbation(const LatticePoint& n) {
     return (first > 0) - (first < 0);
 }
 
-/// A face seen from the origin: the planes through the origin and its edges, and six times its signed volume
-/// with it.
+/// A face seen from the origin: the planes through the origin and its edges, and six times the signed volume
+/// of the tetrahedron of both.
 class FaceCone {
   public:
     FaceCone(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c)

@@ -62,7 +62,7 @@ class RayCaster {
 
 using Batches = std::vector<std::vector<Crossing>>;
 
-/// In no particular order: how faces are shared out differs from run to run.
+/// In no particular order: the split of the faces between threads differs from run to run.
 template <typename Grid>
 Batches cast_at_all_faces(const LatticeMesh& lattice, const Grid& grid, unsigned thread_count) {
     const RayCaster<Grid> caster(lattice, grid);
@@ -77,7 +77,7 @@ Batches cast_at_all_faces(const LatticeMesh& lattice, const Grid& grid, unsigned
     return batches;
 }
 
-/// [direction_count + 1] where the crossings of each direction begin.
+/// [direction_count + 1] where each direction's crossings begin.
 std::vector<std::uint32_t> offsets_of(const Batches& batches, std::size_t direction_count) {
     std::vector<std::uint32_t> offsets(direction_count + 1);
     std::size_t total = 0;
@@ -100,7 +100,7 @@ Crossings sorted(const Batches& batches, std::size_t direction_count, unsigned t
     for (const auto& batch : batches)
         for (const Crossing& crossing : batch)
             result.distances[next[crossing.direction]++] = crossing.distance;
-    // Sorting also removes the order in which threads delivered.
+    // Sorting also removes the dependence on thread timing.
     parallel_for(direction_count, thread_count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t d = begin; d < end; ++d)
             std::sort(result.distances.begin() + result.offsets[d],

@@ -15,7 +15,7 @@ struct Crossings {
     std::vector<float> distances; ///< radial coordinates, within [0, largest_entry(R)], ascending along a ray
 };
 
-/// Casts a ray along every direction of the grid. The number of crossings of each ray is exact, also where it
+/// Casts a ray along every direction of the grid. The number of crossings of each ray is exact, even where it
 /// meets an edge or a vertex; the distances are rounded. The result does not depend on the number of threads.
 /// @throws Error InvalidMesh when there are 2^32 crossings or more
 Crossings cast_rays(const LatticeMesh& lattice, const AnyGrid& grid, unsigned thread_count);

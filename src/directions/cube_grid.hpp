@@ -28,7 +28,7 @@ namespace echinus {
 /// samples on its border, so that samples on the cube's edges appear twice and those on its corners three
 /// times, and no cell looks across an edge.
 ///
-/// Interpolated is the distance, as on the paper's grid.
+/// The interpolated quantity is the distance, as on the paper's grid.
 class CubeGrid : public BilinearGrid {
   public:
     explicit CubeGrid(std::uint32_t divisions)
@@ -61,8 +61,8 @@ class CubeGrid : public BilinearGrid {
         return result;
     }
     std::vector<LatticePoint> lattice_directions() const { return echinus::lattice_directions(directions()); }
-    /// The solid angle of each sample, but for a factor that all share; on a side's border half of it, on its
-    /// corners a quarter.
+    /// The solid angle of each sample, up to a common factor; half of it on a side's border, a quarter on its
+    /// corners.
     std::vector<double> solid_angle_weights() const {
         std::vector<double> result;
         for_all_samples([&](std::uint32_t, double p, double q) {
@@ -78,7 +78,8 @@ class CubeGrid : public BilinearGrid {
         std::uint32_t side;
     };
 
-    /// @param d  any length, zero included (then +z). Finite; what is not gives coordinates without meaning
+    /// @param d  any length, zero included (then +z). Must be finite, otherwise the coordinates are
+    /// meaningless
     Coordinates coordinates_of(const Vec3f& d) const {
         const std::uint32_t side = side_of(d);
         const Vec3f s = to_side(side, d);
@@ -123,7 +124,7 @@ class CubeGrid : public BilinearGrid {
     static Vec3d to_grid(const Vec3d& v) { return v; }
 
     /// Calls `visit(corners)` for each cell, its indices counter-clockwise seen from outside. Samples that
-    /// appear more than once are taken at the first place, which closes the cube's edges.
+    /// appear more than once count as their first occurrence, which closes the cube's edges.
     template <typename Visit>
     void for_each_facet(const Visit& visit) const {
         for (std::uint32_t side = 0; side < 6; ++side)

@@ -11,9 +11,9 @@
 
 namespace echinus {
 
-/// Calls `visit(index)` for samples of one side of the cube among which are all those inside the cone of a
-/// face, and those at most `reach` cells outside it. Each at most once. Which samples meet the face is
-/// decided exactly afterwards, so that the C library's functions will do here.
+/// Calls `visit(index)` for a superset of the samples of one side of the cube that lie inside a face's cone
+/// or at most `reach` cells outside it. Each at most once. Which samples meet the face is decided exactly
+/// afterwards, so the C library's functions suffice here.
 template <typename Visit>
 void for_each_sample_of_side_near(const CubeGrid& grid, std::uint32_t side,
                                   const std::array<LatticePoint, 3>& face, double reach, const Visit& visit) {
@@ -24,7 +24,7 @@ void for_each_sample_of_side_near(const CubeGrid& grid, std::uint32_t side,
         corners[c] = CubeGrid::to_side(side, Vec3d(face[c]));
         if (CubeGrid::is_negative(side)) corners[c].z = -corners[c].z;
     }
-    // What the side sees, and a little more.
+    // The part that the side sees, and a little more.
     ClippedFace part(corners);
     const double half_opening = std::numbers::pi / 4 + reach / cells_per_radian + kMargin;
     const double across = std::cos(half_opening), along = std::sin(half_opening);

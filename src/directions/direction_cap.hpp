@@ -9,9 +9,9 @@
 
 namespace echinus {
 
-/// A range of colatitudes and longitudes (grid frame, radians) that holds every direction in which a face is
-/// seen from the origin: that of a cap around the face's three corners. It only has to be large enough, so
-/// the C library's functions do; which of its directions meet the face is decided exactly afterwards.
+/// A range of colatitudes and longitudes (grid frame, radians) that contains every direction in which the
+/// origin sees a face: the range of a cap around the face's three corners. It only has to be large enough, so
+/// the C library's functions suffice; which of its directions meet the face is decided exactly afterwards.
 struct DirectionCap {
     double theta_min, theta_max;
     double phi_middle, phi_half_width; ///< a half width of pi or more is the whole circle
@@ -19,7 +19,7 @@ struct DirectionCap {
     /// Far above the rounding of these lines and of snapping a direction (2e-6 rad), far below a cell.
     static constexpr double kMargin = 1e-5;
 
-    /// @param margin  larger where the frame is stretched, and directions were snapped before
+    /// @param margin  larger where the frame is scaled and directions were snapped before
     explicit DirectionCap(const std::array<Vec3d, 3>& corners, double margin = kMargin) {
         constexpr double kPiDouble = std::numbers::pi;
 
@@ -29,7 +29,7 @@ struct DirectionCap {
         const Vec3d axis = sum * (1 / std::max(length(sum), 1e-300));
         double cosine = 1;
         for (const Vec3d& unit : units) cosine = std::min(cosine, dot(axis, unit));
-        // A cap of a quarter turn or more need not hold the great circles between its points: take all
+        // A cap of a quarter turn or more need not contain the great circles between its points: take all
         // directions.
         const double radius = cosine > 0.01 ? std::acos(std::min(cosine, 1.0)) + margin : kPiDouble;
 

@@ -16,12 +16,12 @@ Vec3<T> product(const Vec3<T>& a, const Vec3<T>& b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
 
-/// The paper's grid in a frame whose axes are scaled, g = S x, so that its unit sphere is an ellipsoid to the
-/// mesh: samples, cells and weights are those of the direction S x, and the radial coordinate is |S x|.
-/// What is affine, such as a ray or a plane, is so in both frames.
+/// The paper's grid in a frame with scaled axes, g = S x, whose unit sphere is an ellipsoid in the mesh's
+/// frame: samples, cells and weights are those of the direction S x, and the radial coordinate is |S x|. Rays
+/// and planes stay rays and planes in both frames.
 class EllipsoidalGrid : public SphericalGrid {
   public:
-    /// Thinner meshes are treated as if they had this scale: rays are cast along whole numbers, which lie
+    /// Thinner meshes are treated as if they had this scale: rays are cast along lattice points, which lie
     /// farther apart in the scaled frame.
     static constexpr float kSmallestScale = 1.0F / 64;
 
@@ -47,8 +47,8 @@ class EllipsoidalGrid : public SphericalGrid {
         for (Vec3d& d : units) d = d * (1 / length(d));
         return echinus::lattice_directions(units);
     }
-    /// The solid angle of each sample, but for a factor that all share: a small area of the unit sphere is
-    /// seen, after the stretch, at the inverse cube of its distance.
+    /// The solid angle of each sample, up to a common factor: that of a small area of the scaled unit sphere
+    /// falls with the cube of its distance.
     std::vector<double> solid_angle_weights() const {
         std::vector<double> result = SphericalGrid::solid_angle_weights();
         const std::vector<Vec3d> places = directions();
@@ -61,8 +61,8 @@ class EllipsoidalGrid : public SphericalGrid {
 
     double radial_norm(const Vec3d& d) const { return length(product(d, Vec3d(scale_))); }
     float interpolant_at(const Vec3d& d) const { return static_cast<float>(radial_norm(d)); }
-    /// No radial coordinate is larger than the distance; and in a box whose half edges are as 1 / scale,
-    /// the longest at most the radius, none is larger than that of its corner.
+    /// No radial coordinate exceeds the distance. In a box with half edges proportional to 1 / scale, the
+    /// longest at most the radius, none exceeds that of the box's corner.
     float largest_entry(float radius) const {
         constexpr float kCorner = 1.7320509F; // of the unit cube: sqrt(3), rounded up
         return radius * std::min(1.0F, kCorner * smallest_scale());

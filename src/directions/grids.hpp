@@ -9,10 +9,10 @@
 
 namespace echinus {
 
-/// Every grid of directions. One is added by a class in a file of its own with the members of these (samples,
-/// cells and weights, what is interpolated, the gradient), a for_each_sample_near() beside it, its line here,
-/// one in with_grid() (distance_map/layout.hpp) and its counterpart for vectors of particles
-/// (distance_map/*_lanes-inl.hpp). Builds and queries know nothing else of it.
+/// Every grid of directions. A new one needs a class in its own file with the members of these (samples,
+/// cells and weights, the interpolated quantity, the gradient), a for_each_sample_near() beside it, a line
+/// here, one in with_grid() (distance_map/layout.hpp) and a counterpart for vectors of particles
+/// (distance_map/*_lanes-inl.hpp). Builds and queries depend on nothing else of it.
 using AnyGrid = std::variant<SphericalGrid, OctahedralGrid, CubeGrid, EllipsoidalGrid>;
 
 } // namespace echinus

@@ -13,7 +13,7 @@ namespace echinus {
 
 namespace {
 
-/// The smallest float that is not below the distance of any point from the centre.
+/// The smallest float that is no less than any point's distance from the centre.
 float enclosing_radius(std::span<const Vec3f> points, const Vec3f& centre) {
     double radius_sq = 0;
     for (const Vec3f& point : points) {
@@ -25,7 +25,7 @@ float enclosing_radius(std::span<const Vec3f> points, const Vec3f& centre) {
     return too_small ? std::nextafter(radius, std::numeric_limits<float>::infinity()) : radius;
 }
 
-/// Outside these bounds squares of lengths leave the range of float.
+/// Outside these bounds, squares of lengths leave the range of float.
 void require_usable(float radius) {
     if (radius == 0)
         throw Error(ErrorCode::InvalidMesh,
@@ -42,7 +42,7 @@ void require_usable(float radius) {
 /// Does the origin lie on the line of one of the face's edges, or on the face itself?
 bool touches_origin(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c) {
     const LatticePoint bc = cross(b, c);
-    if (dot(a, bc) != 0) return false; // neither its plane does, nor any line in that
+    if (dot(a, bc) != 0) return false; // not even in its plane
     const LatticePoint ab = cross(a, b);
     const LatticePoint ca = cross(c, a);
     const LatticePoint zero{};
@@ -59,8 +59,8 @@ bool touches_origin(const LatticeMesh& lattice) {
     });
 }
 
-/// A step that moves the centre's float coordinates: a lattice step, or more where float is coarser than the
-/// lattice.
+/// A step that changes the centre's float coordinates: a lattice step, or more where float is coarser than
+/// the lattice.
 double centre_step(const LatticeMesh& lattice) {
     const Vec3f& c = lattice.centre;
     const float largest = std::max({std::fabs(c.x), std::fabs(c.y), std::fabs(c.z)});
@@ -105,8 +105,8 @@ void LatticeSnapper::snap_valid(std::span<const Vec3f> vertices, const Vec3f& wa
     require_usable(radius);
     snap_around(vertices, wanted_centre, radius, result);
     const double step = centre_step(result);
-    // Along the curve (t, t^2, t^3) a plane excludes at most three places and a line no more, so this ends;
-    // the first try nearly always holds.
+    // Along the curve (t, t^2, t^3) a plane or a line excludes at most three places, so this ends; the first
+    // try nearly always succeeds.
     for (double t = 1; touches_origin(result); ++t) {
         const Vec3f centre(Vec3d(wanted_centre) + Vec3d{t, t * t, t * t * t} * step);
         snap_around(vertices, centre, enclosing_radius(points, centre), result);

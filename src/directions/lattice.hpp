@@ -16,12 +16,12 @@ namespace echinus {
 using LatticePoint = Vec3<std::int64_t>;
 
 /// Half the extent of the lattice: a bounding sphere of radius R is snapped to integers in [-2^19, 2^19], in
-/// steps of R / 2^19 = 1.9e-6 R. Products of three coordinates then stay below 2^62, sums included: int64
-/// decides every sign.
+/// steps of R / 2^19 = 1.9e-6 R. Sums of products of three coordinates then stay below 2^62: int64 decides
+/// every sign.
 inline constexpr std::int64_t kLatticeExtent = std::int64_t{1} << 19;
 
-/// Where a lattice lies: mesh and particles are snapped by the same sums, so that a particle on a vertex
-/// stays on it.
+/// Position and step of a lattice. Mesh and particles are snapped by the same arithmetic, so a particle on a
+/// vertex stays on it.
 struct LatticeFrame {
     Vec3d centre;    ///< C, local; the lattice's origin
     double step = 0; ///< length of one lattice step, R / kLatticeExtent
@@ -42,19 +42,19 @@ inline LatticePoint rounded(const Vec3d& place) {
     return {std::llrint(place.x), std::llrint(place.y), std::llrint(place.z)};
 }
 
-/// A unit vector scaled to the lattice's extent and snapped: what rays are cast along.
+/// A unit vector scaled to the lattice's extent and snapped: the direction of a ray.
 LatticePoint lattice_direction(const Vec3d& unit);
 /// The same for many.
 std::vector<LatticePoint> lattice_directions(const std::vector<Vec3d>& units);
 
-/// A mesh on the integer lattice around its centre: what all exact predicates work on.
+/// A mesh on the integer lattice around its centre: the input of all exact predicates.
 struct LatticeMesh {
     Vec3f centre;     ///< C, local; the lattice's origin
     float radius = 0; ///< R: every vertex lies within R of C, before snapping
     LatticeFrame frame;
     std::vector<LatticePoint> vertices; ///< [vertex_count] as in the mesh
-    /// Faces whose three corners are different lattice points, and their numbers in the mesh. What was
-    /// dropped had no area on the lattice, and a closed surface stays closed without it.
+    /// Faces whose three corners are different lattice points, and their numbers in the mesh. The dropped
+    /// faces had no area on the lattice; a closed surface stays closed without them.
     std::vector<Triangle> faces;
     std::vector<std::uint32_t> face_numbers;
 
@@ -70,16 +70,16 @@ inline bool is_collapsed(const std::array<LatticePoint, 3>& corners) {
     return corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
 }
 
-/// Snaps moments of a mesh, whose vertices move while its faces stay, to lattices; keeps what it knows of the
-/// faces, and memory, from one to the next.
+/// Snaps successive poses of a deforming mesh with fixed faces to lattices. Keeps memory and the data that
+/// depend on the faces alone from one call to the next.
 class LatticeSnapper {
   public:
-    /// @param faces  are to stay in place
+    /// @param faces  must outlive the snapper
     explicit LatticeSnapper(std::span<const Triangle> faces) : faces_(faces) {}
 
     /// Snaps the mesh around the centre of its bounding sphere. Where that centre lies on a face or on the
-    /// line of an edge, so that a ray from it could not be made to miss them by a small turn, it moves by
-    /// whole lattice steps until it does not.
+    /// line of an edge, so that no small turn could make its rays miss them, it moves by whole lattice steps
+    /// until it does not.
     /// @param result  becomes the lattice mesh
     /// @throws Error InvalidMesh as inspect() does, or when the bounding radius is 0 or outside [1e-15, 1e15]
     void snap(std::span<const Vec3f> vertices, LatticeMesh& result);
@@ -98,7 +98,7 @@ class LatticeSnapper {
     std::vector<Vec3f> positions_;
 };
 
-/// LatticeSnapper::snap() of one moment.
+/// LatticeSnapper::snap() of a single mesh.
 LatticeMesh snap_to_lattice(const TriangleMesh& mesh);
 LatticeMesh snap_to_lattice(const TriangleMesh& mesh, const Vec3f& centre);
 

@@ -9,7 +9,7 @@
 
 namespace echinus {
 
-/// |x| + |y| + |z|, the radial coordinate of octahedral maps. Along it and in an octant, faces stay flat.
+/// |x| + |y| + |z|, the radial coordinate of octahedral maps. Faces stay flat in it within an octant.
 inline std::int64_t l1_norm(const LatticePoint& p) {
     return std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
 }
@@ -17,10 +17,10 @@ inline std::int64_t l1_norm(const LatticePoint& p) {
 /// Directions on the octahedron |x| + |y| + |z| = 1, each of its eight sides cut into n^2 triangles by the
 /// planes through the origin where n |x| / (|x| + |y| + |z|), and the same of y and z, is a whole number.
 ///
-/// Square (i, j) of side 1/n holds the triangle *up*, below its diagonal, and but for the last of each row
-/// the triangle *down*, above it. Cells are numbered by octant, then i, then j, then up before down. A cell
-/// is cut into 16 *parts* in the same way, a quarter as wide, numbered in the same order; those of a *down*
-/// cell seen as if it were turned by half a turn.
+/// Square (i, j) of side 1/n holds the triangle *up*, below its diagonal, and, except for the last square of
+/// each row, the triangle *down*, above it. Cells are numbered by octant, then i, then j, then up before
+/// down. A cell is cut into 16 *parts* in the same way, a quarter as wide and numbered in the same order; a
+/// *down* cell is first rotated by half a turn.
 class OctahedralCells {
   public:
     static constexpr std::int32_t kPartsPerSide = 4;
@@ -33,7 +33,7 @@ class OctahedralCells {
         return std::size_t{8} * static_cast<std::size_t>(n_) * static_cast<std::size_t>(n_);
     }
 
-    /// Bit 0, 1, 2 set where x, y, z is negative.
+    /// Bits 0, 1, 2 are set where x, y, z is negative.
     static std::uint32_t octant_of(const LatticePoint& p) {
         return (p.x < 0 ? 1U : 0U) | (p.y < 0 ? 2U : 0U) | (p.z < 0 ? 4U : 0U);
     }
@@ -48,7 +48,7 @@ class OctahedralCells {
         return octant * static_cast<std::uint32_t>(n_ * n_) + index_in_triangle(n_, i, j, down);
     }
 
-    /// A cell by its numbers.
+    /// The coordinates of a cell.
     struct Triangle {
         std::uint32_t octant;
         std::int32_t i, j;
@@ -65,7 +65,7 @@ class OctahedralCells {
         return {cell / cells_per_octant, i, in_row / 2, in_row % 2 != 0};
     }
 
-    /// The part that holds a cell's middle.
+    /// The part that contains a cell's middle.
     static constexpr std::uint32_t middle_part() { return index_in_triangle(kPartsPerSide, 1, 1, false); }
 
     /// The direction of a cell's middle, on no wall. @pre the cell exists
@@ -91,9 +91,9 @@ class OctahedralCells {
         std::uint32_t cell, part;
     };
 
-    /// Where a direction lies; for one on a wall, in one of those that share it. Decided as integers would
-    /// decide it: quotients of integers below 2^30 by integers below 2^21 differ from the next whole number
-    /// by 2^-21 or not at all, and what is computed below is off by far less than the 2^-30 that is added.
+    /// The cell of a direction; for one on a wall, one of the cells that share it. As exact as integers: a
+    /// quotient of an integer below 2^30 by one below 2^21 differs from the next whole number by at least
+    /// 2^-21 or not at all, and the rounding errors below are far smaller than the 2^-30 that is added.
     /// @param p  components within kLatticeExtent; the origin stands for (e, e^2, e^3), as everywhere
     Place locate(const LatticePoint& p) const {
         constexpr double kNudge = 0x1p-30;
@@ -106,7 +106,8 @@ class OctahedralCells {
         auto i = static_cast<std::int32_t>(along_x);
         auto j = static_cast<std::int32_t>(along_y);
         std::int32_t down = along_x + along_y - (i + j) > 1 + 4 * kNudge ? 1 : 0;
-        if (i + j == fine_n) { // a corner of the grid on the octant's edge; step back into what touches it
+        if (i + j == fine_n) { // a corner of the grid on the octant's edge; step back into a cell that
+                               // touches it
             if (i > 0)
                 --i;
             else

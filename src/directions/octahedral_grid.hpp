@@ -29,8 +29,8 @@ namespace echinus {
 ///     |  -z \ | / -z  |
 ///     +-------+-------+
 ///
-/// The radial coordinate is the L1 radius |x| + |y| + |z|. Its reciprocal is affine over a plane, hence what
-/// is interpolated between samples (as depth buffers do with 1/z).
+/// The radial coordinate is the L1 radius |x| + |y| + |z|. Its reciprocal is affine over a plane and is
+/// therefore the interpolated quantity (as depth buffers do with 1/z).
 class OctahedralGrid {
   public:
     explicit OctahedralGrid(std::uint32_t divisions)
@@ -62,12 +62,12 @@ class OctahedralGrid {
     std::vector<Vec3d> directions() const {
         return for_all_samples<Vec3d>([this](const LatticePoint& p) { return Vec3d(p) * (1.0 / n_); });
     }
-    /// The same as long as the lattice allows: exactly in these directions.
+    /// The same directions exactly, as long as the lattice allows.
     std::vector<LatticePoint> lattice_directions() const {
         return for_all_samples<LatticePoint>(
             [this](const LatticePoint& p) { return p * (kLatticeExtent / n_); });
     }
-    /// The solid angle of each sample, but for a factor that all share.
+    /// The solid angle of each sample, up to a common factor.
     std::vector<double> solid_angle_weights() const {
         return for_all_samples<double>([](const LatticePoint& p) {
             const double l = length(Vec3d(p));
@@ -84,7 +84,8 @@ class OctahedralGrid {
         float stretch;          ///< Euclidean per L1 length along this ray
     };
 
-    /// @param d  any length, zero included (then +z). Finite; what is not gives coordinates without meaning
+    /// @param d  any length, zero included (then +z). Must be finite, otherwise the coordinates are
+    /// meaningless
     Coordinates coordinates_of(const Vec3f& d) const {
         const auto n = static_cast<float>(n_);
         const float ax = std::fabs(d.x), ay = std::fabs(d.y);
@@ -98,15 +99,15 @@ class OctahedralGrid {
 
     struct Cell {
         /// Direction indices of the square's corners (0,0), (1,0), (0,1), (1,1), the first number along U.
-        /// The one that is no corner of the triangle is replaced by one that is.
+        /// The one outside the triangle is replaced by one of the triangle's corners.
         std::array<std::uint32_t, 4> corners;
         float u, v;    ///< in [0, 1], within the square
         bool mirrored; ///< the diagonal runs from (0,0) to (1,1), and not from (1,0) to (0,1)
-        float rest;    ///< what the corner on the near side of the diagonal weighs; below 0: beyond it
+        float rest;    ///< weight of the corner on the near side of the diagonal; below 0: beyond it
         std::int32_t i, j;
 
         bool beyond() const { return rest < 0; }
-        /// The corner that is no corner of the triangle.
+        /// The corner of the square that is not one of the triangle's.
         std::size_t doubled() const { return (beyond() ? 0U : 3U) ^ (mirrored ? 1U : 0U); }
     };
 
@@ -134,7 +135,7 @@ class OctahedralGrid {
         return cell.mirrored ? std::array<float, 4>{w[1], w[0], w[3], w[2]} : w;
     }
 
-    /// The sample nearest to the query: the one that weighs most.
+    /// The sample nearest to the query: the one with the largest weight.
     static std::size_t reference_corner(const Cell& cell) {
         const std::array<float, 4> w = weights(cell);
         std::size_t best = 0;
@@ -142,7 +143,7 @@ class OctahedralGrid {
             if (w[corner] > w[best]) best = corner;
         return best;
     }
-    /// Samples that interpolation looks at: not the fourth corner.
+    /// The samples that interpolation uses: all but the fourth corner.
     static bool is_sample(const Cell& cell, std::size_t corner) { return corner != cell.doubled(); }
 
     struct Derivatives {
@@ -155,13 +156,13 @@ class OctahedralGrid {
         return {{-u[1], -u[0], -u[3], -u[2]}, {v[1], v[0], v[3], v[2]}};
     }
 
-    // Between samples 1/t is affine. Entries below 2^-20 R, half a step of the lattice, count as that much.
+    // Between samples 1/t is affine. Entries below 2^-20 R, half a step of the lattice, count as 2^-20 R.
     static float interpolant(float entry, float radius) { return 1 / std::max(entry, radius * 0x1p-20F); }
     static float interpolant_at(const Vec3d& d) { return static_cast<float>(1 / radial_norm(d)); }
     /// The distance along a ray, Euclidean.
     static float distance_of(float interpolated, const Coordinates& at) { return at.stretch / interpolated; }
     static bool is_farther(float interpolant, float other) { return interpolant < other; }
-    /// An entry whose interpolant moves by `shift`.
+    /// An entry after its interpolant moved by `shift`.
     static float moved(float entry, float shift, bool outward) {
         if (!outward) return 1 / (1 / entry + shift);
         const float rest = 1 / entry - shift;
@@ -208,11 +209,10 @@ class OctahedralGrid {
     }
 
   private:
-    /// Does a cell lie on that side of its square's diagonal which looks to the middle of the unfolded
-    /// square?
+    /// Does a cell lie on the side of its square's diagonal that faces the middle of the unfolded square?
     bool is_towards_middle(const Cell& cell) const {
-        // The near corner of the diagonal is (0, 0), mirrored (1, 0): it looks to the middle above the middle
-        // row.
+        // The corner on the near side of the diagonal is (0, 0), mirrored (1, 0); it faces the middle above
+        // the middle row.
         return (cell.j >= n_) != cell.beyond();
     }
 

@@ -21,7 +21,7 @@ class OctantSamples {
 
     void visit_near(const std::array<LatticePoint, 3>& face, double reach) const {
         ClippedFace part({folded(face[0]), folded(face[1]), folded(face[2])});
-        // Slightly more than the octant, so that a face that touches it from beside is not lost.
+        // Slightly more than the octant, so that a face that touches it from outside is not lost.
         const double tolerance = (reach + kMargin) / n_;
         const Vec3d beside = Vec3d{1, 1, 1} * tolerance;
         part.cut(Vec3d{1, 0, 0} + beside);
@@ -57,7 +57,7 @@ class OctantSamples {
         return std::min(static_cast<std::int32_t>(std::floor(value)), n_);
     }
 
-    /// Into the octant of positive coordinates.
+    /// Maps into the octant of positive coordinates.
     Vec3d folded(const LatticePoint& p) const {
         return {static_cast<double>(negative_x_ ? -p.x : p.x), static_cast<double>(negative_y_ ? -p.y : p.y),
                 static_cast<double>(negative_z_ ? -p.z : p.z)};
@@ -83,8 +83,8 @@ class OctantSamples {
     const Visit& visit_;
 };
 
-/// Calls `visit(index)` for samples among which are all those inside the cone of a face, and those at most
-/// `reach` cells outside it. Each at most once.
+/// Calls `visit(index)` for a superset of the samples that lie inside a face's cone or at most `reach` cells
+/// outside it. Each at most once.
 template <typename Visit>
 void for_each_sample_near(const OctahedralGrid& grid, const std::array<LatticePoint, 3>& face, double reach,
                           const Visit& visit) {

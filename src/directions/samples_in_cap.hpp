@@ -43,8 +43,8 @@ void for_each_sample_in(const SphericalGrid& grid, const DirectionCap& cap, doub
         }
 }
 
-/// Calls `visit(index)` for samples among which are all those inside the cone of a face, and those at most
-/// `reach` cells outside it.
+/// Calls `visit(index)` for a superset of the samples that lie inside a face's cone or at most `reach` cells
+/// outside it.
 template <typename Visit>
 void for_each_sample_near(const SphericalGrid& grid, const std::array<LatticePoint, 3>& face, double reach,
                           const Visit& visit) {
@@ -53,8 +53,9 @@ void for_each_sample_near(const SphericalGrid& grid, const std::array<LatticePoi
     for_each_sample_in(grid, cap, reach, visit);
 }
 
-/// The same in the frame where the samples are a sphere's: the face is scaled too. There an angle may be
-/// larger than in the mesh's frame, by the inverse of the smallest scale at most, hence the margin.
+/// The same in the scaled frame, in which the samples are those of a sphere: the face is scaled too. Angles
+/// there may be larger than in the mesh's frame, by at most the inverse of the smallest scale, hence the
+/// margin.
 template <typename Visit>
 void for_each_sample_near(const EllipsoidalGrid& grid, const std::array<LatticePoint, 3>& face, double reach,
                           const Visit& visit) {

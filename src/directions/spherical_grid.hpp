@@ -18,11 +18,11 @@
 namespace echinus {
 
 /// The paper's grid of directions (section 2.1): longitude phi_i = 2 pi i / N_phi, periodic, and colatitude
-/// theta_j = pi (j + 1/2) / N_theta. The paper does not say where along theta its samples lie; with the half
-/// no sample sits on a pole, where a whole row would be one direction.
+/// theta_j = pi (j + 1/2) / N_theta. The paper leaves open where along theta its samples lie; the half keeps
+/// them off the poles, where a whole row would be one direction.
 ///
-/// Inside this class vectors are in the grid's frame, whose z axis is the pole axis: to_grid() turns them
-/// there.
+/// Inside this class, vectors are in the grid's frame, whose z axis is the pole axis: to_grid() converts to
+/// it.
 class SphericalGrid : public BilinearGrid {
   public:
     SphericalGrid(std::uint32_t longitude_count, std::uint32_t colatitude_count, PoleAxis pole_axis)
@@ -63,7 +63,7 @@ class SphericalGrid : public BilinearGrid {
     /// The directions in which rays are cast.
     std::vector<LatticePoint> lattice_directions() const { return echinus::lattice_directions(directions()); }
 
-    /// The solid angle of each sample, but for a factor that all share: the sine of the colatitude.
+    /// The solid angle of each sample, up to a common factor: the sine of the colatitude.
     std::vector<double> solid_angle_weights() const {
         std::vector<double> result;
         result.reserve(direction_count());
@@ -78,8 +78,8 @@ class SphericalGrid : public BilinearGrid {
         float along_theta; ///< in [-1/2, N_theta - 1/2]
     };
 
-    /// @param d_grid  any length, zero included (then longitude 0, colatitude 0), in the grid's frame.
-    /// Finite; what is not gives coordinates without meaning
+    /// @param d_grid  any length, zero included (then longitude 0, colatitude 0), in the grid's frame. Must
+    /// be finite, otherwise the coordinates are meaningless
     Coordinates coordinates_of(const Vec3f& d_grid) const {
         const float horizontal = std::sqrt(d_grid.x * d_grid.x + d_grid.y * d_grid.y);
         const float phi = atan2_polynomial(d_grid.y, d_grid.x);
@@ -138,7 +138,7 @@ class SphericalGrid : public BilinearGrid {
     }
 
   private:
-    /// Without the call that std::floor is on processors older than SSE4.1.
+    /// Avoids std::floor, which is a function call on processors older than SSE4.1.
     static std::int32_t floor_to_int(float value) {
         const auto truncated = static_cast<std::int32_t>(value);
         return truncated - (static_cast<float>(truncated) > value ? 1 : 0);
@@ -150,7 +150,7 @@ class SphericalGrid : public BilinearGrid {
     std::uint32_t wrap_longitude(std::int32_t i) const {
         return static_cast<std::uint32_t>(i < 0 ? i + static_cast<std::int32_t>(longitude_count_) : i);
     }
-    /// Beyond a pole the row goes on at the opposite longitude (half a sample off where the count is odd).
+    /// Beyond a pole the row continues at the opposite longitude (half a sample off where the count is odd).
     std::uint32_t corner(std::uint32_t i, std::int32_t j) const {
         const auto last = static_cast<std::int32_t>(colatitude_count_) - 1;
         if (j >= 0 && j <= last) return index(i, static_cast<std::uint32_t>(j));

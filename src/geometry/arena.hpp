@@ -8,9 +8,8 @@
 
 namespace echinus {
 
-/// A growing array of plain values whose memory is kept from one use to the next and never filled for
-/// nothing: what std::vector would set to zero stays unwritten, so that the thread that writes a page first
-/// is the one that needs it.
+/// A growing array of plain values that keeps its memory from one use to the next. Unlike std::vector it
+/// leaves new elements unwritten, so the first thread to touch a page is the one that needs it.
 template <typename T>
 class Arena {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -33,7 +32,7 @@ class Arena {
     /// Keeps the memory.
     void clear() { size_ = 0; }
 
-    /// Makes the array so long; what it held is lost, what it holds is arbitrary.
+    /// Sets the length. The previous contents are lost, the new ones are arbitrary.
     void reset(std::size_t size) {
         if (size > capacity_) {
             data_.reset();
@@ -43,13 +42,13 @@ class Arena {
         size_ = size;
     }
 
-    /// Where the next `count` values go. They count from extend() on.
+    /// Memory for the next `count` values, which join the array with extend().
     T* room_for(std::size_t count) {
         if (size_ + count > capacity_) grow(size_ + count);
         return data() + size_;
     }
 
-    /// @pre `count` values were written to what room_for() gave, which was no less
+    /// @pre `count` values were written to the memory from room_for(), which was asked for at least as many
     void extend(std::size_t count) { size_ += count; }
 
     void push_back(const T& value) {
@@ -60,7 +59,7 @@ class Arena {
   private:
     using Memory = std::unique_ptr<T[]>;
 
-    /// std::make_unique_for_overwrite, which the libc++ of Emscripten 3.1 has not yet.
+    /// std::make_unique_for_overwrite, which the libc++ of Emscripten 3.1 lacks.
     static Memory unwritten(std::size_t size) { return Memory(new T[size]); }
 
     void grow(std::size_t least) {

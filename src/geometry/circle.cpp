@@ -10,7 +10,7 @@ namespace {
 /// The point at pi / 4 * part / count by the Taylor series of cosine and sine: the first term left out is
 /// below 1e-19.
 CirclePoint first_octant_point(std::uint64_t part, std::uint64_t count) {
-    // Equal coordinates there, as symmetry demands; the two series may differ in the last digit.
+    // Symmetry demands equal coordinates here; the two series may differ in the last digit.
     if (part == count) return {std::numbers::sqrt2 / 2, std::numbers::sqrt2 / 2};
     const double angle_rad = static_cast<double>(part) / static_cast<double>(count) * (std::numbers::pi / 4);
     const double square = angle_rad * angle_rad;
@@ -33,7 +33,7 @@ CirclePoint circle_point(std::uint64_t index, std::uint64_t count) {
     const bool mirrored = octant % 2 == 1;
     CirclePoint p = first_octant_point(mirrored ? count - remainder : remainder, count);
     if (mirrored) std::swap(p.cosine, p.sine);
-    switch (octant / 2) { // quarter turns; 0 - x instead of -x makes no negative zeros
+    switch (octant / 2) { // quarter turns; 0 - x instead of -x avoids negative zeros
     case 0:
         return p;
     case 1:

@@ -17,7 +17,7 @@ namespace echinus {
 namespace {
 
 int concurrency(unsigned thread_count) {
-    // Asked for more threads than it has, oneTBB would print a warning.
+    // oneTBB prints a warning when asked for more threads than it has.
     const int available = tbb::info::default_concurrency();
     return thread_count == 0 ? available
                              : static_cast<int>(std::min(static_cast<unsigned>(available), thread_count));
@@ -84,7 +84,7 @@ void parallel_for(std::size_t count, unsigned thread_count,
 
 void for_each_piece(std::size_t count, unsigned thread_count,
                     const std::function<void(std::size_t begin, std::size_t end)>& answer) noexcept {
-    constexpr std::size_t kFewest = 1 << 14; // items that are worth a thread
+    constexpr std::size_t kFewest = 1 << 14; // fewer items are not worth a thread
     constexpr std::size_t kMost = 1 << 30;
     const std::size_t wanted =
         thread_count == 1 ? 1 : std::min(2 * worker_count(thread_count), count / kFewest);

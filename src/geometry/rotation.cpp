@@ -9,7 +9,7 @@
 namespace echinus {
 
 Rotation Rotation::about(const Vec3d& axis, double angle_rad) {
-    // Half the angle in steps of a full turn / 2^50, 6e-15 rad, for the sake of equal bits on every machine.
+    // Half the angle in steps of a full turn / 2^50, 6e-15 rad, so that every machine gives the same bits.
     constexpr std::int64_t kStepsPerTurn = std::int64_t{1} << 50;
     const double half_turns = std::remainder(angle_rad, 4 * std::numbers::pi) / (4 * std::numbers::pi);
     const std::int64_t steps = std::llround(half_turns * static_cast<double>(kStepsPerTurn));

@@ -16,11 +16,11 @@
 //      |  /     |        |     \  |
 //      a ------ b        a ------ b
 //
-// It is known by its edges: each diagonal has exactly the two faces of its own patch, each side has a face of
-// either patch and at least one of the surface around. (A tetrahedron that stands alone has two faces at
-// every edge, and is left in peace.) A face has at most one such patch, and a quadrilateral at most two.
-// Dropping one patch leaves the surface as its author meant it; the patch that has more sides along which it
-// runs the same way as the surface around is the wrong one.
+// Its edges identify it: each diagonal has exactly the two faces of its own patch, each side has a face of
+// either patch and at least one face of the surrounding surface. (A separate tetrahedron has two faces at
+// every edge and is left alone.) A face has at most one such patch, and a quadrilateral at most two. Dropping
+// one patch leaves the surface as its author meant it. The wrong patch is the one with more sides along which
+// it runs the same way as the surrounding surface.
 
 namespace echinus {
 
@@ -42,7 +42,7 @@ bool lies_within(const Triangle& face, const std::array<std::uint32_t, 4>& corne
     });
 }
 
-/// How many faces of the surface around run along this side of the patch the same way as the patch does.
+/// How many faces of the surrounding surface run along this side of the patch the same way as the patch does.
 std::size_t count_clashes(const TriangleMesh& mesh, std::span<const EdgeUse> side, const Patch& patch) {
     const auto own = std::find_if(side.begin(), side.end(), [&](const EdgeUse& use) {
         return use.face == patch.faces[0] || use.face == patch.faces[1];

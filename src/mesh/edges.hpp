@@ -25,10 +25,10 @@ std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh);
 /// The uses of the edge between two vertices in the result of sorted_edge_uses().
 std::span<const EdgeUse> uses_of_edge(std::span<const EdgeUse> all, std::uint32_t a, std::uint32_t b);
 
-/// As many of the uses run along the edge one way as the other: they cancel, nothing borders here.
+/// Equally many uses run along the edge in each direction: they cancel, the edge is no border.
 bool is_balanced(std::span<const EdgeUse> uses_of_one_edge);
 
-/// Calls visit(uses of one edge) for edge after edge.
+/// Calls visit(uses of one edge) for each edge in turn.
 template <typename Visit>
 void for_each_edge(std::span<const EdgeUse> all, Visit&& visit) {
     for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {

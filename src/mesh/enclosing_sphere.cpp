@@ -5,10 +5,10 @@
 #include <optional>
 #include <utility>
 
-// Active set: the sphere is held by a basis of at most four points. While some point lies outside, the
-// farthest one joins the basis and the smallest sphere of these at most five points is found by trying every
-// subset that could hold it. Each round enlarges the sphere, so there are finitely many; a mesh takes ten to
-// twenty.
+// Active set method: a basis of at most four points determines the sphere. While some point lies outside, the
+// farthest one joins the basis, and the smallest sphere of these at most five points is found by trying every
+// subset that could determine it. Each round enlarges the sphere, so the rounds are finitely many; a mesh
+// takes ten to twenty.
 
 namespace echinus {
 
@@ -32,7 +32,7 @@ using Row = std::array<double, 4>; // a x + b y + c z = d
 using Rows = std::array<Row, 3>;
 using Columns = std::array<std::size_t, 3>; // the order in which the unknowns are eliminated
 
-/// Brings the largest coefficient that is left to place k, k.
+/// Brings the largest remaining coefficient to position (k, k).
 void pivot(Rows& rows, Columns& columns, std::size_t k) {
     std::size_t row = k;
     std::size_t column = k;
@@ -55,8 +55,8 @@ void eliminate(Rows& rows, const Columns& columns, std::size_t k) {
 }
 
 /// Solves three linear equations by elimination with complete pivoting: backward stable, so that the centre
-/// found is equally far from all points up to rounding even where they are nearly coplanar. Nothing when the
-/// rows are dependent.
+/// is equally far from all points up to rounding even where they are nearly coplanar. Returns nothing when
+/// the rows are dependent.
 std::optional<Vec3d> solve(Rows rows) {
     Columns columns{0, 1, 2};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -73,12 +73,12 @@ std::optional<Vec3d> solve(Rows rows) {
     return Vec3d{x[0], x[1], x[2]};
 }
 
-/// The plane of all points that are as far from the origin as from p.
+/// The plane of all points equally far from the origin and from p.
 Row bisector(const Vec3d& p) {
     return {p.x, p.y, p.z, dot(p, p) / 2};
 }
 
-/// The plane through the origin and across `normal`.
+/// The plane through the origin perpendicular to `normal`.
 Row plane_through_origin(const Vec3d& normal) {
     return {normal.x, normal.y, normal.z, 0};
 }
@@ -104,9 +104,9 @@ double largest_distance(const Vec3d& centre, const Basis& basis) {
     return largest;
 }
 
-/// The smallest sphere around the basis and one point outside of its sphere, which therefore lies on the new
-/// one. Each subset's sphere is blown up until it encloses all five; the smallest is the one sought, and none
-/// needs a tolerance.
+/// The smallest sphere around the basis and one point outside its sphere, which therefore lies on the new
+/// one. Each subset's sphere is enlarged until it encloses all five; the smallest is the answer, without any
+/// tolerance.
 Candidate enlarge(const Basis& basis, const Vec3d& outside) {
     std::optional<Candidate> best;
     for (unsigned subset = 0; subset < 1U << basis.size; ++subset) {
@@ -122,8 +122,8 @@ Candidate enlarge(const Basis& basis, const Vec3d& outside) {
     return *best; // the empty subset always has a centre
 }
 
-/// The first of the farthest points. The largest of each block of points is found without asking which it is,
-/// which a compiler turns into vector instructions.
+/// The first of the farthest points. The largest distance of each block is found without its index, which a
+/// compiler turns into vector instructions.
 Vec3d farthest_from(const Vec3d& centre, std::span<const Vec3f> points) {
     constexpr std::size_t kBlock = 256;
     const auto distance_sq = [&](const Vec3f& p) {
@@ -161,7 +161,7 @@ Sphere smallest_enclosing_sphere(std::span<const Vec3f> points) {
     Vec3d farthest = farthest_from(current.sphere.centre, points);
     while (length(farthest - current.sphere.centre) > current.sphere.radius) {
         const Candidate next = enlarge(current.basis, farthest);
-        // Only rounding stops the growth while a point is outside: the last digits are reached.
+        // Growth stops with a point outside only when rounding has reached the last digits.
         if (!(next.sphere.radius > current.sphere.radius)) break;
         current = next;
         farthest = farthest_from(current.sphere.centre, points);

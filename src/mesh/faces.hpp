@@ -10,8 +10,8 @@ namespace echinus {
 /// Two of the three indices are the same.
 bool has_equal_corners(const Triangle& face);
 
-/// Six times the signed volume of the tetrahedron from a reference point to a face: positive where the face
-/// looks away from it.
+/// Six times the signed volume of the tetrahedron of a reference point and a face: positive where the face
+/// looks away from the point.
 /// @pre indices are in range
 double six_volumes(const TriangleMesh& mesh, const Triangle& face, const Vec3d& reference);
 

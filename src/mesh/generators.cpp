@@ -10,7 +10,7 @@ namespace echinus {
 
 namespace {
 
-/// A length that is positive as a double and as the float that vertices are made of.
+/// A length that is positive both as a double and as the float that vertices use.
 bool is_usable_length(double length) {
     return length <= std::numeric_limits<float>::max() && static_cast<float>(length) > 0;
 }

@@ -63,8 +63,8 @@ bool box_contains(const Component& outer, const Component& inner) {
            outer.high.x >= inner.high.x && outer.high.y >= inner.high.y && outer.high.z >= inner.high.z;
 }
 
-/// The inner component lies in the outer one. One vertex speaks for the whole of it: components whose
-/// surfaces cross have no nesting to speak of.
+/// Does the inner component lie in the outer one? One vertex decides for the whole component: components
+/// whose surfaces cross have no meaningful nesting.
 bool contains(const TriangleMesh& mesh, const Component& outer, const Component& inner) {
     return &outer != &inner && outer.closed && box_contains(outer, inner) &&
            std::abs(winding_number(mesh.vertices, outer.faces, Vec3d(mesh.vertices[inner.faces[0][0]]))) >

@@ -6,8 +6,8 @@
 
 namespace echinus {
 
-/// Turns the faces of inside-out components round (see RepairOptions::flip_inside_out).
-/// @returns how many components were turned
+/// Reverses the faces of inside-out components (see RepairOptions::flip_inside_out).
+/// @returns how many components were reversed
 /// @pre require_valid(mesh)
 std::size_t flip_inside_out_components(TriangleMesh& mesh);
 

@@ -14,7 +14,7 @@ namespace {
 /// A face's edge seen from its lower vertex: twice the other, and 1 more if the face runs towards it.
 using HalfEdge = std::uint64_t;
 
-/// Calls visit(lower vertex, half edge) for all edges of faces but those from a vertex to itself.
+/// Calls visit(lower vertex, half edge) for all edges of faces except those from a vertex to itself.
 template <typename Visit>
 void for_each_half_edge(std::span<const Triangle> faces, const Visit& visit) {
     const auto visit_edge = [&](std::uint32_t a, std::uint32_t b) {
@@ -31,7 +31,7 @@ int direction(HalfEdge edge) {
     return static_cast<int>(2 * (edge & 1U)) - 1;
 }
 
-/// By comparing all pairs, without a branch: the few edges of a usual vertex are told apart fastest so.
+/// Compares all pairs without a branch, the fastest way for the few edges of a usual vertex.
 template <std::size_t kCount>
 bool are_balanced(const HalfEdge* edges) {
     std::array<std::uint32_t, kCount> ends;
@@ -93,7 +93,7 @@ bool is_closed(std::span<const Triangle> faces, std::size_t vertex_count) {
     Arena<HalfEdge> half_edges;
     half_edges.reset(end);
     for_each_half_edge(faces, [&](std::uint32_t lower, HalfEdge edge) { half_edges[ends[lower]++] = edge; });
-    // Now ends[v] is where the half edges of v end.
+    // Now ends[v] is the end of v's half edges.
     std::uint32_t begin = 0;
     for (std::size_t lower = 0; lower < vertex_count; ++lower) {
         const std::span<HalfEdge> edges = std::span<HalfEdge>(half_edges).subspan(begin, ends[lower] - begin);

@@ -7,8 +7,8 @@
 
 namespace echinus {
 
-/// Is every edge balanced, as MeshReport::closed says? Wherever the vertices are. Time O(faces), but for
-/// vertices with many edges, O(n log n).
+/// Is every edge balanced, as MeshReport::closed defines it? Positions do not matter. Time O(faces), except
+/// O(n log n) at vertices with many edges.
 /// @pre indices are below vertex_count
 bool is_closed(std::span<const Triangle> faces, std::size_t vertex_count);
 

@@ -12,7 +12,7 @@ namespace echinus {
 
 namespace {
 
-/// Puts the faces in order, each once, and keeps the first few.
+/// Sorts the faces, removes duplicates and keeps the first few.
 Fault make_fault(std::size_t count, std::vector<std::uint32_t> faces) {
     std::sort(faces.begin(), faces.end());
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
@@ -52,8 +52,8 @@ void report_edges(std::span<const EdgeUse> edge_uses, MeshReport& report) {
     report.misoriented_edges = misoriented.finish();
 }
 
-/// The faces at each vertex form one fan. Corners of two faces at the same vertex are joined where the faces
-/// share an edge; a fan is one set of corners, so there must be as many sets as vertices.
+/// Do the faces at each vertex form one fan? Corners of two faces at the same vertex are joined where the
+/// faces share an edge; a fan is one set of corners, so there must be as many sets as vertices.
 bool every_vertex_has_one_fan(const TriangleMesh& mesh, std::span<const EdgeUse> edge_uses) {
     UnionFind corners(3 * mesh.faces.size());
     const auto corner_at = [&](const EdgeUse& use, bool low) {
@@ -74,7 +74,7 @@ bool every_vertex_has_one_fan(const TriangleMesh& mesh, std::span<const EdgeUse>
     return true;
 }
 
-/// Seen from a point close by, so that a mesh far from the origin loses no digits.
+/// Measured from a nearby point, so that a mesh far from the origin loses no digits.
 double signed_volume(const TriangleMesh& mesh, const Vec3d& reference) {
     double sum = 0;
     for (const Triangle& face : mesh.faces) sum += six_volumes(mesh, face, reference);

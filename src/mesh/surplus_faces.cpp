@@ -12,13 +12,13 @@ namespace {
 
 using Faces = std::vector<std::uint32_t>;
 
-/// Tells the two ways apart in which a face can run round three vertices. Faces with two equal corners, which
-/// bound nothing, all run the same way.
+/// Distinguishes the two orientations of a face on three vertices. Faces with two equal corners, which bound
+/// nothing, all count as the same orientation.
 bool is_ascending(const Triangle& face) {
     return int{face[0] < face[1]} + int{face[1] < face[2]} + int{face[2] < face[0]} == 2;
 }
 
-/// Opposite faces cancel in pairs; of those that are left, which run the same way, the first ones stay.
+/// Opposite faces cancel in pairs; the first of the remaining ones, which run the same way, stay.
 Faces without_opposites(const TriangleMesh& mesh, const std::vector<Faces>& groups,
                         std::size_t most_left_of_a_group) {
     Faces surplus;
@@ -35,7 +35,7 @@ Faces without_opposites(const TriangleMesh& mesh, const std::vector<Faces>& grou
     return surplus;
 }
 
-/// Every edge is balanced when these faces are gone.
+/// Is every edge balanced without these faces?
 bool is_closed_without(TriangleMesh mesh, const Faces& surplus) {
     for (const std::uint32_t face : surplus) mesh.faces[face] = {0, 0, 0}; // bounds nothing
     bool closed = true;
@@ -49,7 +49,7 @@ std::vector<std::uint32_t> find_surplus_faces(const TriangleMesh& mesh) {
     const std::vector<Faces> groups = find_equal_faces(mesh);
     if (groups.empty()) return {};
     const Faces usual = without_opposites(mesh, groups, 1);
-    // The second never opens a closed mesh, since what it drops is closed itself.
+    // The second never opens a closed mesh, since the faces it drops are closed themselves.
     for (const Faces& surplus :
          {usual, without_opposites(mesh, groups, mesh.faces.size()), find_duplicate_faces(mesh)})
         if (surplus.size() < mesh.faces.size() && is_closed_without(mesh, surplus)) return surplus;

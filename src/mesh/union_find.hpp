@@ -8,8 +8,8 @@
 
 namespace echinus {
 
-/// Disjoint sets of 0 .. size - 1. The representative of a set is its smallest member, in whatever order the
-/// sets were joined.
+/// Disjoint sets of 0 .. size - 1. The representative of a set is its smallest member, whatever the order of
+/// the joins.
 class UnionFind {
   public:
     explicit UnionFind(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0U); }

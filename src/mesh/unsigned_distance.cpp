@@ -15,7 +15,7 @@ double segment_distance(const Vec3d& a, const Vec3d& b, const Vec3d& point) {
 }
 
 /// The nearest of the three edges, unless the point projects into the triangle. Triangles without area need
-/// no care that way: their edges are all there is of them.
+/// no special case: they consist of their edges.
 double triangle_distance(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& point) {
     const Vec3d normal = cross(b - a, c - a);
     const double normal_sq = dot(normal, normal);

@@ -9,8 +9,8 @@
 
 namespace echinus {
 
-/// Which vertices the faces of a mesh use; others may be anything, even NaN. Known before it is known where
-/// the vertices are.
+/// Which vertices the faces of a mesh use; the others may be anything, even NaN. Needs the faces only, no
+/// positions.
 class UsedVertices {
   public:
     UsedVertices() = default;
@@ -19,12 +19,12 @@ class UsedVertices {
     std::size_t vertex_count() const { return is_used_.size(); }
     bool operator[](std::size_t vertex) const { return is_used_[vertex] != 0; }
 
-    /// Throws what echinus::require_valid() throws for these vertices and the faces. Time O(vertices).
+    /// Throws the error of echinus::require_valid() for these vertices and the faces. Time O(vertices).
     /// @pre vertices.size() == vertex_count(); the faces are those of the constructor
     void require_valid(std::span<const Vec3f> vertices, std::span<const Triangle> faces) const;
 
     /// The positions of the vertices that faces use, ascending by number.
-    /// @param memory  for those, should they not lie side by side
+    /// @param memory  holds them where they are not contiguous
     /// @pre vertices.size() == vertex_count()
     std::span<const Vec3f> positions(std::span<const Vec3f> vertices, std::vector<Vec3f>& memory) const;
 

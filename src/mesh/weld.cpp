@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
 
-/// The bits of a position, with -0 as 0: equal for equal positions, and an order also for NaN.
+/// The bits of a position, with -0 as 0: equal for equal positions, and ordered even for NaN.
 std::array<std::uint32_t, 3> position_key(const Vec3f& p) {
     // x + 0 is x, except that -0 + 0 is 0.
     return {bit_cast<std::uint32_t>(p.x + 0.0F), bit_cast<std::uint32_t>(p.y + 0.0F),
