@@ -9,12 +9,12 @@ ECHINUS_EXPORT_BEGIN
 
 namespace echinus {
 
-/// What went wrong, for a program; the sentence in Error::what() is for a person.
+/// The kind of error, for programs; the sentence in Error::what() is for people.
 enum class ErrorCode {
     Unreadable,         ///< a file does not exist, is a directory, or cannot be read
     Unwritable,         ///< a file cannot be written: permission, missing folder, full disk
-    WrongFormat,        ///< the bytes are not what the name or the reader promises
-    Damaged,            ///< the right format, but truncated or contradicting itself
+    WrongFormat,        ///< the bytes are not of the format that the name or the reader expects
+    Damaged,            ///< the right format, but truncated or self-contradictory
     UnsupportedVersion, ///< a map file of a version that this library does not read
     InvalidMesh,        ///< no faces, a coordinate that is not finite, an index out of range
     InvalidOptions,     ///< an option outside the range that its declaration states
@@ -22,8 +22,7 @@ enum class ErrorCode {
     Diverged,           ///< a simulation whose positions are no longer finite or have left all bounds
 };
 
-/// Thrown by the offline calls (reading, building, loading, simulating) and by nothing that runs per
-/// particle.
+/// Thrown by the offline calls (reading, building, loading, simulating), never by per-particle queries.
 ///
 /// what() is one sentence without a newline that names the file, face, byte or frame, what was found and what
 /// was expected.

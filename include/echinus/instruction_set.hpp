@@ -7,21 +7,22 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Which vector instructions the batch queries use. Answers do not depend on it, only speed does.
+/// The vector instructions of the batch queries. They affect speed only, never the answers.
 ///
 /// Names: "avx512", "avx2", "sse4", "neon", "wasm", and "scalar", which is the reference itself, one particle
-/// after the other. Unless told, the first that the machine has is used; the environment variable
-/// ECHINUS_INSTRUCTION_SET, read once, names another. A name there that this machine does not have is passed
-/// over: instruction_set() tells what is in use.
+/// after the other. The default is the first that the machine has; the environment variable
+/// ECHINUS_INSTRUCTION_SET, read once, overrides it. A name that this machine does not have is ignored:
+/// instruction_set() returns the one in use.
 namespace echinus {
 
-/// Those that this machine has and this library was compiled for, the widest first; the last is "scalar".
+/// The sets that this machine has and this library was compiled for, the widest first; the last is "scalar".
 std::vector<std::string_view> available_instruction_sets();
 
-/// The one in use. Any thread.
+/// The set in use. Any thread.
 std::string_view instruction_set() noexcept;
 
-/// Uses another from the next query on, in the whole process. Any thread; queries that run go on as they are.
+/// Selects another set for the whole process, from the next query on. Any thread; running queries are not
+/// affected.
 /// @throws Error InvalidOptions for a name that is not available
 void use_instruction_set(std::string_view name);
 

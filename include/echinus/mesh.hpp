@@ -17,8 +17,8 @@ namespace echinus {
 /// Three vertex indices, counter-clockwise seen from outside.
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// A triangle soup with shared vertices: what every map is built from. No invariant is kept; inspect() says
-/// what holds.
+/// A triangle soup with shared vertices, the input of every map. It has no invariants; inspect() reports its
+/// properties.
 struct TriangleMesh {
     std::vector<Vec3f> vertices; ///< [vertex_count] positions in the caller's unit
     std::vector<Triangle> faces; ///< [face_count]
@@ -32,17 +32,17 @@ struct Fault {
     std::vector<std::uint32_t> first_faces; ///< at most kFirstFaceCount, ascending, each once
 };
 
-/// What a mesh is like. An *edge* is an unordered pair of vertices; a face with two equal corners has none.
-/// Vertices are told apart by index: weld() first where equal positions mean the same vertex.
+/// The properties of a mesh. An *edge* is an unordered pair of vertices; a face with two equal corners has
+/// none. Vertices are distinguished by index: weld() first where equal positions mean the same vertex.
 struct MeshReport {
     std::size_t face_count = 0;
     std::size_t vertex_count = 0;
     std::size_t component_count = 0; ///< sets of faces joined by shared vertices
-    bool closed = false;      ///< every edge is balanced: as many faces run along it one way as the other
+    bool closed = false;      ///< every edge is balanced: equally many faces run along it in each direction
     bool manifold = false;    ///< every edge has at most two faces and the faces at each vertex form one fan
     Fault border_edges;       ///< edges with one face
     Fault nonmanifold_edges;  ///< edges with more than two faces
-    Fault misoriented_edges;  ///< edges with two faces that run along it the same way
+    Fault misoriented_edges;  ///< edges with two faces that run along them the same way
     Fault duplicate_faces;    ///< faces with the same three vertices, in any order, as an earlier face
     Fault degenerate_faces;   ///< faces with two equal corners or with area zero
     double signed_volume = 0; ///< positive where faces turn outwards; of limited meaning when not closed
@@ -57,29 +57,30 @@ MeshReport inspect(const TriangleMesh& mesh);
 /// Throws what inspect() would throw, and does nothing else.
 void require_valid(const TriangleMesh& mesh);
 
-/// The smallest sphere that encloses all points, to the rounding of double; every point lies inside or on it.
+/// The smallest sphere that encloses all points, up to the rounding of double; every point lies inside or on
+/// it.
 /// @pre points are finite. No points give a sphere of radius 0 at the origin.
 Sphere smallest_enclosing_sphere(std::span<const Vec3f> points);
 
-/// What repair() may do. All off by default: a mesh is never changed behind its owner's back.
+/// What repair() may do. All off by default: a mesh is never changed without request.
 struct RepairOptions {
-    /// Of faces with the same three vertices, opposite ones cancel: both go. Of those that are left, which
-    /// turn the same way, the first stays. Where that leaves the mesh open, and keeping all that are left or
-    /// just the first face of all closes it, that is done instead. So a closed mesh stays closed. Nothing is
-    /// dropped where no face would be left.
+    /// Drops duplicate faces. Faces with the same three vertices and opposite orientations cancel in pairs;
+    /// the first of the remaining ones, which turn the same way, stays. Where that leaves the mesh open, and
+    /// keeping all remaining ones or just the first face of all closes it, repair() does that instead. So a
+    /// closed mesh stays closed. Nothing is dropped where no face would be left.
     bool drop_duplicate_faces = false;
-    /// Where two pairs of faces fill the same quadrilateral of four edges, each along its own diagonal, drop
-    /// the pair that fits the orientation of the faces around worse, or the later one. Such are the caps of
-    /// glmark2's horse.
+    /// Where two pairs of faces fill the same quadrilateral of four edges, each along its own diagonal, drops
+    /// the pair that agrees less with the orientation of the surrounding faces, or the later one. The caps of
+    /// glmark2's horse are of this kind.
     bool drop_doubled_patches = false;
-    /// Turn round every closed component with a negative signed volume that does not lie in another closed
-    /// one, together with the closed components in it: cavities stay cavities.
+    /// Reverses every closed component with a negative signed volume that does not lie in another closed one,
+    /// together with the closed components in it: cavities stay cavities.
     bool flip_inside_out = false;
 
     static constexpr RepairOptions all() { return {true, true, true}; }
 };
 
-/// What repair() did, face numbers as in the mesh that went in, ascending.
+/// What repair() did; face numbers of the input mesh, ascending.
 struct RepairReport {
     std::vector<std::uint32_t> duplicate_faces_dropped;
     std::vector<std::uint32_t> doubled_patch_faces_dropped;
@@ -96,34 +97,35 @@ struct RepairedMesh {
     RepairReport report;
 };
 
-/// A mended copy. Does only what the options name, in their order, and reports all of it; vertices stay as
-/// they are. Time O(n log n); flip_inside_out adds O(components^2) comparisons of boxes and, where boxes
+/// A repaired copy. Does only what the options name, in their order, and reports every change; vertices stay
+/// unchanged. Time O(n log n); flip_inside_out adds O(components^2) comparisons of boxes and, where boxes
 /// contain each other, winding numbers.
 /// @throws Error InvalidMesh as inspect() does.
 RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options);
 
-/// Joins vertices at equal positions (0 and -0 are equal), then drops vertices that no face uses. The order
-/// of faces stays, and that of the vertices that are left. NaN equals only the same NaN. Time O(n log n).
+/// Joins vertices at equal positions (0 and -0 are equal), then drops vertices that no face uses. Keeps the
+/// order of the faces and of the remaining vertices. A NaN equals only a NaN of the same bits. Time O(n log
+/// n).
 /// @throws Error InvalidMesh when an index is out of range
 TriangleMesh weld(const TriangleMesh& mesh);
 
 /// Generalised winding number of a point: the solid angle of all faces over 4 pi (Jacobson et al. 2013). 1
 /// inside a closed, outward mesh, 0 outside; between them on the surface; NaN for a point that is not finite.
-/// Brute force over all faces and independent of every map: a judge, not a query.
+/// Brute force over all faces and independent of every map: a reference for tests, not a query.
 /// @pre indices are in range
 double winding_number(const TriangleMesh& mesh, const Vec3d& point);
 
-/// Distance from a point to the nearest point of the surface, brute force over all faces: a judge, not a
-/// query. Infinity when there are no faces or the point is not finite.
+/// Distance from a point to the nearest point of the surface, brute force over all faces: a reference for
+/// tests, not a query. Infinity when there are no faces or the point is not finite.
 /// @pre indices are in range
 double unsigned_distance(const TriangleMesh& mesh, const Vec3d& point);
 
 // ---- Generators ----
 //
-// Closed, outward, centred at the origin; the same bits on every machine. Lengths must be finite and positive
-// as float too.
+// Closed, outward, centred at the origin; the same bits on every machine. Lengths must be finite and
+// positive, as float too.
 
-/// More faces than this are refused as InvalidOptions.
+/// Generators refuse more faces than this as InvalidOptions.
 inline constexpr std::uint32_t kMaxGeneratedFaceCount = 1U << 27U;
 
 /// A torus about the z axis; the paper's has 60 x 24 segments, which makes 2880 faces.

@@ -7,28 +7,28 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Mesh files. Library echinus::io (needs Assimp); who uses only echinus::core does without.
+/// Mesh files. Library echinus::io (needs Assimp); echinus::core does not depend on it.
 namespace echinus {
 
-/// Reads OBJ, PLY (text and binary), STL (text and binary), OFF, glTF, GLB and 3DS, told apart by the file
-/// name's ending. All meshes of the file are joined (node transforms applied), polygons are triangulated,
-/// equal positions are welded and vertices that no face uses are dropped; points, lines, normals, colours and
-/// materials are passed over. Nothing is repaired: inspect() says what is wrong with the result. Face numbers
-/// are those of the file, a polygon of k corners counted as its k - 2 triangles. Coordinates in text are
-/// rounded to the nearest float. The same file gives the same mesh.
+/// Reads OBJ, PLY (text and binary), STL (text and binary), OFF, glTF, GLB and 3DS, by the file name's
+/// extension. All meshes of the file are joined (node transforms applied), polygons are triangulated, equal
+/// positions are welded and vertices that no face uses are dropped; points, lines, normals, colours and
+/// materials are ignored. Nothing is repaired: inspect() reports the faults of the result. Face numbers are
+/// those of the file, a polygon of k corners counted as its k - 2 triangles. Coordinates in text are rounded
+/// to the nearest float. The same file gives the same mesh.
 ///
-/// @throws Error Unreadable, WrongFormat, Damaged (a file that is shorter or longer than it says; the
-/// sentence names line or byte) or InvalidMesh (no faces; an index out of range or a coordinate that is not
-/// finite as a float, also where no face uses it); the sentence begins with the path. glTF with
-/// compressed or quantised positions is refused as WrongFormat.
+/// @throws Error Unreadable, WrongFormat, Damaged (a file shorter or longer than it declares; the sentence
+/// names the line or byte) or InvalidMesh (no faces; an index out of range or a coordinate that is not finite
+/// as a float, even of an unused vertex); the sentence begins with the path. glTF with compressed or
+/// quantised positions is refused as WrongFormat.
 TriangleMesh read_mesh(const std::filesystem::path& path);
 
-/// Writes OBJ, PLY (binary), STL (binary) or OFF, told by the file name's ending. Floats are written so that
-/// they read back to the same bits. Writes to a temporary name beside the target and renames, so that a
-/// failure leaves no partial file and the old one whole.
+/// Writes OBJ, PLY (binary), STL (binary) or OFF, by the file name's extension. Floats read back with the
+/// same bits. Writes to a temporary name beside the target and renames it, so a failure leaves no partial
+/// file and keeps the old one.
 ///
-/// @throws Error Unwritable, WrongFormat for an ending that is not in the list, or InvalidMesh as inspect()
-/// does
+/// @throws Error Unwritable, WrongFormat for an extension that is not in the list, or InvalidMesh as
+/// inspect() does
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
 
 } // namespace echinus

@@ -18,13 +18,12 @@
 ECHINUS_EXPORT_BEGIN
 
 /// Pictures by ray tracing on the processor: no window, no GPU. Library echinus::render (needs Embree 3 and
-/// libpng). All light and the backdrop are fixed: a picture is decided by the objects, their colours and the
-/// camera.
+/// libpng). Light and backdrop are fixed: the objects, their colours and the camera determine the picture.
 namespace echinus {
 
 // ---- What is drawn ----
 
-/// An opaque colour as it is written in a style sheet: sRGB, each part in [0, 1].
+/// An opaque sRGB colour, as in a style sheet; each component in [0, 1].
 struct Colour {
     float red = 0, green = 0, blue = 0;
 
@@ -36,7 +35,7 @@ struct Colour {
     friend constexpr bool operator==(const Colour&, const Colour&) = default;
 };
 
-/// The colours of the project's figures. The layers are told apart with every common kind of colour
+/// The colours of the project's figures. The layers can be distinguished with every common kind of colour
 /// blindness: the scheme "muted" of Paul Tol, "Colour Schemes", SRON/EPS/TN/09-002 (2021), in an order in
 /// which neighbours differ most.
 namespace palette {
@@ -51,19 +50,19 @@ inline constexpr Colour kLayers[] = {
     Colour::from_hex(0x88CCEE), Colour::from_hex(0xAA4499), Colour::from_hex(0x999933),
     Colour::from_hex(0x332288), Colour::from_hex(0x117733), Colour::from_hex(0x882255),
 };
-/// From little to much, also in grey: five of Paul Tol's "YlOrBr".
+/// From little to much, even in greyscale: five of Paul Tol's "YlOrBr".
 inline constexpr Colour kScale[] = {
     Colour::from_hex(0xFFF7BC), Colour::from_hex(0xFEC44F), Colour::from_hex(0xFB9A29),
     Colour::from_hex(0xCC4C02), Colour::from_hex(0x662506),
 };
 } // namespace palette
 
-/// A mesh and what it is painted with. Matte; both sides are lit.
+/// A mesh and its paint. Matte; both sides are lit.
 struct RenderedObject {
     TriangleMesh mesh; ///< world frame, any unit
     Colour colour = palette::kClay;
     std::vector<Colour> face_colours;  ///< [face_count] in place of `colour`, or empty
-    std::optional<Colour> back_colour; ///< of the side that is seen clockwise; absent: as the front
+    std::optional<Colour> back_colour; ///< of the side on which faces turn clockwise; absent: as the front
     /// Edges that bend less than this look smooth, the others sharp. 0 shows every face flat.
     double crease_angle_deg = 40;
     double wire_width_px = 0; ///< width of the lines drawn along all edges; 0 draws none
@@ -74,13 +73,13 @@ struct RenderedObject {
 /// The side from which a picture is taken.
 struct View {
     Vec3d up = {0, 0, 1}; ///< any length but zero
-    /// Where the camera stands, counter-clockwise about `up`. For up = z, 0 is towards +x; for the other axes
-    /// cyclically: up = y, towards +z; up = x, towards +y.
+    /// Where the camera stands, counter-clockwise about `up`. 0 is towards +x for up = z, and cyclically
+    /// towards +z for up = y, towards +y for up = x.
     double azimuth_deg = 35;
     double elevation_deg = 20;      ///< height above the horizon, in [-89, 89]
     double vertical_field_deg = 24; ///< in [1, 120]; smaller is more like a parallel projection
     double margin = 0.07;           ///< free border, as a share of the picture's height, in [0, 0.35]
-    double footer = 0;              ///< more room below, for a caption: a share of the height, in [0, 0.25]
+    double footer = 0;              ///< extra room below for a caption: a share of the height, in [0, 0.25]
 };
 
 /// A pinhole camera and the floor under what it sees, in the objects' frame.
@@ -92,8 +91,8 @@ struct Camera {
     double floor_height = 0; ///< the floor is where dot(world_up, point) has this value
 };
 
-/// The camera that sees all points as large as the margin allows, on a floor at the height of the lowest.
-/// One camera for several pictures gives them a common scale.
+/// The camera that shows all points as large as the margin allows, on a floor at the height of the lowest.
+/// Using one camera for several pictures gives them a common scale.
 /// @param aspect  width over height of the picture
 /// @throws Error InvalidOptions for a field of `view` or an aspect out of range, InvalidMesh when there is no
 /// point, a point is not finite, or all lie on one point
@@ -125,9 +124,9 @@ struct RenderOptions {
     std::function<void(double share)> progress;
 };
 
-/// Draws objects in soft light on a pale, endless floor. Same bytes on every run and for every thread count
-/// on one machine; another processor may round differently, since Embree picks other instructions.
-/// Cost: three rays per sample and pixel that shows something.
+/// Draws objects in soft light on a pale, endless floor. The same bytes on every run and for every thread
+/// count on one machine; another processor may round differently, since Embree picks other instructions.
+/// Cost: three rays per sample and non-empty pixel.
 /// @throws Error InvalidOptions for options out of range or face_colours of a wrong size, InvalidMesh as
 /// inspect() does, or when an object has no face with an area
 Image render(std::span<const RenderedObject> objects, const Camera& camera,
@@ -143,10 +142,10 @@ void write_png(const std::filesystem::path& path, const Image& image);
 
 // ---- Figures: several pictures on one page ----
 
-/// Where a text stands relative to its anchor.
+/// The position of a text relative to its anchor.
 enum class TextAlign : std::uint8_t { Left, Centre, Right };
 
-/// Draws one line of text with strokes of its own: printable ASCII, another character becomes a box.
+/// Draws one line of text in a built-in stroke font: printable ASCII; any other character becomes a box.
 /// @param x, y      anchor in pixels: the base line's left end, middle or right end
 /// @param height_px height of a capital letter
 void draw_text(Image& image, double x, double y, std::string_view text, double height_px,
@@ -167,8 +166,8 @@ Image arrange(std::span<const Image> pictures, std::uint32_t column_count);
 Image draw_map_figure(const TriangleMesh& model, const DistanceMapView& map, const View& view,
                       const RenderOptions& options = {});
 
-/// The model, and beside it the mesh as an exact map holds it: each face in the colour of the longest list
-/// that it is in, which is what a query near it may have to test.
+/// The model, and beside it the mesh of an exact map: each face has the colour of the longest list that
+/// contains it, the faces that a query near it may have to test.
 /// @param options  width is that of the whole figure
 /// @throws Error as camera_for() and render()
 Image draw_map_figure(const TriangleMesh& model, const ExactMapView& map, const View& view,

@@ -12,11 +12,11 @@
 
 namespace echinus {
 
-/// The remedy that every sentence about a bad map file ends with.
+/// The remedy that ends every sentence about a bad map file.
 inline constexpr const char* kBuildAgain = "; build the map again with echinus build";
 
-/// Checks of numbers from untrusted bytes that every kind of map needs. A failure is an Error Damaged whose
-/// sentence begins with the file's name and names the field, or the array and the index.
+/// Checks of numbers from untrusted bytes that every kind of map needs. A failure throws an Error Damaged
+/// whose sentence begins with the file's name and names the field, or the array and the index.
 class Checker {
   public:
     explicit Checker(const std::string& name) : name_(name) {}
@@ -29,7 +29,7 @@ class Checker {
         fail(std::string(array) + "[" + std::to_string(index) + "] " + finding);
     }
 
-    /// min <= value <= max; NaN is not.
+    /// min <= value <= max; NaN fails.
     template <typename T>
     void check_range(std::string_view field, T value, T min, T max) const {
         if (value >= min && value <= max) return;
@@ -53,7 +53,7 @@ class Checker {
              std::to_string(expected));
     }
 
-    /// Where the pieces of an array begin: [piece_count + 1] numbers from 0 on that do not descend.
+    /// Where the pieces of an array begin: [piece_count + 1] numbers that start at 0 and do not descend.
     void check_offsets(std::string_view array, std::span<const std::uint32_t> offsets,
                        std::size_t piece_count) const {
         check_size(array, offsets.size(), piece_count + 1);

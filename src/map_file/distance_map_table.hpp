@@ -12,14 +12,14 @@ namespace echinus {
 flatbuffers::Offset<schema::DistanceMap> write_table(flatbuffers::FlatBufferBuilder& builder,
                                                      const DistanceMap& map);
 
-/// Reads in place, once the meaning is checked.
-/// @pre the table's structure is sound; `storage` keeps it
+/// Reads in place, after checking the meaning.
+/// @pre the table's structure is sound; `storage` keeps its bytes alive
 /// @throws Error Damaged; the sentence begins with `name` and names the field or the array and the index
 DistanceMap read_table(const schema::DistanceMap& stored, std::uint64_t source_hash,
                        std::shared_ptr<const void> storage, const std::string& name);
 
-/// Checks what a query relies on: the invariants of DistanceMapView, numbers that are finite, counts within
-/// the limits of DistanceMapOptions, enumerators that exist. For arrays from untrusted bytes; one pass.
+/// Checks what a query relies on: the invariants of DistanceMapView, finite numbers, counts within the limits
+/// of DistanceMapOptions, existing enumerators. For arrays from untrusted bytes; one pass.
 /// @throws Error as read_table()
 void validate(const DistanceMapView& map, const DistanceMapStatistics& statistics, const std::string& name);
 

@@ -78,7 +78,7 @@ flatbuffers::Offset<schema::ExactMapStatistics> write_statistics(flatbuffers::Fl
 flatbuffers::Offset<schema::ExactMap> write_table(flatbuffers::FlatBufferBuilder& builder,
                                                   const ExactMap& map) {
     const ExactMapView& view = map.view();
-    // The offsets first, as in a distance map, so that every truncation is noticed.
+    // The offsets go first, as in a distance map, so that every truncation is detected.
     const auto band_offsets = write_array(builder, view.band_offsets);
     const auto bands = write_array(builder, view.bands);
     const auto winding_below = write_if_any(builder, view.winding_below);
@@ -111,7 +111,7 @@ ExactMap read_table(const schema::ExactMap& stored, std::uint64_t source_hash,
     };
     const auto kept = std::make_shared<Kept>(Kept{std::move(storage), {}});
     set_outer_limits(view.band_offsets, view.bands,
-                     kept->outer_limits); // told by the bands, so files lack them
+                     kept->outer_limits); // follow from the bands, so files omit them
     view.outer_limits = kept->outer_limits;
     return {view, statistics, source_hash, kept};
 }

@@ -17,7 +17,7 @@ namespace echinus {
 
 namespace {
 
-/// Bytes 0 to 3 tell where the root table lies, 4 to 7 are "ECHM".
+/// Bytes 0 to 3 are the root table's offset, 4 to 7 are "ECHM".
 constexpr std::size_t kHeaderSize = sizeof(flatbuffers::uoffset_t) + flatbuffers::kFileIdentifierLength;
 
 bool begins_like_a_map_file(const void* header) {
@@ -50,18 +50,18 @@ void require_known_version(const schema::AnyVersion& file, const std::string& na
                     ", but this library reads version " + std::to_string(kMapFileVersion) + kBuildAgain);
 }
 
-/// The root table, once structure and version are known to be sound.
+/// The root table, after checking structure and version.
 const schema::MapFile& verified_root(std::span<const std::byte> bytes, const std::string& name) {
     require_map_file(bytes, name);
     const bool too_large = bytes.size() >= FLATBUFFERS_MAX_BUFFER_SIZE;
-    // Another version may have another structure, so its number comes first.
+    // Another version may have another structure, so check its number first.
     if (too_large || !has_sound_structure<schema::AnyVersion>(bytes)) fail_structure(name, bytes.size());
     require_known_version(*flatbuffers::GetRoot<schema::AnyVersion>(bytes.data()), name);
     if (!has_sound_structure<schema::MapFile>(bytes)) fail_structure(name, bytes.size());
     return *schema::GetMapFile(bytes.data());
 }
 
-/// A kind of map as the command line calls it.
+/// The command line's name of a kind of map.
 constexpr const char* name_of(const DistanceMap*) {
     return "distance";
 }

@@ -8,18 +8,18 @@
 #include <span>
 #include <type_traits>
 
-/// What all kinds of maps have in common between a file and the memory that queries read.
+/// What all kinds of maps share between the file and the memory that queries read.
 namespace echinus {
 
 static_assert(std::endian::native == std::endian::little, "map files are little-endian and used in place");
 
-/// The schema's enumerators are those of the public headers, so that a value can be taken as it is.
+/// The schema's enumerators equal those of the public headers, so values need no translation.
 template <typename Stored, typename Ours>
 constexpr bool same_value(Stored stored, Ours ours) {
     return static_cast<int>(stored) == static_cast<int>(ours);
 }
 
-/// How the schema calls the elements of an array of T: numbers by their own name, structs by another.
+/// The schema's type for the elements of an array of T: the same for numbers, another one for structs.
 template <typename T>
 struct StoredAs {
     using Type = T;
@@ -41,7 +41,7 @@ flatbuffers::Offset<StoredArray<T>> write_array(flatbuffers::FlatBufferBuilder& 
         return builder.CreateVectorOfStructs(first, array.size());
 }
 
-/// The same for an array that may be absent: an empty one is.
+/// The same for an optional array: an empty one is left out.
 template <typename T>
 flatbuffers::Offset<StoredArray<T>> write_if_any(flatbuffers::FlatBufferBuilder& builder,
                                                  std::span<const T> array) {

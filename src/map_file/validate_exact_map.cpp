@@ -23,7 +23,7 @@ void check_scalars(const Checker& checker, const ExactMapView& map) {
     checker.check_enumerator("inside_rule", map.rule, InsideRule::Parity);
 }
 
-/// @param name  of the two arrays, without their width
+/// @param name  name of the two arrays, without their width
 /// @param end  every index is smaller
 void check_indices(const Checker& checker, const std::string& name, const IndexArray& indices,
                    std::size_t end) {
@@ -92,7 +92,7 @@ void check_bands(const Checker& checker, const ExactMapView& map) {
             checker.fail("winding_below", i, "is uncertain, though the surface has no border");
 }
 
-/// Goes through the tree from the root: every node and every leaf is reached, and reached once.
+/// Walks the tree from the root: every node and every leaf is reached exactly once.
 class TreeCheck {
   public:
     TreeCheck(const Checker& checker, const ExactMapView& map)
@@ -102,7 +102,7 @@ class TreeCheck {
     void run() {
         if (map_.nodes.empty()) checker_.fail("nodes has no elements");
         depths_[0] = 1;
-        // Children come after their parents, so that one pass meets every node after its parent.
+        // Children come after their parents, so one pass visits every node after its parent.
         for (std::uint32_t node = 0; node < map_.nodes.size(); ++node) {
             if (depths_[node] == 0) checker_.fail("nodes", node, "is no child of an earlier one");
             for (std::size_t k = 0; k < kWidth; ++k) check_child(node, k);
@@ -165,7 +165,7 @@ class TreeCheck {
     const Checker& checker_;
     const ExactMapView& map_;
     std::size_t leaf_count_;
-    std::vector<std::uint8_t> depths_; ///< [node_count] 1 for the root; 0: not met yet
+    std::vector<std::uint8_t> depths_; ///< [node_count] 1 for the root; 0: not visited yet
     std::vector<bool> is_leaf_met_;
 };
 

@@ -14,7 +14,7 @@ namespace echinus {
 namespace {
 
 void require_range(double value, double low, double high, const char* name) {
-    if (value >= low && value <= high) return; // false for NaN, too
+    if (value >= low && value <= high) return; // false for NaN too
     std::ostringstream sentence;
     sentence << "View: " << name << " is " << value << ", but must lie in [" << low << ", " << high << "]";
     throw Error(ErrorCode::InvalidOptions, sentence.str());
@@ -47,7 +47,7 @@ Vec3d azimuth_axis(const Vec3d& up) {
     return size.y >= size.x ? Vec3d{0, 0, 1} : Vec3d{0, 1, 0};
 }
 
-/// A camera at the origin that looks the right way.
+/// A camera at the origin with the view's orientation.
 Camera aim(const View& view) {
     const Vec3d up = unit(view.up);
     const Vec3d east = unit(azimuth_axis(up) - up * dot(up, azimuth_axis(up)));
@@ -64,8 +64,8 @@ Camera aim(const View& view) {
     return camera;
 }
 
-/// Fits the wedge of what a camera sees along one axis of the picture to a set of points (x, z), where z is
-/// the depth: -t_low (z - z0) <= x - x0 <= t_high (z - z0). Two sums bound x0 and z0 from both sides.
+/// Fits the wedge that a camera sees along one axis of the picture to a set of points (x, z), where z is the
+/// depth: -t_low (z - z0) <= x - x0 <= t_high (z - z0). Two sums bound x0 and z0 from both sides.
 class WedgeFit {
   public:
     WedgeFit(double tan_low, double tan_high) : tan_low_(tan_low), tan_high_(tan_high) {}
@@ -74,9 +74,9 @@ class WedgeFit {
         high_ = std::max(high_, x - tan_high_ * z);
         low_ = std::max(low_, -x - tan_low_ * z);
     }
-    /// The largest z0 that holds all points.
+    /// The largest z0 for which the wedge contains all points.
     double nearest_apex_z() const { return -(high_ + low_) / (tan_high_ + tan_low_); }
-    /// For a z0 that is not larger, the x0 in the middle of those that hold all points.
+    /// For a z0 no larger than that, the middle of the x0 for which the wedge contains all points.
     double apex_x(double z0) const { return (high_ - low_ + (tan_high_ - tan_low_) * z0) / 2; }
 
   private:

@@ -65,7 +65,7 @@ std::vector<CornerNormals> corner_normals(const TriangleMesh& mesh, double creas
 
     std::vector<CornerNormals> result(mesh.faces.size());
     for (std::uint32_t corner = 0; corner < weighted.size(); ++corner) {
-        Vec3d sum = normals[corner / 3] * 1e-6; // keeps the direction where all others cancel out
+        Vec3d sum = normals[corner / 3] * 1e-6; // gives a direction even where all others cancel out
         for (std::uint32_t other : around.at(mesh.faces[corner / 3][corner % 3])) {
             if (dot(normals[other / 3], normals[corner / 3]) >= cos_crease) sum += weighted[other];
         }

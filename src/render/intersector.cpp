@@ -43,7 +43,7 @@ void copy_buffer(RTCDevice device, RTCGeometry geometry, RTCBufferType type, RTC
     std::memcpy(buffer, values.data(), values.size() * sizeof(T));
 }
 
-/// Embree's packets want their masks on a boundary of the packet's width.
+/// Embree requires the masks of its packets to be aligned to the packet's width.
 struct alignas(64) ValidMask {
     std::array<int, Intersector::kPacketSize> lanes{}; // -1: trace, 0: leave alone
 };
@@ -86,8 +86,8 @@ Intersector::Intersector(const TriangleMesh& mesh) : impl_(std::make_unique<Impl
     copy_buffer(device, geometry.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.faces);
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometry(impl_->scene.get(), geometry.get());
-    // On one thread: which of two faces a ray through their edge meets depends on the shape of the tree, and
-    // with several threads that depends on chance. (Embree's own "threads=1" would bind the whole process.)
+    // On one thread: which of two faces a ray through their common edge hits depends on the shape of the
+    // tree, which is random with several threads. (Embree's own "threads=1" would bind the whole process.)
     tbb::task_arena(1).execute([&] { rtcCommitScene(impl_->scene.get()); });
     require_success(device, "build its tree");
 }
@@ -117,7 +117,7 @@ std::uint32_t Intersector::blocked(std::span<const Ray> rays) const noexcept {
     rtcOccluded16(valid.lanes.data(), impl_->scene.get(), &context, &packet);
     std::uint32_t bits = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (packet.tfar[i] < 0) bits |= 1U << i; // Embree's sign for "hit"
+        if (packet.tfar[i] < 0) bits |= 1U << i; // marks a hit in Embree
     }
     return bits;
 }

@@ -14,7 +14,7 @@ struct Ray {
     Vec3f direction; ///< need not be unit
 };
 
-/// Where a ray first meets a mesh.
+/// A ray's first hit on a mesh.
 struct RayHit {
     static constexpr std::uint32_t kNoFace = 0xFFFFFFFF;
 
@@ -26,7 +26,7 @@ struct RayHit {
 };
 
 /// Embree's tree over one mesh: finds the nearest hit, or whether there is any. Watertight at shared edges.
-/// Same answers on every run and for every number of threads; any number of threads may ask.
+/// The same answers on every run and for every number of threads; thread-safe.
 class Intersector {
   public:
     /// @throws Error InvalidOptions when Embree cannot start or has no memory

@@ -8,7 +8,7 @@ namespace echinus {
 
 namespace {
 
-constexpr double kLampAzimuthDeg = 54;   // to the left of the camera, as seen from what is drawn
+constexpr double kLampAzimuthDeg = 54;   // to the left of the camera, as seen from the objects
 constexpr double kLampElevationDeg = 50; // shadows stay short and fall to the right
 constexpr float kLampRadius = 0.13F;     // tangent of the half angle: 7.4 degrees
 constexpr Vec3f kLampRadiance{0.87F, 0.85F, 0.81F};
@@ -33,8 +33,8 @@ Basis orthonormal_basis(const Vec3f& n) {
     return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}};
 }
 
-/// The unit square onto the unit disc, area-preserving and without tearing strata apart. Shirley and Chiu,
-/// "A Low Distortion Map Between Disk and Square", 1997.
+/// Maps the unit square onto the unit disc, preserving area and keeping strata together. Shirley and Chiu, "A
+/// Low Distortion Map Between Disk and Square", 1997.
 Sample2 to_disc(const Sample2& sample) {
     const float a = 2 * sample[0] - 1;
     const float b = 2 * sample[1] - 1;
@@ -42,8 +42,8 @@ Sample2 to_disc(const Sample2& sample) {
     const bool wide = std::abs(a) > std::abs(b);
     const float radius = wide ? a : b;
     const float angle = std::numbers::pi_v<float> / 4 * (wide ? b / a : a / b);
-    // Taylor series suffice within an eighth of a turn (4e-6) and are a fifth of the cost of std::sin and
-    // std::cos, of which a picture would take tens of millions.
+    // Taylor series suffice within an eighth of a turn (4e-6) at a fifth of the cost of std::sin and
+    // std::cos, which a picture would call tens of millions of times.
     const float square = angle * angle;
     const float cosine = 1 - square * (1 - square * (1 - square / 30) / 12) / 2;
     const float sine = angle * (1 - square * (1 - square * (1 - square / 42) / 20) / 6);
@@ -79,7 +79,7 @@ Vec3f StudioLight::lamp_irradiance(const Vec3f& normal) const {
 
 Vec3f StudioLight::ambient_radiance(const Vec3f& direction) const {
     const float height = dot(direction, up_);
-    // The floor's light comes in under the horizon; a narrow band in between keeps the change soft.
+    // The floor's light comes from below the horizon; a narrow band smooths the transition.
     constexpr float kBand = 0.15F;
     const float sky_share = std::clamp(height / kBand + 0.5F, 0.0F, 1.0F);
     const Vec3f sky = kHorizon + (kZenith - kHorizon) * std::max(height, 0.0F);

@@ -6,15 +6,15 @@
 
 namespace echinus {
 
-/// The fixed light of all pictures: a large soft lamp above the camera's left shoulder, a pale sky, and what
-/// the floor sends back. Directions and radiances are linear, in units of a white surface that faces the sky.
+/// The fixed light of all pictures: a large soft lamp above the camera's left shoulder, a pale sky, and the
+/// light reflected by the floor. Radiances are linear, in units of a white surface that faces the sky.
 class StudioLight {
   public:
     explicit StudioLight(const Camera& camera);
 
     /// Towards a point of the lamp.
     Vec3f lamp_direction(const Sample2& sample) const;
-    /// Light of the unshaded lamp on a surface, per albedo.
+    /// Light from the unshaded lamp on a surface, per albedo.
     Vec3f lamp_irradiance(const Vec3f& normal) const;
     /// Light that comes in along a direction, from the sky or from the floor.
     Vec3f ambient_radiance(const Vec3f& direction) const;
@@ -26,8 +26,8 @@ class StudioLight {
     Vec3f lamp_, lamp_x_, lamp_y_; ///< orthonormal, lamp_ towards the lamp's middle
 };
 
-/// A direction about the normal, with a density proportional to the cosine: the mean of the radiances that
-/// come in along such directions is the light on the surface.
+/// A direction about the normal, with a density proportional to the cosine: the mean of the incoming
+/// radiances along such directions is the light on the surface.
 Vec3f cosine_direction(const Vec3f& normal, const Sample2& sample);
 
 } // namespace echinus

@@ -13,7 +13,8 @@ namespace echinus {
 
 namespace {
 
-/// Room for two lines of text under the pictures, as a share of their height, and the letters in it.
+/// Room for two lines of text below the pictures, and the height of its letters, as shares of the pictures'
+/// height.
 constexpr double kFooter = 0.11;
 constexpr double kLetterShare = 0.023;
 constexpr double kSmallestLetterPx = 7;
@@ -32,7 +33,7 @@ RenderedObject map_object(const MapSurface& surface) {
     RenderedObject object;
     object.mesh = surface.mesh;
     object.back_colour = palette::kLayerBack;
-    object.crease_angle_deg = 60; // between samples the surface is uneven where the model is not
+    object.crease_angle_deg = 60; // the map's surface is uneven between samples where the model is smooth
     for (std::uint32_t layer : surface.layer) object.face_colours.push_back(layer_colour(layer));
     return object;
 }
@@ -52,13 +53,13 @@ void draw_caption(Image& image, const std::string& caption) {
               TextAlign::Centre);
 }
 
-/// What a colour stands for.
+/// The meaning of a colour.
 struct LegendEntry {
     Colour colour;
     std::string label;
 };
 
-/// The title, and for each entry a dot and its label.
+/// The title, then a dot and a label for each entry.
 void draw_legend(Image& image, const std::string& title, std::span<const LegendEntry> entries) {
     const Footer footer(image);
     const double letter = footer.letter_px;
@@ -77,7 +78,7 @@ void draw_legend(Image& image, const std::string& title, std::span<const LegendE
     }
 }
 
-/// The options of one of two pictures that are drawn one after the other and share one progress bar.
+/// The options of one of two successive pictures that share one progress bar.
 RenderOptions half_of(const RenderOptions& options, int half) {
     RenderOptions result = options;
     result.width = options.width / 2;
@@ -103,7 +104,7 @@ Image draw_figure(const TriangleMesh& model, MapPicture map, const View& view, c
     const double aspect = static_cast<double>(left.width) / left.height;
     const std::span<const RenderedObject> model_alone(&objects[0], 1);
     Camera camera = camera_for(objects, roomy_view, aspect);
-    // Where the map reaches below the model, the model shall not hang in the air.
+    // The model must not hang in the air where the map reaches below it.
     camera.floor_height = camera_for(model_alone, roomy_view, aspect).floor_height;
 
     std::array pictures{render(model_alone, camera, left),
@@ -114,7 +115,7 @@ Image draw_figure(const TriangleMesh& model, MapPicture map, const View& view, c
     return arrange(pictures, 2);
 }
 
-// ---- An exact map: its faces, coloured by the lists that they are in ----
+// ---- An exact map: its faces, coloured by the lists that contain them ----
 
 /// Classes of list lengths: up to 4 faces, up to 8 and so on.
 constexpr std::size_t kClassCount = std::size(palette::kScale);
@@ -125,7 +126,7 @@ std::size_t class_of(std::uint32_t list_length) {
     return result;
 }
 
-/// The mesh as the map holds it, on its lattice.
+/// The map's mesh, on its lattice.
 RenderedObject map_object(const ExactMapView& map) {
     ExactMapSurface surface = reconstruct_surface(map);
     RenderedObject object;

@@ -1,4 +1,4 @@
-// What is laid over and between traced pictures: lettering, lines, the arrangement of several on one page.
+// What is drawn over traced pictures: lettering, lines, the arrangement of several on one page.
 
 #include "render/page.hpp"
 
@@ -31,7 +31,7 @@ double distance_to_nearest(std::span<const PageStroke> strokes, double x, double
     return distance;
 }
 
-/// Mixes a colour in. In sRGB, not in linear light: dark letters on a pale page keep their weight so.
+/// Blends in a colour. In sRGB, not in linear light, which would make dark letters on a pale page thinner.
 void mix_in(std::uint8_t* rgb, const Colour& colour, double share) {
     const float parts[] = {colour.red, colour.green, colour.blue};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -44,7 +44,7 @@ void fill(Image& image, const Colour& colour) {
     for (std::size_t i = 0; i < image.rgb.size(); i += 3) mix_in(&image.rgb[i], colour, 1);
 }
 
-/// The pixels of one axis that strokes can touch.
+/// The range of pixels along one axis that strokes can touch.
 struct PixelRange {
     double low = std::numeric_limits<double>::infinity(), high = -low;
 

@@ -15,8 +15,8 @@ struct PageStroke {
     PagePoint start, end;
 };
 
-/// Draws strokes of one width with round ends, as one shape: where they overlap nothing shows. What lies
-/// outside the picture is not drawn.
+/// Draws strokes of one width with round ends as one shape: overlaps do not show. Parts outside the picture
+/// are not drawn.
 void draw_strokes(Image& image, std::span<const PageStroke> strokes, double width_px, Colour colour);
 
 } // namespace echinus

@@ -10,7 +10,7 @@ namespace echinus {
 
 namespace {
 
-/// The same mesh in the unit frame, faces without area left out.
+/// The same mesh in the unit frame, without its faces of area zero.
 struct UnitMesh {
     TriangleMesh mesh;
     std::vector<std::uint32_t> source_face; ///< [face_count] its number in the object

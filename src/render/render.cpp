@@ -24,7 +24,7 @@ void require_valid_options(const RenderOptions& options) {
     }
 }
 
-/// Counts finished rows and tells the caller's callback, one thread at a time.
+/// Counts finished rows and reports them to the caller's callback, one thread at a time.
 class RowProgress {
   public:
     explicit RowProgress(const RenderOptions& options)

@@ -25,8 +25,8 @@ std::uint32_t reverse_bits(std::uint32_t x) {
     return (x >> 16) | (x << 16);
 }
 
-/// Each bit of the result depends on the bits above it only, which is what keeps the strata (Burley, section
-/// 3; constants of Laine and Karras as he gives them).
+/// Each bit of the result depends only on the bits above it, which preserves the strata (Burley, section 3;
+/// constants of Laine and Karras as he gives them).
 std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
     x = reverse_bits(x);
     x += seed;

@@ -9,18 +9,18 @@ namespace echinus {
 /// Points of the unit square, in [0, 1)^2.
 using Sample2 = std::array<float, 2>;
 
-/// What a pair of random numbers is used for; each use has a sequence of its own.
+/// The purpose of a pair of random numbers; each has its own sequence.
 enum class SampleUse : std::uint32_t { Pixel, Lamp, Sky };
 
 /// Evenly spread points of the unit square for the samples of every pixel: Owen-scrambled Sobol sequences
 /// (Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020), in which any aligned run of 2^k points
-/// lies as evenly as points can. A few sequences are tabled; a pixel takes one of them, its digits flipped by
-/// a pattern of its own, which keeps the evenness and costs next to nothing.
+/// lies as evenly as points can. A few sequences are tabulated; each pixel takes one of them and flips its
+/// digits by the pixel's own pattern, which preserves the even distribution at almost no cost.
 class SampleTables {
   public:
     explicit SampleTables(std::uint32_t sample_count);
 
-    /// What a pixel's samples are drawn with.
+    /// The scrambling of a pixel's samples.
     static std::uint32_t pixel_seed(std::uint32_t x, std::uint32_t y);
 
     /// @pre sample < sample_count

@@ -10,19 +10,19 @@ namespace echinus {
 
 namespace {
 
-/// Shows as palette::kPage when highlights have been compressed.
+/// Becomes palette::kPage after the compression of highlights.
 constexpr Colour kBackdrop = Colour::from_hex(0xFEFDFB);
-/// How dark a place of the floor gets that no light reaches: 1 would be black.
+/// The darkness of a place on the floor that no light reaches: 1 would be black.
 constexpr float kShadowStrength = 0.66F;
-/// Light from a direction in which another part of the drawing stands, as a share of what the open direction
-/// would send, times that part's albedo, taken to be the point's own.
+/// Light from a direction blocked by another part of the drawing, as a share of the light that the open
+/// direction would send, times that part's albedo, which is assumed to be the point's own.
 constexpr float kInterreflection = 0.85F;
 /// Clearance of rays that start on the surface, in the unit frame.
 constexpr float kClearance = 1e-4F;
-/// Between these distances from the drawing's middle its shadow fades out, in the unit frame.
+/// The drawing's shadow fades out between these distances from its middle, in the unit frame.
 constexpr float kFloorFadeStart = 4, kFloorFadeEnd = 7;
-/// Over this share of the picture's smaller side shadows also fade out towards its border, so that pictures
-/// stand on a page and beside each other without a seam.
+/// Shadows also fade out towards the picture's border, over this share of its smaller side, so that pictures
+/// join the page and each other without a seam.
 constexpr float kBorderFade = 0.12F;
 
 Vec3f multiply(const Vec3f& a, const Vec3f& b) {
@@ -35,8 +35,8 @@ Vec3f unit(const Vec3f& v) {
     return v * (1 / length(v));
 }
 
-/// All that is drawn lies within the unit sphere; most rays about the floor pass it by, and need not be
-/// handed to Embree. The sphere is a little larger here than rounding can make the drawing.
+/// Everything drawn lies within the unit sphere; most rays from the floor miss it and need no Embree. The
+/// sphere here is a little larger, to allow for rounding.
 bool meets_unit_sphere(const Ray& ray) {
     constexpr float kRadiusSq = 1.0001F;
     const float distance_sq = dot(ray.origin, ray.origin);
@@ -51,9 +51,9 @@ T blend(const std::array<T, 3>& corners, const RayHit& hit) {
     return corners[0] * (1 - hit.u - hit.v) + corners[1] * hit.u + corners[2] * hit.v;
 }
 
-/// Moves a point of a flat face out to the curved surface that its normals pretend to, or else the face
-/// itself would cut off the light in the middle of a smooth gradient. Hanika, "Hacking the Shadow
-/// Terminator", Ray Tracing Gems II, 2021.
+/// Moves a point of a flat face out to the curved surface that its normals imply; otherwise the face itself
+/// would cut off the light in the middle of a smooth gradient. Hanika, "Hacking the Shadow Terminator", Ray
+/// Tracing Gems II, 2021.
 Vec3f lift_to_smooth_surface(const Vec3f& point, const std::array<Vec3f, 3>& corners,
                              const CornerNormals& normals, const RayHit& hit) {
     std::array<Vec3f, 3> lifts;
@@ -63,7 +63,7 @@ Vec3f lift_to_smooth_surface(const Vec3f& point, const std::array<Vec3f, 3>& cor
     return point + blend(lifts, hit);
 }
 
-/// Rays to one light from the places seen through one pixel, and what the light adds where they are free.
+/// Rays to one light from the places seen through one pixel, and the light that each unblocked ray adds.
 class LightRays {
   public:
     void add(const Ray& ray, const Vec3f& gain) {
@@ -121,7 +121,7 @@ Vec3f Tracer::pixel(std::uint32_t x, std::uint32_t y) const {
     for (std::uint32_t first = 0; first < sample_count_; first += Intersector::kPacketSize) {
         const std::size_t count = std::min<std::size_t>(Intersector::kPacketSize, sample_count_ - first);
         const Seen seen = packet(x, y, first, count);
-        // Most pixels of most pictures: nothing more is to be found out about them.
+        // Most pixels of most pictures: there is nothing more to compute.
         if (first == 0 && count == Intersector::kPacketSize && seen.only_open_floor) return backdrop_;
         sum += seen.light;
     }
@@ -172,7 +172,7 @@ Tracer::Place Tracer::object_place(const Ray& ray, const RayHit& hit, const Draw
 
     const Vec3f position = blend(corners, hit);
     const Vec3f smooth = blend(normals, hit);
-    // Normals that point apart may cancel out.
+    // Opposite normals may cancel out.
     const Vec3f normal = dot(smooth, smooth) > 1e-6F ? unit(smooth) : outward * side;
     const Vec3f start =
         lift_to_smooth_surface(position, corners, normals, hit) + outward * (side * kClearance);
@@ -217,7 +217,7 @@ float Tracer::border_fade(std::uint32_t x, std::uint32_t y) const {
 }
 
 /// The floor has the colour of the backdrop, so that there is no horizon, and is darkened only by the share
-/// of light that the drawing keeps from it.
+/// of light that the drawing blocks.
 Tracer::Place Tracer::floor_place(const Ray& ray, const Draw& draw, float border_fade) const {
     Place place;
     place.base = backdrop_;

@@ -23,7 +23,7 @@ class Lens {
     float pixel_size_;
 };
 
-/// What light reaches the camera through a pixel. Immutable: any number of threads may ask.
+/// Computes the light that reaches the camera through a pixel. Immutable and thread-safe.
 class Tracer {
   public:
     Tracer(const PaintedSurface& surface, const Intersector& intersector, const Camera& camera,
@@ -33,18 +33,18 @@ class Tracer {
     Vec3f pixel(std::uint32_t x, std::uint32_t y) const;
 
   private:
-    /// A place seen through a pixel: the light it sends whatever stands around it, and what the lamp and one
-    /// direction of the surroundings add where nothing blocks them.
+    /// A place seen through a pixel: the light that it sends regardless of its surroundings, and the light
+    /// that the lamp and one direction of the surroundings add if nothing blocks them.
     struct Place {
         Vec3f base, lamp_gain, sky_gain;
-        Ray to_lamp, to_sky; ///< not looked at where the gain is zero
+        Ray to_lamp, to_sky; ///< unused where the gain is zero
     };
-    /// The random numbers of one sample of one pixel.
+    /// The random numbers of one sample in one pixel.
     struct Draw {
         std::uint32_t sample, seed;
     };
 
-    /// What the samples of one packet saw.
+    /// The results of one packet's samples.
     struct Seen {
         Vec3f light; ///< summed
         bool only_open_floor = true;
