@@ -2,24 +2,57 @@
 
 #include "output.hpp"
 
+#include <echinus/mesh_io.hpp>
+
+#include <unistd.h>
+
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <iostream>
+#include <vector>
 
+namespace fs = std::filesystem;
+using echinus::Error;
 using echinus::ErrorCode;
 
-std::string name_of_input(const std::filesystem::path& path) {
+namespace {
+
+/// A new empty file with this ending in the system's folder for temporary files.
+fs::path make_temporary_file(const std::string& ending) {
+    std::string name = (fs::temp_directory_path() / "echinus-XXXXXX").string() + ending;
+    const int descriptor = mkstemps(name.data(), static_cast<int>(ending.size()));
+    if (descriptor < 0) {
+        throw Error(ErrorCode::Unwritable, name + ": cannot open the file: " + std::strerror(errno));
+    }
+    close(descriptor);
+    return name;
+}
+
+void copy_standard_input(const fs::path& target) {
+    Input input{fs::path(kStandardStream)};
+    Output output(target);
+    std::vector<char> block(std::size_t{1} << 16);
+    while (const std::size_t byte_count = input.read(block.data(), block.size())) {
+        output.write(block.data(), byte_count);
+    }
+    output.commit();
+}
+
+} // namespace
+
+std::string name_of_input(const fs::path& path) {
     return path == kStandardStream ? "standard input" : path.string();
 }
 
-Input::Input(const std::filesystem::path& path)
+Input::Input(const fs::path& path)
     : name_(name_of_input(path)), stream_(path == kStandardStream ? std::cin : file_) {
     if (path == kStandardStream) return;
     errno = 0;
     file_.open(path, std::ios::binary);
     // A directory opens like a file and fails only when it is read, without a reason.
     std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored)) errno = EISDIR;
+    if (fs::is_directory(path, ignored)) errno = EISDIR;
     if (!file_ || errno == EISDIR) {
         fail(ErrorCode::Unreadable, std::string("cannot open the file: ") + std::strerror(errno));
     }
@@ -52,4 +85,52 @@ void Input::fail(ErrorCode code, const std::string& finding) const {
 
 void Input::require_good() const {
     if (stream_.bad()) fail(ErrorCode::Unreadable, "cannot be read to its end");
+}
+
+InputFile::InputFile(const fs::path& argument, const std::string& format)
+    : path_(argument), name_(name_of_input(argument)), is_copy_(argument == kStandardStream) {
+    if (!is_copy_) return;
+    path_ = make_temporary_file("." + format);
+    try {
+        copy_standard_input(path_);
+    } catch (...) {
+        fs::remove(path_);
+        throw;
+    }
+}
+
+InputFile::~InputFile() {
+    std::error_code ignored;
+    if (is_copy_) fs::remove(path_, ignored);
+}
+
+std::string InputFile::renamed(std::string sentence) const {
+    const std::string copy = path_.string();
+    const std::size_t position = is_copy_ ? sentence.find(copy) : std::string::npos;
+    if (position != std::string::npos) sentence.replace(position, copy.size(), name_);
+    return sentence;
+}
+
+std::string MeshArgument::name() const {
+    return name_of_input(path);
+}
+
+void MeshArgument::add_format_option(Command command) {
+    std::vector<std::pair<std::string, std::string>> choices;
+    for (const char* ending : {"obj", "ply", "stl", "off", "gltf", "glb", "3ds"}) {
+        choices.emplace_back(ending, ending);
+    }
+    add_choice(command, "--format", format, choices, "Format of a mesh on standard input");
+}
+
+void MeshArgument::require_format() const {
+    if (path == kStandardStream && format.empty()) {
+        throw WrongUse("--format", "needed for a mesh on standard input, such as --format obj");
+    }
+}
+
+echinus::TriangleMesh read_mesh(const MeshArgument& argument) {
+    argument.require_format();
+    const InputFile file(argument.path, argument.format);
+    return file.read([](const fs::path& path) { return echinus::read_mesh(path); });
 }

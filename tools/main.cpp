@@ -1,4 +1,4 @@
-#include "command.hpp"
+#include "commands/commands.hpp"
 #include "output.hpp"
 
 #include <echinus/error.hpp>
@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <exception>
 #include <new>
-#include <sstream>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -17,8 +17,8 @@ namespace {
 constexpr int kFailed = 1;
 constexpr int kWrongUse = 2;
 
-/// Control characters become spaces and runs of spaces one: CLI11 breaks long sentences into lines, and a
-/// file name may hold anything.
+/// Control characters become spaces and runs of spaces one: the parser breaks long sentences into lines, and
+/// a file name may hold anything.
 std::string one_line(std::string_view text) {
     std::string line;
     for (char c : text) {
@@ -38,37 +38,30 @@ int fail_wrong_use(std::string_view sentence) {
     return fail(std::string(sentence) + "; see echinus --help", kWrongUse);
 }
 
-/// The library passes over a wish that it cannot grant; somebody at a command line wants to hear of it.
-void require_wished_instruction_set() {
-    const char* wish = std::getenv("ECHINUS_INSTRUCTION_SET");
-    if (wish != nullptr && *wish != '\0') echinus::use_instruction_set(wish);
+/// The library ignores the name of an instruction set that it does not have; a user of the command line wants
+/// to know.
+void require_named_instruction_set() {
+    const char* name = std::getenv("ECHINUS_INSTRUCTION_SET");
+    if (name != nullptr && *name != '\0') echinus::use_instruction_set(name);
 }
 
 void parse_and_run(int argc, char** argv) {
-    require_wished_instruction_set();
-    CLI::App app{"Echinus: is a particle inside a rigid model, how deep, and which way out?"};
-    app.name("echinus");
-    app.set_version_flag("--version", "echinus " ECHINUS_VERSION);
-    app.require_subcommand(0, 1); // none is refused below: here it would hide a misspelt one
-    add_mesh_command(app);
-    add_info_command(app);
-    add_build_command(app);
-    add_query_command(app);
-    add_compare_command(app);
-    add_simulate_command(app);
-    add_render_command(app);
-    app.footer("A file named - is standard input or standard output.\n"
-               "Exit status: 0 done, 1 failed, 2 wrong use; an error is one line on standard error.\n"
-               "echinus COMMAND --help shows the options of a command and an example.");
-    try {
-        app.parse(argc, argv);
-        if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
-    } catch (const CLI::Success& help_or_version) {
-        std::ostringstream text;
-        app.exit(help_or_version, text, text);
-        print(text.str());
-        if (!text.str().ends_with('\n')) print("\n"); // CLI11 forgets it in the help of nested subcommands
-    }
+    require_named_instruction_set();
+    Program program("echinus", "Echinus: is a particle inside a rigid model, how deep, and which way out?");
+    program.add_version("echinus " ECHINUS_VERSION);
+    const Command command = program.command();
+    command.require_command("A subcommand");
+    add_mesh_command(command);
+    add_info_command(command);
+    add_build_command(command);
+    add_query_command(command);
+    add_compare_command(command);
+    add_simulate_command(command);
+    add_render_command(command);
+    command.footer("A file named - is standard input or standard output.\n"
+                   "Exit status: 0 done, 1 failed, 2 wrong use; an error is one line on standard error.\n"
+                   "echinus COMMAND --help shows the options of a command and an example.");
+    if (const std::optional<std::string> text = program.run(argc, argv)) print(*text);
     flush_standard_output();
 }
 
@@ -78,7 +71,7 @@ int main(int argc, char** argv) {
     try {
         parse_and_run(argc, argv);
         return 0;
-    } catch (const CLI::ParseError& error) {
+    } catch (const WrongUse& error) {
         return fail_wrong_use(error.what());
     } catch (const echinus::Error& error) {
         if (error.code() == echinus::ErrorCode::InvalidOptions) return fail_wrong_use(error.what());

@@ -2,10 +2,9 @@
 
 #include "files/atomic_file.hpp"
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <string_view>
 
 /// The path argument that stands for standard input or standard output.
@@ -25,12 +24,40 @@ class Output {
     std::optional<echinus::AtomicFile> file_; // empty: standard output
 };
 
+/// A folder of results that appear all together or not at all: files are written to a temporary folder on the
+/// same disk, commit() moves them to their place. Without commit() the destructor removes them, and what the
+/// target held before stays as it was.
+class OutputFolder {
+  public:
+    /// @throws echinus::Error Unwritable when the target is a file or no folder can be made there
+    explicit OutputFolder(const std::filesystem::path& target);
+    OutputFolder(const OutputFolder&) = delete;
+    OutputFolder& operator=(const OutputFolder&) = delete;
+    ~OutputFolder();
+
+    /// Where to write the file or folder that will be called `name`.
+    std::filesystem::path path_of(const std::string& name) const { return temporary_ / name; }
+    /// Moves everything that was written into the target, which is made if need be. Files and folders there
+    /// of the same names are replaced, others stay.
+    void commit();
+    /// Removes a result of an earlier run from the target, if it is there. To be called after commit().
+    void remove_old(const std::string& name) const;
+
+  private:
+    std::filesystem::path target_;
+    std::filesystem::path temporary_;
+};
+
 /// Prints on standard output.
 /// @throws echinus::Error Unwritable, so that a full disk behind a redirection is noticed
 void print(std::string_view text);
 
-/// Prints the object of `--json`, indented, with a newline.
-void print_json(const nlohmann::ordered_json& object);
-
 /// Hands what was printed to the system; the last chance to notice that it went nowhere.
 void flush_standard_output();
+
+/// Refuses a result that would take the place of what it is made of.
+/// @throws WrongUse, as the next one
+void require_another_file(const std::filesystem::path& source, const std::filesystem::path& target);
+
+/// Refuses --json together with a result that goes to standard output itself.
+void require_one_result(const std::filesystem::path& target, bool json);

@@ -1,7 +1,8 @@
 #include "oracle/check_report.hpp"
 
+#include "json.hpp"
+
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
@@ -16,25 +17,25 @@ double agreement(const Score& score) {
 }
 
 /// All keys of a score; those of sides differ between closed and open surfaces.
-nlohmann::ordered_json to_object(const Score& score, bool closed) {
-    nlohmann::ordered_json object;
-    object["points"] = score.points;
-    object["ambiguous"] = score.ambiguous;
+Json to_object(const Score& score, bool closed) {
+    Json object;
+    object.add("points", score.points);
+    object.add("ambiguous", score.ambiguous);
     if (closed) {
-        object["wrong_inside"] = score.wrong_inside;
-        object["wrong_snapped"] = score.wrong_snapped;
+        object.add("wrong_inside", score.wrong_inside);
+        object.add("wrong_snapped", score.wrong_snapped);
     } else {
-        object["far_points"] = score.far_points;
-        object["agreement"] = agreement(score);
-        object["disagreements_certain"] = score.disagreements_certain;
-        object["certain_share"] =
-            static_cast<double>(score.certain) / static_cast<double>(std::max<std::size_t>(1, score.points));
+        object.add("far_points", score.far_points);
+        object.add("agreement", agreement(score));
+        object.add("disagreements_certain", score.disagreements_certain);
+        object.add("certain_share", static_cast<double>(score.certain) /
+                                        static_cast<double>(std::max<std::size_t>(1, score.points)));
     }
-    object["inconsistent"] = score.inconsistent;
-    object["distance_points"] = score.points;
-    object["worst_distance_error"] = score.worst_distance_error;
-    object["worst_point_error"] = score.worst_point_error;
-    object["worst_normal_error_deg"] = score.worst_normal_error_deg;
+    object.add("inconsistent", score.inconsistent);
+    object.add("distance_points", score.points);
+    object.add("worst_distance_error", score.worst_distance_error);
+    object.add("worst_point_error", score.worst_point_error);
+    object.add("worst_normal_error_deg", score.worst_normal_error_deg);
     return object;
 }
 
@@ -52,27 +53,31 @@ std::string text_line(const char* rule, const std::string& set, const Score& sco
 } // namespace
 
 std::string to_json(const CheckResult& result) {
-    nlohmann::ordered_json object;
-    object["mesh"] = result.mesh;
-    object["faces"] = result.face_count;
-    object["closed"] = result.closed;
-    object["cells_per_octant"] = result.divisions;
-    object["bytes"] = result.byte_count;
-    object["seed"] = result.seed;
-    object["wrong_corners"] = result.wrong_corners;
-    object["compared_with_cgal"] = result.compared_with_cgal;
-    object["judges_disagree"] = result.judges_disagree;
+    Json object;
+    object.add("mesh", result.mesh);
+    object.add("faces", result.face_count);
+    object.add("closed", result.closed);
+    object.add("cells_per_octant", result.divisions);
+    object.add("bytes", result.byte_count);
+    object.add("seed", result.seed);
+    object.add("wrong_corners", result.wrong_corners);
+    object.add("compared_with_cgal", result.compared_with_cgal);
+    object.add("judges_disagree", result.judges_disagree);
+    Json rules;
     for (std::size_t rule = 0; rule < result.rules.size(); ++rule) {
-        nlohmann::ordered_json entry = to_object(result.total(rule), result.closed);
-        if (!result.closed) entry["certain_share"] = result.certain_share(); // of uniform points only
+        Json entry = to_object(result.total(rule), result.closed);
+        if (!result.closed) entry.add("certain_share", result.certain_share()); // of uniform points only
+        Json sets;
         for (const SetResult& set : result.sets)
-            entry["sets"][set.name] = to_object(set.scores[rule], result.closed);
-        entry["complaints"] = result.total(rule).complaints;
-        object["rules"][name_of(result.rules[rule])] = std::move(entry);
+            sets.add(set.name, to_object(set.scores[rule], result.closed));
+        entry.add("sets", sets);
+        entry.add("complaints", result.total(rule).complaints);
+        rules.add(name_of(result.rules[rule]), entry);
     }
-    object["seconds"] = result.seconds;
-    object["holds"] = result.holds();
-    return object.dump(2) + "\n";
+    object.add("rules", rules);
+    object.add("seconds", result.seconds);
+    object.add("holds", result.holds());
+    return object.indented();
 }
 
 std::string to_text(const CheckResult& result) {

@@ -1,4 +1,4 @@
-#include "simulation_folder.hpp"
+#include "recording/simulation_folder.hpp"
 #include "support/expect_error.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -1,0 +1,114 @@
+#include "tools/command_line.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path kSource = ECHINUS_SOURCE_FOLDER;
+
+class SimulateCommand : public CommandLineTest {
+  protected:
+    nlohmann::json simulate(const std::string& scene, const std::vector<std::string>& options = {}) const {
+        std::vector<std::string> arguments{"simulate", scene, "-o", "run", "--json"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        return nlohmann::json::parse(expect_success(arguments));
+    }
+
+    /// With an exact map none is inside at rest, and none ever was.
+    void expect_none_inside(const std::string& scene) const {
+        const nlohmann::json report = simulate((kSource / "scenes" / scene).string());
+        EXPECT_EQ(report.at("map_kind"), "exact");
+        EXPECT_FALSE(report.at("frames_to_rest").is_null());
+        EXPECT_EQ(report.at("inside_at_rest"), 0);
+        EXPECT_EQ(report.at("lost_count"), 0);
+    }
+
+    /// Runs one of the scenes that ship until it rests. The hash is of every bit of the last two frames: who
+    /// changes a map or the solver on purpose changes it here.
+    void expect_rest(const std::string& scene, const std::string& state_hash) const {
+        const nlohmann::json report = simulate((kSource / "scenes" / scene).string());
+        EXPECT_EQ(report.at("state_hash"), state_hash);
+        EXPECT_FALSE(report.at("frames_to_rest").is_null());
+        EXPECT_LE(report.at("inside_at_rest").get<double>(), 0.01 * report.at("particles").get<double>());
+        EXPECT_LE(report.at("deepest").at("in_radii").get<double>(), 0.01);
+    }
+};
+
+const std::string kFallingSheet = R"({"model": {"box": {"size": [1, 1, 1]}},
+    "cloth": {"particles": [4, 3], "size": [1, 1], "position": [0, 0, 2]}, "frame_limit": 6})";
+
+} // namespace
+
+TEST_F(SimulateCommand, LeavesNoParticleOfTheSmallClothInsideTheTorus) {
+    expect_none_inside("torus_small.json");
+}
+
+TEST_F(SimulateCommand, LeavesNoParticleInsideTheTorusInSmallStepsEither) {
+    expect_none_inside("torus_small_xpbd.json");
+}
+
+TEST_F(SimulateCommand, LeavesNoParticleOfTheSmallClothInsideTheHorse) {
+    if (!fs::exists(kSource / "models" / "horse.3ds"))
+        GTEST_SKIP() << "models/horse.3ds is not there; scripts/setup fetches it";
+    expect_none_inside("horse_small.json");
+}
+
+TEST_F(SimulateCommand, LosesNoParticleToAThinPlateThatMovesAndTurns) {
+    const nlohmann::json report = simulate((kSource / "scenes" / "thin_plate_small.json").string());
+    EXPECT_EQ(report.at("lost_count"), 0);
+    EXPECT_GT(report.at("rescued_count"), 0);
+    EXPECT_EQ(report.at("inside_at_rest"), 0);
+}
+
+TEST_F(SimulateCommand, DrapesTheSmallClothOnTheTorusAsEverBefore) {
+    expect_rest("torus_small_distance.json", "f3498d172f2c8992");
+}
+
+TEST_F(SimulateCommand, DrapesTheSmallClothOnTheHorseAsEverBefore) {
+    if (!fs::exists(kSource / "models" / "horse.3ds"))
+        GTEST_SKIP() << "models/horse.3ds is not there; scripts/setup fetches it";
+    expect_rest("horse_small_distance.json", "da42aa1fdf3570bb");
+}
+
+TEST_F(SimulateCommand, WritesTheClothItsMotionTheColliderAndAReport) {
+    write("scene.json", kFallingSheet);
+    const nlohmann::json report = simulate("scene.json", {"--every", "2"});
+    EXPECT_EQ(report, nlohmann::json::parse(content("run/report.json")));
+    EXPECT_EQ(report.at("particles"), 12);
+    EXPECT_EQ(report.at("frames"), 6);
+    EXPECT_TRUE(report.at("frames_to_rest").is_null());
+    EXPECT_EQ(report.at("queries_per_frame"), 120);
+    EXPECT_TRUE(content("run/cloth.pc2").starts_with("POINTCACHE2"));
+    EXPECT_EQ(content("run/cloth.pc2").size(), 32 + 4 * 12 * 12u); // header, four moments of twelve particles
+    EXPECT_TRUE(fs::exists(path("run/cloth.obj")));
+    EXPECT_TRUE(fs::exists(path("run/collider.obj")));
+}
+
+TEST_F(SimulateCommand, WritesOneObjPerMomentWhereAskedTo) {
+    write("scene.json", kFallingSheet);
+    simulate("scene.json", {"--every", "3", "--obj"});
+    std::size_t count = 0;
+    for (const auto& entry : fs::directory_iterator(path("run/frames")))
+        count += entry.path().extension() == ".obj";
+    EXPECT_EQ(count, 3u);
+    EXPECT_FALSE(fs::exists(path("run/cloth.pc2")));
+}
+
+TEST_F(SimulateCommand, NamesTheSceneAndTheKeyAtFault) {
+    write("misspelt.json", R"({"model": {"box": {}}, "cloth": {"particels": [4, 4], "size": [1, 1]}})");
+    expect_failure(1, "misspelt.json: ", {"simulate", "misspelt.json", "-o", "run"});
+    expect_failure(1, "particels", {"simulate", "misspelt.json", "-o", "run"});
+    write("impossible.json", R"({"model": {"torus": {"major": 1, "minor": 2}}, "cloth": {"size": [1, 1]}})");
+    expect_failure(1, "impossible.json: \"model\": ", {"simulate", "impossible.json", "-o", "run"});
+    expect_failure(1, "nowhere.json", {"simulate", "nowhere.json", "-o", "run"});
+    write("empty.json", "");
+    expect_failure(1, "empty.json", {"simulate", "empty.json", "-o", "run"});
+}
+
+TEST_F(SimulateCommand, LeavesNoFolderBehindWhenItDiverges) {
+    write("wild.json", R"({"model": {"box": {}}, "time_step": 1000,
+        "cloth": {"particles": [4, 4], "size": [1, 1], "position": [0, 0, 2]}})");
+    expect_failure(1, "wild.json: the simulation diverged in frame", {"simulate", "wild.json", "-o", "run"});
+}

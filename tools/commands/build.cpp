@@ -1,0 +1,268 @@
+#include "commands/commands.hpp"
+#include "commands/map_description.hpp"
+#include "commands/mesh_description.hpp"
+#include "input.hpp"
+#include "output.hpp"
+
+#include <echinus/any_map.hpp>
+#include <echinus/error.hpp>
+#include <echinus/map_file.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+using namespace echinus;
+
+namespace {
+
+enum class MapKind { Exact, Distance };
+
+struct BuildArguments {
+    MeshArgument mesh;
+    std::filesystem::path target;
+    MapKind kind = MapKind::Exact;
+    ExactMapOptions exact;
+    std::uint32_t cells_per_octant = 0;
+    DistanceMapOptions distance;
+    CentreChoice centre = CentreChoice::BoundingSphere;
+    std::vector<Option> exact_only, distance_only;  ///< options that belong to one kind
+    std::vector<Option> counted_only, divided_only; ///< ... to some grids of a distance map
+    unsigned thread_count = 0;
+    bool repair = false;
+    bool allow_open = false;
+    bool json = false;
+};
+
+/// An option of the other kind would have no effect, and whoever gives it expects one.
+void refuse_options_of_the_other_kind(const BuildArguments& arguments) {
+    const bool exact = arguments.kind == MapKind::Exact;
+    for (const Option option : exact ? arguments.distance_only : arguments.exact_only)
+        if (option.given())
+            throw WrongUse(option.name(), std::string("belongs to --kind ") + (exact ? "distance" : "exact"));
+    const bool counted = has_poles(arguments.distance.grid);
+    for (const Option option : counted ? arguments.divided_only : arguments.counted_only)
+        if (option.given())
+            throw WrongUse(option.name(), std::string("belongs to --grid ") +
+                                              (counted ? "octahedral or cube" : "spherical or ellipsoidal"));
+}
+
+ExactMapOptions exact_options_of(const BuildArguments& arguments) {
+    ExactMapOptions options = arguments.exact;
+    options.divisions = static_cast<std::uint32_t>(std::sqrt(arguments.cells_per_octant));
+    options.centre = arguments.centre;
+    options.thread_count = arguments.thread_count;
+    return options;
+}
+
+DistanceMapOptions distance_options_of(const BuildArguments& arguments) {
+    DistanceMapOptions options = arguments.distance;
+    options.centre = arguments.centre;
+    options.thread_count = arguments.thread_count;
+    return options;
+}
+
+/// Behind a hole a distance map does not know what is inside, and an exact map is not certain of it, so that
+/// such answers must be asked for. What has no volume has no inside. The correction of a distance map of a
+/// mesh that is inside out would take off where it should add; an exact map does not care.
+void require_solid(const MeshReport& report, const TriangleMesh& mesh, const BuildArguments& arguments) {
+    const bool exact = arguments.kind == MapKind::Exact;
+    const std::string name = arguments.mesh.name();
+    if (report.closed && report.signed_volume == 0 && !exact)
+        throw Error(ErrorCode::InvalidMesh,
+                    name + ": the mesh encloses no volume; it is flat, or so far from the origin that its "
+                           "vertices round to one place: move it to the origin");
+    if (report.closed && report.signed_volume < 0 && !exact)
+        throw Error(ErrorCode::InvalidMesh, name + ": the mesh is inside out, its faces turn clockwise seen "
+                                                   "from outside; mend it with --repair");
+    if (report.closed || arguments.allow_open) return;
+    const std::string remedy = foresee_repair(mesh).closed_then ? "mend it with --repair"
+                               : exact ? "mend it elsewhere, or accept answers that are not certain near its "
+                                         "holes with --allow-open"
+                                       : "mend it elsewhere, or accept wrong answers behind its holes with "
+                                         "--allow-open";
+    throw Error(ErrorCode::InvalidMesh,
+                name + ": the mesh is not closed: " + describe_openness(report) + "; " + remedy);
+}
+
+/// Around a closed surface the winding number is 0 everywhere; it may have a volume all the same, with two
+/// signs.
+bool encloses_nothing(const ExactMapView& map) {
+    return map.border.empty() &&
+           std::ranges::all_of(map.winding_below, [](std::int16_t w) { return w == 0; });
+}
+
+AnyMap build_kind(const TriangleMesh& mesh, const BuildArguments& arguments) {
+    if (arguments.kind == MapKind::Exact) {
+        ExactMap map = ExactMap::build(mesh, exact_options_of(arguments));
+        if (encloses_nothing(map) && !arguments.allow_open)
+            throw Error(
+                ErrorCode::InvalidMesh,
+                "the mesh encloses nothing: it is flat, or its parts cancel each other, or it is so far from "
+                "the origin that its vertices round to one place; build it all the same with --allow-open");
+        return map;
+    }
+    DistanceMap map = DistanceMap::build(mesh, distance_options_of(arguments));
+    if (map.view().entry_count() == 0)
+        throw Error(
+            ErrorCode::InvalidMesh,
+            "no ray from the centre meets the mesh; it is too thin for so few directions, or so far from the "
+            "origin that its vertices round to a few places");
+    return map;
+}
+
+struct BuiltMap {
+    AnyMap map;
+    MapFileNotes notes;
+    RepairReport repairs;
+    bool inside_out = false; ///< the mesh, as the map has it
+};
+
+BuiltMap build_map(TriangleMesh mesh, const BuildArguments& arguments) {
+    RepairReport repairs;
+    if (arguments.repair) {
+        RepairedMesh repaired = repair(mesh, RepairOptions::all());
+        mesh = std::move(repaired.mesh);
+        repairs = std::move(repaired.report);
+    }
+    const MeshReport report = inspect(mesh);
+    require_solid(report, mesh, arguments);
+    const auto start = std::chrono::steady_clock::now();
+    AnyMap map = build_kind(mesh, arguments);
+    const std::chrono::duration<double, std::milli> duration = std::chrono::steady_clock::now() - start;
+    return {std::move(map),
+            {.build_milliseconds = duration.count()},
+            std::move(repairs),
+            report.closed && report.signed_volume < 0};
+}
+
+void print_result(const MapDescription& description, const BuiltMap& built, const BuildArguments& arguments) {
+    if (arguments.json) {
+        Json object = to_json(description);
+        if (arguments.repair) object.add("repairs", to_json(built.repairs));
+        if (built.inside_out) object.add("inside_out", true);
+        print(object.indented());
+    } else if (arguments.target != kStandardStream) {
+        print(to_text(description, arguments.target.string()));
+        if (arguments.repair) print("\nRepair: " + to_text(built.repairs) + ".\n");
+        if (built.inside_out) print("\nThe mesh is inside out. What it encloses is inside all the same.\n");
+    }
+}
+
+void build(const BuildArguments& arguments) {
+    require_one_result(arguments.target, arguments.json);
+    require_another_file(arguments.mesh.path, arguments.target);
+    refuse_options_of_the_other_kind(arguments);
+    const BuiltMap built =
+        naming_mesh(arguments.mesh.name(), [&] { return build_map(read_mesh(arguments.mesh), arguments); });
+    const std::vector<std::byte> bytes = serialise(built.map, built.notes);
+    Output output(arguments.target);
+    output.write(bytes.data(), bytes.size());
+    output.commit();
+    print_result({built.map, built.notes, bytes.size()}, built, arguments);
+}
+
+void add_exact_options(Command command, BuildArguments& arguments) {
+    constexpr std::uint32_t kMostCells = ExactMapOptions::kMaxDivisions * ExactMapOptions::kMaxDivisions;
+    arguments.exact_only = {
+        command
+            .add("--cells-per-octant", &arguments.cells_per_octant,
+                 "Cells in each eighth of all directions, rounded down to a square number; by the "
+                 "number of faces if not given")
+            .range(1U, kMostCells)
+            .type_name("COUNT"),
+        command
+            .add_byte_count("--budget", arguments.exact.byte_budget,
+                            "The most bytes of the map, as 300KB (units B, KB, MB, GB, KiB, MiB, GiB): as "
+                            "many cells as keep "
+                            "within")
+            .excludes("--cells-per-octant"),
+        add_choice<InsideRule>(command, "--rule", arguments.exact.rule,
+                               {{"nonzero", InsideRule::Nonzero}, {"parity", InsideRule::Parity}},
+                               "What counts as inside where parts of the mesh overlap")};
+}
+
+void add_distance_options(Command command, BuildArguments& arguments) {
+    DistanceMapOptions& options = arguments.distance;
+    const Option grid = add_choice<DirectionGrid>(
+        command, "--grid", options.grid,
+        {{"spherical", DirectionGrid::Spherical},
+         {"octahedral", DirectionGrid::Octahedral},
+         {"cube", DirectionGrid::Cube},
+         {"ellipsoidal", DirectionGrid::Ellipsoidal}},
+        "How to divide the directions: by longitude and colatitude, as the paper does; the sides of an "
+        "octahedron, which keeps flat faces flat; the sides of a cube, evenly by angle; or by longitude and "
+        "colatitude of an ellipsoid as long and as thin as the mesh");
+    const Option directions =
+        command
+            .add_numbers("--directions", 'x', {&options.longitude_count, &options.colatitude_count},
+                         "Samples of longitude and colatitude")
+            .type_name("COUNTxCOUNT")
+            .default_text("200x200");
+    const Option divisions =
+        command
+            .add("--divisions", &options.divisions,
+                 "Into how many parts to cut each edge of the octahedron or the cube; 100 or 81 make "
+                 "as many bytes as 200x200 directions")
+            .range(DistanceMapOptions::kMinDivisions, DistanceMapOptions::kMaxDivisions)
+            .type_name("COUNT")
+            .show_default();
+    const Option pole = add_choice<PoleAxis>(command, "--pole", options.pole_axis,
+                                             {{"x", PoleAxis::X}, {"y", PoleAxis::Y}, {"z", PoleAxis::Z}},
+                                             "Axis of the mesh through the poles of the grid");
+    arguments.counted_only = {directions, pole};
+    arguments.divided_only = {divisions};
+    arguments.distance_only = {
+        grid,
+        directions,
+        divisions,
+        pole,
+        add_choice<VertexCorrection>(command, "--correction", options.correction,
+                                     {{"signed", VertexCorrection::Signed},
+                                      {"paper", VertexCorrection::Paper},
+                                      {"none", VertexCorrection::None}},
+                                     "What to do about vertices between the samples"),
+        add_choice<EntryFormat>(command, "--entries", options.entry_format,
+                                {{"float32", EntryFormat::Float32}, {"unorm16", EntryFormat::Unorm16}},
+                                "How to store a distance")};
+}
+
+void add_options(Command command, BuildArguments& arguments) {
+    command.add("MESH", &arguments.mesh.path, "Mesh file (OBJ, PLY, STL, OFF, glTF, GLB, 3DS), or -")
+        .required()
+        .type_name("");
+    command.add("-o,--output", &arguments.target, "Map file to write, or -").required().type_name("MAP");
+    add_choice<MapKind>(command, "--kind", arguments.kind,
+                        {{"exact", MapKind::Exact}, {"distance", MapKind::Distance}}, "Kind of map");
+    add_choice<CentreChoice>(command, "--centre", arguments.centre,
+                             {{"sphere", CentreChoice::BoundingSphere}, {"search", CentreChoice::Search}},
+                             "Where the rays start: the bounding sphere's centre, or the place that promises "
+                             "the fewest tests of an exact map, the fewest wrong answers of a distance map");
+    command.add("--threads", &arguments.thread_count, "Threads to build on; 0: all cores")
+        .range(0, 1024)
+        .type_name("COUNT")
+        .show_default();
+    command.add_flag("--repair", arguments.repair,
+                     "Mend the mesh first: drop duplicate faces and doubled patches, turn inside-out parts");
+    command.add_flag("--allow-open", arguments.allow_open,
+                     "Build also from a mesh that is not closed: near its holes answers of an exact map are "
+                     "not certain, behind them those of a distance map are wrong");
+    arguments.mesh.add_format_option(command);
+    command.add_flag("--json", arguments.json, "Print one JSON object");
+    add_exact_options(command.add_group("Exact maps"), arguments);
+    add_distance_options(command.add_group("Distance maps"), arguments);
+}
+
+} // namespace
+
+void add_build_command(Command program) {
+    Command command = program.add_command("build", "Build a map from a mesh");
+    const auto arguments = std::make_shared<BuildArguments>();
+    add_options(command, *arguments);
+    command.footer("Examples:\n  echinus build torus.obj -o torus.ech\n"
+                   "  echinus build torus.obj --kind distance --directions 200x200 --correction signed -o "
+                   "torus.ech");
+    command.action([arguments] { build(*arguments); });
+}

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "json.hpp"
+#include "rivals/compare/compare.hpp"
+
+#include <echinus/render.hpp>
+
+#include <string>
+
+/// What `compare` says, as the object of --json.
+Json to_json(const echinus::comparison::Comparison& comparison,
+             const echinus::comparison::CompareOptions& options, const std::string& mesh_name);
+
+/// The same as two tables for people.
+std::string to_text(const echinus::comparison::Comparison& comparison,
+                    const echinus::comparison::CompareOptions& options, const std::string& mesh_name);
+
+/// The same as one HTML document with tables, plots and a picture of the model. All is in it, so that it can
+/// be sent by mail: it loads nothing from elsewhere and runs no script.
+std::string to_html(const echinus::comparison::Comparison& comparison,
+                    const echinus::comparison::CompareOptions& options, const std::string& mesh_name,
+                    const echinus::Image& picture);

@@ -1,0 +1,104 @@
+#include "commands/commands.hpp"
+#include "mesh_io/encode.hpp"
+#include "output.hpp"
+
+#include <echinus/mesh_io.hpp>
+
+#include <memory>
+#include <string>
+
+namespace {
+
+using namespace echinus;
+
+void write_result(const std::string& target, const TriangleMesh& mesh) {
+    if (target == kStandardStream)
+        print(encode_obj(mesh));
+    else
+        write_mesh(target, mesh);
+}
+
+/// A shape's command with what all shapes have in common.
+Command add_shape(Command mesh, const std::string& name, const std::string& description,
+                  const std::string& example, std::string& target) {
+    Command shape = mesh.add_command(name, description);
+    shape.add("-o,--output", &target, "File to write: .obj, .ply, .stl or .off; - for OBJ on standard output")
+        .required();
+    shape.footer("Example: echinus mesh " + name + " " + example);
+    return shape;
+}
+
+struct Torus {
+    double major = 1;
+    double minor = 0.4;
+    std::uint32_t major_segments = 60, minor_segments = 24;
+    std::string target;
+};
+
+void add_torus(Command mesh) {
+    auto options = std::make_shared<Torus>();
+    Command torus = add_shape(mesh, "torus", "A torus about the z axis",
+                              "--major 1 --minor 0.4 --segments 60x24 -o torus.obj", options->target);
+    torus.add("--major", &options->major, "Radius of the circle in the middle of the tube").show_default();
+    torus.add("--minor", &options->minor, "Radius of the tube").show_default();
+    torus
+        .add_numbers("--segments", 'x', {&options->major_segments, &options->minor_segments},
+                     "Segments around the axis x around the tube")
+        .type_name("COUNTxCOUNT")
+        .default_text("60x24");
+    torus.action([options] {
+        write_result(options->target, make_torus(options->major, options->minor, options->major_segments,
+                                                 options->minor_segments));
+    });
+}
+
+struct SphereOptions {
+    double radius = 1;
+    std::uint32_t meridians = 60, parallels = 30;
+    std::string target;
+};
+
+void add_sphere(Command mesh) {
+    auto options = std::make_shared<SphereOptions>();
+    Command sphere = add_shape(mesh, "sphere", "A sphere with its poles on the z axis",
+                               "--radius 1 --segments 60x30 -o sphere.ply", options->target);
+    sphere.add("--radius", &options->radius, "From the centre to each vertex").show_default();
+    sphere
+        .add_numbers("--segments", 'x', {&options->meridians, &options->parallels},
+                     "Meridians x rows of faces from pole to pole")
+        .type_name("COUNTxCOUNT")
+        .default_text("60x30");
+    sphere.action([options] {
+        write_result(options->target, make_sphere(options->radius, options->meridians, options->parallels));
+    });
+}
+
+struct Box {
+    Vec3d size{1, 1, 1};
+    std::uint32_t segments = 1;
+    std::string target;
+};
+
+void add_box(Command mesh) {
+    auto options = std::make_shared<Box>();
+    Command box = add_shape(mesh, "box", "A box along the axes", "--size 1x1x1 --segments 4 -o box.stl",
+                            options->target);
+    box.add_numbers("--size", 'x', {&options->size.x, &options->size.y, &options->size.z},
+                    "Lengths along x, y and z")
+        .type_name("LENGTHxLENGTHxLENGTH")
+        .default_text("1x1x1");
+    box.add("--segments", &options->segments, "Squares along each edge of a side").show_default();
+    box.action([options] { write_result(options->target, make_box(options->size, options->segments)); });
+}
+
+} // namespace
+
+void add_mesh_command(Command program) {
+    Command mesh =
+        program.add_command("mesh", "Make a closed mesh: torus, sphere or box, centred at the origin");
+    mesh.require_command("A subcommand (torus, sphere or box)");
+    mesh.footer("Example: echinus mesh torus --major 1 --minor 0.4 --segments 60x24 -o torus.obj");
+    add_torus(mesh);
+    add_sphere(mesh);
+    add_box(mesh);
+}

@@ -1,0 +1,108 @@
+#include "commands/mesh_description.hpp"
+
+#include "table.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <vector>
+
+using echinus::Fault;
+using echinus::MeshReport;
+using echinus::RepairReport;
+
+namespace {
+
+struct NamedFault {
+    const char* key;
+    const char* label;
+    const Fault& fault;
+};
+
+std::vector<NamedFault> faults_of(const MeshReport& report) {
+    return {{"border_edges", "border edges", report.border_edges},
+            {"nonmanifold_edges", "edges with more than two faces", report.nonmanifold_edges},
+            {"misoriented_edges", "wrongly oriented edges", report.misoriented_edges},
+            {"duplicate_faces", "duplicate faces", report.duplicate_faces},
+            {"degenerate_faces", "degenerate faces", report.degenerate_faces}};
+}
+
+/// "at faces 382, 383", or "first at faces 382, 383" where not all edges or faces at fault are covered.
+std::string first_faces(const Fault& fault) {
+    const bool all_shown = fault.first_faces.size() < Fault::kFirstFaceCount;
+    const bool one = fault.first_faces.size() == 1;
+    return fmt::format("{}at {} {}", all_shown ? "" : "first ", one ? "face" : "faces",
+                       fmt::join(fault.first_faces, ", "));
+}
+
+} // namespace
+
+Json to_json(const MeshReport& report) {
+    Json object;
+    object.add("faces", report.face_count);
+    object.add("vertices", report.vertex_count);
+    object.add("closed", report.closed);
+    object.add("manifold", report.manifold);
+    for (const NamedFault& named : faults_of(report)) object.add(named.key, named.fault.count);
+    object.add("components", report.component_count);
+    object.add("volume", report.signed_volume);
+    const echinus::Sphere& sphere = report.bounding_sphere;
+    object.add("radius", sphere.radius);
+    object.add("centre", {sphere.centre.x, sphere.centre.y, sphere.centre.z});
+    Json first_faces;
+    for (const NamedFault& named : faults_of(report)) first_faces.add(named.key, named.fault.first_faces);
+    object.add("first_faces", first_faces);
+    return object;
+}
+
+std::string to_text(const MeshReport& report, const std::string& title) {
+    const echinus::Sphere& sphere = report.bounding_sphere;
+    Table table(title);
+    table.add("faces", std::to_string(report.face_count));
+    table.add("vertices", std::to_string(report.vertex_count));
+    table.add("components", std::to_string(report.component_count));
+    table.add("closed", yes_or_no(report.closed));
+    table.add("manifold", yes_or_no(report.manifold));
+    for (const auto& [key, label, fault] : faults_of(report)) {
+        const std::string count = std::to_string(fault.count);
+        table.add(label, fault.count == 0 ? count : count + ", " + first_faces(fault));
+    }
+    table.add("signed volume", fmt::format("{:.6g}", report.signed_volume));
+    table.add("bounding sphere",
+              fmt::format("centre ({:.6g}, {:.6g}, {:.6g}), radius {:.6g}", sphere.centre.x, sphere.centre.y,
+                          sphere.centre.z, sphere.radius));
+    return table.text();
+}
+
+std::string describe_openness(const MeshReport& report) {
+    std::vector<std::string> phrases;
+    for (const auto& [key, label, fault] : faults_of(report)) {
+        const bool of_an_edge = std::string(key).ends_with("_edges");
+        if (!of_an_edge || fault.count == 0) continue;
+        phrases.push_back(fmt::format("{} {} ({})", fault.count, label, first_faces(fault)));
+    }
+    return fmt::format("{}", fmt::join(phrases, ", "));
+}
+
+Json to_json(const RepairReport& report) {
+    return {{"duplicate_faces_dropped", report.duplicate_faces_dropped.size()},
+            {"doubled_patch_faces_dropped", report.doubled_patch_faces_dropped.size()},
+            {"components_flipped", report.components_flipped}};
+}
+
+std::string to_text(const RepairReport& report) {
+    std::vector<std::string> phrases;
+    const auto add = [&](std::size_t count, const char* noun, const char* deed) {
+        if (count != 0)
+            phrases.push_back(fmt::format("{} {}{} {}", count, noun, count == 1 ? "" : "s", deed));
+    };
+    add(report.duplicate_faces_dropped.size(), "duplicate face", "dropped");
+    add(report.doubled_patch_faces_dropped.size(), "face", "of doubled patches dropped");
+    add(report.components_flipped, "inside-out component", "turned");
+    return phrases.empty() ? "nothing to mend" : fmt::format("{}", fmt::join(phrases, ", "));
+}
+
+RepairOutlook foresee_repair(const echinus::TriangleMesh& mesh) {
+    const echinus::RepairedMesh repaired = repair(mesh, echinus::RepairOptions::all());
+    return {repaired.report, inspect(repaired.mesh).closed};
+}

@@ -1,0 +1,122 @@
+#include "commands/commands.hpp"
+#include "input.hpp"
+#include "json.hpp"
+#include "output.hpp"
+#include "points/answers.hpp"
+#include "points/points.hpp"
+
+#include <echinus/map_file.hpp>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+using namespace echinus;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct QueryArguments {
+    fs::path map;
+    fs::path points;
+    fs::path target;
+    float margin = 0;
+    bool json = false;
+};
+
+struct QuerySummary {
+    std::uint64_t point_count = 0;
+    std::uint64_t inside_count = 0;
+    std::uint64_t contact_count = 0;
+};
+
+void require_sound(const QueryArguments& arguments) {
+    if (arguments.map == kStandardStream && arguments.points == kStandardStream) {
+        throw WrongUse("POINTS", "cannot be standard input as well as MAP");
+    }
+    if (!(arguments.margin >= 0 && std::isfinite(arguments.margin))) {
+        throw WrongUse("--margin", "must be a finite number and not negative");
+    }
+    require_one_result(arguments.target, arguments.json);
+    require_another_file(arguments.map, arguments.target);
+    require_another_file(arguments.points, arguments.target);
+}
+
+/// By the ending of the name; on standard output that of the points.
+TableFormat format_of_answers(const fs::path& target, TableFormat format_of_points) {
+    if (target.extension() == ".npy") return TableFormat::Npy;
+    if (target.extension() == ".csv") return TableFormat::Csv;
+    if (target == kStandardStream) return format_of_points;
+    throw WrongUse("--output", "must end in .npy or .csv, or be -");
+}
+
+void count(std::span<const Contact> contacts, QuerySummary& summary) {
+    summary.point_count += contacts.size();
+    for (const Contact& contact : contacts) {
+        summary.inside_count += contact.inside ? 1 : 0;
+        summary.contact_count += contact.found() ? 1 : 0;
+    }
+}
+
+QuerySummary answer(const AnyMap& map, float margin, PointSource& source, AnswerWriter& answers) {
+    constexpr std::size_t kBlock = std::size_t{1} << 16;
+    std::vector<Vec3f> points(kBlock);
+    std::vector<Contact> contacts(kBlock);
+    QuerySummary summary;
+    while (const std::size_t point_count = source.read(points)) {
+        const std::span<Contact> block(contacts.data(), point_count);
+        contacts_batch(map, StridedSpan<const Vec3f>(points.data(), point_count), margin, block);
+        answers.write(block);
+        count(block, summary);
+    }
+    answers.finish();
+    return summary;
+}
+
+void print_summary(const QuerySummary& summary, const QueryArguments& arguments) {
+    if (arguments.json) {
+        print(Json{{"points", summary.point_count},
+                   {"inside", summary.inside_count},
+                   {"contacts", summary.contact_count}}
+                  .indented());
+    } else if (arguments.target != kStandardStream) {
+        print(std::to_string(summary.point_count) + " points, " + std::to_string(summary.inside_count) +
+              " inside, " + std::to_string(summary.contact_count) + " with a contact\n");
+    }
+}
+
+void query(const QueryArguments& arguments) {
+    require_sound(arguments);
+    const InputFile map_file(arguments.map, "ech");
+    const AnyMap map = map_file.read([](const fs::path& path) { return load_map(path); });
+    auto input = std::make_unique<Input>(arguments.points);
+    const TableFormat format = format_of_points(arguments.points, *input);
+    const TableFormat answer_format = format_of_answers(arguments.target, format);
+    const auto source =
+        format == TableFormat::Npy ? open_npy_points(std::move(input)) : open_csv_points(std::move(input));
+    const auto answers = open_answers(arguments.target, answer_format, source->count());
+    print_summary(answer(map, arguments.margin, *source, *answers), arguments);
+}
+
+} // namespace
+
+void add_query_command(Command program) {
+    Command command = program.add_command("query", "Ask a map about points: inside, how deep, which way out");
+    const auto arguments = std::make_shared<QueryArguments>();
+    command.add("MAP", &arguments->map, "Map file, or -").required().type_name("");
+    command.add("POINTS", &arguments->points, "Points [n, 3] as .npy or lines x,y,z as .csv, or -")
+        .required()
+        .type_name("");
+    command.add("-o,--output", &arguments->target, "Answers to write, .npy or .csv, or -")
+        .required()
+        .type_name("ANSWERS");
+    command
+        .add("--margin", &arguments->margin,
+             "Points outside get a contact too when they are at most this far from the surface, in "
+             "the unit of the mesh; with a distance map measured along their ray from the centre")
+        .type_name("DISTANCE")
+        .show_default();
+    command.add_flag("--json", arguments->json, "Print one JSON object");
+    command.footer("Example:\n  echinus query torus.ech points.npy -o answers.npy");
+    command.action([arguments] { query(*arguments); });
+}

@@ -1,0 +1,285 @@
+#include "commands/commands.hpp"
+#include "input.hpp"
+#include "output.hpp"
+#include "progress.hpp"
+#include "recording/simulation_folder.hpp"
+
+#include <echinus/map_file.hpp>
+#include <echinus/render.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+using namespace echinus;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Below this a picture shows nothing, and a page of six has no room for them.
+constexpr std::uint32_t kLeastSide = 10;
+
+/// What all pictures have in common.
+struct PictureArguments {
+    fs::path target;
+    RenderOptions options;
+    View view;
+
+    void add_options(Command command, std::uint32_t width, std::uint32_t height);
+    void add_up_option(Command command);
+};
+
+void PictureArguments::add_options(Command command, std::uint32_t width, std::uint32_t height) {
+    options.width = width;
+    options.height = height;
+    const auto add_count = [&](const char* name, std::uint32_t& variable, const char* description,
+                               std::uint32_t least, std::uint32_t most) {
+        command.add(name, &variable, description).range(least, most).type_name("COUNT").show_default();
+    };
+    command.add("-o,--output", &target, "The picture, a PNG file, or -").required().type_name("PNG");
+    add_count("--width", options.width, "Pixels", kLeastSide, RenderOptions::kMaxSide);
+    add_count("--height", options.height, "Pixels", kLeastSide, RenderOptions::kMaxSide);
+    add_count("--samples", options.samples, "Rays per pixel: more take longer and leave less grain", 1,
+              RenderOptions::kMaxSampleCount);
+    add_count("--threads", options.thread_count, "0: all cores", 0, 1024);
+    command
+        .add_numbers(
+            "--view", ',', {&view.azimuth_deg, &view.elevation_deg},
+            "Where the camera stands, in degrees: around, counter-clockwise from above, and above the "
+            "floor")
+        .type_name("AZIMUTH,ELEVATION")
+        .default_text("35,20");
+}
+
+void PictureArguments::add_up_option(Command command) {
+    add_choice<Vec3d>(command, "--up", view.up, {{"x", {1, 0, 0}}, {"y", {0, 1, 0}}, {"z", {0, 0, 1}}},
+                      "Which axis of the mesh points up");
+}
+
+void write_picture(const PictureArguments& arguments, const Image& image) {
+    const std::vector<std::uint8_t> bytes = encode_png(image);
+    Output output(arguments.target);
+    output.write(bytes.data(), bytes.size());
+    output.commit();
+}
+
+/// Options that report to a bar; `part` of `part_count` equal pieces of work.
+RenderOptions with_progress(const RenderOptions& options, ProgressBar& bar, std::size_t part = 0,
+                            std::size_t part_count = 1) {
+    RenderOptions result = options;
+    result.progress = [&bar, part, part_count](double share) {
+        bar((static_cast<double>(part) + share) / static_cast<double>(part_count));
+    };
+    return result;
+}
+
+double aspect_of(const RenderOptions& options) {
+    return static_cast<double>(options.width) / options.height;
+}
+
+// ---- A mesh ----
+
+struct MeshPicture : PictureArguments {
+    MeshArgument mesh;
+    double wire_width_px = 0;
+};
+
+void render_mesh(const MeshPicture& arguments) {
+    std::array<RenderedObject, 1> objects;
+    objects[0].mesh = read_mesh(arguments.mesh);
+    objects[0].wire_width_px = arguments.wire_width_px;
+    ProgressBar bar("drawing");
+    const Image image = naming_mesh(arguments.mesh.name(), [&] {
+        return render(objects, camera_for(objects, arguments.view, aspect_of(arguments.options)),
+                      with_progress(arguments.options, bar));
+    });
+    write_picture(arguments, image);
+}
+
+void add_mesh_picture(Command program) {
+    const auto arguments = std::make_shared<MeshPicture>();
+    Command command = program.add_command("mesh", "A mesh, matte and grey");
+    command.add("MESH", &arguments->mesh.path, "Mesh file, or -").required().type_name("");
+    arguments->mesh.add_format_option(command);
+    arguments->add_options(command, 1000, 750);
+    arguments->add_up_option(command);
+    command.add("--wire", &arguments->wire_width_px, "Draw the edges as lines of this width in pixels")
+        .type_name("WIDTH")
+        .show_default();
+    command.footer("Example:\n  echinus render mesh torus.obj --wire 1 -o torus.png");
+    command.action([arguments] {
+        arguments->mesh.require_format();
+        render_mesh(*arguments);
+    });
+}
+
+// ---- A map ----
+
+struct MapPicture : PictureArguments {
+    fs::path map;
+    MeshArgument mesh;
+};
+
+/// Of one mesh: all its vertices lie in the map's sphere, and some on it. A mended mesh, or one written with
+/// other digits, still is.
+void require_same_model(const TriangleMesh& mesh, const AnyMap& map, const std::string& map_name) {
+    const auto [centre, radius] =
+        std::visit([](const auto& kind) { return std::pair(kind.view().centre, kind.view().radius); }, map);
+    float reach = 0;
+    for (const Triangle& face : mesh.faces)
+        for (const std::uint32_t vertex : face)
+            reach = std::max(reach, length(mesh.vertices[vertex] - centre));
+    constexpr float kTolerance = 0.01F;
+    if (std::fabs(reach - radius) <= kTolerance * radius) return;
+    throw Error(ErrorCode::InvalidMesh, "not the mesh that " + map_name + " was built from: it reaches " +
+                                            std::to_string(reach) + " from the map's centre, the map " +
+                                            std::to_string(radius));
+}
+
+void render_map(const MapPicture& arguments) {
+    const InputFile map_file(arguments.map, "ech");
+    const AnyMap map = map_file.read([](const fs::path& path) { return load_map(path); });
+    const TriangleMesh mesh = read_mesh(arguments.mesh);
+    ProgressBar bar("drawing");
+    const Image image = naming_mesh(arguments.mesh.name(), [&] {
+        require_same_model(mesh, map, map_file.name());
+        return std::visit(
+            [&](const auto& kind) {
+                return draw_map_figure(mesh, kind.view(), arguments.view,
+                                       with_progress(arguments.options, bar));
+            },
+            map);
+    });
+    write_picture(arguments, image);
+}
+
+void add_map_picture(Command program) {
+    const auto arguments = std::make_shared<MapPicture>();
+    Command command =
+        program.add_command("map", "A map beside its model: the faces of an exact map by the length of their "
+                                   "lists, the surface rebuilt from a distance map layer by layer");
+    command.add("MAP", &arguments->map, "Map file, made by echinus build, or -").required().type_name("");
+    command.add("MESH", &arguments->mesh.path, "The mesh it was built from, or -").required().type_name("");
+    arguments->mesh.add_format_option(command);
+    arguments->add_options(command, 1600, 700);
+    arguments->add_up_option(command);
+    command.footer("Example:\n  echinus render map torus.ech torus.obj -o torus_map.png");
+    command.action([arguments] {
+        arguments->mesh.require_format();
+        render_map(*arguments);
+    });
+}
+
+// ---- Moments of a simulation ----
+
+struct SimulationPicture : PictureArguments {
+    fs::path folder;
+    std::optional<std::int64_t> frame;
+};
+
+/// The collider and the cloth at one moment.
+std::array<RenderedObject, 2> objects_at(const SimulationFolder& folder, std::size_t sample) {
+    std::array<RenderedObject, 2> objects;
+    objects[0].mesh = folder.collider(sample);
+    objects[1].mesh = folder.cloth(sample);
+    objects[1].colour = palette::kCloth;
+    objects[1].back_colour = palette::kClothBack;
+    objects[1].crease_angle_deg = 180; // cloth has folds, not edges
+    return objects;
+}
+
+void render_moment(const SimulationPicture& arguments) {
+    const SimulationFolder folder(arguments.folder);
+    const std::size_t sample =
+        arguments.frame ? folder.sample_at(*arguments.frame) : folder.sample_count() - 1;
+    const auto objects = objects_at(folder, sample);
+    View view = arguments.view;
+    view.up = folder.up();
+    ProgressBar bar("drawing");
+    const Image image = naming_mesh(arguments.folder.string(), [&] {
+        return render(objects, camera_for(objects, view, aspect_of(arguments.options)),
+                      with_progress(arguments.options, bar));
+    });
+    write_picture(arguments, image);
+}
+
+std::string label_of(const SimulationFolder& folder, std::size_t sample) {
+    const double frame_number = folder.frame_of(sample);
+    const bool rests = folder.rest_frame() && frame_number >= *folder.rest_frame();
+    return (rests ? "at rest, frame " : "frame ") + std::to_string(std::llround(frame_number));
+}
+
+constexpr std::uint32_t kSheetColumns = 3, kSheetRows = 2;
+/// Room for a line of text under each picture of a sheet, and the letters in it, as shares of its height.
+constexpr double kLabelFooter = 0.075, kLabelHeight = 0.025, kLabelBaseLine = 0.965;
+
+void draw_label(Image& image, const std::string& label) {
+    draw_text(image, image.width / 2.0, kLabelBaseLine * image.height, label,
+              std::max(7.0, kLabelHeight * image.height), palette::kInk, TextAlign::Centre);
+}
+
+/// One camera for all moments, so that they can be compared.
+Camera sheet_camera(const SimulationFolder& folder, const std::vector<std::size_t>& moments,
+                    const SimulationPicture& arguments, double aspect) {
+    std::vector<RenderedObject> all;
+    for (std::size_t sample : moments) {
+        for (RenderedObject& object : objects_at(folder, sample)) all.push_back(std::move(object));
+    }
+    View view = arguments.view;
+    view.up = folder.up();
+    view.footer = kLabelFooter;
+    return camera_for(all, view, aspect);
+}
+
+Image draw_sheet(const SimulationPicture& arguments) {
+    const SimulationFolder folder(arguments.folder);
+    const std::vector<std::size_t> moments = choose_moments(folder, std::size_t{kSheetColumns} * kSheetRows);
+    RenderOptions options = arguments.options;
+    options.width /= kSheetColumns;
+    options.height /= kSheetRows;
+    const Camera camera = sheet_camera(folder, moments, arguments, aspect_of(options));
+    ProgressBar bar("drawing");
+    std::vector<Image> pictures;
+    for (std::size_t sample : moments) {
+        const auto part = with_progress(options, bar, pictures.size(), moments.size());
+        pictures.push_back(render(objects_at(folder, sample), camera, part));
+        draw_label(pictures.back(), label_of(folder, sample));
+    }
+    return arrange(pictures, kSheetColumns);
+}
+
+void render_sheet(const SimulationPicture& arguments) {
+    write_picture(arguments, naming_mesh(arguments.folder.string(), [&] { return draw_sheet(arguments); }));
+}
+
+void add_moment_picture(Command program) {
+    const auto arguments = std::make_shared<SimulationPicture>();
+    Command command = program.add_command("moment", "One moment of a simulation");
+    command.add("DIR", &arguments->folder, "Folder that echinus simulate wrote").required().type_name("");
+    command.add("--frame", &arguments->frame, "The frame to draw; the last if not given").type_name("NUMBER");
+    arguments->add_options(command, 1000, 750);
+    command.footer("Example:\n  echinus render moment out/horse --frame 120 -o moment.png");
+    command.action([arguments] { render_moment(*arguments); });
+}
+
+void add_sheet_picture(Command program) {
+    const auto arguments = std::make_shared<SimulationPicture>();
+    Command command = program.add_command("sheet", "Six moments of a simulation, from the first to the last");
+    command.add("DIR", &arguments->folder, "Folder that echinus simulate wrote").required().type_name("");
+    arguments->add_options(command, 1500, 900);
+    command.footer("Example:\n  echinus render sheet out/horse -o sheet.png");
+    command.action([arguments] { render_sheet(*arguments); });
+}
+
+} // namespace
+
+void add_render_command(Command program) {
+    Command command = program.add_command("render", "Draw a mesh, a map, or moments of a simulation");
+    command.require_command("A subcommand (mesh, map, moment or sheet)");
+    command.footer("Example:\n  echinus render map torus.ech torus.obj -o torus_map.png");
+    add_mesh_picture(command);
+    add_map_picture(command);
+    add_moment_picture(command);
+    add_sheet_picture(command);
+}

@@ -1,0 +1,78 @@
+#include "commands/scene_model.hpp"
+
+#include "files/mapped_file.hpp"
+#include "input.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/mesh_io.hpp>
+
+#include <string>
+
+using namespace echinus;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct MeshOfModel {
+    const fs::path& scene_path;
+    const std::optional<fs::path>& file;
+
+    TriangleMesh operator()(const ModelFile&) const { return read_mesh(file.value()); }
+    TriangleMesh operator()(const auto& shape) const {
+        try {
+            return make_mesh(shape);
+        } catch (const Error& error) {
+            throw Error(ErrorCode::InvalidScene, scene_path.string() + ": \"model\": " + error.what());
+        }
+    }
+};
+
+struct NameOfModel {
+    std::string operator()(const ModelFile& file) const { return fs::path(file.name).filename().string(); }
+    std::string operator()(const TorusModel&) const { return "torus"; }
+    std::string operator()(const SphereModel&) const { return "sphere"; }
+    std::string operator()(const BoxModel&) const { return "box"; }
+};
+
+/// The push-out needs an inside; a hole would let cloth through, and the judge could not tell.
+void require_closed(const TriangleMesh& mesh, const fs::path& scene_path) {
+    const MeshReport report = inspect(mesh);
+    if (report.closed) return;
+    throw Error(ErrorCode::InvalidMesh,
+                scene_path.string() +
+                    ": the model is not closed: " + std::to_string(report.border_edges.count) +
+                    " border edges, " + std::to_string(report.nonmanifold_edges.count) +
+                    " edges with more than two faces, " + std::to_string(report.misoriented_edges.count) +
+                    " edges that faces run along the same way; name what to mend under \"repair\"");
+}
+
+} // namespace
+
+std::string model_name(const Scene& scene) {
+    return std::visit(NameOfModel{}, scene.model);
+}
+
+std::string notice_beside(const fs::path& model_file) {
+    const fs::path path = model_file.parent_path() / "NOTICE";
+    std::error_code ignored;
+    if (!fs::is_regular_file(path, ignored)) return {};
+    const MappedFile notice(path);
+    return {reinterpret_cast<const char*>(notice.bytes().data()), notice.bytes().size()};
+}
+
+std::optional<fs::path> model_file(const Scene& scene, const fs::path& scene_path,
+                                   std::vector<fs::path> folders) {
+    const auto* file = std::get_if<ModelFile>(&scene.model);
+    if (file == nullptr) return std::nullopt;
+    folders.push_back(scene_path.parent_path().empty() ? "." : scene_path.parent_path());
+    folders.push_back(scene_path.parent_path() / ".." / "models");
+    folders.emplace_back("models");
+    return naming_file(scene_path.string(), ErrorCode::Unreadable,
+                       [&] { return find_model(*file, folders); });
+}
+
+RepairedMesh load_model(const Scene& scene, const fs::path& scene_path, const std::optional<fs::path>& file) {
+    RepairedMesh model = repair(std::visit(MeshOfModel{scene_path, file}, scene.model), scene.repair);
+    require_closed(model.mesh, scene_path);
+    return model;
+}

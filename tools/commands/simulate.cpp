@@ -1,0 +1,250 @@
+#include "commands/commands.hpp"
+#include "commands/scene_model.hpp"
+#include "commands/simulation_result.hpp"
+#include "input.hpp"
+#include "output.hpp"
+#include "progress.hpp"
+#include "recording/player_page.hpp"
+#include "recording/point_cache.hpp"
+
+#include <echinus/mesh_io.hpp>
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+using namespace echinus;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kCacheName = "cloth.pc2";
+constexpr const char* kFramesName = "frames";
+
+struct SimulateArguments {
+    fs::path scene;
+    fs::path target; ///< folder; empty: none
+    fs::path page;   ///< empty: none
+    fs::path player; ///< empty: the installed one
+    std::vector<fs::path> model_folders;
+    std::optional<std::uint32_t> frame_limit;
+    std::optional<std::uint32_t> stride;
+    unsigned thread_count = 0;
+    bool obj = false;
+    bool json = false;
+};
+
+/// The folder that is written, with the positions of the cloth in every saved frame: one point cache, or one
+/// OBJ for each.
+class ResultFolder {
+  public:
+    ResultFolder(const fs::path& target, bool obj) : folder_(target), obj_(obj) {}
+
+    void begin(const Deformable& cloth, const TriangleMesh& collider, std::uint32_t stride) {
+        write_mesh(folder_.path_of("cloth.obj"), {cloth.positions, cloth.faces});
+        write_mesh(folder_.path_of("collider.obj"), collider);
+        if (obj_) {
+            fs::create_directory(folder_.path_of(kFramesName));
+        } else {
+            cache_.emplace(folder_.path_of(kCacheName), cloth.particle_count(), stride);
+        }
+    }
+    void add(const Simulation& simulation) {
+        if (cache_) return cache_->add(simulation.positions());
+        const Deformable& cloth = simulation.deformable();
+        write_mesh(folder_.path_of(kFramesName) / fmt::format("cloth_{:06}.obj", simulation.frame()),
+                   {cloth.positions, cloth.faces});
+    }
+    void commit(const Json& report) {
+        if (cache_) cache_->commit();
+        write_file(folder_.path_of("report.json"), report.indented());
+        folder_.commit();
+        folder_.remove_old(obj_ ? kCacheName : kFramesName);
+    }
+
+  private:
+    OutputFolder folder_;
+    bool obj_;
+    std::optional<PointCacheWriter> cache_;
+};
+
+/// The page that is written. Made before the work, so that what is missing is missed at once.
+struct Page {
+    Page(const fs::path& target, const fs::path& player_path) : player(player_path), output(target) {}
+
+    Player player;
+    Output output;
+    std::optional<Recording> recording;
+};
+
+/// Where a simulation goes to: either, or both.
+struct Results {
+    std::optional<ResultFolder> folder;
+    std::optional<Page> page;
+
+    /// To be called at the start and after each step.
+    void watch(const Simulation& simulation, std::uint32_t stride) {
+        if (folder && simulation.frame() % stride == 0) folder->add(simulation);
+        if (page) page->recording->watch(simulation);
+    }
+};
+
+/// Steps until the cloth rests or the frame limit is reached; stops only after a frame that was saved, so
+/// that the last sample is the end.
+std::vector<SavedPose> run(Simulation& simulation, Results& results, std::uint32_t frame_limit,
+                           std::uint32_t stride) {
+    ProgressBar progress("simulating");
+    const Collider& collider = simulation.colliders().front();
+    std::vector<SavedPose> poses{{0, collider.pose}};
+    results.watch(simulation, stride);
+    while (simulation.frame() < frame_limit && !simulation.at_rest()) {
+        for (std::uint32_t i = 0; i < stride; ++i) {
+            simulation.step();
+            results.watch(simulation, stride);
+        }
+        if (collider.moves()) poses.push_back({simulation.frame(), collider.pose});
+        progress(static_cast<double>(simulation.frame()) / frame_limit);
+    }
+    if (results.page) results.page->recording->finish(simulation);
+    return poses;
+}
+
+/// What is wrong with the options of a scene's map is wrong with the scene.
+AnyMap map_of_scene(const Scene& scene, const TriangleMesh& mesh, const SimulateArguments& arguments) {
+    try {
+        return build_map(mesh, scene.map, arguments.thread_count);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::InvalidOptions) throw;
+        throw Error(ErrorCode::InvalidScene, arguments.scene.string() + ": \"map\": " + error.what());
+    }
+}
+
+/// The exact map of the model, which judges the frames of a page: that of the scene, or its own.
+ExactMap judge_of(const AnyMap& map, const TriangleMesh& mesh, unsigned thread_count) {
+    if (const auto* exact = std::get_if<ExactMap>(&map)) return *exact;
+    return ExactMap::build(mesh, {.thread_count = thread_count});
+}
+
+void require_target(const SimulateArguments& arguments) {
+    if (arguments.target.empty() && arguments.page.empty())
+        throw WrongUse("simulate", "needs -o DIR, --html FILE, or both");
+    if (arguments.target.empty() && arguments.obj)
+        throw WrongUse("--obj", "is about the files in a folder, so it needs -o DIR");
+    require_one_result(arguments.page, arguments.json);
+    require_another_file(arguments.scene, arguments.page);
+}
+
+/// The frame stride of a page.
+std::uint32_t page_stride(const SimulateArguments& arguments, const Scene& scene) {
+    return arguments.stride.value_or(stride_for_display(scene.simulation.time_step));
+}
+
+/// Before the work, so that what cannot be written is refused at once.
+void open(Results& results, const SimulateArguments& arguments, const Scene& scene) {
+    if (!arguments.target.empty()) results.folder.emplace(arguments.target, arguments.obj);
+    if (!arguments.page.empty()) {
+        require_playable(std::size_t{scene.cloth.column_count} * scene.cloth.row_count, scene.frame_limit,
+                         page_stride(arguments, scene));
+        results.page.emplace(arguments.page, arguments.player);
+    }
+}
+
+void simulate(const SimulateArguments& arguments) {
+    require_target(arguments);
+    Scene scene = read_scene(arguments.scene);
+    if (arguments.frame_limit) scene.frame_limit = *arguments.frame_limit;
+    // A page takes its frames from all, and so its last is the end; a folder's last must be one that is
+    // saved.
+    const std::uint32_t stride = arguments.target.empty() ? 1 : arguments.stride.value_or(1);
+    Results results;
+    open(results, arguments, scene);
+
+    const std::optional<fs::path> file = model_file(scene, arguments.scene, arguments.model_folders);
+    if (file) require_another_file(*file, arguments.page);
+    const TriangleMesh mesh = load_model(scene, arguments.scene, file).mesh;
+    const AnyMap map = map_of_scene(scene, mesh, arguments);
+    Simulation simulation = make_simulation(scene, map);
+    const TriangleMesh collider_mesh = scaled(mesh, scene.scale);
+    if (results.folder) results.folder->begin(simulation.deformable(), collider_mesh, stride);
+    if (results.page)
+        results.page->recording.emplace(judge_of(map, mesh, arguments.thread_count),
+                                        page_stride(arguments, scene));
+    std::vector<SavedPose> poses = naming_file(arguments.scene.string(), ErrorCode::Diverged, [&] {
+        return run(simulation, results, scene.frame_limit, stride);
+    });
+
+    const std::string scene_name = arguments.scene.string();
+    const MeshReport model_report = inspect(mesh);
+    const SimulationResult result{.scene_name = scene_name,
+                                  .simulation = simulation,
+                                  .model = model_report,
+                                  .collider_radius = inspect(collider_mesh).bounding_sphere.radius,
+                                  .verdict = judge(simulation.positions(), mesh,
+                                                   simulation.colliders().front(), arguments.thread_count),
+                                  .poses = std::move(poses)};
+    const Json report = to_json(result);
+    if (results.page)
+        write_player_page(results.page->output, results.page->player,
+                          {.result = result,
+                           .recording = *results.page->recording,
+                           .scene_name = arguments.scene.filename().string(),
+                           .model_name = model_name(scene),
+                           .notice = file ? notice_beside(*file) : "",
+                           .cloth_columns = scene.cloth.column_count,
+                           .collider = collider_mesh});
+    if (results.folder) results.folder->commit(report);
+    if (arguments.json)
+        print(report.indented());
+    else if (arguments.page != kStandardStream)
+        print(to_text(result));
+}
+
+void add_options(Command command, SimulateArguments& arguments) {
+    command.add("SCENE", &arguments.scene, "Scene file (docs/scenes.md)").required().type_name("");
+    command
+        .add("-o,--output", &arguments.target,
+             "Folder for cloth.obj, cloth.pc2, collider.obj and report.json")
+        .type_name("DIR");
+    command
+        .add("--html", &arguments.page, "Write a page that plays the simulation, complete in one file, or -")
+        .not_empty()
+        .type_name("FILE");
+    command
+        .add("--player", &arguments.player,
+             "The player that the page is made of, as scripts/web builds it; without it the installed one")
+        .not_empty()
+        .type_name("FILE");
+    command
+        .add(
+            "--models", &arguments.model_folders,
+            "Folder to look for the scene's model in, before the scene's own, ../models beside it and models")
+        .type_name("DIR");
+    command.add("--frames", &arguments.frame_limit, "Frame limit in place of the scene's")
+        .range(1, 1'000'000'000)
+        .type_name("COUNT");
+    command
+        .add("--every", &arguments.stride,
+             "Save every so many frames; without it all in a folder, and 60 per second in a page")
+        .range(1, 1'000'000)
+        .type_name("COUNT");
+    command
+        .add("--threads", &arguments.thread_count,
+             "Threads to build the map and judge the end on; 0: all cores. The simulation runs on one")
+        .range(0, 1024)
+        .type_name("COUNT")
+        .show_default();
+    command.add_flag("--obj", arguments.obj, "Write frames/cloth_NUMBER.obj in place of cloth.pc2");
+    command.add_flag("--json", arguments.json, "Print the report as one JSON object");
+}
+
+} // namespace
+
+void add_simulate_command(Command program) {
+    Command command = program.add_command("simulate", "Let a cloth fall on a model, until it rests");
+    const auto arguments = std::make_shared<SimulateArguments>();
+    add_options(command, *arguments);
+    command.footer("Examples:\n  echinus simulate scenes/horse.json -o out/horse\n"
+                   "  echinus simulate scenes/horse.json --html horse.html");
+    command.action([arguments] { simulate(*arguments); });
+}

@@ -1,0 +1,197 @@
+#include "commands/simulation_result.hpp"
+
+#include "geometry/parallel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <variant>
+#include <vector>
+
+using namespace echinus;
+
+namespace {
+
+/// How far the structural sticks are from their rest length, as a share of it.
+struct Strain {
+    double mean = 0;
+    double largest = 0;
+};
+
+Strain strain_of(const Deformable& deformable) {
+    Strain strain;
+    std::size_t count = 0;
+    for (const Stick& stick : deformable.sticks) {
+        if (stick.kind != StickKind::Structural) continue;
+        const double distance = length(deformable.positions[stick.b] - deformable.positions[stick.a]);
+        const double share = std::abs(distance / stick.rest_length - 1);
+        strain.mean += share;
+        strain.largest = std::max(strain.largest, share);
+        ++count;
+    }
+    if (count != 0) strain.mean /= static_cast<double>(count);
+    return strain;
+}
+
+struct Rates {
+    double integration_ms, constraints_ms, collision_ms, total_ms;
+    double queries_per_frame, map_queries_per_frame, ns_per_query, frames_per_second;
+};
+
+Rates rates_of(const Simulation& simulation) {
+    const SimulationProfile& profile = simulation.profile();
+    const double frames = std::max(1.0, static_cast<double>(simulation.frame()));
+    const double seconds =
+        profile.integration_seconds + profile.constraint_seconds + profile.collision_seconds;
+    const auto queries = static_cast<double>(profile.query_count);
+    return {.integration_ms = profile.integration_seconds * 1e3 / frames,
+            .constraints_ms = profile.constraint_seconds * 1e3 / frames,
+            .collision_ms = profile.collision_seconds * 1e3 / frames,
+            .total_ms = seconds * 1e3 / frames,
+            .queries_per_frame = queries / frames,
+            .map_queries_per_frame = static_cast<double>(profile.map_query_count) / frames,
+            .ns_per_query = queries > 0 ? profile.collision_seconds * 1e9 / queries : 0,
+            .frames_per_second = seconds > 0 ? frames / seconds : 0};
+}
+
+bool is_exact(const Simulation& simulation) {
+    return std::holds_alternative<ExactMap>(simulation.colliders().front().map);
+}
+
+const char* kind_of(const Simulation& simulation) {
+    return is_exact(simulation) ? "exact" : "distance";
+}
+
+const char* solver_of(const SimulationOptions& options) {
+    return options.solver == SolverKind::Verlet ? "verlet" : "xpbd";
+}
+
+Json to_json(const Vec3d& v) {
+    return {v.x, v.y, v.z};
+}
+
+Json to_json(const std::vector<SavedPose>& poses) {
+    Json list = Json::array();
+    for (const auto& [frame, pose] : poses) {
+        const Rotation& r = pose.rotation;
+        list.push_back({{"frame", frame},
+                        {"translation", to_json(pose.translation)},
+                        {"rotation", {r.w, r.x, r.y, r.z}}});
+    }
+    return list;
+}
+
+std::string percent(double share) {
+    return fmt::format("{:.2f} %", share * 100);
+}
+
+} // namespace
+
+TriangleMesh scaled(TriangleMesh mesh, const Vec3d& scale) {
+    for (Vec3f& v : mesh.vertices) v = Vec3f(Vec3d(v.x * scale.x, v.y * scale.y, v.z * scale.z));
+    if (scale.x * scale.y * scale.z < 0)
+        for (Triangle& face : mesh.faces) std::swap(face[1], face[2]);
+    return mesh;
+}
+
+Verdict judge(std::span<const Vec3f> positions_world, const TriangleMesh& mesh, const Collider& collider,
+              unsigned thread_count) {
+    const TriangleMesh solid = scaled(mesh, collider.scale);
+    constexpr double kOutside = -1;
+    std::vector<double> depths(positions_world.size(), kOutside);
+    parallel_for(depths.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3d point = collider.pose.to_local(Vec3d(positions_world[i]));
+            if (winding_number(solid, point) > 0.5) depths[i] = unsigned_distance(solid, point);
+        }
+    });
+    Verdict verdict;
+    for (const double depth : depths) {
+        if (depth == kOutside) continue;
+        ++verdict.inside_count;
+        verdict.deepest = std::max(verdict.deepest, depth);
+    }
+    return verdict;
+}
+
+Json to_json(const SimulationResult& result) {
+    const Simulation& simulation = result.simulation;
+    const SimulationOptions& options = simulation.options();
+    const Deformable& deformable = simulation.deformable();
+    const Rates rates = rates_of(simulation);
+    const Strain strain = strain_of(deformable);
+    const double radius = result.collider_radius;
+    Json rest_frame = nullptr;
+    if (simulation.at_rest()) rest_frame = simulation.frame();
+    return {
+        {"scene", result.scene_name},
+        {"particles", deformable.particle_count()},
+        {"sticks", deformable.sticks.size()},
+        {"solver", solver_of(options)},
+        {"substeps", options.substep_count},
+        {"iterations", options.iteration_count},
+        {"time_step", options.time_step},
+        {"frames", simulation.frame()},
+        {"frames_to_rest", rest_frame},
+        {"ms_per_frame",
+         {{"integration", rates.integration_ms},
+          {"constraints", rates.constraints_ms},
+          {"collision", rates.collision_ms},
+          {"total", rates.total_ms}}},
+        {"queries_per_frame", rates.queries_per_frame},
+        {"ns_per_query", rates.ns_per_query},
+        {"map_queries_per_frame", rates.map_queries_per_frame},
+        {"frames_per_second", rates.frames_per_second},
+        {"map_kind", kind_of(simulation)},
+        {"lost_count", simulation.profile().lost_count},
+        {"rescued_count", simulation.profile().rescued_count},
+        {"inside_at_rest", result.verdict.inside_count},
+        {"deepest", {{"absolute", result.verdict.deepest}, {"in_radii", result.verdict.deepest / radius}}},
+        {"strain", {{"mean", strain.mean}, {"largest", strain.largest}}},
+        {"largest_speed", simulation.largest_speed()},
+        {"thickness", options.thickness},
+        {"thickness_in_radii", options.thickness / radius},
+        {"gravity", to_json(options.gravity)},
+        {"model",
+         {{"faces", result.model.face_count}, {"vertices", result.model.vertex_count}, {"radius", radius}}},
+        {"collider", {{"mesh", "collider.obj"}, {"poses", to_json(result.poses)}}},
+        {"state_hash", fmt::format("{:016x}", simulation.state_hash())},
+    };
+}
+
+std::string to_text(const SimulationResult& result) {
+    const Simulation& simulation = result.simulation;
+    const Rates rates = rates_of(simulation);
+    const Strain strain = strain_of(simulation.deformable());
+    const std::size_t particle_count = simulation.deformable().particle_count();
+    std::string text = result.scene_name + "\n";
+    const auto add = [&](const char* label, const std::string& value) {
+        text += fmt::format("  {:<22}{}\n", label, value);
+    };
+    add("particles, sticks", fmt::format("{}, {}", particle_count, simulation.deformable().sticks.size()));
+    add("solver", fmt::format("{}, substeps x iterations per frame: {} x {}", solver_of(simulation.options()),
+                              simulation.options().substep_count, simulation.options().iteration_count));
+    add("frames", fmt::format("{}, {}", simulation.frame(),
+                              simulation.at_rest() ? "at rest" : "not at rest: the frame limit"));
+    add("ms per frame",
+        fmt::format("{:.2f} = {:.2f} integration + {:.2f} constraints + {:.2f} collision", rates.total_ms,
+                    rates.integration_ms, rates.constraints_ms, rates.collision_ms));
+    add("frames per second", fmt::format("{:.0f}, on one core", rates.frames_per_second));
+    add("queries", fmt::format("{:.0f} per frame, {:.1f} ns each; {:.0f} took the map to answer",
+                               rates.queries_per_frame, rates.ns_per_query, rates.map_queries_per_frame));
+    if (is_exact(simulation))
+        add("particles lost", fmt::format("{}; rescued {} times", simulation.profile().lost_count,
+                                          simulation.profile().rescued_count));
+    add("particles inside", fmt::format("{} ({}), by winding number", result.verdict.inside_count,
+                                        percent(static_cast<double>(result.verdict.inside_count) /
+                                                static_cast<double>(particle_count))));
+    add("deepest", fmt::format("{:.5f} = {:.5f} R", result.verdict.deepest,
+                               result.verdict.deepest / result.collider_radius));
+    add("thickness", fmt::format("{:.5f} = {:.5f} R", simulation.options().thickness,
+                                 simulation.options().thickness / result.collider_radius));
+    add("strain", percent(strain.mean) + " mean, " + percent(strain.largest) + " largest");
+    add("state hash", fmt::format("{:016x}", simulation.state_hash()));
+    return text;
+}

@@ -1,0 +1,133 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+// The command line, parsed by CLI11, which only options.cpp includes: it takes seconds to compile.
+
+namespace CLI {
+class App;
+class Option;
+} // namespace CLI
+
+/// The arguments make no sense: exit status 2.
+class WrongUse : public std::runtime_error {
+  public:
+    using std::runtime_error::runtime_error;
+    /// "OPTION: FINDING"
+    WrongUse(const std::string& option, const std::string& finding)
+        : std::runtime_error(option + ": " + finding) {}
+};
+
+/// Where the argument of an option goes: a variable, which must outlive the parsing, or a function that is
+/// given the text and returns false, or throws WrongUse with a better sentence, when it cannot use it. A list
+/// takes one argument or more.
+using ArgumentTarget =
+    std::variant<std::string*, std::filesystem::path*, std::vector<std::filesystem::path>*, double*, float*,
+                 std::uint32_t*, std::uint64_t*, std::optional<std::uint32_t>*, std::optional<std::int64_t>*,
+                 std::function<bool(const std::string&)>>;
+
+/// An option or positional argument of a command, which it refers to.
+class Option {
+  public:
+    explicit Option(CLI::Option* option) : option_(option) {}
+
+    Option required() const;
+    /// Whole numbers from `least` to `most` only.
+    Option range(std::uint64_t least, std::uint64_t most) const;
+    Option not_empty() const;
+    Option excludes(const std::string& other_option) const;
+    /// What the help calls the argument.
+    Option type_name(const std::string& name) const;
+    /// The help shows the variable's value as the default.
+    Option show_default() const;
+    Option default_text(const std::string& text) const;
+
+    bool given() const;
+    /// As sentences call it: "--json".
+    std::string name() const;
+
+  private:
+    CLI::Option* option_;
+};
+
+/// A command, or a group of its options in the help. Refers to what the Program holds.
+class Command {
+  public:
+    explicit Command(CLI::App* app) : app_(app) {}
+
+    Command add_command(const std::string& name, const std::string& description) const;
+    /// Wrong use when no subcommand is given; the sentence is "NOUN is required".
+    void require_command(const std::string& noun) const;
+    Command add_group(const std::string& title) const;
+    /// A name without dashes is a positional argument.
+    Option add(const std::string& name, ArgumentTarget target, const std::string& description = "") const;
+    Option add_flag(const std::string& name, bool& variable, const std::string& description) const;
+    /// A number of bytes with its unit, such as 300KB.
+    Option add_byte_count(const std::string& name, std::size_t& variable,
+                          const std::string& description) const;
+    /// Numbers with a character between them, such as 60x24.
+    Option add_numbers(const std::string& name, char separator,
+                       std::initializer_list<std::uint32_t*> variables, const std::string& description) const;
+    Option add_numbers(const std::string& name, char separator, std::initializer_list<double*> variables,
+                       const std::string& description) const;
+    void footer(const std::string& text) const;
+    /// What to do when the command was given.
+    void action(std::function<void()> act) const;
+
+  private:
+    CLI::App* app_;
+};
+
+/// The whole command line.
+class Program {
+  public:
+    Program(const std::string& name, const std::string& description);
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+    ~Program();
+
+    Command command() { return Command(app_.get()); }
+    /// Adds --version.
+    void add_version(const std::string& text);
+    /// Parses the arguments and runs the actions of the commands that they name.
+    /// @returns the help or version to print, where it was asked for
+    /// @throws WrongUse, and what the actions throw
+    std::optional<std::string> run(int argument_count, const char* const* arguments);
+
+  private:
+    std::unique_ptr<CLI::App> app_;
+};
+
+/// An option that takes one of a few words, each of which stands for a value of T; the variable keeps its
+/// value as the default.
+template <typename T>
+Option add_choice(Command command, const std::string& name, T& variable,
+                  const std::vector<std::pair<std::string, T>>& choices, const std::string& description) {
+    std::string words;
+    std::string default_word;
+    for (const auto& [word, value] : choices) {
+        words += (words.empty() ? "" : "|") + word;
+        if (value == variable) default_word = word;
+    }
+    const auto choose = [name, &variable, choices, words](const std::string& text) {
+        for (const auto& [word, value] : choices) {
+            if (word == text) {
+                variable = value;
+                return true;
+            }
+        }
+        throw WrongUse(name, "'" + text + "' is not one of " + words);
+    };
+    return command.add(name, choose, description).type_name(words).default_text(default_word);
+}

@@ -1,0 +1,148 @@
+#include "recording/player_page.hpp"
+
+#include "encoding.hpp"
+#include "files/mapped_file.hpp"
+#include "recording/recording_code.hpp"
+#include "rivals/compare/machine.hpp"
+
+#include <echinus/error.hpp>
+
+#include <bit>
+
+using namespace echinus;
+namespace fs = std::filesystem;
+
+namespace {
+
+// ---- The player ----
+
+constexpr std::string_view kPlace = "<!-- recording -->";
+
+/// Beside the program, so that an installed tree may be moved.
+fs::path installed_player() {
+    std::error_code ignored;
+    const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+    return (program.parent_path() / ECHINUS_DATA_FOLDER / "player.html").lexically_normal();
+}
+
+std::string read_text(const fs::path& path) {
+    const MappedFile file(path);
+    return {reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()};
+}
+
+std::string read_player(const fs::path& path) {
+    try {
+        return read_text(path);
+    } catch (const Error& error) {
+        throw Error(ErrorCode::Unreadable,
+                    std::string(error.what()) +
+                        "; --html needs the player: build it with scripts/web --build-only (and install "
+                        "again, for an installed program), or name one with --player");
+    }
+}
+
+// ---- What goes into it ----
+
+constexpr int kFormat = 1;
+static_assert(std::endian::native == std::endian::little, "shapes are written as they lie in memory");
+
+Json to_json(const Vec3d& v) {
+    return {v.x, v.y, v.z};
+}
+
+Json to_json(const RigidTransform& pose) {
+    const Rotation& q = pose.rotation;
+    return {{"position", to_json(pose.translation)}, {"rotation", {q.w, q.x, q.y, q.z}}};
+}
+
+/// The part of report.json that a page shows.
+Json figures_of(const SimulationResult& result) {
+    return ::to_json(result).part({"particles", "sticks", "solver", "substeps", "iterations", "time_step",
+                                   "frames", "frames_to_rest", "ms_per_frame", "queries_per_frame",
+                                   "ns_per_query", "map_kind", "thickness", "gravity"});
+}
+
+Json frames_of(const Recording& recording, const Lattice& lattice, bool moves) {
+    Json frames = Json::array();
+    for (const RecordedFrame& frame : recording.frames()) {
+        Json entry{
+            {"number", frame.number}, {"inside", frame.inside_count}, {"origin", origin_of(frame, lattice)}};
+        if (moves || &frame == &recording.frames().front()) entry.add("pose", to_json(frame.pose));
+        frames.push_back(std::move(entry));
+    }
+    return frames;
+}
+
+Json description_of(const PlayedSimulation& played, const Lattice& lattice) {
+    const Simulation& simulation = played.result.simulation;
+    const Sphere sphere = inspect(played.collider).bounding_sphere;
+    return {
+        {"format", kFormat},
+        {"version", ECHINUS_VERSION},
+        {"machine", comparison::describe_machine()},
+        {"scene", played.scene_name},
+        {"model",
+         {{"name", played.model_name},
+          {"notice", played.notice},
+          {"vertices", played.collider.vertices.size()},
+          {"faces", played.collider.faces.size()},
+          {"centre", to_json(sphere.centre)},
+          {"radius", sphere.radius}}},
+        {"cloth_faces", simulation.deformable().faces.size()},
+        {"cloth_columns", played.cloth_columns},
+        {"lattice_step", lattice.step},
+        {"figures", figures_of(played.result)},
+        {"frames", frames_of(played.recording, lattice, simulation.colliders().front().moves())},
+    };
+}
+
+/// JSON that may stand in an HTML script element: no name in it can end the element or begin a comment.
+std::string in_script(const Json& object) {
+    std::string text;
+    // File names and notices need not be UTF-8; JSON must be.
+    for (const char c : object.one_line()) c == '<' ? text += "\\u003c" : text += c;
+    return text;
+}
+
+template <typename T>
+std::span<const std::uint8_t> bytes_of(const std::vector<T>& values) {
+    return {reinterpret_cast<const std::uint8_t*>(values.data()), values.size() * sizeof(T)};
+}
+
+std::vector<std::uint8_t> compressed(const PlayedSimulation& played, const Lattice& lattice) {
+    static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Triangle) == 3 * sizeof(std::uint32_t));
+    Deflater deflater;
+    deflater.add(bytes_of(played.collider.vertices));
+    deflater.add(bytes_of(played.collider.faces));
+    deflater.add(bytes_of(played.result.simulation.deformable().faces));
+    add_motion(deflater, played.recording.frames(), lattice);
+    return deflater.finish();
+}
+
+} // namespace
+
+Player::Player(fs::path path) {
+    if (path.empty()) path = installed_player();
+    page_ = read_player(path);
+    place_ = page_.find(kPlace);
+    if (place_ != std::string::npos && page_.find(kPlace, place_ + 1) == std::string::npos) return;
+    throw Error(ErrorCode::WrongFormat, path.string() + ": is no player: it must have the line " +
+                                            std::string(kPlace) +
+                                            " once; scripts/web --build-only builds one");
+}
+
+std::string_view Player::tail() const {
+    return std::string_view(page_).substr(place_ + kPlace.size());
+}
+
+void write_player_page(Output& output, const Player& player, const PlayedSimulation& played) {
+    const Lattice lattice = lattice_of(played.recording.frames());
+    output.write(player.head());
+    output.write("<script type=\"application/json\" id=\"description\">");
+    output.write(in_script(description_of(played, lattice)));
+    output.write("</script>\n<script type=\"text/plain\" id=\"data\">");
+    output.write(base64(compressed(played, lattice)));
+    output.write("</script>");
+    output.write(player.tail());
+    output.commit();
+}

@@ -1,0 +1,69 @@
+#include "recording/recording.hpp"
+
+#include <echinus/collider.hpp>
+#include <echinus/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace echinus;
+
+namespace {
+
+/// Positions of particles in a page. A browser keeps each in 6 bytes, and its share of a text of at most 2^29
+/// characters, the longest that Chromium has: 8 characters where nothing compresses.
+constexpr std::uint64_t kMostPositions = 64'000'000;
+
+std::size_t count_inside(const ExactMap& model, const Collider& collider, std::span<const Vec3f> positions) {
+    const Collider judge{.map = model, .pose = collider.pose, .scale = collider.scale};
+    std::vector<std::uint8_t> inside(positions.size());
+    contains_batch(judge, positions, inside);
+    return static_cast<std::size_t>(std::count(inside.begin(), inside.end(), 1));
+}
+
+/// Those that are due, and the last.
+std::uint64_t most_recorded(std::uint32_t frame_limit, std::uint64_t stride) {
+    return frame_limit / stride + 2;
+}
+
+} // namespace
+
+void Recording::watch(const Simulation& simulation) {
+    if (simulation.frame() % stride_ == 0) add(simulation);
+}
+
+void Recording::finish(const Simulation& simulation) {
+    if (frames_.empty() || frames_.back().number != simulation.frame()) add(simulation);
+}
+
+void Recording::add(const Simulation& simulation) {
+    const Collider& collider = simulation.colliders().front();
+    const std::span<const Vec3f> positions = simulation.positions();
+    frames_.push_back({.number = simulation.frame(),
+                       .positions = {positions.begin(), positions.end()},
+                       .pose = collider.pose,
+                       .inside_count = count_inside(model_, collider, positions)});
+}
+
+std::uint32_t stride_for_display(double time_step) {
+    constexpr double kRate = 60, kRounding = 1e-6, kMost = 1e6;
+    return static_cast<std::uint32_t>(std::clamp(std::ceil(1 / (kRate * time_step) - kRounding), 1.0, kMost));
+}
+
+void require_playable(std::size_t particle_count, std::uint32_t frame_limit, std::uint32_t stride) {
+    const auto holds = [&](std::uint64_t candidate) {
+        return particle_count * most_recorded(frame_limit, candidate) <= kMostPositions;
+    };
+    if (holds(stride)) return;
+    std::uint64_t remedy = std::uint64_t{2} * stride;
+    while (!holds(remedy) && remedy < frame_limit) remedy *= 2;
+    throw Error(ErrorCode::InvalidOptions,
+                fmt::format("a page of {} particles in up to {} frames is more than a browser holds; {}",
+                            particle_count, most_recorded(frame_limit, stride),
+                            holds(remedy) ? fmt::format("record fewer with --every {}, or end earlier with "
+                                                        "--frames",
+                                                        remedy)
+                                          : "take a smaller cloth"));
+}

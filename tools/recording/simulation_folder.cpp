@@ -1,0 +1,169 @@
+#include "recording/simulation_folder.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/mesh_io.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+using namespace echinus;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Reads values out of report.json, and says which is wrong.
+class ReportReader {
+  public:
+    explicit ReportReader(const fs::path& path) : name_(path.string()) {
+        std::ifstream file(path);
+        if (!file || fs::is_directory(path))
+            throw Error(ErrorCode::Unreadable,
+                        name_ + ": cannot be read; is this the folder of a simulation?");
+        root_ = json::parse(file, nullptr, false);
+        if (!root_.is_object()) fail("is not a JSON object");
+    }
+
+    const json& root() const { return root_; }
+
+    [[noreturn]] void fail(const std::string& finding) const {
+        throw Error(ErrorCode::Damaged, name_ + ": " + finding + "; simulate again");
+    }
+    const json& member(const json& object, const char* key) const {
+        if (!object.is_object() || !object.contains(key)) fail(std::string("has no \"") + key + "\"");
+        return object[key];
+    }
+    double number(const json& value, const char* what) const {
+        if (!value.is_number()) fail(std::string("\"") + what + "\" is not a number");
+        return value.get<double>(); // JSON has no infinities
+    }
+    /// A row of numbers under a key.
+    template <std::size_t count>
+    std::array<double, count> numbers(const json& object, const char* key) const {
+        const json& value = member(object, key);
+        if (!value.is_array() || value.size() != count)
+            fail(std::string("\"") + key + "\" is not an array of " + std::to_string(count) + " numbers");
+        std::array<double, count> result;
+        for (std::size_t i = 0; i < count; ++i) result[i] = number(value[i], key);
+        return result;
+    }
+
+  private:
+    std::string name_;
+    json root_;
+};
+
+RigidTransform read_transform(const ReportReader& reader, const json& pose) {
+    const auto [x, y, z] = reader.numbers<3>(pose, "translation");
+    const auto q = reader.numbers<4>(pose, "rotation");
+    const double size = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
+    if (!(size > 0.5 && size < 2)) reader.fail("a \"rotation\" is not a unit quaternion");
+    return {Rotation{q[0], q[1], q[2], q[3]}.normalised(), {x, y, z}};
+}
+
+/// How different a cloth looks at two moments: the mean distance between its points, of which what is common
+/// to all, as while it falls, counts little.
+double difference(const std::vector<Vec3f>& a, const std::vector<Vec3f>& b) {
+    constexpr double kWeightOfCommonMotion = 0.25;
+    Vec3d common;
+    for (std::size_t i = 0; i < a.size(); ++i) common += Vec3d(b[i]) - Vec3d(a[i]);
+    common *= 1 / static_cast<double>(a.size());
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += length(Vec3d(b[i]) - Vec3d(a[i]) - common);
+    return sum / static_cast<double>(a.size()) + kWeightOfCommonMotion * length(common);
+}
+
+/// Samples from the first to the last, evenly spread, so many that a choice among them is as good as one
+/// among all.
+std::vector<std::size_t> candidates(std::size_t sample_count) {
+    constexpr std::size_t kMost = 500;
+    const std::size_t count = std::min(sample_count, kMost);
+    std::vector<std::size_t> samples(count);
+    for (std::size_t i = 0; i < count; ++i)
+        samples[i] = count > 1 ? i * (sample_count - 1) / (count - 1) : sample_count - 1;
+    return samples;
+}
+
+} // namespace
+
+SimulationFolder::SimulationFolder(const fs::path& folder)
+    : cache_(folder / "cloth.pc2"), cloth_(read_mesh(folder / "cloth.obj")) {
+    if (cloth_.vertices.size() != cache_.point_count())
+        throw Error(ErrorCode::Damaged, (folder / "cloth.obj").string() + ": has " +
+                                            std::to_string(cloth_.vertices.size()) +
+                                            " vertices, but cloth.pc2 has " +
+                                            std::to_string(cache_.point_count()) + " points; simulate again");
+    read_report(folder / "report.json");
+}
+
+void SimulationFolder::read_report(const fs::path& path) {
+    const ReportReader reader(path);
+    const json& collider = reader.member(reader.root(), "collider");
+    const json& mesh_name = reader.member(collider, "mesh");
+    if (!mesh_name.is_string()) reader.fail("the collider's \"mesh\" is not a file name");
+    collider_ = read_mesh(path.parent_path() / mesh_name.get<std::string>());
+
+    const json& poses = reader.member(collider, "poses");
+    if (!poses.is_array() || poses.empty()) reader.fail("the collider has no \"poses\"");
+    for (const json& pose : poses) {
+        const double frame = reader.number(reader.member(pose, "frame"), "frame");
+        if (!poses_.empty() && !(frame > poses_.back().frame)) reader.fail("the poses' frames do not ascend");
+        poses_.push_back({frame, read_transform(reader, pose)});
+    }
+
+    const auto [x, y, z] = reader.numbers<3>(reader.root(), "gravity");
+    const Vec3d gravity{x, y, z};
+    up_ = gravity == Vec3d{} ? Vec3d{0, 0, 1} : -gravity;
+    const json& rest = reader.member(reader.root(), "frames_to_rest");
+    if (!rest.is_null()) rest_frame_ = reader.number(rest, "frames_to_rest");
+}
+
+std::size_t SimulationFolder::sample_at(std::int64_t frame) const {
+    const double last = static_cast<double>(sample_count() - 1);
+    const double step = sample_count() > 1 ? frame_of(1) - frame_of(0) : 1;
+    const double sample = std::round((static_cast<double>(frame) - frame_of(0)) / step);
+    if (sample >= 0 && sample <= last) return static_cast<std::size_t>(sample);
+    throw Error(ErrorCode::InvalidOptions, "there is no frame " + std::to_string(frame) + "; the first is " +
+                                               std::to_string(std::lround(frame_of(0))) + ", the last " +
+                                               std::to_string(std::lround(frame_of(sample_count() - 1))));
+}
+
+TriangleMesh SimulationFolder::cloth(std::size_t sample) const {
+    return {cloth_positions(sample), cloth_.faces};
+}
+
+TriangleMesh SimulationFolder::collider(std::size_t sample) const {
+    const auto after = std::upper_bound(poses_.begin() + 1, poses_.end(), frame_of(sample),
+                                        [](double frame, const Pose& pose) { return frame < pose.frame; });
+    const RigidTransform& transform = std::prev(after)->transform;
+    TriangleMesh mesh = collider_;
+    for (Vec3f& vertex : mesh.vertices) vertex = Vec3f(transform.to_world(Vec3d(vertex)));
+    return mesh;
+}
+
+std::vector<std::size_t> choose_moments(const SimulationFolder& folder, std::size_t count) {
+    const std::vector<std::size_t> samples = candidates(folder.sample_count());
+    std::vector<double> distance_to_chosen(samples.size(), std::numeric_limits<double>::infinity());
+    std::vector<std::size_t> chosen;
+    const auto choose = [&](std::size_t candidate) {
+        chosen.push_back(samples[candidate]);
+        const std::vector<Vec3f> positions = folder.cloth_positions(samples[candidate]);
+        for (std::size_t i = 0; i < samples.size(); ++i)
+            distance_to_chosen[i] =
+                std::min(distance_to_chosen[i], difference(positions, folder.cloth_positions(samples[i])));
+        distance_to_chosen[candidate] = -1; // not again, also where nothing moves
+    };
+
+    choose(samples.size() - 1);
+    if (samples.size() > 1 && count > 1) choose(0);
+    while (chosen.size() < std::min(count, samples.size())) {
+        const auto farthest = std::max_element(distance_to_chosen.begin(), distance_to_chosen.end());
+        choose(static_cast<std::size_t>(farthest - distance_to_chosen.begin()));
+    }
+    std::sort(chosen.begin(), chosen.end());
+    return chosen;
+}
