@@ -56,8 +56,8 @@ TEST(Collider, AnswersAsItsMapDoesInTheLocalFrame) {
         const Vec3f point_local = to_local(collider, point);
         const Contact local = contact(torus_map(), point_local, kMargin / 2.5F);
         const Contact world = contact(collider, point, kMargin);
-        // The two ways to the local frame round differently: next to a surface or to the border of a cell of
-        // directions the answers may differ, for so few points that they are not among these.
+        // The two ways to the local frame round differently: answers next to a surface or to a cell's border
+        // may differ, for so few points that none is among these.
         ASSERT_EQ(world.inside, local.inside);
         ASSERT_EQ(world.found(), local.found());
         EXPECT_EQ(contains(collider, point), world.inside);

@@ -23,7 +23,7 @@ Collider ball_collider(const Vec3d& scale) {
     return {.map = std::make_shared<test::AnalyticBall>(1.0F), .pose = kPose, .scale = scale};
 }
 
-/// More than fit into one call.
+/// More points than one call takes.
 std::vector<Vec3f> points_about_pose(double reach) {
     test::Random random(7);
     std::vector<Vec3f> points;
@@ -122,7 +122,7 @@ TEST(CustomMap, HasUnitNormalsWhateverLengthItGivesThem) {
     }
 }
 
-TEST(CustomMap, IsNotBelievedAboutPointsThatAreNotFinite) {
+TEST(CustomMap, IsIgnoredForPointsThatAreNotFinite) {
     const Contact answer{.point = {}, .normal = {0, 1, 0}, .depth = 0.5F, .inside = true};
     const Collider collider{.map = std::make_shared<test::ConstantAnswer>(answer)};
     for (const float bad : {kNaN, kInfinity, -kInfinity}) {

@@ -17,7 +17,7 @@ Collider moving(const Vec3d& linear, const Vec3d& angular) {
             .angular_velocity = angular};
 }
 
-/// A point of the collider's material, given in its local frame, after a time.
+/// The position after a time of a material point, given in the collider's local frame.
 Vec3d material_point(Collider collider, const Vec3d& local, double seconds) {
     collider.pose = pose_after(collider, seconds);
     return collider.pose.to_world(local);

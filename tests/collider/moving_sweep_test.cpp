@@ -11,7 +11,7 @@ using namespace echinus;
 
 namespace {
 
-/// A collider that has just moved on by one second, and where it was before.
+/// A collider that has just moved for one second, and its pose before.
 struct Moved {
     Collider now;
     RigidTransform before;
@@ -29,7 +29,7 @@ Moved moved(const AnyMap& map, const Vec3d& scale, const Vec3d& linear, const Ve
     return result;
 }
 
-/// The moment at which a particle is first inside, or 2: the collider at each of many moments.
+/// The first of many sampled moments at which a particle is inside, or 2.
 double first_inside(const Moved& scene, const Vec3f& from, const Vec3f& to, int moments) {
     Collider collider = scene.now;
     for (int i = 0; i <= moments; ++i) {
@@ -61,7 +61,7 @@ TEST(MovingSweep, MeetsTheSurfaceWhenDenseSamplingInTimeDoes) {
         if (contains(before, from)) continue;
         const SweepHit hit = sweep(scene.now, scene.before, from, to);
         const double sampled = first_inside(scene, from, to, 400);
-        // Chord and way differ by 0.1 %, and a surface may be grazed.
+        // Chord and path differ by 0.1 %, and a particle may graze a surface.
         if (hit.found() != (sampled <= 1) || std::fabs(hit.fraction - std::min(sampled, 1.0)) > 0.02) {
             ++unlike;
             continue;
@@ -91,7 +91,7 @@ TEST(MovingSweep, MeetsAThinPlateThatPassesOverAParticleAtRest) {
     const Vec3d up = now.pose.rotation.apply({0, 0, 1});
     EXPECT_NEAR(length(Vec3d(hit.normal) - up), 0, 1e-5);
     EXPECT_NEAR(length(now.pose.to_local(Vec3d(hit.point)) - Vec3d{0.1, 0.2, 0.0005}), 0, 1e-5);
-    EXPECT_FALSE(contains(now, particle)); // neither before nor after: only the way tells
+    EXPECT_FALSE(contains(now, particle)); // inside neither before nor after, only on the way
 }
 
 TEST(MovingSweep, MeetsNothingWhenParticleAndColliderMoveTogether) {
@@ -107,7 +107,7 @@ TEST(MovingSweep, MeetsNothingWhenParticleAndColliderMoveTogether) {
     }
 }
 
-TEST(MovingSweep, MeetsNothingWithADistanceMapOrWithPointsThatAreNone) {
+TEST(MovingSweep, MeetsNothingWithADistanceMapOrWithPointsThatAreNotFinite) {
     const TriangleMesh box = make_box({1, 1, 1});
     const DistanceMap sampled = DistanceMap::build(box, {.longitude_count = 16, .colatitude_count = 16});
     const Vec3f far{9, 9, 9};

@@ -20,7 +20,7 @@ TriangleMesh torus() {
     return make_torus(1, 0.4, 24, 12);
 }
 
-/// The mesh as the collider has it in the world, but for the pose: with faces that look outwards.
+/// The mesh scaled as the collider scales it, without the pose; faces outward.
 TriangleMesh stretched(TriangleMesh mesh, const Vec3d& scale) {
     for (Vec3f& v : mesh.vertices) v = Vec3f(Vec3d(v.x * scale.x, v.y * scale.y, v.z * scale.z));
     if (scale.x * scale.y * scale.z < 0)
@@ -72,7 +72,7 @@ TEST(ScaledCollider, WithAnExactMapAnswersAsTheScaledMeshDoes) {
     }
 }
 
-TEST(ScaledCollider, WithADistanceMapLeadsAlongTheParticlesRayAndTellsItsLength) {
+TEST(ScaledCollider, WithADistanceMapPushesAlongTheParticlesRayByTheDepth) {
     const DistanceMap map = DistanceMap::build(torus(), {.longitude_count = 64, .colatitude_count = 64});
     test::Random random(2);
     for (const Vec3d& scale : kScales) {

@@ -17,7 +17,7 @@ float along_cube(const Vec3d& d) {
 
 } // namespace
 
-TEST(CubeGrid, HasItsSamplesEvenlyByAngleAlongEachSide) {
+TEST(CubeGrid, SpacesItsSamplesEvenlyByAngleAlongEachSide) {
     const std::uint32_t n = 6;
     const CubeGrid grid(n);
     const std::vector<Vec3d> directions = grid.directions();
@@ -47,7 +47,7 @@ TEST(CubeGrid, GivesSamplesOfOneDirectionTheSameBitsAndOneCanonicalIndex) {
                 EXPECT_EQ(directions[grid.index(side, i, j)], directions[same]);
                 distinct.insert(same);
             }
-    EXPECT_EQ(distinct.size(), 6U * 5 * 5 + 2); // as many as a cube of 5 x 5 x 5 has on its surface
+    EXPECT_EQ(distinct.size(), 6U * 5 * 5 + 2); // the surface points of a cube of 5 x 5 x 5 cells
 }
 
 TEST(CubeGrid, SharesOutTheWholeSphereBySolidAngle) {

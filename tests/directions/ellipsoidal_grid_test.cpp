@@ -8,7 +8,7 @@
 
 using namespace echinus;
 
-TEST(EllipsoidalGrid, HasItsSamplesEvenlyByAngleOnceTheAxesAreScaled) {
+TEST(EllipsoidalGrid, SpacesItsSamplesEvenlyByAngleInTheScaledFrame) {
     const Vec3f scale{1, 0.25F, 0.5F};
     const EllipsoidalGrid grid(16, 9, PoleAxis::X, scale);
     const std::vector<Vec3d> directions = grid.directions();

@@ -14,7 +14,7 @@
 
 using namespace echinus;
 
-// What holds for every grid of directions.
+// Properties of every grid of directions.
 
 namespace {
 
@@ -38,10 +38,10 @@ EllipsoidalGrid make(std::uint32_t resolution) {
     return {4 * resolution, 2 * resolution, PoleAxis::X, {1, 0.125F, 0.5F}};
 }
 
-/// What an ellipsoid of the scale above suits.
+/// The box of a mesh that suits the ellipsoid's scale above.
 const Vec3d kBoxSize{0.5, 4, 1};
 
-/// Where a grid takes a direction to be: its samples by their weights.
+/// Where a grid locates a direction: the weighted sum of its samples.
 template <typename Grid>
 Vec3d weighted_corners(const typename Grid::Cell& cell, const std::vector<Vec3d>& directions) {
     const std::array<float, 4> weights = Grid::weights(cell);
@@ -56,7 +56,7 @@ Vec3d of_radial_norm_1(const Grid& grid, const Vec3d& d) {
     return d * (1 / grid.radial_norm(d));
 }
 
-/// Between crossing planes of symmetry, at edges of octahedra and cubes, about poles and seams.
+/// Near planes of symmetry, edges of octahedra and cubes, poles and seams.
 Vec3f direction_in_an_odd_place(test::Random& random, int n) {
     Vec3f d = test::unit_vector(random);
     if (n % 6 == 1) d.x *= 1e-4F;
@@ -80,8 +80,8 @@ TYPED_TEST(EveryGrid, LocatesADirectionAmongItsNeighbours) {
     for (const std::uint32_t resolution : {4U, 7U, 64U}) {
         const TypeParam grid = make<TypeParam>(resolution);
         const std::vector<Vec3d> directions = grid.directions();
-        // A chord is shorter than its arc by the square of a cell, which is widest in the longer axes of a
-        // stretched frame; about a pole samples of half the circle surround a direction.
+        // A chord is shorter than its arc by the square of a cell, which is widest along the longer axes of a
+        // scaled frame; near a pole, samples from half the circle surround a direction.
         const double cell = std::numbers::pi / 2 / resolution;
         const double widest = std::is_same_v<TypeParam, EllipsoidalGrid> ? 8 : 1;
         for (int n = 0; n < 20'000; ++n) {
@@ -109,7 +109,7 @@ TYPED_TEST(EveryGrid, LocatesEachOfItsSamplesAtItself) {
     }
 }
 
-TYPED_TEST(EveryGrid, TakesASampleThatWeighsMostForTheReference) {
+TYPED_TEST(EveryGrid, TakesASampleWithTheLargestWeightAsTheReference) {
     test::Random random(2);
     const TypeParam grid = make<TypeParam>(9);
     for (int n = 0; n < 10'000; ++n) {

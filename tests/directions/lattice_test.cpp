@@ -15,7 +15,7 @@ TriangleMesh tetrahedron(const Vec3f& apex) {
     return {{apex, {1, 1, -1}, {-1, 1, -1}, {0, -1, -1}}, {{1, 2, 3}, {2, 1, 0}, {3, 2, 0}, {1, 3, 0}}};
 }
 
-/// No edge's line and no face goes through the origin.
+/// Neither a face nor the line of an edge passes through the origin.
 void expect_clear_of_origin(const LatticeMesh& lattice) {
     for (const Triangle& face : lattice.faces)
         for (int i = 0; i < 3; ++i) {

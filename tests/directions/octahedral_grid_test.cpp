@@ -9,7 +9,7 @@ using namespace echinus;
 
 namespace {
 
-/// The point of the octahedron that a cell's weights stand for.
+/// The point of the octahedron that a cell's weights define.
 Vec3d weighted_corners(const OctahedralGrid::Cell& cell, const std::vector<Vec3d>& directions) {
     const std::array<float, 4> weights = OctahedralGrid::weights(cell);
     Vec3d sum;

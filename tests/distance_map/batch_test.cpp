@@ -32,7 +32,7 @@ bool same_bits(const Contact& a, const Contact& b) {
            a.face == b.face && a.inside == b.inside && a.certain == b.certain && a.feature == b.feature;
 }
 
-/// Particles about a map, with all the odd places: centre, axes, seam, poles, far away, not finite.
+/// Particles around a map and at all special places: centre, axes, seam, poles, far away, not finite.
 std::vector<Vec3f> particles_about(const DistanceMapView& map, std::size_t random_count) {
     std::vector<Vec3f> points;
     const float r = map.radius;
@@ -48,7 +48,7 @@ std::vector<Vec3f> particles_about(const DistanceMapView& map, std::size_t rando
     test::Random random(7);
     for (std::size_t i = 0; i < random_count; ++i)
         points.push_back(map.centre + test::in_cube(random, 1.1F * r));
-    // Along the seam and about the poles, where a grid of directions closes.
+    // Along the seam and around the poles, where a grid of directions closes.
     for (std::size_t i = 0; i < random_count / 8; ++i) {
         const Vec3f p = test::in_cube(random, r);
         const float tiny = 0.01F * p.z;
@@ -164,7 +164,7 @@ TEST(DistanceMapBatch, HasTheBitsOfSingleParticlesForEachSizeAndStride) {
             const StridedSpan<const Vec3f> strided(&vertices.front().position, size, sizeof(Vertex));
             const StridedSpan<const Vec3f> dense(packed.data(), size);
             for (const StridedSpan<const Vec3f>& points : {strided, dense}) {
-                // One answer more than there are particles, which must stay as it is.
+                // One answer more than there are particles; it must stay unchanged.
                 std::vector<std::uint8_t> inside(size + 1, 77);
                 std::vector<Contact> contacts(size + 1);
                 contacts.back().face = 77;

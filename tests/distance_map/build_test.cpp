@@ -49,8 +49,8 @@ TEST(DistanceMapBuild, GivesATorusTwoEntriesWhereItsRayMeetsTheTube) {
     const auto histogram = entry_histogram(map);
     ASSERT_EQ(histogram.size(), 3U);
     EXPECT_EQ(histogram[1], 0U);
-    // In the half plane of one longitude the ray at elevation a meets the circle of the tube where
-    // cos(a) -+ sqrt(0.16 - sin(a)^2); the facets lie at most 0.02 inside of it.
+    // In the half plane of one longitude the ray at elevation a meets the circle of the tube where cos(a) -+
+    // sqrt(0.16 - sin(a)^2); the facets lie at most 0.02 inside it.
     for (std::uint32_t j = 0; j < 200; ++j)
         for (std::uint32_t i = 0; i < 200; ++i) {
             const double elevation = std::numbers::pi * (0.5 - (j + 0.5) / 200);

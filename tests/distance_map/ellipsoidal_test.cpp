@@ -47,8 +47,7 @@ TEST(EllipsoidalMap, OfAnEllipsoidHasTheSameEntryEverywhere) {
     for (const PoleAxis axis : {PoleAxis::X, PoleAxis::Y, PoleAxis::Z}) {
         const DistanceMap map = ellipsoidal(ellipsoid(kHalf), axis);
         ASSERT_EQ(map.view().entry_count(), map.view().direction_count());
-        // The facets of a 300 x 150 sphere lie up to 1.1e-4 inside of it along one way, and as much along the
-        // other.
+        // The facets of a 300 x 150 sphere lie up to 1.1e-4 inside it in each of the two directions.
         for (const float entry : map.view().entries_float32) ASSERT_NEAR(entry, 0.5, 1.2e-4);
     }
 }
@@ -72,7 +71,7 @@ TEST(EllipsoidalMap, OfAnEllipsoidHasItsSurfaceAndItsNormals) {
 }
 
 TEST(EllipsoidalMap, HasNormalsThatAreTheDerivativesOfItsOwnSurface) {
-    // A bumpy solid: the surface of the map around a place is what its ways out lead to.
+    // A bumpy solid: the push-outs around a point trace the map's surface.
     TriangleMesh mesh = ellipsoid({0.5F, 2, 1}, 40);
     for (Vec3f& v : mesh.vertices) v *= 1 + 0.1F * std::sin(5 * v.y) * v.x;
     for (const PoleAxis axis : {PoleAxis::X, PoleAxis::Y, PoleAxis::Z}) {

@@ -14,7 +14,7 @@
 using namespace echinus;
 using test::options_of;
 
-// What holds for maps on every grid of directions.
+// Properties of maps on every grid of directions.
 
 namespace {
 
@@ -100,7 +100,7 @@ TEST_P(EveryMap, AnswersAtTheCentreAlongZ) {
     const DistanceMap box = build(make_box({2, 2, 2}));
     const Contact c = contact(box, box.view().centre);
     EXPECT_TRUE(c.inside);
-    // Distances to a flat side are bent over the half cell beside its foot, which is 0.01 rad.
+    // Interpolation bends a flat side over the half cell beside its foot, which is 0.01 rad.
     EXPECT_NEAR(c.depth, 1, 2e-4F);
     EXPECT_NEAR(c.point.z, 1, 2e-4F);
     EXPECT_NEAR(c.normal.z, 1, 2e-4F);

@@ -53,7 +53,7 @@ TEST(OctahedralMap, ReproducesFlatFacesUpToRounding) {
 }
 
 TEST(OctahedralMap, ReproducesASlantingFaceAcrossTheEdgesOfTheOctahedron) {
-    // A large tilted box: only its sides, which cross coordinate planes, not its edges, are looked at.
+    // A large tilted box: only its sides, which cross coordinate planes, are tested, not its edges.
     const Rotation tilt = Rotation::about({1, 2, 3}, 0.7);
     TriangleMesh box = make_box({2, 2, 2});
     for (Vec3f& v : box.vertices) v = Vec3f(tilt.apply(Vec3d(v)));

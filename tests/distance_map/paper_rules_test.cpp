@@ -1,4 +1,4 @@
-// One test for each clause of the paper's section 2.2, on maps whose entries are written down by hand.
+// One test for each clause of the paper's section 2.2, on maps with hand-written entries.
 
 #include "support/hand_made_map.hpp"
 
@@ -96,7 +96,7 @@ TEST(PaperRules, AParticleLeavesByTheNearestDistanceAlongItsRay) {
     EXPECT_GT(dot(outwards.normal, outwards.point), 0);
 }
 
-TEST(PaperRules, ARayWithoutEntriesIsAsTheCentreAndLeavesByTheSphere) {
+TEST(PaperRules, ARayWithoutEntriesIsLikeTheCentreAndLeavesByTheSphere) {
     test::HandMadeMap inside(8, 4, true);
     const Contact c = contact(inside.view(), at(1, 1, 0.25F));
     EXPECT_TRUE(c.inside);
@@ -106,7 +106,7 @@ TEST(PaperRules, ARayWithoutEntriesIsAsTheCentreAndLeavesByTheSphere) {
     EXPECT_FALSE(contact(outside.view(), at(1, 1, 0.25F), 10).found());
 }
 
-TEST(PaperRules, WhereTheSolidHasNoFarEndTheSphereIsIt) {
+TEST(PaperRules, TheSphereIsTheFarEndWhereTheSolidHasNone) {
     test::HandMadeMap map(8, 4, false);
     map.fill({0.2F}); // the ray enters and never leaves: a hole in the far side
     EXPECT_NEAR(contact(map.view(), at(1, 1, 0.3F)).depth, 0.1F, 1e-5F);

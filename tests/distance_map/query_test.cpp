@@ -41,7 +41,7 @@ TEST(DistanceMapQuery, AgreesWithTheFormulasOfSphereBoxAndTorus) {
         if (std::fabs(length(p) - 1) > 1e-3F) ASSERT_EQ(contains(sphere, p), length(p) < 1);
         // Linear interpolation in a cell of 0.03 rad bends a flat side by up to 2e-3, and rounds its edges.
         if (std::fabs(box_side(p) - 1) > 0.03F) ASSERT_EQ(contains(box, p), box_side(p) < 1);
-        // Where rays graze the tube, a sample's neighbour misses it.
+        // Where rays graze the tube, a neighbouring sample misses it.
         if (std::fabs(torus_distance(p)) > 0.02F) ASSERT_EQ(contains(torus, p), torus_distance(p) < 0);
     }
 }
@@ -107,7 +107,7 @@ TEST(DistanceMapQuery, ReportsParticlesOutsideWithinTheMarginWithNegativeDepth) 
     EXPECT_TRUE(contact(sphere, far, kInfinity).found());
 }
 
-TEST(DistanceMapQuery, TakesNaNAndInfinityForOutside) {
+TEST(DistanceMapQuery, TreatsNaNAndInfinityAsOutside) {
     const DistanceMap box = DistanceMap::build(make_box({2, 2, 2}));
     for (float bad : {kNaN, kInfinity, -kInfinity, std::numeric_limits<float>::max()})
         for (const Vec3f& p : {Vec3f{bad, 0, 0}, Vec3f{0, bad, 0}, Vec3f{0, 0, bad}, Vec3f{bad, bad, bad}}) {
@@ -163,7 +163,7 @@ TEST(DistanceMapQuery, AnswersBatchesAsSinglePoints) {
 }
 
 TEST(DistanceMapQuery, DoesNotChangeWhenMeshAndPointsMoveTogether) {
-    // Powers of two and whole numbers keep floats exact, so that the answers must be equal, not merely close.
+    // Powers of two and whole numbers keep floats exact, so the answers must be equal, not merely close.
     test::Random random(5);
     const TriangleMesh mesh = make_torus(1, 0.375, 32, 16);
     TriangleMesh rounded = mesh;
@@ -186,7 +186,7 @@ TEST(DistanceMapQuery, DoesNotChangeWhenMeshAndPointsMoveTogether) {
 }
 
 TEST(DistanceMapQuery, TurnsWithItsPoleAxis) {
-    // Renaming the axes of mesh and points and choosing the pole to match is the same map.
+    // Renaming the axes of mesh and points, and choosing the pole to match, gives the same map.
     test::Random random(6);
     const auto turned = [](const Vec3f& v) { return Vec3f{v.z, v.x, v.y}; };
     const TriangleMesh mesh = make_box({1, 2, 3}, 2);

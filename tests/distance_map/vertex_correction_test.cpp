@@ -11,8 +11,7 @@ DistanceMap build(const TriangleMesh& mesh, VertexCorrection correction) {
                               {.longitude_count = 60, .colatitude_count = 30, .correction = correction});
 }
 
-/// The k-th entries of all directions come from layer k; on the torus 0 is where rays enter and 1 where they
-/// leave.
+/// The k-th entries of all directions come from layer k: on the torus rays enter at 0 and leave at 1.
 template <typename Check>
 void for_each_entry(const DistanceMapView& before, const DistanceMapView& after, Check check) {
     ASSERT_EQ(before.entry_count(), after.entry_count());
@@ -56,7 +55,7 @@ TEST(VertexCorrection, MakesTheMapReachEveryVertexOfAConvexMesh) {
     const DistanceMap corrected = build(ellipsoid, VertexCorrection::Signed);
     int missed_before = 0;
     for (const Vec3f& vertex : ellipsoid.vertices) {
-        if (length(vertex) > 0.95F) continue; // no room left to grow inside the bounding sphere
+        if (length(vertex) > 0.95F) continue; // no room to grow inside the bounding sphere
         missed_before += !contains(plain, vertex * 0.9999F);
         EXPECT_TRUE(contains(corrected, vertex * 0.9999F));
     }
@@ -82,8 +81,8 @@ TEST(VertexCorrection, LeavesTheErrorAlongEdgesFarFromTheirEnds) {
 }
 
 TEST(VertexCorrection, CountsWhatItClampsAtTheSphere) {
-    // The vertices of a sphere mesh lie at R already, so that the samples around them cannot grow by all that
-    // is missing.
+    // The vertices of a sphere mesh already lie at R, so the samples around them cannot grow by the full
+    // error.
     const DistanceMap map = build(make_sphere(1, 200, 100), VertexCorrection::Paper);
     EXPECT_GT(map.statistics().clamped_entries, 0U);
     EXPECT_LE(map.statistics().clamped_entries, map.statistics().corrected_entries);

@@ -11,7 +11,7 @@ using namespace echinus;
 
 namespace {
 
-/// All faces asked, one by one.
+/// Searches all faces one by one.
 VertexLayer layer_by_brute_force(const LatticeMesh& lattice, std::uint32_t vertex, Facing facing) {
     VertexLayer layer{.facing = facing};
     const LatticePoint& d = lattice.vertices[vertex];
@@ -61,7 +61,7 @@ TEST(VertexLayers, NumberTheSidesOfNestedBoxesFromTheCentre) {
     }
 }
 
-TEST(VertexLayers, TellTheTwoSidesOfATorusFromItsSilhouette) {
+TEST(VertexLayers, DistinguishTheTwoSidesOfATorusFromItsSilhouette) {
     const std::vector<VertexLayer> layers =
         layers_of_vertices(snap_to_lattice(make_torus(1, 0.4, 40, 20)), SphericalGrid(50, 50, PoleAxis::Z));
     const auto count = [&](Facing facing) {

@@ -31,7 +31,7 @@ TriangleMesh without_last_faces(TriangleMesh mesh, std::size_t count) {
     return mesh;
 }
 
-/// With a hole in a direction, and certain answers in the others.
+/// With a hole in one direction, and certain answers in the others.
 TriangleMesh without_face_towards(TriangleMesh mesh, const Vec3f& direction) {
     const auto along = [&](const Triangle& face) {
         float sum = 0;
@@ -60,14 +60,14 @@ std::vector<Case> cases() {
          {.divisions = 1}},
         {"a plate", make_box({1, 1, 1e-4F}, 4), {}},
         {"twelve faces", make_box({1, 1, 1}), {.divisions = 3}},
-        // Faces with tips sharp enough for rounding to matter beyond them.
+        // Faces with tips so sharp that rounding matters beyond them.
         {"a rod", make_box({1, 2e-3F, 1e-3F}), {}},
         {"spokes", make_sphere(1, 700, 3), {}},
     };
 }
 
-/// All over the lattice and beyond; on the surface, on its vertices, and a rounding error away from them; on
-/// walls of cells; and what is no place at all.
+/// All over the lattice and beyond it; on the surface, on its vertices, and a rounding error away from them;
+/// on walls of cells; and not finite.
 std::vector<Vec3f> telling_points(const ExactMapView& map, const TriangleMesh& mesh) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -140,7 +140,7 @@ void expect_same_contacts(const ExactMapView& map, StridedSpan<const Vec3f> poin
 
 } // namespace
 
-TEST(ExactMapBatch, SaysWhatContainsSaysUnderEveryInstructionSet) {
+TEST(ExactMapBatch, AgreesWithContainsUnderEveryInstructionSet) {
     for (const Case& c : cases()) {
         SCOPED_TRACE(c.name);
         const ExactMap map = ExactMap::build(c.mesh, c.options);
@@ -152,7 +152,7 @@ TEST(ExactMapBatch, SaysWhatContainsSaysUnderEveryInstructionSet) {
     }
 }
 
-TEST(ExactMapBatch, SaysWhatContactSaysUnderEveryInstructionSet) {
+TEST(ExactMapBatch, AgreesWithContactUnderEveryInstructionSet) {
     for (const Case& c : cases()) {
         SCOPED_TRACE(c.name);
         const ExactMap map = ExactMap::build(c.mesh, c.options);
@@ -205,7 +205,7 @@ TEST(ExactMapBatch, GivesTheSameAnswersOnAnyNumberOfThreads) {
 }
 
 TEST(ExactMapBatch, CountsLongListsOfFacesToo) {
-    // Two hundred boxes on one place: every list is longer than what is prepared at a time.
+    // Two hundred boxes at one place: every list is longer than one prepared block.
     TriangleMesh many = make_box({1, 2, 3});
     for (int n = 0; n < 200; ++n) many = joined({many, make_box({1, 2, 3})});
     const ExactMap map = ExactMap::build(many, {.divisions = 4});
@@ -214,7 +214,7 @@ TEST(ExactMapBatch, CountsLongListsOfFacesToo) {
 }
 
 TEST(ExactMapBatch, AnswersWithIndicesOf32BitsToo) {
-    // Of more than 65 536 faces; then of as many vertices, too.
+    // More than 65 536 faces; then as many vertices as well.
     for (const TriangleMesh& mesh : {make_sphere(1, 260, 130), make_sphere(1, 400, 200)}) {
         const ExactMap map = ExactMap::build(mesh, {.divisions = 20});
         ASSERT_FALSE(map.view().references.wide.empty());
@@ -228,7 +228,7 @@ TEST(ExactMapBatch, AnswersWithIndicesOf32BitsToo) {
     }
 }
 
-TEST(ExactMapBatch, SaysWhatContactSaysWhenTheWorldIsSquashed) {
+TEST(ExactMapBatch, AgreesWithContactWhenTheWorldIsSquashed) {
     const TriangleMesh mesh = make_torus(1, 0.4, 40, 16);
     const ExactMap map = ExactMap::build(mesh);
     const std::vector<Vec3f> points = comparison::surface_points(mesh, 300);

@@ -38,7 +38,7 @@ TriangleMesh opened(TriangleMesh mesh) {
     return mesh;
 }
 
-/// A moment of a torus that wobbles.
+/// A wobbling torus at one moment.
 std::vector<Vec3f> wobbled(std::vector<Vec3f> vertices, double moment) {
     for (Vec3f& v : vertices) v.z += static_cast<float>(0.2 * std::sin(moment + 3.0 * double{v.x}));
     return vertices;
@@ -118,7 +118,7 @@ TEST(ExactMapBuilder, GivesTheBytesOfAFreshBuildHoweverFarTheSurfaceMoves) {
         ExactMapBuilder builder(mesh.faces, {});
         for (int moment = 0; moment < 12; ++moment) {
             TriangleMesh now{wobbled(mesh.vertices, 0.4 * moment), mesh.faces};
-            for (Vec3f& v : now.vertices) // now as it was, now turned, now pressed flat
+            for (Vec3f& v : now.vertices) // in turn unchanged, rotated, pressed flat
                 v = moment % 4 == 1   ? Vec3f{v.y, v.z, v.x}
                     : moment % 4 == 3 ? Vec3f{v.x, v.y, 1e-7F * v.z}
                                       : v;

@@ -54,8 +54,8 @@ TEST(OctahedralCells, LocateDirectionsOnWallsAxesAndCornersWithinRange) {
                 }
 }
 
-// The property that exactness rests on: whatever point of a face is looked up, wherever it lies on the walls
-// of cells and parts, they were covered, and its L1 norm lies in the cover's range.
+// Exactness rests on this property: the cells and parts of every point of a face, even on their walls, are in
+// the face's cover, and the point's L1 norm lies in the cover's range.
 TEST(CellCover, HoldsEveryPointOfTheFace) {
     RandomLattice random(7);
     for (int n = 0; n < 400; ++n) {
@@ -69,8 +69,8 @@ TEST(CellCover, HoldsEveryPointOfTheFace) {
         cover_cells(cells, face, covers);
         for (int k = 0; k <= 16; ++k)
             for (int l = 0; l + k <= 16; ++l) {
-                // Weights in sixteenths, so that the point lies on the lattice and on the face, edges and
-                // corners too.
+                // Weights in sixteenths, so that the point lies on the lattice and on the face, its edges and
+                // corners included.
                 const LatticePoint sum = face[0] * k + face[1] * l + face[2] * (16 - k - l);
                 if (sum.x % 16 != 0 || sum.y % 16 != 0 || sum.z % 16 != 0) continue;
                 const LatticePoint p{sum.x / 16, sum.y / 16, sum.z / 16};
@@ -89,7 +89,7 @@ TEST(CellCover, HoldsEveryPointOfTheFace) {
 TEST(CellCover, ListsAFaceOnceInACell) {
     RandomLattice random(8);
     for (int n = 0; n < 300; ++n) {
-        // Every third face comes within a few steps of the centre.
+        // Every third face passes within a few steps of the centre.
         const LatticePoint middle = n % 3 == 0 ? LatticePoint{} : random.point(kLatticeExtent / 4);
         std::array<LatticePoint, 3> face;
         for (LatticePoint& corner : face)
@@ -101,7 +101,7 @@ TEST(CellCover, ListsAFaceOnceInACell) {
     }
 }
 
-TEST(CellCover, KnowsWhetherTheRayThroughTheMiddleMeetsTheFace) {
+TEST(CellCover, DecidesWhetherTheRayThroughTheMiddleMeetsTheFace) {
     RandomLattice random(9);
     int met = 0, unsure = 0, total = 0;
     for (int n = 0; n < 600; ++n) {
@@ -125,7 +125,7 @@ TEST(CellCover, KnowsWhetherTheRayThroughTheMiddleMeetsTheFace) {
             }
             if (meets) said_to_meet.insert(cover.cell);
         }
-        for (std::uint32_t cell = 0; cell < cells.count(); ++cell) { // and no cell lacks a face that counts
+        for (std::uint32_t cell = 0; cell < cells.count(); ++cell) { // and no cell misses a face that counts
             if (cone.meets(cells.middle(cell))) {
                 ASSERT_TRUE(said_to_meet.contains(cell)) << n;
             }

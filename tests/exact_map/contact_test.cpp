@@ -59,7 +59,7 @@ TEST(ExactMapContact, HasThePseudonormalOnTheSurface) {
     EXPECT_NEAR(length(normal({1, -1, 1}) - Vec3f{third, -third, third}), 0, 1e-4F);
 }
 
-TEST(ExactMapContact, KnowsANeedleThatIsThinnerThanTheLattice) {
+TEST(ExactMapContact, FindsANeedleThatIsThinnerThanTheLattice) {
     const TriangleMesh needle = make_box({1, 1e-7, 1e-7});
     const TriangleMesh mesh = test::joined({make_box({1, 1, 1}, 2), test::translated(needle, {1.5F, 0, 0})});
     const ExactMap map = ExactMap::build(mesh);

@@ -15,8 +15,8 @@ using test::turned_inside_out;
 
 namespace {
 
-/// |x| + |y| + |z| = 2^19: its bounding radius makes the lattice's step 1, so that whole numbers are lattice
-/// points.
+/// |x| + |y| + |z| = 2^19: its bounding radius makes the lattice step 1, so that lattice points are whole
+/// numbers.
 TriangleMesh lattice_octahedron() {
     TriangleMesh mesh;
     const float r = 1 << 19;
@@ -40,7 +40,7 @@ TEST(ExactMapContains, DecidesToTheLastLatticeStep) {
             const int z = (1 << 19) - x - y;
             const Vec3f mirror{n & 1 ? 1.0F : -1.0F, n & 2 ? 1.0F : -1.0F, n & 4 ? 1.0F : -1.0F};
             const auto at = [&](int step) {
-                const int k = x >= y && x >= z ? 0 : y >= z ? 1 : 2; // the largest coordinate moves
+                const int k = x >= y && x >= z ? 0 : y >= z ? 1 : 2; // move the largest coordinate
                 return Vec3f{mirror.x * static_cast<float>(x + (k == 0 ? step : 0)),
                              mirror.y * static_cast<float>(y + (k == 1 ? step : 0)),
                              mirror.z * static_cast<float>(z + (k == 2 ? step : 0))};
@@ -112,7 +112,7 @@ TEST(ExactMapContains, IsRightWhereTheCentreLiesOnTheSurface) {
     }
 }
 
-TEST(ExactMapContains, TakesNaNAndInfinityForOutside) {
+TEST(ExactMapContains, TreatsNaNAndInfinityAsOutside) {
     const ExactMap map = ExactMap::build(make_box({2, 2, 2}));
     for (float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                       -std::numeric_limits<float>::infinity(), std::numeric_limits<float>::max()})

@@ -16,7 +16,7 @@ TriangleMesh without_faces(TriangleMesh mesh, std::size_t first, std::size_t cou
     return mesh;
 }
 
-/// The half of a sphere that lies above a height: a bowl.
+/// The part of a sphere above a height: a bowl.
 TriangleMesh bowl(double height) {
     TriangleMesh mesh = make_sphere(1, 24, 12);
     std::erase_if(mesh.faces, [&](const Triangle& face) {
@@ -55,7 +55,7 @@ TEST(ExactMapOfAnOpenSurface, AnswersByTheGeneralisedWindingNumber) {
         }
 }
 
-TEST(ExactMapOfAnOpenSurface, TellsHowMuchOfItIsCertain) {
+TEST(ExactMapOfAnOpenSurface, ReportsTheShareThatIsCertain) {
     const ExactMap pierced = ExactMap::build(without_faces(make_torus(1, 0.4, 60, 24), 100, 1));
     EXPECT_LT(pierced.statistics().certain_share, 1);
     EXPECT_GT(pierced.statistics().certain_share, 0.95F);
@@ -71,7 +71,7 @@ TEST(ExactMapOfAnOpenSurface, TellsHowMuchOfItIsCertain) {
 }
 
 TEST(ExactMapOfAnOpenSurface, IsCertainEverywhereWhenTheSurfaceIsClosedAfterAll) {
-    // Every face with vertices of its own, as STL files have it: closed in space, though not by number.
+    // Every face has its own vertices, as in STL files: closed by position, though not by index.
     const TriangleMesh box = make_box({2, 1, 1}, 3);
     TriangleMesh soup;
     for (const Triangle& face : box.faces) {

@@ -97,8 +97,8 @@ TEST(CrossingFilter, IsNearlyAlwaysSureOfFacesInGeneralPosition) {
     EXPECT_LE(unsure, 1);
 }
 
-// A closed surface is crossed as often inwards as outwards by whatever ray and segment, through vertices and
-// along edges and faces too.
+// Any ray and segment crosses a closed surface equally often inwards and outwards, even through vertices and
+// along edges and faces.
 TEST(ExactCrossings, OfAClosedSurfaceAddUp) {
     RandomCase random(3);
     for (int n = 0; n < 50'000; ++n) {
@@ -116,7 +116,7 @@ TEST(ExactCrossings, OfAClosedSurfaceAddUp) {
         int winding_to = 0;
         for (const auto& [i, j, k] : faces)
             winding_to += crossing_on(RaySide::Beyond, {corners[i], corners[j], corners[k]}, to);
-        // The origin must not lie on a face; then it sees the same winding number along every ray.
+        // The origin must not lie on a face; then every ray gives the same winding number.
         bool on_face = false;
         for (const auto& [i, j, k] : faces)
             on_face = on_face || dot(corners[i], cross(corners[j], corners[k])) == 0;

@@ -10,7 +10,7 @@ using namespace echinus;
 
 namespace {
 
-/// @param extent  of places along each axis
+/// @param extent  number of places along each axis
 std::vector<TreeItem> random_items(std::size_t count, const std::array<std::uint32_t, 3>& extent,
                                    unsigned seed) {
     std::mt19937 random(seed);
@@ -29,7 +29,7 @@ std::vector<std::uint32_t> sorted_faces(std::span<const TreeItem> items) {
     return faces;
 }
 
-/// The faces that belong to the left, by sorting all of them.
+/// The faces of the left half, found by sorting all of them.
 std::vector<std::uint32_t> left_by_sorting(std::vector<TreeItem> items, std::size_t left_count,
                                            std::size_t axis) {
     std::sort(items.begin(), items.end(), [axis](const TreeItem& a, const TreeItem& b) {
@@ -43,11 +43,11 @@ std::vector<std::uint32_t> left_by_sorting(std::vector<TreeItem> items, std::siz
 TEST(SplitFaces, PutsTheSmallestAlongTheLongestSideFirst) {
     for (std::size_t count : {2U, 9U, 24U, 25U, 100U, 300U, 5000U})
         for (std::size_t axis = 0; axis < 3; ++axis)
-            for (std::uint32_t extent : {1U, 3U, 1'000'000U}) { // with many ties, and with hardly one
+            for (std::uint32_t extent : {1U, 3U, 1'000'000U}) { // with many ties, and with hardly any
                 std::array<std::uint32_t, 3> extents{1, 1, 1};
                 extents[axis] = extent;
                 std::vector<TreeItem> items = random_items(count, extents, static_cast<unsigned>(count));
-                const std::size_t expected_axis = extent == 1 ? 0 : axis; // of equal sides the first
+                const std::size_t expected_axis = extent == 1 ? 0 : axis; // the first of equal sides
                 for (std::size_t left_count : {std::size_t{1}, count / 2, count - 1}) {
                     const std::vector<std::uint32_t> expected =
                         left_by_sorting(items, left_count, expected_axis);

@@ -11,7 +11,7 @@ using namespace echinus;
 
 namespace {
 
-/// Where the way meets the plane of each face, in double: no answer is better by chance than to its rounding.
+/// The first crossing of the segment with a face, by intersecting all planes in double, up to rounding.
 double first_parameter(const TriangleMesh& mesh, const Vec3d& from, const Vec3d& to) {
     double first = 2;
     for (const Triangle& face : mesh.faces) {
@@ -47,12 +47,12 @@ TEST(ExactMapSweep, FindsTheFirstCrossingThatAnyFaceHas) {
             const SweepHit hit = sweep(map, from, to);
             const double tolerance = 1e-4 * map.view().radius / length(Vec3d(step));
             if (hit.found() != (expected <= 1)) {
-                // Both ends of the way decide, to the lattice's resolution.
+                // The two endpoints decide, to the lattice's resolution.
                 const double end =
                     std::min(unsigned_distance(mesh, Vec3d(from)), unsigned_distance(mesh, Vec3d(to)));
                 ASSERT_LT(end, 1e-5 * map.view().radius);
             } else if (hit.found() && std::fabs(hit.fraction - expected) > tolerance) {
-                // A grazed edge may be missed by a hair.
+                // A grazed edge may be missed narrowly.
                 ASSERT_LT(unsigned_distance(mesh, Vec3d(from) +
                                                       Vec3d(step) * std::min<double>(hit.fraction, expected)),
                           1e-5 * map.view().radius);
@@ -61,8 +61,8 @@ TEST(ExactMapSweep, FindsTheFirstCrossingThatAnyFaceHas) {
     }
 }
 
-TEST(ExactMapSweep, IsOfOneMindWithContainsOnVerticesEdgesAndFaces) {
-    // Corners of the grid lie on the box's vertices, edges, faces and on the lines between them.
+TEST(ExactMapSweep, AgreesWithContainsOnVerticesEdgesAndFaces) {
+    // Grid corners lie on the box's vertices, edges and faces, and on the lines between them.
     const TriangleMesh mesh = make_box({2, 2, 2}, 2);
     const ExactMap map = ExactMap::build(mesh);
     test::Random random(6);

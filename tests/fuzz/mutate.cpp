@@ -1,8 +1,9 @@
-// Runs a fuzz target without libFuzzer: a bounded number of mutations of given files, the same on every run.
+// Runs a fuzz target without libFuzzer: a fixed number of mutations of the given files, the same on every
+// run.
 //
 //   mutate COUNT SEED_FILE...
 //
-// An input at which the target throws is left in the file mutate_failure.bin.
+// An input that makes the target throw is left in mutate_failure.bin.
 
 #include <algorithm>
 #include <cstdint>
@@ -32,8 +33,7 @@ Bytes read_seed(const char* path) {
 
 class Mutator {
   public:
-    /// Up to eight changes in a row, of which most are small: a file that is wrong all over is refused at its
-    /// first byte.
+    /// Up to eight changes in a row, most of them small: a file full of faults is refused at its first byte.
     Bytes mutated(Bytes bytes) {
         const std::size_t change_count = 1 + below(8) * below(2);
         for (std::size_t i = 0; i < change_count && !bytes.empty(); ++i) change(bytes);
@@ -65,7 +65,7 @@ class Mutator {
         }
     }
 
-    /// Counts and references are words, and these are the ones that break sums.
+    /// Counts and references are words; these values overflow sums.
     void overwrite_word(Bytes& bytes) {
         constexpr std::uint32_t kWords[] = {0,          1,          2,          0x7f,
                                             0x8000,     0xffff,     0x7fffffff, 0x80000000,

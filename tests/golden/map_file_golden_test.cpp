@@ -12,7 +12,7 @@
 using namespace echinus;
 namespace fs = std::filesystem;
 
-// Files of every version of the format, kept forever: what one release wrote, all later ones read.
+// Files of every version of the format, kept forever: all later releases read what one release wrote.
 //
 // Distance maps are of a box of 2 x 3 x 4 around the origin with 8 x 6 directions on a sphere or an
 // ellipsoid, 9 x 9 on an octahedron or 6 x 5 x 5 on a cube, exact maps of the same box, of that box without
@@ -108,7 +108,7 @@ void expect_box(const DistanceMap& map) {
     EXPECT_EQ(map.statistics().wrong_parity_share, 0);
 }
 
-/// A failure leaves the new bytes in the build folder: should the change be meant, they are the next golden
+/// A failure leaves the new bytes in the build folder: if the change is intended, they become the next golden
 /// file, beside the old ones.
 void expect_same_bytes(const std::vector<std::byte>& actual, const char* file) {
     if (actual == bytes_of(path_of(file))) return;

@@ -16,7 +16,7 @@ using namespace echinus::test;
 
 namespace {
 
-/// 80 faces in 10 leaves: below the root are two nodes.
+/// 80 faces in 10 leaves: there are two nodes below the root.
 ExactMapParts torus_parts() {
     return ExactMapParts(ExactMap::build(make_torus(1, 0.4, 8, 5), {.divisions = 1}));
 }
@@ -28,7 +28,7 @@ ExactMapParts wide_box_parts() {
     return parts;
 }
 
-/// A box without one face, so that there are gaps in which the answer is uncertain.
+/// A box without one face, so that it has gaps in which the answer is uncertain.
 ExactMapParts open_box_parts() {
     TriangleMesh box = make_box({2, 3, 4});
     box.faces.pop_back();

@@ -28,7 +28,7 @@ DistanceMap load_bytes(const std::vector<std::byte>& bytes) {
     return std::get<DistanceMap>(load_map(bytes, nullptr, "m"));
 }
 
-/// Bit for bit: floats are compared as bytes, so that -0 is not 0.
+/// Bit for bit: floats are compared as bytes, so -0 differs from 0.
 template <typename T>
 bool same_bits(std::span<const T> a, std::span<const T> b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
@@ -310,7 +310,7 @@ TEST(MapFile, RefusesAnotherVersionBeforeItLooksFurther) {
     constexpr std::size_t kVersionField = 0;
     bytes[root_field_position(bytes, kVersionField)] = std::byte{9};
     expect_error(ErrorCode::UnsupportedVersion, "version 9", [&] { load_bytes(bytes); });
-    // Whatever else a later version changes: here, the place of the map.
+    // A later version may change anything else, here the place of the map.
     constexpr std::size_t kMapField = 3;
     bytes[root_field_position(bytes, kMapField) + 3] = std::byte{0xff};
     expect_error(ErrorCode::UnsupportedVersion, "version 9", [&] { load_bytes(bytes); });
@@ -369,7 +369,7 @@ TEST_F(MapFileOnDisk, RefusesWhatIsNoMapFileByName) {
     EXPECT_FALSE(is_map_file(path("")));
 }
 
-TEST_F(MapFileOnDisk, KnowsAMapFileByItsFirstBytes) {
+TEST_F(MapFileOnDisk, RecognisesAMapFileByItsFirstBytes) {
     save(random_map_parts(EntryFormat::Float32, 8, 6, 12).map(), path("any.name"));
     EXPECT_TRUE(is_map_file(path("any.name")));
 }

@@ -19,8 +19,7 @@ void expect_unchanged(const TriangleMesh& mesh, const RepairOptions& options) {
     EXPECT_EQ(repaired.mesh.vertices, mesh.vertices);
 }
 
-/// Both outward, one above and one below the face that they share, which is there once for each: face 0
-/// and 4.
+/// Both outward, one above and one below their common face, which occurs twice: faces 0 and 4.
 TriangleMesh glued_tetrahedra() {
     return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}},
             {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 1, 2}, {0, 4, 1}, {0, 2, 4}, {1, 4, 2}}};
@@ -114,14 +113,14 @@ TEST(Repair, DropsThePatchThatIsTurnedTheWrongWayEvenIfItIsTheFirst) {
     EXPECT_TRUE(inspect(one_face_turned.mesh).closed);
 }
 
-TEST(Repair, LeavesALoneTetrahedronInPeace) {
-    // Its faces, too, are two pairs with the same four corners; but no surface goes on around them.
+TEST(Repair, LeavesASeparateTetrahedronAlone) {
+    // Its faces are also two pairs with the same four corners, but no surface continues around them.
     const TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                                    {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
     expect_unchanged(tetrahedron, RepairOptions::all());
 }
 
-TEST(Repair, NumbersFacesAsInTheMeshThatWentIn) {
+TEST(Repair, NumbersFacesAsInTheInputMesh) {
     TriangleMesh mesh = cube_with_doubled_top();
     mesh.faces.insert(mesh.faces.begin() + 1, mesh.faces[0]);
     const RepairedMesh repaired = repair(mesh, RepairOptions::all());

@@ -65,9 +65,9 @@ TEST(MeshReport, GivesTheVolumeOfABox) {
 }
 
 TEST(MeshReport, GivesTheVolumeOfATorusOfPolygons) {
-    // Pappus: the area of the profile, a regular m-gon, times the path of its centre. The path is a polygon
-    // here, too: a wedge of angle a between two profiles has the volume area * sin(a) * major radius, since
-    // all four corners of a quadrilateral between them lie in one plane.
+    // Pappus: the area of the profile, a regular m-gon, times the path of its centre. The path is also a
+    // polygon here: a wedge of angle a between two profiles has the volume area * sin(a) * major radius,
+    // since all four corners of a quadrilateral between them lie in one plane.
     for (double n : {3.0, 5.0, 60.0})
         for (double m : {3.0, 4.0, 24.0}) {
             const double area = polygon_area(0.4, m);
@@ -209,8 +209,8 @@ TEST(MeshReport, CountsFacesWithoutAreaAsDegenerate) {
 }
 
 TEST(MeshReport, StaysClosedWithANeedleOfZeroAreaInTheSurface) {
-    // One edge of a tetrahedron has a vertex in its middle that only one of the two faces there uses; the
-    // needle a b m fills the slit of no width.
+    // One edge of a tetrahedron has a vertex in its middle that only one of its two faces uses; the needle a
+    // b m fills the slit of zero width.
     const TriangleMesh mesh{{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}},
                             {{0, 2, 1}, {0, 4, 3}, {4, 1, 3}, {0, 1, 4}, {0, 3, 2}, {1, 2, 3}}};
     const MeshReport report = inspect(mesh);

@@ -38,6 +38,6 @@ TEST(RequireValid, NamesTheFirstFaceWithAPositionThatIsNotFinite) {
         auto vertices = kCorners;
         vertices[3].y = bad;
         expect_invalid({vertices, {{0, 1, 2}, {0, 1, 3}}}, "face 1 of the mesh uses vertex 3");
-        EXPECT_NO_THROW(require_valid({vertices, {{0, 1, 2}}})); // a vertex that nobody uses may be anything
+        EXPECT_NO_THROW(require_valid({vertices, {{0, 1, 2}}})); // an unused vertex may be anything
     }
 }

@@ -12,7 +12,7 @@ using namespace echinus::test;
 
 namespace {
 
-/// Every face with vertices of its own.
+/// Every face gets its own vertices.
 TriangleMesh take_apart(const TriangleMesh& mesh) {
     TriangleMesh soup;
     for (const Triangle& face : mesh.faces) {
@@ -39,7 +39,7 @@ TEST(Weld, LeavesAWeldedMeshAsItIs) {
     EXPECT_EQ(welded.faces, box.faces);
 }
 
-TEST(Weld, TakesZeroAndMinusZeroForEqual) {
+TEST(Weld, TreatsZeroAndMinusZeroAsEqual) {
     const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-0.0F, 0, -0.0F}, {1, 1, 0}},
                             {{0, 1, 2}, {3, 4, 1}}};
     const TriangleMesh welded = weld(mesh);

@@ -10,15 +10,14 @@ namespace echinus::test {
 
 namespace {
 
-constexpr double kAmbiguousSteps =
-    2;                         // mesh and particle move by sqrt(3) steps together when they are snapped
-constexpr double kDeep = 1e-3; // R; nearer, snapping turns directions by more than what is promised
-constexpr double kFar = 0.01;  // R, for open surfaces
+constexpr double kAmbiguousSteps = 2;   // snapping moves mesh and particle by sqrt(3) steps together
+constexpr double kDeep = 1e-3;          // R; nearer, snapping turns directions by more than the stated limit
+constexpr double kFar = 0.01;           // R, for open surfaces
 constexpr double kDistanceLimit = 1e-5; // R
 constexpr double kNormalLimitDeg = 0.1;
 constexpr double kUnitLength = 1e-5;
-/// How far from halfway between two lattice planes, in steps, either may be taken: double's rounding on the
-/// way from float to lattice.
+/// Within this distance of halfway between two lattice planes, in steps, either is right: the rounding of
+/// double on the way from float to lattice.
 constexpr double kTie = 1e-6;
 
 std::vector<Corners> corners_of(const TriangleMesh& mesh) {
@@ -49,7 +48,7 @@ double angle_deg(const Vec3d& a, const Vec3d& b) {
     return std::atan2(length(cross(a, b)), dot(a, b)) * 180 / std::numbers::pi;
 }
 
-/// By how much a place that was rounded to float may be off.
+/// The error of a position that was rounded to float.
 double rounding_of(const Vec3f& rounded_place) {
     const auto half_spacing = [](float x) {
         return 0.5 * static_cast<double>(std::nextafter(std::fabs(x), INFINITY) - std::fabs(x));
@@ -63,7 +62,7 @@ void complain(Score& score, const Vec3f& p, const std::string& what) {
         score.complaints.push_back(fmt::format("({}, {}, {}): {}", p.x, p.y, p.z, what));
 }
 
-/// Counts a fault and says what it is.
+/// Counts and describes a fault.
 void count(std::size_t& counter, Score& score, const Vec3f& point, const std::string& what) {
     ++counter;
     complain(score, point, what);
@@ -130,7 +129,7 @@ AccuracyJudge::AccuracyJudge(const TriangleMesh& mesh, const ExactMapView& map)
     cgal_.emplace(mesh);
 }
 
-/// The lattice point of a particle, and others where a coordinate lies halfway between two.
+/// The lattice points of a particle: more than one where a coordinate lies halfway between two.
 std::vector<Vec3d> AccuracyJudge::snapped_places(const Vec3f& point) const {
     const Vec3d p = (Vec3d(point) - centre_) * (1 / step_);
     const Vec3d low = rounded(p - Vec3d{kTie, kTie, kTie}), high = rounded(p + Vec3d{kTie, kTie, kTie});
@@ -152,7 +151,7 @@ Truth AccuracyJudge::truth(const Vec3f& point, std::uint32_t hint) const {
         for (const Vec3d& place : snapped_places(point))
             truth.snapped_windings.push_back(snapped_crossings_->winding(place));
     } else if (truth.distance >= kFar * radius_) {
-        truth.open_winding = solid_angles_->winding_number(p); // dear, and nobody asks about the others
+        truth.open_winding = solid_angles_->winding_number(p); // expensive, and not needed elsewhere
     }
     return truth;
 }
@@ -213,7 +212,7 @@ void AccuracyJudge::judge_contact(const Vec3f& point, const Truth& truth, const 
                  fmt::format("distance wrong by {:.3g} R, contact point by {:.3g} R", distance_error,
                              point_error));
     if (truth.distance <= kDeep * radius_) return;
-    // Far from the origin the contact point is coarser than the normal.
+    // Far from the origin, the contact point is coarser than the normal.
     const double by_rounding = rounding_of(contact.point) / truth.distance * 180 / std::numbers::pi;
     const double angle =
         std::max(0.0, angle_deg(normal, contact.inside ? to_surface : -to_surface) - by_rounding);

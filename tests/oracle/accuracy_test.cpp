@@ -1,5 +1,5 @@
 // Would the judge of exact maps notice a wrong answer? A box gives true answers by formula; each test spoils
-// them in one way and finds that in the score and nothing else.
+// them in one way and expects that fault in the score and no other.
 
 #include "directions/lattice.hpp"
 #include "oracle/accuracy.hpp"
@@ -15,7 +15,7 @@ using namespace echinus;
 
 namespace {
 
-/// All that the judge asks a map itself: where its lattice lies.
+/// All that the judge reads from a map itself: the position of its lattice.
 ExactMapView lattice_around(const TriangleMesh& mesh) {
     const LatticeMesh lattice = snap_to_lattice(mesh);
     ExactMapView view;
@@ -118,7 +118,7 @@ TEST(AccuracyJudge, CountsQueriesThatDisagree) {
     const test::Score score =
         score_of_spoilt([](std::uint8_t&, Contact& contact) { contact.inside = !contact.inside; });
     EXPECT_EQ(score.wrong_inside, 0U);
-    EXPECT_EQ(score.inconsistent, 2U); // the depth's sign fits no more, either
+    EXPECT_EQ(score.inconsistent, 2U); // the depth's sign is wrong now as well
 }
 
 TEST(AccuracyJudge, CountsMissingContactsAndNormalsThatAreNotANumber) {
@@ -138,7 +138,7 @@ TEST(AccuracyJudge, MeasuresAWrongDistance) {
 
 TEST(AccuracyJudge, MeasuresAContactPointThatIsNotTheNearest) {
     const test::Score score = score_of_spoilt([](std::uint8_t&, Contact& contact) {
-        contact.point.x += 0.01F; // in the side's plane, perhaps, but not where the depth leads
+        contact.point.x += 0.01F; // possibly in the side's plane, but not where the depth leads
         contact.point.y += 0.01F;
     });
     EXPECT_LT(score.worst_distance_error, 1e-6);
@@ -174,7 +174,7 @@ TEST(AccuracyJudge, ForgivesOnlyPointsNearTheSurface) {
     EXPECT_EQ(score_of(3).wrong_inside, 1U);
 }
 
-TEST(AccuracyJudge, KnowsOpenSurfacesByTheirWindingNumber) {
+TEST(AccuracyJudge, JudgesOpenSurfacesByTheirWindingNumber) {
     TriangleMesh open = make_sphere(1, 40, 20);
     open.faces.resize(open.faces.size() - 200);
     const test::AccuracyJudge judge(open, lattice_around(open));

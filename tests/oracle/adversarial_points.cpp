@@ -50,7 +50,7 @@ class Generator {
         return scale > 0 ? std::fabs(dot(normal, ray)) / scale : 1;
     }
 
-    /// The twentieth of the faces that are seen most edge-on.
+    /// The 5 % of the faces that are seen most edge-on.
     std::vector<std::uint32_t> edge_on_faces() const {
         std::vector<std::pair<double, std::uint32_t>> faces;
         for (std::uint32_t i = 0; i < mesh_.faces.size(); ++i) faces.emplace_back(elevation(i), i);
@@ -78,7 +78,7 @@ class Generator {
     Vec3d point_of_edge() {
         const Corners corners = random_face();
         const std::size_t k = below(3);
-        // Halves, quarters and the like can be exactly on the edge in float.
+        // Halves, quarters and the like can lie exactly on the edge in float.
         const double t = random_.uniform() < 0.5 ? random_.uniform() : static_cast<double>(below(17)) / 16;
         return corners[k] + (corners[(k + 1) % 3] - corners[k]) * t;
     }
@@ -101,7 +101,7 @@ class Generator {
         return {std::round(d.x), std::round(d.y), std::round(d.z)};
     }
     Vec3f from_lattice(const Vec3d& p) const { return Vec3f(Vec3d(frame_.centre) + p * frame_.step()); }
-    /// Somewhere on the ray from the centre through a place.
+    /// A random point on the ray from the centre through a position.
     Vec3f along_ray(const Vec3d& through) {
         const Vec3d centre(frame_.centre);
         return Vec3f(centre + (through - centre) * random_.uniform(0, 1.3));
@@ -113,7 +113,7 @@ class Generator {
     Vec3f ray_of_vertex() { return along_ray(random_vertex()); }
     Vec3f ray_of_edge() { return along_ray(point_of_edge()); }
 
-    /// One or two coordinates are the centre's.
+    /// One or two coordinates equal the centre's.
     Vec3f on_coordinate_plane() {
         const auto spread = [&] {
             return static_cast<float>(random_.uniform(-1, 1) * static_cast<double>(frame_.radius));
@@ -127,7 +127,7 @@ class Generator {
         return p;
     }
 
-    /// Where n |x| / (|x| + |y| + |z|) is a whole number, of a coordinate that is drawn too.
+    /// Where n |x| / (|x| + |y| + |z|) is a whole number, for a random coordinate.
     Vec3f on_cell_wall() {
         const double n = frame_.divisions;
         const double sixteenths = random_.uniform(1, 0x1p19 / n); // of the L1 norm, so that the wall is exact

@@ -23,7 +23,7 @@ std::vector<ExactMap> build_maps(const TriangleMesh& mesh, const CheckOptions& o
     return maps;
 }
 
-/// Parity has no truth where the surface is open.
+/// Parity is not defined where the surface is open.
 std::vector<InsideRule> rules_with_meaning(const std::string& name, const TriangleMesh& mesh,
                                            std::vector<InsideRule> rules) {
     if (!inspect(weld(mesh)).closed) std::erase(rules, InsideRule::Parity);
@@ -43,7 +43,7 @@ std::function<void(std::size_t)> share_of(const CheckOptions& options, std::size
     };
 }
 
-/// More than any distance between a particle of our sets and the surface.
+/// Larger than the distance of any particle of our sets from the surface.
 float margin_around(const ExactMapView& map) {
     return 4 * map.radius;
 }

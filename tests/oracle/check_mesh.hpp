@@ -12,19 +12,19 @@ namespace echinus::test {
 struct CheckOptions {
     std::size_t points = 10'000'000;
     std::vector<InsideRule> rules{InsideRule::Nonzero, InsideRule::Parity};
-    ExactMapOptions map; ///< its rule is set for each of `rules`
+    ExactMapOptions map; ///< each of `rules` replaces its rule
     std::uint64_t seed = 1;
     unsigned thread_count = 0; ///< 0: all cores
-    /// Called now and then with the share of the points that are judged.
+    /// Called from time to time with the share of the points judged so far.
     std::function<void(double fraction)> report_progress = {};
 };
 
-/// Asks a map.
+/// Queries a map.
 Defendant defendant_of(const ExactMap& map);
 
 /// Builds a map for each rule and judges them on four sets of points: uniform in the bounding sphere, near
-/// the surface, cloth-like and adversarial. Of an open surface only the rule Nonzero is judged: parity has no
-/// truth there.
+/// the surface, cloth-like and adversarial. For an open surface only the rule Nonzero is judged: parity is
+/// not defined there.
 CheckResult check_mesh(const std::string& name, const TriangleMesh& mesh, const CheckOptions& options);
 
 } // namespace echinus::test

@@ -18,8 +18,8 @@ std::uint32_t spread_bits(std::uint32_t bits) {
     return (bits | bits << 2U) & 0x09249249U;
 }
 
-/// Along Morton's curve, so that neighbours are judged one after the other: what one needs from memory the
-/// next one finds in the cache, which halves the time of all. No answer depends on the order.
+/// In Morton order, so that neighbours are judged in succession and find their data in the cache, which
+/// halves the total time. No answer depends on the order.
 void sort_along_curve(std::vector<Vec3f>& points, const MapFrame& frame) {
     const auto cell_of = [&](float coordinate, float centre) {
         const float share = (coordinate - centre) / frame.radius * 0.25F + 0.5F;
@@ -39,7 +39,7 @@ void sort_along_curve(std::vector<Vec3f>& points, const MapFrame& frame) {
     points = std::move(sorted);
 }
 
-/// Sheets laid over the mesh from three sides.
+/// Sheets draped over the mesh from three sides.
 std::vector<Vec3f> sheets(const TriangleMesh& mesh, std::size_t side) {
     std::vector<Vec3f> points;
     for (const comparison::Axis up : {comparison::Axis::X, comparison::Axis::Y, comparison::Axis::Z}) {

@@ -9,11 +9,11 @@ namespace echinus::test {
 
 struct PointSet {
     const char* name;
-    std::function<std::vector<Vec3f>()> make; ///< made when it is needed: a set of millions takes room
+    std::function<std::vector<Vec3f>()> make; ///< made on demand: a set of millions takes memory
 };
 
-/// The four sets that echinus-check asks about, `count` points together, a quarter each but for rounding:
-/// uniform in the bounding sphere, near the surface, cloth-like and adversarial. The mesh must live as long.
+/// The four sets of echinus-check, `count` points together, a quarter each up to rounding: uniform in the
+/// bounding sphere, near the surface, cloth-like and adversarial. The mesh must outlive them.
 std::vector<PointSet> point_sets(const TriangleMesh& mesh, const MapFrame& frame, std::size_t count,
                                  std::uint64_t seed);
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-/// How echinus-check prints what it found.
+/// How echinus-check prints its results.
 namespace echinus::test {
 
 std::string to_json(const CheckResult& result);

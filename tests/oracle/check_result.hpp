@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-/// What echinus-check found out about one mesh.
+/// The results of echinus-check for one mesh.
 namespace echinus::test {
 
-/// As on the command line.
+/// As given on the command line.
 const char* name_of(InsideRule rule);
 
 struct SetResult {
@@ -25,14 +25,14 @@ struct CheckResult {
     std::uint64_t seed = 0;
     std::vector<InsideRule> rules;
     std::vector<SetResult> sets;
-    std::size_t wrong_corners = 0; ///< of the map, not where the mesh's corners snap to
+    std::size_t wrong_corners = 0; ///< of the map, that differ from the mesh's snapped corners
     std::size_t compared_with_cgal = 0, judges_disagree = 0;
     double seconds = 0;
 
     Score total(std::size_t rule) const;
-    /// Of the points drawn uniformly; 1 where the surface is closed.
+    /// Of the uniform points; 1 where the surface is closed.
     double certain_share() const;
-    /// No answer is wrong, and all distances and normals are as near as docs/accuracy.md promises.
+    /// No answer is wrong, and all distances and normals are within the limits of docs/accuracy.md.
     bool right() const;
     /// All answers are right, and at least 90 % of the bounding sphere is certain.
     bool holds() const;

@@ -23,7 +23,8 @@ TEST(ClassifiedGridOracle, IsRightAboutSignsAndDepths) {
             grid.contains_batch(points, inside);
             std::vector<Contact> contacts(points.size());
             grid.contacts_batch(points, 3 * lattice.radius, contacts);
-            const double tolerance = 4 * lattice.frame.step; // what snapping may turn
+            const double tolerance = 4 * lattice.frame.step; // snapping may change sides and depths by this
+                                                             // much
             for (std::size_t i = 0; i < points.size(); ++i) {
                 const double distance = judge.distance(Vec3d(points[i]));
                 if (distance > tolerance)

@@ -18,15 +18,15 @@ using Point = Kernel::Point_3;
 using Integer = CGAL::Exact_integer;
 using IntegerPoint = CGAL::Simple_cartesian<Integer>::Point_3;
 
-/// Towards no corner, edge or plane that a modeller would draw, long enough to leave every surface, and of
-/// primes, so that rays from whole numbers through whole numbers seldom meet edges.
+/// Avoids the corners, edges and planes that a modeller would draw, is long enough to leave every surface,
+/// and consists of primes, so that rays between points of whole numbers seldom meet edges.
 constexpr Vec3d kDirectionInUnits{1299709, 1999993, 2750159};
 constexpr int kMaxAttempts = 16;
-/// More than the end of a ray strays, and than rounding.
+/// More than a ray's jitter plus rounding.
 constexpr double kSlackInUnits = 64;
 
-/// The end of the ray. Another attempt is another ray; the ends lie on no common plane, for one of those may
-/// hold a face.
+/// The end of the ray. Each attempt gives another ray; the ends lie on no common plane, since that could
+/// contain a face.
 Vec3d end_of_ray(const Vec3d& start, double unit, int attempt) {
     const auto scattered = [attempt](int factor, int modulus) {
         return static_cast<double>(factor * attempt % modulus);
@@ -39,7 +39,7 @@ Point to_cgal(const Vec3d& p) {
     return {p.x, p.y, p.z};
 }
 
-/// Scaled by 2^180, so that a displacement by 2^-60, 2^-120 and 2^-180 is one by whole numbers.
+/// Scaled by 2^180, so that displacements by 2^-60, 2^-120 and 2^-180 are whole numbers.
 Integer scaled(double whole) {
     return Integer(whole) << 180;
 }
@@ -49,7 +49,7 @@ IntegerPoint to_integers(const Point& p) {
 
 /// p + (e, e^2, e^3) with e = 2^-60. Determinants of whole numbers are whole numbers, and as functions of p
 /// they are linear with whole coefficients below 2^48: so each power of e decides before the next one counts,
-/// and none changes the sign of what is not 0. No smaller e would give another answer.
+/// and none changes a nonzero sign. A smaller e gives the same answers.
 IntegerPoint displaced(const Point& p) {
     return {scaled(p.x()) + (Integer(1) << 120), scaled(p.y()) + (Integer(1) << 60), scaled(p.z()) + 1};
 }
@@ -78,13 +78,13 @@ class Side {
     OnPlane on_plane_;
 };
 
-/// +1 where the ray leaves the solid through the face, -1 where it enters, 0 where it misses the face; none
-/// where it meets an edge or a vertex or ends on the plane.
+/// +1 where the ray leaves the solid through the face, -1 where it enters, 0 where it misses the face;
+/// nothing where it meets an edge or a vertex or ends on the plane.
 std::optional<int> crossing(const std::array<Point, 3>& face, const Side& particle, const Point& end) {
     const auto& [a, b, c] = face;
     const int start_side = particle.of_plane(a, b, c);
-    // A ray from a point of the plane meets the plane there only; then the point lies on the face itself, or
-    // the face is missed. A face without area has no sides at all.
+    // A ray from a point of the plane meets the plane only there: either the point lies on the face itself,
+    // or the ray misses the face. A face without area has no sides.
     if (start_side == 0) return 0;
     const int end_side = CGAL::orientation(a, b, c, end);
     if (end_side == 0) return std::nullopt;

@@ -9,20 +9,20 @@
 
 namespace echinus::test {
 
-/// What a point on the plane of a face does.
+/// How to treat a point on the plane of a face.
 enum class OnPlane : std::uint8_t {
-    /// The face is not counted. Right for every point that does not lie on the surface itself.
+    /// The face does not count. Right for every point that does not lie on the surface itself.
     Skip,
     /// The point is displaced by (e, e^2, e^3) with e = 2^-60 and judged in exact integers. Right for every
-    /// point of whole numbers, on the surface too; corners and points must be whole numbers below 2^21.
+    /// point of whole numbers, even on the surface; corners and points must be whole numbers below 2^21.
     Displace,
 };
 
-/// Winding numbers of a closed surface, whatever its parts do to each other: signed crossings along a ray,
-/// every one decided by CGAL's exact predicates (EPICK). No ray passes near the centre of a map on purpose.
+/// Winding numbers of a closed surface, even self-intersecting: signed crossings along a ray, each decided by
+/// CGAL's exact predicates (EPICK). Unlike those of a map, the rays are not aimed at its centre.
 ///
-/// All rays have the same direction but for jitter, so a grid across that direction lists the faces that a
-/// ray can meet. It is wider than rounding and jitter: a face too many costs a predicate and no answer.
+/// All rays have the same direction up to jitter, so a grid across that direction lists the faces that a ray
+/// can meet. It allows for rounding and jitter: a surplus face costs a predicate but changes no answer.
 class CrossingCounter {
   public:
     using Corners = std::array<Vec3d, 3>;
@@ -33,7 +33,7 @@ class CrossingCounter {
     CrossingCounter(CrossingCounter&& other) noexcept;
     ~CrossingCounter();
 
-    /// Any number of threads may ask.
+    /// Thread-safe.
     int winding(const Vec3d& point) const;
 
   private:

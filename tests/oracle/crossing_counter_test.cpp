@@ -45,8 +45,8 @@ TEST(CrossingCounter, IsRightOnTheExtensionsOfFacesAndEdges) {
         EXPECT_EQ(counter.winding(p), 1);
 }
 
-// A particle on the surface stands for itself moved by (e, e^2, e^3): so of a box along the axes it owns the
-// lower sides, and no neighbour owns them too.
+// A particle on the surface counts as displaced by (e, e^2, e^3): an axis-aligned box therefore owns its
+// lower sides, and no neighbour owns them as well.
 TEST(CrossingCounter, DisplacesWhatLiesOnTheSurface) {
     const TriangleMesh box = make_box({4, 4, 4}, 2);
     const test::CrossingCounter counter(corners_of(box), 1, test::OnPlane::Displace);
@@ -59,8 +59,8 @@ TEST(CrossingCounter, DisplacesWhatLiesOnTheSurface) {
 }
 
 TEST(CrossingCounter, DisplacesAlongYWhereXDecidesNothing) {
-    // A plane that holds the x axis: y = z. e^2 > e^3, so a particle on it goes to the side where y is
-    // larger.
+    // A plane that contains the x axis: y = z. Since e^2 > e^3, a particle on it moves to the side of larger
+    // y.
     TriangleMesh wedge;
     wedge.vertices = {{-8, -8, -8}, {8, -8, -8}, {8, 8, 8}, {-8, 8, 8}, {0, 8, -8}};
     wedge.faces = {{0, 2, 1}, {0, 3, 2}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
@@ -75,7 +75,7 @@ TEST(CrossingCounter, FindsAnotherRayWhereTheFirstEndsOnThePlaneOfAFace) {
     constexpr double kRadius = 524288;
     TriangleMesh octahedron = make_sphere(kRadius, 4, 2);
     const test::CrossingCounter counter(corners_of(octahedron), 1, test::OnPlane::Displace);
-    // With the first ray's end x + y - z = kRadius, the plane of a face.
+    // The first ray ends on x + y - z = kRadius, the plane of a face.
     const double difference = 1299709 + 1999993 - 2750159 - kRadius;
     EXPECT_EQ(counter.winding({-60000, 30000, difference - 30000}), 1);
 }

@@ -42,7 +42,7 @@ constexpr PoleAxis kAxes[] = {PoleAxis::X, PoleAxis::Y, PoleAxis::Z};
 
 } // namespace
 
-TEST(CrossingsOracle, CountsAsCgalDoesOnEveryRayAlsoThroughEdgesAndVertices) {
+TEST(CrossingsOracle, CountsAsCgalDoesOnEveryRayEvenThroughEdgesAndVertices) {
     RayCounts total;
     for (const auto& [name, mesh] : test::generated_meshes())
         for (PoleAxis axis : kAxes) {
@@ -61,7 +61,7 @@ TEST(CrossingsOracle, CountsAsCgalDoesOnEveryRayAlsoThroughEdgesAndVertices) {
     EXPECT_GT(total.all, 2 * total.degenerate);
 }
 
-TEST(CrossingsOracle, DistancesAreCgalsButForTheRoundingOfFloat) {
+TEST(CrossingsOracle, DistancesAgreeWithCgalUpToTheRoundingOfFloat) {
     constexpr double kFloatRounding = 0x1p-24;
     for (const auto& [name, mesh] : test::generated_meshes()) {
         const LatticeMesh lattice = snap_to_lattice(mesh);

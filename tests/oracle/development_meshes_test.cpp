@@ -1,5 +1,4 @@
-// Real models. They lie beside the repository where it is developed and are not part of it; elsewhere these
-// tests are skipped.
+// Real models, which are not part of the repository; these tests are skipped where they are missing.
 
 #include "oracle/exact_judge.hpp"
 #include "oracle/expect_right_map.hpp"
@@ -32,7 +31,7 @@ bool is_mesh(const std::filesystem::path& path) {
 
 } // namespace
 
-TEST_F(DevelopmentMeshes, CentresOfAllClosedOnesAreOnTheSideThatCgalSays) {
+TEST_F(DevelopmentMeshes, CentresOfAllClosedOnesAreOnTheSideThatCgalFinds) {
     int closed_count = 0;
     for (const auto& file : std::filesystem::directory_iterator(kFolder)) {
         if (!is_mesh(file)) continue;

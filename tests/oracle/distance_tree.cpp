@@ -18,8 +18,8 @@ double segment_distance_sq(const Vec3d& point, const Vec3d& a, const Vec3d& b) {
     return squared(point - (a + ab * t));
 }
 
-/// The least of the distances to the edges and, where the foot of the perpendicular lies within the face, to
-/// its plane.
+/// The smallest distance to the edges and, where the foot of the perpendicular lies within the face, to its
+/// plane.
 double face_distance_sq(const Corners& face, const Vec3d& point) {
     const auto& [a, b, c] = face;
     const Vec3d normal = cross(b - a, c - a);

@@ -14,15 +14,15 @@ using Corners = std::array<Vec3d, 3>;
 /// Distance from a point to a triangle, which may have no area. In double, independent of Echinus' code.
 double distance_to(const Corners& face, const Vec3d& point);
 
-/// Distances to the nearest point of a surface, less its faces with two corners in one place, by branch and
-/// bound over a tree of boxes, in double. CGAL's own tree gives the same (a test compares them) and takes ten
-/// times as long.
+/// Distances to the nearest point of a surface without its faces with two coinciding corners, by branch and
+/// bound over a tree of boxes, in double. CGAL's own tree gives the same (a test compares them) in ten times
+/// the time.
 class DistanceTree {
   public:
     /// @pre a face has three different corners
     explicit DistanceTree(std::vector<Corners> faces);
 
-    /// @param hint  a face that is thought to be near; any face will do, a near one is faster
+    /// @param hint  any face; a near one is faster
     double distance(const Vec3d& point, std::uint32_t hint = 0) const;
 
     const Corners& face(std::uint32_t number) const { return faces_[number]; }

@@ -1,4 +1,4 @@
-// The program echinus-check: is a map of this mesh right about millions of points? Not installed, because its
+// The program echinus-check: is a map of this mesh right at millions of points? Not installed, because its
 // judge uses parts of CGAL that are under the GPL.
 
 #include "options.hpp"
@@ -60,7 +60,7 @@ void add_options(Command command, Arguments& arguments) {
                    "Example: echinus-check horse.obj --points 1000000");
 }
 
-/// The mesh and what to call it.
+/// The mesh and its name.
 std::pair<std::string, TriangleMesh> mesh_of(const Arguments& arguments) {
     if (!arguments.generate.empty()) return {arguments.generate, test::make_nasty_mesh(arguments.generate)};
     if (arguments.mesh.empty()) throw WrongUse("A mesh, or --generate NAME, is required");

@@ -21,7 +21,7 @@ namespace {
 
 /// Predicates are exact, constructions rounded.
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-/// Numbers as long as they need to be.
+/// Arbitrary-precision integers.
 using ExactKernel = CGAL::Exact_predicates_exact_constructions_kernel;
 
 using Triangles = std::vector<Kernel::Triangle_3>;
@@ -46,7 +46,7 @@ using SoupMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using SoupTree =
     CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_face_graph_triangle_primitive<SoupMesh>>>;
 
-/// Each face with corners of its own: all that trees look at, and Surface_mesh refuses what is not manifold.
+/// Each face has its own corners: trees need no more, and Surface_mesh refuses non-manifold meshes.
 SoupMesh soup_of(const TriangleMesh& mesh) {
     SoupMesh soup;
     for (const Triangle& face : mesh.faces) {
@@ -134,8 +134,8 @@ ExactKernel::Vector_3 perturbed(const Vec3d& d) {
     return {scale * d.x + 0x1p100, scale * d.y + 0x1p50, scale * d.z + 1};
 }
 
-/// Where a line through the origin along `d` meets the triangle, as a multiple of d; none where it does not
-/// or only lies in its plane.
+/// Where a line through the origin along `d` meets the triangle, as a multiple of d; nothing where it misses
+/// the triangle or only lies in its plane.
 std::optional<double> parameter_of(const ExactKernel::Triangle_3& triangle, const ExactKernel::Vector_3& d) {
     const ExactKernel::Ray_3 ray(ExactKernel::Point_3(CGAL::ORIGIN), d);
     const auto met = CGAL::intersection(ray, triangle);
@@ -161,7 +161,8 @@ ExactRayCaster::~ExactRayCaster() = default;
 
 ExactCrossings ExactRayCaster::cast(const Vec3d& direction) const {
     const auto through = to_cgal<Kernel>(direction);
-    // A small turn of the ray cannot meet faces that it does not touch now: they are a distance away.
+    // After a small turn the ray still misses the faces that it does not touch now, as their distance is
+    // positive.
     const auto touched = structure_->touched_by({Kernel::Point_3(CGAL::ORIGIN), through});
     ExactCrossings result;
     result.generic = std::ranges::all_of(touched, [&](const auto& t) { return meets_inside(t, through); });

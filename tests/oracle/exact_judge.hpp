@@ -6,13 +6,13 @@
 #include <memory>
 #include <vector>
 
-/// What is true of a mesh, by CGAL's exact predicates: shares no code with Echinus. For tests and benchmarks
+/// The truth about a mesh, by CGAL's exact predicates; shares no code with Echinus. For tests and benchmarks
 /// only, as CGAL's parts used here are under the GPL. Its headers stay in exact_judge.cpp.
 namespace echinus::test {
 
 enum class ExactSide { Outside, OnSurface, Inside };
 
-/// Inside or outside of a closed mesh, and the nearest point. Any number of threads may ask one judge.
+/// Inside or outside a closed mesh, and the nearest point. Thread-safe.
 class ExactJudge {
   public:
     /// @pre the mesh is closed; faces without area are left out
@@ -20,11 +20,11 @@ class ExactJudge {
     ExactJudge(ExactJudge&& other) noexcept;
     ~ExactJudge();
 
-    /// By the parity of a ray, decided exactly for the coordinates as they are.
+    /// By the parity of a ray, decided exactly for the given coordinates.
     ExactSide side(const Vec3d& point) const;
     bool inside(const Vec3f& point) const { return side(Vec3d(point)) == ExactSide::Inside; }
 
-    /// Distance to the nearest point of the surface; exact but for the rounding of double.
+    /// Distance to the nearest point of the surface; exact up to the rounding of double.
     double distance(const Vec3d& point) const;
 
   private:
@@ -38,14 +38,14 @@ struct ExactCrossings {
     bool generic = true;            ///< the ray meets no edge and no vertex and lies in no face's plane
 };
 
-/// Faces with corners of whole numbers up to 2^19, to be crossed by rays from the origin.
+/// Faces with corners of whole numbers up to 2^19, for rays from the origin.
 class ExactRayCaster {
   public:
     explicit ExactRayCaster(const std::vector<std::array<Vec3d, 3>>& faces);
     ~ExactRayCaster();
 
     /// All crossings of the ray along a direction of whole numbers up to 2^19. Where the ray is not generic,
-    /// those of the ray along d + (e, e^2, e^3), for an e so small that no smaller one gives another number.
+    /// those of the ray along d + (e, e^2, e^3), with e so small that a smaller one gives the same number.
     /// @pre the origin lies on no face and on no line of an edge
     ExactCrossings cast(const Vec3d& direction) const;
 

@@ -1,5 +1,5 @@
-// Exact maps are right about every point of small nasty meshes. echinus-check asks about millions, of large
-// meshes too; docs/accuracy.md has what it found.
+// Exact maps are right at every tested point of small nasty meshes. echinus-check tests millions, of large
+// meshes too; docs/accuracy.md has its results.
 
 #include "oracle/expect_right_map.hpp"
 #include "oracle/nasty_meshes.hpp"
@@ -9,7 +9,7 @@ using namespace echinus;
 
 TEST(ExactMapOracle, IsRightAboutNastyMeshes) {
     for (const std::string& name : test::nasty_mesh_names())
-        if (name != "million" && name != "rings") // these take longer than a test should
+        if (name != "million" && name != "rings") // too slow for a test
             test::expect_right_map(name, test::make_nasty_mesh(name), {}, 20'000);
 }
 

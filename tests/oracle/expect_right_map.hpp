@@ -6,7 +6,7 @@
 
 namespace echinus::test {
 
-/// Fails unless all answers of the maps of a mesh, one for each rule, hold about so many points.
+/// Fails unless all answers of a mesh's maps, one for each rule, are right at about this many points.
 inline void expect_right_map(const std::string& name, const TriangleMesh& mesh, const ExactMapOptions& map,
                              std::size_t points) {
     const CheckResult result = check_mesh(name, mesh, {.points = points, .map = map});

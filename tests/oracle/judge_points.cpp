@@ -1,4 +1,4 @@
-// Many points on several threads.
+// Judges many points on several threads.
 
 #include "oracle/accuracy.hpp"
 
@@ -13,7 +13,7 @@ namespace echinus::test {
 namespace {
 
 constexpr std::size_t kBatch = 8192;
-/// Side_of_triangle_mesh takes many times as long as all the rest.
+/// Side_of_triangle_mesh takes many times as long as everything else.
 constexpr std::size_t kComparedWithCgal = 256;
 
 Verdicts judge_batch(const AccuracyJudge& judge, std::span<const Vec3f> points,
@@ -65,7 +65,8 @@ Verdicts judge_points(const AccuracyJudge& judge, std::span<const Vec3f> points,
                       std::span<const Defendant> defendants, unsigned thread_count,
                       const std::function<void(std::size_t done)>& report_progress) {
     const std::size_t batch_count = (points.size() + kBatch - 1) / kBatch;
-    std::vector<Verdicts> batches(batch_count); // merged in order: the complaints are the first of all
+    std::vector<Verdicts> batches(batch_count); // merged in order, so that the complaints are the first
+                                                // overall
     std::mutex progress_mutex;
     std::size_t done = 0;
     on_threads(batch_count,

@@ -28,7 +28,7 @@ TEST(JudgesOracle, UnsignedDistanceAgreesWithCgal) {
     }
 }
 
-TEST(JudgesOracle, KnowsTheSurface) {
+TEST(JudgesOracle, RecognisesTheSurface) {
     const test::ExactJudge judge(make_box({2, 2, 2}));
     EXPECT_EQ(judge.side({1, 0.25, 0.5}), test::ExactSide::OnSurface);
     EXPECT_EQ(judge.side({1, 1, 1}), test::ExactSide::OnSurface);

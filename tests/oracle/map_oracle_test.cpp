@@ -17,7 +17,7 @@ bool centre_is_judged_inside(const TriangleMesh& mesh, const DistanceMap& map) {
 
 } // namespace
 
-TEST(MapOracle, KnowsOnWhichSideTheCentreOfEveryGeneratedMeshLies) {
+TEST(MapOracle, ClassifiesTheCentreOfEveryGeneratedMesh) {
     for (const auto& [name, mesh] : test::generated_meshes())
         for (PoleAxis axis : {PoleAxis::X, PoleAxis::Y, PoleAxis::Z}) {
             const DistanceMap map = DistanceMap::build(
@@ -27,7 +27,7 @@ TEST(MapOracle, KnowsOnWhichSideTheCentreOfEveryGeneratedMeshLies) {
         }
 }
 
-// What the paper's map gets wrong by sampling, with a margin above what was measured when the limits were
+// The sampling errors of the paper's map. The limits have a margin above the values measured when they were
 // set; docs/reproduction.md has the figures for 1 000 000 points.
 TEST(MapOracle, IsSeldomWrongOnTheTorus) {
     const TriangleMesh torus = make_torus(1, 0.4, 60, 24);

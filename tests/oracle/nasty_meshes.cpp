@@ -50,7 +50,7 @@ TriangleMesh make_needles() {
     return whole;
 }
 
-/// Splits faces at the middles of their edges, and keeps those middles shared between neighbours.
+/// Splits faces at the midpoints of their edges, which neighbours share.
 class Subdivision {
   public:
     explicit Subdivision(TriangleMesh& mesh) : mesh_(mesh) {}
@@ -67,7 +67,7 @@ class Subdivision {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles_;
 };
 
-/// Each face gets a spike on its middle quarter: the snowflake of Koch, one dimension up.
+/// Each face gets a spike on its middle quarter: Koch's snowflake, one dimension up.
 TriangleMesh with_spikes(const TriangleMesh& mesh, float height) {
     TriangleMesh result;
     result.vertices = mesh.vertices;
@@ -78,7 +78,7 @@ TriangleMesh with_spikes(const TriangleMesh& mesh, float height) {
         const auto tip = static_cast<std::uint32_t>(result.vertices.size());
         const Vec3f &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
         const Vec3f normal = cross(q - p, r - p);
-        // As high as the face is wide, times `height`.
+        // The face's width times `height`.
         result.vertices.push_back((p + q + r) * (1.0F / 3) + normal * (height / std::sqrt(length(normal))));
         for (const Triangle& face : {Triangle{a, ab, ca}, Triangle{ab, b, bc}, Triangle{ca, bc, c},
                                      Triangle{ab, bc, tip}, Triangle{bc, ca, tip}, Triangle{ca, ab, tip}})
@@ -93,7 +93,7 @@ TriangleMesh make_star() {
     return star;
 }
 
-/// Shells in shells, turned alternately outwards and inwards, but for two in a row that are not.
+/// Nested shells, oriented alternately outwards and inwards, except for two in a row.
 TriangleMesh make_nested_spheres() {
     TriangleMesh whole;
     for (int i = 0; i < 9; ++i) {
@@ -120,7 +120,7 @@ TriangleMesh make_rings() {
     return whole;
 }
 
-/// A torus of a million faces with waves on it.
+/// A wavy torus of a million faces.
 TriangleMesh make_million() {
     TriangleMesh mesh = make_torus(1, 0.4, 1000, 500);
     for (Vec3f& v : mesh.vertices)
@@ -166,21 +166,21 @@ TriangleMesh make_centre_on_edge() {
                    translated(make_box({1, 1, 1}), {-0.5F, -0.5F, 0})});
 }
 
-/// Two boxes that share a side, on which the centre lies: on the diagonal, so on an edge of both as well.
+/// Two boxes that share a side, on which the centre lies: on its diagonal, hence also on an edge of both.
 TriangleMesh make_centre_on_face() {
     return joined({translated(make_box({1, 1, 1}, 3), {0.5F, 0, 0}),
                    translated(make_box({1, 1, 1}, 3), {-0.5F, 0, 0})});
 }
 
-/// Faces some seventy times as long as wide, which fit no grid.
+/// Faces about seventy times as long as wide, aligned with no grid.
 TriangleMesh make_slivers() {
     TriangleMesh mesh = make_sphere(1, 600, 4);
     for (Vec3f& vertex : mesh.vertices) vertex.y *= 0.3F;
     return turned(mesh);
 }
 
-/// Tetrahedra that pass through each other anyhow, turned outwards and inwards by chance; every third has a
-/// corner within some forty lattice steps of the centre. The octahedron around all keeps the centre there.
+/// Randomly intersecting tetrahedra, randomly oriented outwards or inwards; every third has a corner within
+/// about forty lattice steps of the centre. The octahedron around all keeps the centre there.
 TriangleMesh make_tetrahedra() {
     comparison::PortableRandom random(6);
     const auto within = [&](double half_width) {

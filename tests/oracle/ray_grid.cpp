@@ -8,7 +8,7 @@ namespace echinus::test {
 
 namespace {
 
-/// Some twice the square root of the number of faces: most faces then fall into a few cells and most cells
+/// About twice the square root of the number of faces: most faces then fall into a few cells and most cells
 /// list a few faces.
 std::size_t cells_across(std::size_t face_count) {
     const auto wanted = static_cast<std::size_t>(2 * std::sqrt(static_cast<double>(face_count)));
@@ -48,7 +48,7 @@ void RayGrid::find_bounds() {
     }
 }
 
-/// Monotone in the coordinate, so that a face's cells are those between the cells of its ends.
+/// Monotone in the coordinate, so a face's cells are those between the cells of its ends.
 std::size_t RayGrid::cell_of(std::size_t axis, double coordinate) const {
     const double share = (coordinate - low_[axis]) / (high_[axis] - low_[axis]);
     const auto cell = static_cast<std::size_t>(share * static_cast<double>(count_));

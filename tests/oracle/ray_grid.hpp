@@ -10,8 +10,8 @@
 
 namespace echinus::test {
 
-/// Which faces can a ray of one fixed direction meet? Faces are projected along it, and each cell of a grid
-/// lists those whose rectangle touches it.
+/// Finds the faces that a ray of one fixed direction can meet. Faces are projected along it, and each cell of
+/// a grid lists those whose bounding rectangle touches it.
 class RayGrid {
   public:
     using Corners = std::array<Vec3d, 3>;
@@ -19,7 +19,7 @@ class RayGrid {
     /// @param slack  how far a ray may stray sideways from the direction, rounding included
     RayGrid(std::span<const Corners> faces, const Vec3d& direction, double slack);
 
-    /// Calls visit(face) for every face that the ray from a point on may meet, and for a few more.
+    /// Calls visit(face) for every face that the ray from a point may meet, and for a few more.
     template <typename Visit>
     void for_each_near(const Vec3d& point, const Visit& visit) const {
         const Place place = project(point);

@@ -32,7 +32,7 @@ double coordinate(const Vec3d& v, int axis) {
 } // namespace
 
 SolidAngleTree::SolidAngleTree(const TriangleMesh& mesh) {
-    const TriangleMesh welded = weld(mesh); // more edges cancel, and borders become shorter
+    const TriangleMesh welded = weld(mesh); // more edges cancel, which shortens the borders
     for (const Vec3f& vertex : welded.vertices) vertices_.emplace_back(vertex);
     faces_ = welded.faces;
     order_.resize(faces_.size());
@@ -50,7 +50,7 @@ void SolidAngleTree::find_box(Node& node) const {
         }
 }
 
-/// The edges along which more faces run one way than the other.
+/// The edges along which more faces run in one direction than in the other.
 void SolidAngleTree::find_border(Node& node) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::int32_t> balance;
     for (const std::uint32_t face : std::span(order_).subspan(node.first, node.count))

@@ -7,11 +7,11 @@
 
 namespace echinus::test {
 
-/// The generalised winding number of an open or non-manifold surface, exact but for the rounding of double.
+/// The generalised winding number of an open or non-manifold surface, exact up to the rounding of double.
 ///
 /// Jacobson, Kavan and Sorkine-Hornung, "Robust Inside-Outside Segmentation using Generalized Winding
-/// Numbers" (2013), section 4.2: seen from outside of its convex hull, a patch covers the same solid angle as
-/// any other surface with its border, so a fan over the border stands for all its faces. Nothing is
+/// Numbers" (2013), section 4.2: seen from outside its convex hull, a patch covers the same solid angle as
+/// any other surface with its border, so a fan over the border replaces all its faces. Nothing is
 /// approximated.
 class SolidAngleTree {
   public:

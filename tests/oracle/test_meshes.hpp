@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-/// Meshes that the oracle tests run on.
+/// The meshes of the oracle tests.
 namespace echinus::test {
 
 struct NamedMesh {
@@ -13,15 +13,15 @@ struct NamedMesh {
     TriangleMesh mesh;
 };
 
-/// Turned by an angle that fits no grid.
+/// Rotated by an angle that aligns with no grid.
 inline TriangleMesh turned(TriangleMesh mesh) {
     const Rotation rotation = Rotation::about({1, 2, 3}, 0.7);
     for (Vec3f& vertex : mesh.vertices) vertex = Vec3f(rotation.apply(Vec3d(vertex)));
     return mesh;
 }
 
-/// Closed meshes with the centre inside and outside, of one part and of several. Those that are not turned
-/// share planes of symmetry with every grid of directions, so that many rays meet edges and vertices.
+/// Closed meshes with the centre inside and outside, of one part and of several. The unrotated ones share
+/// planes of symmetry with every grid of directions, so that many rays meet edges and vertices.
 inline std::vector<NamedMesh> generated_meshes() {
     const TriangleMesh box = make_box({2, 2, 2}, 3);
     const TriangleMesh torus = make_torus(1, 0.4, 40, 16);

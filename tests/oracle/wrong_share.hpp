@@ -6,7 +6,7 @@
 
 namespace echinus::test {
 
-/// How many of the points, in percent, a map puts on the wrong side.
+/// The percentage of the points that a map puts on the wrong side.
 inline double wrong_share(const DistanceMapView& map, const ExactJudge& judge,
                           const std::vector<Vec3f>& points) {
     std::size_t wrong_count = 0;

@@ -33,7 +33,7 @@ DistanceMap random_map() {
     return DistanceMap::build(mesh, test::random_options());
 }
 
-/// A map of a mesh or, as steep as can be, one of random entries.
+/// A map of a mesh or, as the steepest case, one of random entries.
 DistanceMap random_map_or_noise() {
     if (*rc::gen::inRange(0, 3).as("noise at 0") != 0) return random_map();
     const DistanceMapOptions options = test::random_options();
@@ -58,8 +58,8 @@ std::vector<float> entries_of(const DistanceMapView& map, std::uint32_t longitud
     return entries;
 }
 
-/// Either no contact, or one that is finite, with a unit normal, and whose push-out lies on the particle's
-/// own ray, is as long as the depth says and leads out of the solid.
+/// Either no contact, or a finite one with a unit normal whose push-out lies on the particle's own ray, is as
+/// long as the depth and leads out of the solid.
 void require_sound(const DistanceMapView& map, const Vec3f& p, float margin, const Contact& c) {
     RC_ASSERT(c.inside == contains(map, p));
     RC_ASSERT(c.face == Contact::kUnknownFace);
@@ -154,7 +154,7 @@ RC_GTEST_PROP(DistanceMapProperty, MovingMeshAndPointsTogetherChangesNoBit, ()) 
     for (int i = 0; i < kPointCount; ++i) {
         Vec3f p = test::point_about(still, random) * 4096;
         p = Vec3f{std::round(p.x), std::round(p.y), std::round(p.z)} * 0x1p-12F;
-        p += Vec3f{}; // no move keeps the sign of a zero
+        p += Vec3f{}; // a translation loses the sign of a zero
         const Contact a = contact(still, p, 0.25F);
         const Contact b = contact(moved, move(p), 0.25F * size);
         RC_ASSERT(a.inside == b.inside);

@@ -41,7 +41,7 @@ Vec3f random_point(const TriangleMesh& mesh, const ExactMapView& map, comparison
     return Vec3f(Vec3d(map.centre) + shift);
 }
 
-/// A motion, mirroring and scaling of everything.
+/// Moves, mirrors and scales everything.
 struct Placement {
     Rotation rotation;
     double scale;
@@ -90,7 +90,7 @@ RC_GTEST_PROP(ExactMap, AnswersTheSameWhereverTheWholeIsPlaced, ()) {
     const Placement placement = random_placement(map.view());
     const TriangleMesh moved = placed(mesh, placement);
     const ExactMap moved_map = ExactMap::build(moved, options);
-    // Two lattice steps, and the rounding of the moved vertices and of the particle.
+    // Two lattice steps plus the rounding of the moved vertices and the particle.
     const double step =
         std::max(double{map.view().radius}, moved_map.view().radius / placement.scale) / (1 << 19);
     const double rounding = 4 * 0x1p-24 * largest_coordinate(moved) / placement.scale;

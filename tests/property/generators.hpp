@@ -11,13 +11,14 @@
 #include <iterator>
 #include <limits>
 
-/// What the properties are tried on: random solids, maps of them and points. RapidCheck shrinks the counts;
-/// the details of a shape come from a seed.
+/// The inputs of the properties: random solids, maps of them and points. RapidCheck shrinks the counts; a
+/// seed determines the details of a shape.
 namespace echinus::test {
 
 /// A solid without self-intersections: each vertex of a sphere is moved, but not past its neighbours' rays.
-/// Its poles alone reach the bounding sphere, so that centre 0 and radius 1 are known without rounding; other
-/// coordinates are multiples of 2^-12, so that moves by whole numbers and powers of two are exact.
+/// Only its poles reach the bounding sphere, so that centre 0 and radius 1 hold without rounding. The other
+/// coordinates are multiples of 2^-12, so that translating by whole numbers and scaling by powers of two are
+/// exact.
 inline TriangleMesh random_star() {
     const auto meridians = *rc::gen::inRange<std::uint32_t>(3, 14).as("meridians");
     const auto parallels = *rc::gen::inRange<std::uint32_t>(3, 9).as("parallels");
@@ -84,7 +85,7 @@ inline DistanceMapOptions random_options() {
     return options;
 }
 
-/// Any float there is, the odd ones more often than the others.
+/// Any float, special values more often than the others.
 inline float any_float(comparison::PortableRandom& random) {
     using Limits = std::numeric_limits<float>;
     constexpr float kOdd[] = {0.0F,
@@ -98,8 +99,8 @@ inline float any_float(comparison::PortableRandom& random) {
     return std::bit_cast<float>(static_cast<std::uint32_t>(random.uniform(0, 0x1p32)));
 }
 
-/// Points about a map, many of them where something happens: on the pole axis and the seam, at the centre and
-/// very near to it.
+/// Points around a map, many of them at special places: on the pole axis and the seam, at the centre and very
+/// near to it.
 inline Vec3f point_about(const DistanceMapView& map, comparison::PortableRandom& random) {
     const auto coordinate = [&] { return static_cast<float>(random.uniform(-1.1, 1.1)) * map.radius; };
     const float x = coordinate(), y = coordinate(), z = coordinate();

@@ -59,7 +59,7 @@ TEST(Camera, ShowsAllPointsWithinTheMarginAndNoSmallerThanItMust) {
             highest = std::max(highest, y - upper);
             lowest = std::max(lowest, -y - lower);
         }
-        // Nothing reaches into the border, and across or upright the room is used up.
+        // Nothing reaches into the border, and the width or the height is used fully.
         EXPECT_LT(std::max({widest, highest, lowest}), 1e-4);
         EXPECT_GT(std::max(widest, std::min(highest, lowest)), -1e-4);
     }

@@ -17,7 +17,7 @@ TEST(CornerNormals, KeepTheEdgesOfABoxSharp) {
 }
 
 TEST(CornerNormals, PointAlongTheDiagonalsWhereABoxIsSmoothed) {
-    // Weighted by angle, each of the three sides counts a right angle, however its square is split.
+    // Weighted by angle, each of the three sides counts as a right angle, however its square is split.
     const TriangleMesh box = make_box({1, 1, 1});
     const auto normals = corner_normals(box, 180);
     for (std::size_t f = 0; f < box.faces.size(); ++f) {

@@ -17,7 +17,7 @@ Image white(std::uint32_t width, std::uint32_t height) {
     return {width, height, std::vector<std::uint8_t>(std::size_t{3} * width * height, 255)};
 }
 
-/// Ink in a rectangle of pixels: 1 for each that is wholly black.
+/// The ink in a rectangle of pixels: 1 for each fully black one.
 double ink(const Image& image, std::uint32_t left, std::uint32_t top, std::uint32_t right,
            std::uint32_t bottom) {
     double sum = 0;

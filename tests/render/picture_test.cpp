@@ -40,7 +40,7 @@ std::vector<RenderedObject> painted(const TriangleMesh& mesh, Colour colour) {
     return {object};
 }
 
-/// A picture of the objects from the side that `view` names.
+/// A picture of the objects from `view`.
 Image picture(const std::vector<RenderedObject>& objects, const RenderOptions& options,
               const View& view = {}) {
     return render(objects, camera_for(objects, view, double(options.width) / options.height), options);
@@ -66,7 +66,7 @@ TEST(Picture, ASphereCoversTheAreaOfItsSilhouette) {
     for (std::uint32_t y = 0; y < 200; ++y) {
         for (std::uint32_t x = 0; x < 200; ++x) {
             const Pixel pixel = pixel_at(image, x, y);
-            // Half covered pixels lie near the middle between green and white.
+            // Half-covered pixels are about halfway between green and white.
             if (pixel.green - pixel.red > 60) ++covered;
         }
     }
@@ -154,7 +154,7 @@ TEST(Picture, PaintsEveryFaceWithItsColour) {
     EXPECT_GT(back.green, back.blue + 60);
 }
 
-TEST(Picture, PaintsTheBackOfAClothOtherwise) {
+TEST(Picture, PaintsTheBackOfAClothDifferently) {
     auto objects =
         painted({{{0, -1, -1}, {0, 1, -1}, {0, 1, 1}, {0, -1, 1}}, {{0, 1, 2}, {0, 2, 3}}}, kGreen);
     objects[0].back_colour = kBlue;
@@ -166,7 +166,7 @@ TEST(Picture, PaintsTheBackOfAClothOtherwise) {
     const Pixel back = pixel_at(picture(objects, options_of(20, 20, 4), view), 10, 10);
     EXPECT_GT(front.green, front.blue + 40);
     EXPECT_GT(back.blue, back.green + 40);
-    // Both sides are turned to the lamp in their picture: neither is left in the dark.
+    // Each side faces the lamp in its picture: neither is dark.
     EXPECT_NEAR(front.green, back.blue, 12);
 }
 

@@ -38,7 +38,7 @@ class AnalyticBall final : public CustomMap {
     Vec3f centre_;
 };
 
-/// Answers every particle with the same, whatever it is.
+/// Gives every particle the same answer.
 class ConstantAnswer final : public CustomMap {
   public:
     explicit ConstantAnswer(const Contact& answer) : answer_(answer) {}

@@ -8,8 +8,8 @@
 
 namespace echinus::test {
 
-/// A square cloth that lies level, middle above the origin.
-/// @param step  by which each particle came here in the frame before
+/// A level square cloth with its middle above the origin.
+/// @param step  each particle's displacement in the previous frame
 inline Deformable sheet_at(double height, double width, std::uint32_t count, const Vec3d& step = {}) {
     Deformable sheet = make_cloth({.column_count = count,
                                    .row_count = count,
@@ -20,14 +20,14 @@ inline Deformable sheet_at(double height, double width, std::uint32_t count, con
     return sheet;
 }
 
-/// Runs until rest; fails when that takes longer than `frame_limit`.
+/// Runs until rest; fails when that takes more than `frame_limit` frames.
 inline void run_to_rest(Simulation& simulation, std::uint32_t frame_limit) {
     while (!simulation.at_rest() && simulation.frame() < frame_limit) simulation.step();
     EXPECT_TRUE(simulation.at_rest()) << "speed " << simulation.largest_speed();
 }
 
-/// On a slope of this angle with a friction of 0.5, how far the middle of a small cloth slides in half a
-/// second.
+/// How far the middle of a small cloth slides in half a second on a slope of this angle with a friction of
+/// 0.5.
 /// @param box  the map of make_box({2, 2, 1})
 inline float slid_down_slope(const ColliderMap& box, double angle_rad) {
     constexpr double kThickness = 0.01;
@@ -46,7 +46,7 @@ inline float slid_down_slope(const ColliderMap& box, double angle_rad) {
     return length(simulation.positions()[middle] - before);
 }
 
-/// All particles outside of the unit ball, and a good part of them on it.
+/// Expects all particles outside the unit ball and a good part of them on it.
 inline void expect_draped_over_unit_ball(const Simulation& simulation, double thickness) {
     std::size_t touching = 0;
     for (const Vec3f& p : simulation.positions()) {

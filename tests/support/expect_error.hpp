@@ -8,7 +8,7 @@
 
 namespace echinus::test {
 
-/// The call must throw an Error with this code whose sentence has these words.
+/// The call must throw an Error with this code whose sentence contains these words.
 template <typename Call>
 void expect_error(ErrorCode code, const std::string& words, Call&& call) {
     try {

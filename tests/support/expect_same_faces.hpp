@@ -8,7 +8,8 @@
 
 namespace echinus::test {
 
-/// Face by face, the corners stand at the same places, up to a distance, whatever the order of the vertices.
+/// Expects the corners at the same positions, face by face and up to a distance, whatever the order of the
+/// vertices.
 inline void expect_same_faces(const TriangleMesh& mesh, const TriangleMesh& expected, double tolerance = 0) {
     ASSERT_EQ(mesh.faces.size(), expected.faces.size());
     for (std::size_t face = 0; face < mesh.faces.size(); ++face)

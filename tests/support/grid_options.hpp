@@ -14,7 +14,7 @@ inline const char* name_of(DirectionGrid grid) {
     return kNames[static_cast<std::size_t>(grid)];
 }
 
-/// A grid of about as many samples as 2 resolution x 2 resolution, whatever its kind.
+/// A grid of about 2 resolution x 2 resolution samples, whatever its kind.
 inline DistanceMapOptions options_of(DirectionGrid grid, std::uint32_t resolution,
                                      VertexCorrection correction = VertexCorrection::None,
                                      EntryFormat format = EntryFormat::Float32) {

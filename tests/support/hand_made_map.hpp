@@ -7,7 +7,7 @@
 
 namespace echinus::test {
 
-/// A map whose entries are written down rather than built from a mesh: centre 0, R = 1, pole axis z.
+/// A map with given entries rather than ones built from a mesh: centre 0, R = 1, pole axis z.
 class HandMadeMap {
   public:
     HandMadeMap(std::uint32_t longitude_count, std::uint32_t colatitude_count, bool centre_inside)

@@ -6,7 +6,7 @@
 
 namespace echinus::test {
 
-/// Calls body(name) under each instruction set of the machine, then goes back to the one in use before.
+/// Calls body(name) under each instruction set of the machine, then restores the previous one.
 template <typename Body>
 void under_each_instruction_set(const Body& body) {
     const std::string before(instruction_set());

@@ -17,7 +17,7 @@
 
 namespace echinus::test {
 
-/// Points in and around a map's sphere, on its seam and poles, and those that are no points at all.
+/// Points in and around a map's sphere, on its seam and poles, and points that are not finite.
 inline std::vector<Vec3f> telling_points(const Vec3f& centre, float radius) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -32,7 +32,7 @@ inline std::vector<Vec3f> telling_points(const Vec3f& centre, float radius) {
     return points;
 }
 
-/// The same, and places on, in and beyond the surface: on the lines from the centre to some vertices.
+/// The same, plus points on, inside and beyond the surface along the lines from the centre to some vertices.
 inline std::vector<Vec3f> telling_points(const ExactMapView& map) {
     std::vector<Vec3f> points = telling_points(map.centre, map.radius);
     const float step = map.radius / 524288; // of the lattice
@@ -62,8 +62,8 @@ inline void attack_map(const DistanceMap& map) {
     demand(direction_count == map.view().direction_count(), "histogram is not complete");
 }
 
-/// A map whose bands contradict its faces may answer one query this way and another that way; that such a
-/// batch and single queries agree is asked only of sound maps, elsewhere.
+/// A map whose bands contradict its faces may answer two queries differently; agreement of batches and single
+/// queries is tested elsewhere, on sound maps only.
 inline void attack_map(const ExactMap& map) {
     const ExactMapView& view = map.view();
     const std::vector<Vec3f> points = telling_points(view);
@@ -84,10 +84,10 @@ inline void attack_map(const ExactMap& map) {
     }
 }
 
-/// What a reader of hostile bytes must do: refuse them with an Error, or give a map that can be queried
-/// anywhere, looked at, and written again so that it reads back the same.
+/// A reader of hostile bytes must either refuse them with an Error, or give a map that can be queried
+/// anywhere, inspected, and written again so that it reads back the same.
 /// @return  whether the bytes were taken as a map
-/// @throws std::logic_error when it does something else
+/// @throws std::logic_error when it does neither
 inline bool attack_map_file(std::span<const std::byte> bytes) {
     // A buffer of exactly this size: the address sanitizer sees every read beyond it.
     const auto storage = std::make_shared<std::vector<std::byte>>(bytes.begin(), bytes.end());

@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <utility>
 
-/// Meshes made of others.
+/// Meshes made from other meshes.
 namespace echinus::test {
 
 inline TriangleMesh translated(TriangleMesh mesh, const Vec3f& offset) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What nearly every test includes. A test names its includes all the same.
+// The headers that nearly every test includes. Each test still names its own includes.
 
 #include <echinus/echinus.hpp>
 

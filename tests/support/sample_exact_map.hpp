@@ -8,9 +8,9 @@
 
 namespace echinus::test {
 
-/// A copy of the arrays of an exact map, to be changed before a map is made of them again.
+/// A copy of an exact map's arrays, to be changed before making a map of them again.
 struct ExactMapParts {
-    ExactMapView view; ///< its spans are not used
+    ExactMapView view; ///< its spans are unused
     ExactMapStatistics statistics;
     std::uint64_t source_hash = 0;
     std::vector<std::uint32_t> band_offsets;

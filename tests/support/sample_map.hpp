@@ -10,7 +10,7 @@
 
 namespace echinus::test {
 
-/// The arrays of a map, to be changed before it is made.
+/// The arrays of a map, to be changed before making it.
 struct MapParts {
     DistanceMapView view;
     DistanceMapStatistics statistics;
@@ -30,8 +30,8 @@ struct MapParts {
     }
 };
 
-/// A map of no mesh in particular: sound, with 0 to 4 entries in each direction.
-/// @param grid  the fields of a view that describe it
+/// A sound map of no particular mesh, with 0 to 4 entries in each direction.
+/// @param grid  the fields of a view that describe the grid
 inline MapParts random_map_parts_on(const DistanceMapView& grid, EntryFormat format, std::uint32_t seed) {
     std::mt19937 random(seed);
     MapParts parts;
@@ -75,7 +75,7 @@ inline MapParts random_map_parts(EntryFormat format, std::uint32_t longitude_cou
     return random_map_parts_on(grid, format, seed);
 }
 
-/// On a grid with as many longitudes and colatitudes, or divisions.
+/// On a grid with this many longitudes and colatitudes, or divisions.
 inline MapParts random_map_parts(EntryFormat format, DirectionGrid kind, std::uint32_t count,
                                  std::uint32_t seed) {
     DistanceMapView grid;

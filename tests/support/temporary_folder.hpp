@@ -9,7 +9,7 @@
 
 namespace echinus::test {
 
-/// A test with an empty folder of its own, which disappears with it.
+/// A test with its own empty folder, which is removed at its end.
 class TemporaryFolderTest : public testing::Test {
   protected:
     void SetUp() override {

@@ -1,4 +1,4 @@
-// The same bits as the scalar reference of native C++, which tests/wasm/reference.cpp has written down.
+// The same bits as the scalar reference of native C++, written by tests/wasm/reference.cpp.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -11,7 +11,7 @@ const wordsOf = (bytes) => new Uint32Array(bytes.buffer.slice(bytes.byteOffset, 
 const reference = JSON.parse(read('reference.json'));
 const instructionSets = ['wasm', 'scalar'];
 
-/** The first place where two arrays of bytes differ, for a message one can read. */
+/** The first place where two arrays of bytes differ, for a readable message. */
 function assertSameBytes(actual, expected, what, bytesPerItem = 1) {
     assert.equal(actual.length, expected.length, `${what}: length`);
     if (Buffer.compare(actual, expected) === 0) return;

@@ -1,4 +1,4 @@
-// What the module answers, and that its pieces fit together.
+// The module's answers, and the interplay of its parts.
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
@@ -153,13 +153,13 @@ describe('Map files of every version', () => {
             const bytes = readFileSync(join(folder, name));
             const map = echinus.loadMap(bytes, name);
             assert.ok(Buffer.from(map.save()).equals(bytes));
-            // The torus has its hole there; the boxes, the open one too, are around it.
+            // This is the hole of the torus, and inside the boxes, the open one included.
             assert.equal(map.contains(map.centre), !name.includes('torus'));
         });
 });
 
 describe('A simulation', () => {
-    test('of a scene that ships comes to lie on its model with nobody inside', () => {
+    test('of a scene that ships comes to rest on its model with no particle inside', () => {
         const scene = echinus.parseScene(readScene('torus_small.json'), 'torus_small.json');
         const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
         assert.equal(scene.particleCount, simulation.particleCount);
@@ -183,7 +183,7 @@ describe('A simulation', () => {
         assert.notDeepEqual(positions, before);
         assert.deepEqual(simulation.previousPositions, before);
     });
-    test('has a collider that turns when it is told to', () => {
+    test('has a collider that turns at the velocity it is given', () => {
         const scene = echinus.parseScene(readScene('torus_small.json'));
         const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
         simulation.setColliderVelocity([0, 0, 1], [0, 0, Math.PI]);
@@ -222,7 +222,7 @@ describe('A simulation', () => {
         second.step(20);
         assert.ok(second.positions[2] > first.positions[2]);
     });
-    test('of a scene with a file wants its mesh from outside', () => {
+    test('of a scene with a file needs its mesh from outside', () => {
         const scene = echinus.parseScene(readScene('horse_small.json').replace('horse_small', 'horse'), 'horse.json');
         assert.equal(scene.modelFile, 'horse.3ds');
         const map = scene.buildMap(echinus.makeSphere(0.5, 20, 10));

@@ -1,5 +1,5 @@
-// Writes what the JavaScript module must answer: meshes, particles and, by the scalar reference of this
-// machine, maps, answers and the states of simulations. tests/wasm/bits.test.mjs reads them.
+// Writes the expected results of the JavaScript module: meshes, particles and, by this machine's scalar
+// reference, maps, answers and the states of simulations. tests/wasm/bits.test.mjs reads them.
 
 #include "rivals/compare/point_sets.hpp"
 
@@ -70,7 +70,7 @@ const char* const kMaps[] = {
     R"({"kind": "distance", "grid": "cube", "divisions": 16, "correction": "none"})",
 };
 
-/// Everywhere, near the surface, on it, far away and nowhere.
+/// Everywhere, near the surface, on it, far away and not finite.
 std::vector<Vec3f> particles_of(const TriangleMesh& mesh) {
     std::vector<Vec3f> points = comparison::uniform_points(mesh, 600);
     const std::vector<Vec3f> near = comparison::surface_points(mesh, 600);
@@ -122,7 +122,7 @@ json write_subject(const fs::path& folder, const Subject& subject) {
     return {{"name", subject.name}, {"maps", maps}};
 }
 
-/// Parts of scenes; the rest is as in kScene.
+/// Parts of scenes; the rest is that of kScene.
 const char* const kSimulations[] = {
     R"({})",
     R"({"map": {"kind": "distance"}})",

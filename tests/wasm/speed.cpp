@@ -1,5 +1,5 @@
-// The native side of tests/wasm/speed.mjs: writes a model and its particles, then does on demand what a line
-// of its input names, once, and answers with the processor time that it took.
+// The native side of tests/wasm/speed.mjs: writes a model and its particles, then runs the task that each
+// line of its input names once and answers with its processor time.
 
 #include "rivals/compare/point_sets.hpp"
 
@@ -42,7 +42,7 @@ double processor_seconds(const std::function<void()>& work) {
     return now() - start;
 }
 
-/// What can be asked for; a simulation goes on from one line to the next.
+/// The tasks; a simulation continues from one line to the next.
 class Tasks {
   public:
     Tasks(const fs::path& scene_path, const fs::path& model)

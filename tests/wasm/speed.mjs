@@ -1,5 +1,5 @@
-// How long the module takes beside native C++: the same work in turns, medians of processor time. Run by
-// scripts/wasm --speed:  speed.mjs PROGRAM SCENE MODEL FOLDER
+// Times the module beside native C++: the same work in turns, medians of processor time. Run by scripts/wasm
+// --speed:  speed.mjs PROGRAM SCENE MODEL FOLDER
 import { spawn } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { createInterface } from 'node:readline';
@@ -72,7 +72,7 @@ for (const [task, turns] of [
     ['contains distance U', TURNS], ['contacts distance S', TURNS], ['simulation exact', STEPS], ['build exact', TURNS], ['build distance', TURNS],
 ]) {
     const times = contestants.map(() => []);
-    // The compiler of the host takes some calls to reach its best code.
+    // The host's compiler needs some calls to reach its best code.
     for (let turn = -5; turn < turns; ++turn)
         for (const [i, { run }] of contestants.entries()) {
             const seconds = await run(task);

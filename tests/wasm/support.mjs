@@ -1,4 +1,4 @@
-// What the tests share. scripts/wasm says where the module and the reference are.
+// Shared by the tests. scripts/wasm passes the paths of the module and the reference.
 import { readFileSync } from 'node:fs';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { join } from 'node:path';
@@ -16,7 +16,7 @@ export const start = () => module.load(compiled);
 
 export const readScene = (name) => readFileSync(join(sourceFolder, 'scenes', name), 'utf8');
 
-/** What a call throws; fails the test when it throws nothing, or something that is no EchinusError. */
+/** The error that a call throws; fails the test when it throws nothing, or anything but an EchinusError. */
 export function errorOf(call) {
     try {
         call();
@@ -27,7 +27,7 @@ export function errorOf(call) {
     throw new Error('nothing was thrown');
 }
 
-/** The same numbers in every run. */
+/** The same random numbers in every run. */
 export function pseudoRandom(seed = 1) {
     let state = seed >>> 0;
     return () => {
