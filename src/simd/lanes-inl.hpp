@@ -6,7 +6,9 @@
 #define ECHINUS_LANES_INL
 #endif
 
-#include "simd/wasm_lanes-inl.hpp"
+#include "simd/vec3_lanes-inl.hpp"
+
+#include <echinus/geometry.hpp>
 
 #include <hwy/highway.h>
 
@@ -16,8 +18,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace echinus::HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
 /// Vectors as wide as the instruction set has them.
 using Floats = hn::ScalableTag<float>;
 using Ints = hn::RebindToSigned<Floats>;
@@ -26,11 +26,8 @@ using IntLanes = hn::Vec<Ints>;
 using FloatMask = hn::Mask<Floats>;
 using IntMask = hn::Mask<Ints>;
 
-/// Points or directions of several particles. Never without values: for Arm, GCC compiles what sets up an
-/// empty one for a processor without vectors, and then refuses.
-struct PointLanes {
-    FloatLanes x, y, z;
-};
+/// Points or directions of several particles.
+using PointLanes = Vec3Lanes<FloatLanes>;
 
 inline PointLanes at_origin() {
     return {hn::Zero(Floats()), hn::Zero(Floats()), hn::Zero(Floats())};
@@ -42,6 +39,9 @@ constexpr std::size_t kLanes = hn::MaxLanes(kFloat);
 
 HWY_INLINE FloatLanes splat(float value) {
     return hn::Set(kFloat, value);
+}
+HWY_INLINE PointLanes splat(const Vec3f& v) {
+    return {splat(v.x), splat(v.y), splat(v.z)};
 }
 HWY_INLINE IntLanes splat_int(std::int32_t value) {
     return hn::Set(kInt, value);
@@ -66,19 +66,6 @@ HWY_INLINE FloatMask none_of(FloatMask mask) {
 }
 HWY_INLINE FloatMask is_odd(IntLanes value) {
     return as_mask(hn::TestBit(value, splat_int(1)));
-}
-
-HWY_INLINE PointLanes choose(FloatMask mask, const PointLanes& yes, const PointLanes& no) {
-    return {choose(mask, yes.x, no.x), choose(mask, yes.y, no.y), choose(mask, yes.z, no.z)};
-}
-HWY_INLINE PointLanes scaled(const PointLanes& v, FloatLanes s) {
-    return {hn::Mul(v.x, s), hn::Mul(v.y, s), hn::Mul(v.z, s)};
-}
-HWY_INLINE PointLanes negated(const PointLanes& v) {
-    return {hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)};
-}
-HWY_INLINE FloatLanes length(const PointLanes& v) {
-    return hn::Sqrt(hn::Add(hn::Add(hn::Mul(v.x, v.x), hn::Mul(v.y, v.y)), hn::Mul(v.z, v.z)));
 }
 
 } // namespace echinus::HWY_NAMESPACE

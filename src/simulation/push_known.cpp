@@ -31,40 +31,16 @@ HWY_BEFORE_NAMESPACE();
 namespace echinus {
 namespace HWY_NAMESPACE {
 
-HWY_INLINE FloatLanes all(float value) {
-    return hn::Set(Floats(), value);
-}
 HWY_INLINE FloatLanes load(const float* from) {
-    return hn::LoadU(Floats(), from);
+    return hn::LoadU(kFloat, from);
 }
-
-struct LanePoints {
-    FloatLanes x, y, z;
-
-    explicit LanePoints(const Vec3f& point) : x(all(point.x)), y(all(point.y)), z(all(point.z)) {}
-    LanePoints(const PointArrays& points, std::size_t i)
-        : x(load(&points.x[i])), y(load(&points.y[i])), z(load(&points.z[i])) {}
-    LanePoints(const FloatLanes& x_in, const FloatLanes& y_in, const FloatLanes& z_in)
-        : x(x_in), y(y_in), z(z_in) {}
-
-    void store(const FloatMask& mask, PointArrays& points, std::size_t i) const {
-        hn::BlendedStore(x, mask, Floats(), &points.x[i]);
-        hn::BlendedStore(y, mask, Floats(), &points.y[i]);
-        hn::BlendedStore(z, mask, Floats(), &points.z[i]);
-    }
-};
-
-HWY_INLINE LanePoints operator+(const LanePoints& a, const LanePoints& b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
+HWY_INLINE PointLanes load(const PointArrays& points, std::size_t i) {
+    return {load(&points.x[i]), load(&points.y[i]), load(&points.z[i])};
 }
-HWY_INLINE LanePoints operator-(const LanePoints& a, const LanePoints& b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-HWY_INLINE LanePoints operator*(const LanePoints& a, const FloatLanes& s) {
-    return {a.x * s, a.y * s, a.z * s};
-}
-HWY_INLINE FloatLanes dot(const LanePoints& a, const LanePoints& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
+HWY_INLINE void store(const PointLanes& points, const FloatMask& mask, PointArrays& to, std::size_t i) {
+    hn::BlendedStore(points.x, mask, kFloat, &to.x[i]);
+    hn::BlendedStore(points.y, mask, kFloat, &to.y[i]);
+    hn::BlendedStore(points.z, mask, kFloat, &to.z[i]);
 }
 
 /// Adds the chosen ones of the particles i, i + 1 ... to a list.
@@ -77,51 +53,51 @@ HWY_INLINE void add(const FloatMask& chosen, std::size_t i, ParticleList& list) 
 }
 
 /// MaterialMotion::at().
-HWY_INLINE LanePoints motion_at(const MaterialMotion& material, const LanePoints& place) {
-    const LanePoints from_centre = place - LanePoints(material.centre);
-    return LanePoints(dot(LanePoints(material.turn_x), from_centre),
-                      dot(LanePoints(material.turn_y), from_centre),
-                      dot(LanePoints(material.turn_z), from_centre)) +
-           LanePoints(material.shift);
+HWY_INLINE PointLanes motion_at(const MaterialMotion& material, const PointLanes& place) {
+    const PointLanes from_centre = place - splat(material.centre);
+    const PointLanes turned{dot(splat(material.turn_x), from_centre),
+                            dot(splat(material.turn_y), from_centre),
+                            dot(splat(material.turn_z), from_centre)};
+    return turned + splat(material.shift);
 }
 
 /// push_out(), and what comes of it.
-HWY_INLINE void push(const FloatMask& below, const FloatLanes& missing, const LanePoints& normal,
+HWY_INLINE void push(const FloatMask& below, const FloatLanes& missing, const PointLanes& normal,
                      const ColliderNow& collider, std::size_t i, Particles& particles) {
-    const FloatLanes zero = all(0);
-    const LanePoints position(particles.positions, i), previous(particles.previous, i);
-    const LanePoints start = previous + motion_at(collider.material, position);
-    const LanePoints motion = position - start;
+    const FloatLanes zero = splat(0);
+    const PointLanes position = load(particles.positions, i), previous = load(particles.previous, i);
+    const PointLanes start = previous + motion_at(collider.material, position);
+    const PointLanes motion = position - start;
     const FloatLanes toward = zero - dot(motion, normal);
     const FloatLanes approach = hn::IfThenElse(zero < toward, toward, zero);
     const FloatLanes back = hn::IfThenElse(approach < missing, approach, missing);
-    const LanePoints pushed = motion + normal * missing;
-    const LanePoints tangential = pushed - normal * dot(pushed, normal);
-    const FloatLanes slip = hn::Sqrt(dot(tangential, tangential));
-    const FloatLanes grip = all(collider.friction) * back;
-    const FloatLanes share = hn::IfThenElse(slip <= grip, all(1), grip / slip);
-    (start + (pushed - tangential * share)).store(below, particles.positions, i);
-    (previous + normal * (missing - back)).store(below, particles.previous, i);
+    const PointLanes pushed = motion + normal * missing;
+    const PointLanes tangential = pushed - normal * dot(pushed, normal);
+    const FloatLanes slip = length(tangential);
+    const FloatLanes grip = splat(collider.friction) * back;
+    const FloatLanes share = hn::IfThenElse(slip <= grip, splat(1), grip / slip);
+    store(start + (pushed - tangential * share), below, particles.positions, i);
+    store(previous + normal * (missing - back), below, particles.previous, i);
 }
 
 std::size_t push_lanes(const KnownContacts& known, const ColliderNow& collider, Particles& particles,
                        ParticleList& to_ask) {
-    const FloatLanes thickness = all(collider.thickness);
-    const FloatLanes reuse = all(kPlaneReuse * collider.thickness);
+    const FloatLanes thickness = splat(collider.thickness);
+    const FloatLanes reuse = splat(kPlaneReuse * collider.thickness);
     std::size_t pushed_count = 0;
     for (std::size_t i = 0; i < particles.count(); i += hn::Lanes(Floats())) {
-        const LanePoints moved = LanePoints(particles.positions, i) - LanePoints(known.asked_at, i);
+        const PointLanes moved = load(particles.positions, i) - load(known.asked_at, i);
         const FloatLanes moved_sq = dot(moved, moved);
         const FloatLanes quiet = load(&known.clearance[i]) - thickness;
         const FloatMask far = moved_sq < quiet * hn::Abs(quiet);
         if (hn::AllTrue(Floats(), far)) continue;
         const FloatLanes height = load(&known.height[i]);
-        const FloatMask usable = hn::And(moved_sq <= reuse * reuse, height < all(KnownContacts::kNoPlane));
+        const FloatMask usable = hn::And(moved_sq <= reuse * reuse, height < splat(KnownContacts::kNoPlane));
         const FloatMask unknown = hn::Not(hn::Or(far, usable));
         if (!hn::AllFalse(Floats(), unknown)) add(unknown, i, to_ask);
-        const LanePoints normal(known.normal, i);
+        const PointLanes normal = load(known.normal, i);
         const FloatLanes missing = thickness - (height + dot(moved, normal));
-        const FloatMask below = hn::And(hn::AndNot(far, usable), missing > all(0));
+        const FloatMask below = hn::And(hn::AndNot(far, usable), missing > splat(0));
         if (hn::AllFalse(Floats(), below)) continue;
         push(below, missing, normal, collider, i, particles);
         pushed_count += hn::CountTrue(Floats(), below);
@@ -133,13 +109,12 @@ void list_unproven_lanes(const KnownContacts& known, const ColliderNow& collider
                          const PointArrays& positions, const PointArrays& free_places,
                          std::size_t particle_count, ParticleList& unproven) {
     for (std::size_t i = 0; i < particle_count; i += hn::Lanes(Floats())) {
-        const LanePoints position(positions, i), asked_at(known.asked_at, i);
-        const LanePoints moved = position - asked_at;
-        const LanePoints free_moved = LanePoints(free_places, i) - asked_at;
+        const PointLanes position = load(positions, i), asked_at = load(known.asked_at, i);
+        const PointLanes moved = position - asked_at;
+        const PointLanes free_moved = load(free_places, i) - asked_at;
         const FloatLanes clearance = load(&known.clearance[i]);
-        const FloatLanes size = hn::Abs(position.x) + hn::Abs(position.y) + hn::Abs(position.z) +
-                                all(collider.coordinate_sum) + clearance;
-        const FloatLanes radius = clearance - all(collider.guard) - size * all(kRounding);
+        const FloatLanes size = l1_norm(position) + splat(collider.coordinate_sum) + clearance;
+        const FloatLanes radius = clearance - splat(collider.guard) - size * splat(kRounding);
         const FloatLanes radius_sq = radius * hn::Abs(radius);
         const FloatMask in_ball =
             hn::And(dot(moved, moved) < radius_sq, dot(free_moved, free_moved) < radius_sq);

@@ -28,18 +28,14 @@ class LaneStick {
     /// Operation by operation what relax_one() does. @param left  sticks from the first lane on
     void operator()(PointLanes& a, PointLanes& b, float* goal_lengths, std::size_t left) const {
         const Floats d;
-        const FloatLanes x = b.x - a.x, y = b.y - a.y, z = b.z - a.z;
+        const PointLanes across = b - a;
         const FloatLanes least = hn::Set(d, std::numeric_limits<float>::min());
-        const FloatLanes distance = hn::Sqrt(x * x + y * y + z * z + least);
+        const FloatLanes distance = hn::Sqrt(dot(across, across) + least);
         const FloatLanes goal = hn::LoadU(d, goal_lengths);
         const FloatLanes factor = hn::Set(d, 1.0F) - goal / distance;
-        const PointLanes correction{x * factor, y * factor, z * factor};
-        a.x = a.x + correction.x * share_a_;
-        a.y = a.y + correction.y * share_a_;
-        a.z = a.z + correction.z * share_a_;
-        b.x = b.x - correction.x * share_b_;
-        b.y = b.y - correction.y * share_b_;
-        b.z = b.z - correction.z * share_b_;
+        const PointLanes correction = across * factor;
+        a = a + correction * share_a_;
+        b = b - correction * share_b_;
         if (!gives_way_) return;
         const FloatMask in_run = hn::FirstN(d, std::min(left, hn::Lanes(d)));
         hn::BlendedStore(goal + (distance - goal) * yield_, in_run, d, goal_lengths);
@@ -122,11 +118,6 @@ struct Alternating {
     }
 };
 
-HWY_INLINE PointLanes chosen(const FloatMask& mask, const PointLanes& yes, const PointLanes& no) {
-    return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y),
-            hn::IfThenElse(mask, yes.z, no.z)};
-}
-
 template <typename Element>
 void relax_alternating(const StickRun& run, float* goal_lengths, PointArrays& p) {
     using Ends = Alternating<Element>;
@@ -139,8 +130,8 @@ void relax_alternating(const StickRun& run, float* goal_lengths, PointArrays& p)
         stick(new_a, new_b, goal_lengths + i, run.count - i);
         if (i + lanes > run.count) {
             const FloatMask rest = hn::FirstN(d, run.count - i);
-            new_a = chosen(rest, new_a, a);
-            new_b = chosen(rest, new_b, b);
+            new_a = choose(rest, new_a, a);
+            new_b = choose(rest, new_b, b);
         }
         Ends::store(new_a, new_b, p, run.a + 2 * i);
     }

@@ -37,14 +37,12 @@ class EllipsoidalLanes : public SphericalLanes {
     HWY_INLINE PointLanes surface_gradient(const PointLanes& e_r, const Cell& cell, FloatLanes,
                                            FloatLanes value, FloatLanes slope_u, FloatLanes slope_v) const {
         const PointLanes g = in_scaled_frame(e_r);
-        const PointLanes unit = scaled(g, hn::Div(splat(1), length(g)));
+        const PointLanes unit = g * hn::Div(splat(1), length(g));
         return in_scaled_frame(SphericalLanes::surface_gradient(unit, cell, value, value, slope_u, slope_v));
     }
 
   private:
-    HWY_INLINE PointLanes in_scaled_frame(const PointLanes& v) const {
-        return {hn::Mul(v.x, splat(scale_.x)), hn::Mul(v.y, splat(scale_.y)), hn::Mul(v.z, splat(scale_.z))};
-    }
+    HWY_INLINE PointLanes in_scaled_frame(const PointLanes& v) const { return times(v, splat(scale_)); }
 
     Vec3f scale_; ///< in the grid's frame
 };

@@ -34,7 +34,7 @@ class OctahedralLanes {
         const FloatLanes n = splat(n_float_);
         const FloatLanes ax = hn::Abs(d.x);
         const FloatLanes ay = hn::Abs(d.y);
-        const FloatLanes l1 = hn::Add(hn::Add(ax, ay), hn::Abs(d.z));
+        const FloatLanes l1 = l1_norm(d);
         const FloatMask off_centre = hn::Gt(l1, zero);
         const FloatLanes scale = hn::IfThenElseZero(off_centre, hn::Div(n, l1));
         const FloatLanes x = hn::Min(hn::Mul(ax, scale), n);
@@ -166,7 +166,7 @@ class OctahedralLanes {
         const PointLanes m{hn::Add(hn::Mul(sign_x, at_middle), hn::Mul(n, slope_u)),
                            hn::Add(hn::Mul(sign_y, at_middle), hn::Mul(n, slope_v)),
                            choose(below, hn::Neg(hn::Add(at_middle, hn::Mul(n, slopes))), at_middle)};
-        return scaled(m, distance);
+        return m * distance;
     }
 
   private:

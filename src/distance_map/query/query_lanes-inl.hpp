@@ -182,12 +182,10 @@ class Kernel {
     }
 
     HWY_INLINE Rays<Grid> aim(const PointLanes& point) const {
-        const PointLanes d =
-            grid_.to_grid({hn::Sub(point.x, splat(map_.centre.x)), hn::Sub(point.y, splat(map_.centre.y)),
-                           hn::Sub(point.z, splat(map_.centre.z))});
+        const PointLanes d = grid_.to_grid(point - splat(map_.centre));
         const FloatLanes d_length = length(d);
         const FloatMask is_short = hn::Lt(d_length, splat(kShortRay));
-        const PointLanes along = scaled(d, choose(is_short, splat(kRayLengthening), splat(1)));
+        const PointLanes along = d * choose(is_short, splat(kRayLengthening), splat(1));
         return {along, d_length, grid_.coordinates_of(along)};
     }
 
@@ -317,7 +315,7 @@ class Kernel {
     static HWY_INLINE PointLanes direction_of(const PointLanes& along) {
         const FloatLanes l = length(along);
         const PointLanes z{hn::Zero(kFloat), hn::Zero(kFloat), splat(1)};
-        return choose(hn::Gt(l, hn::Zero(kFloat)), scaled(along, hn::Div(splat(1), l)), z);
+        return choose(hn::Gt(l, hn::Zero(kFloat)), along * hn::Div(splat(1), l), z);
     }
 
     /// surface_normal() of query.cpp.
@@ -339,10 +337,10 @@ class Kernel {
                                                            hn::Div(slope_v, samples.weight_sum));
         const FloatLanes steepness = length(gradient);
         const FloatMask finite = hn::Lt(steepness, splat(std::numeric_limits<float>::infinity()));
-        const PointLanes unit = choose(finite, scaled(gradient, hn::Div(splat(1), steepness)), e_r);
+        const PointLanes unit = choose(finite, gradient * hn::Div(splat(1), steepness), e_r);
         const FloatMask on_sphere = as_mask(hn::Eq(ends.k, samples.entry_count));
         const FloatMask inward = hn::AndNot(on_sphere, none_of(is_inside(ends.k)));
-        return grid_.from_grid(choose(inward, negated(unit), choose(on_sphere, e_r, unit)));
+        return grid_.from_grid(choose(inward, -unit, choose(on_sphere, e_r, unit)));
     }
 
     /// contact() of query.cpp, where the samples are known; elsewhere none.
@@ -363,10 +361,8 @@ class Kernel {
 
         const PointLanes e_r = direction_of(rays.along);
         const PointLanes normal = surface_normals(samples, entries_at(ends.k), e_r, ends);
-        const PointLanes offset = scaled(grid_.from_grid(e_r), ends.distance);
-        const PointLanes end_point{hn::Add(splat(map_.centre.x), offset.x),
-                                   hn::Add(splat(map_.centre.y), offset.y),
-                                   hn::Add(splat(map_.centre.z), offset.z)};
+        const PointLanes offset = grid_.from_grid(e_r) * ends.distance;
+        const PointLanes end_point = splat(map_.centre) + offset;
         return {choose(found, end_point, point), choose(found, normal, {zero, zero, zero}),
                 hn::IfThenElseZero(found, choose(inside, distance, hn::Neg(distance))),
                 hn::And(found, inside)};

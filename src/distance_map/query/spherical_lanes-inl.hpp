@@ -79,17 +79,10 @@ class SphericalLanes : public BilinearLanes {
         const FloatLanes sine = hn::Sqrt(hn::Add(hn::Mul(e_r.x, e_r.x), hn::Mul(e_r.y, e_r.y)));
         const FloatMask has_angles = hn::And(hn::Gt(sine, zero), hn::Gt(distance, zero));
         const PointLanes e_phi{hn::Div(hn::Neg(e_r.y), sine), hn::Div(e_r.x, sine), zero};
-        const PointLanes e_theta{hn::Sub(hn::Mul(e_phi.y, e_r.z), hn::Mul(e_phi.z, e_r.y)),
-                                 hn::Sub(hn::Mul(e_phi.z, e_r.x), hn::Mul(e_phi.x, e_r.z)),
-                                 hn::Sub(hn::Mul(e_phi.x, e_r.y), hn::Mul(e_phi.y, e_r.x))};
+        const PointLanes e_theta = cross(e_phi, e_r);
         const FloatLanes along_theta = hn::Div(hn::Mul(slope_v, splat(per_theta_)), distance);
         const FloatLanes along_phi = hn::Div(hn::Mul(slope_u, splat(per_phi_)), hn::Mul(distance, sine));
-        const PointLanes theta_part = scaled(e_theta, along_theta);
-        const PointLanes phi_part = scaled(e_phi, along_phi);
-        const PointLanes gradient{hn::Sub(hn::Sub(e_r.x, theta_part.x), phi_part.x),
-                                  hn::Sub(hn::Sub(e_r.y, theta_part.y), phi_part.y),
-                                  hn::Sub(hn::Sub(e_r.z, theta_part.z), phi_part.z)};
-        return choose(has_angles, gradient, e_r);
+        return choose(has_angles, e_r - e_theta * along_theta - e_phi * along_phi, e_r);
     }
 
   private:

@@ -19,8 +19,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace echinus::HWY_NAMESPACE {
 
-/// Particles of a piece of a batch that have something in common, and the band in question. Written a whole
-/// vector at a time, of which only the first few count.
+/// Some particles of a piece of a batch, each with a band. Written a whole vector at a time, of which only
+/// the first few lanes count.
 struct BandGroup {
     static constexpr std::size_t kCapacity = 512; ///< particles of a piece
     static constexpr std::size_t kMargin = 16;    ///< lanes of the widest vector
@@ -47,18 +47,18 @@ class BandSearch {
     explicit BandSearch(const ExactMapView& map) : map_(map) {}
 
     BandGroup in_bands;              ///< with their bands
-    std::size_t outermost_count = 0; ///< so many of in_bands are in the outermost of their cell
+    std::size_t outermost_count = 0; ///< this many of in_bands, the first, are in the outermost of their cell
     BandGroup in_gaps;               ///< with the band beyond the gap; not those beyond all bands
-    /// Who may be in one or the other, perhaps some twice; of an open surface, also who is beyond all bands.
+    /// Slots of particles that may be in one or the other, some perhaps twice; with an open surface also
+    /// those beyond all bands.
     std::span<const std::int32_t> unsure() const { return {unsure_.data(), unsure_count_}; }
 
-    /// @param count  of particles: whole vectors, at most BandGroup::kCapacity
-    /// @param load   gives the points of lanes, from a particle on
-    template <typename Load>
-    void find(std::size_t count, const Load& load) {
+    /// @param points  local: whole vectors, at most BandGroup::kCapacity. A particle's slot is its number
+    /// there
+    void find(const StridedSpan<const Vec3f>& points) {
         in_bands.size = in_gaps.size = below_.size = unsure_count_ = 0;
-        locate(count, load);
-        compare_with_reach(count);
+        locate(points);
+        compare_with_outer_limits(points.size());
         compare_with_outermost();
         compare_with_inner();
     }
@@ -84,17 +84,36 @@ class BandSearch {
 
     static IntLanes slots_from(std::size_t slot) { return hn::Iota(Ints(), static_cast<std::int32_t>(slot)); }
 
-    template <typename Load>
-    void locate(std::size_t count, const Load& load) {
+    /// The points of as many particles as there are lanes.
+    /// @param is_packed  the points lie one after the other, without a gap
+    static PointLanes load(const StridedSpan<const Vec3f>& points, std::size_t first, bool is_packed) {
+        constexpr Floats f;
+        if (is_packed) {
+            FloatLanes x, y, z;
+            hn::LoadInterleaved3(f, &points[first].x, x, y, z);
+            return {x, y, z};
+        }
+        alignas(64) std::array<std::array<float, BandGroup::kMargin>, 3> rows;
+        for (std::size_t lane = 0; lane < hn::Lanes(f); ++lane) {
+            const Vec3f& point = points[first + lane];
+            rows[0][lane] = point.x;
+            rows[1][lane] = point.y;
+            rows[2][lane] = point.z;
+        }
+        return {hn::Load(f, rows[0].data()), hn::Load(f, rows[1].data()), hn::Load(f, rows[2].data())};
+    }
+
+    void locate(const StridedSpan<const Vec3f>& points) {
         constexpr Floats f;
         constexpr Ints i;
-        for (std::size_t slot = 0; slot < count; slot += hn::Lanes(f)) {
-            const CellLanes at = locate_(load(slot));
+        const bool is_packed = points.size() > 1 && &points[1] == &points[0] + 1;
+        for (std::size_t slot = 0; slot < points.size(); slot += hn::Lanes(f)) {
+            const CellLanes at = locate_(load(points, slot, is_packed));
             const FloatMask on_lattice = hn::Lt(at.farthest, hn::Set(f, kSurelyOnLattice));
             const FloatMask located = hn::And(at.sure, on_lattice);
             hn::Store(hn::IfThenElse(located, at.l1, hn::Set(f, kBeyondBands)), f, &l1_[slot]);
             hn::Store(hn::IfThenElseZero(hn::RebindMask(i, located), at.cell), i, &cells_[slot]);
-            if (is_open_) continue; // then who is not located counts as beyond all bands
+            if (is_open_) continue; // a particle that is not located then counts as beyond all bands
             const FloatMask far = hn::Or(hn::Ge(at.l1, hn::Set(f, kBeyondSphere)),
                                          hn::Gt(at.farthest, hn::Set(f, kSurelyBeyondLattice)));
             leave_unsure(slots_from(slot), hn::RebindMask(i, hn::Not(hn::Or(located, far))));
@@ -129,20 +148,20 @@ class BandSearch {
         return hn::RebindMask(Ints(), hn::Lt(l1, hn::Sub(limit, hn::Set(Floats(), CellLanes::kL1Error))));
     }
 
-    /// Most particles are beyond all bands of their cell: of no more than its reach is then read.
-    void compare_with_reach(std::size_t count) {
+    /// Most particles are beyond all bands of their cell, and need no more than the outer limit of the last.
+    void compare_with_outer_limits(std::size_t count) {
         constexpr Ints i;
         for (std::size_t slot = 0; slot < count; ++slot)
             limits_[slot] = map_.outer_limits[static_cast<std::size_t>(cells_[slot])];
         for (std::size_t slot = 0; slot < count; slot += hn::Lanes(i)) {
             const FloatLanes l1 = hn::Load(Floats(), &l1_[slot]);
-            const FloatLanes reach = hn::Mul(hn::ConvertTo(Floats(), hn::Load(i, &limits_[slot])),
+            const FloatLanes limit = hn::Mul(hn::ConvertTo(Floats(), hn::Load(i, &limits_[slot])),
                                              hn::Set(Floats(), ExactMapView::kBandUnit));
-            const IntMask beyond = surely_beyond(l1, reach);
+            const IntMask beyond = surely_beyond(l1, limit);
             if (is_open_) [[unlikely]]
                 leave_unsure(slots_from(slot), beyond);
-            // With the cell for the moment: its bands are looked up next. A cell without bands has no such
-            // particle, since nobody is sure of a cell who is less than kL1Error from the centre.
+            // With the cell for the moment: its bands are looked up next. No such particle is in a cell
+            // without bands, since the cell of a particle less than kL1Error from the centre is not sure.
             below_.add(hn::Not(beyond), slots_from(slot), hn::Load(i, &cells_[slot]));
         }
     }

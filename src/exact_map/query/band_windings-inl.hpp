@@ -8,6 +8,7 @@
 
 #include "exact_map/layout.hpp"
 #include "exact_map/query/band_search-inl.hpp"
+#include "exact_map/query/cell_lanes-inl.hpp"
 #include "exact_map/query/crossing_lanes-inl.hpp"
 #include "exact_map/query/ray_crossing.hpp"
 #include "simd/compress-inl.hpp"
@@ -18,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 
 #if HWY_TARGET != HWY_SCALAR // where the reference is used instead
 HWY_BEFORE_NAMESPACE();
@@ -25,28 +27,21 @@ namespace echinus::HWY_NAMESPACE {
 
 /// Winding numbers around particles in bands.
 ///
-/// Who is in a band has a few faces to test, few enough to leave most lanes empty. So pairs of a particle and
-/// a face are listed first, for many particles, and then tested, a pair a lane.
+/// A particle in a band has only a few faces to test, too few to fill the lanes of a vector. So pairs of a
+/// particle and a face are listed first, for many particles, and then tested, one pair to a lane.
 class BandWindings {
   public:
     /// Instead of a winding number: left to the reference.
     static constexpr std::int32_t kUnsettled = INT32_MAX;
 
-    struct Particles {
-        template <typename T>
-        using Column = std::array<T, BandGroup::kCapacity + BandGroup::kMargin>;
-
-        alignas(64) Column<float> x, y, z;      ///< on the lattice
-        alignas(64) Column<std::int32_t> parts; ///< of its cell, which may hold a particle: a bit each
-    };
-    Particles particles; ///< to be set before find() is called
-
     explicit BandWindings(const ExactMapView& map) : map_(map) {}
 
-    /// @param group   the particles' bands; of the first `outermost_count` they are the last of their cells
-    /// @param answer  is called with the number of each particle and its winding number, or kUnsettled
-    template <typename Answer>
-    void find(const BandGroup& group, std::size_t outermost_count, const Answer& answer) {
+    /// The winding number around each particle of a group, or kUnsettled. Valid until the next call.
+    /// @param group   bands of particles; of the first `outermost_count` they are the last of their cells
+    /// @param points  local, by slot
+    std::span<const std::int32_t> find(const BandGroup& group, std::size_t outermost_count,
+                                       const StridedSpan<const Vec3f>& points) {
+        place(group, points);
         for (std::size_t k = 0; k < group.size;) {
             const std::size_t first = k;
             pair_count_ = 0;
@@ -56,8 +51,9 @@ class BandWindings {
                 test_pairs(map_.corners.narrow.data());
             else
                 test_pairs(map_.corners.wide.data());
-            add_up(first, k, answer);
+            add_up(first, k);
         }
+        return {windings_.data(), group.size};
     }
 
   private:
@@ -66,6 +62,9 @@ class BandWindings {
     static constexpr std::size_t kPairCapacity = 8 * BandGroup::kCapacity; // twice what is usual
     static constexpr std::uint32_t kBefore = 0x8000'0000;
 
+    template <typename T>
+    using Column = std::array<T, BandGroup::kCapacity + BandGroup::kMargin>;
+
     /// What a particle's crossings are added to.
     struct Sum {
         std::int32_t winding; ///< beyond the faces, or before them; or kUnsettled
@@ -73,8 +72,26 @@ class BandWindings {
         std::size_t last_pair;
     };
 
+    /// Snaps particles to the lattice and finds the parts of their cells that they are in.
+    void place(const BandGroup& group, const StridedSpan<const Vec3f>& points) {
+        constexpr Floats f;
+        for (std::size_t k = 0; k < group.size; ++k) {
+            const Vec3f& point = points[static_cast<std::uint32_t>(group.slots[k])];
+            x_[k] = point.x;
+            y_[k] = point.y;
+            z_[k] = point.z;
+        }
+        for (std::size_t k = 0; k < group.size; k += hn::Lanes(f)) {
+            const PointLanes p = snap_({hn::Load(f, &x_[k]), hn::Load(f, &y_[k]), hn::Load(f, &z_[k])});
+            hn::Store(p.x, f, &x_[k]);
+            hn::Store(p.y, f, &y_[k]);
+            hn::Store(p.z, f, &z_[k]);
+            hn::Store(parts_of_(p), Ints(), &parts_[k]);
+        }
+    }
+
     /// Lists the faces that touch the particles' parts, for particles from the first on.
-    /// @returns the first particle for whom there is no room, or last
+    /// @returns the first particle whose faces no longer fit, or last
     template <bool kOutermost>
     std::size_t list_pairs(const BandGroup& group, std::size_t first, std::size_t last) {
         return map_.references.wide.empty()
@@ -95,7 +112,7 @@ class BandWindings {
             if constexpr (!kOutermost) {
                 const std::int32_t beyond = winding_below[band + 1], below = winding_below[band];
                 before = beyond == ExactMapView::kSplit ? -1 : 0;
-                winding = beyond ^ ((beyond ^ below) & before); // nothing to guess for a processor
+                winding = beyond ^ ((beyond ^ below) & before); // without a branch
             }
             const bool left_out = (winding == ExactMapView::kUncertain) | (end - begin > kPairCapacity) |
                                   (end + kMargin > reference_count); // beyond lists is read, too
@@ -119,7 +136,7 @@ class BandWindings {
                                      std::size_t k, std::int32_t particle, std::size_t pair_count) {
         constexpr Ints i;
         const std::uint16_t* parts_of = map_.reference_parts.data();
-        const IntLanes wanted = hn::Set(i, particles.parts[k]);
+        const IntLanes wanted = hn::Set(i, parts_[k]);
         const auto add = [&](std::uint32_t from) HWY_ATTR {
             const IntLanes touched = hn::And(load(&parts_of[from]), wanted);
             const IntLanes left = hn::Set(i, static_cast<std::int32_t>(end - from));
@@ -129,7 +146,7 @@ class BandWindings {
             hn::StoreU(compress(hn::Add(hn::Add(faces, faces), faces)), i, &pair_corners_[pair_count]);
             pair_count += compress.count();
         };
-        // Twice in any case: few lists are longer, and there is little to guess.
+        // Twice in any case: few lists are longer, and a branch less is mispredicted less.
         do {
             add(begin);
             add(begin + kLanes);
@@ -138,14 +155,13 @@ class BandWindings {
         return pair_count;
     }
 
-    /// Tells the winding numbers of particles [first, last), whose pairs are tested.
-    template <typename Answer>
-    HWY_INLINE void add_up(std::size_t first, std::size_t last, const Answer& answer) const {
+    /// Sets the winding numbers of particles [first, last), whose pairs are tested.
+    HWY_INLINE void add_up(std::size_t first, std::size_t last) {
         std::size_t pair = 0;
         for (std::size_t k = first; k < last; ++k) {
             const auto [winding, sign, last_pair] = sums_[k];
             const std::int32_t crossings = sum_of(pair, last_pair - pair);
-            answer(k, winding == kUnsettled ? kUnsettled : winding + sign * crossings);
+            windings_[k] = winding == kUnsettled ? kUnsettled : winding + sign * crossings;
             pair = last_pair;
         }
     }
@@ -190,10 +206,10 @@ class BandWindings {
         if (!hn::AllTrue(i, hn::Eq(lane, within))) [[unlikely]]
             return far_places_of(first_pair);
         const auto from = hn::IndicesFromVec(f, within);
-        const auto column = [&](const Particles::Column<float>& numbers_of) HWY_ATTR {
+        const auto column = [&](const Column<float>& numbers_of) HWY_ATTR {
             return hn::TableLookupLanes(hn::LoadU(f, &numbers_of[static_cast<std::size_t>(first)]), from);
         };
-        return {column(particles.x), column(particles.y), column(particles.z)};
+        return {column(x_), column(y_), column(z_)};
     }
 
     HWY_NOINLINE PointLanes far_places_of(std::size_t first_pair) const {
@@ -201,9 +217,9 @@ class BandWindings {
         alignas(64) std::array<std::array<float, BandGroup::kMargin>, 3> rows;
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             const auto k = static_cast<std::size_t>(pair_particles_[first_pair + lane] & INT32_MAX);
-            rows[0][lane] = particles.x[k];
-            rows[1][lane] = particles.y[k];
-            rows[2][lane] = particles.z[k];
+            rows[0][lane] = x_[k];
+            rows[1][lane] = y_[k];
+            rows[2][lane] = z_[k];
         }
         return {hn::Load(f, rows[0].data()), hn::Load(f, rows[1].data()), hn::Load(f, rows[2].data())};
     }
@@ -235,9 +251,8 @@ class BandWindings {
             if (lanes[lane] == 0) continue;
             const auto particle = static_cast<std::uint32_t>(pair_particles_[first + lane]);
             const std::size_t k = particle & ~kBefore;
-            const LatticePoint p{static_cast<std::int64_t>(particles.x[k]),
-                                 static_cast<std::int64_t>(particles.y[k]),
-                                 static_cast<std::int64_t>(particles.z[k])};
+            const LatticePoint p{static_cast<std::int64_t>(x_[k]), static_cast<std::int64_t>(y_[k]),
+                                 static_cast<std::int64_t>(z_[k])};
             const auto face = static_cast<std::uint32_t>(pair_corners_[first + lane]) / 3;
             const int crossing = crossing_on(particle & kBefore ? RaySide::Before : RaySide::Beyond,
                                              face_corners(map_, face), p);
@@ -259,6 +274,13 @@ class BandWindings {
     }
 
     const ExactMapView& map_;
+    SnapLanes snap_{frame_of(map_)};
+    PartLanes parts_of_{map_.divisions};
+
+    // By number in the group.
+    alignas(64) Column<float> x_, y_, z_;    ///< on the lattice
+    alignas(64) Column<std::int32_t> parts_; ///< of its cell, which may hold the particle: a bit each
+    std::array<std::int32_t, BandGroup::kCapacity> windings_;
     std::array<Sum, BandGroup::kCapacity> sums_;
     std::size_t pair_count_ = 0;
     alignas(64) std::array<std::int32_t, kPairCapacity + kMargin> pair_corners_;   ///< the first of each face

@@ -86,19 +86,13 @@ class LocateLanes {
     std::int32_t n_;
 };
 
-/// Particles on the lattice: whole numbers.
-struct LatticeLanes {
-    FloatLanes x, y, z;
-
-    FloatLanes l1_norm() const { return hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Abs(z)); }
-};
-
-/// LatticeFrame::to_lattice() and rounded(), in the same arithmetic. What is not on the lattice goes to 2^20.
+/// LatticeFrame::to_lattice() and rounded(), in the same arithmetic: whole numbers. What is not on the
+/// lattice goes to 2^20.
 class SnapLanes {
   public:
     explicit SnapLanes(const LatticeFrame& frame) : frame_(frame) {}
 
-    LatticeLanes operator()(const PointLanes& point_local) const {
+    PointLanes operator()(const PointLanes& point_local) const {
         return {snapped(point_local.x, frame_.centre.x), snapped(point_local.y, frame_.centre.y),
                 snapped(point_local.z, frame_.centre.z)};
     }
@@ -130,10 +124,10 @@ class PartLanes {
         : fine_n_(static_cast<float>(OctahedralCells::kPartsPerSide * divisions)) {}
 
     /// All of them for a particle that is so close to a wall that rounding may decide.
-    IntLanes operator()(const LatticeLanes& p) const {
+    IntLanes operator()(const PointLanes& p) const {
         constexpr Floats f;
         constexpr Ints i;
-        const FloatLanes parts_per_step = hn::Div(hn::Set(f, fine_n_), p.l1_norm());
+        const FloatLanes parts_per_step = hn::Div(hn::Set(f, fine_n_), l1_norm(p));
         const FloatLanes along_x = hn::Mul(hn::Abs(p.x), parts_per_step);
         const FloatLanes along_y = hn::Mul(hn::Abs(p.y), parts_per_step);
         const IntLanes row = hn::ConvertTo(i, along_x), column = hn::ConvertTo(i, along_y);

@@ -66,38 +66,14 @@ namespace echinus::HWY_NAMESPACE {
 
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
 using Doubles = hn::ScalableTag<double>;
 using DoubleLanes = hn::Vec<Doubles>;
 using DoubleMask = hn::Mask<Doubles>;
 constexpr std::size_t kMaxLanes = 8;
 
-/// Vec3d of several particles at once: the same operations in the same order, hence the same bits.
-struct Vec3Lanes {
-    DoubleLanes x, y, z;
-};
+using PlaceLanes = Vec3Lanes<DoubleLanes>;
 
-Vec3Lanes plus(const Vec3Lanes& a, const Vec3Lanes& b) {
-    return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-Vec3Lanes minus(const Vec3Lanes& a, const Vec3Lanes& b) {
-    return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-Vec3Lanes times(const Vec3Lanes& a, DoubleLanes s) {
-    return {hn::Mul(a.x, s), hn::Mul(a.y, s), hn::Mul(a.z, s)};
-}
-DoubleLanes dot(const Vec3Lanes& a, const Vec3Lanes& b) {
-    return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-Vec3Lanes cross(const Vec3Lanes& a, const Vec3Lanes& b) {
-    return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-            hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
-}
-Vec3Lanes if_then_else(DoubleMask mask, const Vec3Lanes& a, const Vec3Lanes& b) {
-    return {hn::IfThenElse(mask, a.x, b.x), hn::IfThenElse(mask, a.y, b.y), hn::IfThenElse(mask, a.z, b.z)};
-}
-Vec3Lanes same(const Vec3d& v) {
+PlaceLanes same(const Vec3d& v) {
     constexpr Doubles d;
     return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
 }
@@ -123,11 +99,11 @@ class ContactLanes {
     struct Rows {
         alignas(64) Row x, y, z;
 
-        Vec3Lanes lanes() const {
+        PlaceLanes lanes() const {
             constexpr Doubles d;
             return {hn::Load(d, x.data()), hn::Load(d, y.data()), hn::Load(d, z.data())};
         }
-        void set(const Vec3Lanes& v) {
+        void set(const PlaceLanes& v) {
             constexpr Doubles d;
             hn::Store(v.x, d, x.data());
             hn::Store(v.y, d, y.data());
@@ -155,7 +131,7 @@ class ContactLanes {
     }
 
     /// The point of a segment that is nearest to the origin, as a share of the way.
-    static DoubleLanes nearest_share(const Vec3Lanes& start, const Vec3Lanes& edge) {
+    static DoubleLanes nearest_share(const PlaceLanes& start, const PlaceLanes& edge) {
         constexpr Doubles d;
         const DoubleLanes zero = hn::Zero(d), one = hn::Set(d, 1), length_sq = dot(edge, edge);
         const DoubleLanes share = hn::Div(hn::Neg(dot(start, edge)), length_sq);
@@ -166,52 +142,47 @@ class ContactLanes {
 
     void measure_loaded() {
         constexpr Doubles d;
-        const Vec3Lanes place = places_.lanes();
-        const auto around_place = [&](const Rows& corner) {
-            const Vec3Lanes offset = minus(corner.lanes(), place);
-            return Vec3Lanes{hn::Mul(offset.x, stretch_.x), hn::Mul(offset.y, stretch_.y),
-                             hn::Mul(offset.z, stretch_.z)};
-        };
-        const std::array<Vec3Lanes, 3> corners{around_place(corners_[0]), around_place(corners_[1]),
-                                               around_place(corners_[2])};
-        const Vec3Lanes normal = cross(minus(corners[1], corners[0]), minus(corners[2], corners[1]));
+        const PlaceLanes place = places_.lanes();
+        const auto around_place = [&](const Rows& corner) { return times(corner.lanes() - place, stretch_); };
+        const std::array<PlaceLanes, 3> corners{around_place(corners_[0]), around_place(corners_[1]),
+                                                around_place(corners_[2])};
+        const PlaceLanes normal = cross(corners[1] - corners[0], corners[2] - corners[1]);
         const DoubleLanes zero = hn::Zero(d), one = hn::Set(d, 1);
-        Vec3Lanes nearest{zero, zero, zero};
+        PlaceLanes nearest{zero, zero, zero};
         DoubleLanes nearest_sq = hn::Set(d, std::numeric_limits<double>::infinity());
         DoubleMask above = hn::Eq(zero, zero), on_edge = hn::Ne(zero, zero);
         for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3Lanes& start = corners[k];
-            const Vec3Lanes edge = minus(corners[(k + 1) % 3], start);
+            const PlaceLanes& start = corners[k];
+            const PlaceLanes edge = corners[(k + 1) % 3] - start;
             above = hn::And(above, hn::Gt(dot(cross(normal, start), edge), zero));
             const DoubleLanes share = nearest_share(start, edge);
-            const Vec3Lanes candidate = plus(start, times(edge, share));
+            const PlaceLanes candidate = start + edge * share;
             const DoubleLanes distance_sq = dot(candidate, candidate);
             const DoubleMask nearer = hn::Lt(distance_sq, nearest_sq);
             nearest_sq = hn::IfThenElse(nearer, distance_sq, nearest_sq);
-            nearest = if_then_else(nearer, candidate, nearest);
+            nearest = choose(nearer, candidate, nearest);
             const DoubleMask within = hn::And(hn::Gt(share, zero), hn::Lt(share, one));
             on_edge = hn::Or(hn::And(nearer, within), hn::AndNot(nearer, on_edge));
         }
-        const Vec3Lanes on_plane = times(normal, hn::Div(dot(corners[0], normal), dot(normal, normal)));
-        nearest = if_then_else(above, on_plane, nearest);
+        const PlaceLanes on_plane = normal * hn::Div(dot(corners[0], normal), dot(normal, normal));
+        nearest = choose(above, on_plane, nearest);
         hn::Store(hn::IfThenElse(above, hn::Set(d, double(Feature::Face)),
                                  hn::IfThenElse(on_edge, hn::Set(d, double(Feature::Edge)),
                                                 hn::Set(d, double(Feature::Vertex)))),
                   d, features_.data());
-        const DoubleLanes distance = hn::Sqrt(dot(nearest, nearest));
+        const DoubleLanes distance = length(nearest);
 
-        const Vec3Lanes point = plus(place, {hn::Div(nearest.x, stretch_.x), hn::Div(nearest.y, stretch_.y),
-                                             hn::Div(nearest.z, stretch_.z)});
-        points_.set(plus(centre_, times(point, step_)));
+        const PlaceLanes point =
+            place + PlaceLanes{hn::Div(nearest.x, stretch_.x), hn::Div(nearest.y, stretch_.y),
+                               hn::Div(nearest.z, stretch_.z)};
+        points_.set(centre_ + point * step_);
         const DoubleLanes sign = hn::Load(d, signs_.data());
         const DoubleLanes depth = hn::Mul(hn::Mul(distance, hn::Set(d, search_.unit())), step_);
         hn::Store(hn::Mul(depth, sign), d, depths_.data());
-        const Vec3Lanes offset = minus(point, place);
-        const DoubleMask is_near = hn::Le(hn::Sqrt(dot(offset, offset)), hn::Set(d, kSnapping));
+        const PlaceLanes offset = point - place;
+        const DoubleMask is_near = hn::Le(length(offset), hn::Set(d, kSnapping));
         hn::Store(hn::IfThenElseZero(is_near, one), d, is_near_.data());
-        const Vec3Lanes in_world{hn::Mul(offset.x, stretch_.x), hn::Mul(offset.y, stretch_.y),
-                                 hn::Mul(offset.z, stretch_.z)};
-        normals_.set(times(in_world, hn::Div(sign, distance)));
+        normals_.set(times(offset, stretch_) * hn::Div(sign, distance));
     }
 
     void store(ContactBlock& block, std::size_t i, std::size_t lane) const {
@@ -232,7 +203,7 @@ class ContactLanes {
 
     const ContactSearch& search_;
     const ExactMapView& map_;
-    Vec3Lanes stretch_, centre_;
+    PlaceLanes stretch_, centre_;
     DoubleLanes step_;
 
     // The particles at hand.

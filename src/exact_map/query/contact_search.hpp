@@ -5,18 +5,10 @@
 #include "exact_map/query/sides.hpp"
 #include "exact_map/query/winding.hpp"
 
-#include <echinus/exact_map.hpp>
-
 #include <algorithm>
 #include <cmath>
 
 namespace echinus {
-
-inline Containment containment_at(const ExactMapView& map, const LatticeFrame& frame,
-                                  const Vec3f& point_local) {
-    const Winding winding = winding_at(map, frame, point_local);
-    return {is_inside(map.rule, winding.number), winding.certain};
-}
 
 /// Two snapped positions differ from the true ones by at most sqrt(3) lattice steps together.
 inline constexpr double kSnapping = 2;
@@ -31,9 +23,7 @@ class ContactSearch {
           stretch_(stretch * (1 / unit_)), margin_(margin > 0 ? margin / (unit_ * frame_.step) : 0) {}
 
     Contact operator()(const Vec3f& point_local) const {
-        const Containment found =
-            is_finite(point_local) ? containment_at(map_, frame_, point_local) : Containment{};
-        const Side side = side_of(found);
+        const Side side = side_at(map_, frame_, point_local);
         if (!is_wanted(point_local, side)) return no_contact(point_local, side);
         const auto nearest = nearest_point(map_, place_of(point_local), stretch_, farthest(side));
         return nearest ? contact_at(point_local, side, *nearest) : no_contact(point_local, side);

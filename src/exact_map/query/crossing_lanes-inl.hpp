@@ -34,19 +34,13 @@ HWY_INLINE CrossingLanes crossings_of(const PointLanes& a, const PointLanes& b, 
                                       const PointLanes& p, IntLanes before) {
     constexpr Floats f;
     constexpr Ints i;
-    const auto cross = [](const PointLanes& u, const PointLanes& v) {
-        return PointLanes{hn::MulSub(u.y, v.z, hn::Mul(u.z, v.y)), hn::MulSub(u.z, v.x, hn::Mul(u.x, v.z)),
-                          hn::MulSub(u.x, v.y, hn::Mul(u.y, v.x))};
-    };
-    const auto dot = [](const PointLanes& u, const PointLanes& v) {
-        return hn::MulAdd(u.x, v.x, hn::MulAdd(u.y, v.y, hn::Mul(u.z, v.z)));
-    };
-    const PointLanes b_c = cross(b, c);
-    const FloatLanes past_bc = dot(p, b_c);
-    const FloatLanes past_ca = dot(p, cross(c, a));
-    const FloatLanes past_ab = dot(p, cross(a, b));
-    const FloatLanes volume = dot(a, b_c);
-    const FloatLanes bound = hn::Mul(hn::Max(hn::Max(dot(a, a), dot(b, b)), dot(c, c)), hn::Set(f, 16));
+    const PointLanes b_c = fused_cross(b, c);
+    const FloatLanes past_bc = fused_dot(p, b_c);
+    const FloatLanes past_ca = fused_dot(p, fused_cross(c, a));
+    const FloatLanes past_ab = fused_dot(p, fused_cross(a, b));
+    const FloatLanes volume = fused_dot(a, b_c);
+    const FloatLanes bound =
+        hn::Mul(hn::Max(hn::Max(fused_dot(a, a), fused_dot(b, b)), fused_dot(c, c)), hn::Set(f, 16));
 
     // All of one sign, and by how much; negative where the signs differ.
     const FloatLanes least = hn::Min(hn::Min(past_ab, past_bc), past_ca);

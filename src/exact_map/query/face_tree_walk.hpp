@@ -16,6 +16,15 @@ struct LeafFaces {
     std::uint32_t first, last;
 };
 
+/// Pushes onto a stack whose entries from `sorted` on are sorted, the nearest on top, and keeps them so.
+template <typename Entry>
+void push_sorted(Entry* stack, std::size_t sorted, std::size_t& count, const Entry& entry) {
+    std::size_t place = count++;
+    for (; place > sorted && stack[place - 1].distance < entry.distance; --place)
+        stack[place] = stack[place - 1];
+    stack[place] = entry;
+}
+
 /// Branch and bound: calls visit(LeafFaces) for the leaves that are not beyond `bound`, near ones first.
 /// Stops when what is left lies beyond the bound, which `visit` may lower.
 /// @param measure  ChildDistances measure(node): lower bounds of the distance in any unit
@@ -45,11 +54,8 @@ void walk_near_leaves(const ExactMapView& map, const float& bound, const Measure
         const ChildDistances distances = measure(node);
         const std::size_t before = count;
         for (std::size_t k = 0; k < TreeNode::kWidth; ++k) {
-            if (!(distances[k] <= bound)) continue;
-            std::size_t place = count++;
-            for (; place > before && waiting[place - 1].distance < distances[k]; --place)
-                waiting[place] = waiting[place - 1];
-            waiting[place] = {node.children[k], distances[k]};
+            if (distances[k] <= bound)
+                push_sorted(waiting.data(), before, count, Waiting{node.children[k], distances[k]});
         }
     }
 }

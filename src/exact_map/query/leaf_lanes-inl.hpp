@@ -52,34 +52,29 @@ class LeafLanes {
 
     DistanceLanes distances_sq(std::size_t face, const PointLanes& place) const {
         constexpr Floats f;
-        const auto all = [&](const Row& row) { return hn::Set(f, row[face]); };
-        const auto dot = [&](const PointLanes& u, const Rows& v) {
-            return hn::MulAdd(u.z, all(v.z), hn::MulAdd(u.y, all(v.y), hn::Mul(u.x, all(v.x))));
+        const auto all = [&](const Row& row) HWY_ATTR { return hn::Set(f, row[face]); };
+        const auto all_of = [&](const Rows& rows) HWY_ATTR {
+            return PointLanes{all(rows.x), all(rows.y), all(rows.z)};
         };
         const FloatLanes zero = hn::Zero(f), one = hn::Set(f, 1);
-        const auto from_place = [&](const Rows& corner) {
-            return PointLanes{hn::Sub(all(corner.x), place.x), hn::Sub(all(corner.y), place.y),
-                              hn::Sub(all(corner.z), place.z)};
-        };
-        const std::array<PointLanes, 3> starts{from_place(corners_[0]), from_place(corners_[1]),
-                                               from_place(corners_[2])};
+        const std::array<PointLanes, 3> starts{all_of(corners_[0]) - place, all_of(corners_[1]) - place,
+                                               all_of(corners_[2]) - place};
         FloatMask above = hn::Eq(zero, zero);
-        for (std::size_t k = 0; k < 3; ++k) above = hn::And(above, hn::Gt(dot(starts[k], inward_[k]), zero));
-        const FloatLanes height = dot(starts[0], normals_);
+        for (std::size_t k = 0; k < 3; ++k)
+            above = hn::And(above, hn::Gt(fused_dot(starts[k], all_of(inward_[k])), zero));
+        const FloatLanes height = fused_dot(starts[0], all_of(normals_));
         FloatLanes distance_sq = hn::Mul(hn::Mul(height, height), all(normal_inverses_));
         if (!hn::AllTrue(f, above)) {
             FloatLanes to_edges = hn::Set(f, kFar);
             for (std::size_t k = 0; k < 3; ++k) {
                 const PointLanes& start = starts[k];
-                const Rows& edge = edges_[k];
+                const PointLanes edge = all_of(edges_[k]);
                 const FloatLanes share =
-                    hn::Min(hn::Max(hn::Mul(dot(start, edge), all(minus_inverses_[k])), zero), one);
-                const PointLanes nearest{hn::MulAdd(all(edge.x), share, start.x),
-                                         hn::MulAdd(all(edge.y), share, start.y),
-                                         hn::MulAdd(all(edge.z), share, start.z)};
-                const FloatLanes to_edge = hn::MulAdd(
-                    nearest.z, nearest.z, hn::MulAdd(nearest.y, nearest.y, hn::Mul(nearest.x, nearest.x)));
-                to_edges = hn::Min(to_edges, to_edge);
+                    hn::Min(hn::Max(hn::Mul(fused_dot(start, edge), all(minus_inverses_[k])), zero), one);
+                const PointLanes nearest{hn::MulAdd(edge.x, share, start.x),
+                                         hn::MulAdd(edge.y, share, start.y),
+                                         hn::MulAdd(edge.z, share, start.z)};
+                to_edges = hn::Min(to_edges, fused_dot(nearest, nearest));
             }
             distance_sq = hn::IfThenElse(above, distance_sq, to_edges);
         }
@@ -118,27 +113,12 @@ class LeafLanes {
 
     using Faces = hn::CappedTag<float, kWidth>;
     using FaceLanes = hn::Vec<Faces>;
-    struct Vec3Lanes {
-        FaceLanes x, y, z;
-    };
+    using FaceVectors = Vec3Lanes<FaceLanes>;
     using Row = std::array<float, kWidth>;
     struct Rows {
         alignas(32) Row x, y, z;
     };
 
-    static FaceLanes dot(const Vec3Lanes& u, const Vec3Lanes& v) {
-        return hn::MulAdd(u.z, v.z, hn::MulAdd(u.y, v.y, hn::Mul(u.x, v.x)));
-    }
-    static Vec3Lanes cross(const Vec3Lanes& u, const Vec3Lanes& v) {
-        return {hn::Sub(hn::Mul(u.y, v.z), hn::Mul(u.z, v.y)), hn::Sub(hn::Mul(u.z, v.x), hn::Mul(u.x, v.z)),
-                hn::Sub(hn::Mul(u.x, v.y), hn::Mul(u.y, v.x))};
-    }
-    static Vec3Lanes minus(const Vec3Lanes& u, const Vec3Lanes& v) {
-        return {hn::Sub(u.x, v.x), hn::Sub(u.y, v.y), hn::Sub(u.z, v.z)};
-    }
-    static FaceLanes sum_of(const Vec3Lanes& v) {
-        return hn::Add(hn::Add(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z));
-    }
     /// 0 where the value is.
     static FaceLanes inverse(FaceLanes value) {
         constexpr Faces d;
@@ -148,21 +128,22 @@ class LeafLanes {
     void prepare_lanes(std::size_t first, float reach) {
         constexpr Faces d;
         const auto load = [&](const Rows& rows) {
-            return Vec3Lanes{hn::Load(d, &rows.x[first]), hn::Load(d, &rows.y[first]),
-                             hn::Load(d, &rows.z[first])};
+            return FaceVectors{hn::Load(d, &rows.x[first]), hn::Load(d, &rows.y[first]),
+                               hn::Load(d, &rows.z[first])};
         };
-        const auto store = [&](const Vec3Lanes& v, Rows& rows) {
+        const auto store = [&](const FaceVectors& v, Rows& rows) {
             hn::Store(v.x, d, &rows.x[first]);
             hn::Store(v.y, d, &rows.y[first]);
             hn::Store(v.z, d, &rows.z[first]);
         };
-        const Vec3Lanes a = load(corners_[0]), b = load(corners_[1]), c = load(corners_[2]);
-        const Vec3Lanes ab = minus(b, a), bc = minus(c, b), ca = minus(a, c);
-        const Vec3Lanes normal = cross(ab, bc);
-        const FaceLanes ab_sq = dot(ab, ab), bc_sq = dot(bc, bc), ca_sq = dot(ca, ca),
-                        normal_sq = dot(normal, normal);
+        const FaceVectors a = load(corners_[0]), b = load(corners_[1]), c = load(corners_[2]);
+        const FaceVectors ab = b - a, bc = c - b, ca = a - c;
+        const FaceVectors normal = cross(ab, bc);
+        const FaceLanes ab_sq = fused_dot(ab, ab), bc_sq = fused_dot(bc, bc), ca_sq = fused_dot(ca, ca),
+                        normal_sq = fused_dot(normal, normal);
 
-        const FaceLanes scale = hn::Add(hn::Add(sum_of(a), sum_of(b)), hn::Add(sum_of(c), hn::Set(d, reach)));
+        const FaceLanes scale =
+            hn::Add(hn::Add(l1_norm(a), l1_norm(b)), hn::Add(l1_norm(c), hn::Set(d, reach)));
         const FaceLanes error_sq = hn::Mul(hn::Mul(scale, scale), hn::Set(d, 0x1p-26F));
         constexpr float kThin = 1024; // q^2 beyond which the plane is not used
         const FaceLanes sides_sq =    // of the two longest, which meet in the sharpest corner
@@ -185,9 +166,9 @@ class LeafLanes {
         hn::Store(hn::Neg(inverse(bc_sq)), d, &minus_inverses_[1][first]);
         hn::Store(hn::Neg(inverse(ca_sq)), d, &minus_inverses_[2][first]);
         // Without a plane no place is above the face.
-        const auto if_plane = [&](const Vec3Lanes& v) {
-            return Vec3Lanes{hn::IfThenElseZero(has_plane, v.x), hn::IfThenElseZero(has_plane, v.y),
-                             hn::IfThenElseZero(has_plane, v.z)};
+        const auto if_plane = [&](const FaceVectors& v) {
+            return FaceVectors{hn::IfThenElseZero(has_plane, v.x), hn::IfThenElseZero(has_plane, v.y),
+                               hn::IfThenElseZero(has_plane, v.z)};
         };
         store(if_plane(cross(ab, normal)), inward_[0]);
         store(if_plane(cross(bc, normal)), inward_[1]);

@@ -48,10 +48,11 @@ double distance_sq_to_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     return above ? to_plane : least;
 }
 
-/// The faces of a leaf, each number in an array of its own.
-class FaceLanes {
+/// Squared distances to the faces of a leaf. Each coordinate has an array of its own, for the compiler to
+/// vectorise.
+class LeafDistances {
   public:
-    FaceLanes(const ExactMapView& map, const LeafFaces& faces, const Vec3d& place, const Vec3d& stretch) {
+    LeafDistances(const ExactMapView& map, const LeafFaces& faces, const Vec3d& place, const Vec3d& stretch) {
         for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
             const std::size_t face = std::min(faces.first + lane, faces.last - 1);
             for (std::size_t k = 0; k < 3; ++k) {
@@ -134,9 +135,9 @@ std::optional<NearestPoint> nearest_point(const ExactMapView& map, const Vec3d& 
     float bound = rounded_up(nearest_sq);
     std::optional<std::uint32_t> face;
     walk_near_leaves(map, bound, BoxDistances(place, stretch), [&](const LeafFaces& faces) {
-        const FaceLanes lanes(map, faces, place, stretch);
+        const LeafDistances distances(map, faces, place, stretch);
         for (std::uint32_t lane = 0; lane < faces.last - faces.first; ++lane) {
-            const double distance_sq = lanes.distance_sq(lane);
+            const double distance_sq = distances.distance_sq(lane);
             const std::uint32_t found = faces.first + lane;
             if (!(distance_sq <= nearest_sq) || (face && distance_sq == nearest_sq && found > *face))
                 continue;

@@ -1,5 +1,6 @@
 #include "exact_map/query/nearest_faces.hpp"
 
+#include "exact_map/query/face_tree_walk.hpp"
 #include "exact_map/query/nearest.hpp"
 
 #include <algorithm>
@@ -139,9 +140,7 @@ class NearestFaceFinder {
             rows[3][lane] = static_cast<float>(std::min(search.farthest * search.farthest, kMaxDistanceSq));
         }
         flat_ = {hn::Load(f, rows[0].data()), hn::Load(f, rows[1].data()), hn::Load(f, rows[2].data())};
-        places_ = {hn::Mul(flat_.x, hn::Set(f, stretch_float_.x)),
-                   hn::Mul(flat_.y, hn::Set(f, stretch_float_.y)),
-                   hn::Mul(flat_.z, hn::Set(f, stretch_float_.z))};
+        places_ = times(flat_, splat(stretch_float_));
         upper_ = hn::Mul(hn::Load(f, rows[3].data()), hn::Set(f, kRoundedUp));
         low_ = {least(flat_.x), least(flat_.y), least(flat_.z)};
         high_ = {most(flat_.x), most(flat_.y), most(flat_.z)};
@@ -156,7 +155,7 @@ class NearestFaceFinder {
 
     /// A child of a node, and a lower bound of its squared distance from all places.
     struct Waiting {
-        float distance_sq;
+        float distance; ///< squared
         std::uint32_t node, child;
     };
 
@@ -167,7 +166,7 @@ class NearestFaceFinder {
         std::size_t count = push_children(0, 0);
         while (count > 0) {
             const Waiting next = waiting_[--count];
-            if (next.distance_sq > farthest_upper_) continue;
+            if (next.distance > farthest_upper_) continue;
             const std::uint32_t child = map_.nodes[next.node].children[next.child];
             if ((child & TreeNode::kLeaf) == 0) {
                 count = push_children(child, count);
@@ -187,11 +186,8 @@ class NearestFaceFinder {
         measure_children(map_.nodes[node], distances_sq.data());
         const std::size_t before = count;
         for (std::uint32_t child = 0; child < TreeNode::kWidth; ++child) {
-            if (!(distances_sq[child] <= farthest_upper_)) continue;
-            std::size_t place = count++;
-            for (; place > before && waiting_[place - 1].distance_sq < distances_sq[child]; --place)
-                waiting_[place] = waiting_[place - 1];
-            waiting_[place] = {distances_sq[child], node, child};
+            if (distances_sq[child] <= farthest_upper_)
+                push_sorted(waiting_.data(), before, count, Waiting{distances_sq[child], node, child});
         }
         return count;
     }

@@ -7,6 +7,8 @@
 #include "geometry/parallel.hpp"
 #include "simd/dispatch.hpp"
 
+#include <echinus/exact_map.hpp>
+
 #include <cassert>
 #include <new>
 
@@ -17,7 +19,8 @@ bool contains(const ExactMapView& map, Vec3f point_local) noexcept {
 }
 
 Containment classify(const ExactMapView& map, Vec3f point_local) noexcept {
-    return containment_at(map, frame_of(map), point_local);
+    const Side side = side_at(map, frame_of(map), point_local);
+    return {(side & kInsideBit) != 0, (side & kUncertainBit) == 0};
 }
 
 Contact contact(const ExactMapView& map, Vec3f point_local, float margin) noexcept {

@@ -1,28 +1,30 @@
 #pragma once
 
-#include <echinus/exact_map.hpp>
+#include "exact_map/layout.hpp"
+#include "exact_map/query/winding.hpp"
 
 #include <cstdint>
 #include <span>
 
-/// contains() and classify() for many particles: vector instructions settle those in gaps, and test pairs of
-/// a particle and a face for those in bands.
+/// On which side of the surface particles are: winding numbers, judged by the map's rule.
 namespace echinus {
 
-/// What classify() says, in bits.
+/// What classify() answers, in bits.
 using Side = std::uint8_t;
 inline constexpr Side kInsideBit = 1;
 inline constexpr Side kUncertainBit = 2;
 
-inline Side side_of(const Containment& containment) {
-    return static_cast<Side>((containment.inside ? kInsideBit : 0) |
-                             (containment.certain ? 0 : kUncertainBit));
+/// The scalar query, which is the specification.
+inline Side side_at(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local) noexcept {
+    const Winding winding = winding_at(map, frame, point_local);
+    return static_cast<Side>((is_inside(map.rule, winding.number) ? kInsideBit : 0) |
+                             (winding.certain ? 0 : kUncertainBit));
 }
 
-/// The side of every particle; the same as by classify(), whatever the instruction set.
+/// side_at() for many particles, by vector instructions.
 /// Cost: takes 90 KB of the stack for 8 particles and more.
 /// @pre points_local.size() == sides.size()
-void find_sides(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
+void find_sides(const ExactMapView& map, const StridedSpan<const Vec3f>& points_local,
                 std::span<Side> sides) noexcept;
 
 } // namespace echinus
