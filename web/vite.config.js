@@ -3,7 +3,7 @@ import { fileURLToPath } from 'node:url';
 import { defineConfig } from 'vite';
 
 const inProject = (path) => fileURLToPath(new URL(`../${path}`, import.meta.url));
-// scripts/web puts there what is copied into the page as it is: the horse, where it is installed, and licences.
+// scripts/web puts files there that are copied into the page unchanged: the horse, where it is installed, and licences.
 const publicDir = inProject('build/web/public');
 
 export default defineConfig({
@@ -12,6 +12,6 @@ export default defineConfig({
     define: { HAS_HORSE: existsSync(`${publicDir}/models/horse.3ds`) },
     resolve: { alias: { echinus: inProject('build/wasm/echinus/echinus.mjs') } },
     worker: { format: 'es' },
-    // What runs WebAssembly's vectors runs this.
+    // Every browser with WebAssembly SIMD runs this.
     build: { target: 'es2022', chunkSizeWarningLimit: 1000 },
 });

@@ -1,6 +1,6 @@
 /**
  * The player of recorded simulations: one HTML file, with script and style inside, since a page from the disk may load
- * nothing else. `echinus simulate --html` puts a recording in the place that player.html names.
+ * nothing else. `echinus simulate --html` inserts a recording at the mark in player.html.
  */
 import { readFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
@@ -41,6 +41,6 @@ function inOneFile() {
     };
 }
 
-/** Neither ends the script nor begins a comment in it. */
+/** Escapes everything that would end the script or begin a comment in it. */
 const inScript = (code) => code.replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--');
 const inMarkup = (text) => text.replaceAll('&', '&amp;').replaceAll('<', '&lt;');

@@ -21,33 +21,33 @@ import { MapView } from './view/map_view';
 import { ModelView } from './view/model_view';
 import { Stage } from './view/stage';
 
-/** How many sets of arrays go back and forth: one is shown while the other is filled. */
+/** How many sets of arrays are in circulation: one is shown while the other is filled. */
 const FRAMES_UNDER_WAY = 2;
 
 /** How long the hint stays. */
 const HINT_MS = 12_000;
 
-/** What a key turns the view by, in degrees, and zooms by. */
+/** By how many degrees a key turns the view, and its zoom factor. */
 const TURN = 5;
 const ZOOM = 1.1;
 
-/** A model that was asked for: a file, or else the sample of the settings. */
+/** A requested model: a file, or else the sample of the settings. */
 interface Opening {
     turn: number;
     file: File | undefined;
 }
 
 class App {
-    /** What is asked for. The panel shows it, until the answer to the last turn tells what is in force. */
+    /** The requested settings. The panel shows them until the answer to the last turn reports those in force. */
     #settings: Settings = fromLink(location.hash);
     #asked: Opening = { turn: 0, file: undefined };
-    /** Counts what is asked of the worker and changes what is in force there. */
+    /** Counts the requests that change the worker's state. */
     #turn = 0;
-    /** What is on show, and what may yet come to be. */
+    /** What is shown, and what has been requested. */
     #openings: Opening[] = [];
     #model: ModelNews | undefined;
     #paused = false;
-    /** The number of the cloth on show; frames of earlier ones are dropped. */
+    /** The number of the cloth shown; frames of earlier ones are dropped. */
     #cloth = 0;
     #framesAsked = 0;
     #arrived: (FromWorker & { kind: 'frame' })[] = [];
@@ -72,7 +72,7 @@ class App {
         enableClosing();
         fillDepthLegend();
         setTimeout(() => byId('hint').classList.add('seen'), HINT_MS);
-        // A link that is followed while the page is open.
+        // The visitor follows a link while the page is open.
         addEventListener('hashchange', () => {
             const settings = fromLink(location.hash);
             if (toLink(settings) === toLink(this.#settings) && !this.#asked.file) return;
@@ -81,7 +81,7 @@ class App {
             this.#controls.show(settings);
             this.#showView();
             this.#showColours();
-            this.#open(undefined); // no link holds a file
+            this.#open(undefined); // a link cannot contain a file
         });
         this.#stage.onArrival = () => this.#keepCamera();
         this.#stage.onLoss = () => say('The browser has taken the graphics card away. If the picture does not come back, load the page again.');
@@ -146,14 +146,14 @@ class App {
     #fail({ sentence, code, turn }: FromWorker & { kind: 'failed' }): void {
         if (turn === undefined) {
             this.#rayAsked = false;
-            this.#framesAsked = 0; // it may have been for want of one of these
-        } else if (turn < this.#asked.turn) return; // something else has been opened since
+            this.#framesAsked = 0; // the frame may have been waiting for one of these
+        } else if (turn < this.#asked.turn) return; // another model has been opened since
         if (code === 'Diverged') this.#pause(true);
         if (code === 'Crashed') this.#beginAgain();
         say(sentence);
     }
 
-    /** What has brought the module down stays away: the page goes on with a sample, unless that is what did. */
+    /** After a crash the page returns to a sample, unless no model was open: then the sample may be the cause. */
     #beginAgain(): void {
         const wasWell = this.#model !== undefined;
         this.#model = undefined;
@@ -167,10 +167,10 @@ class App {
         if (wasWell) this.#open(undefined);
     }
 
-    /** What was refused is not shown as if it held, and what was taken is not shown as if it did not. */
+    /** The panel must show exactly the settings in force, after a refusal too. */
     #settle({ turn, inForce }: FromWorker & { kind: 'settled' }): void {
         this.#openings = this.#openings.filter((opening) => opening.turn === inForce?.turn || opening.turn > turn);
-        if (turn !== this.#turn) return; // more has been asked for since
+        if (turn !== this.#turn) return; // there are newer requests
         const shown = this.#openings[0];
         const { view, shown: inColours, slice, camera } = this.#settings; // the page's own
         const settings = inForce ? { ...inForce.settings, view, shown: inColours, slice, camera } : this.#settings;
@@ -195,13 +195,13 @@ class App {
         byId('horse-notice').hidden = !SAMPLES.includes('horse');
     }
 
-    /** The same model again, for instance mended, is looked at from where one stands. */
+    /** The same model again, for instance mended: the camera stays. */
     #pointCamera({ name, centre, radius, up }: ModelNews): void {
         const inView = JSON.stringify([name, centre, radius, up]);
         if (inView === this.#inView) return;
         this.#inView = inView;
         this.#stage.lookAt(centre, radius, up);
-        if (this.#asked.file) this.#setLink({ ...this.#settings, camera: '' }); // it was for another model
+        if (this.#asked.file) this.#setLink({ ...this.#settings, camera: '' }); // that camera was for another model
         else if (this.#settings.camera) this.#stage.standpoint = this.#settings.camera;
     }
     #inView = '';
@@ -226,7 +226,7 @@ class App {
     #askForMap(): void {
         this.#client.tell({ kind: 'surface' });
         this.#client.tell({ kind: 'slice', height: this.#settings.slice });
-        // Something to see before the pointer comes.
+        // Shows a ray before the pointer enters.
         this.#client.tell({ kind: 'ray', direction: towardsTop(this.#model!) });
     }
 
@@ -239,7 +239,7 @@ class App {
             spare = this.#clothView.show(next.arrays);
             this.#modelView.follow(next.collider);
             this.#figures.add(next.figures);
-            // What the tests wait for.
+            // The tests wait for this.
             document.body.dataset.paused = String(next.figures.paused);
             document.body.dataset.rest = String(next.figures.atRest);
             document.body.dataset.frame = String(next.figures.frame);
@@ -254,7 +254,7 @@ class App {
         this.#figures.countDrawing();
     }
 
-    // ---- What a visitor does
+    // ---- The visitor's actions
 
     #change(settings: Settings, key: keyof Settings): void {
         if (key === 'model' || key === 'up') settings = { ...settings, camera: '' };
@@ -350,7 +350,7 @@ class App {
     }
 
     #bindKeys(): void {
-        // The view of the map does not show what these would do.
+        // These actions have no visible effect in the view of the map.
         const ofCloth = (action: () => void) => () => this.#settings.view === 'cloth' && action();
         enableKeys({
             ' ': ofCloth(() => this.#pause(!this.#paused)),
@@ -382,7 +382,7 @@ class App {
         });
     }
 
-    /** The ray of the map through what the pointer points at. One question at a time, or a slow one makes a queue. */
+    /** The ray of the map through the point under the pointer. One query at a time, so that slow ones do not queue up. */
     #lookUnder(ray: Raycaster): void {
         if (this.#settings.view !== 'map' || this.#rayAsked || !this.#model) return;
         const way = this.#mapView.wayOf(ray);
@@ -393,7 +393,7 @@ class App {
         else this.#client.tell({ kind: 'point', ...way });
     }
 
-    // ---- To keep
+    // ---- Saving
 
     async #savePicture(): Promise<void> {
         saveAs('echinus.png', await this.#stage.picture());
@@ -411,7 +411,7 @@ class App {
     }
 
     async #copyLink(): Promise<void> {
-        if (this.#model) this.#keepCamera(); // it may be on its way
+        if (this.#model) this.#keepCamera(); // the camera may still be moving
         const link = `${location.origin}${location.pathname}#${toLink(this.#settings)}`;
         const note = byId('link-note');
         note.hidden = false;
@@ -419,7 +419,7 @@ class App {
             await navigator.clipboard.writeText(link);
             note.textContent = 'Copied.';
         } catch {
-            note.textContent = link; // where the clipboard is closed, to be copied by hand
+            note.textContent = link; // for copying by hand where the clipboard is not available
         }
         if (this.#asked.file) note.textContent += ' The file that you opened is not in it.';
     }
@@ -431,7 +431,7 @@ function mapNote(kind: MapNews['kind'], closed: boolean): string {
     return 'Out by the shortest way. The mesh is open: near its gaps sides are estimated, and the cloth may get in there.';
 }
 
-/** From the centre to the highest vertex: of most models a ray with something to show. */
+/** From the centre to the highest vertex: an instructive ray for most models. */
 function towardsTop({ vertices, centre, up }: ModelNews): Triple {
     return furthestAlong(up, vertices).map((part, k) => part - centre[k]) as Triple;
 }

@@ -5,7 +5,7 @@ export type Axis = (typeof AXES)[number];
 
 export const UNIT: Record<Axis, Triple> = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 
-/** The axes that follow one, cyclically. */
+/** The next two axes, cyclically. */
 export function following(axis: Axis): [Axis, Axis] {
     const k = AXES.indexOf(axis);
     return [AXES[(k + 1) % 3], AXES[(k + 2) % 3]];

@@ -1,6 +1,6 @@
 import type { FromWorker, ToWorker } from './protocol';
 
-/** The page's end of the worker, which begins at once: it has enough to do until there is somebody to listen. */
+/** The page's connection to the worker, which starts at once: it has work to do before the page is ready to listen. */
 export class Client {
     #early: FromWorker[] = [];
     #hear: (message: FromWorker) => void = (message) => this.#early.push(message);
@@ -12,7 +12,7 @@ export class Client {
         this.#early = [];
     }
 
-    /** After a fault, this begins a new worker with a new module: not the fault itself, or one that does not load would begin for ever. */
+    /** After a fault, only the next message starts a new worker: a module that fails to load would otherwise restart endlessly. */
     tell(message: ToWorker, transfer: Transferable[] = []): void {
         this.#worker ??= this.#start();
         this.#worker.postMessage(message, transfer);

@@ -1,6 +1,6 @@
 import { byId } from './panel/elements';
 
-/** A visitor gives the page a file: by the button of the panel, or by dropping it anywhere. */
+/** Opens files: by the panel's button, or dropped anywhere on the page. */
 export function enableFiles(given: (file: File) => void): void {
     const input = byId<HTMLInputElement>('file');
     input.addEventListener('change', () => {
@@ -15,7 +15,7 @@ export function enableFiles(given: (file: File) => void): void {
         sign.hidden = false;
     });
     addEventListener('dragleave', (event) => {
-        if (event.relatedTarget === null) sign.hidden = true; // out of the window
+        if (event.relatedTarget === null) sign.hidden = true; // left the window
     });
     addEventListener('drop', (event) => {
         event.preventDefault();

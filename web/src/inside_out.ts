@@ -1,4 +1,4 @@
 import type { MeshReport } from 'echinus';
 
-/** Faces look inwards. Of an open mesh the volume says nothing. */
+/** Do the faces look inwards? Undecided for an open mesh, whose volume is meaningless. */
 export const isInsideOut = ({ closed, signedVolume }: MeshReport): boolean => closed && signedVolume < 0;

@@ -8,10 +8,10 @@ export function enableKeys(actions: Record<string, () => void>): void {
     });
 }
 
-/** Held down, these act again and again: they step or turn by a little. */
+/** These repeat while held down: they step or turn by a little. */
 const REPEATED = new Set(['s', 'arrowleft', 'arrowright', 'arrowup', 'arrowdown', '+', '-']);
 
-/** A list finds its entries by letters; what is pressed or ticked takes space; sliders and choices go by arrows. */
+/** Lists search their entries by letters; buttons and check boxes take space; sliders and choices take arrow keys. */
 function isOfControl({ key, target }: KeyboardEvent): boolean {
     if (!(target instanceof HTMLElement)) return false;
     if (target.matches('select')) return true;

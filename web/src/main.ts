@@ -1,8 +1,8 @@
-/** Begins the page, or says why it cannot. */
+/** Starts the page, or shows why it cannot. */
 import { missingFeatures } from 'echinus';
 import { Client } from './client';
 
-/** In place of everything. */
+/** Replaces the whole page. */
 function sayInstead(words: string): void {
     const sentence = document.createElement('p');
     sentence.textContent = words;
@@ -22,10 +22,10 @@ const sayWhatIsMissing = (features: string[]) =>
 async function begin(): Promise<void> {
     const missing = missingFeatures();
     if (missing.length > 0) return sayWhatIsMissing(missing);
-    const client = new Client(); // loads the module while three.js is on its way
+    const client = new Client(); // loads the module while three.js is loading
     const app = await import('./app').catch(() => undefined);
-    // Of the page's one canvas, since a context takes long where there is no graphics card: three.js gets the same. Only
-    // now, since the worker does not begin while this waits.
+    // The context of the page's only canvas, which three.js shares, since creating one is slow without a graphics card.
+    // Only now, since it would delay the worker's start.
     if (app && document.querySelector('canvas')!.getContext('webgl2')) return app.begin(client);
     client.stop();
     if (app) sayWhatIsMissing(['WebGL 2']);

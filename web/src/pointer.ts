@@ -7,22 +7,22 @@ export interface PointerWishes {
     grab(particle: number, target: Triple): void;
     drag(target: Triple): void;
     release(): void;
-    /** The pointer moved over the canvas and holds nothing. */
+    /** The pointer moved over the canvas without holding anything. */
     hover(ray: THREE.Raycaster): void;
-    /** What can hide the cloth. */
+    /** The objects that can hide the cloth. */
     obstacle: THREE.Object3D;
     mayGrab(): boolean;
 }
 
 /**
- * Pulls the cloth where the pointer takes hold of it, in the plane across the view; elsewhere the view turns. A second
- * finger lets go of the cloth: two of them zoom.
+ * Pulls the cloth where the pointer grabs it, in the plane across the view; elsewhere the view turns. A second finger
+ * releases the cloth: two fingers zoom.
  */
 export function enablePointer(canvas: HTMLCanvasElement, stage: Stage, cloth: ClothView, wishes: PointerWishes): void {
     const ray = new THREE.Raycaster();
     const plane = new THREE.Plane();
     const target = new THREE.Vector3();
-    /** Of the pointer that holds the cloth, the last. */
+    /** The last event of the pointer that holds the cloth. */
     let hold: PointerEvent | undefined;
 
     const aim = ({ clientX, clientY }: PointerEvent) => {
@@ -30,19 +30,19 @@ export function enablePointer(canvas: HTMLCanvasElement, stage: Stage, cloth: Cl
         ray.setFromCamera(new THREE.Vector2((2 * (clientX - left)) / width - 1, 1 - (2 * (clientY - top)) / height), stage.camera);
     };
 
-    // Before the orbit controls hear of it, so that they can be told to stay still.
+    // Before the orbit controls receive it, so that they can be disabled.
     canvas.addEventListener(
         'pointerdown',
         (event) => {
             if (hold && hold.pointerId !== event.pointerId) {
                 const first = hold;
                 release();
-                canvas.dispatchEvent(new PointerEvent('pointerdown', first)); // which the controls have not heard
+                canvas.dispatchEvent(new PointerEvent('pointerdown', first)); // which the controls have missed
                 return;
             }
             if (event.button !== 0 || !event.isPrimary || !event.isTrusted) return;
             aim(event);
-            if (!wishes.mayGrab()) return wishes.hover(ray); // a finger points by touching
+            if (!wishes.mayGrab()) return wishes.hover(ray); // a finger hovers by touching
             const hit = cloth.pick(ray);
             if (!hit) return;
             const hidden = ray.intersectObject(wishes.obstacle, false).some(({ distance }) => distance < 0.99 * hit.distance);

@@ -1,6 +1,6 @@
 /**
- * What the page and the worker say to each other. The worker holds the mesh, the maps and the cloth; the page draws.
- * Large arrays are transferred, and come back to be filled again.
+ * The messages between the page and the worker. The worker holds the mesh, the maps and the cloth; the page draws.
+ * Large arrays are transferred, and returned to be filled again.
  */
 import type { ColliderState, DistanceMapDescription, ExactMapDescription, MeshFaults, MeshReport, RayInterval } from 'echinus';
 import type { Axis } from './axes';
@@ -9,23 +9,23 @@ import type { Settings } from './settings';
 export type Triple = [number, number, number];
 
 export type ToWorker =
-    /** A file, or else the sample of the settings. This and a change are each a turn, which its answers name. */
+    /** A file, or else the sample of the settings. Opening and changing each count as a turn, which the answers name. */
     | { kind: 'open'; turn: number; settings: Settings; page: string; file?: File }
     | { kind: 'change'; turn: number; settings: Settings }
     | { kind: 'restart' }
     | { kind: 'pause'; paused: boolean }
     | { kind: 'step' }
-    /** A frame is wanted; its arrays are those of an earlier one, once there was one. */
+    /** Requests a frame; its arrays are those of an earlier one, if there was one. */
     | { kind: 'frame'; arrays?: FrameArrays }
     | { kind: 'grab'; particle: number; target: Triple }
     | { kind: 'drag'; target: Triple }
     | { kind: 'release' }
     /** The map along a ray from its centre. */
     | { kind: 'ray'; direction: Triple }
-    /** The same, through the first point of the surface on a straight way. */
+    /** The same, through the first point of the surface on a straight line. */
     | { kind: 'point'; from: Triple; to: Triple }
     | { kind: 'surface' }
-    /** The map in use once more, for its time alone. */
+    /** Builds the map in use once more, only to time it. */
     | { kind: 'rebuild' }
     | { kind: 'slice'; height: number };
 
@@ -38,11 +38,11 @@ export type FromWorker =
     | { kind: 'map'; map: MapNews }
     | { kind: 'rebuilt'; map: MapNews }
     | { kind: 'ray'; crossings: number[]; intervals: RayInterval[]; direction: Triple; outline: Triple[]; bands: [number, number][] }
-    /** There is no surface on the way. */
+    /** There is no surface on the line. */
     | { kind: 'missed' }
     | ({ kind: 'cut' } & Cut)
     | { kind: 'failed'; sentence: string; code: string; turn?: number }
-    /** The last answer to a turn, whether it failed or not: the turn that opened the model on show, once there is one, and by what it goes. */
+    /** The last answer to a turn, failed or not: the turn that opened the model shown, if there is one, and the settings in force. */
     | { kind: 'settled'; turn: number; inForce?: { turn: number; settings: Settings } };
 
 export interface FrameArrays {
@@ -50,7 +50,7 @@ export interface FrameArrays {
     positions: Float32Array<ArrayBuffer>;
     /** [3 particles] */
     normals: Float32Array<ArrayBuffer>;
-    /** [particles] depth of contact (depth.ts of the worker), where colours ask for it. */
+    /** [particles] depth of contact (worker/depth.ts), where the colours need it. */
     depths: Float32Array<ArrayBuffer>;
 }
 
@@ -60,7 +60,7 @@ export interface ModelNews {
     faces: Uint32Array;
     report: MeshReport;
     faults: MeshFaults;
-    /** Faces that mending dropped, and parts that it turned round. */
+    /** Faces dropped and parts reversed by mending. */
     mendedFaces: number;
     flippedParts: number;
     centre: Triple;
@@ -79,7 +79,7 @@ export interface MapNews {
 export interface SurfaceNews {
     vertices: Float32Array;
     faces: Uint32Array;
-    /** [faces] exact: the longest list that the face is in; distance: its layer. */
+    /** [faces] exact: the longest list that contains the face; distance: its layer. */
     values: Uint32Array;
     mapKind: 'exact' | 'distance';
     /** [3 n] points at which the paper's map and the exact map differ, of sampleCount in the bounding sphere. */
@@ -89,7 +89,7 @@ export interface SurfaceNews {
     cells?: { faceCounts: Uint32Array; corners: Float32Array };
 }
 
-/** A plane across the model, and what the map says at its points. */
+/** A plane across the model, and the map's answers at its points. */
 export interface Cut {
     /** Row by row: 1 inside. */
     inside: Uint8Array;
@@ -105,7 +105,7 @@ export interface Figures {
     stepMs: number;
     constraintMs: number;
     collisionMs: number;
-    /** Particles asked about, per second of collision. */
+    /** Particle queries per second of collision. */
     queriesPerSecond: number;
     /** Judged by the exact map, whichever map the cloth uses. */
     inside: number;

@@ -1,10 +1,10 @@
-/** Hands a file to the visitor. */
+/** Offers a file to the visitor for download. */
 export function saveAs(name: string, content: Blob): void {
     const link = document.createElement('a');
     link.href = URL.createObjectURL(content);
     link.download = name;
     link.click();
-    // The browser has taken hold of the content by then.
+    // By then the browser has read the content.
     setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 

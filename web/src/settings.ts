@@ -1,12 +1,12 @@
 import { AXES, type Axis } from './axes';
 import * as standpoint from './standpoint';
 
-/** All that a visitor can choose. A link holds it, the panel shows it, the worker obeys it. */
+/** All of the visitor's choices. A link contains them, the panel shows them, the worker applies them. */
 export interface Settings {
     model: Sample;
     view: 'cloth' | 'map';
     map: 'exact' | 'distance';
-    /** Exact map: cells per octant of directions; 'auto' goes by the mesh. */
+    /** Exact map: cells per octant of directions; 'auto' depends on the mesh. */
     cells: (typeof CELLS)[number];
     /** The paper's map: how directions are divided, and into about how many. */
     grid: (typeof GRIDS)[number];
@@ -14,21 +14,21 @@ export interface Settings {
     /** Of the cloth; rounded to a square number. */
     particles: number;
     friction: number;
-    /** What particles keep from the model, in hundredths of the model's radius. */
+    /** The distance that particles keep from the model, in hundredths of its radius. */
     thickness: number;
     /** Radii of the model per second. */
     wind: number;
     motion: 'still' | 'turning' | 'swinging';
-    /** Which axis of the model points up; 'auto' goes by the model. */
+    /** Which axis of the model points up; 'auto' depends on the model. */
     up: 'auto' | Axis;
     /** Mend what Mesh.repair() can mend, before the map is built. */
     mend: boolean;
     colour: 'fabric' | 'depth';
-    /** What the view of the map has in colours. */
+    /** What the colours show in the view of the map. */
     shown: 'surface' | 'cells';
     /** Where the map is cut open, along the view's up axis: -1 to 1 radii. 1 leaves it whole. */
     slice: number;
-    /** Where the camera stands (standpoint.ts); '' is where the page puts it. */
+    /** Where the camera stands (standpoint.ts); '' is the page's default. */
     camera: string;
 }
 
@@ -79,7 +79,7 @@ export const RANGES = {
     slice: [-1, 1],
 } as const satisfies { [K in keyof Settings]?: readonly [number, number] };
 
-/** What differs from the defaults, as the part of a link after #. */
+/** The differences from the defaults, as the part of a link after #. */
 export function toLink(settings: Settings): string {
     const changed = new URLSearchParams();
     for (const key of Object.keys(DEFAULTS) as (keyof Settings)[])
@@ -87,7 +87,7 @@ export function toLink(settings: Settings): string {
     return changed.toString();
 }
 
-/** The settings of a link. Numbers are brought into their range; what else is not possible is left at its default: links outlive pages. */
+/** The settings of a link. Numbers are clamped to their range; other invalid values fall back to their defaults, since links outlive pages. */
 export function fromLink(hash: string): Settings {
     const said = new URLSearchParams(hash.replace(/^#/, ''));
     const settings: Record<string, unknown> = { ...DEFAULTS };

@@ -6,7 +6,7 @@ export interface Standpoint {
     elevation: number;
     /** Radii of the model. */
     distance: number;
-    /** What it looks at, in radii from the model's centre: along up, the axis before it and the one after it. */
+    /** The target, in radii from the model's centre: along up, the axis before it and the one after it. */
     target: readonly [number, number, number];
 }
 
@@ -19,13 +19,13 @@ const LIMITS: readonly (readonly [number, number])[] = [
     [-20, 20],
 ];
 
-/** A hundredth of a radius and a whole degree: finer than anybody aims. Numbers between low lines, which links leave as they are. */
+/** A hundredth of a radius and a whole degree: finer than anyone aims. Numbers are separated by underscores, which links keep unescaped. */
 export function toText({ azimuth, elevation, distance, target }: Standpoint): string {
     const lengths = [distance, ...target].map((length) => Math.round(100 * length) / 100);
     return [Math.round(azimuth), Math.round(elevation), ...lengths].map((number) => number || 0).join('_');
 }
 
-/** @returns undefined for what toText() does not write */
+/** @returns undefined for text that toText() does not produce */
 export function fromText(text: string): Standpoint | undefined {
     const parts = text.split('_');
     const numbers = parts.map(Number);

@@ -16,7 +16,7 @@ test('the cloth comes to rest with no particle inside', async () => {
     await page.context().close();
 });
 
-// Some 2500 steps, asked of a worker of the page's own kind without drawing them.
+// About 2500 steps by the page's own worker, without drawing.
 test('the cloth falls on the horse and comes to rest, and in no frame is a particle inside', { skip: !hasHorse && 'the horse is not installed' }, async () => {
     const page = await browser.open('#model=sphere&particles=100&view=map', SMALL);
     await page.locator('#map-figures td').first().waitFor();
@@ -27,7 +27,7 @@ test('the cloth falls on the horse and comes to rest, and in no frame is a parti
     await page.context().close();
 });
 
-/** Runs in the page. @returns once the cloth lies or has moved for too long */
+/** Runs in the page. @returns once the cloth is at rest or has moved for too long */
 async function fallInWorker() {
     const script = performance.getEntriesByType('resource').find(({ name }) => /worker-[^/]*\.js$/.test(name)).name;
     const worker = new Worker(script, { type: 'module' });
@@ -55,7 +55,7 @@ test('a pause holds the cloth, a step moves it by one frame, and it can be dropp
     await untilFrame(page, 20);
     await page.keyboard.press('Space');
     assert.equal(await page.locator('#pause').textContent(), 'Go on');
-    await page.waitForFunction(() => document.body.dataset.paused === 'true'); // frames that were under way are here
+    await page.waitForFunction(() => document.body.dataset.paused === 'true'); // frames under way have arrived
     const frame = () => page.evaluate(() => Number(document.body.dataset.frame));
     const held = await frame();
     await page.waitForTimeout(300);
@@ -76,7 +76,7 @@ for (const motion of ['turning', 'swinging'])
         await page.context().close();
     });
 
-/** The cloth's vertices, as they are saved. */
+/** The cloth's vertices, as saved. */
 async function clothOf(page) {
     const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#save-mesh').click()]);
     const text = await readFile(await download.path(), 'utf8');
@@ -86,7 +86,7 @@ async function clothOf(page) {
 for (const map of ['exact', 'distance'])
     test(`a pull moves a cloth on the ${map} map, and wakes it where it was at rest`, async () => {
         const page = await browser.open(`#model=torus&particles=400&map=${map}`, SMALL);
-        // The paper's map may tremble for ever.
+        // With the paper's map the cloth may tremble forever.
         if (map === 'exact') await page.waitForFunction(() => document.body.dataset.rest === 'true', null, { timeout: 120_000 });
         else await untilFrame(page, 1500);
         const before = await clothOf(page);
@@ -95,9 +95,9 @@ for (const map of ['exact', 'distance'])
         await page.mouse.down();
         assert.ok(await page.locator('#canvas.dragging').isVisible());
         await page.mouse.move(x + 0.5 * width, y + 0.9 * height, { steps: 4 });
-        // By the cloth's own clock, so that it does not matter how quickly a picture is drawn.
+        // By the cloth's own clock, so that drawing speed does not matter.
         await untilFrame(page, 120 + (await page.evaluate(() => Number(document.body.dataset.frame))));
-        await page.waitForTimeout(400); // until the figures are written again
+        await page.waitForTimeout(400); // until the figures are updated
         if (map === 'exact') assert.equal(await figure(page, 'inside'), '0', 'nobody is dragged into the model');
         await picture(page, `dragged_${map}`);
         await page.mouse.up();
@@ -129,7 +129,7 @@ test('a finger pulls the cloth, and a finger beside it turns the view', async ()
     await touch('touchEnd');
     await page.waitForFunction(() => location.hash.includes('camera='));
 
-    // Two fingers zoom, also where the first has taken hold of the cloth.
+    // Two fingers zoom, even where the first has grabbed the cloth.
     const far = Number(new URL(page.url()).hash.match(/camera=[^_]*_[^_]*_([0-9.]+)/)[1]);
     const [middle, level] = [x + 0.5 * width, y + 0.5 * height];
     await touch('touchStart', [middle, level]);

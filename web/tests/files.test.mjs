@@ -66,7 +66,7 @@ test('while a file of 50 MB is opened the page draws on, and then the model is t
         await untilReport(page, '1\u2009000\u2009000 faces');
         const opening = performance.now() - begin;
         const longest = await page.evaluate(() => globalThis.longestPause);
-        // Some 0.4 of 8.5 seconds; where other work shares the processor both take longer.
+        // About 0.4 of 8.5 seconds; both take longer where other work shares the processor.
         assert.ok(longest < Math.max(1500, opening / 6), `a pause of ${longest} ms in ${opening} ms`);
         assert.match(await page.locator('#report').textContent(), /500\u2009000 vertices, one partClosed/);
         assert.deepEqual(page.complaints, []);
@@ -159,7 +159,7 @@ test('the cloth on an open mesh can be pulled, however small the mesh is', async
     await page.waitForFunction(() => Number(document.body.dataset.frame) < 40);
     await page.keyboard.press('Space'); // above the model
     const { x, y, width, height } = await page.locator('#canvas').boundingBox();
-    // Down the middle of the picture: were its border taken to be an obstacle, the far half of the cloth could not be held.
+    // Down the middle of the picture: if its border were an obstacle, the far half of the cloth could not be grabbed.
     let held = 0;
     for (let part = 0.04; part < 0.6; part += 0.02) {
         await page.mouse.move(x + 0.5 * width, y + part * height);
@@ -171,10 +171,10 @@ test('the cloth on an open mesh can be pulled, however small the mesh is', async
     await page.context().close();
 });
 
-/** Of view/colours.ts: what is wrong with a mesh. */
+/** The fault colours of view/colours.ts. */
 const FAULT_RED = [0xd1, 0x24, 0x2f];
 
-/** How many pixels of the model's picture have about this colour. */
+/** The number of pixels in the model's picture with about this colour. */
 async function pixelsOf(page, colour) {
     const png = (await page.locator('#canvas').screenshot()).toString('base64');
     return page.evaluate(async ([data, wanted]) => {

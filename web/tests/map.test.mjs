@@ -7,8 +7,8 @@ let browser;
 before(async () => (browser = await startBrowser()));
 after(() => browser?.stop());
 
-// The first build in a fresh page, with whatever the browser has yet to compile. So that a busy machine does not fail it, the
-// best of a few pages counts, and of its time the share that the worker had the processor of all that it was ready for it.
+// The first build in a fresh page, including the browser's compilation. To pass on a busy machine, the best of a few
+// pages counts, times the share of its runnable time that the worker had the processor.
 test("the horse's map is built in under 50 ms", { skip: !hasHorse && 'the horse is not installed' }, async () => {
     const times = [];
     for (let turn = 0; turn < 6 && !(Math.min(...times) < 50); ++turn) {
@@ -25,7 +25,7 @@ test('the map is shown in colours with its figures, and built again when asked',
     await untilRay(page);
     await page.waitForTimeout(500);
     await picture(page, 'map');
-    // Once the browser has compiled the code well, by the clock on the wall.
+    // Once the browser has optimised the code, by wall-clock time.
     for (let turn = 0; turn < 8; ++turn) {
         await page.evaluate(() => (document.getElementById('figure-build').textContent = ''));
         await page.locator('#rebuild').click();
@@ -37,7 +37,7 @@ test('the map is shown in colours with its figures, and built again when asked',
     await page.context().close();
 });
 
-/** Waits until the table of the map's figures has this value beside this name. */
+/** Waits until the table of the map's figures shows this value for this name. */
 const untilRow = (page, name, value) =>
     page.waitForFunction(
         ([n, v]) => [...document.querySelectorAll('#map-figures tr')].some((r) => r.cells[0].textContent === n && r.cells[1].textContent === v), [name, value]);

@@ -1,10 +1,10 @@
-// Files of meshes, as programs write them.
+// Mesh files as other programs write them.
 
 const CORNERS = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
 const FACES = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 const lines = (rows) => rows.map((row) => `${row}\n`).join('');
 
-/** A tetrahedron in each format, by the name of its file. */
+/** A tetrahedron in each format, by file name. */
 export function tetrahedra() {
     const corners = CORNERS.map((corner) => corner.join(' '));
     const polygons = FACES.map((face) => `3 ${face.join(' ')}`);
@@ -23,7 +23,7 @@ export function tetrahedra() {
 /** The numbers of a tetrahedron as glTF has them: corners, then faces. */
 const gltfNumbers = () => Buffer.concat([Buffer.from(new Float32Array(CORNERS.flat()).buffer), Buffer.from(new Uint16Array(FACES.flat()).buffer)]);
 
-/** What describes them, without the place of the numbers and the scene that is to be shown, which need not be told. */
+/** Their description, without the optional default scene and the location of the numbers. */
 function gltfDescription(buffer) {
     return {
         asset: { version: '2.0' }, scenes: [{ nodes: [0] }], nodes: [{ mesh: 0 }],
@@ -37,7 +37,7 @@ function gltfDescription(buffer) {
     };
 }
 
-/** A tetrahedron as the kind of glTF that is text, with a texture of another file, or its numbers in one. */
+/** A tetrahedron as text glTF, with its texture or its numbers in another file. */
 export function gltfTetrahedron({ texture, buffer = `data:application/octet-stream;base64,${gltfNumbers().toString('base64')}` }) {
     const description = gltfDescription({ uri: buffer });
     if (texture) {

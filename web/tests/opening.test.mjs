@@ -1,4 +1,4 @@
-// What is open, and what the panel says is, when things are asked for faster than they are answered, or fail.
+// The open model, and the one that the panel shows, when requests come faster than their answers, or fail.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, before, test } from 'node:test';
@@ -24,7 +24,7 @@ const untilTitle = (page, words) => page.waitForFunction((part) => document.getE
 const untilChosen = (page, name) => page.waitForFunction((text) => document.querySelector('select[name=model]').selectedOptions[0]?.textContent === text, name);
 const notice = (page) => page.locator('#notice span').textContent();
 
-/** Drops the files, all before the page can hear the answer to any. */
+/** Drops all files before the page can receive any answer. */
 const drop = (page, files) =>
     page.evaluate((files) => {
         for (const [name, text] of files) {
@@ -88,7 +88,7 @@ test('a change asked for while a broken file is read holds, and the panel shows 
     await page.context().close();
 });
 
-/** Runs in the page: sets 2500 particles as soon as a file has gone to the worker, before its answer can be heard. */
+/** Runs in the page: sets 2500 particles as soon as a file has gone to the worker, before its answer can arrive. */
 function changeOnOpening() {
     const title = document.getElementById('subtitle');
     const input = document.querySelector('[name=particles]');
@@ -100,7 +100,7 @@ function changeOnOpening() {
     observer.observe(title, { childList: true });
 }
 
-/** As many as are saved. */
+/** As many as the saved mesh has. */
 async function particlesIn(page) {
     const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#save-mesh').click()]);
     const text = await readFile(await download.path(), 'utf8');
@@ -118,7 +118,7 @@ test('a worker that does not load is said once, and not begun for ever', async (
     await page.context().close();
 });
 
-/** Runs in the page: its worker's script is not there. */
+/** Runs in the page: makes the worker's script unavailable. */
 function withoutWorker() {
     globalThis.workersBegun = 0;
     globalThis.Worker = class extends Worker {

@@ -1,4 +1,4 @@
-// What a visitor finds on opening the page, and what can be kept of it, in Chromium, on the page as it is built.
+// The built page in Chromium: its first appearance, and what a visitor can save.
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { after, before, test } from 'node:test';
@@ -53,7 +53,7 @@ test('a link holds where the camera stands, and one that is broken gives the usu
         assert.ok(usual.equals(await seen(`#model=torus&view=map&${broken}`)), broken);
 });
 
-/** The camera in the address after a visitor has turned the view, and it stays there when that address is opened. */
+/** After a visitor has turned the view, the address contains the camera, and opening that address restores it. */
 async function linkAfterTurning() {
     const page = await browser.open('#model=torus&view=map', SMALL);
     await untilRay(page);
@@ -63,7 +63,7 @@ async function linkAfterTurning() {
     await page.mouse.move(x + 0.8 * width, y + 0.4 * height, { steps: 3 });
     await page.mouse.up();
     await page.waitForFunction(() => location.hash.includes('camera='));
-    await page.waitForTimeout(1000); // it swings out
+    await page.waitForTimeout(1000); // damping ends
     const hash = await page.evaluate(() => location.hash);
     await page.context().close();
     const again = await browser.open(hash, SMALL);

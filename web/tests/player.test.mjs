@@ -1,4 +1,4 @@
-// The page that `echinus simulate --html` writes, opened from the disk in Chromium.
+// The page written by `echinus simulate --html`, opened from the disk in Chromium.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
@@ -119,7 +119,7 @@ test('a model that turns is seen to turn', { skip }, async () => {
     const outOfSight = { size: [1, 1], particles: [2, 2], position: [0, 0, 50] };
     writeFileSync(scene, JSON.stringify({ model: { box: {} }, collider: { angular_velocity: [0, 0, 90] }, cloth: outOfSight, frame_limit: 120 }));
     const page = await browser.open(record('recorded_turning', scene), SMALL);
-    await page.addStyleTag({ content: '#transport { opacity: 0 }' }); // its slider moves, too
+    await page.addStyleTag({ content: '#transport { opacity: 0 }' }); // its slider moves as well
     const seenAt = async (frame) => {
         await scrubTo(page, frame);
         return page.locator('#canvas').screenshot();

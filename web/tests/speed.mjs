@@ -1,6 +1,7 @@
-// How long the built page takes, for docs/web.md: from the address to the first falling cloth and the horse's first map, in
-// browsers that have never seen the page, ones that stand open and ones that begin with it; and a time step of 10 000
-// particles while they fall and come to lie, beside the native program with the scalar reference. Run by scripts/web --speed:  speed.mjs PROGRAM SCENE
+// How long the built page takes, for docs/web.md: from the address to the first falling cloth and the horse's first
+// map, in browsers that have never seen the page, ones that stand open and ones that begin with it; and a time step of
+// 10 000 particles while they fall and come to rest, beside the native program with the scalar reference. Run by
+// scripts/web --speed:  speed.mjs PROGRAM SCENE
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -9,18 +10,18 @@ import { figure, numberOf, startBrowser, untilFrame } from './support.mjs';
 
 const [program, scene] = process.argv.slice(2);
 const LOADS = 7;
-/** Time steps: those of the first are still slow, as the browser compiles its best code. */
+/** Time steps; the first are still slow, as the browser is optimising the code. */
 const [FIRST_STEP, LAST_STEP] = [300, 1500];
-/** Little to draw, since software draws. */
+/** A small picture, since rendering is by software. */
 const TINY = { viewport: { width: 390, height: 300 } };
 
 const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 const all = (values) => values.map((value) => value.toFixed(0)).join(', ');
 
-/** After that a browser that was started has done all it has to do for itself: its own drawing, and pages of its own that nobody sees. */
+/** By then a new browser has finished its own start-up work: its drawing and hidden pages. */
 const UNTIL_IT_STANDS_OPEN_MS = 3000;
 
-/** @param wait  how long the browser has had an empty page open when it hears of the address */
+/** @param wait  how long the browser has had an empty page open when it gets the address */
 async function load(wait) {
     const browser = await startBrowser();
     const page = await browser.open('about:blank', TINY);

@@ -1,4 +1,4 @@
-// The built page behind a server of files, and Debian's Chromium looking at it.
+// A file server for the built page, and Debian's Chromium to view it.
 import { createServer } from 'node:http';
 import { existsSync, mkdirSync, readFileSync, readdirSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
@@ -7,14 +7,14 @@ import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 
 const inProject = (path) => fileURLToPath(new URL(`../../${path}`, import.meta.url));
-/** Whether the page that is tried has the horse. */
+/** Whether the tested page has the horse. */
 export const hasHorse = existsSync(inProject('web/dist/models/horse.3ds'));
-/** Software draws these pages; small ones leave it time for the cloth. */
+/** Rendering is by software; small pages leave time for the cloth. */
 export const SMALL = { viewport: { width: 900, height: 480 } };
 
 const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm' };
 
-/** web/dist/ under a folder of its own, as a static host would have it. */
+/** web/dist/ in a subfolder, as on a static host. */
 async function serve() {
     const server = createServer(async ({ url }, response) => {
         const path = new URL(url, 'http://host').pathname.replace(/^\/any\/folder\//, '/');
@@ -34,7 +34,7 @@ export async function startBrowser() {
     const { server, address } = await serve();
     const browser = await chromium.launch({
         executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-        // A container has no sandbox of its own to give and no graphics card.
+        // A container offers neither a sandbox nor a graphics card.
         args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
     });
     return {
@@ -57,10 +57,10 @@ export async function startBrowser() {
     };
 }
 
-/** Software drawing warns that reading its picture is slow, which is no fault of the page. */
+/** Software rendering warns that reading back its picture is slow, which is no fault of the page. */
 const isOfTheDriver = (text) => /GL Driver Message|GPU stall due to ReadPixels|swiftshader|SwiftShader/.test(text);
 
-/** A picture for a person to look at, under out/web/. */
+/** Saves a picture for inspection under out/web/. */
 export async function picture(page, name) {
     mkdirSync(inProject('out/web'), { recursive: true });
     await page.screenshot({ path: inProject(`out/web/${name}.png`) });
@@ -68,16 +68,16 @@ export async function picture(page, name) {
 
 export const figure = (page, name) => page.locator(`#figure-${name}`).textContent();
 
-/** Waits until the cloth has made so many time steps. */
+/** Waits until the cloth has made this many time steps. */
 export const untilFrame = (page, frame) => page.waitForFunction((least) => Number(document.body.dataset.frame) >= least, frame, { timeout: 60_000 });
 
-/** Waits until the view of the map has its ray, which comes last. */
+/** Waits until the view of the map shows its ray, which comes last. */
 export const untilRay = (page) => page.waitForFunction(() => document.getElementById('ray').textContent.includes('side'), null, { timeout: 60_000 });
 
 /** 31.5 ms, 84.2 kB and the like. */
 export const numberOf = (text) => Number(text.replace(/[^0-9.].*$/, ''));
 
-/** Of the time that the youngest thread of this name ran or could have run, the part that it ran; Linux keeps account. */
+/** The share of its runnable time that the youngest thread of this name actually ran, from Linux's accounting. */
 export function shareOfProcessor(name) {
     const threads = readdirSync('/proc').filter((process) => /^\d+$/.test(process)).flatMap((process) => threadsOf(process, name));
     const { ran, waited } = threads.reduce((a, b) => (a.begin > b.begin ? a : b));
@@ -89,7 +89,8 @@ function threadsOf(process, name) {
         const folders = readdirSync(`/proc/${process}/task`).map((thread) => `/proc/${process}/task/${thread}`);
         return folders.filter((folder) => readFileSync(`${folder}/comm`, 'utf8').startsWith(name)).map((folder) => {
             const [ran, waited] = readFileSync(`${folder}/schedstat`, 'utf8').split(' ').map(Number);
-            // The name may have spaces: what follows it is counted from its bracket. Field 22 is when the thread began.
+            // The name may contain spaces, so fields are counted from its closing bracket. Field 22 is the thread's
+            // start time.
             const begin = Number(readFileSync(`${folder}/stat`, 'utf8').split(') ')[1].split(' ')[19]);
             return { begin, ran, waited };
         });

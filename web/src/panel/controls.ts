@@ -10,7 +10,7 @@ export class Controls {
     #settings: Settings;
     #file: HTMLOptionElement | undefined;
 
-    /** @param changed  called with the settings after a visitor's change, and the key changed */
+    /** @param changed  called with the settings after a visitor's change, and the changed key */
     constructor(settings: Settings, changed: (settings: Settings, key: keyof Settings) => void) {
         const model = byId('panel').querySelector<HTMLSelectElement>('select[name=model]')!;
         model.append(...SAMPLES.map((name) => new Option(name[0].toUpperCase() + name.slice(1), name)));
@@ -35,7 +35,7 @@ export class Controls {
         for (const input of this.#inputs) {
             const key = input.name as keyof Settings;
             const value = settings[key];
-            if (key === 'model' && this.#file) continue; // what is chosen is the file
+            if (key === 'model' && this.#file) continue; // the file is chosen
             if (input.type === 'radio') (input as HTMLInputElement).checked = input.value === value;
             else if (input.type === 'checkbox') (input as HTMLInputElement).checked = value as boolean;
             else if (isLogarithmic(input)) input.value = String(toShare(value as number, rangeOf(input)));
@@ -45,7 +45,7 @@ export class Controls {
         }
     }
 
-    /** A file in the place of a sample: an entry that is there while the file is open. Without a name, the sample. */
+    /** A file in place of a sample: an entry that exists while the file is open. Without a name, the sample. */
     showFile(name: string | undefined): void {
         this.#file?.remove();
         this.#file = undefined;
@@ -69,14 +69,14 @@ function describe(input: Control, value: number): string {
     return `${value.toFixed(digitsOf(value))}${input.dataset.unit ?? ''}`;
 }
 
-/** Of at most two after the point, those that say something. */
+/** At most two decimals, without trailing zeros. */
 function digitsOf(value: number): number {
     const hundredths = Math.round(100 * value);
     return hundredths % 100 === 0 ? 0 : hundredths % 10 === 0 ? 1 : 2;
 }
 
-// Particles and directions go by factors: the step from 1 000 to 2 000 matters as much as that from 10 000 to 20 000.
-// Both are squares of whole numbers.
+// Particles and directions use a logarithmic scale: the step from 1 000 to 2 000 matters as much as that from 10 000 to
+// 20 000. Both are squares of whole numbers.
 type Range = readonly [number, number];
 const isLogarithmic = (input: Control): boolean => input.dataset.scale === 'log';
 const rangeOf = (input: Control): Range => RANGES[input.name as keyof typeof RANGES];

@@ -1,7 +1,7 @@
 import { FAULT } from '../view/colours';
 import { byId, make, scaleBar, swatch } from './elements';
 
-/** What the colours of the cloth mean: depth in the layer of contact, as the worker measures it (depth.ts there). */
+/** The legend of the cloth's colours: depth in the layer of contact, as measured by the worker (worker/depth.ts). */
 export function fillDepthLegend(): void {
     const ends = make('div', '', 'ends');
     ends.append(make('span', 'no contact'), make('span', 'lies on it'), make('span', 'on the surface'));

@@ -20,7 +20,7 @@ export function swatch(colour: number): HTMLElement {
     return element;
 }
 
-/** The palette's scale, from its light end to its dark one. */
+/** The palette's scale, from light to dark. */
 export function scaleBar(): HTMLElement {
     const bar = make('div', '', 'scale');
     bar.style.background = `linear-gradient(to right, ${SCALE.map(css).join(', ')})`;

@@ -2,14 +2,14 @@ import type { Figures, MapNews } from '../protocol';
 import { byId } from './elements';
 import { bytes, count, milliseconds, perSecond } from './numbers';
 
-/** How often the figures change: numbers that flicker cannot be read. */
+/** How often the figures are updated: flickering numbers are unreadable. */
 const PERIOD_MS = 250;
 
-/** What is averaged. */
+/** The averaged quantities. */
 type Sums = Record<'stepMs' | 'constraintMs' | 'collisionMs' | 'queriesPerSecond', number>;
 const NOTHING: Readonly<Sums> = { stepMs: 0, constraintMs: 0, collisionMs: 0, queriesPerSecond: 0 };
 
-/** The strip of figures. Times are means over the steps since they were last written. */
+/** The strip of figures. Times are means over the steps since the last update. */
 export class FigureStrip {
     #drawn = 0;
     #since = performance.now();
@@ -30,7 +30,7 @@ export class FigureStrip {
     add(figures: Figures): void {
         this.#steps += figures.stepCount;
         for (const key of Object.keys(NOTHING) as (keyof Sums)[]) this.#sums[key] += figures.stepCount * figures[key];
-        // The largest since the last writing: one frame with a particle inside must not slip by.
+        // The largest since the last update: a single frame with a particle inside must not go unnoticed.
         this.#mostInside = Math.max(this.#mostInside, figures.inside);
         if (figures.stepCount === 0) this.#writeInside();
     }

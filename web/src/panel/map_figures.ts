@@ -34,7 +34,7 @@ export function showMapFigures({ description, byteCount, buildMs }: MapNews): vo
     );
 }
 
-/** What the colours mean, and how often the two kinds of map differ. */
+/** The meaning of the colours, and how often the two kinds of map differ. */
 export function showLegend(surface: SurfaceNews, shown: Settings['shown']): void {
     if (surface.mapKind === 'distance') return byId('legend').replaceChildren(...layerLegend(surface));
     if (shown === 'cells' && surface.cells) byId('legend').replaceChildren(...scaleLegend('Faces that a cell of directions lists', 0, largestOf(surface.cells.faceCounts)));

@@ -1,6 +1,6 @@
 import { byId } from './elements';
 
-/** One sentence about what went wrong, until it is closed or something else is tried. */
+/** One sentence about an error, shown until it is closed or the visitor tries something else. */
 export function say(sentence: string): void {
     const notice = byId('notice');
     notice.querySelector('span')!.textContent = sentence;

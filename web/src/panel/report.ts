@@ -4,7 +4,7 @@ import { FAULT } from '../view/colours';
 import { byId, make, swatch } from './elements';
 import { count } from './numbers';
 
-/** What there is to know about the mesh: closed or not, and each fault with the colour that marks it on the model. */
+/** The mesh report: closed or not, and each fault with the colour that marks it on the model. */
 export function showReport({ report, mendedFaces, flippedParts }: ModelNews): void {
     const parts = report.componentCount === 1 ? 'one part' : `${count(report.componentCount)} parts`;
     const lines = [

@@ -2,7 +2,7 @@ import { byId, make } from '../panel/elements';
 import { count, milliseconds, perSecond } from '../panel/numbers';
 import type { Description, RecordedFrame } from './description';
 
-/** What does not change while it plays. */
+/** The facts that do not change during playback. */
 export function showAbout(description: Description): void {
     const { scene, model, figures } = description;
     document.title = `${scene}: a simulation by Echinus`;
@@ -15,7 +15,7 @@ export function showAbout(description: Description): void {
     byId('model-notice').querySelector('pre')!.textContent = model.notice;
 }
 
-/** What belongs to a frame. */
+/** The facts of one frame. */
 export function showFrame({ number, inside }: RecordedFrame, timeStep: number): void {
     const cell = byId('figure-inside');
     cell.textContent = count(inside);

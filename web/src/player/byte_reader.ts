@@ -1,4 +1,4 @@
-/** Bytes of a stream, as many at a time as one wants. */
+/** Reads a stream in pieces of any number of bytes. */
 export class ByteReader {
     readonly #reader: ReadableStreamDefaultReader<Uint8Array>;
     #chunk = new Uint8Array(0);
@@ -26,9 +26,9 @@ export class ByteReader {
     }
 }
 
-/** What base64 text stands for, decoded piece by piece as it is asked for. */
+/** Decodes base64 text piece by piece on demand. */
 export function fromBase64(text: string): ReadableStream<Uint8Array<ArrayBuffer>> {
-    const LENGTH = 1 << 18; // a multiple of 4, so that each piece stands for whole bytes
+    const LENGTH = 1 << 18; // a multiple of 4, so that each piece gives whole bytes
     let next = 0;
     return new ReadableStream({
         pull(controller) {

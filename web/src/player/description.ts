@@ -1,7 +1,7 @@
 import type { ColliderState } from 'echinus';
 import type { Triple } from '../protocol';
 
-/** What `echinus simulate --html` writes beside the data (docs/command_line.md). */
+/** The description that `echinus simulate --html` writes beside the data (docs/command_line.md). */
 export interface Description {
     format: number;
     version: string;
@@ -35,7 +35,7 @@ export interface Figures {
 export interface RecordedFrame {
     number: number;
     inside: number;
-    /** The least coordinates, in steps of the lattice. */
+    /** The smallest coordinates, in lattice steps. */
     origin: Triple;
     /** Of the first frame, and of each where the model moves. */
     pose?: Pick<ColliderState, 'position' | 'rotation'>;

@@ -1,4 +1,4 @@
-/** Begins the player, or says why it cannot. */
+/** Starts the player, or shows why it cannot. */
 import '../style.css';
 import './player.css';
 import { enableClosing, say } from '../panel/notice';
@@ -7,7 +7,7 @@ import { Recording } from './recording';
 
 const FORMAT = 1;
 
-/** The text of an element that `echinus simulate --html` writes. It goes from the page, being large. */
+/** The text of an element written by `echinus simulate --html`. Removes the element, since it is large. */
 function takeText(id: string): string | undefined {
     const element = document.getElementById(id);
     element?.remove();
@@ -25,7 +25,7 @@ async function begin(): Promise<void> {
     const recording = await Recording.open(parsed, data);
     new Player(recording);
     await recording.readFrames();
-    document.body.dataset.read = 'true'; // what the tests wait for
+    document.body.dataset.read = 'true'; // the tests wait for this
 }
 
 enableClosing();

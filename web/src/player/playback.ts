@@ -1,4 +1,4 @@
-/** Where in a recording one is, and how time passes there. */
+/** The current position in a recording, and the passing of time. */
 export class Playback {
     speed = 1;
     #time = 0;
@@ -18,7 +18,7 @@ export class Playback {
         return this.#playing;
     }
 
-    /** Plays on; from the start again where it had come to the end. */
+    /** Resumes; starts over when it was at the end. */
     play(): void {
         if (this.#frame === this.#times.length - 1) this.seek(0);
         this.#playing = true;
@@ -31,7 +31,7 @@ export class Playback {
         this.#time = this.#times[this.#frame];
     }
 
-    /** Lets real time pass. @param available  frames that can be shown by now; time waits for the others */
+    /** Advances by real time. @param available  frames that can be shown by now; time waits for the others */
     advance(seconds: number, available: number): void {
         if (!this.#playing || available === 0) return;
         this.#time = Math.min(this.#time + this.speed * seconds, this.#times[available - 1]);

@@ -8,7 +8,7 @@ import { Playback } from './playback';
 import type { Recording } from './recording';
 import { World } from './world';
 
-/** Time passes in the recording by at most this much between two pictures, so that no slow one, such as the first, skips a part. */
+/** The recording advances by at most this much between two pictures, so that a slow one, such as the first, skips nothing. */
 const LONGEST_PICTURE_S = 0.25;
 
 export class Player {
@@ -53,10 +53,10 @@ export class Player {
         this.#scrub.value = String(frame);
         this.#scrub.ariaValueText = `${(frames[frame].number * figures.time_step).toFixed(2)} seconds`;
         this.#shown = frame;
-        document.body.dataset.frame = String(frame); // what the tests wait for
+        document.body.dataset.frame = String(frame); // the tests wait for this
     }
 
-    // ---- What a visitor does
+    // ---- The visitor's actions
 
     #toggle(): void {
         if (this.#playback.playing) this.#playback.pause();
@@ -64,7 +64,7 @@ export class Player {
     }
     #seek(frame: number): void {
         this.#playback.pause();
-        // Those that are still being read cannot be shown.
+        // Frames still being read cannot be shown.
         this.#playback.seek(Math.min(frame, this.#recording.frameCount - 1));
     }
     #restart(): void {

@@ -1,13 +1,13 @@
 import { ByteReader, fromBase64 } from './byte_reader';
 import type { Description } from './description';
 
-/** The shapes and positions that a page holds. Frames arrive one after the other while it is read. */
+/** The shapes and positions in a page. Frames arrive one after the other during reading. */
 export class Recording {
     readonly description: Description;
     readonly modelVertices: Float32Array<ArrayBuffer>;
     readonly modelFaces: Uint32Array<ArrayBuffer>;
     readonly clothFaces: Uint32Array<ArrayBuffer>;
-    /** Frame by frame, in each axis by axis: coordinates in steps of the lattice, modulo 2^16. */
+    /** Frame by frame, and within each axis by axis: coordinates in lattice steps, modulo 2^16. */
     readonly #coordinates: Uint16Array[] = [];
     readonly #bytes: ByteReader;
 
@@ -38,7 +38,7 @@ export class Recording {
         }
     }
 
-    /** How many frames are here by now. */
+    /** The number of frames read so far. */
     get frameCount(): number {
         return this.#coordinates.length;
     }
@@ -50,7 +50,7 @@ export class Recording {
         const count = coordinates.length / 3;
         for (let axis = 0; axis < 3; ++axis) {
             const origin = frames[frame].origin[axis];
-            // Bit operations are modulo 2^32, so of the origin they need its last 16 bits alone.
+            // Bit operations are modulo 2^32, so they need only the last 16 bits of the origin.
             const originBits = ((origin % 65536) + 65536) % 65536;
             for (let i = 0; i < count; ++i)
                 positions[3 * i + axis] = step * (origin + ((coordinates[axis * count + i] - originBits) & 0xffff));
@@ -58,7 +58,7 @@ export class Recording {
     }
 }
 
-/** Coordinates from second differences, whose low bytes come first and then the high ones. Typed arrays wrap at 2^16. */
+/** Coordinates from second differences, all low bytes first, then all high bytes. Typed arrays wrap at 2^16. */
 function undoDifferences(bytes: Uint8Array, last: Uint16Array, before: Uint16Array): Uint16Array<ArrayBuffer> {
     const { length } = last;
     const now = new Uint16Array(length);

@@ -54,7 +54,7 @@ const arraysFor = (particles: number): FrameArrays => ({
     depths: new Float32Array(particles),
 });
 
-/** The axis that points up, and the turn that brings a slanted gravity to it. */
+/** The axis that points up, and the rotation that aligns a slanted gravity with it. */
 function upright(gravity: Description['figures']['gravity']): { axis: Axis; turn: THREE.Quaternion } {
     const up = new THREE.Vector3(...gravity).negate();
     if (up.lengthSq() === 0) up.set(0, 0, 1);

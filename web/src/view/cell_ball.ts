@@ -2,7 +2,7 @@ import * as THREE from 'three';
 import type { ModelNews, SurfaceNews } from '../protocol';
 import { colouredFaces, largestOf, scaleTo } from './coloured_faces';
 
-/** The cells of an exact map, where their directions meet the bounding sphere: darker, the more faces they list. */
+/** The cells of an exact map, projected onto the bounding sphere: the more faces they list, the darker. */
 export function cellBall({ corners, faceCounts }: NonNullable<SurfaceNews['cells']>, { centre, radius }: ModelNews): THREE.BufferGeometry {
     const positions = new Float32Array(corners.length);
     for (let cell = 0; cell < faceCounts.length; ++cell) {

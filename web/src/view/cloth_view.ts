@@ -5,24 +5,24 @@ import { matte } from './matte';
 
 /** The cloth: red in front and sand behind, or coloured by the depth of its contacts. */
 export class ClothView {
-    /** Uniform: 1 where colours are by depth, 0 else. */
+    /** Uniform: 1 for colours by depth, otherwise 0. */
     readonly #depthShare = { value: 0 };
     readonly mesh = new THREE.Mesh(sheet(NOTHING, NO_FACES), fabric(this.#depthShare));
     #faces: Uint32Array = NO_FACES;
     #shown: FrameArrays | undefined;
 
     constructor() {
-        this.mesh.frustumCulled = false; // it moves: a sphere around it would be wrong a frame later
+        this.mesh.frustumCulled = false; // it moves: its bounding sphere would be wrong a frame later
     }
 
-    /** Another cloth, which shows itself with its first arrays. */
+    /** Another cloth, which becomes visible with its first arrays. */
     begin(faces: Uint32Array): void {
         this.#faces = faces;
         this.#shown = undefined;
         this.#lay(sheet(NOTHING, NO_FACES));
     }
 
-    /** @returns the arrays shown until now, which the worker may fill again */
+    /** @returns the previously shown arrays, which the worker may fill again */
     show(arrays: FrameArrays): FrameArrays | undefined {
         const previous = this.#shown;
         const { geometry } = this.mesh;
@@ -52,7 +52,7 @@ export class ClothView {
         this.#depthShare.value = on ? 1 : 0;
     }
 
-    /** The particle under a ray, and where the ray meets the cloth. */
+    /** The particle under a ray, and the ray's hit point on the cloth. */
     pick(ray: THREE.Raycaster): { particle: number; point: THREE.Vector3; distance: number } | undefined {
         const { geometry } = this.mesh;
         const { position } = geometry.attributes;
@@ -66,7 +66,7 @@ export class ClothView {
     }
 }
 
-/** Where colours are by depth, that of each particle goes through the palette's scale; inside it is the colour of faults. */
+/** For colours by depth, each particle's depth is mapped to the palette's scale; a particle inside gets the colour of faults. */
 function fabric(byDepth: { value: number }): THREE.MeshLambertMaterial {
     const material = matte(CLOTH, CLOTH_BACK);
     const scale = { value: SCALE.map((hex) => new THREE.Color(hex)) };
@@ -93,7 +93,7 @@ function fabric(byDepth: { value: number }): THREE.MeshLambertMaterial {
     return material;
 }
 
-/** No cloth yet: but with all that a cloth has, since three.js compiles the program at once, and by that. */
+/** No cloth yet, but with all attributes of one, since three.js compiles the program for them at once. */
 const NO_FACES = new Uint32Array(0);
 const NOTHING: FrameArrays = { positions: new Float32Array(0), normals: new Float32Array(0), depths: new Float32Array(0) };
 

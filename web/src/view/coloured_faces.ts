@@ -1,7 +1,7 @@
 import * as THREE from 'three';
 import { SCALE } from './colours';
 
-/** Faces, each by itself, so that each has its own colour. @param positions  [9 faces] of their corners */
+/** Separate faces, so that each has its own colour. @param positions  [9 faces] of their corners */
 export function colouredFaces(positions: Float32Array, values: Uint32Array, colourOf: (value: number) => THREE.Color): THREE.BufferGeometry {
     const colours = new Float32Array(positions.length);
     values.forEach((value, face) => {
@@ -25,7 +25,7 @@ export function scaleTo(largest: number): (value: number) => THREE.Color {
     };
 }
 
-/** Where the scale ends. */
+/** The end of the scale. */
 export function largestOf(values: Uint32Array): number {
     return values.reduce((a, b) => Math.max(a, b), 1);
 }

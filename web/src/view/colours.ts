@@ -9,10 +9,10 @@ export const LAYER_BACK = 0xe4ded4;
 export const LAYERS = [0x44aa99, 0xddcc77, 0xcc6677, 0x88ccee, 0xaa4499, 0x999933, 0x332288, 0x117733, 0x882255];
 export const SCALE = [0xfff7bc, 0xfec44f, 0xfb9a29, 0xcc4c02, 0x662506];
 
-/** Where a map looks for surface along a ray. */
+/** Where a map searches for surface along a ray. */
 export const BAND = 0x2f6f8f;
 
-/** What is wrong with a mesh, by kind: vivid, since it must be seen. */
+/** The faults of a mesh, by kind: vivid, since they must be seen. */
 export const FAULT = { borderEdges: 0xd1242f, nonmanifoldEdges: 0x8250df, misorientedEdges: 0xbf8700, faces: 0xd1242f } as const;
 
 /** Paper and room behind everything. */

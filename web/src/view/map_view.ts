@@ -9,7 +9,7 @@ import { BAND, CHALK, CLOTH, FAULT, INK, LAYERS, LAYER_BACK } from './colours';
 import { matte } from './matte';
 import { clear } from './model_view';
 
-/** What a map holds: its surface in colour, a cut through it, a ray, and where two maps differ. */
+/** The contents of a map: its surface in colour, a cut through it, a ray, and where two maps differ. */
 export class MapView {
     readonly group = new THREE.Group();
     readonly #surface = new THREE.Group();
@@ -48,7 +48,7 @@ export class MapView {
     set shown(what: Settings['shown']) {
         this.#cells.visible = what === 'cells';
     }
-    /** Cells hide the surface, where they are not cut away. */
+    /** Cells hide the surface where they are not cut away. */
     get showsCells(): boolean {
         return this.#cells.visible && this.#cells.children.length > 0;
     }
@@ -66,14 +66,14 @@ export class MapView {
             new THREE.PlaneGeometry(2 * radius, 2 * radius),
             new THREE.MeshBasicMaterial({ map: texture, transparent: true, side: THREE.DoubleSide, depthWrite: false }),
         );
-        // As cutAt() of the worker lays columns and rows.
+        // Columns and rows as in the worker's cutAt().
         const [across, along] = following(up).map((axis) => new THREE.Vector3(...UNIT[axis]));
         sheet.quaternion.setFromRotationMatrix(new THREE.Matrix4().makeBasis(across, along, this.#up));
         sheet.position.set(...centre).addScaledVector(this.#up, cut.height * radius);
         this.#cut.add(sheet);
     }
 
-    /** The ray from the centre: thick where it is inside, with the bands in which the map looks for surface. */
+    /** The ray from the centre: thick where it is inside, with the bands in which the map searches for surface. */
     showRay(ray: FromWorker & { kind: 'ray' }): void {
         clear(this.#ray);
         if (!this.#model) return;
@@ -88,19 +88,19 @@ export class MapView {
         if (ray.outline.length === 3) this.#ray.add(this.#outline(ray.outline, origin, radius));
     }
 
-    /** The way of a ray through what the cut has left of the bounding sphere. */
+    /** The part of a ray inside the remainder of the bounding sphere below the cut. */
     wayOf({ ray }: THREE.Raycaster): { from: Triple; to: Triple } | undefined {
         if (!this.#model) return undefined;
         const { centre, radius } = this.#model;
         const toMiddle = new THREE.Vector3(...centre).sub(ray.origin).dot(ray.direction);
         const half = Math.sqrt(radius * radius - ray.distanceSqToPoint(new THREE.Vector3(...centre)));
         const plane = this.#plane();
-        // Where the ray meets the cut; below it, is what is kept, so it comes in there or goes out there.
+        // Where the ray meets the cut: there it enters or leaves the part that is kept, which lies below.
         const sinking = ray.direction.dot(plane.normal);
         const cut = -plane.distanceToPoint(ray.origin) / sinking;
         const from = Math.max(0, toMiddle - half, sinking > 0 ? cut : 0);
         const to = Math.min(toMiddle + half, sinking < 0 ? cut : Infinity);
-        if (!(from < to)) return undefined; // also where it misses the sphere, and half is not a number
+        if (!(from < to)) return undefined; // also where it misses the sphere and half is NaN
         return { from: ray.at(from, new THREE.Vector3()).toArray(), to: ray.at(to, new THREE.Vector3()).toArray() };
     }
 
@@ -111,18 +111,18 @@ export class MapView {
         });
     }
 
-    /** The cell: its three edges on the bounding sphere, and the way to them. */
+    /** The cell: its three edges on the bounding sphere, and the lines from the centre to its corners. */
     #outline(corners: Triple[], origin: THREE.Vector3, radius: number): THREE.LineSegments {
         const far = corners.map((corner) => origin.clone().addScaledVector(new THREE.Vector3(...corner), radius));
         const geometry = new THREE.BufferGeometry().setFromPoints([0, 1, 2].flatMap((k) => [origin, far[k], far[k], far[(k + 1) % 3]]));
         return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: lineColour(), transparent: true, opacity: 0.55, depthTest: false }));
     }
 
-    /** Keeps what lies below the cut. */
+    /** Keeps the part below the cut. */
     #plane(): THREE.Plane {
         const centre = this.#model?.centre ?? [0, 0, 0];
         const radius = this.#model?.radius ?? 1;
-        // The whole map, and a little more so that its top is not cut by rounding.
+        // The whole map, and a little more, so that rounding does not cut its top.
         const height = this.#height >= 1 ? 1.1 : this.#height;
         return new THREE.Plane(this.#up.clone().negate(), this.#up.dot(new THREE.Vector3(...centre)) + height * radius);
     }
@@ -152,7 +152,7 @@ function dots(positions: Float32Array): THREE.Points {
     return new THREE.Points(geometry, material);
 }
 
-/** Inside red, outside nearly nothing. */
+/** Inside red, outside nearly transparent. */
 function stainOf({ inside, side }: Cut): Uint8Array<ArrayBuffer> {
     const pixels = new Uint8Array(4 * side * side);
     inside.forEach((flag, i) => pixels.set(flag ? [0xb4, 0x58, 0x4e, 0xe6] : [0x80, 0x80, 0x80, 0x18], 4 * i));
@@ -175,5 +175,5 @@ function ball(at: THREE.Vector3, radius: number, colour: number): THREE.Mesh {
 }
 const lineColour = (): number => (matchMedia('(prefers-color-scheme: dark)').matches ? CHALK : INK);
 
-/** Through the surface, which would hide nearly all of a ray. */
+/** Drawn through the surface, which would hide nearly all of a ray. */
 const ink = (color: number, opacity = 1) => new THREE.MeshBasicMaterial({ color, opacity, depthTest: false, transparent: true });

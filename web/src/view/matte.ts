@@ -1,8 +1,8 @@
 import * as THREE from 'three';
 
 /**
- * Matte, with a colour for what is seen from behind. One material for both sides, so that there is one mesh to draw and
- * one program to compile, which takes long where software draws.
+ * Matte, with a second colour for back faces. One material for both sides, so that there is one mesh to draw and one
+ * program to compile, which is slow with software rendering.
  */
 export function matte(front: number, back = front): THREE.MeshLambertMaterial {
     const material = new THREE.MeshLambertMaterial({ color: front, side: THREE.DoubleSide });

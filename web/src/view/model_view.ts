@@ -8,10 +8,10 @@ import { matte } from './matte';
 /** Beyond this many faces, creases are left out: they take seconds, and small faces look smooth anyway. */
 const CREASED_FACES = 60_000;
 
-/** The model as clay, with what is wrong with its mesh drawn on it. Moves with the collider. */
+/** The model as clay, with the faults of its mesh drawn on it. Moves with the collider. */
 export class ModelView {
     readonly group = new THREE.Group();
-    /** The model alone, without what is drawn on it. In the group once it has normals: three.js compiles its program at once, and by that. */
+    /** The model alone, without the faults. Added to the group once it has normals, since three.js compiles the program for its attributes at once. */
     readonly clay = new THREE.Mesh(new THREE.BufferGeometry(), matte(CLAY));
 
     show({ vertices, faces, faults }: Pick<ModelNews, 'vertices' | 'faces' | 'faults'>): void {
@@ -36,7 +36,7 @@ export class ModelView {
         this.group.updateMatrixWorld();
     }
 
-    /** The vertices where the model stands now. */
+    /** The vertices at the model's present pose. */
     verticesNow(vertices: Float32Array): Float32Array {
         const moved = new THREE.BufferAttribute(vertices.slice(), 3);
         return moved.applyMatrix4(this.group.matrixWorld).array as Float32Array;
@@ -48,7 +48,7 @@ function smooth(geometry: THREE.BufferGeometry): THREE.BufferGeometry {
     return geometry;
 }
 
-/** Through everything in front: a fault on the far side must be seen as well. */
+/** Drawn through everything in front: faults on the far side must be visible as well. */
 function edges(vertices: Float32Array, pairs: Uint32Array, colour: number): THREE.LineSegments {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(vertices, 3));
@@ -68,7 +68,7 @@ function marked(vertices: Float32Array, faces: Uint32Array, wrong: number[]): TH
     );
 }
 
-/** Takes everything out of a group, and its memory from the graphics card. */
+/** Removes everything from a group and frees its graphics memory. */
 export function clear(group: THREE.Object3D): void {
     for (const child of [...group.children]) {
         group.remove(child);

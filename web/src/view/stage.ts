@@ -14,30 +14,30 @@ function axesOf(up: Axis): Axes {
     return axes[up];
 }
 
-/** Degrees. From straight above there is no saying which way is up. */
+/** Degrees. Seen from straight above, no direction is up. */
 const MOST_ELEVATION = 89;
 
-/** How long the camera has to stand still until it counts as arrived. */
+/** How long the camera must be still to count as arrived. */
 const ARRIVAL_MS = 250;
 
-/** The canvas, the camera and the light: what is the same whatever is shown. */
+/** The canvas, the camera and the light, shared by all views. */
 export class Stage {
     readonly scene = new THREE.Scene();
     readonly camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);
     readonly renderer: THREE.WebGLRenderer;
     #controls: OrbitControls;
     readonly #sun = new THREE.DirectionalLight(0xfff4e6, 2.7);
-    /** From the camera: so that what is seen from below, away from sun and sky, has its colour. */
+    /** From the camera, so that surfaces seen from below, away from sun and sky, keep their colour. */
     readonly #lamp = new THREE.DirectionalLight(0xffffff, 0.7);
     readonly #sky = new THREE.HemisphereLight(0xffffff, 0x6f675d, 1.25);
     readonly #canvas: HTMLCanvasElement;
-    /** What the camera was told to look at. */
+    /** The argument of the last lookAt(). */
     #model = { centre: new THREE.Vector3(), radius: 1, axes: axesOf('z') };
     #home = '';
     #arrival = 0;
     /** The camera was moved, and stands at `standpoint` now. */
     onArrival = () => {};
-    /** The browser has taken the graphics card away; three.js goes on once it gives it back. */
+    /** The graphics context was lost; three.js continues once it is restored. */
     onLoss = () => {};
 
     constructor(canvas: HTMLCanvasElement) {
@@ -57,13 +57,13 @@ export class Stage {
         this.#fit();
     }
 
-    /** Puts the camera where all of a sphere, and the cloth above it, is in sight. */
+    /** Places the camera so that a whole sphere, and the cloth above it, is in sight. */
     lookAt(centre: Triple, radius: number, up: Axis): void {
         const axes = axesOf(up);
         const [upward, sideways, forward] = axes;
         this.#model = { centre: new THREE.Vector3(...centre), radius, axes };
         this.camera.up.copy(upward);
-        // The controls take the camera's up when they are made.
+        // The controls copy the camera's up when they are constructed.
         this.#controls.dispose();
         this.#controls = new OrbitControls(this.camera, this.#canvas);
         this.#controls.enableDamping = true;
@@ -72,7 +72,7 @@ export class Stage {
         this.#controls.maxDistance = 20 * radius;
 
         const middle = new THREE.Vector3(...centre).addScaledVector(upward, 0.12 * radius);
-        // Narrow screens see less to the sides, so the camera steps back.
+        // Narrow screens show less to the sides, so the camera moves back.
         const distance = 5.6 * radius * Math.max(1, 1.2 / this.camera.aspect);
         const from = sideways.clone().multiplyScalar(0.8).addScaledVector(forward, 0.55).addScaledVector(upward, 0.34).normalize();
         this.camera.position.copy(middle).addScaledVector(from, distance);
@@ -87,13 +87,13 @@ export class Stage {
             this.#arrival = window.setTimeout(() => this.onArrival(), ARRIVAL_MS);
         });
 
-        // Low and from the side: folds show by their shadows.
+        // Low and from the side, so that shadows reveal the folds.
         this.#sun.position.copy(middle).addScaledVector(upward, 2.2 * radius).addScaledVector(sideways, -0.6 * radius).addScaledVector(forward, 2.6 * radius);
         this.#sun.target.position.copy(middle);
         this.#sky.position.copy(upward);
     }
 
-    /** For a link (standpoint.ts); '' where lookAt() has put the camera. Anything else that is no standpoint changes nothing. */
+    /** For a link (standpoint.ts); '' restores the camera of lookAt(). Any other invalid text changes nothing. */
     get standpoint(): string {
         const text = toText(this.#stand());
         return text === this.#home ? '' : text;
@@ -145,7 +145,7 @@ export class Stage {
         this.renderer.render(this.scene, this.camera);
     }
 
-    /** What is on the canvas now, as a PNG file. */
+    /** The canvas as a PNG file. */
     picture(): Promise<Blob> {
         this.draw(); // the browser may have cleared the canvas since
         return new Promise((resolve, reject) =>

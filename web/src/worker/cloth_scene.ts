@@ -2,7 +2,7 @@ import type { SceneDescription } from 'echinus';
 import { AXES, type Axis, UNIT } from '../axes';
 import type { Settings } from '../settings';
 
-/** What a scene depends on besides the settings. */
+/** The inputs of a scene besides the settings. */
 export interface Body {
     centre: readonly number[];
     radius: number;
@@ -11,7 +11,7 @@ export interface Body {
     top: number;
 }
 
-/** What turns z, the cloth's own up, to another axis. */
+/** The rotation from z, the cloth's own up, to another axis. */
 const FROM_Z: Record<Axis, { axis: [number, number, number]; degrees: number } | undefined> = {
     x: { axis: [0, 1, 0], degrees: 90 },
     y: { axis: [1, 0, 0], degrees: -90 },
@@ -23,8 +23,8 @@ export const columnsOf = (particles: number): number => Math.max(2, Math.round(M
 export const thicknessOf = (settings: Settings, { radius }: Body): number => 0.01 * settings.thickness * radius;
 
 /**
- * A cloth above the model. All lengths go by the model's radius, and gravity too: so a model in millimetres falls as
- * quickly as one in metres.
+ * A cloth above the model. Lengths and gravity scale with the model's radius, so the cloth falls equally fast on a
+ * model in millimetres and on one in metres.
  */
 export function sceneFor(settings: Settings, body: Body): SceneDescription {
     const { radius } = body;
@@ -34,7 +34,7 @@ export function sceneFor(settings: Settings, body: Body): SceneDescription {
     const columns = columnsOf(settings.particles);
     const rotation = FROM_Z[body.up];
     return {
-        model: 'model.obj', // a scene needs a name; its map is made already
+        model: 'model.obj', // a scene needs a name; its map already exists
         cloth: { size: [2.25 * radius, 2.25 * radius], particles: [columns, columns], position, thickness, ...(rotation && { rotation }) },
         material: { friction: settings.friction },
         gravity: UNIT[body.up].map((part) => -9.81 * radius * part) as [number, number, number],

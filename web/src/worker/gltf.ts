@@ -1,18 +1,18 @@
 import { LoadingManager, type Object3D } from 'three';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 
-/** The scene of a .glb, or of a .gltf that has all in it. @throws Error with a sentence that names no file */
+/** The scene of a .glb, or of a self-contained .gltf. @throws Error with a sentence that names no file */
 export async function readGltf(bytes: ArrayBuffer): Promise<Object3D> {
     const manager = new LoadingManager().setURLModifier(withinFile);
     const { scene, scenes } = await new GLTFLoader(manager).parseAsync(bytes, '');
-    const root = scene ?? scenes[0]; // which of them to show need not be said
+    const root = scene ?? scenes[0]; // the default scene is optional
     if (!root) throw new Error('there is no scene in it');
     return root;
 }
 
 const ONE_PIXEL = 'data:image/gif;base64,R0lGODlhAQABAAAAACH5BAEAAAAALAAAAAABAAEAAAICRAEAOw==';
 
-/** A file that is opened has nothing fetched for it: pictures are not needed, and shapes must be in it. */
+/** Nothing is fetched for a file: images are not needed, and the shapes must be in it. */
 function withinFile(address: string): string {
     if (/^(data|blob):/.test(address)) return address;
     if (/\.(png|jpe?g|webp|avif|ktx2|gif)$/i.test(address)) return ONE_PIXEL;

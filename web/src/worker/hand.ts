@@ -2,8 +2,8 @@ import type { Simulation } from 'echinus';
 import type { Triple } from '../protocol';
 
 /**
- * A pointer that holds a particle and its near neighbours. It gives them velocities, so sticks still pull at them and the
- * model still stops them: nobody can be dragged into it.
+ * A pointer that holds a particle and its near neighbours. It sets their velocities, so sticks still pull at them and
+ * the model still stops them: no particle can be dragged into it.
  */
 export class Hand {
     #held: { particle: number; offset: Triple }[] = [];
@@ -16,7 +16,7 @@ export class Hand {
     grab(simulation: Simulation, columns: number, particle: number, target: Triple): void {
         const { positions } = simulation;
         const rows = positions.length / 3 / columns;
-        const reach = Math.max(1, Math.round(columns / 50)); // a hand is as large on a fine cloth as on a coarse one
+        const reach = Math.max(1, Math.round(columns / 50)); // the hand has the same size on fine and coarse cloths
         const [column, row] = [particle % columns, Math.floor(particle / columns)];
         this.#held = [];
         this.#target = target;
@@ -34,11 +34,11 @@ export class Hand {
         this.#held = [];
     }
 
-    /** To be called before each step. @param limit  largest speed, units per second */
+    /** Call before each step. @param limit  largest speed, units per second */
     pull(simulation: Simulation, timeStep: number, limit: number): void {
         const { positions } = simulation;
         for (const { particle, offset } of this.#held) {
-            // Five time steps to get there: quick to the eye, and soft enough for the sticks to follow.
+            // Reaches the target in five time steps: quick to the eye, and soft enough for the sticks to follow.
             const velocity = [0, 1, 2].map((k) => (this.#target[k] + offset[k] - positions[3 * particle + k]) / (5 * timeStep));
             const speed = Math.hypot(...velocity);
             const share = speed > limit ? limit / speed : 1;

@@ -1,6 +1,6 @@
 import type { ColliderState, Echinus, ExactMap, FlagBuffer, PointBuffer } from 'echinus';
 
-/** Counts the particles inside the model by the exact map, also for a cloth that moves by the paper's. */
+/** Counts the particles inside the model by the exact map, even for a cloth that uses the paper's map. */
 export class Judge {
     readonly #map: ExactMap;
     readonly #points: PointBuffer;
@@ -26,7 +26,7 @@ export class Judge {
     }
 }
 
-/** Points of the world in the frame of a collider of scale 1: the inverse rotation of what is left without its position. */
+/** World points in the frame of a collider of scale 1: subtracts its position, then rotates inversely. */
 function intoFrameOf({ position, rotation: [w, x, y, z] }: ColliderState, world: Float32Array, local: Float32Array): void {
     for (let i = 0; i < world.length; i += 3) {
         const px = world[i] - position[0], py = world[i + 1] - position[1], pz = world[i + 2] - position[2];

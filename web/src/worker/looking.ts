@@ -6,7 +6,7 @@ import type { Playground } from './playground';
 const CUT_SIDE = 220;
 const SAMPLE_COUNT = 200_000;
 
-/** The surface that the map in use holds, with what is to be coloured, and where the two kinds of map differ. */
+/** The surface of the map in use, with the numbers that colour it, and where the two kinds of map differ. */
 export function surfaceOf(echinus: Echinus, { map, exactMap, settings, body }: Playground): SurfaceNews {
     const { mesh, values } = map.kind === 'exact' ? withLists(map) : withLayers(map);
     const news = {
@@ -31,7 +31,7 @@ function withLayers(map: DistanceMap) {
     return { mesh, values: layers };
 }
 
-/** Points spread over the bounding sphere, the same ones each time, that one map has inside and the other outside. */
+/** The points of a fixed sequence in the bounding sphere that one map has inside and the other outside. */
 function disagreements(echinus: Echinus, exact: ExactMap, distance: DistanceMap, centre: readonly number[], radius: number): Float32Array {
     const points = echinus.makePoints(SAMPLE_COUNT);
     const first = echinus.makeFlags(SAMPLE_COUNT);
@@ -63,7 +63,7 @@ function inUnitBall(i: number): Triple {
     return [across * Math.cos(longitude), across * Math.sin(longitude), radius * height];
 }
 
-/** What the map in use answers on a square across the bounding sphere. @param height  along up, in radii from the centre */
+/** The answers of the map in use on a square across the bounding sphere. @param height  along up, in radii from the centre */
 export function cutAt(echinus: Echinus, { map, body: { centre, radius, up } }: Playground, height: number): Cut {
     const [across, along] = following(up).map((axis) => UNIT[axis]);
     const count = CUT_SIDE * CUT_SIDE;
@@ -83,7 +83,7 @@ export function cutAt(echinus: Echinus, { map, body: { centre, radius, up } }: P
     }
 }
 
-/** The ray through the first point of the surface on a straight way, if there is one. */
+/** The ray through the first point of the surface on a straight line, if there is one. */
 export function lookAt(playground: Playground, from: Triple, to: Triple): FromWorker {
     const { found, point } = playground.exactMap.sweep(from, to);
     if (!found) return { kind: 'missed' };
@@ -91,7 +91,7 @@ export function lookAt(playground: Playground, from: Triple, to: Triple): FromWo
     return lookAlong(playground, [0, 1, 2].map((k) => point[k] - centre[k]) as Triple);
 }
 
-/** What the map in use knows along a ray from its centre. */
+/** The data of the map in use along a ray from its centre. */
 export function lookAlong({ map }: Playground, direction: Triple): FromWorker {
     if (map.kind === 'distance') {
         const { crossings, intervals } = map.ray(direction);

@@ -2,7 +2,7 @@ import type { DistanceMapOptions, ExactMapOptions } from 'echinus';
 import type { Axis } from '../axes';
 import type { Settings } from '../settings';
 
-/** What the settings say under `map` of a scene. @param up  where a grid with poles has them */
+/** The settings as `map` of a scene. @param up  the axis of a grid's poles */
 export function mapOptions(settings: Settings, up: Axis): ExactMapOptions | DistanceMapOptions {
     return settings.map === 'exact' ? exactOptions(settings) : distanceOptions(settings, up);
 }

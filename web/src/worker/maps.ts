@@ -7,18 +7,18 @@ import { mapOptions } from './map_options';
 interface Built {
     map: AnyMap;
     news: MapNews;
-    /** What it was built by. */
+    /** The options it was built with. */
     options: string;
 }
 
-/** The maps of one mesh, which has to outlive them: the exact one always, the paper's once somebody asked for it. */
+/** The maps of one mesh, which must outlive them: the exact one always, the paper's on demand. */
 export class Maps {
     readonly #echinus: Echinus;
     readonly #mesh: Mesh;
     readonly #up: Axis;
     readonly #built = new Map<Settings['map'], Built>();
 
-    /** @throws EchinusError when no exact map can be made of the mesh */
+    /** @throws EchinusError when no exact map of the mesh is possible */
     constructor(echinus: Echinus, mesh: Mesh, up: Axis, settings: Settings) {
         this.#echinus = echinus;
         this.#mesh = mesh;
@@ -30,7 +30,7 @@ export class Maps {
         return this.#built.get('exact')!.map as ExactMap;
     }
 
-    /** The map that the settings ask for; builds it unless the last of its kind was built by the same options. */
+    /** The map of the settings; builds it unless the last of its kind was built with the same options. */
     by(settings: Settings): Readonly<Built> {
         const present = this.#built.get(settings.map);
         if (present?.options === this.#optionsOf(settings)) return present;
@@ -40,7 +40,7 @@ export class Maps {
         return built;
     }
 
-    /** The caller's own, to be deleted. */
+    /** Owned by the caller, who must delete it. */
     build(settings: Settings): Built {
         const options = this.#optionsOf(settings);
         const begin = performance.now();

@@ -3,17 +3,17 @@ import type { Object3D } from 'three';
 import type { Axis } from '../axes';
 import type { Sample } from '../settings';
 
-/** A mesh, and which way it stands by the custom of where it comes from. */
+/** A mesh, and its up axis by the convention of its source. */
 export interface Model {
     name: string;
     mesh: Mesh;
     up: Axis;
 }
 
-/** What is left to do for a model once its bytes are there: the part that takes the module. */
+/** The remaining work on a model once its bytes have arrived: the part that needs the module. */
 export type Reading = (echinus: Echinus) => Model;
 
-/** @param page  the address of the page, beside which the samples lie */
+/** @param page  the address of the page; the samples lie beside it */
 export async function fetchSample(sample: Sample, page: string): Promise<Reading> {
     switch (sample) {
         case 'horse': {
@@ -32,7 +32,7 @@ export async function fetchSample(sample: Sample, page: string): Promise<Reading
 
 /**
  * OBJ, PLY, STL and OFF are read by Echinus; 3DS and glTF by three.js, which is loaded only then.
- * @throws Error with a sentence that begins with the file's name; so does what it gives
+ * @throws Error with a sentence that begins with the file's name; so does the returned function
  */
 export async function prepareFile(name: string, bytes: ArrayBuffer): Promise<Reading> {
     const ending = name.toLowerCase().split('.').pop();
@@ -55,7 +55,7 @@ export async function prepareFile(name: string, bytes: ArrayBuffer): Promise<Rea
 
 const welding = (name: string, root: Object3D): Reading => (echinus) => ({ name, mesh: named(name, () => weldTriangles(echinus, root)), up: 'y' });
 
-/** What is wrong is said of the file. */
+/** Adds the file's name to errors. */
 export function named<T>(name: string, make: () => T): T {
     try {
         return make();
@@ -65,7 +65,7 @@ export function named<T>(name: string, make: () => T): T {
     }
 }
 
-/** Readers other than ours name no file. */
+/** Third-party readers name no file. */
 async function described<T>(name: string, read: () => Promise<T>): Promise<T> {
     try {
         return await read();

@@ -6,7 +6,7 @@ const TURN = Math.PI / 5; // radians per second: once around in ten seconds
 const SWING = { radians: 0.35, seconds: 4 };
 
 /**
- * The model's velocities at a time: it turns about its centre, wherever its own origin is.
+ * The model's velocities at a time: it turns about its centre, wherever its origin is.
  * @param up  unit
  */
 export function motionAt(
@@ -31,7 +31,7 @@ function angularVelocity(motion: Settings['motion'], up: Triple, seconds: number
         case 'swinging': {
             const rate = (2 * Math.PI) / SWING.seconds;
             const speed = SWING.radians * rate * Math.cos(rate * seconds);
-            // About the axis that follows up: across the horse's length.
+            // About the axis after up: across the horse's length.
             return [up[2], up[0], up[1]].map((part) => speed * part) as Triple;
         }
     }

@@ -1,6 +1,6 @@
 /**
- * Normals of a sheet whose particles lie row by row, of any length but 0: across the differences to the neighbours
- * of a row and of a column. One pass, so that a cloth of 100 000 does not wait for them.
+ * Normals of a sheet whose particles lie row by row, of any length but 0: cross products of the differences between
+ * neighbours in the row and in the column. One pass, so that they do not delay a cloth of 100 000.
  * @param positions  [3 columns rows]
  * @param normals    [3 columns rows] out
  */

@@ -12,8 +12,8 @@ import { motionAt } from './motion';
 import { sheetNormals } from './normals';
 
 /**
- * How long one frame may simulate: most of the time between frames, so that a slow display does not slow the cloth. Beyond
- * that the cloth falls slower than real, rather than in jerks.
+ * How long one frame may simulate: most of the time between frames, so that a slow display does not slow the cloth.
+ * Beyond that the cloth falls more slowly than in reality, rather than jerkily.
  */
 const FRAME_BUDGET_MS = { least: 14, most: 100, share: 0.85 };
 
@@ -38,12 +38,12 @@ export class Playground {
     #clothMap!: AnyMap;
     #judge!: Judge;
     #contacts!: ContactBuffer;
-    /** Frames of simulations before the present one, which counts anew after continueWith(). */
+    /** Frames of the simulations before the present one, whose count restarts after continueWith(). */
     #earlierFrames = 0;
     #owedSeconds = 0;
     #lastMs = 0;
 
-    /** Takes the model's mesh over. @throws EchinusError when no map can be made of it, or no cloth can lie on it */
+    /** Takes ownership of the model's mesh. @throws EchinusError when no map of it, or no cloth on it, is possible */
     constructor(echinus: Echinus, model: Model, settings: Settings) {
         this.#echinus = echinus;
         this.#settings = settings;
@@ -98,14 +98,14 @@ export class Playground {
         };
     }
 
-    /** @returns whether the cloth began anew */
+    /** @returns whether the cloth started anew */
     change(settings: Settings): boolean {
         const before = this.#settings;
         this.#settings = settings;
         try {
             return this.#follow(settings, before);
         } catch (error) {
-            this.#settings = before; // what there was goes on
+            this.#settings = before; // the previous state continues
             throw error;
         }
     }
@@ -119,7 +119,7 @@ export class Playground {
         return false;
     }
 
-    /** Builds the map in use once more: the first time of all, the host has yet to compile the code well. */
+    /** Builds the map in use once more: during the very first build, the host's code is not yet optimised. */
     rebuild(): MapNews {
         const { map, news } = this.#maps.build(this.#settings);
         map.delete(); // the same bytes as the one in use
@@ -141,10 +141,10 @@ export class Playground {
         this.#lastMs = performance.now();
     }
 
-    /** Steps as many times as real time asks for, within FRAME_BUDGET_MS, and fills the arrays with the result. */
+    /** Makes as many steps as real time requires, within FRAME_BUDGET_MS, and fills the arrays with the result. */
     advance(paused: boolean, arrays: FrameArrays | undefined): { arrays: FrameArrays; figures: Figures } {
         const now = performance.now();
-        // A page that was hidden has not simulated, and need not make up for it.
+        // A hidden page has not simulated, and need not catch up.
         const elapsed = now - this.#lastMs;
         this.#owedSeconds = Math.min(this.#owedSeconds + 0.001 * elapsed, 0.1);
         this.#lastMs = now;
@@ -187,7 +187,7 @@ export class Playground {
         simulation.step();
     }
 
-    /** From the side, in gusts: a steady wind would hold the cloth like a wall. By the frame, so that a link repeats it. */
+    /** From the side, in gusts: a steady wind would hold the cloth like a wall. A function of the frame, so that a link reproduces it. */
     #wind(frame: number): Triple {
         const seconds = frame * this.#scene.timeStep;
         const speed = this.#settings.wind * this.body.radius * (0.75 + 0.25 * Math.sin(2.1 * seconds) * Math.sin(0.8 * seconds));
@@ -195,7 +195,7 @@ export class Playground {
         return across[this.body.up].map((part) => speed * part) as Triple;
     }
 
-    /** Nothing moves the cloth any more: then the processor may rest as well. */
+    /** Nothing moves the cloth any more, so the simulation may stop. */
     #rests(): boolean {
         return this.#simulation.atRest && this.#settings.motion === 'still' && this.#settings.wind === 0 && !this.hand.holds;
     }

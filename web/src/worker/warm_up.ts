@@ -1,16 +1,16 @@
 import type { Echinus } from 'echinus';
 
-/** Segments of a torus. The first is small: it has each function compiled once, and costs no more than that saves. */
+/** Segments of a torus. The first is small: it gets each function compiled once, and costs no more than that saves. */
 const FIRST = { major: 12, minor: 8 };
 const LATER = { major: 60, minor: 24 };
 
-/** By then the host has compiled its best code. */
+/** By then the host has optimised the code. */
 const MOST_ROUNDS = 8;
 
 /**
- * Builds maps that nobody asked for, as long as there is nothing else to do. A host compiles a function of the module when
- * it is first called, and compiles it well once it was called often: without this the first model's map takes thrice as long.
- * @param needed  asked after each round, with messages and files let in between
+ * Builds maps and discards them, as long as there is nothing else to do. A host compiles a function of the module on
+ * its first call and optimises it after many calls: without this the first model's map takes three times as long.
+ * @param needed  called after each round; messages and files are handled in between
  */
 export async function warmUp(echinus: Echinus, needed: () => boolean): Promise<void> {
     for (let round = 0; round < MOST_ROUNDS && !needed(); ++round) {
@@ -26,7 +26,7 @@ function buildOnce(echinus: Echinus, { major, minor }: typeof FIRST): void {
     for (const made of [map, mesh, torus]) made.delete();
 }
 
-/** After what has come in since. Not a timer: those wait four milliseconds. */
+/** Resumes after the messages that have arrived since. Not a timer: those wait four milliseconds. */
 function nextTask(): Promise<void> {
     return new Promise((resolve) => {
         const { port1, port2 } = new MessageChannel();

@@ -6,9 +6,9 @@ import { type Reading, fetchSample, named, prepareFile } from './models';
 import { Playground } from './playground';
 import { warmUp } from './warm_up';
 
-/** The first model waits for nothing but the module. */
+/** The first model waits for the module only. */
 let modelIsThere = false;
-/** Begun at once, while the page is still being loaded. */
+/** Started at once, while the page is still loading. */
 const starting = load().then(
     async (echinus) => {
         await warmUp(echinus, () => modelIsThere);
@@ -18,19 +18,19 @@ const starting = load().then(
         throw new Error(`the WebAssembly module could not be loaded (${error.message}): load the page again`);
     },
 );
-starting.catch(() => {}); // whoever opens a model hears of it
+starting.catch(() => {}); // opening a model reports the error
 
 let playground: Playground | undefined;
-/** The turn that opened it. */
+/** The turn that opened the model. */
 let opened = 0;
 let paused = false;
-/** Counts cloths, so that the page can tell a late frame of an earlier one. */
+/** Counts cloths, so that the page can recognise a late frame of an earlier one. */
 let cloth = 0;
-/** Files are read one after the other: an answer never overtakes the question before it. */
+/** Files are read one after the other, so that answers keep the order of the requests. */
 let queue = Promise.resolve();
 
 self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
-    // Opening takes time; all else waits in line behind it, so that a change never meets half a playground.
+    // Opening takes time; everything else queues behind it, so that a change never sees a half-built playground.
     queue = queue.then(() => answer(data));
 };
 
@@ -57,7 +57,7 @@ async function handle(message: ToWorker): Promise<void> {
     switch (message.kind) {
         case 'change': {
             const before = playground.mapNews;
-            // What takes opening stays as it was opened: the change may have been asked for with a model that then failed.
+            // Settings that only opening applies stay as opened: the change may belong to a model that then failed.
             const { model, mend, up } = playground.settings;
             const anew = playground.change({ ...message.settings, model, mend, up });
             if (playground.mapNews !== before) tell({ kind: 'map', map: playground.mapNews });
@@ -96,14 +96,14 @@ async function open({ turn, settings, page, file }: ToWorker & { kind: 'open' })
     const echinus = await starting;
     const model = read(echinus);
     const next = named(model.name, () => new Playground(echinus, model, settings));
-    playground?.delete(); // only now: a file that cannot be opened leaves what there was
+    playground?.delete(); // only now: a file that cannot be opened leaves the previous model
     playground = next;
     opened = turn;
     tellModel(playground);
     tellCloth(playground);
 }
 
-/** In line with all else, so that of two files the later one stays. */
+/** Queued with everything else, so that the later of two files stays. */
 async function readFile(file: File): Promise<Reading> {
     const bytes = await file.arrayBuffer().catch(() => {
         throw new Error(`${file.name}: the browser cannot read this file`);
@@ -111,7 +111,7 @@ async function readFile(file: File): Promise<Reading> {
     return prepareFile(file.name, bytes);
 }
 
-/** A cloth that flew apart stops there; its last positions stay in sight. */
+/** A cloth that diverged stops; its last positions stay visible. */
 function advance(playground: Playground, arrays: FrameArrays | undefined) {
     try {
         return playground.advance(paused, arrays);
