@@ -1,5 +1,5 @@
-# Libraries that are headers only, for a compiler that must not see the other headers of the machine that it runs on: a
-# folder with links to them alone, where find_path() looks, and modules for find_package().
+# Header-only libraries for a cross compiler that must not see the build machine's other headers: a folder of links to
+# them alone, searched by find_path(), and modules for find_package().
 set(echinus_host_headers ${CMAKE_CURRENT_BINARY_DIR}/host_headers)
 file(MAKE_DIRECTORY ${echinus_host_headers}/include)
 foreach(entry IN ITEMS hwy flatbuffers nlohmann xxhash.h)

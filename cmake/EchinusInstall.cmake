@@ -1,12 +1,13 @@
-# What `cmake --install` puts where, and the package that find_package(echinus) reads: one component per library.
+# The files that `cmake --install` installs, and the package for find_package(echinus): one component per
+# library.
 include(CMakePackageConfigHelpers)
 
 set(echinus_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/echinus)
 get_property(echinus_libraries GLOBAL PROPERTY ECHINUS_LIBRARIES)
 
-# echinus_dependencies(TARGET OUT): the find_package() arguments of every package that users of the library link
-# as well, one string each. Read from the target, so that the list cannot fall behind; a static library hands on
-# what it links privately, a shared one does not.
+# echinus_dependencies(TARGET OUT): the find_package() arguments of every package that users of the library
+# must link too, one string each. Read from the target, so that the list stays complete; a static library
+# passes on its private dependencies, a shared one does not.
 function(echinus_dependencies target out)
   set(package_of_TBB::tbb "TBB")
   set(package_of_hwy::hwy "hwy")
@@ -36,7 +37,7 @@ foreach(target IN LISTS echinus_libraries)
   if(dependencies)
     string(APPEND echinus_component_dependencies "set(echinus_${component}_dependencies \"${quoted}\")\n")
   endif()
-  # Found from where the library lies, so that the installed tree may be moved.
+  # Relative to the library, so that the installed tree can be moved.
   set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN")
   install(TARGETS ${target} EXPORT ${target}_targets)
   install(EXPORT ${target}_targets NAMESPACE echinus:: DESTINATION ${echinus_package_dir})
@@ -46,7 +47,7 @@ if(TARGET echinus)
   set_target_properties(echinus PROPERTIES INSTALL_RPATH "$ORIGIN/${library_dir}")
 endif()
 
-# A header is installed only with the library that it declares.
+# A header is installed only with its library.
 set(absent_headers)
 foreach(pair IN ITEMS io:mesh_io scene:scene render:render)
   string(REPLACE ":" ";" pair ${pair})

@@ -1,4 +1,4 @@
-# What every target of the project shares: the language, the warnings, and the arithmetic.
+# The settings of every target: the language, the warnings, and the arithmetic.
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
@@ -12,7 +12,7 @@ endif()
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND PROJECT_IS_TOP_LEVEL)
-  # Without this ccache keeps nothing that is compiled with a precompiled header.
+  # Without this, ccache caches nothing that is compiled with a precompiled header.
   set(CMAKE_CXX_COMPILER_LAUNCHER
     ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE_PROGRAM})
 endif()
@@ -20,15 +20,15 @@ endif()
 add_library(echinus_options INTERFACE)
 target_compile_options(echinus_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wimplicit-fallthrough
-  # GCC 12 warns of its own std::string when it is optimised: gcc.gnu.org/PR105651.
+  # GCC 12 warns about its own std::string when optimising: gcc.gnu.org/PR105651.
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
   $<$<BOOL:${ECHINUS_WARNINGS_AS_ERRORS}>:-Werror>
-  # The same bits on every machine: a fused multiply-add rounds once where the source says twice.
+  # The same bits on every machine: a fused multiply-add rounds once where the source rounds twice.
   -ffp-contract=off
-  # Nobody reads errno after sqrt; without this GCC calls the library instead of the instruction.
+  # No code reads errno after sqrt; without this, GCC calls the library instead of using the instruction.
   -fno-math-errno
-  # Nobody traps on floating-point exceptions either; without this GCC turns no loop with a division into vector
-  # instructions. Neither flag changes a bit of a result.
+  # No code traps on floating-point exceptions either; without this, GCC vectorises no loop with a division.
+  # Neither flag changes a bit of a result.
   -fno-trapping-math)
 if(ECHINUS_SANITIZE)
   target_compile_options(echinus_options INTERFACE
@@ -40,7 +40,7 @@ endif()
 function(echinus_add_library name)
   add_library(echinus_${name})
   add_library(echinus::${name} ALIAS echinus_${name})
-  # Before 1.0 a minor version may change declarations, and so has a soname of its own.
+  # Before 1.0 a minor version may change declarations, so it has its own soname.
   set_target_properties(echinus_${name} PROPERTIES EXPORT_NAME ${name}
     VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
     CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
@@ -52,8 +52,9 @@ function(echinus_add_library name)
   set_property(GLOBAL APPEND PROPERTY ECHINUS_LIBRARIES echinus_${name})
 endfunction()
 
-# For all who compile kernels. SSSE3 without SSE4, and what AVX3_DL adds to AVX-512, would be compiled for nobody.
-# Vectors of SVE, whose length is not known, cannot be members of anything; Arm processors that have it have NEON, too.
+# For all targets that compile kernels. SSSE3 without SSE4, and the additions of AVX3_DL to AVX-512, would
+# have no users. SVE vectors have no fixed length and cannot be class members; Arm processors with SVE have
+# NEON as well.
 set(echinus_disabled_targets HWY_SSSE3 HWY_AVX3_DL HWY_SVE HWY_SVE2 HWY_SVE_256 HWY_SVE2_128)
 if(ECHINUS_SANITIZE) # two instruction sets see what a third would, and kernels take longest to compile
   list(APPEND echinus_disabled_targets HWY_AVX3)

@@ -1,5 +1,5 @@
 # shellcheck shell=bash
-# For scripts that build the page: Vite needs Node 20.19, 22.12 or newer, and Debian 12 has 18. Sourced from the
+# For scripts that build the page: Vite needs Node 20.19, 22.12 or newer, but Debian 12 has 18. Sourced from the
 # repository's root.
 
 node_is_recent() {
@@ -8,9 +8,9 @@ node_is_recent() {
     ((major > 22 || (major == 22 && minor >= 12) || (major == 20 && minor >= 19)))
 }
 
-# Puts a Node that is new enough, with an npm of its own, in front of PATH where the machine's own is older; fetched once,
-# from the npm registry, into build/node/. Debian's npm cannot stand in: it finds its parts by Debian's Node alone, and
-# under that leaves out what asks for a newer one.
+# Where the machine's Node is too old, prepends a newer one, with its own npm, to PATH; fetched once from the npm
+# registry into build/node/. Debian's npm does not help: it runs with Debian's Node only, and then skips packages that
+# require a newer one.
 use_recent_node() {
     node_is_recent && return
     local version=22.23.3 platform folder

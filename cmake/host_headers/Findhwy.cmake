@@ -1,3 +1,3 @@
-# Highway without run-time choice of the instruction set needs nothing of its library.
+# Highway without run-time dispatch needs no library.
 echinus_header_library(hwy::hwy)
 set(hwy_FOUND TRUE)

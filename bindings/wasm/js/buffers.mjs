@@ -2,10 +2,10 @@ import { Handle, requireOwn } from './core.mjs';
 import { EchinusError, refuse, requireCount } from './errors.mjs';
 
 /**
- * Memory of the module that JavaScript reads and writes through typed arrays, so that queries copy nothing.
+ * Module memory that JavaScript reads and writes through typed arrays, so that queries copy nothing.
  *
- * A view lasts until memory grows, which any call may cause: keep the buffer, and take its view each time. Taking it
- * costs a comparison.
+ * A view lasts until memory grows, which any call may cause: keep the buffer, and get its view each time, at the cost
+ * of a comparison.
  */
 class Buffer extends Handle {
     #view = null;
@@ -16,7 +16,7 @@ class Buffer extends Handle {
         Object.defineProperty(this, 'length', { value: length, enumerable: true });
     }
 
-    /** Of the whole buffer, as this kind of array; made anew only when it has to be. */
+    /** A view of the whole buffer as this kind of array; recreated only when necessary. */
     viewAs(ArrayKind, byteCount) {
         const address = this.address;
         if (this.#view?.buffer !== this.core.memory.buffer)
@@ -25,7 +25,7 @@ class Buffer extends Handle {
     }
 }
 
-/** Positions: x, y, z of one particle after the other. */
+/** Positions: x, y, z of each particle in turn. */
 export class PointBuffer extends Buffer {
     constructor(core, length) {
         super(core, length, 12);
@@ -65,7 +65,7 @@ export function readContact(core, address) {
     };
 }
 
-/** Contacts. `at(i)` reads one; whoever wants all of one kind strides through floats, ints or bytes. */
+/** Contacts. `at(i)` reads one; to read one field of all, stride through floats, ints or bytes. */
 export class ContactBuffer extends Buffer {
     #ints = null;
     #bytes = null;
@@ -116,7 +116,7 @@ export function withPoints(core, points, count, use) {
     return core.withCopies([points.subarray(0, 3 * wanted)], (address) => use(address, wanted));
 }
 
-/** @throws EchinusError unless a batch of so many fits */
+/** @throws EchinusError unless a batch of this size fits */
 export function requireWithin(count, available, what) {
     requireCount(count, `the number of ${what}`);
     if (count > available) throw new EchinusError('InvalidArgument', `${count} ${what} are wanted, but there is room for ${available}`);

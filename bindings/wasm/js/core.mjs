@@ -5,8 +5,7 @@ const utf8 = new TextEncoder();
 const fromUtf8 = new TextDecoder();
 
 /**
- * The instance of the WebAssembly file: its exports, its memory, and errors on their way out. Everything else is built
- * on this.
+ * The instance of the WebAssembly file: its exports, its memory, and its errors. Everything else builds on it.
  */
 export class Core {
     #exports = null;
@@ -27,8 +26,8 @@ export class Core {
     }
 
     /**
-     * Views of all memory. When memory grows, its old buffer is cut off from all views of it, so they are made anew; a
-     * view that somebody keeps across a call is empty afterwards.
+     * Views of all memory. When memory grows, its old buffer is detached from its views, so they are recreated; a view
+     * kept across such a call is empty afterwards.
      */
     get views() {
         const buffer = this.memory.buffer;
@@ -49,7 +48,7 @@ export class Core {
         try {
             return this.#exports[name](...args);
         } catch (error) {
-            // A trap: a fault of the module, not of what it was given. Its memory may be in disorder.
+            // A trap: a fault of the module, not of its arguments. Its memory may be corrupt.
             this.#crash = error;
             throw this.#deadModule();
         }
@@ -59,7 +58,7 @@ export class Core {
         return new EchinusError('Crashed', `the module has stopped (${this.#crash.message}); load() it again`, { cause: this.#crash });
     }
 
-    /** Calls an export that gives 0 when it fails. @throws EchinusError with the library's sentence */
+    /** Calls an export that returns 0 when it fails. @throws EchinusError with the library's sentence */
     try(name, ...args) {
         const result = this.call(name, ...args);
         if (result === 0) throw new EchinusError(this.#textAt(this.call('last_error_code')), this.#textAt(this.call('last_error_sentence')));
@@ -72,7 +71,7 @@ export class Core {
         return fromUtf8.decode(bytes.slice(start, bytes.indexOf(0, start)));
     }
 
-    /** Takes memory. @throws EchinusError OutOfMemory */
+    /** Allocates memory. @throws EchinusError OutOfMemory */
     take(byteCount) {
         if (!(byteCount <= 0xffffffff)) throw new EchinusError('OutOfMemory', `the module cannot have ${byteCount} bytes of memory; at most 4 GiB`);
         return this.try('memory_take', byteCount);
@@ -81,7 +80,7 @@ export class Core {
         if (!this.#crash) this.call('memory_give_back', address);
     }
 
-    /** Calls `use` with the addresses of copies of typed arrays, which are gone afterwards. */
+    /** Calls `use` with the addresses of temporary copies of typed arrays. */
     withCopies(arrays, use) {
         const addresses = [];
         try {
@@ -99,7 +98,7 @@ export class Core {
         return this.withCopies(encoded, (...addresses) => use(...addresses.flatMap((address, i) => [address, encoded[i].length])));
     }
 
-    /** The text that an export makes. */
+    /** The text returned by an export. */
     text(name, ...args) {
         const text = this.try(name, ...args);
         try {
@@ -113,7 +112,7 @@ export class Core {
         return JSON.parse(this.text(name, ...args));
     }
 
-    // Copies of what lies in memory, for keeps.
+    // Copies of memory, independent of its growth.
     copyWords(address, count) {
         return this.views.words.slice(address >>> 2, (address >>> 2) + count);
     }
@@ -122,12 +121,12 @@ export class Core {
     }
 }
 
-/** When nobody holds an object any more that was not deleted, its memory is given back after all. */
+/** Frees the memory of objects that were garbage-collected without delete(). */
 const forgotten = new FinalizationRegistry(({ core, destroyer, address }) => {
     try {
         core.call(destroyer, address);
     } catch {
-        // The module has crashed: its memory goes as a whole.
+        // The module has crashed: its memory is freed as a whole.
     }
 });
 

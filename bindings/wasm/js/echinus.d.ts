@@ -1,17 +1,17 @@
 /**
  * Echinus for JavaScript: maps of rigid meshes, queries for many particles, and cloth. docs/wasm.md is the guide.
  *
- * Frames, units and words are those of the C++ library (docs/conventions.md). Whatever can fail throws an EchinusError.
- * Everything that has a delete() holds memory of the module: delete it (or declare it with `using`) when it is no longer
- * needed. What is forgotten is given back when it is collected, which may be late.
+ * Frames, units and terms are those of the C++ library (docs/conventions.md). All failures throw an EchinusError. An
+ * object with a delete() holds memory of the module: delete it (or declare it with `using`) when it is no longer
+ * needed. Otherwise garbage collection frees it, which may be late.
  *
- * Nothing here is asynchronous but load(): in a page, run long work in a worker. An instance belongs to the thread that
- * loaded it.
+ * Nothing here is asynchronous except load(): in a page, run long work in a worker. An instance belongs to the thread
+ * that loaded it.
  */
 
 export type Vec3 = readonly [number, number, number] | Float32Array | Float64Array | readonly number[];
 
-/** `code` for a program, `message`, one sentence, for a person. */
+/** `code` is for programs, `message`, one sentence, for people. */
 export class EchinusError extends Error {
     readonly name: 'EchinusError';
     readonly code: ErrorCode;
@@ -22,7 +22,7 @@ export type ErrorCode =
     | 'Unreadable' | 'WrongFormat' | 'Damaged' | 'UnsupportedVersion'
     | 'InvalidMesh' | 'InvalidOptions' | 'InvalidScene'
     | 'Diverged'
-    /** Memory does not suffice. The module lives on: delete something, or ask for less. */
+    /** Out of memory. The module still works: delete something, or request less. */
     | 'OutOfMemory'
     /** An argument of a wrong kind or size. */
     | 'InvalidArgument'
@@ -30,23 +30,23 @@ export type ErrorCode =
     | 'Deleted'
     /** The host lacks what missingFeatures() names. */
     | 'Unsupported'
-    /** The module has stopped by a fault of its own. Every further call throws this: load() it again. */
+    /** The module has stopped through an internal fault. Every further call throws this: load() it again. */
     | 'Crashed'
     | 'Internal';
 
-/** What the host lacks to run the module, for instance ['WebAssembly SIMD']; [] when it lacks nothing. */
+/** The features that the host lacks to run the module, for instance ['WebAssembly SIMD']; [] when it lacks none. */
 export function missingFeatures(): string[];
 
 /**
- * Loads the module. Each call makes an instance with memory of its own; a compiled module is quick to load again and can
- * be posted to workers.
+ * Loads the module. Each call makes an instance with its own memory; a compiled module loads again quickly and can be
+ * posted to workers.
  * @param source  where echinus.wasm is; by default beside echinus.mjs
  */
 export function load(source?: URL | string | Response | Promise<Response> | BufferSource | WebAssembly.Module): Promise<Echinus>;
 
-/** Holds memory of the module until delete(). Twice does no harm; any other use after it throws `Deleted`. */
+/** Holds memory of the module until delete(). Deleting twice is harmless; any other use afterwards throws `Deleted`. */
 declare abstract class Deletable {
-    /** The module makes these. */
+    /** Only the module constructs these. */
     protected constructor();
     readonly deleted: boolean;
     delete(): void;
@@ -55,12 +55,12 @@ declare abstract class Deletable {
 
 /** One instance of the module. */
 export class Echinus {
-    /** load() makes these. */
+    /** Only load() constructs these. */
     private constructor();
 
-    /** All memory that the instance has taken from the host. It never shrinks; at most 4 GiB. */
+    /** All memory that the instance has allocated from the host. It never shrinks; at most 4 GiB. */
     readonly memoryByteCount: number;
-    /** 'wasm', or 'scalar' for the reference: the same answers, slower. Of the whole instance. */
+    /** 'wasm', or 'scalar' for the reference: the same answers, slower. Applies to the whole instance. */
     instructionSet: 'wasm' | 'scalar';
 
     // Memory for batches.
@@ -82,9 +82,9 @@ export class Echinus {
      */
     makeMeshFromPolygons(vertices: ArrayLike<number>, corners: ArrayLike<number>, cornerCounts: ArrayLike<number>): Mesh;
     /**
-     * Reads an OBJ, PLY, STL or OFF file, told by its name's ending, text or binary; vertices at equal positions are
-     * welded. glTF, GLB and 3DS: read them otherwise, hand in makeMesh() and weld().
-     * @throws WrongFormat, Damaged or InvalidMesh; the sentence begins with the name, and names line or byte
+     * Reads an OBJ, PLY, STL or OFF file by the extension of its name, text or binary; vertices at equal positions are
+     * welded. For glTF, GLB and 3DS use another reader, makeMesh() and weld().
+     * @throws WrongFormat, Damaged or InvalidMesh; the sentence begins with the name, and names the line or byte
      */
     readMesh(bytes: ArrayBuffer | ArrayBufferView, name: string): Mesh;
     /** About the z axis. @throws InvalidOptions */
@@ -116,14 +116,14 @@ export class Echinus {
 // ---- Buffers
 
 /**
- * Memory of the module that both sides read and write.
+ * Module memory that both sides read and write.
  *
- * A view lasts until memory grows, which any call into the module may cause; then the array that was handed out is
- * empty, and the getter gives a new one. So keep the buffer and take `.view` when it is used: that costs a comparison.
+ * A view lasts until memory grows, which any call into the module may cause; then the old array is empty, and the
+ * getter gives a new one. So keep the buffer and get `.view` at each use: that costs a comparison.
  */
 export class PointBuffer extends Deletable {
     readonly length: number;
-    /** [3 length] x, y, z of one point after the other. */
+    /** [3 length] x, y, z of each point in turn. */
     readonly view: Float32Array;
 }
 export class FlagBuffer extends Deletable {
@@ -133,7 +133,7 @@ export class FlagBuffer extends Deletable {
 }
 export class ContactBuffer extends Deletable {
     static readonly BYTES: 36;
-    /** Numbers from one contact to the next, in `floats` and `ints`. */
+    /** Distance from one contact to the next, in numbers of `floats` and `ints`. */
     static readonly STRIDE: 9;
     static readonly POINT: 0;
     static readonly NORMAL: 3;
@@ -180,13 +180,13 @@ export class Mesh extends Deletable {
     readonly faces: Uint32Array;
 
     report(): MeshReport;
-    /** Every fault and where: to be drawn. */
+    /** Every fault and its place, for drawing. */
     faults(): MeshFaults;
-    /** Joins vertices at equal positions and drops those that no face uses; faces stay as they are. */
+    /** Joins vertices at equal positions and drops unused ones; faces keep their order. */
     weld(): Mesh;
-    /** A mended copy. @param repairs  by default all */
+    /** A repaired copy. @param repairs  by default all */
     repair(repairs?: readonly Repair[]): { mesh: Mesh; report: RepairReport };
-    /** Judges by brute force over all faces: 1 inside a closed mesh, 0 outside. */
+    /** By brute force over all faces, as a reference: 1 inside a closed mesh, 0 outside. */
     windingNumber(point: Vec3): number;
     unsignedDistance(point: Vec3): number;
 }
@@ -202,7 +202,7 @@ export interface MeshReport {
     faceCount: number;
     vertexCount: number;
     componentCount: number;
-    /** Every edge is balanced: as many faces run along it one way as the other. */
+    /** Every edge is balanced: equally many faces run along it in each direction. */
     closed: boolean;
     manifold: boolean;
     borderEdges: Fault;
@@ -215,7 +215,7 @@ export interface MeshReport {
     boundingSphere: { centre: [number, number, number]; radius: number };
 }
 export interface MeshFaults {
-    /** Of edges two vertices each. */
+    /** Two vertices for each edge. */
     borderEdges: Uint32Array;
     nonmanifoldEdges: Uint32Array;
     misorientedEdges: Uint32Array;
@@ -235,7 +235,7 @@ export interface RepairReport {
 export interface ExactMapOptions {
     kind?: 'exact';
     cells_per_octant?: number;
-    /** Most bytes of the map. */
+    /** Upper limit for the map's bytes. */
     budget?: number;
     rule?: 'nonzero' | 'parity';
     centre?: 'sphere' | 'search';
@@ -264,15 +264,15 @@ declare abstract class MapOfEitherKind extends Deletable {
     readonly radius: number;
 
     contains(point: Vec3): boolean;
-    /** @param margin  points outside get a contact, too, when the surface is at most this far */
+    /** @param margin  points outside also get a contact when the surface is at most this far */
     contact(point: Vec3, margin?: number): Contact;
     /**
-     * contains() for many. Copies nothing when the points are a PointBuffer; a Float32Array is copied first.
-     * @param count  of the points, from the first on; by default all
+     * contains() for many points. Copies nothing when the points are a PointBuffer; a Float32Array is copied first.
+     * @param count  how many of the points, from the first on; by default all
      * @returns `inside`
      */
     containsBatch(points: PointBuffer | Float32Array, inside: FlagBuffer, count?: number): FlagBuffer;
-    /** contact() for many. @returns `contacts` */
+    /** contact() for many points. @returns `contacts` */
     contactsBatch(points: PointBuffer | Float32Array, margin: number, contacts: ContactBuffer, count?: number): ContactBuffer;
 
     /** The bytes of a map file. */
@@ -290,30 +290,30 @@ export interface RayInterval {
 export class ExactMap extends MapOfEitherKind {
     readonly kind: 'exact';
     readonly description: ExactMapDescription;
-    /** contains(), with the mark of certainty: false where an open mesh leaves it to the winding number. */
+    /** contains() with a mark: `certain` is false where an open mesh leaves the answer to the winding number. */
     classify(point: Vec3): { inside: boolean; certain: boolean };
-    /** The first crossing of the straight way between two points with the surface. */
+    /** The first crossing of the line segment between two points with the surface. */
     sweep(from: Vec3, to: Vec3): SweepHit;
-    /** What the map knows along a ray from its centre. @param direction  of any length but 0 */
+    /** The map's data along a ray from its centre. @param direction  of any length but 0 */
     ray(direction: Vec3): ExactRay;
-    /** The mesh on the map's lattice; of each face the longest list of a band that it is in. Delete the mesh. */
+    /** The mesh on the map's lattice; for each face the length of the longest band list that contains it. Delete the mesh. */
     surface(): { mesh: Mesh; longestLists: Uint32Array };
-    /** For drawing: of each cell its bands, the faces in their lists, and unit vectors to its three corners (9 numbers). */
+    /** For drawing: for each cell the counts of its bands and of the faces in their lists, and unit vectors to its three corners (9 numbers). */
     cells(): { bandCounts: Uint32Array; faceCounts: Uint32Array; corners: Float32Array };
 }
 
 export class DistanceMap extends MapOfEitherKind {
     readonly kind: 'distance';
     readonly description: DistanceMapDescription;
-    /** How many of the samples around a point entered the interpolation; 0 where no query looks. */
+    /** How many of the samples around a point enter the interpolation; 0 where queries do not interpolate. */
     usableSampleCount(point: Vec3): number;
     ray(direction: Vec3): DistanceRay;
-    /** The surface as the map sees it; of each face its layer, 0 for the nearest to the centre. Delete the mesh. */
+    /** The surface of the map; for each face its layer, 0 for the nearest to the centre. Delete the mesh. */
     surface(): { mesh: Mesh; layers: Uint32Array };
 }
 
 export interface SweepHit {
-    /** Along the way: 0 at its beginning, 1 at its end or when nothing is met. */
+    /** Along the segment: 0 at its start, 1 at its end or when there is no crossing. */
     fraction: number;
     point: [number, number, number];
     normal: [number, number, number];
@@ -326,7 +326,7 @@ export interface ExactRay {
     cell: number;
     /** Unit vectors. */
     cellCorners: [number, number, number][];
-    /** Where surface may lie; windingBelow: of the gap towards the centre, null where it is not one number. */
+    /** Where surface may lie; windingBelow: of the gap towards the centre, null where it is not unique. */
     bands: { from: number; to: number; faceCount: number; windingBelow: number | null }[];
     /** Distances of the surface. */
     crossings: number[];
@@ -337,7 +337,7 @@ export interface DistanceRay {
     samples: number[];
     /** How many entries each has. */
     sampleEntryCounts: number[];
-    /** Those with as many entries as the nearest: the others are ignored. */
+    /** True for those with as many entries as the nearest; the others are ignored. */
     samplesUsed: boolean[];
     /** The interpolated entries. */
     crossings: number[];
@@ -408,7 +408,7 @@ export interface SceneDescription {
         rotation?: { axis: Vec3; degrees: number };
         velocity?: Vec3;
         thickness?: number;
-        /** [column, row] of particles that stay where they are. */
+        /** [column, row] of fixed particles. */
         pins?: readonly (readonly [number, number])[];
     };
     material?: {
@@ -428,31 +428,31 @@ export interface SceneDescription {
     at_rest?: { distance?: number; frames?: number };
 }
 
-/** A scene that was read and found right. */
+/** A validated scene. */
 export class Scene extends Deletable {
-    /** The name of the model's file as the scene has it; null when the model is a generated shape. */
+    /** The name of the model's file in the scene; null when the model is a generated shape. */
     readonly modelFile: string | null;
     readonly repair: Repair[];
     readonly frameLimit: number;
     /** Seconds. */
     readonly timeStep: number;
     readonly particleCount: number;
-    /** The generated shape, repaired as the scene says. @throws InvalidScene for a file: read that, and repair() it */
+    /** The generated shape, repaired by the scene's options. @throws InvalidScene for a file: read and repair() it instead */
     makeModel(): Mesh;
-    /** By the scene's options. */
+    /** With the scene's options. */
     buildMap(mesh: Mesh): AnyMap;
-    /** The scene's cloth and collider, ready to step. The map may be of another kind than the scene says. */
+    /** The scene's cloth and collider, ready to step. The map may be of another kind than the scene's. */
     makeSimulation(map: AnyMap): Simulation;
 }
 
-/** Cloth on one collider. Same scene and map, same positions bit for bit, in every browser and in native C++. */
+/** Cloth on one collider. The same scene and map give the same positions, bit for bit, in every browser and in native C++. */
 export class Simulation extends Deletable {
     readonly particleCount: number;
-    /** [3 particleCount] a view of the simulation's own memory: take it anew each time, as that of a buffer. Read only. */
+    /** [3 particleCount] a view of the simulation's own memory: get it anew each time, as with a buffer. Read only. */
     readonly positions: Float32Array;
     /** [3 particleCount] one substep ago. */
     readonly previousPositions: Float32Array;
-    /** [3 face_count] particles; a copy, and always the same. */
+    /** [3 face_count] particles; a copy, constant over time. */
     readonly faces: Uint32Array;
     readonly frame: number;
     readonly atRest: boolean;
@@ -467,8 +467,9 @@ export class Simulation extends Deletable {
     /** @throws Diverged; afterwards only reading is allowed */
     step(frameCount?: number): void;
     /**
-     * A simulation of the same particles and collider as they are now, by the solver, material, thickness and gravity of
-     * another scene: for options that change while the cloth falls. Profile and frame begin anew. Delete the old one.
+     * A simulation of the same particles and collider in their present state, with the solver, material, thickness and
+     * gravity of another scene: for options that change while the cloth falls. Profile and frame restart. Delete the
+     * old one.
      */
     continueWith(scene: Scene): Simulation;
     /** Steers the collider: it keeps these velocities until they are set again. Units and radians per second. */
@@ -476,12 +477,12 @@ export class Simulation extends Deletable {
 
     /**
      * Gives a particle a velocity, units per second. To drag with the pointer, set it before each step, for the grabbed
-     * particle and its near neighbours, to (where the pointer wants it - where it is) / (about 5 time steps): sticks pull
-     * at them and the collider stops them, so none of them is dragged into the model.
+     * particle and its near neighbours, to (target of the pointer - present position) / (about 5 time steps): sticks
+     * pull at them and the collider stops them, so none of them is dragged into the model.
      */
     setParticleVelocity(particle: number, velocity: Vec3): void;
     /**
-     * Wind for one frame, to be called before each step.
+     * Wind for one frame; call before each step.
      * @param wind  velocity of the air, units per second
      * @param rate  how quickly the cloth takes on the wind's velocity across its faces, per second: 1 to 10 for cloth
      */
@@ -489,11 +490,11 @@ export class Simulation extends Deletable {
 
     /** Which particles are inside the collider now, by its map. */
     containsBatch(inside: FlagBuffer): FlagBuffer;
-    /** In world units: for instance for colours by depth. */
+    /** In world units, for instance for colours by depth. */
     contactsBatch(margin: number, contacts: ContactBuffer): ContactBuffer;
 }
 
-/** As in echinus/simulation.hpp. Queries are those of particles in all relaxations. */
+/** As in echinus/simulation.hpp. Queries are counted over all particles and relaxations. */
 export interface SimulationProfile {
     integrationSeconds: number;
     constraintSeconds: number;

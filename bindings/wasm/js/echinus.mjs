@@ -13,14 +13,14 @@ const MAGIC = [0, 97, 115, 109, 1, 0, 0, 0];
 const VECTORS = [...MAGIC, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 8, 1, 6, 0, 65, 0, 253, 15, 11];
 const EXCEPTIONS = [...MAGIC, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 10, 8, 1, 6, 0, 6, 64, 25, 11, 11];
 
-/** What the host lacks to run this module: an empty array when it lacks nothing. */
+/** The features that the host lacks to run this module: an empty array when it lacks none. */
 export function missingFeatures() {
     if (typeof WebAssembly !== 'object') return ['WebAssembly'];
     const lacks = (bytes) => !WebAssembly.validate(new Uint8Array(bytes));
     return [...(lacks(VECTORS) ? ['WebAssembly SIMD'] : []), ...(lacks(EXCEPTIONS) ? ['WebAssembly exceptions'] : [])];
 }
 
-/** Loads echinus.wasm from beside this file, or from where it is said to be. */
+/** Loads echinus.wasm from beside this file, or from `source`. */
 export async function load(source = new URL('echinus.wasm', import.meta.url)) {
     const missing = missingFeatures();
     if (missing.length > 0) throw new EchinusError('Unsupported', `this browser lacks ${missing.join(' and ')}, which Echinus needs`);
@@ -39,7 +39,7 @@ async function compile(source) {
 
 async function compileResponse(response) {
     if (!response.ok) throw new EchinusError('Unreadable', `${response.url}: the server answers with status ${response.status}`);
-    // A server that does not know the type of the file cannot have it compiled while it arrives.
+    // A response with an unknown content type cannot be compiled while it streams.
     const streams = response.headers.get('content-type')?.startsWith('application/wasm');
     return streams ? WebAssembly.compileStreaming(response) : WebAssembly.compile(await response.arrayBuffer());
 }

@@ -1,4 +1,4 @@
-/** What the module throws: `code` for a program, `message`, one sentence, for a person. */
+/** The module's errors: `code` is for programs, `message`, one sentence, for people. */
 export class EchinusError extends Error {
     constructor(code, sentence, options) {
         super(sentence, options);
@@ -19,7 +19,7 @@ export function requireCount(value, what) {
     return value;
 }
 
-/** Three numbers; whether they have to be finite, the call decides. */
+/** Three numbers; the call decides whether they must be finite. */
 export function requirePoint(value, what) {
     if (value == null || value.length !== 3 || !Array.prototype.every.call(value, (c) => typeof c === 'number'))
         refuse(`${what} must be three numbers`);

@@ -1,12 +1,12 @@
 /**
- * What the WebAssembly file asks of its host: a clock, and a few calls of the WebAssembly System Interface that the C++
- * library refers to without this module ever having a file or an environment.
+ * The imports of the WebAssembly file: a clock, and a few calls of the WebAssembly System Interface that the C++
+ * library refers to, although this module has neither files nor an environment.
  */
 
 const NOT_SUPPORTED = 58; // __WASI_ERRNO_NOTSUP
 const BAD_FILE = 8; // __WASI_ERRNO_BADF
 
-/** @param memory  gives the module's memory, which does not exist before the module does */
+/** @param memory  returns the module's memory, which does not exist before the module */
 export function makeImports(memory) {
     const writeWords = (address, ...words) => new Uint32Array(memory().buffer, address, words.length).set(words);
     return {
@@ -38,7 +38,7 @@ export function makeImports(memory) {
     };
 }
 
-/** The same for exactly those that the compiled module names, so that a new one is noticed when it is built. */
+/** The same, limited to the imports that the compiled module names, so that the build detects a new one. */
 export function importsFor(compiled, memory) {
     const all = makeImports(memory);
     const result = {};

@@ -3,7 +3,7 @@ import { Handle, requireOwn } from './core.mjs';
 import { refuse, requirePoint } from './errors.mjs';
 import { Mesh, asBytes } from './mesh.mjs';
 
-/** What both kinds of map answer. */
+/** The queries of both kinds of map. */
 class Map extends Handle {
     #description = null;
 
@@ -11,7 +11,7 @@ class Map extends Handle {
         super(core, address, 'map_delete');
     }
 
-    /** Statistics and layout; a map does not change. */
+    /** Statistics and layout, which never change. */
     get description() {
         this.#description ??= Object.freeze(this.core.json('map_describe', this.address));
         return this.#description;
@@ -63,7 +63,7 @@ class Map extends Handle {
         return this.core.json('map_ray', this.address, ...requirePoint(direction, 'the direction'));
     }
 
-    /** A Mesh to be deleted, and a number for each of its faces. */
+    /** A Mesh, owned by the caller, and a number for each of its faces. */
     surfaceAndClasses() {
         const surface = this.core.try('map_surface', this.address);
         try {
@@ -172,7 +172,7 @@ export function requireMap(core, map) {
     return requireOwn(core, map, Map);
 }
 
-/** Options as a JSON text; a text is taken as it is. */
+/** Options as a JSON text; a text stays unchanged. */
 export function asJson(value) {
     return typeof value === 'string' ? value : (JSON.stringify(value) ?? refuse('options must be an object or a JSON text'));
 }

@@ -100,7 +100,7 @@ function asIndices(values, what, multiple) {
     if (values?.length === undefined || values.length % multiple !== 0)
         refuse(`${what} must be an array of whole numbers${multiple > 1 ? `, ${multiple} for each` : ''}`);
     if (values instanceof Uint32Array) return values;
-    // Typed arrays of other kinds would turn what does not fit into something that does.
+    // Typed arrays of other kinds would silently convert values that do not fit.
     const index = Array.prototype.findIndex.call(values, (v) => !Number.isInteger(v) || v < 0 || v > 0xffffffff);
     if (index >= 0) refuse(`number ${index} of ${what} is ${String(values[index])}; it must be a whole number from 0 to 2^32 - 1`);
     return Uint32Array.from(values);

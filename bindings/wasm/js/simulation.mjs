@@ -4,7 +4,7 @@ import { refuse, requireCount, requireFinite } from './errors.mjs';
 import { asJson, requireMap, wrapMap } from './maps.mjs';
 import { Mesh } from './mesh.mjs';
 
-/** A scene that was read and found right. */
+/** A validated scene. */
 export class Scene extends Handle {
     constructor(core, json, name) {
         super(core, core.withTexts([asJson(json), name], (...texts) => core.try('scene_parse', ...texts)), 'scene_delete');
@@ -31,7 +31,7 @@ export class Simulation extends Handle {
         Object.defineProperty(this, 'particleCount', { value: core.call('simulation_particle_count', address), enumerable: true });
     }
 
-    /** From here on by the options of another scene; particles and collider stay as they are. */
+    /** Continues with the options of another scene; particles and collider keep their state. */
     continueWith(scene) {
         return new Simulation(this.core, this.core.try('simulation_continue', this.address, requireOwn(this.core, scene, Scene)));
     }

@@ -6,7 +6,7 @@
 
 namespace echinus::wasm {
 
-/// Lists of numbers on their way to JavaScript; what each holds, the function that makes them says.
+/// Lists of numbers for JavaScript; the function that makes them documents their contents.
 struct Arrays {
     std::array<std::vector<std::uint32_t>, 5> numbers;
     std::array<std::vector<float>, 1> floats;

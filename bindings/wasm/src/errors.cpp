@@ -1,4 +1,4 @@
-// Errors on their way to JavaScript, and the memory that it asks for.
+// Reports errors to JavaScript, and allocates memory for it.
 
 #include "interface.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 
 struct Note {
     const char* code = "";
-    // Of fixed size: when memory is out there is none for the sentence.
+    // Of fixed size: when memory runs out, there is none for the sentence.
     char sentence[1024] = "";
 
     void set(const char* new_code, std::string_view text) {
@@ -67,7 +67,7 @@ void note_error() noexcept {
         last_error.set(name_of(error.code()), error.what());
     } catch (const std::bad_alloc&) {
         last_error.set("OutOfMemory", kOutOfMemory);
-    } catch (const std::length_error&) { // of a container that cannot be so large
+    } catch (const std::length_error&) { // a container cannot be that large
         last_error.set("OutOfMemory", kOutOfMemory);
     } catch (const std::exception& error) {
         last_error.set("Internal", error.what());
@@ -93,7 +93,7 @@ ECHINUS_EXPORT(text_delete) void text_delete(Text* text) {
     delete text;
 }
 
-/// Memory for JavaScript, in whole vectors; 0 when there is not so much.
+/// Memory for JavaScript, in whole vectors; 0 when there is not enough.
 ECHINUS_EXPORT(memory_take) void* memory_take(std::uint32_t byte_count) {
     return guarded([&] { return ::operator new (byte_count, std::align_val_t{16}); });
 }

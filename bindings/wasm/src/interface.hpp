@@ -10,26 +10,26 @@
 #include <utility>
 
 /// The module's exports: C functions of numbers, called by js/. Objects are handles, which are their
-/// addresses; js/ sees to it that each is given back once and not used afterwards. A function that can fail
-/// gives 0 when it does, and notes why for last_error_code() and last_error_sentence().
+/// addresses; js/ ensures that each is deleted once and not used afterwards. A function that can fail returns
+/// 0 when it does, and records the reason for last_error_code() and last_error_sentence().
 ///
-/// What is asked once goes in and out as JSON; what is asked for many particles lies in the module's memory,
-/// and addresses are passed.
+/// Single requests and their results are JSON; data of many particles lie in the module's memory and are
+/// passed by address.
 #define ECHINUS_EXPORT(NAME) extern "C" __attribute__((export_name(#NAME)))
 
 namespace echinus::wasm {
 
 using nlohmann::json;
 
-/// Bytes that JavaScript reads, UTF-8 where they are a text, and gives back by text_delete().
+/// Bytes that JavaScript reads, UTF-8 where they are a text, and frees by text_delete().
 struct Text {
     std::string bytes;
 };
 
-/// Notes the exception at hand for JavaScript. To be called from a handler.
+/// Records the current exception for JavaScript. Call from a handler.
 void note_error() noexcept;
 
-/// What `body` gives, or a zero of that type when it throws.
+/// The result of `body`, or a zero of that type when it throws.
 template <typename Body>
 auto guarded(const Body& body) noexcept -> decltype(body()) {
     try {
@@ -40,7 +40,7 @@ auto guarded(const Body& body) noexcept -> decltype(body()) {
     }
 }
 
-/// A new object from what `body` gives, or null when it throws.
+/// A new object from the result of `body`, or null when it throws.
 template <typename Body>
 auto make_handle(const Body& body) noexcept {
     using Object = decltype(body());

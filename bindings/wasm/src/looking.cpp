@@ -1,4 +1,4 @@
-// Looking at maps: their surfaces and cells, and what they know along one ray.
+// Inspects maps: their surfaces and cells, and their data along one ray.
 
 #include "arrays.hpp"
 #include "directions/crossing.hpp"
@@ -28,7 +28,7 @@ Vec3d unit_direction(double x, double y, double z) {
     return direction * (1 / size);
 }
 
-/// A stretch of a ray on which the answer does not change.
+/// An interval of a ray on which the answer does not change.
 json interval(double from, double to, bool inside, bool certain = true) {
     return {{"from", from}, {"to", to}, {"inside", inside}, {"certain", certain}};
 }
@@ -41,7 +41,7 @@ std::vector<double> crossings_of(const ExactMapView& map, const BandRange& bands
     for (std::uint32_t band = bands.first; band < bands.last; ++band)
         for (std::uint32_t r = map.bands[band].first_reference; r < map.bands[band + 1].first_reference; ++r)
             faces.push_back(map.references[r]);
-    std::sort(faces.begin(), faces.end()); // one is listed by each of the bands that it passes through
+    std::sort(faces.begin(), faces.end()); // a face is listed by each of the bands that it passes through
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     const double unit = length(Vec3d(along)) * frame_of(map).step;
     std::vector<double> distances;
@@ -68,7 +68,7 @@ json bands_along(const ExactMapView& map, const BandRange& bands, double length_
     return result;
 }
 
-/// Between crossings the side does not change, so each stretch is asked for in its middle.
+/// The side does not change between crossings, so each interval is classified at its middle.
 json intervals_along(const ExactMapView& map, const std::vector<double>& crossings, const Vec3d& unit) {
     json result = json::array();
     double from = 0;
@@ -109,7 +109,7 @@ json look_along(const ExactMapView& map, const Vec3d& unit) {
 
 // ---- Distance maps
 
-/// What a query for a particle on this ray interpolates.
+/// The values that a query for a particle on this ray interpolates.
 template <typename Grid>
 json look_along(const DistanceMapView& map, const Grid& grid, const Vec3f& unit) {
     const auto at = grid.coordinates_of(grid.to_grid(unit));
@@ -140,7 +140,7 @@ json look_along(const DistanceMapView& map, const Vec3d& unit) {
 
 // ---- Surfaces and cells
 
-/// A surface to colour: the layer of each face, or the longest list that it is in.
+/// A surface to colour: the layer of each face, or the longest list that contains it.
 struct ColouredSurface {
     TriangleMesh mesh;
     std::vector<std::uint32_t> classes;

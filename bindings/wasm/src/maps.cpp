@@ -1,4 +1,4 @@
-// Maps of both kinds: built, saved, loaded, asked.
+// Maps of both kinds: build, save, load, query.
 
 #include "interface.hpp"
 
@@ -13,7 +13,7 @@
 
 namespace echinus::wasm {
 
-// What js/buffers.mjs knows of a contact's memory.
+// The memory layout of a contact that js/buffers.mjs assumes.
 static_assert(sizeof(Contact) == 36 && offsetof(Contact, point) == 0 && offsetof(Contact, normal) == 12 &&
               offsetof(Contact, depth) == 24 && offsetof(Contact, face) == 28 &&
               offsetof(Contact, inside) == 32 && offsetof(Contact, certain) == 33 &&
@@ -105,7 +105,7 @@ ECHINUS_EXPORT(map_load)
 AnyMap* map_load(const std::byte* bytes, std::uint32_t byte_count, const char* name,
                  std::uint32_t name_size) {
     return make_handle([&] {
-        // Eight bytes at a time for the alignment that load_map() asks for.
+        // Eight bytes at a time for the alignment that load_map() requires.
         auto storage = std::make_shared<std::vector<std::uint64_t>>((std::size_t{byte_count} + 7) / 8);
         if (byte_count != 0) std::memcpy(storage->data(), bytes, byte_count);
         const std::span own(reinterpret_cast<const std::byte*>(storage->data()), byte_count);

@@ -1,4 +1,4 @@
-// Meshes: made from arrays, files and shapes; reports, faults, repairs.
+// Meshes: from arrays, files and shapes; reports, faults, repairs.
 
 #include "arrays.hpp"
 #include "interface.hpp"
@@ -47,7 +47,8 @@ std::vector<Vec3f> vertices_at(const float* first, std::uint32_t count) {
     return {points, points + count};
 }
 
-/// The ending of the name tells the format, as in mesh_io/read_mesh.cpp; without those that need Assimp.
+/// The name's extension determines the format, as in mesh_io/read_mesh.cpp, but without the formats that need
+/// Assimp.
 PolygonMesh read_polygons(const MeshSource& source) {
     const std::size_t dot = source.name.rfind('.');
     std::string ending = dot == std::string::npos ? "" : source.name.substr(dot);
@@ -84,8 +85,8 @@ void require_corners(const PolygonMesh& polygons) {
                                                     std::to_string(polygons.vertices.size()) + " vertices");
 }
 
-/// Every fault of a mesh, and where: what a picture of it shows.
-/// @return  of border, nonmanifold and misoriented edges two vertices each; duplicate and degenerate faces
+/// Every fault of a mesh and its place, for drawing.
+/// @return  two vertices for each border, nonmanifold and misoriented edge; duplicate and degenerate faces
 Arrays find_faults(const TriangleMesh& mesh) {
     require_valid(mesh);
     Arrays faults;

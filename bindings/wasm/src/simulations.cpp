@@ -30,7 +30,7 @@ json describe(const Scene& scene) {
             {"particleCount", scene.cloth.column_count * scene.cloth.row_count}};
 }
 
-/// The mesh that the scene names by its shape, repaired as the scene says.
+/// The scene's generated mesh, repaired by the scene's options.
 /// @throws Error InvalidScene for a file
 TriangleMesh make_model(const Scene& scene) {
     const auto make = [](const auto& model) -> TriangleMesh {
@@ -67,7 +67,7 @@ const Collider& collider_of(const Simulation& simulation) {
     return simulation.colliders().front();
 }
 
-/// The scene's options for the particles and the collider of a simulation as they are now.
+/// The scene's options, with the particles and the collider of a simulation in their present state.
 Simulation continue_with(const Simulation& simulation, const Scene& scene) {
     return Simulation(simulation.deformable(), simulation.colliders(), scene.simulation);
 }
