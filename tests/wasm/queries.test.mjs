@@ -23,14 +23,14 @@ describe('A mesh', () => {
         assert.deepEqual(new Set(edges), new Set([4, 5, 6, 7]), 'the corners of the missing lid');
         assert.equal(edges.length, 8);
     });
-    test('gives back the arrays that it was made of', () => {
+    test('returns the arrays that it was made of', () => {
         const torus = echinus.makeTorus(1, 0.4, 8, 6);
         const again = echinus.makeMesh(torus.vertices, torus.faces);
         assert.deepEqual(again.vertices, torus.vertices);
         assert.deepEqual(again.faces, torus.faces);
         assert.equal(again.report().closed, true);
     });
-    test('whose faces have vertices of their own is closed once it is welded', () => {
+    test('whose faces share no vertices is closed after welding', () => {
         const torus = echinus.makeTorus(1, 0.4, 8, 6);
         const { vertices, faces } = torus;
         const soup = Float32Array.from({ length: 3 * faces.length }, (_, i) => vertices[3 * faces[Math.floor(i / 3)] + (i % 3)]);
@@ -40,7 +40,7 @@ describe('A mesh', () => {
         assert.equal(welded.report().closed, true);
         assert.equal(welded.vertexCount, torus.vertexCount);
     });
-    test('with a face twice is mended, and the report says which went', () => {
+    test('with a face twice is repaired, and the report names the dropped face', () => {
         const torus = echinus.makeTorus(1, 0.4, 8, 6);
         const faces = [...torus.faces, ...torus.faces.subarray(0, 3)];
         const { mesh, report } = echinus.makeMesh(torus.vertices, faces).repair(['duplicate_faces']);
@@ -210,7 +210,7 @@ describe('A simulation', () => {
         }
         assert.ok(place(399)[2] > before[2] + 0.1);
     });
-    test('goes on with other options from where it is', () => {
+    test('continues with other options from its present state', () => {
         const description = { model: { torus: {} }, cloth: { size: [3, 3], particles: [20, 20], position: [0, 0, 0.5] } };
         const scene = echinus.parseScene(description);
         const first = scene.makeSimulation(scene.buildMap(scene.makeModel()));

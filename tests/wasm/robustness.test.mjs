@@ -94,7 +94,7 @@ describe('When memory grows', () => {
 });
 
 describe('Too much', () => {
-    test('of memory is an error, and the module lives on', () => {
+    test('of memory is an error, and the module still works', () => {
         assert.equal(errorOf(() => echinus.makePoints(0xffffffff)).code, 'OutOfMemory');
         assert.equal(errorOf(() => echinus.makeFlags(0xfffffff0)).code, 'OutOfMemory');
         assertAlive();
@@ -255,7 +255,7 @@ describe('Hostile input', () => {
 });
 
 describe('A simulation', () => {
-    test('that diverges says in which frame, and can still be read', () => {
+    test('that diverges reports the frame, and can still be read', () => {
         const scene = echinus.parseScene({
             model: { torus: {} }, gravity: [0, 0, 1e9],
             cloth: { size: [3, 3], particles: [10, 10], position: [0, 0, 5] },

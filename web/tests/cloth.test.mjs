@@ -68,7 +68,7 @@ test('a pause holds the cloth, a step moves it by one frame, and it can be dropp
 });
 
 for (const motion of ['turning', 'swinging'])
-    test(`nobody gets into a model that is ${motion} in the wind`, async () => {
+    test(`no particle gets into a model that is ${motion} in the wind`, async () => {
         const page = await browser.open(`#model=torus&particles=900&motion=${motion}&wind=6`, SMALL);
         await untilFrame(page, 300);
         assert.equal(await figure(page, 'inside'), '0');
@@ -143,7 +143,7 @@ test('a finger pulls the cloth, and a finger beside it turns the view', async ()
     await page.context().close();
 });
 
-test('friction, thickness and wind change while the cloth falls, which goes on, and nobody gets inside', async () => {
+test('friction, thickness and wind change while the cloth falls on, and no particle gets inside', async () => {
     const page = await browser.open('#model=torus&particles=900', SMALL);
     let frame = 60;
     for (const [name, value] of [['thickness', 4], ['friction', 0], ['thickness', 0.2], ['wind', 5], ['friction', 1.5]]) {

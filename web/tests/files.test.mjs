@@ -53,7 +53,7 @@ test('a file that is dropped on the page is opened', async () => {
     await page.context().close();
 });
 
-test('while a file of 50 MB is opened the page draws on, and then the model is there', async () => {
+test('the page keeps drawing while a file of 50 MB is opened, and then shows the model', async () => {
     const folder = await mkdtemp(join(tmpdir(), 'echinus-'));
     try {
         const file = join(folder, 'large.stl');
@@ -89,7 +89,7 @@ function watchPauses() {
     requestAnimationFrame(look);
 }
 
-test('a broken file gives one sentence, and the page lives on as it was', async () => {
+test('a broken file gives one sentence, and the page continues as it was', async () => {
     const link = '#model=torus&particles=400&camera=30_20_4_0_0_0';
     const page = await browser.open(link, SMALL);
     await untilFrame(page, 5);
@@ -117,7 +117,7 @@ for (const [kind, name, content, sentence] of [
         await page.context().close();
     });
 
-test('a closed mesh that is inside out is said to be so where it is not mended, and an open one is not', async () => {
+test('a closed mesh that is inside out is reported unless it is mended, and an open one is not', async () => {
     const page = await browser.open('#model=torus&particles=100&mend=false', SMALL);
     await untilFrame(page, 1);
     const turned = (obj) => obj.replace(/^f (\d) (\d) (\d)$/gm, 'f $1 $3 $2');
@@ -131,7 +131,7 @@ test('a closed mesh that is inside out is said to be so where it is not mended, 
     await page.context().close();
 });
 
-test('an open mesh is said to be open, and its border is counted', async () => {
+test('an open mesh is reported with the length of its border', async () => {
     const page = await browser.open('#model=torus&particles=400', SMALL);
     await untilFrame(page, 1);
     await choose(page, 'open.obj', OPEN_TETRAHEDRON);
@@ -188,7 +188,7 @@ async function pixelsOf(page, colour) {
     }, [png, colour]);
 }
 
-test('nothing is fetched for a file that is opened, and its pictures are done without', async () => {
+test('nothing is fetched for an opened file, which is shown without its pictures', async () => {
     const page = await browser.open('#model=torus&particles=100', SMALL);
     await untilFrame(page, 1);
     const asked = [];

@@ -42,7 +42,7 @@ const untilRow = (page, name, value) =>
     page.waitForFunction(
         ([n, v]) => [...document.querySelectorAll('#map-figures tr')].some((r) => r.cells[0].textContent === n && r.cells[1].textContent === v), [name, value]);
 
-test('the cells of the exact map are shown, as many as were asked for', async () => {
+test('the requested number of cells of the exact map is shown', async () => {
     const page = await browser.open('#model=torus&view=map&shown=cells&cells=64&slice=0.2&particles=100', SMALL);
     await untilRow(page, 'cells', '512');
     await untilRay(page);
@@ -56,7 +56,7 @@ test('the cells of the exact map are shown, as many as were asked for', async ()
     await page.context().close();
 });
 
-test("the paper's map follows its options, and one key shows the other map in its place", async () => {
+test("the paper's map follows its options, and one key switches to the other map", async () => {
     const page = await browser.open('#model=torus&view=map&map=distance&directions=2500&particles=100', SMALL);
     await untilRow(page, 'directions', '2\u2009500');
     await page.locator('select[name=grid]').selectOption('cube');
@@ -70,7 +70,7 @@ test("the paper's map follows its options, and one key shows the other map in it
     await page.context().close();
 });
 
-test('the ray goes through what the pointer points at', async () => {
+test('the ray goes through the point under the pointer', async () => {
     const page = await browser.open('#model=sphere&view=map&particles=100', SMALL);
     await untilRay(page);
     const first = await page.locator('#ray').textContent();

@@ -34,7 +34,7 @@ const drop = (page, files) =>
         }
     }, files);
 
-test('after a good file and at once a broken one, the good one is open and is what the panel goes by', async () => {
+test('after a good file and a broken one right behind it, the good one is open and shown in the panel', async () => {
     const page = await openPage();
     await drop(page, [['good.obj', GOOD], ['broken.obj', BROKEN]]);
     await page.locator('#notice').waitFor();
@@ -48,7 +48,7 @@ test('after a good file and at once a broken one, the good one is open and is wh
     await page.context().close();
 });
 
-test('of a large file and at once a small one, the small one stays', async () => {
+test('of a large file and a small one right behind it, the small one stays', async () => {
     const page = await openPage();
     await page.evaluate(() => {
         globalThis.titles = [];
@@ -72,7 +72,7 @@ test('a link to a sample closes the file that is open', async () => {
     await page.context().close();
 });
 
-test('a change asked for while a broken file is read holds, and the panel shows that it does', async () => {
+test('a change made while a broken file is read takes effect, and the panel shows it', async () => {
     const page = await openPage();
     await page.evaluate(changeOnOpening);
     await drop(page, [['broken.obj', BROKEN]]);
@@ -107,7 +107,7 @@ async function particlesIn(page) {
     return text.slice(text.indexOf('o cloth'), text.indexOf('o model')).match(/^v /gm).length;
 }
 
-test('a worker that does not load is said once, and not begun for ever', async () => {
+test('a worker that does not load is reported once, and not restarted endlessly', async () => {
     const page = await browser.open(LINK, { ...SMALL, beforeLoad: withoutWorker });
     await page.locator('#notice').waitFor();
     assert.match(await notice(page), /^the simulation did not start/);
@@ -139,7 +139,7 @@ test('that nothing gets through is said of closed meshes alone', async () => {
     await page.context().close();
 });
 
-test('the word about a broken file goes when a sample is opened', async () => {
+test('the notice about a broken file disappears when a sample is opened', async () => {
     const page = await openPage();
     await drop(page, [['broken.obj', BROKEN]]);
     await page.locator('#notice').waitFor();

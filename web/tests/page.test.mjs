@@ -8,7 +8,7 @@ let browser;
 before(async () => (browser = await startBrowser()));
 after(() => browser?.stop());
 
-test('the page opens with the cloth already falling, and its console has nothing to say', async () => {
+test('the page opens with the cloth already falling and an empty console', async () => {
     const page = await browser.open();
     await untilFrame(page, 40);
     assert.equal(await figure(page, 'inside'), '0');
@@ -28,7 +28,7 @@ test('a page that carries the horse carries the notice and the text of its licen
     await page.context().close();
 });
 
-test('a link gives the state that it was copied from', async () => {
+test('a link restores the state that it was copied from', async () => {
     const page = await browser.open('#model=sphere&map=distance&particles=2500&friction=0.9&view=map', SMALL);
     await page.waitForFunction(() => document.getElementById('map-figures').textContent.includes('directions'));
     assert.equal(await page.locator('select[name=model]').inputValue(), 'sphere');
@@ -38,7 +38,7 @@ test('a link gives the state that it was copied from', async () => {
     await page.context().close();
 });
 
-test('a link holds where the camera stands, and one that is broken gives the usual view', async () => {
+test('a link contains the position of the camera, and a broken one gives the default view', async () => {
     const seen = async (link) => {
         const page = await browser.open(link, SMALL);
         await untilRay(page);
@@ -74,7 +74,7 @@ async function linkAfterTurning() {
     return hash.split('&').at(-1);
 }
 
-test('a choice that cannot be had is not shown as if it held', { skip: !hasHorse && 'the horse is not installed' }, async () => {
+test('a choice that is not available is not shown as in force', { skip: !hasHorse && 'the horse is not installed' }, async () => {
     const page = await browser.open('#model=torus&particles=400', SMALL);
     await untilFrame(page, 1);
     await page.context().route('**/horse.3ds', (route) => route.fulfill({ status: 404 }));
@@ -170,7 +170,7 @@ test('in the dark the page is dark', async () => {
     await page.context().close();
 });
 
-test('a browser without vectors is told what it lacks', async () => {
+test('a browser without vectors gets a message that names what it lacks', async () => {
     const page = await browser.open('', { ...SMALL, beforeLoad: () => (WebAssembly.validate = () => false) });
     await page.locator('.lacking').waitFor();
     assert.match(await page.locator('.lacking').textContent(), /needs WebAssembly SIMD/);
@@ -178,7 +178,7 @@ test('a browser without vectors is told what it lacks', async () => {
     await page.context().close();
 });
 
-test('a browser without WebGL is told so', async () => {
+test('a browser without WebGL gets a message', async () => {
     const page = await browser.open('', { ...SMALL, beforeLoad: () => (HTMLCanvasElement.prototype.getContext = () => null) });
     await page.locator('.lacking').waitFor();
     assert.match(await page.locator('.lacking').textContent(), /needs WebGL 2/);
@@ -186,7 +186,7 @@ test('a browser without WebGL is told so', async () => {
     await page.context().close();
 });
 
-test('a part of the page that does not arrive is said to be missing', async () => {
+test('a part of the page that does not arrive is reported as missing', async () => {
     const page = await browser.open('about:blank', SMALL);
     await page.route('**/assets/app-*.js', (route) => route.abort());
     await page.goto(browser.address);

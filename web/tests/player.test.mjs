@@ -43,7 +43,7 @@ async function scrubTo(page, frame) {
 /** Waits until all frames have been read from the page. */
 const untilRead = (page) => page.waitForFunction(() => document.body.dataset.read === 'true');
 
-test('a recorded page plays from the disk, and its console has nothing to say', { skip }, async () => {
+test('a recorded page plays from the disk with an empty console', { skip }, async () => {
     const page = await browser.open(torus, SMALL);
     await untilPlayed(page, 20);
     assert.equal(await figure(page, 'inside'), '0');
@@ -54,7 +54,7 @@ test('a recorded page plays from the disk, and its console has nothing to say', 
     await page.context().close();
 });
 
-test('it asks for nothing but itself', { skip }, async () => {
+test('it requests nothing but itself', { skip }, async () => {
     const page = await browser.open(torus, SMALL);
     const asked = [];
     page.on('request', (request) => asked.push(request.url()));
@@ -64,7 +64,7 @@ test('it asks for nothing but itself', { skip }, async () => {
     await page.context().close();
 });
 
-test('one can pause, step, go to any frame, and begin again', { skip }, async () => {
+test('a visitor can pause, step, go to any frame, and start over', { skip }, async () => {
     const page = await browser.open(torus, SMALL);
     await untilPlayed(page, 5);
     await page.keyboard.press('Space');
@@ -114,7 +114,7 @@ test('a page that carries the horse carries its notice, and the licence of three
     await page.context().close();
 });
 
-test('a model that turns is seen to turn', { skip }, async () => {
+test('a turning model is shown turning', { skip }, async () => {
     const scene = inProject('out/web/turning_box.json');
     const outOfSight = { size: [1, 1], particles: [2, 2], position: [0, 0, 50] };
     writeFileSync(scene, JSON.stringify({ model: { box: {} }, collider: { angular_velocity: [0, 0, 90] }, cloth: outOfSight, frame_limit: 120 }));
@@ -132,7 +132,7 @@ test('a model that turns is seen to turn', { skip }, async () => {
     await page.context().close();
 });
 
-test('names with markup in them are shown as they are', { skip }, async () => {
+test('names that contain markup are shown literally', { skip }, async () => {
     const scene = inProject('out/web/<img src=x onerror=alert(1)>.json');
     writeFileSync(scene, readFileSync(inProject('scenes/torus_small.json')));
     const page = await browser.open(record('recorded_name', scene, '--frames', '8'), SMALL);
@@ -143,7 +143,7 @@ test('names with markup in them are shown as they are', { skip }, async () => {
     await page.context().close();
 });
 
-test('on a narrow screen in the dark everything is there without scrolling sideways', { skip }, async () => {
+test('a narrow dark screen shows everything without scrolling sideways', { skip }, async () => {
     const page = await browser.open(torus, { viewport: { width: 390, height: 844 }, hasTouch: true, colorScheme: 'dark' });
     await untilPlayed(page, 40);
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
