@@ -14,16 +14,16 @@ void require_drawable(std::uint64_t width, std::uint64_t height) {
     throw Error(ErrorCode::InvalidOptions,
                 "a picture of " + size_text(width, height) + " cannot be drawn: sides must be 1 to " +
                     std::to_string(RenderOptions::kMaxSide) + " pixels, and " +
-                    std::to_string(RenderOptions::kMaxPixelCount) + " pixels are the most in all");
+                    std::to_string(RenderOptions::kMaxPixelCount) + " pixels at most in all");
 }
 
 void require_consistent(const Image& image) {
     const std::size_t expected = std::size_t{3} * image.width * image.height;
     if (expected != 0 && image.rgb.size() == expected) return;
     throw Error(ErrorCode::InvalidOptions,
-                "a picture said to have " + size_text(image.width, image.height) + " has " +
+                "a picture of " + size_text(image.width, image.height) + " has " +
                     std::to_string(image.rgb.size()) +
-                    " bytes of colour; it must have 3 for each pixel, and a pixel");
+                    " bytes of colour; it must have 3 for each pixel, and at least one pixel");
 }
 
 } // namespace echinus

@@ -84,7 +84,7 @@ class App {
             this.#open(undefined); // a link cannot contain a file
         });
         this.#stage.onArrival = () => this.#keepCamera();
-        this.#stage.onLoss = () => say('The browser has taken the graphics card away. If the picture does not come back, load the page again.');
+        this.#stage.onLoss = () => say('The browser has lost the graphics context. If the picture does not come back, reload the page.');
         client.listen((message) => this.#hear(message));
         this.#showView();
         this.#showColours();
@@ -421,7 +421,7 @@ class App {
         } catch {
             note.textContent = link; // for copying by hand where the clipboard is not available
         }
-        if (this.#asked.file) note.textContent += ' The file that you opened is not in it.';
+        if (this.#asked.file) note.textContent += ' The opened file is not part of it.';
     }
 }
 

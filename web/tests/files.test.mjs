@@ -131,7 +131,7 @@ test('a closed mesh that is inside out is reported unless it is mended, and an o
     await page.context().close();
 });
 
-test('an open mesh is reported with the length of its border', async () => {
+test('an open mesh is reported with the number of its border edges', async () => {
     const page = await browser.open('#model=torus&particles=400', SMALL);
     await untilFrame(page, 1);
     await choose(page, 'open.obj', OPEN_TETRAHEDRON);

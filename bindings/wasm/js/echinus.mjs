@@ -49,7 +49,7 @@ export class Echinus {
     #core;
 
     constructor(core) {
-        if (!(core instanceof Core)) refuse('load() makes these');
+        if (!(core instanceof Core)) refuse('only load() makes instances');
         this.#core = core;
     }
 

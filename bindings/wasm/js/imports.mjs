@@ -44,7 +44,7 @@ export function importsFor(compiled, memory) {
     const result = {};
     for (const { module, name } of WebAssembly.Module.imports(compiled)) {
         const found = all[module]?.[name];
-        if (found === undefined) throw new Error(`echinus.wasm wants ${module}.${name}, which this version does not supply`);
+        if (found === undefined) throw new Error(`echinus.wasm imports ${module}.${name}, which this version does not supply`);
         (result[module] ??= {})[name] = found;
     }
     return result;

@@ -19,7 +19,7 @@ export class Mesh extends Handle {
             new Mesh(core, core.try('mesh_make_from_polygons', v, vertices.length / 3, c, corners.length, n, cornerCounts.length)));
     }
     static fromBytes(core, bytes, name) {
-        if (typeof name !== 'string') refuse('the name of the file is needed; its ending tells the format');
+        if (typeof name !== 'string') refuse('the name of the file is required; its extension gives the format');
         const data = asBytes(bytes);
         return core.withTexts([name], (n, size) =>
             core.withCopies([data], (b) => new Mesh(core, core.try('mesh_read', b, data.length, n, size))));

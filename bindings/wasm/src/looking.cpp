@@ -24,7 +24,7 @@ Vec3d unit_direction(double x, double y, double z) {
     const double size = length(direction);
     if (!(size > 0) || !std::isfinite(size))
         throw Error(ErrorCode::InvalidOptions,
-                    "a ray's direction must be finite and longer than 0, and its square, too");
+                    "the squared length of a ray's direction must be finite and greater than 0");
     return direction * (1 / size);
 }
 

@@ -36,7 +36,7 @@ TriangleMesh make_model(const Scene& scene) {
     const auto make = [](const auto& model) -> TriangleMesh {
         if constexpr (std::is_same_v<std::decay_t<decltype(model)>, ModelFile>)
             throw Error(ErrorCode::InvalidScene,
-                        "the scene's model is the file " + model.name + ": read it and hand in its mesh");
+                        "the scene's model is the file " + model.name + ": read it and pass its mesh");
         else
             return make_mesh(model);
     };

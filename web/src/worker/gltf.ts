@@ -6,7 +6,7 @@ export async function readGltf(bytes: ArrayBuffer): Promise<Object3D> {
     const manager = new LoadingManager().setURLModifier(withinFile);
     const { scene, scenes } = await new GLTFLoader(manager).parseAsync(bytes, '');
     const root = scene ?? scenes[0]; // the default scene is optional
-    if (!root) throw new Error('there is no scene in it');
+    if (!root) throw new Error('it contains no scene');
     return root;
 }
 
@@ -16,5 +16,5 @@ const ONE_PIXEL = 'data:image/gif;base64,R0lGODlhAQABAAAAACH5BAEAAAAALAAAAAABAAE
 function withinFile(address: string): string {
     if (/^(data|blob):/.test(address)) return address;
     if (/\.(png|jpe?g|webp|avif|ktx2|gif)$/i.test(address)) return ONE_PIXEL;
-    throw new Error(`it refers to ${address}, which is another file: save the model as one .glb`);
+    throw new Error(`it refers to another file, ${address}: save the model as one .glb`);
 }

@@ -94,7 +94,7 @@ function weldTriangles(echinus: Echinus, root: Object3D): Mesh {
         for (let i = 0; i + 2 < cornerCount; i += 3)
             for (let k = 0; k < 3; ++k) faces.push(first + (index ? index.getX(i + k) : i + k));
     });
-    if (faces.length === 0) throw new Error('there is no triangle in it');
+    if (faces.length === 0) throw new Error('it contains no triangle');
     const loose = echinus.makeMesh(vertices, faces);
     try {
         return loose.weld();
