@@ -9,7 +9,7 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Two maps, one vocabulary: who need not care which kind of map there is, asks here.
+/// Queries for code that need not know which kind of map it has.
 namespace echinus {
 
 using AnyMap = std::variant<DistanceMap, ExactMap>;
