@@ -20,8 +20,8 @@ Vec3d nudge_from_ray(const LatticePoint& d) {
 /// Solid angle of the cone triangle (origin, a, b) seen from share * d. On which side of it that lies, where
 /// the angle jumps by a full turn, is decided exactly, and so is whether it lies in the triangle's plane.
 /// There, and above all on its sides through the origin, where rays through border vertices run, the place is
-/// nudged: what two triangles have on both sides of such a ray then adds up. Van Oosterom and Strackee 1983,
-/// as in mesh/winding_number.cpp.
+/// nudged, so that the two triangles on both sides of such a ray add up. Van Oosterom and Strackee 1983, as
+/// in mesh/winding_number.cpp.
 double cone_solid_angle(const LatticePoint& a, const LatticePoint& b, const LatticePoint& d, double share) {
     const LatticePoint normal = cross(a, b);
     const std::int64_t volume = -dot(d, normal);

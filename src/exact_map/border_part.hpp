@@ -6,7 +6,7 @@
 
 #include <span>
 
-/// What the border of an open surface means for winding numbers.
+/// How the border of an open surface affects winding numbers.
 ///
 /// Close the surface with a cone: a triangle from each border edge to the origin of the lattice. The rays
 /// from the origin see that cone edge-on and never cross it, so the signed crossings of a particle's ray
@@ -18,8 +18,8 @@
 /// So a query needs the border, not the surface.
 namespace echinus {
 
-/// What the border adds to the signed crossings beyond the place share * d to make the generalised winding
-/// number. A place on the cone stands for one at d + (e, e^2, e^3), as everywhere.
+/// The border's contribution to the generalised winding number, beside the signed crossings beyond the place
+/// share * d. A place on the cone counts as displaced by (e, e^2, e^3), as everywhere.
 double border_part(std::span<const BorderEdge> border, std::span<const Vec3<std::int32_t>> vertices,
                    const LatticePoint& d, double share = 1);
 

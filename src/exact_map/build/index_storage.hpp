@@ -9,7 +9,7 @@
 
 namespace echinus {
 
-/// What an IndexArray looks at. Keeps its memory.
+/// The storage of an IndexArray. Keeps its memory between uses.
 class IndexStorage {
   public:
     /// Makes room for so many numbers, all below `bound`; what they are is arbitrary until set.

@@ -38,7 +38,7 @@ struct BandGroup {
     }
 };
 
-/// Finds the gap or the band that particles are in, as many at once as there are lanes.
+/// Finds the gaps or bands of particles, as many at once as there are lanes.
 ///
 /// Numbers that belong to a cell or a band are fetched by loads in a loop of their own, and not by
 /// instructions that gather: these are slower on many processors.
@@ -66,7 +66,7 @@ class BandSearch {
   private:
     static constexpr float kSurelyOnLattice = static_cast<float>(kLatticeExtent) - 1;
     static constexpr float kSurelyBeyondLattice = static_cast<float>(kLatticeExtent) + 2;
-    /// An L1 norm that no place in the bounding sphere has.
+    /// An L1 norm beyond any place in the bounding sphere.
     static constexpr float kBeyondSphere = 1.75F * static_cast<float>(kLatticeExtent);
     /// One that no band reaches to, whatever its 16 bits say.
     static constexpr float kBeyondBands = 2.0F * (UINT16_MAX + 1) * ExactMapView::kBandUnit;
@@ -148,7 +148,7 @@ class BandSearch {
         return hn::RebindMask(Ints(), hn::Lt(l1, hn::Sub(limit, hn::Set(Floats(), CellLanes::kL1Error))));
     }
 
-    /// Most particles are beyond all bands of their cell, and need no more than the outer limit of the last.
+    /// Most particles are beyond all bands of their cell, and need only the outer limit of the last.
     void compare_with_outer_limits(std::size_t count) {
         constexpr Ints i;
         for (std::size_t slot = 0; slot < count; ++slot)
@@ -194,7 +194,7 @@ class BandSearch {
         outermost_count = in_bands.size;
     }
 
-    /// Of those below a band, compares with the next one inwards, until none is left.
+    /// Compares the particles below a band with the next one inwards, until none is left.
     void compare_with_inner() {
         constexpr Floats f;
         constexpr Ints i;

@@ -31,7 +31,7 @@ namespace echinus::HWY_NAMESPACE {
 /// particle and a face are listed first, for many particles, and then tested, one pair to a lane.
 class BandWindings {
   public:
-    /// Instead of a winding number: left to the reference.
+    /// Replaces a winding number that is left to the scalar query.
     static constexpr std::int32_t kUnsettled = INT32_MAX;
 
     explicit BandWindings(const ExactMapView& map) : map_(map) {}
@@ -65,7 +65,7 @@ class BandWindings {
     template <typename T>
     using Column = std::array<T, BandGroup::kCapacity + BandGroup::kMargin>;
 
-    /// What a particle's crossings are added to.
+    /// A particle's sum of crossings.
     struct Sum {
         std::int32_t winding; ///< beyond the faces, or before them; or kUnsettled
         std::int32_t sign;    ///< -1 where crossings count between the origin and the particle

@@ -1,5 +1,5 @@
-// Three passes: the sides of all particles; the nearest faces of those that want one, in an order in which
-// neighbours follow each other; and what there is to say of these faces.
+// Three passes: the sides of all particles; the nearest faces of those that need one, in an order that keeps
+// neighbours together; and the contacts with these faces.
 
 #include "exact_map/query/contact_batch.hpp"
 
@@ -27,7 +27,7 @@ namespace echinus {
 #define ECHINUS_CONTACT_BLOCK
 namespace {
 
-/// Some particles whose contacts are wanted.
+/// Some particles that need contacts.
 struct ContactBlock {
     static constexpr std::size_t kCapacity = 256;
 
@@ -47,7 +47,7 @@ struct ContactBlock {
         ++size;
     }
 
-    /// Of one whose nearest face is known, by the reference.
+    /// The contact of a particle whose nearest face is known, by the scalar code.
     void set_contact(const ContactSearch& search, std::size_t i) {
         contacts[i] = search.contact_at(
             points_local[i], sides[i],
@@ -252,7 +252,7 @@ void answer(const ContactSearch& search, ContactBlock& block, std::span<Contact>
     block.size = 0;
 }
 
-/// Memory for the particles of a batch.
+/// Memory for a batch.
 struct ContactMemory {
     std::span<Side> sides;                 ///< one for each particle of the batch
     std::span<KeyedParticle> queue, spare; ///< equally long: this many particles are sorted at a time
@@ -298,7 +298,7 @@ void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& 
 
 void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
                    std::span<Contact> contacts) {
-    // A solver asks for few particles many times: they take no memory but the stack's.
+    // A solver queries few particles many times: they use the stack only.
     constexpr std::size_t kStackCapacity = 256;
     if (contacts.size() <= kStackCapacity) {
         std::array<Side, kStackCapacity> sides;

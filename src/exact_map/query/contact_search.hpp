@@ -13,8 +13,8 @@ namespace echinus {
 /// Two snapped positions differ from the true ones by at most sqrt(3) lattice steps together.
 inline constexpr double kSnapping = 2;
 
-/// Contacts in a stretched world. The stretch is taken apart into one number, which is the unit of lengths,
-/// and what is left for the axes, at most 1.
+/// Contacts in a stretched world. The stretch is factored into one number, the unit of lengths, and the
+/// remaining factors of the axes, at most 1.
 class ContactSearch {
   public:
     ContactSearch(const ExactMapView& map, const Vec3d& stretch, float margin)
@@ -35,7 +35,7 @@ class ContactSearch {
     const Vec3d& stretch() const { return stretch_; }
     Vec3d place_of(const Vec3f& point_local) const { return frame_.to_lattice(point_local); }
 
-    /// Is there a nearest point to be looked for?
+    /// Is a nearest point needed?
     bool is_wanted(const Vec3f& point_local, Side side) const {
         return ((side & kInsideBit) != 0 || margin_ > 0) && is_finite(point_local);
     }
@@ -82,7 +82,7 @@ class ContactSearch {
         return Vec3f(in_world * ((inside ? 1 : -1) / nearest.distance));
     }
 
-    /// Turns a normal of the faces to where it leads out of the solid: faces may be turned the other way.
+    /// Orients a normal of the faces out of the solid: the faces may have the opposite orientation.
     Vec3f outward(const Vec3d& point, const Vec3f& normal) const {
         constexpr double kClear = 2 * kSnapping;
         const Vec3d along{normal.x / stretch_.x, normal.y / stretch_.y, normal.z / stretch_.z};

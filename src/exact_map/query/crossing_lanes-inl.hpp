@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace echinus::HWY_NAMESPACE {
 
-/// How faces count for particles, one pair a lane.
+/// How faces count for particles, one pair per lane.
 struct CrossingLanes {
     IntLanes crossing; ///< as crossing_on() has it, where sure
     FloatMask unsure;

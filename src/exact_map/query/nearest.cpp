@@ -27,8 +27,8 @@ Corners corners_around(const ExactMapView& map, std::uint32_t face, const Vec3d&
             stretched(Vec3d(corners[2]) - place, stretch)};
 }
 
-/// Squared distance of a triangle from the origin, as vector instructions like it: all of the face and its
-/// three edges, and no branch.
+/// Squared distance of a triangle from the origin, in a form that suits vector instructions: the face and its
+/// three edges always, without a branch.
 double distance_sq_to_triangle(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
     const Vec3d ab = b - a, bc = c - b, ca = a - c;
     const Vec3d on_ab = a + ab * nearest_share(a, ab);
@@ -112,13 +112,13 @@ class BoxDistances {
     Vec3f place_, stretch_;
 };
 
-/// A float a little above a double: by more than box distances are rounded. Infinity is kept out, since what
-/// has no child is at infinity.
+/// A float a little above a double: by more than box distances are rounded. Infinity is excluded, since
+/// missing children are at infinity.
 float rounded_up(double value) {
     return static_cast<float>(std::min(value, 1e37)) * (1 + 1e-6F);
 }
 
-/// Of the stretched face, out of its front; 0 of one without area.
+/// The normal of the stretched face, out of its front; 0 for one without area.
 Vec3d unit_normal(const ExactMapView& map, std::uint32_t face, const Vec3d& place, const Vec3d& stretch) {
     const Corners corners = corners_around(map, face, place, stretch);
     const Vec3d normal = cross(corners[1] - corners[0], corners[2] - corners[0]);

@@ -37,7 +37,7 @@ namespace {
 
 constexpr std::size_t kMaxLanes = 16;
 
-/// The faces that may be the nearest to some of the places at hand.
+/// The faces that may be the nearest to some of the current places.
 class Candidates {
   public:
     void clear() { size_ = 0; }
@@ -81,7 +81,7 @@ class Candidates {
     alignas(64) std::array<std::array<float, kMaxLanes>, kCapacity> lowers_;
 };
 
-/// As many searches as there are lanes, on one way through the tree. Leaves once met are kept ready for the
+/// As many searches as there are lanes, in one walk through the tree. Visited leaves are kept for the
 /// searches that follow.
 class NearestFaceFinder {
   public:
@@ -112,7 +112,7 @@ class NearestFaceFinder {
   private:
     static constexpr double kMaxDistanceSq = 1e30;
 
-    /// Places farther off are left to the reference.
+    /// Places farther off are left to the scalar query.
     static constexpr double kRange = kEverywhere / 2;
 
     static bool is_within_range(const NearestSearch& search) {
@@ -276,7 +276,7 @@ class NearestFaceFinder {
         return true;
     }
 
-    /// Of each place's candidates the one that the reference takes.
+    /// For each place, the candidate that the scalar query takes.
     void choose(std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) const {
         std::array<double, kMaxLanes> distances_sq;
         std::uint32_t measured = 0; // places whose face's distance is known

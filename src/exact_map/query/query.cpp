@@ -1,4 +1,4 @@
-// What is inside, and the nearest way out.
+// Inside or outside, and the nearest way out.
 
 #include "exact_map/query/contact_batch.hpp"
 #include "exact_map/query/contact_search.hpp"

@@ -9,8 +9,8 @@
 #include <cstdlib>
 
 /// How a face counts for a particle p of the lattice: +1 or -1 if the ray from the origin through p leaves or
-/// enters the solid there, on one side of p, else 0. Particle and ray are perturbed together: p stands for
-/// p + (e, e^2, e^3), as in directions/crossing.hpp.
+/// enters the solid there, on one side of p, else 0. Particle and ray are perturbed together: p counts as p +
+/// (e, e^2, e^3), as in directions/crossing.hpp.
 namespace echinus {
 
 enum class RaySide : std::uint8_t {
@@ -42,7 +42,7 @@ class CrossingFilter {
   public:
     explicit CrossingFilter(const LatticePoint& p) {
         const std::array<std::int64_t, 3> c{p.x, p.y, p.z};
-        // Written so that no processor has to guess which component is the longest.
+        // Written without a branch on which component is the longest.
         std::uint32_t k = std::abs(c[1]) > std::abs(c[0]) ? 1 : 0;
         k = std::abs(c[2]) > std::abs(c[k]) ? 2 : k;
         k_axis_ = k;
@@ -70,7 +70,7 @@ class CrossingFilter {
         const double ab = pa.u * pb.v - pa.v * pb.u;
         const double least = std::min(std::min(bc, ca), ab);
         const double most = std::max(std::max(bc, ca), ab);
-        // & and |, not && and ||: every comparison is made, so that there is nothing to guess.
+        // & and |, not && and ||: every comparison is made, so that there is no branch to mispredict.
         const bool front = least > kAreaError;
         const bool hit = front | (most < -kAreaError);
         const bool missed = (most > kAreaError) & (least < -kAreaError);

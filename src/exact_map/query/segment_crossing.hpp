@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <optional>
 
-/// Where a segment of the lattice crosses a face, decided exactly. Both ends are perturbed alike: p stands
-/// for p + (e, e^2, e^3), so that along a segment the signed crossings add up to the change of the winding
+/// Where a segment of the lattice crosses a face, decided exactly. Both ends are perturbed alike: p counts as
+/// p + (e, e^2, e^3), so that along a segment the signed crossings add up to the change of the winding
 /// number.
 namespace echinus {
 
-/// The product of two int64 has no room in less.
+/// Holds the product of two int64.
 __extension__ using Int128 = __int128;
 
 /// A crossing at distance / (distance of both ends) of the way.

@@ -1,7 +1,7 @@
 // A batch is answered in pieces small enough for the first-level cache. BandSearch finds the gap or the band
 // that each particle is in. A particle in a gap has the gap's winding number; for one in a band, BandWindings
-// counts crossings of its ray with the band's faces. What single precision cannot tell falls back to the
-// scalar query.
+// counts crossings of its ray with the band's faces. Cases that single precision cannot decide fall back to
+// the scalar query.
 
 #include "exact_map/query/sides.hpp"
 

@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <span>
 
-/// On which side of the surface particles are: winding numbers, judged by the map's rule.
+/// On which side of the surface particles are: winding numbers under the map's rule.
 namespace echinus {
 
-/// What classify() answers, in bits.
+/// The answer of classify(), in bits.
 using Side = std::uint8_t;
 inline constexpr Side kInsideBit = 1;
 inline constexpr Side kUncertainBit = 2;

@@ -1,5 +1,5 @@
-// Where a particle's way first meets the surface: the face tree's boxes along the way, nearest first, and an
-// exact test of each face.
+// Where a particle's path first crosses the surface: the face tree's boxes along the path, nearest first, and
+// an exact test of each face.
 
 #include "exact_map/layout.hpp"
 #include "exact_map/query/face_tree_walk.hpp"
@@ -102,9 +102,8 @@ std::optional<FaceCrossing> first_crossing(const ExactMapView& map, const Lattic
     return first;
 }
 
-/// Both ends in one gap of one cell: what lies between planes through the centre and between two planes
-/// across is convex, so the whole way does, and no surface with it. Most ways of a cloth's particles end
-/// here.
+/// Both ends in one gap of one cell: the region between planes through the centre and two planes across is
+/// convex, so it contains the whole path, and no surface. Most paths of a cloth's particles end here.
 bool stays_in_gap(const ExactMapView& map, const LatticePoint& from, const LatticePoint& to) {
     const OctahedralCells cells(map.divisions);
     const std::uint32_t cell = cells.locate(from).cell;
@@ -137,7 +136,7 @@ SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexce
     const double share = std::clamp(first->crossing.parameter(), 0.0, 1.0);
     const Vec3d place = start + (end - start) * share;
     const double fraction = std::min(1.0, length(place - from_place) / length(to_place - from_place));
-    // Faces may be turned the other way: what counts is which side of this one is solid.
+    // Faces may have the opposite orientation: what counts is which side of this one is solid.
     const std::int64_t before = winding_at(map, from).number;
     const std::int64_t after = before + (first->crossing.entering() ? 1 : -1);
     const bool inside_before = is_inside(map.rule, before), inside_after = is_inside(map.rule, after);

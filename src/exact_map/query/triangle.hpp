@@ -29,8 +29,7 @@ struct NearestOnTriangle {
     Feature feature = Feature::Unknown;
 };
 
-/// Where on a triangle the nearest point to the origin lies, relative to it, and what of the triangle that
-/// is.
+/// A triangle's nearest point to the origin, and the part of the triangle that contains it.
 inline NearestOnTriangle nearest_on_triangle(const TriangleCorners& corners) {
     const auto& [a, b, c] = corners;
     const Vec3d normal = cross(b - a, c - b);
@@ -63,8 +62,8 @@ inline float angle_between(const Vec3d& a, const Vec3d& b) {
                             static_cast<float>(dot(a, b) / (length(a) * length(b))));
 }
 
-/// How far around the origin a triangle reaches: a full turn inside, half a turn on an edge, at a corner its
-/// angle. Edges and corners within `reach` count as met.
+/// The angle that a triangle spans around the origin: a full turn inside, half a turn on an edge, the
+/// corner's angle at a corner. Edges and corners within `reach` count as met.
 inline float spanned_angle(const TriangleCorners& corners, double reach) {
     for (std::size_t k = 0; k < 3; ++k)
         if (length(corners[k]) <= reach)

@@ -48,7 +48,7 @@ struct Lists {
     }
 };
 
-/// Clang deduces the parameters of an aggregate only if told how.
+/// Clang needs a deduction guide for an aggregate.
 template <typename Face, typename Vertex>
 Lists(const ExactMapView&, const Face*, const Vertex*) -> Lists<Face, Vertex>;
 
@@ -76,7 +76,8 @@ Winding generalised_winding(const ExactMapView& map, std::uint32_t innermost_ban
     return {std::llrint(crossings + border_part(map.border, map.vertices, p)), false};
 }
 
-/// Of a place beyond the lattice. Around a closed surface it is 0; an open one's fades only with distance.
+/// The winding number of a place beyond the lattice: 0 for a closed surface; an open one's only fades with
+/// distance.
 Winding winding_beyond_lattice(const ExactMapView& map, const Vec3d& place) {
     if (map.border.empty() || !is_finite(place)) return {};
     const double largest = std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)});

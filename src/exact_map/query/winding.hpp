@@ -8,14 +8,13 @@
 
 namespace echinus {
 
-/// How often the surface goes around a place.
+/// How often the surface winds around a place.
 struct Winding {
     std::int64_t number = 0; ///< of an open surface the generalised winding number, rounded
     bool certain = true;     ///< false where an open surface's had to be computed
 };
 
-/// The winding number around a particle. This scalar code is the specification of all that is inside or
-/// outside.
+/// The winding number around a particle. This scalar code is the specification of inside and outside.
 Winding winding_at(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local) noexcept;
 
 /// The same for a place of the lattice, or a few steps beyond it
