@@ -16,8 +16,8 @@
 ///     |   0 --- 1
 ///     +---------- u
 ///
-/// What is interpolated is the grid's *interpolant* of an entry: the distance, or the reciprocal of the L1
-/// radius.
+/// The interpolated quantity is the grid's *interpolant* of an entry: the distance, or the reciprocal of the
+/// L1 radius.
 namespace echinus {
 
 /// The four samples around one direction and what each contributes.
@@ -28,7 +28,7 @@ struct Interpolation {
         first_entry;             ///< where each sample's entries begin; the reference's if ignored
     std::array<float, 4> weight; ///< 0 for ignored samples; they add up to 1
     std::array<bool, 4> usable;
-    float weight_sum;          ///< what the weights of the usable samples added up to before
+    float weight_sum;          ///< the sum of the usable samples' weights before normalisation
     std::uint32_t entry_count; ///< of the reference sample, hence of all usable ones
 };
 
@@ -61,8 +61,7 @@ float interpolant_at(const DistanceMapView& map, const Interpolation<Grid>& at, 
     return Grid::interpolant(entry_at(map, at.first_entry[corner] + k), map.radius);
 }
 
-/// The interpolated k-th interpolant. Goes one way with k, since every usable sample does and rounding is
-/// monotone.
+/// The interpolated k-th interpolant. Monotone in k, since every usable sample is and rounding is monotone.
 template <typename Grid>
 float interpolated(const DistanceMapView& map, const Interpolation<Grid>& at, std::uint32_t k) {
     float sum = 0;

@@ -10,7 +10,7 @@
 
 namespace echinus {
 
-/// Calls `use(grid)` with the grid that a view describes, and gives back what it gives.
+/// Calls `use(grid)` with the grid that a view describes, and returns its result.
 template <typename Use>
 decltype(auto) with_grid(const DistanceMapView& map, const Use& use) {
     if (map.grid == DirectionGrid::Octahedral) return use(OctahedralGrid(map.divisions));

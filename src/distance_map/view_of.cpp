@@ -10,7 +10,7 @@ namespace echinus {
 
 namespace {
 
-/// The scale that makes a cube of the mesh's box about the centre, but for what is thinner than the grid
+/// The scale that turns the mesh's box about the centre into a cube, unless it is thinner than the grid
 /// allows: the shortest half edge keeps its length, the others shrink to it.
 Vec3f scale_of(const LatticeMesh& lattice) {
     LatticePoint reach;

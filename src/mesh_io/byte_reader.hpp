@@ -14,7 +14,7 @@ namespace echinus {
 
 enum class ByteOrder { LittleEndian, BigEndian };
 
-/// Takes numbers from bytes, one after the other.
+/// Reads numbers from bytes, one after the other.
 class ByteReader {
   public:
     ByteReader(const MeshSource& source, std::size_t offset, ByteOrder order)

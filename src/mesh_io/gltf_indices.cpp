@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Characters of no meaning, such as the padding and the backslash of an escaped solidus, are passed over.
+/// Ignores characters without meaning, such as the padding and the backslash of an escaped solidus.
 std::string decode_base64(std::string_view text) {
     constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string bytes;
@@ -107,7 +107,7 @@ class GltfIndices {
     }
 
   private:
-    /// Remembered: many primitives may name one accessor, and each look takes the time of a whole one.
+    /// Cached: many primitives may name one accessor, and each look-up reads all of it.
     std::optional<std::uint32_t> largest_index(std::size_t accessor) {
         if (!largest_[accessor]) largest_[accessor] = find_largest(accessors_[accessor]);
         return *largest_[accessor];

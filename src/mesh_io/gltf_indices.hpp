@@ -6,10 +6,10 @@
 
 namespace echinus {
 
-/// Assimp drops the faces of a glTF file that refer to vertices which are not there. Compared are the indices
-/// of every primitive with the number of its positions (glTF 2.0, sections 3.6 and 3.7.2), whether they lie
-/// in the binary part of a GLB file, in the text as base64 or in a file beside. Left to Assimp are sparse
-/// accessors, escaped letters in keys, and whatever is malformed.
+/// Assimp drops the faces of a glTF file that refer to missing vertices. This compares the indices of every
+/// primitive with the number of its positions (glTF 2.0, sections 3.6 and 3.7.2), whether they lie in the
+/// binary part of a GLB file, in the text as base64 or in a separate file. Sparse accessors, escaped letters
+/// in keys, and malformed input are left to Assimp.
 /// @param json    brackets in it may be nested to any depth
 /// @param binary  the content of a GLB file's binary chunk
 /// @throws Error InvalidMesh

@@ -11,8 +11,8 @@ namespace echinus {
 /// The offset after a string's closing quotation mark.
 std::size_t end_of_json_string(std::string_view json, std::size_t begin);
 
-/// A value in the text of a JSON document, for a look at a few numbers of a file that another reader judges:
-/// what is malformed or of another kind counts as not there. Keys are compared as they are spelt. Nothing is
+/// A value in the text of a JSON document, for reading a few numbers of a file that another reader validates:
+/// malformed values and ones of another kind count as missing. Keys are compared as spelt. Nothing is
 /// recursive.
 class JsonView {
   public:

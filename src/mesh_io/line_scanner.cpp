@@ -48,7 +48,7 @@ std::from_chars_result read_number(std::string_view word, Number& value) {
             value = std::strtof(text.c_str(), &end);
         else
             value = std::strtod(text.c_str(), &end);
-        const bool is_lost = value == 0 || std::isinf(value); // and not only rounded to a small number
+        const bool is_lost = value == 0 || std::isinf(value); // not just rounded to a small number
         return {word.data() + (end - text.c_str()),
                 errno == ERANGE && is_lost ? std::errc::result_out_of_range : std::errc{}};
     }

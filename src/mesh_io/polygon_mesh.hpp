@@ -9,7 +9,7 @@
 
 namespace echinus {
 
-/// What a file holds: vertices, and polygons with any number of corners.
+/// The contents of a file: vertices, and polygons with any number of corners.
 struct PolygonMesh {
     std::vector<Vec3f> vertices;
     std::vector<std::uint32_t> corners;       ///< vertex indices, in range, polygon after polygon

@@ -6,8 +6,8 @@
 #include <charconv>
 #include <limits>
 
-// The format: Wavefront Technologies, "Advanced Visualizer", appendix B1, "Object Files". Read are vertices
-// and faces; the other statements are passed over.
+// The format: Wavefront Technologies, "Advanced Visualizer", appendix B1, "Object Files". Reads vertices and
+// faces; ignores the other statements.
 
 namespace echinus {
 

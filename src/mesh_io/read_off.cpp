@@ -5,7 +5,7 @@
 
 // The format: "Object File Format" of Geomview (https://www.geomview.org/docs/html/OFF.html). Colours,
 // normals and texture coordinates follow the position on a vertex's line, and colours the indices on a face's
-// line; they are passed over.
+// line; they are ignored.
 
 namespace echinus {
 
@@ -50,7 +50,7 @@ PolygonMesh read_off(const MeshSource& source) {
     const std::size_t vertex_count = next_count(scanner, "the number of vertices");
     const std::size_t face_count = next_count(scanner, "the number of faces");
 
-    // Nothing is reserved: the numbers may be lies, the lines are not.
+    // Nothing is reserved: the counts may be false, but the lines exist.
     PolygonMesh mesh;
     for (std::size_t vertex = 0; vertex < vertex_count; ++vertex) {
         scanner.require_line(promised("vertex", vertex, vertex_count));

@@ -6,8 +6,8 @@
 #include <array>
 #include <limits>
 
-// The format: Greg Turk, "The PLY Polygon File Format" (1994). Read are the position of each `vertex` and the
-// list of corners of each `face`; other properties and elements are passed over.
+// The format: Greg Turk, "The PLY Polygon File Format" (1994). Reads the position of each `vertex` and the
+// list of corners of each `face`; ignores other properties and elements.
 
 namespace echinus {
 

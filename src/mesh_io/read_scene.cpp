@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Gives Assimp the bytes that were checked, and the buffers of a glTF file if they are ordinary files: a
-/// pipe or a device that somebody named there could keep it waiting for ever.
+/// Gives Assimp the checked bytes, and the buffers of a glTF file if they are regular files: a pipe or a
+/// device named there could block it forever.
 class SceneFiles : public Assimp::IOSystem {
   public:
     explicit SceneFiles(const MeshSource& source) : source_(source) {}
@@ -53,7 +53,7 @@ class SceneFiles : public Assimp::IOSystem {
 using Transform = aiMatrix4x4t<double>;
 
 Transform transform_of(const aiNode& node) {
-    // 3DS files say nothing of a root; Assimp adds one that turns the model about.
+    // 3DS files have no root; Assimp adds one that rotates the model.
     if (node.mName == aiString("<3DSDummyRoot>")) return {};
     return Transform(node.mTransformation);
 }

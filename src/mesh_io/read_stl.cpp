@@ -4,7 +4,7 @@
 
 #include <array>
 
-// The format: "The StL Format" of 3D Systems, text and binary. Normals and attributes are passed over.
+// The format: "The StL Format" of 3D Systems, text and binary. Normals and attributes are ignored.
 
 namespace echinus {
 
@@ -26,7 +26,7 @@ std::uint64_t promised_face_count(const MeshSource& source) {
     return ByteReader(source, kHeadSize, ByteOrder::LittleEndian).next<std::uint32_t>();
 }
 
-/// Many programs begin binary files, too, with the word solid; only the size tells them apart.
+/// Many programs also begin binary files with the word solid; only the size distinguishes them.
 bool has_size_of_binary(const MeshSource& source) {
     return source.bytes.size() >= kBytesBeforeFaces &&
            source.bytes.size() == kBytesBeforeFaces + kBytesPerFace * promised_face_count(source);

@@ -18,7 +18,7 @@ void require_moderate(std::size_t found, std::size_t limit, const char* what, co
                     std::string(what) + ", of which at most " + std::to_string(limit) + " are read");
 }
 
-/// Could this string be the key "children"? Escaped letters are not spelt out: nobody writes them there.
+/// Could this string be the key "children"? Escaped letters are not decoded: no program writes them there.
 bool may_be_children(std::string_view string) {
     return string == "\"children\"" || string.find("\\u") != std::string_view::npos;
 }
@@ -102,8 +102,8 @@ void require_vertices(const MeshSource& source, const std::string& mesh_name, co
     }
 }
 
-/// Faces beyond the end of their chunk are refused: many small chunks that promise many faces each would take
-/// for ever to read.
+/// Faces beyond the end of their chunk are refused: many small chunks that declare many faces each would take
+/// forever to read.
 void require_whole_face_list(const MeshSource& source, std::size_t begin, std::size_t end) {
     const std::size_t face_count = ByteReader(source, begin, ByteOrder::LittleEndian).next<std::uint16_t>();
     if (sizeof(std::uint16_t) + face_count * kFaceSize > end - begin)

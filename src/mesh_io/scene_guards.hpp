@@ -4,10 +4,10 @@
 
 #include <cstddef>
 
-/// What Assimp has to be kept from. Its readers follow nested data by calling themselves and run out of stack
-/// where a file nests deeply (version 5.2.5: from some 10 000 nodes in a chain on); they take files that
-/// say that they are longer than they are, and compressed positions for plain ones; and they put another
-/// vertex for one that a 3DS file lacks, or drop the face in glTF.
+/// Checks that protect Assimp. Its readers are recursive and run out of stack on deeply nested files (version
+/// 5.2.5: from about 10 000 nodes in a chain on); they accept files shorter than declared, and compressed
+/// positions as plain ones; and they replace a vertex missing from a 3DS file by another one, or drop the
+/// face in glTF.
 namespace echinus {
 
 /// Nodes that have children of their own: in the worst case they form one chain.

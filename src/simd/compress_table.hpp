@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-/// For up to eight lanes, a bit each: the chosen lanes in their order, then the others.
+/// For up to eight lanes, one bit each: the chosen lanes in their order, then the others.
 namespace echinus {
 
 inline constexpr auto kCompressTable = [] {

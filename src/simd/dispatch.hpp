@@ -8,7 +8,7 @@
 /// whole process; Echinus keeps its own, so that forcing it leaves other users of Highway alone.
 namespace echinus {
 
-/// The instruction set in use, as Highway keeps it.
+/// The instruction set in use, in Highway's form.
 hwy::ChosenTarget& chosen_target() noexcept;
 
 /// False when queries are to run as the scalar reference.

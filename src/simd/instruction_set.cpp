@@ -16,7 +16,7 @@ namespace echinus {
 
 namespace {
 
-constexpr std::int64_t kScalar = 0; // no target of Highway's: the reference
+constexpr std::int64_t kScalar = 0; // not a Highway target: the reference
 
 struct InstructionSet {
     std::string_view name;
@@ -51,7 +51,7 @@ const InstructionSet* initial_choice() {
     return std::find_if(kInstructionSets.begin(), kInstructionSets.end(), is_available);
 }
 
-/// What is in use: for us, and as Highway wants it.
+/// The set in use: our value, and Highway's.
 class Choice {
   public:
     Choice() { set(initial_choice()); }

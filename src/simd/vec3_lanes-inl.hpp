@@ -18,8 +18,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// Vec3 of several particles or faces at once: a Highway vector for each component. The operations are those
 /// of Vec3 (geometry.hpp) in the same order, hence the same bits.
 ///
-/// Never without values: for Arm, GCC compiles what sets up an empty one for a processor without vectors, and
-/// then refuses.
+/// Always with values: for Arm, GCC compiles the initialisation of an empty one for a processor without
+/// vectors, which is an error.
 template <typename Lanes>
 struct Vec3Lanes {
     Lanes x, y, z;

@@ -15,7 +15,7 @@
 
 #include <wasm_simd128.h>
 
-/// What WebAssembly has and Highway's target for it (1.0) leaves out, of what our kernels use: vectors of two
+/// Operations of our kernels that WebAssembly has and Highway's target for it (1.0) lacks: vectors of two
 /// doubles; and lookups of lanes by an instruction, where Highway moves byte by byte through memory. Under
 /// Highway's names and in its namespace, where its templates look for them.
 /// @pre vectors and masks are whole, 16 bytes, except where float and double meet

@@ -16,8 +16,8 @@ namespace echinus {
 
 namespace {
 
-/// Places just beside the surface, on both sides of it, each with the share of the surface that it stands
-/// for.
+/// Places just beside the surface, on both sides of it, each with the share of the surface that it
+/// represents.
 class PlacesBesideSurface {
   public:
     PlacesBesideSurface(const TriangleMesh& mesh, float offset) {
@@ -32,8 +32,8 @@ class PlacesBesideSurface {
         inside_.resize(outer_.size());
     }
 
-    /// The share of the surface beside which a map is wrong. Of a mesh that is inside out, all is the other
-    /// way round.
+    /// The share of the surface beside which a map is wrong. For an inside-out mesh, inside and outside are
+    /// swapped.
     double wrong_share(const DistanceMapView& map) {
         double wrong = 0, all = 0;
         const auto judge = [&](const std::vector<Vec3f>& places, std::uint8_t expected) {
@@ -78,7 +78,7 @@ class PlacesBesideSurface {
     std::vector<std::uint8_t> inside_;
 };
 
-/// Of the kind that is wanted, but with a quarter of the directions: finer maps cost more and rank centres
+/// The options of the wanted map with a quarter of the directions: finer maps cost more and rank centres
 /// alike.
 DistanceMapOptions coarse(DistanceMapOptions options) {
     const auto halved = [](std::uint32_t count) { return std::max(count / 2, 4U); };

@@ -5,8 +5,8 @@
 
 namespace echinus {
 
-/// Is the centre inside, judged by the parity of each ray and weighed by the solid angle that the ray stands
-/// for? On a closed mesh all rays agree; on an open one the majority of the sphere decides.
+/// Is the centre inside, by the parity of each ray, weighted by the ray's solid angle? On a closed mesh all
+/// rays agree; on an open one the majority of the sphere decides.
 struct CentreSide {
     bool inside;
     float wrong_parity_share; ///< of the directions

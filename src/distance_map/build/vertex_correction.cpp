@@ -10,7 +10,7 @@
 // layer of its own.
 // - Vertices whose ray is crossed more or less often than one of the samples around it are left alone: that
 // is the paper's second error situation, which the query treats.
-// - Several vertices in one cell: each sample moves by the largest amount that one of them asks for.
+// - Several vertices in one cell: each sample moves by the largest amount that any of them requires.
 // - Increasing errs on the side of the solid only where the ray leaves it. Where it enters, Signed decreases.
 
 #include "distance_map/build/vertex_correction.hpp"
@@ -26,7 +26,7 @@ namespace echinus {
 
 namespace {
 
-/// The uncorrected entries, as the query sees them.
+/// The uncorrected entries, as queries interpolate them.
 DistanceMapView as_map(const LatticeMesh& lattice, bool centre_inside, const Crossings& crossings) {
     DistanceMapView map;
     map.radius = lattice.radius;
@@ -36,7 +36,7 @@ DistanceMapView as_map(const LatticeMesh& lattice, bool centre_inside, const Cro
     return map;
 }
 
-/// Reckons in the grid's interpolant, the number that goes linearly between samples.
+/// Computes in the grid's interpolant, which is linear between samples.
 template <typename Grid>
 class Corrector {
   public:
@@ -64,7 +64,7 @@ class Corrector {
         }
     }
 
-    /// [entry_count] by how much each entry moves; the way is given by its layer.
+    /// [entry_count] by how much each entry moves; its layer determines the direction.
     const std::vector<float>& shifts() const { return shifts_; }
 
     bool moves_outward(std::uint32_t k) const {
@@ -72,8 +72,8 @@ class Corrector {
     }
 
   private:
-    /// On a mesh that is not closed, or is inside out in part, the way that the faces are crossed need not be
-    /// that of the layer; Signed, which goes by the layer, then leaves the vertex alone.
+    /// On a mesh that is open or partly inside out, the direction in which the faces are crossed may differ
+    /// from that of the layer; Signed, which depends on the layer, then leaves the vertex unchanged.
     bool has_layer_of_its_own(const VertexLayer& layer) const {
         if (layer.facing != Facing::Outward && layer.facing != Facing::Inward) return false;
         if (layer.crossings_before >= layer.crossing_count) return false;

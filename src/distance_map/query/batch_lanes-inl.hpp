@@ -1,5 +1,5 @@
-// Batches of particles through the queries of query_lanes-inl.hpp. Those that rows are not enough for are put
-// on a list, which is then worked off with all lanes full.
+// Batches of particles through the queries of query_lanes-inl.hpp. Particles for which rows do not suffice go
+// to a list, which is then processed with all lanes full.
 
 #include "distance_map/query/grid_kernels.hpp"
 
@@ -41,7 +41,7 @@ GridKernels kernels_of() {
 
 namespace { // its names are this folder's
 
-/// The two kinds of answers: which function of a kernel gives them, and where they go.
+/// The two kinds of answers: the kernel's function for them, and their destination.
 struct InsideAnswers {
     using Answer = std::uint8_t;
     std::uint8_t* answers;
@@ -71,7 +71,7 @@ struct ContactAnswers {
     }
 };
 
-/// Particles of a piece of a batch that are left for later, by their number in the batch.
+/// Particles of a piece of a batch that are deferred, by their number in the batch.
 class Leftovers {
   public:
     static constexpr std::size_t kCapacity = 256;

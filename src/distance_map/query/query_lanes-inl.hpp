@@ -2,9 +2,9 @@
 // bits.
 //
 // The corners of a cell lie in two rows of two neighbours, so that two loads of four numbers give the offsets
-// of all four samples, and one load for each sample gives its first four entries. Where that does not do (at
-// the seam and the poles, at the ends of the arrays, under more than four layers) the particle is one of the
-// "others", which gathers answer.
+// of all four samples, and one load for each sample gives its first four entries. Where that does not suffice
+// (at the seam and the poles, at the ends of the arrays, under more than four layers) the particle is one of
+// the "others", which use gathers.
 
 #include "distance_map/layout.hpp"
 
@@ -26,7 +26,7 @@ namespace echinus {
 namespace HWY_NAMESPACE {
 namespace { // its names are this folder's
 
-// ---- What is known of a vector of particles, step by step
+// ---- The intermediate results for a vector of particles, step by step
 
 template <typename Grid>
 struct Rays {
@@ -126,7 +126,7 @@ class Kernel {
           entry_count_(static_cast<std::int32_t>(map.entry_count())),
           centre_inside_(splat_mask(map.centre_inside)) {}
 
-    /// Answers those of a vector of neighbouring particles that rows of entries are enough for.
+    /// Answers those of a vector of neighbouring particles for which rows of entries suffice.
     /// @return the others
     HWY_INLINE FloatMask contains_most(const Vec3f* points, std::uint8_t* inside) const {
         const Rays<Grid> rays = aim(load(points));
