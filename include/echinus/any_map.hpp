@@ -9,7 +9,7 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Queries for code that need not know which kind of map it has.
+/// Two maps, one vocabulary: who need not care which kind of map there is, asks here.
 namespace echinus {
 
 using AnyMap = std::variant<DistanceMap, ExactMap>;

@@ -11,30 +11,29 @@ namespace echinus {
 
 /// Which part of a triangle the nearest point lies on.
 enum class Feature : std::uint8_t {
-    Unknown, ///< no contact, or one of a distance map, which does not contain the mesh
+    Unknown, ///< no contact, or a distance map's: it does not know its mesh
     Face,
     Edge,
     Vertex,
 };
 
-/// A query's answer for one particle: inside or not, how deep, which way out. The same for every kind of map.
+/// What a query answers for one particle: inside?, how deep, which way out. The same for every kind of map.
 ///
 /// The push-out moves the particle to `point`. A particle that is outside and farther than the margin, or not
 /// finite, gets the default value: not inside, depth 0, normal 0, face -1, and `point` the particle itself.
 struct Contact {
     static constexpr std::int32_t kUnknownFace = -1;
 
-    Vec3f point;   ///< the point of the surface to which the particle is pushed out, in the frame of the
-                   ///< query
+    Vec3f point;   ///< where on the surface the push-out leads, in the frame of the query
     Vec3f normal;  ///< unit normal of the surface at `point`, out of the solid; 0 when there is no contact
     float depth{}; ///< distance from the particle to `point`: positive inside, negative outside, 0 for no
                    ///< contact
-    std::int32_t face = kUnknownFace; ///< the face of the mesh that contains `point`, if the map knows it
+    std::int32_t face = kUnknownFace; ///< the face of the mesh that `point` lies on, where the map knows it
     bool inside = false;
     /// False where the mesh is open and `inside` was decided by the generalised winding number
     /// (exact_map.hpp). A distance map never marks its answers.
     bool certain = true;
-    Feature feature = Feature::Unknown; ///< the nearest part of the face
+    Feature feature = Feature::Unknown; ///< what of the face is nearest
 
     /// Inside, or outside within the margin.
     bool found() const { return inside || normal != Vec3f{}; }

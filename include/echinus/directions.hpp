@@ -14,15 +14,16 @@ enum class DirectionGrid : std::uint8_t {
     /// distance. Flat faces come out slightly bent; samples crowd at the poles.
     Spherical,
     /// The sides of an octahedron, cut into small triangles: no trigonometry, samples 5.2 : 1 in solid angle
-    /// where the spherical ones are 127 : 1. Interpolates the reciprocal of the L1 radius |x| + |y| + |z|,
+    /// where the spherical ones are 127 : 1. Interpolated is the reciprocal of the L1 radius |x| + |y| + |z|,
     /// which is affine over a flat face, so that flat faces stay flat.
     Octahedral,
-    /// The sides of a cube, evenly spaced in angle (a tangent-warped, or equiangular, cube map): the most
-    /// even grid, samples 1.4 : 1 in solid angle. Interpolates the distance bilinearly.
+    /// The sides of a cube, evenly spaced in angle (a tangent-warped, or equiangular, cube map): the evenest
+    /// grid, samples 1.4 : 1 in solid angle. Interpolated is the distance, bilinearly.
     Cube,
-    /// The spherical grid in a frame whose axes are scaled until the mesh's box about the centre is a cube,
-    /// so that the samples are even on an ellipsoid as long and as thin as the mesh. Interpolates the
-    /// distance in the scaled frame, which is constant over that ellipsoid.
+    /// The spherical grid after the axes of the mesh were scaled until its box about the centre is a cube, so
+    /// that an ellipsoid as long and as thin as the mesh gets its samples evenly. Interpolated is the
+    /// distance
+    /// in the scaled frame, which is constant over that ellipsoid.
     Ellipsoidal,
 };
 
@@ -37,10 +38,10 @@ enum class PoleAxis : std::uint8_t { X, Y, Z };
 /// Where the rays of a map start.
 enum class CentreChoice : std::uint8_t {
     BoundingSphere, ///< the centre of the smallest enclosing sphere: the smallest radius
-    /// The centre with the best expected map, by a search that costs about twenty coarse builds. The radius
-    /// grows with its distance from the sphere's centre. For an exact map: the fewest face tests per query;
-    /// any centre gives the same answers, but the lattice is coarser as the radius is larger. For a distance
-    /// map: the fewest wrong answers beside the surface.
+    /// The place that promises the better map, by a search that costs some twenty coarse builds. The radius
+    /// grows with its distance from the sphere's centre. Of an exact map: that with the fewest face tests per
+    /// query; any centre gives the same answers, and the lattice is coarser as the radius is larger. Of a
+    /// distance map: that with the fewest wrong answers beside the surface.
     Search,
 };
 

@@ -15,13 +15,13 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// The map that is always right. Directions around the centre are divided into cells; each cell stores the
-/// radial intervals in which surface lies, its *bands*, rounded outwards, with the faces that pass through.
-/// Between bands there is no surface, so a comparison gives the answer; in a band its faces are tested with
-/// exact arithmetic. The number of cells trades memory for speed and never changes an answer.
+/// The map that is always right. Directions around the centre are divided into cells; for each cell the
+/// radial intervals in which surface lies, its *bands*, are stored, rounded outwards, with the faces that
+/// pass through. Between bands there is no surface, so a comparison answers; in a band the band's faces are
+/// tested with exact arithmetic. The number of cells trades memory for speed and never touches an answer.
 ///
-/// "Exact" refers to the map's integer lattice, whose step is 1.9e-6 of the bounding radius: mesh and
-/// particle are snapped to it, and every sign is exact from there on (docs/accuracy.md).
+/// "Exact" is meant on the map's integer lattice, whose step is 1.9e-6 of the bounding radius: mesh and
+/// particle are snapped to it, and from there on no sign is rounded (docs/accuracy.md).
 ///
 /// All points are in the frame and unit of the mesh that the map was built from ("local").
 namespace echinus {
@@ -51,7 +51,7 @@ struct ExactMapStatistics {
     float expected_tests = 0;
     /// Share of the bounding sphere's volume where the answer is certain; 1 when the mesh is closed.
     float certain_share = 1;
-    /// Share of directions, by solid angle, with a place where it is not.
+    /// Share of directions, by solid angle, that hold a place where it is not.
     float uncertain_directions = 0;
 };
 
@@ -95,11 +95,11 @@ class ExactMap {
 // ---- Queries. noexcept, any number of threads; of a single particle, without allocation
 //
 // NaN or infinity in a point: outside, no contact. On the lattice a particle never lies on the surface: it
-// counts as displaced by (e, e^2, e^3), with e infinitely small (docs/accuracy.md). So the orientation of a
-// face decides whether a particle on it is inside or outside, and neighbouring closed parts that share a face
-// have neither gap nor overlap between them.
+// stands for itself moved by (e, e^2, e^3), with e infinitely small (docs/accuracy.md). So a particle on a
+// face is inside or outside by the way that the face is turned, and neighbouring closed parts that share a
+// face leave no gap and no overlap between them.
 
-/// An answer, and whether it is certain or only the generalised winding number's (see Contact::certain).
+/// An answer, and whether it is more than the generalised winding number's (see Contact::certain).
 struct Containment {
     bool inside = false;
     bool certain = true;
@@ -112,13 +112,12 @@ bool contains(const ExactMapView& map, Vec3f point_local) noexcept;
 Containment classify(const ExactMapView& map, Vec3f point_local) noexcept;
 
 /// Inside?, the nearest point of the whole surface, and its distance: the global minimum, by a branch and
-/// bound search. Where parts overlap or are nested, that point may be inside the solid: faces that do not
-/// bound it count as surface too.
+/// bound search. Where parts overlap or lie within each other, that may be a place inside the solid: faces
+/// that do not bound it count as surface too.
 ///
 /// The normal is the direction from the surface point to a particle outside, or from a particle inside to the
-/// surface point. For a particle within two lattice steps of the surface, where snapping would make this
-/// direction arbitrary, it is the angle-weighted pseudonormal of the faces that meet there (Baerentzen and
-/// Aanaes 2005).
+/// surface point. For a particle within two lattice steps of the surface, where snapping would leave this to
+/// chance, it is the angle-weighted pseudonormal of the faces that meet there (Baerentzen and Aanaes 2005).
 ///
 /// @param margin  particles outside get a contact too when the surface is at most this far; not negative,
 ///                NaN counts as 0
@@ -138,10 +137,10 @@ void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local, float margin,
                     std::span<Contact> contacts, unsigned thread_count = 1) noexcept;
 
-/// Where a particle's path first crosses the surface.
+/// Where a particle's way first meets the surface.
 struct SweepHit {
-    float fraction = 1; ///< of the segment: 0 at `from`, 1 at `to`; 1 without a crossing
-    Vec3f point;        ///< from + fraction (to - from), local; `to` without a crossing
+    float fraction = 1; ///< of the segment: 0 at `from`, 1 at `to`; 1 when nothing is met
+    Vec3f point;        ///< from + fraction (to - from), local; `to` when nothing is met
     Vec3f normal; ///< unit normal of the face, out of the solid; 0 when nothing is met. Of a face with solid
                   ///< on both sides, or on none, out of its front
     std::int32_t face = Contact::kUnknownFace; ///< the mesh's number
@@ -150,15 +149,15 @@ struct SweepHit {
     bool found() const { return face != Contact::kUnknownFace; }
 };
 
-/// The first crossing of the line segment between two points with the surface. Exact on the lattice and
-/// consistent with contains(): without a crossing, the winding number is the same at both ends. NaN or
-/// infinity in a point: no crossing.
+/// The first crossing of the straight way between two points with the surface. Exact on the lattice, and of
+/// one mind with contains(): when it finds nothing, the winding number is the same at both ends. NaN or
+/// infinity in a point: nothing is met.
 SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexcept;
 
-// ---- Deforming surfaces
+// ---- A surface that moves
 
-/// Builds maps of a surface with moving vertices and fixed triangles, such as an animated body, and reuses
-/// memory from one map to the next. Not thread-safe.
+/// Builds maps of a surface whose vertices move while its triangles stay, such as an animated body: memory is
+/// used again from one map to the next. Not for several threads at once.
 class ExactMapBuilder {
   public:
     /// @throws Error InvalidOptions as ExactMap::build() does
@@ -168,9 +167,9 @@ class ExactMapBuilder {
     ExactMapBuilder& operator=(ExactMapBuilder&&) noexcept;
 
     /// The map of the faces with these vertices: the same, bit for bit, as ExactMap::build() of them. Centre,
-    /// radius, lattice and resolution are recomputed. The builder keeps the map. A map that was copied from
-    /// it keeps its arrays; without a copy the next rebuild() writes into the same memory, and views of the
-    /// old map end.
+    /// radius, lattice and resolution are found anew.
+    /// The builder keeps the map. A map that was copied from it keeps its arrays; without a copy the next
+    /// rebuild() writes into the same memory, and views of the old map end.
     /// @throws Error as ExactMap::build() does; the builder then holds no map and can be used again
     const ExactMap& rebuild(std::span<const Vec3f> vertices);
 
@@ -181,11 +180,12 @@ class ExactMapBuilder {
 
 // ---- Looking at a map
 
-/// The map's mesh, on its lattice, without the dropped faces, which have no area there.
+/// The mesh as the map holds it, on its lattice: without the faces that were dropped, which have no area
+/// there.
 struct ExactMapSurface {
     TriangleMesh mesh; ///< local frame
-    /// [face_count] The length of the longest band list that contains each face: the faces that a query near
-    /// it may have to test; 0 for a face in none, as it is seen edge-on.
+    /// [face_count] The longest list of a band that each face is in, which is what a query near it may have
+    /// to test; 0 for one that is in none, being seen edge-on.
     std::vector<std::uint32_t> longest_list;
 };
 ExactMapSurface reconstruct_surface(const ExactMapView& map);

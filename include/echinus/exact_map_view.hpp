@@ -10,20 +10,20 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// The arrays of an exact map (exact_map.hpp), for code that inspects or stores one. Queries need nothing
+/// The arrays of an exact map (exact_map.hpp), for those who look into one or store one. Queries need nothing
 /// from this header.
 namespace echinus {
 
-/// Which points are inside, by the winding number of the surface around them. The rules differ only where
-/// parts of the surface overlap, are nested, inverted or doubled.
+/// Which places are inside, told by the winding number of the surface around them. The rules differ only
+/// where parts of the surface overlap, are nested, inverted or doubled.
 enum class InsideRule : std::uint8_t {
-    /// Every winding number except 0: the union of parts with equal orientation, or without overlap. Where
-    /// parts of opposite orientation overlap, their numbers cancel.
+    /// Every winding number but 0: the union of parts that are turned alike, or do not overlap. Where parts
+    /// that are turned oppositely overlap, their numbers cancel.
     Nonzero,
     Parity, ///< an odd winding number: a part within a part is a hole
 };
 
-/// Indices, in 16 bits where they fit. At most one of the two spans is used.
+/// Indices that are stored in 16 bits where they fit. At most one of the two spans is used.
 struct IndexArray {
     std::span<const std::uint16_t> narrow;
     std::span<const std::uint32_t> wide;
@@ -41,8 +41,8 @@ struct Band {
 };
 static_assert(sizeof(Band) == 8);
 
-/// Boxes around the faces of up to eight subtrees: a node of an eight-wide tree, so that all eight boxes are
-/// compared at once.
+/// Boxes around the faces of up to eight subtrees: a node of a tree that is eight wide, so that all eight
+/// boxes are compared at once.
 struct TreeNode {
     static constexpr std::size_t kWidth = 8;
     static constexpr std::uint32_t kLeaf = 0x8000'0000;
@@ -62,16 +62,16 @@ struct BorderEdge {
 };
 static_assert(sizeof(BorderEdge) == 12);
 
-/// A map as plain arrays, wherever they lie, the argument of all queries. Owns nothing, copies cheaply.
+/// A map as plain arrays, wherever they lie. Owns nothing, copies cheaply, and is what all queries take.
 /// validate() in src/map_file checks the invariants for untrusted bytes.
 struct ExactMapView {
     static constexpr int kBandUnit = 16;
     static constexpr int kBoxUnit = 32;
-    /// Replaces a winding number that is not constant in its gap, as the surface is not closed.
+    /// Stands for the winding number of a gap that is not constant, for want of a closed surface.
     static constexpr std::int16_t kUncertain = std::numeric_limits<std::int16_t>::min();
-    /// Replaces the winding number between the two halves of a split band, where there is no gap. The faces
-    /// of the lower half give a ray's crossings up to a particle in it, those of the upper half the crossings
-    /// beyond.
+    /// Stands for the winding number between the two halves of a long band that was split: there is no gap.
+    /// The faces of the lower half tell how a ray crosses the surface up to a particle in it, those of the
+    /// upper how it does beyond.
     static constexpr std::int16_t kSplit = kUncertain + 1;
 
     Vec3f centre;     ///< C, local
@@ -80,20 +80,20 @@ struct ExactMapView {
     InsideRule rule = InsideRule::Nonzero;
     std::span<const std::uint32_t> band_offsets; ///< [cell_count + 1]
     /// [cell_count] The upper limit of each cell's last band, 0 where there is none: most particles lie
-    /// beyond it and need no more.
+    /// beyond it, and need to know no more.
     std::span<const std::uint16_t> outer_limits;
-    /// [band_count + 1] by cell, then outwards; the last is a sentinel. A band may have no faces: it then
-    /// separates two gaps of an open surface.
+    /// [band_count + 1] by cell, then outwards; the last is a sentinel. A band without faces is possible: it
+    /// parts two gaps of an open surface.
     std::span<const Band> bands;
     /// [band_count] Winding number of the gap between a band and the one below it, or kUncertain or kSplit.
     /// Beyond a cell's last band it is 0.
     std::span<const std::int16_t> winding_below;
     IndexArray references; ///< [reference_count] faces
-    /// [reference_count] Which of the 16 parts of its cell a face touches, one bit each
-    /// (src/directions/octahedral_cells.hpp). A query tests only the faces of its own part.
+    /// [reference_count] Which of the 16 parts of its cell a face touches, a bit each
+    /// (src/directions/octahedral_cells.hpp). A query looks only at the faces of its own part.
     std::span<const std::uint16_t> reference_parts;
-    /// [vertex_count] on the lattice. Four bytes before the first are readable, so that a vector of four
-    /// numbers can load any vertex as its last three.
+    /// [vertex_count] on the lattice. Four bytes before the first can be read, so that a vector of four
+    /// numbers holds any vertex as its last three.
     std::span<const Vec3<std::int32_t>> vertices;
     IndexArray corners;                 ///< [3 face_count] vertices of each face
     IndexArray face_numbers;            ///< [face_count] the mesh's number of each face
@@ -102,7 +102,7 @@ struct ExactMapView {
 
     std::size_t cell_count() const { return std::size_t{8} * divisions * divisions; }
     std::size_t face_count() const { return face_numbers.size(); }
-    /// The bytes of all arrays that queries read, mesh and tree included.
+    /// All that a query reads, mesh and tree included.
     std::size_t byte_count() const {
         return band_offsets.size_bytes() + outer_limits.size_bytes() + bands.size_bytes() +
                winding_below.size_bytes() + references.size_bytes() + reference_parts.size_bytes() +

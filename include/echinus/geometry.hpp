@@ -9,8 +9,8 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Points, spheres, poses and views: the few value types that all other headers use. The frame is
-/// right-handed. Lengths are in the caller's unit.
+/// Points, spheres, poses and views: the few value types that every other header speaks.
+/// The frame is right-handed. Lengths are in the caller's unit.
 namespace echinus {
 
 template <typename T>
@@ -43,7 +43,7 @@ struct Vec3 {
 using Vec3f = Vec3<float>;
 using Vec3d = Vec3<double>;
 
-// The order of the additions below is part of the guarantee of equal bits on every machine.
+// The order of the additions below is part of the promise of equal bits on every machine.
 template <typename T>
 constexpr T dot(const Vec3<T>& a, const Vec3<T>& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -94,8 +94,8 @@ struct RigidTransform {
     }
 };
 
-/// A view of `size` values of type T that lie `stride` bytes apart, for instance the positions inside your
-/// own vertex structs. Owns nothing. A contiguous container of T converts to it.
+/// A view of `size` values of type T that lie `stride` bytes apart, for instance the positions inside
+/// somebody else's vertex struct. Owns nothing. A contiguous container of T converts to it.
 template <typename T>
 class StridedSpan {
     using Byte = std::conditional_t<std::is_const_v<T>, const std::byte, std::byte>;

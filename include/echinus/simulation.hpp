@@ -20,7 +20,7 @@ ECHINUS_EXPORT_BEGIN
 /// dynamics, XPBD (Macklin et al. 2016), in small steps (Macklin et al. 2019), where sticks are springs.
 namespace echinus {
 
-/// The purpose of a stick; each kind has its own stiffness.
+/// What a stick stands for; each kind has its own stiffness.
 enum class StickKind : std::uint8_t {
     Structural, ///< between neighbours of a row or column: keeps the cloth from stretching
     Shear,      ///< between neighbours along a diagonal: keeps its squares square
@@ -28,7 +28,7 @@ enum class StickKind : std::uint8_t {
 };
 inline constexpr std::size_t kStickKindCount = 3;
 
-/// Pulls or pushes two particles to the distance `rest_length`.
+/// Two particles that want to be `rest_length` apart.
 struct Stick {
     std::uint32_t a, b;
     float rest_length; ///< not negative
@@ -42,10 +42,10 @@ struct Deformable {
     /// substep_count.
     std::vector<Vec3f> previous_positions;
     /// [particle_count] 1 / mass, in any unit where only ratios count, which they do unless sticks have a
-    /// compliance; 0 for a pinned particle: it stays in place, and no collider moves it.
+    /// compliance; 0 for a particle that is pinned: it stays where it is, and no collider moves it.
     std::vector<float> inverse_masses;
     std::vector<Stick> sticks;   ///< in the order in which they are relaxed
-    std::vector<Triangle> faces; ///< for pictures only
+    std::vector<Triangle> faces; ///< for pictures; nothing is computed from them
 
     std::size_t particle_count() const { return positions.size(); }
 };
@@ -63,15 +63,15 @@ struct ClothOptions {
 
 /// A sheet with structural, shear and bending sticks; for 100 x 100 particles 59 002 of them. Particle (row,
 /// column) has index row * column_count + column; every face turns its front along the sheet's local z.
-/// Sticks are ordered row by row, with no common particle between successive sticks where possible, so that
-/// the processor can work on several at once.
+/// Sticks run through the sheet row by row, those that follow each other sharing no particle where that can
+/// be had: the processor then works on several at once.
 /// @throws Error InvalidOptions
 Deformable make_cloth(const ClothOptions& options);
 
-/// When a deformable counts as at rest: every particle has stayed within `distance` of one place for
+/// When a deformable counts as come to rest: every particle has stayed within `distance` of one place for
 /// `frame_count` frames in a row. Not a bound on speed: gravity alone adds 0.04 units per second in one frame
-/// of 1/240 s, and a particle that contacts and sticks move slightly back and forth trembles at such a speed
-/// forever.
+/// of 1/240 s, and a particle that contacts and sticks pass to and fro by a hair trembles at such a speed for
+/// ever.
 struct RestCondition {
     double distance = 0.001;        ///< units
     std::uint32_t frame_count = 60; ///< at least 1
@@ -82,15 +82,15 @@ enum class SolverKind : std::uint8_t {
     /// As sticks (Jakobsen 2001): each relaxation removes a share of the error. More relaxations per second
     /// make a stiffer cloth.
     Verlet,
-    /// As springs (XPBD: Macklin et al. 2016, equation 18): their extension under a force depends neither on
-    /// the number of relaxations, once there are enough, nor on the time step.
+    /// As springs (XPBD: Macklin et al. 2016, equation 18): what they give under a force does not depend on
+    /// the number of relaxations, once they are enough, nor on the time step.
     Xpbd,
 };
 
 struct SimulationOptions {
     SolverKind solver = SolverKind::Verlet;
     double time_step = 1.0 / 240; ///< seconds per frame. Half of it: twice the time, a quarter of the stretch
-    /// Relaxations per substep, of all sticks and then of all contacts: more take longer and stretch less.
+    /// Relaxations per substep, of all sticks and then of all contacts: more cost time and stretch less.
     std::uint32_t iteration_count = 10;
     /// Xpbd: steps of time_step / substep_count that a frame is made of. For the same number of relaxations
     /// in all, substeps of one each stretch least (Macklin et al. 2019). Verlet: 1.
@@ -109,22 +109,22 @@ struct SimulationOptions {
     double friction = 0.5;
     RestCondition rest{};
     /// false: no particle is rescued; those that cross the surface of an exact map are counted as lost and
-    /// left there. Only to demonstrate the effect of the proof at the end of a frame.
+    /// left there. Only for showing what the proof at the end of a frame is good for.
     bool keep_free = true;
     /// A particle farther than this from the middle of where the deformable began ends the simulation as
     /// diverged, units. 0: 10 000 times the deformable's extent at the start.
     double bound = 0;
 };
 
-/// Times and counts of step() since the simulation began. Times are not part of the result.
+/// What step() spent and counted since the simulation began. Time is not part of the result.
 struct SimulationProfile {
     double integration_seconds = 0;  ///< Verlet, moving the colliders, and the check for divergence and rest
     double constraint_seconds = 0;   ///< sticks
     double collision_seconds = 0;    ///< queries, push-out and friction
-    std::uint64_t query_count = 0;   ///< particle queries, counted per iteration and collider
+    std::uint64_t query_count = 0;   ///< particles asked, each iteration and collider counted
     std::uint64_t contact_count = 0; ///< of them, those that were pushed
-    /// Of them, those that needed the map; beside an exact map, a particle that has hardly moved is answered
-    /// from memory.
+    /// Of them, those that took the map to answer; beside an exact map a particle that has hardly moved is
+    /// answered from memory.
     std::uint64_t map_query_count = 0;
     /// Times that a particle was rescued: not free of all exact maps after the constraints of a frame, though
     /// it was once, and put back to a free place. docs/conventions.md defines free, rescued and lost.
@@ -168,8 +168,8 @@ class Simulation {
     /// - Pinned particles are left where they are.
     /// - A particle that begins inside is pushed to the nearest surface point, and kept outside once it is
     ///   outside.
-    /// - A particle that several exact maps squeeze until it finds no room goes to where it was last free of
-    ///   the first of them, or else of the next, and counts as lost to the others.
+    /// - A particle that several exact maps squeeze until it finds no room goes to where the first of them,
+    ///   or else the next, knows it to be free, and counts as lost to the others.
     /// - Far from the origin, where floats are too coarse for the room around the last free place, a particle
     ///   may find none, and counts as lost.
     /// @throws Error Diverged, naming the frame; afterwards only reading is allowed
@@ -183,7 +183,7 @@ class Simulation {
     std::uint32_t frame() const;
     /// Speed of the fastest particle in the last substep, units per second; infinite before the first.
     double largest_speed() const;
-    /// Has the rest condition held for the required number of frames?
+    /// Has the rest condition held for as many frames as it asks?
     bool at_rest() const;
     const SimulationProfile& profile() const;
     /// XXH64 of the bits of all positions and previous positions.
@@ -194,14 +194,15 @@ class Simulation {
     void set_collider_velocity(std::size_t collider_index, const Vec3d& linear, const Vec3d& angular);
 
     /// Gives a particle a velocity, units per second, from which the next frame goes on as from any other:
-    /// sticks pull at it and colliders stop it, so a hand that drags particles by setting their velocities
-    /// towards itself before each frame drags none of them into a model. A pinned particle stays.
+    /// sticks pull at it and colliders stop it, so a hand that drags particles, setting their velocities
+    /// before each frame to what would take them to it, drags none of them into a model. A pinned particle
+    /// stays.
     /// @pre particle < particle_count(), and the velocity is finite
     void set_particle_velocity(std::size_t particle, const Vec3d& velocity);
 
     /// Wind for the time of one frame: of the velocity with which air moves across a face, along its normal,
-    /// particles take on the share rate * time_step, each as the mean over the faces around it. Air slips
-    /// along faces. Call before each frame; allocates the first time.
+    /// particles take on the share rate * time_step, each as the mean over the faces around it. Along a face
+    /// air slips by. To be called before each frame; allocates the first time.
     /// @param wind  of the air, units per second; 0 is air at rest, which brakes
     /// @param rate  per second: the higher, the lighter the cloth. Not negative
     /// @pre both are finite

@@ -15,7 +15,7 @@
 
 namespace echinus {
 
-/// A cell's part of the bounding sphere, up to a common factor.
+/// A cell's part of the bounding sphere, but for a factor that all cells share.
 struct CellVolume {
     double uncertain, whole;
 };
@@ -29,7 +29,7 @@ struct BandList {
     Arena<std::uint16_t> reference_parts;
     Arena<CellVolume> volumes; ///< [cell_count] of an open surface; none of a closed one
 
-    /// Empties the list and reserves the usual memory for this many intervals and cells.
+    /// Empties the list, with room for what so many intervals and cells usually need.
     void clear(std::size_t interval_count, std::size_t cell_count);
 };
 
@@ -51,7 +51,7 @@ class IntervalSorter {
 class BandBuilder {
   public:
     /// @param gap_states  of an open surface; none when it is closed
-    /// @param result      receives the bands at its end
+    /// @param result      to which the bands are appended
     BandBuilder(const OctahedralCells& cells, const GapStates* gap_states, BandList& result)
         : cells_(cells), gap_states_(gap_states), result_(result) {}
 

@@ -28,11 +28,11 @@ struct Bands {
 /// Faces of the band that the average reference belongs to: those that a query near the surface meets.
 double expected_tests(const Bands& bands);
 
-/// Finds the bands of every cell; keeps its memory for the next time.
+/// Finds the bands of every cell; keeps the memory that this takes for the next time.
 class BandFinder {
   public:
-    /// Finds the bands of every cell and the winding numbers between them; reuses the memory of `result`.
-    /// Does not depend on the number of threads.
+    /// Finds the bands of every cell and the winding numbers between them, and puts them where `result` has
+    /// memory from another time. Does not depend on the number of threads.
     /// @param border  of the surface; empty when it is closed
     /// @throws Error InvalidMesh when winding numbers or references are too large to be stored
     void find(const LatticeMesh& lattice, std::span<const BorderEdge> border, const OctahedralCells& cells,

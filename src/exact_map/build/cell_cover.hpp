@@ -10,10 +10,10 @@
 
 namespace echinus {
 
-/// Whether a face meets the ray through a cell's middle.
+/// What a face does to the ray through a cell's middle.
 enum class MiddleRay : std::uint8_t {
     Misses,
-    Meets,  ///< the ray lies within the face's directions; meaningless for a face seen edge-on
+    Meets,  ///< meets its directions, that is; of a face seen edge-on nothing is said
     Unsure, ///< rounding might decide
 };
 

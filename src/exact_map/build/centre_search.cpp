@@ -7,7 +7,7 @@ namespace echinus {
 
 namespace {
 
-/// The length of the average reference's list: the faces that a particle near the surface meets.
+/// Faces on the list of the average reference, which is what a particle near the surface meets.
 double cost_of(const LatticeMesh& lattice, unsigned thread_count, BandFinder& finder) {
     constexpr std::uint32_t kDivisions = 12; // cells much smaller would cost much and rank centres alike
     Bands bands;

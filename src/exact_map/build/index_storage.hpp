@@ -9,7 +9,7 @@
 
 namespace echinus {
 
-/// The storage of an IndexArray. Keeps its memory between uses.
+/// What an IndexArray looks at. Keeps its memory.
 class IndexStorage {
   public:
     /// Makes room for so many numbers, all below `bound`; what they are is arbitrary until set.
