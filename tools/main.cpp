@@ -55,7 +55,9 @@ void parse_and_run(int argc, char** argv) {
     add_info_command(command);
     add_build_command(command);
     add_query_command(command);
+#ifdef ECHINUS_WITH_RIVALS
     add_compare_command(command);
+#endif
     add_simulate_command(command);
     add_render_command(command);
     command.footer("A file named - is standard input or standard output.\n"
