@@ -1,3 +1,5 @@
+#include "support/crowded_meshes.hpp"
+
 #include <echinus/error.hpp>
 #include <echinus/exact_map.hpp>
 
@@ -54,6 +56,16 @@ TEST(ExactMapBuild, GivesTheSameBytesForEveryNumberOfThreads) {
         const ExactMap one = ExactMap::build(mesh, {.thread_count = 1});
         for (unsigned thread_count : {2U, 3U, 0U})
             EXPECT_TRUE(same(one, ExactMap::build(mesh, {.thread_count = thread_count})));
+    }
+}
+
+TEST(ExactMapBuild, GivesTheSameBytesForEveryNumberOfThreadsWhereMapsAreGivenUpOnTheWay) {
+    const TriangleMesh fins = test::make_fins(400);
+    for (std::size_t budget : {0U, 3'000'000U}) {
+        const ExactMap one = ExactMap::build(fins, {.byte_budget = budget, .thread_count = 1});
+        for (unsigned thread_count : {2U, 3U, 0U})
+            EXPECT_TRUE(
+                same(one, ExactMap::build(fins, {.byte_budget = budget, .thread_count = thread_count})));
     }
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <random>
 #include <set>
+#include <tuple>
 
 using namespace echinus;
 
@@ -66,7 +67,7 @@ TEST(CellCover, HoldsEveryPointOfTheFace) {
         for (LatticePoint& corner : face) corner = (middle + random.point(extent)) * scale;
         const OctahedralCells cells(static_cast<std::uint32_t>(1 + n % 32));
         std::vector<CellCover> covers;
-        cover_cells(cells, face, covers);
+        cover_cells(cells, {}, face, covers);
         for (int k = 0; k <= 16; ++k)
             for (int l = 0; l + k <= 16; ++l) {
                 // Weights in sixteenths, so that the point lies on the lattice and on the face, its edges and
@@ -95,9 +96,34 @@ TEST(CellCover, ListsAFaceOnceInACell) {
         for (LatticePoint& corner : face)
             corner = middle + random.point(n % 2 == 0 ? 20 : kLatticeExtent / 4);
         std::vector<CellCover> covers;
-        cover_cells(OctahedralCells(9), face, covers);
+        cover_cells(OctahedralCells(9), {}, face, covers);
         std::set<std::uint32_t> listed;
         for (const CellCover& cover : covers) ASSERT_TRUE(listed.insert(cover.cell).second) << "face " << n;
+    }
+}
+
+TEST(CellCover, OfAnOctantIsThatPartOfTheWhole) {
+    RandomLattice random(10);
+    for (int n = 0; n < 300; ++n) {
+        const LatticePoint middle = n % 3 == 0 ? LatticePoint{} : random.point(kLatticeExtent / 4);
+        std::array<LatticePoint, 3> face;
+        for (LatticePoint& corner : face)
+            corner = middle + random.point(n % 2 == 0 ? 20 : kLatticeExtent / 4);
+        const OctahedralCells cells(5);
+        std::vector<CellCover> all, one_by_one;
+        cover_cells(cells, {}, face, all);
+        for (std::uint32_t octant = 0; octant < 8; ++octant) {
+            const std::size_t before = one_by_one.size();
+            cover_cells(cells, {octant, octant + 1}, face, one_by_one);
+            for (std::size_t i = before; i < one_by_one.size(); ++i)
+                ASSERT_EQ(cells.triangle(one_by_one[i].cell).octant, octant);
+            const bool met = (octants_met(face) & Octants{octant, octant + 1}.bits()) != 0;
+            ASSERT_TRUE(met || one_by_one.size() == before);
+        }
+        const auto key = [](const CellCover& c) {
+            return std::tuple(c.cell, c.parts, c.middle, c.nearest, c.farthest);
+        };
+        ASSERT_TRUE(std::ranges::equal(all, one_by_one, {}, key, key));
     }
 }
 
@@ -113,7 +139,7 @@ TEST(CellCover, DecidesWhetherTheRayThroughTheMiddleMeetsTheFace) {
         if (cone.edge_on()) continue;
         const OctahedralCells cells(static_cast<std::uint32_t>(1 + n % 24));
         std::vector<CellCover> covers;
-        cover_cells(cells, face, covers);
+        cover_cells(cells, {}, face, covers);
         std::set<std::uint32_t> said_to_meet;
         for (const CellCover& cover : covers) {
             const bool meets = cone.meets(cells.middle(cover.cell));

@@ -4,6 +4,7 @@
 #include "oracle/expect_right_map.hpp"
 #include "oracle/nasty_meshes.hpp"
 #include "oracle/test_meshes.hpp"
+#include "support/crowded_meshes.hpp"
 
 using namespace echinus;
 
@@ -11,6 +12,21 @@ TEST(ExactMapOracle, IsRightAboutNastyMeshes) {
     for (const std::string& name : test::nasty_mesh_names())
         if (name != "million" && name != "rings") // too slow for a test
             test::expect_right_map(name, test::make_nasty_mesh(name), {}, 20'000);
+}
+
+TEST(ExactMapOracle, IsRightWhereTheDefaultIsLimited) {
+    for (const auto& [name, mesh] : test::crowded_meshes())
+        if (name != "triangles") // which are open
+            test::expect_right_map(name, mesh, {}, 4'000);
+}
+
+TEST(ExactMapOracle, KeepsWithinTheDefaultLimitOnNastyMeshes) {
+    for (const std::string& name : test::nasty_mesh_names()) {
+        if (name == "million") continue;
+        const TriangleMesh mesh = test::make_nasty_mesh(name);
+        const ExactMap map = ExactMap::build(mesh);
+        EXPECT_LE(map.view().byte_count(), 512 * mesh.faces.size() + 65'536) << name;
+    }
 }
 
 TEST(ExactMapOracle, IsRightAtEveryResolution) {

@@ -1,36 +1,13 @@
-// step() allocates nothing: counted by this program's own operator new.
+// step() allocates nothing.
 
+#include "support/allocations.hpp"
 #include "support/custom_maps.hpp"
 
 #include <echinus/simulation.hpp>
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
 #include <memory>
-#include <new>
-
-namespace {
-
-std::atomic<std::size_t> allocation_count{0};
-
-} // namespace
-
-// Under a sanitizer, which has an operator new of its own, GCC does not see that these two belong together.
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
-
-void* operator new(std::size_t size) {
-    ++allocation_count;
-    if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-    throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
-}
 
 using namespace echinus;
 
@@ -46,9 +23,9 @@ TEST(Step, AllocatesNothingBesideAnyKindOfMap) {
          {.map = DistanceMap::build(make_box({1, 1, 1})), .pose = {Rotation{}, {3, 0, 0}}},
          {.map = std::make_shared<test::AnalyticBall>(0.3F), .pose = {Rotation{}, {0.3, 0.2, -0.5}}}},
         {.thickness = 0.01});
-    const std::size_t before = allocation_count;
+    const std::size_t before = test::allocation_count();
     EXPECT_GT(before, 0u);
     for (int i = 0; i < 100; ++i) simulation.step();
-    EXPECT_EQ(allocation_count, before);
+    EXPECT_EQ(test::allocation_count(), before);
     EXPECT_GT(simulation.profile().rescued_count, 0u);
 }

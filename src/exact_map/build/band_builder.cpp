@@ -31,20 +31,23 @@ double volume(std::uint16_t lower, std::uint16_t upper, double whole) {
 
 } // namespace
 
-void BandList::clear(std::size_t interval_count, std::size_t cell_count) {
+void BandList::clear() {
+    band_counts.clear();
+    bands.clear();
+    winding_below.clear();
+    references.clear();
+    reference_parts.clear();
+    volumes.clear();
+}
+
+void BandList::make_room(std::size_t interval_count, std::size_t cell_count) {
     const std::size_t reference_count = interval_count + interval_count / 2; // some are listed twice
     const std::size_t band_count = 4 * cell_count;
-    band_counts.clear();
     band_counts.room_for(cell_count);
-    bands.clear();
     bands.room_for(band_count);
-    winding_below.clear();
     winding_below.room_for(band_count);
-    references.clear();
     references.room_for(reference_count);
-    reference_parts.clear();
     reference_parts.room_for(reference_count);
-    volumes.clear();
 }
 
 std::span<const Interval> IntervalSorter::sorted(std::span<Interval> intervals) {

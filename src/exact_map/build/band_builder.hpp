@@ -29,8 +29,9 @@ struct BandList {
     Arena<std::uint16_t> reference_parts;
     Arena<CellVolume> volumes; ///< [cell_count] of an open surface; none of a closed one
 
-    /// Empties the list, with room for what so many intervals and cells usually need.
-    void clear(std::size_t interval_count, std::size_t cell_count);
+    void clear();
+    /// Makes room for what so many more intervals and cells usually need.
+    void make_room(std::size_t interval_count, std::size_t cell_count);
 };
 
 /// Sorts the intervals of a cell.

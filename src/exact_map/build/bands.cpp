@@ -8,50 +8,98 @@
 
 namespace echinus {
 
-void BandFinder::find(const LatticeMesh& lattice, std::span<const BorderEdge> border,
-                      const OctahedralCells& cells, unsigned thread_count, Bands& result) {
-    intervals_.find(lattice, cells, thread_count);
-    find_blocks(border, lattice, cells, thread_count);
+namespace {
+
+constexpr std::size_t kBytesPerBand = sizeof(Band) + sizeof(std::int16_t);
+constexpr std::size_t kBytesPerCell = sizeof(std::uint32_t) + sizeof(std::uint16_t);
+/// The last offset, and the sentinel that ends the bands.
+constexpr std::size_t kBytesOfEnds = sizeof(std::uint32_t) + sizeof(Band);
+
+/// With the parts that it touches.
+std::size_t bytes_per_reference(std::size_t face_count) {
+    return IndexStorage::bytes_per_number(face_count) + sizeof(std::uint16_t);
+}
+
+/// Intervals take several times the memory of the references that they become. Where there may be many, the
+/// octants are therefore dealt with one after the other, so that the intervals of one are in memory at a
+/// time; where there are few, it is not worth starting the threads eight times.
+/// @param most_intervals  that may be found, all octants together
+std::uint32_t octants_at_a_time(std::size_t most_intervals, std::size_t face_count, std::size_t cell_count) {
+    constexpr std::size_t kMany = std::size_t{1} << 21;
+    constexpr std::size_t kCellsPerFace = 16; // one in so many, of long faces that lie close together
+    return std::min(most_intervals, face_count * cell_count / kCellsPerFace) > kMany ? 1 : 8;
+}
+
+} // namespace
+
+bool BandFinder::find(const LatticeMesh& lattice, std::span<const BorderEdge> border,
+                      const BandDetail& detail, unsigned thread_count, std::size_t byte_limit,
+                      Bands& result) {
+    const OctahedralCells& cells = detail.cells;
+    const std::size_t bytes_of_cells = cells.count() * kBytesPerCell + kBytesOfEnds;
+    if (bytes_of_cells > byte_limit) return false;
+    const std::size_t reference_bytes = bytes_per_reference(lattice.faces.size());
+    LimitedCount byte_count(byte_limit - bytes_of_cells);
+    const std::size_t most_intervals =
+        std::min((byte_limit - bytes_of_cells) / reference_bytes, kMostIntervals);
+    LimitedCount interval_count(most_intervals);
+    std::optional<GapStates> gap_states;
+    if (!border.empty()) gap_states.emplace(lattice, border, cells, detail.gap_halvings);
+    lists_.resize(worker_count(thread_count));
+    for (BandList& list : lists_) list.clear();
+    blocks_.clear();
+    const std::uint32_t step = octants_at_a_time(most_intervals, lattice.faces.size(), cells.count());
+    for (std::uint32_t octant = 0; octant < 8; octant += step) {
+        if (!intervals_.find(lattice, cells, {octant, octant + step}, thread_count, interval_count))
+            return false;
+        find_blocks(gap_states ? &*gap_states : nullptr, cells, thread_count, reference_bytes, byte_count);
+        if (byte_count.exceeded()) return false;
+    }
+    std::sort(blocks_.begin(), blocks_.end(),
+              [](const Block& a, const Block& b) { return a.first_cell < b.first_cell; });
     make_room(cells.count(), lattice.faces.size(), result);
     parallel_for(blocks_.size(), thread_count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t block = begin; block < end; ++block) copy(blocks_[block], result);
     });
+    return true;
 }
 
-void BandFinder::find_blocks(std::span<const BorderEdge> border, const LatticeMesh& lattice,
-                             const OctahedralCells& cells, unsigned thread_count) {
-    std::optional<GapStates> gap_states;
-    if (!border.empty()) gap_states.emplace(lattice, border, cells);
-    lists_.resize(worker_count(thread_count));
+/// Of the cells whose intervals are there.
+void BandFinder::find_blocks(const GapStates* gap_states, const OctahedralCells& cells, unsigned thread_count,
+                             std::size_t bytes_per_reference, LimitedCount& byte_count) {
+    const std::size_t cell_count = intervals_.cell_count();
     for (BandList& list : lists_)
-        list.clear(intervals_.count() / lists_.size(), cells.count() / lists_.size());
-    blocks_.clear();
+        list.make_room(intervals_.count() / lists_.size(), cell_count / lists_.size());
     std::mutex mutex;
-    parallel_for_workers(cells.count(), thread_count,
-                         [&](std::size_t worker, std::size_t begin, std::size_t end) {
-                             BandList& list = lists_[worker];
-                             Block block{worker,
-                                         begin,
-                                         end - begin,
-                                         list.band_counts.size(),
-                                         list.bands.size(),
-                                         0,
-                                         list.references.size(),
-                                         0,
-                                         list.volumes.size(),
-                                         0,
-                                         0};
-                             BandBuilder builder(cells, gap_states ? &*gap_states : nullptr, list);
-                             for (std::size_t cell = begin; cell < end; ++cell)
-                                 builder.add_cell(static_cast<std::uint32_t>(cell),
-                                                  intervals_.of(static_cast<std::uint32_t>(cell)));
-                             block.band_count = list.bands.size() - block.first_band;
-                             block.reference_count = list.references.size() - block.first_reference;
-                             const std::lock_guard lock(mutex);
-                             blocks_.push_back(block);
-                         });
-    std::sort(blocks_.begin(), blocks_.end(),
-              [](const Block& a, const Block& b) { return a.first_cell < b.first_cell; });
+    parallel_for_workers(
+        cell_count, thread_count, [&](std::size_t worker, std::size_t begin, std::size_t end) {
+            BandList& list = lists_[worker];
+            Block block{worker,
+                        intervals_.first_cell() + begin,
+                        end - begin,
+                        list.band_counts.size(),
+                        list.bands.size(),
+                        0,
+                        list.references.size(),
+                        0,
+                        list.volumes.size(),
+                        0,
+                        0};
+            CountShare bytes(byte_count);
+            BandBuilder builder(cells, gap_states, list);
+            for (std::size_t i = 0; i < block.cell_count; ++i) {
+                const auto cell = static_cast<std::uint32_t>(block.first_cell + i);
+                const std::size_t bands = list.bands.size(), references = list.references.size();
+                builder.add_cell(cell, intervals_.of(cell));
+                if (!bytes.add((list.bands.size() - bands) * kBytesPerBand +
+                               (list.references.size() - references) * bytes_per_reference))
+                    return;
+            }
+            block.band_count = list.bands.size() - block.first_band;
+            block.reference_count = list.references.size() - block.first_reference;
+            const std::lock_guard lock(mutex);
+            blocks_.push_back(block);
+        });
 }
 
 void BandFinder::make_room(std::size_t cell_count, std::size_t face_count, Bands& result) {
@@ -98,6 +146,12 @@ void BandFinder::copy(const Block& block, Bands& result) const {
     if (result.volumes.empty()) return;
     std::copy_n(list.volumes.data() + block.first_volume, block.cell_count,
                 result.volumes.data() + block.first_cell);
+}
+
+std::size_t byte_count(const Bands& bands) {
+    return kBytesOfEnds + (bands.offsets.size() - 1) * kBytesPerCell +
+           (bands.bands.size() - 1) * kBytesPerBand + bands.references.view().size_bytes() +
+           bands.reference_parts.size() * sizeof(std::uint16_t);
 }
 
 double expected_tests(const Bands& bands) {

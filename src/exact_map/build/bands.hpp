@@ -16,6 +16,7 @@
 
 namespace echinus {
 
+/// The bands of all cells, as in ExactMapView.
 struct Bands {
     Arena<std::uint32_t> offsets; ///< [cell_count + 1]
     Arena<Band> bands;            ///< [band_count + 1]
@@ -25,18 +26,34 @@ struct Bands {
     Arena<CellVolume> volumes;         ///< [cell_count] of an open surface; none of a closed one
 };
 
+/// What a map spends on bands, outer limits included.
+std::size_t byte_count(const Bands& bands);
+
 /// Faces of the band that the average reference belongs to: those that a query near the surface meets.
 double expected_tests(const Bands& bands);
+
+/// How finely bands tell directions and gaps apart.
+struct BandDetail {
+    OctahedralCells cells;
+    int gap_halvings = GapStates::kMostHalvings; ///< that an open surface's gaps may take
+};
 
 /// Finds the bands of every cell; keeps the memory that this takes for the next time.
 class BandFinder {
   public:
+    /// Faces pass through no more cells, counted together, whatever the limit.
+    static constexpr std::size_t kMostIntervals = std::size_t{1} << 28;
+
     /// Finds the bands of every cell and the winding numbers between them, and puts them where `result` has
     /// memory from another time. Does not depend on the number of threads.
-    /// @param border  of the surface; empty when it is closed
-    /// @throws Error InvalidMesh when winding numbers or references are too large to be stored
-    void find(const LatticeMesh& lattice, std::span<const BorderEdge> border, const OctahedralCells& cells,
-              unsigned thread_count, Bands& result);
+    /// @param border      of the surface; empty when it is closed
+    /// @param byte_limit  on byte_count(). It holds for edge-on faces too, as if they had references. What
+    ///                    exceeds it is given up as soon as that shows, so that time and memory are bounded
+    ///                    by the limit, the faces and the cells
+    /// @returns  false when the limit was exceeded; `result` is as it was then
+    /// @throws Error InvalidMesh when a winding number is too large to be stored
+    bool find(const LatticeMesh& lattice, std::span<const BorderEdge> border, const BandDetail& detail,
+              unsigned thread_count, std::size_t byte_limit, Bands& result);
 
   private:
     /// Bands of consecutive cells in a worker's list, and where they go.
@@ -48,8 +65,8 @@ class BandFinder {
         std::size_t to_band, to_reference;
     };
 
-    void find_blocks(std::span<const BorderEdge> border, const LatticeMesh& lattice,
-                     const OctahedralCells& cells, unsigned thread_count);
+    void find_blocks(const GapStates* gap_states, const OctahedralCells& cells, unsigned thread_count,
+                     std::size_t bytes_per_reference, LimitedCount& byte_count);
     void make_room(std::size_t cell_count, std::size_t face_count, Bands& result);
     void copy(const Block& block, Bands& result) const;
 

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -25,6 +26,8 @@
 namespace echinus {
 
 namespace {
+
+constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 
 void require_sound(const ExactMapOptions& options) {
     if (options.divisions > ExactMapOptions::kMaxDivisions)
@@ -75,6 +78,17 @@ ExactMapView view_of(const OwnedArrays& arrays, const LatticeMesh& lattice, std:
     return view;
 }
 
+/// All of ExactMapView::byte_count() but what the bands take.
+std::size_t byte_count_of_surface(const OwnedArrays& arrays) {
+    ExactMapView view;
+    view.vertices = std::span(arrays.vertices).subspan(1);
+    view.corners = arrays.corners.view();
+    view.face_numbers = arrays.face_numbers.view();
+    view.nodes = arrays.nodes;
+    view.border = arrays.border;
+    return view.byte_count();
+}
+
 ExactMapStatistics statistics_of(std::size_t face_count, std::size_t dropped_faces, const Bands& bands) {
     ExactMapStatistics statistics;
     statistics.face_count = static_cast<std::uint32_t>(face_count);
@@ -113,7 +127,9 @@ class MapMaker {
     void add_collapsed_faces();
     void order_faces();
     void set_surface(std::span<const Vec3f> vertices);
+    bool find_bands(std::uint32_t divisions, std::size_t byte_limit);
     std::uint32_t set_bands();
+    std::uint32_t set_bands_within(const ByteRange& bytes, std::uint32_t most);
 
     std::span<const Triangle> faces_;
     ExactMapOptions options_;
@@ -198,24 +214,48 @@ void MapMaker::set_surface(std::span<const Vec3f> vertices) {
     for (const LatticePoint& vertex : lattice_.vertices) arrays_->vertices.emplace_back(vertex);
 }
 
+/// @returns  false when the bands alone exceed the limit; those of the arrays stay as they are then
+bool MapMaker::find_bands(std::uint32_t divisions, std::size_t byte_limit) {
+    BandDetail detail{OctahedralCells(divisions)};
+    // The last way out must be a small map, as default_byte_limit() says.
+    if (divisions == 1 && options_.divisions == 0) detail.gap_halvings = 1;
+    return finder_.find(lattice_, arrays_->border, detail, options_.thread_count, byte_limit, arrays_->bands);
+}
+
 /// Finds the bands for the wished number of cells. Returns the divisions.
 std::uint32_t MapMaker::set_bands() {
     const bool open = !arrays_->border.empty();
-    const auto find = [&](std::uint32_t candidate) {
-        finder_.find(lattice_, arrays_->border, OctahedralCells(candidate), options_.thread_count,
-                     arrays_->bands);
-        set_outer_limits(arrays_->bands.offsets, arrays_->bands.bands, arrays_->outer_limits);
-    };
-    std::uint32_t divisions = options_.divisions;
     if (options_.byte_budget != 0)
-        divisions = divisions_within(options_.byte_budget, faces_.size(), open, [&](std::uint32_t candidate) {
-            find(candidate);
-            return view_of(*arrays_, lattice_, candidate, options_.rule).byte_count();
+        return set_bands_within({options_.byte_budget, options_.byte_budget},
+                                most_useful_divisions(faces_.size(), open));
+    if (options_.divisions != 0) {
+        if (find_bands(options_.divisions, kNoLimit)) return options_.divisions;
+        throw Error(ErrorCode::InvalidMesh,
+                    "the faces pass through cells more than " + std::to_string(BandFinder::kMostIntervals) +
+                        " times, which is more than a map can hold; take fewer cells, or drop faces that lie "
+                        "on each other");
+    }
+    const std::size_t limit = default_byte_limit(faces_.size(), lattice_.vertices.size());
+    const std::uint32_t divisions = default_divisions(faces_.size(), open);
+    if (find_bands(divisions, limit - byte_count_of_surface(*arrays_))) return divisions;
+    return set_bands_within({limit / 4 * 3, limit}, divisions - 1); // the last quarter is not worth the time
+}
+
+/// @throws Error InvalidOptions when there are no divisions that few bytes are enough for
+std::uint32_t MapMaker::set_bands_within(const ByteRange& bytes, std::uint32_t most) {
+    const std::size_t for_surface = byte_count_of_surface(*arrays_);
+    const auto for_bands = [&](std::size_t count) { return count - std::min(count, for_surface); };
+    const ByteRange range{for_bands(bytes.enough), for_bands(bytes.limit)};
+    const auto divisions =
+        finest_within(range, most, [&](std::uint32_t candidate) -> std::optional<std::size_t> {
+            if (!find_bands(candidate, range.limit)) return std::nullopt;
+            return byte_count(arrays_->bands);
         });
-    else if (divisions == 0)
-        divisions = default_divisions(faces_.size(), open);
-    find(divisions);
-    return divisions;
+    if (divisions) return *divisions;
+    find_bands(1, kNoLimit);
+    throw Error(ErrorCode::InvalidOptions, "the budget of " + std::to_string(bytes.limit) +
+                                               " bytes is less than the coarsest map needs: " +
+                                               std::to_string(for_surface + byte_count(arrays_->bands)));
 }
 
 ExactMap MapMaker::make(std::span<const Vec3f> vertices) {
@@ -223,6 +263,7 @@ ExactMap MapMaker::make(std::span<const Vec3f> vertices) {
     snap(vertices);
     set_surface(vertices);
     const std::uint32_t divisions = set_bands();
+    set_outer_limits(arrays_->bands.offsets, arrays_->bands.bands, arrays_->outer_limits);
     return {view_of(*arrays_, lattice_, divisions, options_.rule),
             statistics_of(faces_.size(), dropped_faces_, arrays_->bands), source_hash_, arrays_};
 }

@@ -431,19 +431,29 @@ Vec3d mirrored(const Vec3d& v, std::uint32_t octant) {
 
 } // namespace
 
-void cover_cells(const OctahedralCells& cells, const std::array<LatticePoint, 3>& face,
-                 std::vector<CellCover>& covers) {
-    const LatticePoint normal = cross(face[1] - face[0], face[2] - face[0]);
-    const auto height = static_cast<double>(dot(normal, face[0]));
+std::uint32_t octants_met(const std::array<LatticePoint, 3>& face) {
+    const std::uint32_t positive = reached_sides(face);
+    const std::uint32_t negative = reached_sides({-face[0], -face[1], -face[2]});
+    std::uint32_t met = 0;
+    for (std::uint32_t octant = 0; octant < 8; ++octant)
+        met |= ((octant ^ negative) & ~(positive & negative)) == 0 ? 1U << octant : 0U;
+    return met;
+}
+
+void cover_cells(const OctahedralCells& cells, const Octants& octants,
+                 const std::array<LatticePoint, 3>& face, std::vector<CellCover>& covers) {
     const std::uint32_t positive = reached_sides(face);
     const std::uint32_t negative = reached_sides({-face[0], -face[1], -face[2]});
     const std::uint32_t both = positive & negative;
+    if (both == 0 && !octants.hold(negative)) return;
+    const LatticePoint normal = cross(face[1] - face[0], face[2] - face[0]);
+    const auto height = static_cast<double>(dot(normal, face[0]));
     if (both == 0) { // as nearly always
         Polygon polygon;
         for (const LatticePoint& corner : face) polygon.add(mirrored(Vec3d(corner), negative));
         return cover_octant(cells, negative, polygon, {mirrored(Vec3d(normal), negative), height}, covers);
     }
-    for (std::uint32_t octant = 0; octant < 8; ++octant) {
+    for (std::uint32_t octant = octants.first; octant < octants.last; ++octant) {
         if (((octant ^ negative) & ~both) != 0) continue;
         Polygon polygon;
         for (const LatticePoint& corner : face) polygon.add(mirrored(Vec3d(corner), octant));

@@ -25,15 +25,29 @@ struct CellCover {
     double nearest, farthest; ///< range of the L1 norm, in lattice steps
 };
 
-/// Appends every cell whose closed cone the face touches. Cells, parts and ranges are wider than the face by
-/// far more than this code rounds, so that none is missed; one too many costs a reference and no answer.
+/// Neighbouring octants of OctahedralCells, whose cells are numbered without a gap.
+struct Octants {
+    std::uint32_t first = 0, last = 8; ///< half open
+
+    std::uint32_t count() const { return last - first; }
+    bool hold(std::uint32_t octant) const { return octant >= first && octant < last; }
+    /// A bit for each, as from octants_met().
+    std::uint32_t bits() const { return (1U << last) - (1U << first); }
+};
+
+/// The octants that a face may touch, a bit each.
+std::uint32_t octants_met(const std::array<LatticePoint, 3>& face);
+
+/// Appends every cell of these octants whose closed cone the face touches. Cells, parts and ranges are wider
+/// than the face by far more than this code rounds, so that none is missed; one too many costs a reference
+/// and no answer.
 ///
 /// The face is cut at the octants' walls. In an octant its directions are a convex polygon of the plane
 /// x + y + z = 1, and a cell or part is touched unless a side of it or of the polygon lies between them (the
 /// separating axis theorem). So the polygon touches a run of neighbours in each row of parts, and is drawn
 /// row by row, as a rasteriser would. Over that plane the reciprocal of the L1 norm is an affine function, so
 /// its extremes lie at the corners of the parts touched.
-void cover_cells(const OctahedralCells& cells, const std::array<LatticePoint, 3>& face,
-                 std::vector<CellCover>& covers);
+void cover_cells(const OctahedralCells& cells, const Octants& octants,
+                 const std::array<LatticePoint, 3>& face, std::vector<CellCover>& covers);
 
 } // namespace echinus

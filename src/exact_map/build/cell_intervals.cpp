@@ -4,25 +4,12 @@
 #include "exact_map/layout.hpp"
 #include "geometry/parallel.hpp"
 
-#include <echinus/error.hpp>
-
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <string>
 
 namespace echinus {
 
 namespace {
-
-/// Asked while faces are covered, before their number fills the memory.
-void require_manageable(std::size_t total) {
-    constexpr std::size_t kMost = std::size_t{1} << 28; // 32 bytes each, for the moment
-    if (total <= kMost) return;
-    throw Error(ErrorCode::InvalidMesh, "the faces pass through cells more than " + std::to_string(kMost) +
-                                            " times, which is more than a map can hold; take fewer cells, or "
-                                            "drop faces that lie on each other");
-}
 
 /// In band units, widened to whole ones.
 std::uint64_t range_of(const CellCover& cover) {
@@ -53,72 +40,71 @@ struct CoveredFace {
     }
 };
 
-/// Counts over all threads, but seldom.
-class CoverCount {
-  public:
-    explicit CoverCount(std::atomic<std::size_t>& total) : total_(total) {}
-
-    void add(std::size_t count) {
-        constexpr std::size_t kPortion = 1U << 16;
-        mine_ += count;
-        if (mine_ < kPortion) return;
-        require_manageable(total_ += mine_);
-        mine_ = 0;
-    }
-
-  private:
-    std::atomic<std::size_t>& total_;
-    std::size_t mine_ = 0;
-};
-
 } // namespace
 
-void CellIntervals::find(const LatticeMesh& lattice, const OctahedralCells& cells, unsigned thread_count) {
-    cover_all_faces(lattice, cells, thread_count);
-    set_offsets(cells.count());
+bool CellIntervals::find(const LatticeMesh& lattice, const OctahedralCells& cells, const Octants& octants,
+                         unsigned thread_count, LimitedCount& count) {
+    const auto cells_per_octant = static_cast<std::uint32_t>(cells.count() / 8);
+    first_cell_ = octants.first * cells_per_octant;
+    offsets_.reset(std::size_t{octants.count()} * cells_per_octant + 1);
+    if (octants.first == 0 && octants.count() < 8) find_octants_met(lattice, thread_count);
+    cover_all_faces(lattice, cells, octants, thread_count, count);
+    if (count.exceeded()) return false;
+    set_offsets();
     parallel_for(workers_.size(), thread_count, [&](std::size_t begin, std::size_t end) {
         for (std::size_t w = begin; w < end; ++w)
             for (const Interval& interval : workers_[w].found)
-                by_cell_[workers_[w].next[interval.cell]++] = interval;
+                by_cell_[workers_[w].next[interval.cell - first_cell_]++] = interval;
+    });
+    return true;
+}
+
+void CellIntervals::find_octants_met(const LatticeMesh& lattice, unsigned thread_count) {
+    octants_met_.reset(lattice.faces.size());
+    parallel_for(lattice.faces.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t face = begin; face < end; ++face)
+            octants_met_[face] =
+                static_cast<std::uint8_t>(octants_met(lattice.corners(static_cast<std::uint32_t>(face))));
     });
 }
 
 void CellIntervals::cover_all_faces(const LatticeMesh& lattice, const OctahedralCells& cells,
-                                    unsigned thread_count) {
+                                    const Octants& octants, unsigned thread_count, LimitedCount& total) {
     workers_.resize(worker_count(thread_count));
-    constexpr std::size_t kCellsPerFace = 8; // seldom more; what is not needed costs no memory
+    const std::size_t cells_per_face = octants.count(); // seldom more
+    const bool all_octants = octants.count() == 8;
     for (Worker& worker : workers_) {
         worker.found.clear();
-        worker.found.room_for(kCellsPerFace * lattice.faces.size() / workers_.size());
-        worker.next.assign(cells.count(), 0);
+        worker.found.room_for(cells_per_face * lattice.faces.size() / workers_.size());
+        worker.next.assign(cell_count(), 0);
     }
-    std::atomic<std::size_t> total = 0;
     parallel_for_workers(
         lattice.faces.size(), thread_count, [&](std::size_t w, std::size_t begin, std::size_t end) {
             Worker& worker = workers_[w];
-            CoverCount count(total);
+            CountShare count(total);
             for (std::size_t i = begin; i < end; ++i) {
+                if (!all_octants && (octants_met_[i] & octants.bits()) == 0) continue;
                 const auto number = static_cast<std::uint32_t>(i);
                 const auto corners = lattice.corners(number);
                 if (is_collapsed(corners)) continue;
                 worker.covers.clear();
-                cover_cells(cells, corners, worker.covers);
-                count.add(worker.covers.size());
+                cover_cells(cells, octants, corners, worker.covers);
+                if (worker.covers.empty()) continue;
+                if (!count.add(worker.covers.size())) return;
                 const CoveredFace face{number, corners, dot(corners[0], cross(corners[1], corners[2]))};
                 Interval* next = worker.found.room_for(worker.covers.size());
                 for (const CellCover& cover : worker.covers) {
                     *next++ = face.interval(cover, cells);
-                    ++worker.next[cover.cell];
+                    ++worker.next[cover.cell - first_cell_];
                 }
                 worker.found.extend(worker.covers.size());
             }
         });
 }
 
-void CellIntervals::set_offsets(std::size_t cell_count) {
-    offsets_.reset(cell_count + 1);
+void CellIntervals::set_offsets() {
     std::uint32_t offset = 0;
-    for (std::size_t cell = 0; cell < cell_count; ++cell) {
+    for (std::size_t cell = 0; cell < cell_count(); ++cell) {
         offsets_[cell] = offset;
         for (Worker& worker : workers_) {
             const std::uint32_t count = worker.next[cell];
@@ -126,7 +112,7 @@ void CellIntervals::set_offsets(std::size_t cell_count) {
             offset += count;
         }
     }
-    offsets_[cell_count] = offset;
+    offsets_[cell_count()] = offset;
     by_cell_.reset(offset);
 }
 

@@ -3,6 +3,7 @@
 #include "directions/lattice.hpp"
 #include "directions/octahedral_cells.hpp"
 #include "exact_map/build/cell_cover.hpp"
+#include "exact_map/build/limited_count.hpp"
 #include "geometry/arena.hpp"
 
 #include <cstdint>
@@ -27,19 +28,27 @@ struct Interval {
 };
 static_assert(sizeof(Interval) == 16);
 
-/// The faces of every cell, and the memory that it takes to find them.
+/// The faces of every cell of some octants, and the memory that it takes to find them: two intervals for each
+/// that is found.
 class CellIntervals {
   public:
     /// Covers all faces and puts what was found by cells: each worker lists what it finds, and counts it by
     /// cells, so that afterwards each knows where its own goes (a counting sort).
-    /// @throws Error InvalidMesh when there is too much
-    void find(const LatticeMesh& lattice, const OctahedralCells& cells, unsigned thread_count);
+    /// @param octants  all, or one after the other, beginning with the first
+    /// @param count    to which the intervals are added
+    /// @returns  false when the count was exceeded; nothing is found then
+    bool find(const LatticeMesh& lattice, const OctahedralCells& cells, const Octants& octants,
+              unsigned thread_count, LimitedCount& count);
 
     std::size_t count() const { return by_cell_.size(); }
+    std::uint32_t first_cell() const { return first_cell_; }
+    std::size_t cell_count() const { return offsets_.size() - 1; }
 
     /// A cell's intervals, in an order that depends on chance; the caller may sort them.
+    /// @pre first_cell() <= cell < first_cell() + cell_count()
     std::span<Interval> of(std::uint32_t cell) {
-        return std::span<Interval>(by_cell_).subspan(offsets_[cell], offsets_[cell + 1] - offsets_[cell]);
+        const std::size_t i = cell - first_cell_;
+        return std::span<Interval>(by_cell_).subspan(offsets_[i], offsets_[i + 1] - offsets_[i]);
     }
 
   private:
@@ -49,9 +58,13 @@ class CellIntervals {
         std::vector<std::uint32_t> next; ///< [cell_count] how many in each cell; then, where the next goes
     };
 
-    void cover_all_faces(const LatticeMesh& lattice, const OctahedralCells& cells, unsigned thread_count);
-    void set_offsets(std::size_t cell_count);
+    void cover_all_faces(const LatticeMesh& lattice, const OctahedralCells& cells, const Octants& octants,
+                         unsigned thread_count, LimitedCount& count);
+    void find_octants_met(const LatticeMesh& lattice, unsigned thread_count);
+    void set_offsets();
 
+    Arena<std::uint8_t> octants_met_; ///< [face_count] by each face; of no use when all octants are asked for
+    std::uint32_t first_cell_ = 0;
     std::vector<Worker> workers_;
     Arena<Interval> by_cell_;
     Arena<std::uint32_t> offsets_; ///< [cell_count + 1]

@@ -20,17 +20,16 @@ double distance_to_segment(const Vec3d& place, const Vec3d& a, const Vec3d& b) {
 }
 
 /// How often gaps may be halved so that the distances looked at stay below 3 10^8, some seconds on one core.
-int affordable_depth(std::size_t edge_count, std::size_t cell_count) {
+int affordable_halvings(std::size_t edge_count, std::size_t cell_count, int most) {
     constexpr double kMostDistances = 3e8;
     constexpr double kGapsPerCell = 3;
-    constexpr int kMaxDepth = 5;
     const double distances_per_piece =
         kGapsPerCell * static_cast<double>(edge_count) * static_cast<double>(cell_count);
-    int depth = -1;
-    for (double pieces = 1; depth < kMaxDepth && pieces * distances_per_piece <= kMostDistances;
+    int halvings = -1;
+    for (double pieces = 1; halvings < most && pieces * distances_per_piece <= kMostDistances;
          pieces = 2 * pieces + 1)
-        ++depth;
-    return depth;
+        ++halvings;
+    return halvings;
 }
 
 } // namespace
@@ -52,9 +51,9 @@ struct GapStates::Region {
 };
 
 GapStates::GapStates(const LatticeMesh& lattice, std::span<const BorderEdge> border,
-                     const OctahedralCells& cells)
+                     const OctahedralCells& cells, int most_halvings)
     : border_(border), cells_(cells), vertices_(lattice.vertices.begin(), lattice.vertices.end()),
-      max_depth_(affordable_depth(border.size(), cells.count())) {
+      max_depth_(affordable_halvings(border.size(), cells.count(), most_halvings)) {
     for (const BorderEdge& edge : border) {
         const Vec3d a(lattice.vertices[edge.a]), b(lattice.vertices[edge.b]);
         edges_.push_back({a, b, std::abs(edge.multiplicity) * length(b - a) / (4 * std::numbers::pi)});

@@ -27,7 +27,11 @@ struct GapPiece {
 /// looked at: it stays uncertain, as nearly all of a soup of triangles is anyway.
 class GapStates {
   public:
-    GapStates(const LatticeMesh& lattice, std::span<const BorderEdge> border, const OctahedralCells& cells);
+    static constexpr int kMostHalvings = 5;
+
+    /// @param most_halvings  how often a gap may be halved: it makes 2^most_halvings pieces at most
+    GapStates(const LatticeMesh& lattice, std::span<const BorderEdge> border, const OctahedralCells& cells,
+              int most_halvings = kMostHalvings);
 
     /// The pieces of a gap [lower, upper) of a cell, from below; neighbours differ.
     /// @param crossings  signed crossings beyond the gap on the ray through the cell's middle

@@ -12,9 +12,12 @@ namespace echinus {
 /// What an IndexArray looks at. Keeps its memory.
 class IndexStorage {
   public:
+    /// Of numbers that are all below `bound`.
+    static constexpr std::size_t bytes_per_number(std::size_t bound) { return bound <= 65536 ? 2 : 4; }
+
     /// Makes room for so many numbers, all below `bound`; what they are is arbitrary until set.
     void reset(std::size_t size, std::size_t bound) {
-        const bool narrow = bound <= 65536;
+        const bool narrow = bytes_per_number(bound) == 2;
         narrow_.reset(narrow ? size : 0);
         wide_.reset(narrow ? 0 : size);
         is_narrow_ = narrow;

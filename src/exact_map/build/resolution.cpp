@@ -1,13 +1,42 @@
 #include "exact_map/build/resolution.hpp"
 
-#include <echinus/error.hpp>
 #include <echinus/exact_map.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 namespace echinus {
+
+namespace {
+
+/// Bytes of maps against their cells. They grow ever more slowly: each cell takes a few, each face's outline
+/// as many as it is long, hence with the square root of the cells, and its area with the cells. So a line
+/// through two points lies above what comes after them, and what it promises to fit does.
+class Growth {
+  public:
+    void add(std::uint32_t divisions, std::size_t byte_count) {
+        before_ = last_;
+        last_ = {square(divisions), static_cast<double>(byte_count)};
+    }
+
+    std::uint32_t divisions_of(std::size_t byte_count) const {
+        constexpr double kMost = ExactMapOptions::kMaxDivisions;
+        const double slope = (last_.bytes - before_.bytes) / (last_.cells - before_.cells);
+        const double left = static_cast<double>(byte_count) - last_.bytes;
+        if (left >= slope * (square(kMost) - last_.cells)) return ExactMapOptions::kMaxDivisions;
+        return static_cast<std::uint32_t>(std::sqrt(last_.cells + left / slope));
+    }
+
+  private:
+    struct Point {
+        double cells, bytes;
+    };
+    static double square(double number) { return number * number; }
+
+    Point before_{}, last_{};
+};
+
+} // namespace
 
 std::uint32_t default_divisions(std::size_t face_count, bool open) {
     // Cells in the ratio of 4 to 5 to faces: then map and mesh share the memory evenly. Fewer cells make
@@ -20,23 +49,35 @@ std::uint32_t default_divisions(std::size_t face_count, bool open) {
                       ExactMapOptions::kMaxDivisions);
 }
 
-std::uint32_t divisions_within(std::size_t byte_budget, std::size_t face_count, bool open,
-                               const std::function<std::size_t(std::uint32_t divisions)>& byte_count) {
-    const std::size_t least = byte_count(1);
-    if (least > byte_budget)
-        throw Error(ErrorCode::InvalidOptions,
-                    "the budget of " + std::to_string(byte_budget) +
-                        " bytes is less than the coarsest map needs: " + std::to_string(least));
+std::size_t default_byte_limit(std::size_t face_count, std::size_t vertex_count) {
+    constexpr std::size_t kPerFace = 512, kPerMap = 65'536, kPerVertex = 12;
+    const std::size_t unused = vertex_count - std::min(vertex_count, 3 * face_count);
+    return kPerFace * face_count + kPerMap + kPerVertex * unused;
+}
+
+std::uint32_t most_useful_divisions(std::size_t face_count, bool open) {
     // Sixteen times as many cells as by default: nearly every band holds two or three faces.
     const std::uint32_t usual = default_divisions(face_count, open);
-    std::uint32_t most = open ? usual : std::min(4 * usual, ExactMapOptions::kMaxDivisions);
-    std::uint32_t fitting = 1;
-    while (fitting < most) {
-        const std::uint32_t middle = fitting + (most - fitting + 1) / 2;
-        if (byte_count(middle) <= byte_budget)
-            fitting = middle;
-        else
-            most = middle - 1;
+    return open ? usual : std::min(4 * usual, ExactMapOptions::kMaxDivisions);
+}
+
+std::optional<std::uint32_t>
+finest_within(const ByteRange& bytes, std::uint32_t most,
+              const std::function<std::optional<std::size_t>(std::uint32_t divisions)>& byte_count) {
+    Growth growth;
+    std::uint32_t fitting = 0, too_many = most + 1;
+    for (std::uint32_t candidate = 1; fitting + 1 < too_many;) {
+        if (const std::optional<std::size_t> taken = byte_count(candidate)) {
+            fitting = candidate;
+            if (*taken >= bytes.enough) break;
+            growth.add(candidate, *taken);
+        } else {
+            too_many = candidate;
+            if (fitting == 0) return std::nullopt;
+        }
+        candidate = growth.divisions_of(bytes.limit);
+        if (candidate >= too_many) candidate = too_many > most ? most : (fitting + too_many) / 2;
+        candidate = std::max(candidate, fitting + 1);
     }
     return fitting;
 }
