@@ -1,5 +1,6 @@
 #include "input.hpp"
 
+#include "files/mapped_file.hpp"
 #include "output.hpp"
 
 #include <echinus/mesh_io.hpp>
@@ -33,7 +34,14 @@ void copy_standard_input(const fs::path& target) {
     Input input{fs::path(kStandardStream)};
     Output output(target);
     std::vector<char> block(std::size_t{1} << 16);
+    std::size_t total = 0;
     while (const std::size_t byte_count = input.read(block.data(), block.size())) {
+        total += byte_count;
+        if (total > echinus::MappedFile::kMostReadBytes)
+            input.fail(ErrorCode::Unreadable,
+                       "has more than " + std::to_string(echinus::MappedFile::kMostReadBytes) +
+                           " bytes, the most that are read from it; write them to a file first, if they have "
+                           "an end");
         output.write(block.data(), byte_count);
     }
     output.commit();
@@ -65,10 +73,23 @@ std::size_t Input::read(void* bytes, std::size_t byte_count) {
 }
 
 bool Input::read_line(std::string& line) {
-    const bool found = static_cast<bool>(std::getline(stream_, line));
-    require_good();
-    if (found && line.ends_with('\r')) line.pop_back();
-    return found;
+    line.clear();
+    std::streambuf& characters = *stream_.rdbuf();
+    constexpr int kEnd = std::char_traits<char>::eof();
+    int c = characters.sbumpc();
+    if (c == kEnd) {
+        stream_.peek(); // notices the end, or an error
+        require_good();
+        return false;
+    }
+    for (; c != kEnd && c != '\n'; c = characters.sbumpc()) {
+        if (line.size() == kMaxLineLength)
+            fail(ErrorCode::Damaged,
+                 "a line has more than " + std::to_string(kMaxLineLength) + " characters");
+        line += static_cast<char>(c);
+    }
+    if (line.ends_with('\r')) line.pop_back();
+    return true;
 }
 
 bool Input::next_is(char byte) {
@@ -91,6 +112,7 @@ InputFile::InputFile(const fs::path& argument, const std::string& format)
     : path_(argument), name_(name_of_input(argument)), is_copy_(argument == kStandardStream) {
     if (!is_copy_) return;
     path_ = make_temporary_file("." + format);
+    removal_.emplace(path_);
     try {
         copy_standard_input(path_);
     } catch (...) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "interruption.hpp"
 #include "options.hpp"
 
 #include <echinus/error.hpp>
@@ -8,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <istream>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -23,8 +25,11 @@ class Input {
     /// Reads up to `byte_count` bytes; fewer only at the end.
     /// @throws echinus::Error Unreadable
     std::size_t read(void* bytes, std::size_t byte_count);
+    /// The most characters of a line; a device such as /dev/zero is one line without end.
+    static constexpr std::size_t kMaxLineLength = std::size_t{1} << 20;
+
     /// The next line without its line break (LF or CR LF); false at the end.
-    /// @throws echinus::Error Unreadable
+    /// @throws echinus::Error Unreadable; Damaged when the line is longer than kMaxLineLength
     bool read_line(std::string& line);
     /// Does the rest begin with this byte?
     bool next_is(char byte);
@@ -72,6 +77,7 @@ class InputFile {
     std::filesystem::path path_;
     std::string name_;
     bool is_copy_;
+    std::optional<RemovedWhenInterrupted> removal_;
 };
 
 /// Calls `use()`. The sentence of an Error with this code then begins with the file's name, also where the

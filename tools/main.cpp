@@ -1,4 +1,5 @@
 #include "commands/commands.hpp"
+#include "interruption.hpp"
 #include "output.hpp"
 
 #include <echinus/error.hpp>
@@ -30,6 +31,7 @@ std::string one_line(std::string_view text) {
 }
 
 int fail(std::string_view sentence, int status) {
+    wait_if_interrupted();
     std::fprintf(stderr, "echinus: %s\n", one_line(sentence).c_str());
     return status;
 }
@@ -70,6 +72,7 @@ void parse_and_run(int argc, char** argv) {
 } // namespace
 
 int main(int argc, char** argv) {
+    clean_up_when_interrupted();
     try {
         parse_and_run(argc, argv);
         return 0;

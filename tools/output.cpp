@@ -1,13 +1,16 @@
 #include "output.hpp"
 
+#include "files/part.hpp"
 #include "options.hpp"
 
 #include <echinus/error.hpp>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <random>
 #include <string>
 
 namespace fs = std::filesystem;
@@ -44,7 +47,9 @@ void or_unwritable(const fs::path& target, const Action& action) {
 } // namespace
 
 Output::Output(const fs::path& target) {
-    if (target != kStandardStream) file_.emplace(target);
+    if (target == kStandardStream) return;
+    echinus::remove_abandoned_parts(target.parent_path().empty() ? "." : target.parent_path());
+    file_.emplace(target);
 }
 
 void Output::write(const void* data, std::size_t byte_count) {
@@ -68,20 +73,37 @@ OutputFolder::OutputFolder(const fs::path& target) : target_(fs::absolute(target
         const fs::path folder = nearest_existing_folder(target_);
         if (!fs::is_directory(folder))
             throw Error(ErrorCode::Unwritable, folder.string() + ": is not a folder; name one with -o");
-        temporary_ = folder / (".echinus.part" + std::to_string(std::random_device{}()));
-        fs::create_directory(temporary_);
+        echinus::remove_abandoned_parts(folder);
+        make_part(folder);
     });
+}
+
+/// Another program that clears the folder at this moment may find the part before it is locked, and remove
+/// it; then the next is tried. On file systems without locks the last is taken as it is.
+void OutputFolder::make_part(const fs::path& folder) {
+    constexpr int kMostTries = 4;
+    for (int tries = 0; tries < kMostTries; ++tries) {
+        if (lock_ >= 0) close(lock_);
+        part_ = echinus::new_part(folder);
+        removal_.emplace(part_);
+        fs::create_directory(part_);
+        lock_ = open(part_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        if (lock_ >= 0 && echinus::lock_part(lock_) && fs::exists(part_)) return;
+    }
+    fs::create_directory(part_);
 }
 
 OutputFolder::~OutputFolder() {
     std::error_code ignored;
-    fs::remove_all(temporary_, ignored);
+    fs::remove_all(part_, ignored);
+    if (lock_ >= 0) close(lock_);
 }
 
 void OutputFolder::commit() {
     or_unwritable(target_, [&] {
+        const auto together = hold_interruption();
         fs::create_directories(target_);
-        for (const auto& entry : fs::directory_iterator(temporary_)) {
+        for (const auto& entry : fs::directory_iterator(part_)) {
             const fs::path place = target_ / entry.path().filename();
             if (entry.is_directory() || fs::is_directory(place)) fs::remove_all(place);
             fs::rename(entry.path(), place);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "files/atomic_file.hpp"
+#include "interruption.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -24,9 +25,10 @@ class Output {
     std::optional<echinus::AtomicFile> file_; // empty: standard output
 };
 
-/// A folder of results that appear all together or not at all: files are written to a temporary folder on the
-/// same disk, commit() moves them to their place. Without commit() the destructor removes them, and what the
-/// target held before stays as it was.
+/// A folder of results that appear all together or not at all: files are written to a part (files/part.hpp),
+/// a folder on the same disk; commit() moves them to their place. Without commit() the destructor removes
+/// them, or the interruption of the program; a part that a killed program left is removed by the next that
+/// writes to the same place. What the target held before stays as it was.
 class OutputFolder {
   public:
     /// @throws echinus::Error Unwritable when the target is a file or no folder can be made there
@@ -36,7 +38,7 @@ class OutputFolder {
     ~OutputFolder();
 
     /// Where to write the file or folder that will be called `name`.
-    std::filesystem::path path_of(const std::string& name) const { return temporary_ / name; }
+    std::filesystem::path path_of(const std::string& name) const { return part_ / name; }
     /// Moves everything that was written into the target, which is made if need be. Files and folders there
     /// of the same names are replaced, others stay.
     void commit();
@@ -44,8 +46,12 @@ class OutputFolder {
     void remove_old(const std::string& name) const;
 
   private:
+    void make_part(const std::filesystem::path& folder);
+
     std::filesystem::path target_;
-    std::filesystem::path temporary_;
+    std::filesystem::path part_;
+    int lock_ = -1;
+    std::optional<RemovedWhenInterrupted> removal_;
 };
 
 /// Prints on standard output.

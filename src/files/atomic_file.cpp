@@ -1,11 +1,14 @@
 #include "files/atomic_file.hpp"
 
+#include "files/part.hpp"
+
 #include <echinus/error.hpp>
 
-#include <atomic>
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
-#include <random>
 #include <string>
 
 namespace echinus {
@@ -14,10 +17,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A name beside the target that no other thread or process uses.
-fs::path temporary_name(const fs::path& target) {
-    static std::atomic<unsigned> counter{std::random_device{}()};
-    return fs::path(target).concat(".part" + std::to_string(counter++));
+/// Where Linux shows the file of an open descriptor.
+std::string path_of_descriptor(int descriptor) {
+    return "/proc/self/fd/" + std::to_string(descriptor);
 }
 
 } // namespace
@@ -33,19 +35,54 @@ AtomicFile::AtomicFile(const fs::path& target) : target_(target) {
         errno = EISDIR;
         fail("open");
     }
-    const bool rename_later = !fs::exists(status) || fs::is_regular_file(status);
-    if (rename_later) temporary_ = temporary_name(target_);
-    file_ = std::fopen(rename_later ? temporary_.c_str() : target_.c_str(), "wb");
-    if (file_ == nullptr) {
-        temporary_.clear();
-        fail("open");
+    if (fs::exists(status) && !fs::is_regular_file(status)) {
+        file_ = std::fopen(target_.c_str(), "wb");
+        if (file_ == nullptr) fail("open");
+        return;
     }
+    const fs::path folder = target_.parent_path().empty() ? "." : target_.parent_path();
+    int descriptor = open_unnamed(folder);
+    if (descriptor < 0) descriptor = open_part(folder);
+    if (descriptor < 0) fail("open");
+    lock_ = dup(descriptor);
+    lock_part(lock_);
+    file_ = fdopen(descriptor, "wb");
 }
 
 AtomicFile::~AtomicFile() {
     if (file_ != nullptr) std::fclose(file_);
-    std::error_code ignored;
-    if (!temporary_.empty()) fs::remove(temporary_, ignored);
+    if (!part_.empty()) unlink(part_.c_str());
+    if (lock_ >= 0) close(lock_);
+}
+
+/// @returns a descriptor, or -1 where the system or the file system has no files without names
+int AtomicFile::open_unnamed([[maybe_unused]] const fs::path& folder) {
+#ifdef O_TMPFILE
+    const int descriptor = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    if (descriptor < 0 || access(path_of_descriptor(descriptor).c_str(), F_OK) == 0) return descriptor;
+    close(descriptor); // it could not be given a name
+#endif
+    return -1;
+}
+
+int AtomicFile::open_part(const fs::path& folder) {
+    const fs::path part = new_part(folder);
+    const int descriptor = open(part.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    if (descriptor >= 0) part_ = part;
+    return descriptor;
+}
+
+/// A link cannot replace a file, but a rename can: first the name of a part, then the target's.
+void AtomicFile::give_name() {
+    if (part_.empty()) {
+        const fs::path part = new_part(target_.parent_path());
+        if (linkat(AT_FDCWD, path_of_descriptor(lock_).c_str(), AT_FDCWD, part.c_str(), AT_SYMLINK_FOLLOW) !=
+            0)
+            fail("name");
+        part_ = part;
+    }
+    if (std::rename(part_.c_str(), target_.c_str()) != 0) fail("rename to");
+    part_.clear();
 }
 
 void AtomicFile::write(const void* data, std::size_t byte_count) {
@@ -66,9 +103,7 @@ void AtomicFile::commit() {
     file_ = nullptr;
     if (!flushed) errno = flush_error;
     if (!flushed || !closed) fail("write");
-    if (temporary_.empty()) return;
-    if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail("rename to");
-    temporary_.clear();
+    if (lock_ >= 0) give_name();
 }
 
 void AtomicFile::fail(const char* action) const {

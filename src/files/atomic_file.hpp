@@ -11,10 +11,11 @@ ECHINUS_EXPORT_BEGIN
 
 namespace echinus {
 
-/// A file that appears whole or not at all: bytes go to a temporary name in the target's folder, commit()
-/// renames. Without commit() the destructor removes the temporary file and the old target stays. A target
-/// that exists and is no regular file (/dev/stdout, a pipe) is written to directly, since a rename would
-/// replace the device.
+/// A file that appears whole or not at all: bytes go to a file in the target's folder that has no name
+/// (O_TMPFILE), or, where the file system has no such files, to a part (part.hpp); commit() gives it the
+/// target's name. Without commit() nothing is left and the old target stays, also where the process is
+/// killed, except for a part, which remove_abandoned_parts() then removes. A target that exists and is no
+/// regular file (/dev/stdout, a pipe) is written to directly, since a rename would replace the device.
 ///
 /// All members throw Error Unwritable with a sentence that names the target and the system's reason.
 class AtomicFile {
@@ -31,11 +32,15 @@ class AtomicFile {
     void commit();
 
   private:
+    int open_unnamed(const std::filesystem::path& folder);
+    int open_part(const std::filesystem::path& folder);
+    void give_name();
     [[noreturn]] void fail(const char* action) const;
 
-    std::filesystem::path target_;    // links resolved
-    std::filesystem::path temporary_; // empty: target_ itself is written to
+    std::filesystem::path target_; // links resolved
+    std::filesystem::path part_;   // empty: the file has no name, or target_ itself is written to
     std::FILE* file_ = nullptr;
+    int lock_ = -1; // a second descriptor of the file, which holds its lock; -1: target_ itself is written to
 };
 
 /// An AtomicFile with one write.

@@ -37,7 +37,7 @@ std::span<const std::byte> map_bytes([[maybe_unused]] std::FILE* file) {
     return {};
 }
 
-std::vector<std::byte> read_bytes(std::FILE* file, const std::filesystem::path& path) {
+std::vector<std::byte> read_bytes(std::FILE* file, const std::filesystem::path& path, std::size_t most) {
     constexpr std::size_t kBlock = std::size_t{1} << 16;
     std::vector<std::byte> bytes;
     for (;;) {
@@ -45,6 +45,11 @@ std::vector<std::byte> read_bytes(std::FILE* file, const std::filesystem::path& 
         bytes.resize(old_size + kBlock);
         const std::size_t read_count = std::fread(bytes.data() + old_size, 1, kBlock, file);
         bytes.resize(old_size + read_count);
+        if (bytes.size() > most)
+            throw Error(ErrorCode::Unreadable,
+                        path.string() + ": has more than " + std::to_string(most) +
+                            " bytes, the most that are read from a pipe or a device; write them to a file "
+                            "first, if they have an end");
         if (read_count == kBlock) continue;
         if (std::ferror(file) != 0) fail(path, "read");
         return bytes;
@@ -53,12 +58,12 @@ std::vector<std::byte> read_bytes(std::FILE* file, const std::filesystem::path& 
 
 } // namespace
 
-MappedFile::MappedFile(const std::filesystem::path& path) {
+MappedFile::MappedFile(const std::filesystem::path& path, std::size_t most_read_bytes) {
     const FileHandle file(std::fopen(path.c_str(), "rb"), &std::fclose);
     if (file == nullptr) fail(path, "open");
     bytes_ = map_bytes(file.get());
     if (!bytes_.empty()) return;
-    copy_ = read_bytes(file.get(), path);
+    copy_ = read_bytes(file.get(), path, most_read_bytes);
     bytes_ = copy_;
 }
 

@@ -18,8 +18,12 @@ namespace echinus {
 /// does, is safe: the mapping keeps the old file.
 class MappedFile {
   public:
-    /// @throws Error Unreadable; the sentence begins with the path
-    explicit MappedFile(const std::filesystem::path& path);
+    /// The most bytes that are read from what cannot be mapped: a pipe or a device may have no end.
+    static constexpr std::size_t kMostReadBytes = std::size_t{1} << 30;
+
+    /// @throws Error Unreadable, also when a pipe or a device has more than `most_read_bytes`; the sentence
+    /// begins with the path
+    explicit MappedFile(const std::filesystem::path& path, std::size_t most_read_bytes = kMostReadBytes);
     MappedFile(const MappedFile&) = delete;
     MappedFile& operator=(const MappedFile&) = delete;
     ~MappedFile();

@@ -1,9 +1,14 @@
 #include "files/atomic_file.hpp"
+#include "files/part.hpp"
 
 #include <echinus/error.hpp>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <fstream>
 #include <iterator>
 
@@ -75,6 +80,30 @@ TEST_F(AtomicFileTest, WritesThroughALinkAndKeepsIt) {
     write_file(folder_ / "link.txt", "new");
     EXPECT_TRUE(fs::is_symlink(folder_ / "link.txt"));
     EXPECT_EQ(content(folder_ / "real.txt"), "new");
+}
+
+TEST_F(AtomicFileTest, LeavesNothingWhenTheProcessIsKilled) {
+    const fs::path target = folder_ / "out.txt";
+    const pid_t child = fork();
+    if (child == 0) {
+        AtomicFile file(target);
+        file.write(std::string(1 << 20, 'x'));
+        raise(SIGKILL);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFSIGNALED(status));
+    remove_abandoned_parts(folder_); // of file systems that have no files without names
+    EXPECT_EQ(files_in_folder(), 0);
+}
+
+TEST_F(AtomicFileTest, KeepsThePermissionsThatNewFilesGet) {
+    const mode_t mask = umask(027);
+    write_file(folder_ / "out.txt", "x");
+    umask(mask);
+    using fs::perms;
+    EXPECT_EQ(fs::status(folder_ / "out.txt").permissions(),
+              perms::owner_read | perms::owner_write | perms::group_read);
 }
 
 TEST_F(AtomicFileTest, ReportsAFullDisk) {

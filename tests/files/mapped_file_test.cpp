@@ -40,6 +40,12 @@ TEST_F(MappedFileTest, ReadsWhatCannotBeMapped) {
     EXPECT_TRUE(MappedFile("/dev/null").bytes().empty());
 }
 
+TEST_F(MappedFileTest, ReadsNoMoreOfAnEndlessDeviceThanTheLimit) {
+    if (!fs::exists("/dev/zero")) GTEST_SKIP() << "this system has no /dev/zero";
+    test::expect_error(ErrorCode::Unreadable, "/dev/zero: has more than 1000000 bytes",
+                       [] { MappedFile file("/dev/zero", 1'000'000); });
+}
+
 TEST_F(MappedFileTest, RefusesAMissingFileAndADirectoryByName) {
     for (const fs::path& refused : {path("missing"), path("")}) {
         test::expect_error(ErrorCode::Unreadable, refused.string(), [&] { MappedFile file(refused); });

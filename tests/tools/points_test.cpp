@@ -223,8 +223,28 @@ TEST_F(Points, AreRefusedWithTheNumberOfTheLine) {
     refuse("1e999,0,0\n", "line 1");
     refuse(std::string("1,2,3\n\0\x01\xff,2,3\n", 15), "line 2 is '???,2,3'");
     refuse(std::string(100'000, '9'), "...'");
-    expect_refusal("p.csv", "", ErrorCode::WrongFormat, "no points");
-    expect_refusal("p.csv", "x,y,z\n", ErrorCode::WrongFormat, "no points");
+    expect_refusal("p.csv", "", ErrorCode::WrongFormat, "neither points nor a line of names");
+    expect_refusal("p.csv", "# c\n\n", ErrorCode::WrongFormat, "neither points nor a line of names");
+}
+
+TEST_F(Points, MayBeNoneInTextAsInAnArray) {
+    EXPECT_TRUE(read_csv("x,y,z\n").empty());
+    EXPECT_TRUE(read_csv("# c\r\n\"x\",\"y\",\"z\"\r\n\n").empty());
+}
+
+TEST_F(Points, AreRefusedFromALineWithoutEnd) {
+    expect_refusal("p.csv", std::string(Input::kMaxLineLength + 1, '9'), ErrorCode::Damaged,
+                   "a line has more than 1048576 characters");
+    if (!fs::exists("/dev/zero")) GTEST_SKIP() << "this system has no /dev/zero";
+    test::expect_error(ErrorCode::Damaged, "a line has more than", [] { read("/dev/zero"); });
+}
+
+TEST_F(Points, AreRefusedWhenThereAreMoreThanMemoryShouldHold) {
+    if (!fs::exists("/dev/zero")) GTEST_SKIP() << "this system has no /dev/zero";
+    const Input input("/dev/zero");
+    EXPECT_NO_THROW(require_room_for(input, kMaxPointsInMemory));
+    test::expect_error(ErrorCode::Unreadable, "/dev/zero: it has more than 100000000 points",
+                       [&] { require_room_for(input, kMaxPointsInMemory + 1); });
 }
 
 TEST_F(Points, GetAnswersAsPackedRecords) {

@@ -57,6 +57,7 @@ std::vector<T> read_column(Input& input, std::uint64_t count) {
         const std::size_t old_size = column.size();
         const auto wanted = static_cast<std::size_t>(std::min(kBlock, count - old_size));
         column.resize(old_size + wanted);
+        require_room_for(input, column.size());
         const std::size_t byte_count = wanted * sizeof(T);
         if (input.read(column.data() + old_size, byte_count) != byte_count)
             fail_count(input, count, "ends before");

@@ -82,13 +82,15 @@ std::unique_ptr<PointSource> open_csv_points(std::unique_ptr<Input> input) {
         if (text.empty() || text.starts_with('#')) continue;
         if (const std::optional<Vec3f> point = parse_point(text)) {
             points.push_back(*point);
+            require_room_for(*input, points.size());
         } else if (!(names_may_follow && holds_names(text))) {
             input->fail(ErrorCode::Damaged, "line " + std::to_string(line_number) + " is " + excerpt(text) +
                                                 " and not three numbers x,y,z");
         }
         names_may_follow = false;
     }
-    if (points.empty()) input->fail(ErrorCode::WrongFormat, "it holds no points; a line is x,y,z");
+    if (names_may_follow)
+        input->fail(ErrorCode::WrongFormat, "it holds neither points nor a line of names; a line is x,y,z");
     return std::make_unique<PointList>(std::move(points));
 }
 
@@ -96,6 +98,12 @@ TableFormat format_of_points(const std::filesystem::path& path, Input& input) {
     if (path.extension() == ".npy") return TableFormat::Npy;
     if (path.extension() == ".csv") return TableFormat::Csv;
     return input.next_is(kNpyFirstByte) ? TableFormat::Npy : TableFormat::Csv;
+}
+
+void require_room_for(const Input& input, std::uint64_t count) {
+    if (count > kMaxPointsInMemory)
+        input.fail(ErrorCode::Unreadable, "it has more than " + std::to_string(kMaxPointsInMemory) +
+                                              " points; so many are read only from a .npy file in C order");
 }
 
 std::size_t PointList::read(std::span<Vec3f> block) {

@@ -25,18 +25,26 @@ class PointSource {
 
 enum class TableFormat { Npy, Csv };
 
+/// The most points of a file that is read into memory whole, since a pipe may have no end.
+inline constexpr std::uint64_t kMaxPointsInMemory = 100'000'000;
+
 /// By the ending of a file's name (.npy, .csv), otherwise by the first byte.
 TableFormat format_of_points(const std::filesystem::path& path, Input& input);
 
 /// Points from an array [n, 3] in a .npy file: float32, or float64 that is rounded to float32; C or Fortran
 /// order. The latter is read into memory whole.
-/// @throws echinus::Error WrongFormat or Damaged
+/// @throws echinus::Error WrongFormat or Damaged; Unreadable when more than kMaxPointsInMemory would have to
+/// be in memory
 std::unique_ptr<PointSource> open_npy_points(std::unique_ptr<Input> input);
 
 /// Points from lines "x,y,z", read into memory whole. Empty lines and lines that begin with # are skipped,
-/// and so is the first line when it holds names.
-/// @throws echinus::Error Damaged with the number of the line
+/// and so is the first line when it holds names: such a file without any other line has no points.
+/// @throws echinus::Error Damaged with the number of the line; WrongFormat for a file without lines; Unreadable
+/// for more than kMaxPointsInMemory
 std::unique_ptr<PointSource> open_csv_points(std::unique_ptr<Input> input);
+
+/// Refuses more points than kMaxPointsInMemory.
+void require_room_for(const Input& input, std::uint64_t count);
 
 /// Points that lie in memory.
 class PointList final : public PointSource {
