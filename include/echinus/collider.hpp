@@ -7,9 +7,11 @@
 #include <echinus/export.hpp>
 #include <echinus/geometry.hpp>
 
+#include <concepts>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <variant>
 
 ECHINUS_EXPORT_BEGIN
@@ -17,22 +19,26 @@ ECHINUS_EXPORT_BEGIN
 /// A map placed in the world. Points, normals, depths and margins are in world units and world axes here.
 namespace echinus {
 
-/// What a collider asks: a map of either kind, or one of the user's own.
-struct ColliderMap : std::variant<DistanceMap, ExactMap, std::shared_ptr<const CustomMap>> {
-    using variant::variant;
-    ColliderMap(const AnyMap& map)
-        : variant(std::visit([](const auto& kind) { return variant(kind); }, map)) {}
+/// The map of a collider, of either kind or the user's own. Each of them converts to it, and AnyMap does.
+struct ColliderMap {
+    using Kind = std::variant<DistanceMap, ExactMap, std::shared_ptr<const CustomMap>>;
+    Kind kind;
+
+    template <std::convertible_to<Kind> Map>
+    ColliderMap(Map&& map) : kind(std::forward<Map>(map)) {}
+    ColliderMap(const AnyMap& map) : kind(std::visit([](const auto& known) { return Kind(known); }, map)) {}
 };
 
-/// A rigid model in the world: its map, where it stands, how large it is and how it moves. A plain value;
-/// maps share their arrays, so copies are cheap.
+/// A rigid model in the world: its map, pose, scale and motion. A plain value; copies of a map share its
+/// arrays, so copies are cheap.
 ///
 /// point_world = pose.to_world(scale * point_local), component by component
 struct Collider {
-    ColliderMap map; ///< not a null pointer
-    RigidTransform pose{};
-    /// Along the map's axes. Three equal numbers: another size. Others stretch the model, and a negative one
-    /// mirrors it; what is inside stays inside, and normals point out of the solid. Not 0, and finite.
+    ColliderMap map;       ///< not a null pointer
+    RigidTransform pose{}; ///< its rotation of unit length
+    /// Along the map's axes. Three equal numbers change the size, different ones stretch the model, and a
+    /// negative one mirrors it; what is inside stays inside, and normals point out of the solid. Not 0,
+    /// finite.
     Vec3d scale{1, 1, 1};
     Vec3d linear_velocity{};  ///< of the pose's translation, units per second
     Vec3d angular_velocity{}; ///< about the pose's translation, world axes, radians per second
@@ -46,23 +52,25 @@ Vec3d velocity_at(const Collider& collider, const Vec3d& point_world);
 /// The pose a time later. Exact for constant velocities, to rounding; the same bits on every system.
 RigidTransform pose_after(const Collider& collider, double seconds);
 
-// Queries: as those of the map. noexcept, no allocation, any number of threads. A point is taken to the local
-// frame in double and rounded to float there, so a collider may stand far from the origin as long as the
-// caller's float positions still resolve it. A point that overflows float in the local frame is outside.
-// NaN or infinity in a point: outside, no contact, nothing met.
-// Cost per call: the map's query, and once the pose as a matrix; a batch pays for the matrix once.
-// @pre scale is finite and has no 0, and a custom map is not null
+// Queries: as those of the map. noexcept, no allocation (but a custom map's own), any number of threads. A
+// point is taken to the local frame in double and rounded to float there, so a collider may stand far from
+// the origin as long as the caller's float positions still resolve it. A point that overflows float in the
+// local frame is outside. NaN or infinity in a point: outside, no contact, nothing met. Cost per call: the
+// map's query, and the conversion of the pose to a matrix, once per batch.
+// @pre the pose is finite and its rotation of unit length, scale is finite and has no 0, and a custom map is
+// not null. Nothing checks this here: with another rotation the answers are not meaningful. (A simulation
+// checks its colliders.)
 
 bool contains(const Collider& collider, Vec3f point_world) noexcept;
 
-/// Where nothing is found, `point` is the particle itself, bit for bit.
+/// Where nothing is found, `point` equals the particle bit for bit.
 ///
 /// An exact map gives the point of the scaled surface that is nearest in the world, its distance and the
 /// normal of the scaled surface. A distance map gives the point on the ray from the centre, as always; depth
-/// and margin are world lengths along that ray, and the normal goes by the inverse transpose of the scale.
-/// Three scales of one size cost nothing more with either map. A custom map is asked for the margin that the
-/// smallest scale makes widest, and its point and normal are scaled like a distance map's; what it answers
-/// beyond the margin is passed on.
+/// and margin are world lengths along that ray, and the normal is transformed by the inverse transpose of the
+/// scale. Three equal scales cost nothing extra with either map. A custom map is asked with the margin
+/// divided by the smallest scale, and its point and normal are scaled like a distance map's; contacts that it
+/// gives beyond the margin are passed on.
 Contact contact(const Collider& collider, Vec3f point_world, float margin_world = 0) noexcept;
 
 /// @param points_world  [n]
@@ -79,12 +87,12 @@ void contacts_batch(const Collider& collider, StridedSpan<const Vec3f> points_wo
 
 /// Where a particle first meets a collider that moves and turns while the particle moves: the first crossing
 /// of the chord between the particle's local position under the previous pose and the one under the present
-/// pose. Seen from the collider, every way is a chord; over a frame in which it turns by the angle a, chord
-/// and true way differ by at most a^2 / 8 of the distance from the axis. The scale is the same at both ends.
+/// pose. Over a frame in which the collider turns by the angle a, chord and true path differ by at most a^2 /
+/// 8 of the distance from the axis. The scale is the same at both ends.
 ///
-/// `point` and `normal` are in the world where the collider is now: `point` is where the surface that was met
-/// now lies, and `to_world` when nothing is met. `entering` tells front from back as the map does.
-/// A distance map and a custom one have no sweep: with them, nothing is met.
+/// `point` and `normal` are in the world, with the collider in its present pose: `point` is where the point
+/// of the surface that was met lies now, and `to_world` when nothing is met. `entering` is as the map has it.
+/// Distance maps and custom maps have no sweep: with them, nothing is met.
 SweepHit sweep(const Collider& collider, const RigidTransform& previous_pose, Vec3f from_world,
                Vec3f to_world) noexcept;
 

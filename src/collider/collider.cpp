@@ -27,7 +27,8 @@ void for_each_piece(const FrameChange& frame, const StridedSpan<const Vec3f>& po
 /// Calls `body` with the queries of the collider's kind of map.
 template <typename Body>
 auto with_queries(const Collider& collider, const FrameChange& frame, float margin_world, const Body& body) {
-    return std::visit([&](const auto& map) { return body(queries(frame, map, margin_world)); }, collider.map);
+    return std::visit([&](const auto& map) { return body(queries(frame, map, margin_world)); },
+                      collider.map.kind);
 }
 
 } // namespace
@@ -91,7 +92,7 @@ SweepHit sweep(const Collider& collider, const RigidTransform& previous_pose, Ve
                Vec3f to_world) noexcept {
     SweepHit hit;
     hit.point = to_world;
-    const auto* exact = std::get_if<ExactMap>(&collider.map);
+    const auto* exact = std::get_if<ExactMap>(&collider.map.kind);
     if (exact == nullptr) return hit;
     const FrameChange frame(collider);
     const Vec3f from_local = FrameChange(previous_pose, collider.scale).point_to_local(from_world);

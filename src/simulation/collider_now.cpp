@@ -21,7 +21,7 @@ float largest(const Vec3d& scale) {
 
 ColliderNow::ColliderNow(const Collider& collider, const RigidTransform& previous_pose,
                          const SimulationOptions& options)
-    : map(std::get_if<ExactMap>(&collider.map)->view()), scale(collider.scale), local(collider),
+    : map(std::get_if<ExactMap>(&collider.map.kind)->view()), scale(collider.scale), local(collider),
       body(collider.pose, {1, 1, 1}), material(previous_pose, collider.pose),
       step(map.radius / static_cast<float>(kLatticeExtent) * largest(collider.scale)), guard(kGuard * step),
       thickness(std::max(static_cast<float>(options.thickness), 2 * guard)),

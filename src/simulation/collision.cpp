@@ -9,7 +9,7 @@ namespace echinus {
 
 std::unique_ptr<Collision> make_collision(const Collider& collider, const Particles& particles,
                                           const SimulationOptions& options) {
-    if (std::holds_alternative<ExactMap>(collider.map))
+    if (std::holds_alternative<ExactMap>(collider.map.kind))
         return std::make_unique<ExactCollision>(collider, particles, options);
     return std::make_unique<ContactCollision>(collider, particles, options);
 }

@@ -20,7 +20,7 @@ constexpr QueryPlan kDistanceMapPlan{256, kReachInThicknesses};
 constexpr QueryPlan kCustomMapPlan{4096, 1};
 
 QueryPlan plan_for(const Collider& collider) {
-    return std::holds_alternative<DistanceMap>(collider.map) ? kDistanceMapPlan : kCustomMapPlan;
+    return std::holds_alternative<DistanceMap>(collider.map.kind) ? kDistanceMapPlan : kCustomMapPlan;
 }
 
 /// Is a particle deeper than it moved, although it began the frame outside? Then it came through no surface

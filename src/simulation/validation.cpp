@@ -80,7 +80,7 @@ void require_valid(const std::vector<Collider>& colliders) {
             if (scale == 0 || !std::isfinite(scale))
                 fail("collider " + std::to_string(i) + " has a scale of " + std::to_string(scale) +
                      "; it must be finite and not 0");
-        const auto* custom = std::get_if<std::shared_ptr<const CustomMap>>(&collider.map);
+        const auto* custom = std::get_if<std::shared_ptr<const CustomMap>>(&collider.map.kind);
         if (custom != nullptr && *custom == nullptr)
             fail("collider " + std::to_string(i) + " has a custom map that is a null pointer");
         if (!is_finite(collider.pose) || !echinus::is_finite(collider.linear_velocity) ||

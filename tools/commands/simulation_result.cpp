@@ -57,7 +57,7 @@ Rates rates_of(const Simulation& simulation) {
 }
 
 bool is_exact(const Simulation& simulation) {
-    return std::holds_alternative<ExactMap>(simulation.colliders().front().map);
+    return std::holds_alternative<ExactMap>(simulation.colliders().front().map.kind);
 }
 
 const char* kind_of(const Simulation& simulation) {
