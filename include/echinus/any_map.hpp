@@ -9,12 +9,12 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Two maps, one vocabulary: who need not care which kind of map there is, asks here.
+/// Queries of a map whose kind is known at run time only; they are those of its kind.
 namespace echinus {
 
 using AnyMap = std::variant<DistanceMap, ExactMap>;
 
-// Templates, so that a map of a known kind is not taken for a variant of it.
+// Templates, so that a map of a known kind is not converted to the variant.
 
 template <std::same_as<AnyMap> Map>
 bool contains(const Map& map, Vec3f point_local) noexcept {

@@ -11,7 +11,7 @@ namespace echinus {
 
 /// Which part of a triangle the nearest point lies on.
 enum class Feature : std::uint8_t {
-    Unknown, ///< no contact, or a distance map's: it does not know its mesh
+    Unknown, ///< no contact, or a distance map, which does not know its mesh
     Face,
     Edge,
     Vertex,
@@ -19,21 +19,22 @@ enum class Feature : std::uint8_t {
 
 /// What a query answers for one particle: inside?, how deep, which way out. The same for every kind of map.
 ///
-/// The push-out moves the particle to `point`. A particle that is outside and farther than the margin, or not
-/// finite, gets the default value: not inside, depth 0, normal 0, face -1, and `point` the particle itself.
+/// The push-out moves the particle to `point`. For a particle that is outside and farther than the margin, or
+/// not finite, the members keep their defaults (not inside, depth 0, normal 0, face -1), and `point` is the
+/// particle itself.
 struct Contact {
     static constexpr std::int32_t kUnknownFace = -1;
 
-    Vec3f point;   ///< where on the surface the push-out leads, in the frame of the query
+    Vec3f point;   ///< the point of the surface that the push-out leads to, in the frame of the query
     Vec3f normal;  ///< unit normal of the surface at `point`, out of the solid; 0 when there is no contact
     float depth{}; ///< distance from the particle to `point`: positive inside, negative outside, 0 for no
                    ///< contact
     std::int32_t face = kUnknownFace; ///< the face of the mesh that `point` lies on, where the map knows it
     bool inside = false;
     /// False where the mesh is open and `inside` was decided by the generalised winding number
-    /// (exact_map.hpp). A distance map never marks its answers.
+    /// (exact_map.hpp). Always true with a distance map, which does not judge its answers.
     bool certain = true;
-    Feature feature = Feature::Unknown; ///< what of the face is nearest
+    Feature feature = Feature::Unknown; ///< the part of the face that is nearest
 
     /// Inside, or outside within the margin.
     bool found() const { return inside || normal != Vec3f{}; }

@@ -46,14 +46,14 @@ struct DistanceMapOptions {
     static constexpr std::uint32_t kMinDivisions = 4;
     static constexpr std::uint32_t kMaxDivisions = 4096;
 
-    DirectionGrid grid = DirectionGrid::Spherical; ///< which of the counts below are looked at
+    DirectionGrid grid = DirectionGrid::Spherical; ///< decides which of the counts below are used
     /// Spherical and ellipsoidal: samples of phi; memory and build time grow with the product of the two.
     std::uint32_t longitude_count = 200;
     /// Spherical and ellipsoidal: samples of theta; doubling both divides the share of wrong signs by 2.5.
     std::uint32_t colatitude_count = 200;
-    /// Octahedral: into how many an edge of the octahedron is cut. There are (2 divisions + 1)^2 samples: 100
-    /// make as many bytes as 200 x 200. Cube: into how many an edge of the cube is cut, which makes
-    /// 6 (divisions + 1)^2 samples: 81 make as many bytes as 200 x 200.
+    /// Octahedral: the number of parts of an edge of the octahedron, which has (2 divisions + 1)^2 samples;
+    /// 100 take as many bytes as 200 x 200. Cube: the number of parts of an edge of the cube, which has
+    /// 6 (divisions + 1)^2 samples; 81 take as many bytes as 200 x 200.
     std::uint32_t divisions = 100;
     VertexCorrection correction =
         VertexCorrection::Signed;                    ///< None is unbiased; Signed misses fewer particles
@@ -64,7 +64,7 @@ struct DistanceMapOptions {
     unsigned thread_count = 0; ///< 0: all cores. The bytes of the map do not depend on it.
 };
 
-/// What the build saw. Stored with the map.
+/// What the build found. Stored with the map.
 struct DistanceMapStatistics {
     std::uint32_t face_count = 0; ///< of the mesh
     std::uint32_t dropped_faces =
@@ -130,14 +130,14 @@ class DistanceMap {
     /// InvalidOptions when a count that the grid looks at lies outside the bounds above
     static DistanceMap build(const TriangleMesh& mesh, const DistanceMapOptions& options = {});
 
-    /// Puts arrays that already exist under `storage`, which is kept alive as long as the map. Used by the
-    /// file reader.
+    /// A map of arrays that already exist. They belong to `storage`, which the map keeps alive. The file
+    /// reader uses this.
     /// @pre the invariants of DistanceMapView hold
     DistanceMap(const DistanceMapView& view, const DistanceMapStatistics& statistics,
                 std::uint64_t source_hash, std::shared_ptr<const void> storage);
 
-    /// A map converts to its view, so it can be passed to every query. A view must not outlive the arrays of
-    /// its map; so a temporary map gives none.
+    /// A map converts to its view, so it can be passed to every query. A view must not outlive its map's
+    /// arrays: a temporary map therefore gives none, and has to be named first.
     const DistanceMapView& view() const& { return view_; }
     const DistanceMapView& view() const&& = delete;
     operator const DistanceMapView&() const& { return view_; }
@@ -154,8 +154,7 @@ class DistanceMap {
     std::shared_ptr<const void> storage_;
 };
 
-// ---- Queries: paper section 2.2. noexcept, no allocation, any number of threads
-// ------------------------------------
+// ---- Queries: paper section 2.2. noexcept, any number of threads. On one thread they do not allocate
 //
 // NaN or infinity in a point: outside, no contact. The centre itself: centre_inside; its push-out follows the
 // direction longitude 0, colatitude 0. Points on the seam (longitude 0 = 2 pi) and at the poles are ordinary.
@@ -191,7 +190,6 @@ void contacts_batch(const DistanceMapView& map, StridedSpan<const Vec3f> points_
                     std::span<Contact> contacts, unsigned thread_count = 1) noexcept;
 
 // ---- Looking at a map
-// ------------------------------------------------------------------------------------------------
 
 /// How many directions have 0, 1, 2 ... entries.
 std::vector<std::size_t> entry_histogram(const DistanceMapView& map);

@@ -15,13 +15,14 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// The map that is always right. Directions around the centre are divided into cells; for each cell the
-/// radial intervals in which surface lies, its *bands*, are stored, rounded outwards, with the faces that
-/// pass through. Between bands there is no surface, so a comparison answers; in a band the band's faces are
-/// tested with exact arithmetic. The number of cells trades memory for speed and never touches an answer.
+/// The exact map. Directions around the centre are divided into cells. Each cell stores its *bands*: the
+/// radial intervals in which surface lies, rounded outwards, with the faces that pass through. Between bands
+/// there is no surface, so a comparison answers; within a band the band's faces are tested with exact
+/// arithmetic. The number of cells trades memory for speed and never changes an answer.
 ///
-/// "Exact" is meant on the map's integer lattice, whose step is 1.9e-6 of the bounding radius: mesh and
-/// particle are snapped to it, and from there on no sign is rounded (docs/accuracy.md).
+/// "Exact" refers to the map's integer lattice, whose step is 1.9e-6 of the bounding radius: mesh and
+/// particle are snapped to it, and from there on no sign is rounded (docs/accuracy.md). Sides are exact;
+/// depths, normals and points are those of the snapped mesh, rounded to float.
 ///
 /// All points are in the frame and unit of the mesh that the map was built from ("local").
 namespace echinus {
@@ -45,10 +46,11 @@ struct ExactMapOptions {
     unsigned thread_count = 0; ///< 0: all cores. The bytes of the map do not depend on it.
 };
 
-/// What the build saw. Stored with the map.
+/// What the build found. Stored with the map.
 struct ExactMapStatistics {
     std::uint32_t face_count = 0; ///< of the mesh
-    /// With two corners on one point of the lattice: without area there, they count for distances only.
+    /// Faces with two corners on one point of the lattice, where they have no area: they count for distances
+    /// only.
     std::uint32_t dropped_faces = 0;
     /// Most faces of one band. In that band contains() looks at each of them, at 1 to 6 ns a face.
     std::uint32_t longest_list = 0;
@@ -59,7 +61,7 @@ struct ExactMapStatistics {
     float expected_tests = 0;
     /// Share of the bounding sphere's volume where the answer is certain; 1 when the mesh is closed.
     float certain_share = 1;
-    /// Share of directions, by solid angle, that hold a place where it is not.
+    /// Share of directions, by solid angle, along which the answer is uncertain somewhere.
     float uncertain_directions = 0;
 };
 
@@ -76,14 +78,14 @@ class ExactMap {
     /// the coarsest map exceeds
     static ExactMap build(const TriangleMesh& mesh, const ExactMapOptions& options = {});
 
-    /// Puts arrays that already exist under `storage`, which is kept alive as long as the map. Used by the
-    /// file reader.
+    /// A map of arrays that already exist. They belong to `storage`, which the map keeps alive. The file
+    /// reader uses this.
     /// @pre the invariants of ExactMapView hold
     ExactMap(const ExactMapView& view, const ExactMapStatistics& statistics, std::uint64_t source_hash,
              std::shared_ptr<const void> storage);
 
-    /// A map converts to its view, so it can be passed to every query. A view must not outlive the arrays of
-    /// its map; so a temporary map gives none.
+    /// A map converts to its view, so it can be passed to every query. A view must not outlive its map's
+    /// arrays: a temporary map therefore gives none, and has to be named first.
     const ExactMapView& view() const& { return view_; }
     const ExactMapView& view() const&& = delete;
     operator const ExactMapView&() const& { return view_; }
@@ -100,14 +102,14 @@ class ExactMap {
     std::shared_ptr<const void> storage_;
 };
 
-// ---- Queries. noexcept, any number of threads; of a single particle, without allocation
+// ---- Queries. noexcept, from any number of threads. Queries of one particle do not allocate
 //
 // NaN or infinity in a point: outside, no contact. On the lattice a particle never lies on the surface: it
 // stands for itself moved by (e, e^2, e^3), with e infinitely small (docs/accuracy.md). So a particle on a
-// face is inside or outside by the way that the face is turned, and neighbouring closed parts that share a
+// face is inside or outside depending on the face's orientation, and neighbouring closed parts that share a
 // face leave no gap and no overlap between them.
 
-/// An answer, and whether it is more than the generalised winding number's (see Contact::certain).
+/// Inside?, and whether that is certain (see Contact::certain).
 struct Containment {
     bool inside = false;
     bool certain = true;
@@ -116,12 +118,12 @@ struct Containment {
 /// Is the particle inside?
 bool contains(const ExactMapView& map, Vec3f point_local) noexcept;
 
-/// contains(), with the mark of certainty.
+/// contains(), and whether the answer is certain.
 Containment classify(const ExactMapView& map, Vec3f point_local) noexcept;
 
 /// Inside?, the nearest point of the whole surface, and its distance: the global minimum, by a branch and
-/// bound search. Where parts overlap or lie within each other, that may be a place inside the solid: faces
-/// that do not bound it count as surface too.
+/// bound search. Where parts overlap or are nested, the nearest point may lie inside the solid: faces that do
+/// not bound it count as surface too.
 ///
 /// The cost grows with the number of faces that are about equally near: about a microsecond near the surface,
 /// but from the centre of a sphere all faces are searched, at 30 to 45 ns each (1.1 ms for 40 000 faces, 86
@@ -131,46 +133,60 @@ Containment classify(const ExactMapView& map, Vec3f point_local) noexcept;
 /// surface point. For a particle within two lattice steps of the surface, where snapping would leave this to
 /// chance, it is the angle-weighted pseudonormal of the faces that meet there (Baerentzen and Aanaes 2005).
 ///
+/// Cost: contains(), and for particles inside or with a margin the search. That visits few faces when the
+/// particle is much closer to some of them than to the rest, and in the worst case, when nearly all are
+/// equally far, nearly all of them: at the centre of a sphere 1.8 ms for 40 000 faces, 95 ms for 2 million.
+/// A margin bounds the search for particles outside.
 /// @param margin  particles outside get a contact too when the surface is at most this far; not negative,
 ///                NaN counts as 0
 Contact contact(const ExactMapView& map, Vec3f point_local, float margin = 0) noexcept;
 
 /// contains() for many points, by vector instructions (instruction_set.hpp): the same answers, many times
-/// faster, from 8 points on. Takes 90 KB of the stack; on one thread it does not allocate.
-/// @param thread_count  0: all cores. From 32 768 points on; the answers do not depend on it
+/// faster, for 8 points or more. Takes 90 KB of the stack; on one thread it does not allocate.
+/// @param points_local  [n]
+/// @param inside        [n] out: 1 inside, 0 outside. Does not overlap points_local
+/// @param thread_count  0: all cores. Used for 32 768 points or more; the answers do not depend on it
 /// @pre points_local.size() == inside.size()
 void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
                     std::span<std::uint8_t> inside, unsigned thread_count = 1) noexcept;
 
 /// contact() for many points, in the same way. A point that is about equally near to very many faces costs as
-/// much as in contact(). Takes 120 KB of the stack, and for more than 256 points memory
-/// for the time of the call, up to 1.1 MB a thread and 1 byte a point; without it, it is as slow as
+/// much as in contact(). Takes 120 KB of the stack. For more than 256 points it allocates for the time of the
+/// call up to 1.1 MB a thread and 1 byte a point; where that fails, it answers one by one, as slowly as
 /// contact().
+/// @param points_local  [n]
+/// @param contacts      [n] out. Does not overlap points_local
 /// @pre points_local.size() == contacts.size()
 void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local, float margin,
                     std::span<Contact> contacts, unsigned thread_count = 1) noexcept;
 
-/// Where a particle's way first meets the surface.
+/// Where a particle that moves along a segment first meets the surface.
 struct SweepHit {
     float fraction = 1; ///< of the segment: 0 at `from`, 1 at `to`; 1 when nothing is met
     Vec3f point;        ///< from + fraction (to - from), local; `to` when nothing is met
-    Vec3f normal; ///< unit normal of the face, out of the solid; 0 when nothing is met. Of a face with solid
-                  ///< on both sides, or on none, out of its front
-    std::int32_t face = Contact::kUnknownFace; ///< the mesh's number
-    bool entering = false;                     ///< from outside the solid to its inside
+    /// Unit normal of the face, out of the solid; 0 when nothing is met. Where both sides of the face are
+    /// solid, or neither is, it points out of the face's front.
+    Vec3f normal;
+    std::int32_t face = Contact::kUnknownFace; ///< its number in the mesh
+    bool entering = false;                     ///< the crossing leads from outside the solid to its inside
 
     bool found() const { return face != Contact::kUnknownFace; }
 };
 
-/// The first crossing of the straight way between two points with the surface. Exact on the lattice, and of
-/// one mind with contains(): when it finds nothing, the winding number is the same at both ends. NaN or
-/// infinity in a point: nothing is met.
+/// The first crossing of a segment with the surface. On the lattice, which faces are crossed is exact.
+///
+/// On a closed surface sweep() agrees with contains(): when nothing is met, the winding number is the same at
+/// both ends. On an open surface it need not be: the generalised winding number also passes one half where
+/// there is no face, so contains() may differ at the ends of a segment that meets nothing.
+///
+/// NaN or infinity in a point: nothing is met. Does not allocate. Cost: a few comparisons for a segment
+/// within one gap of a cell, else the faces whose boxes the segment meets before its first crossing.
 SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexcept;
 
 // ---- A surface that moves
 
-/// Builds maps of a surface whose vertices move while its triangles stay, such as an animated body: memory is
-/// used again from one map to the next. Not for several threads at once.
+/// Builds maps of a surface whose vertices move while its triangles stay the same, such as an animated body:
+/// memory is reused from one map to the next. Not for several threads at once.
 class ExactMapBuilder {
   public:
     /// @throws Error InvalidOptions as ExactMap::build() does
@@ -179,10 +195,10 @@ class ExactMapBuilder {
     ExactMapBuilder(ExactMapBuilder&&) noexcept;
     ExactMapBuilder& operator=(ExactMapBuilder&&) noexcept;
 
-    /// The map of the faces with these vertices: the same, bit for bit, as ExactMap::build() of them. Centre,
-    /// radius, lattice and resolution are found anew.
-    /// The builder keeps the map. A map that was copied from it keeps its arrays; without a copy the next
-    /// rebuild() writes into the same memory, and views of the old map end.
+    /// The map of the faces with these vertices: the same, bit for bit, as that of ExactMap::build(). Centre,
+    /// radius, lattice and resolution are computed anew.
+    /// The builder keeps the map. A copy of the map keeps its arrays; without a copy the next rebuild()
+    /// writes into the same memory, and views of the old map are no longer valid.
     /// @throws Error as ExactMap::build() does; the builder then holds no map and can be used again
     const ExactMap& rebuild(std::span<const Vec3f> vertices);
 
@@ -197,8 +213,8 @@ class ExactMapBuilder {
 /// there.
 struct ExactMapSurface {
     TriangleMesh mesh; ///< local frame
-    /// [face_count] The longest list of a band that each face is in, which is what a query near it may have
-    /// to test; 0 for one that is in none, being seen edge-on.
+    /// [face_count] The length of the longest list that each face is in: a query near the face may have to
+    /// test so many. 0 for a face in no list, which is seen edge-on from the centre.
     std::vector<std::uint32_t> longest_list;
 };
 ExactMapSurface reconstruct_surface(const ExactMapView& map);

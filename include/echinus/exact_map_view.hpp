@@ -10,15 +10,15 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// The arrays of an exact map (exact_map.hpp), for those who look into one or store one. Queries need nothing
-/// from this header.
+/// The arrays of an exact map (exact_map.hpp), for programs that inspect or store one. To ask queries, you
+/// need nothing from this header.
 namespace echinus {
 
-/// Which places are inside, told by the winding number of the surface around them. The rules differ only
-/// where parts of the surface overlap, are nested, inverted or doubled.
+/// Which places are inside, by the winding number of the surface around them. The rules differ only where
+/// parts of the surface overlap, are nested, inverted or doubled.
 enum class InsideRule : std::uint8_t {
-    /// Every winding number but 0: the union of parts that are turned alike, or do not overlap. Where parts
-    /// that are turned oppositely overlap, their numbers cancel.
+    /// Every winding number but 0: the union of parts that have the same orientation or do not overlap. Where
+    /// parts of opposite orientation overlap, their numbers cancel.
     Nonzero,
     Parity, ///< an odd winding number: a part within a part is a hole
 };
@@ -67,11 +67,11 @@ static_assert(sizeof(BorderEdge) == 12);
 struct ExactMapView {
     static constexpr int kBandUnit = 16;
     static constexpr int kBoxUnit = 32;
-    /// Stands for the winding number of a gap that is not constant, for want of a closed surface.
+    /// In place of a gap's winding number: it is not constant there, because the surface is open.
     static constexpr std::int16_t kUncertain = std::numeric_limits<std::int16_t>::min();
-    /// Stands for the winding number between the two halves of a long band that was split: there is no gap.
-    /// The faces of the lower half tell how a ray crosses the surface up to a particle in it, those of the
-    /// upper how it does beyond.
+    /// In place of a gap's winding number: there is no gap, but a long band that was split in two. For a
+    /// particle in the lower half, crossings between the origin and the particle are counted, for one in the
+    /// upper half those beyond it.
     static constexpr std::int16_t kSplit = kUncertain + 1;
 
     Vec3f centre;     ///< C, local
@@ -79,11 +79,11 @@ struct ExactMapView {
     std::uint32_t divisions = 0;
     InsideRule rule = InsideRule::Nonzero;
     std::span<const std::uint32_t> band_offsets; ///< [cell_count + 1]
-    /// [cell_count] The upper limit of each cell's last band, 0 where there is none: most particles lie
-    /// beyond it, and need to know no more.
+    /// [cell_count] The upper limit of each cell's last band, 0 where there is none. Most particles lie
+    /// beyond it, and their query ends there.
     std::span<const std::uint16_t> outer_limits;
-    /// [band_count + 1] by cell, then outwards; the last is a sentinel. A band without faces is possible: it
-    /// parts two gaps of an open surface.
+    /// [band_count + 1] by cell, then outwards; the last is a sentinel. A band without faces separates two
+    /// gaps of an open surface.
     std::span<const Band> bands;
     /// [band_count] Winding number of the gap between a band and the one below it, or kUncertain or kSplit.
     /// Beyond a cell's last band it is 0.
@@ -96,7 +96,7 @@ struct ExactMapView {
     /// numbers holds any vertex as its last three.
     std::span<const Vec3<std::int32_t>> vertices;
     IndexArray corners;                 ///< [3 face_count] vertices of each face
-    IndexArray face_numbers;            ///< [face_count] the mesh's number of each face
+    IndexArray face_numbers;            ///< [face_count] each face's number in the mesh
     std::span<const TreeNode> nodes;    ///< the first is the root
     std::span<const BorderEdge> border; ///< empty when the surface is closed
 

@@ -9,7 +9,7 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Points, spheres, poses and views: the few value types that every other header speaks.
+/// Points, spheres, poses and strided views: the value types that all other headers use.
 /// The frame is right-handed. Lengths are in the caller's unit.
 namespace echinus {
 
@@ -67,7 +67,8 @@ struct Sphere {
     double radius = 0;
 };
 
-/// A rotation as a unit quaternion w + xi + yj + zk.
+/// A rotation as a unit quaternion w + xi + yj + zk. Nothing checks the length: a quaternion of another
+/// length is no rotation, and what is computed with it is not meaningful. normalised() mends rounding.
 struct Rotation {
     double w = 1, x = 0, y = 0, z = 0;
 
@@ -84,6 +85,7 @@ struct Rotation {
 
 /// A pose: rotate, then translate. The translation is double, so that a collider may stand far from the
 /// origin.
+/// @pre rotation is of unit length, to rounding
 struct RigidTransform {
     Rotation rotation;
     Vec3d translation;
@@ -94,8 +96,8 @@ struct RigidTransform {
     }
 };
 
-/// A view of `size` values of type T that lie `stride` bytes apart, for instance the positions inside
-/// somebody else's vertex struct. Owns nothing. A contiguous container of T converts to it.
+/// A view of `size` values of type T that lie `stride` bytes apart, for instance the positions in an array of
+/// vertex structs. Owns nothing. A contiguous container of T converts to it.
 template <typename T>
 class StridedSpan {
     using Byte = std::conditional_t<std::is_const_v<T>, const std::byte, std::byte>;

@@ -39,8 +39,8 @@ std::unique_ptr<PointSource> open_npy_points(std::unique_ptr<Input> input);
 
 /// Points from lines "x,y,z", read into memory whole. Empty lines and lines that begin with # are skipped,
 /// and so is the first line when it holds names: such a file without any other line has no points.
-/// @throws echinus::Error Damaged with the number of the line; WrongFormat for a file without lines; Unreadable
-/// for more than kMaxPointsInMemory
+/// @throws echinus::Error Damaged with the number of the line; WrongFormat for a file without lines;
+/// Unreadable for more than kMaxPointsInMemory
 std::unique_ptr<PointSource> open_csv_points(std::unique_ptr<Input> input);
 
 /// Refuses more points than kMaxPointsInMemory.
