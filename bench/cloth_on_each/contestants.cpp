@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 using namespace echinus;
-using namespace echinus::baselines;
+using namespace echinus::rivals;
 
 namespace {
 
@@ -22,9 +22,9 @@ constexpr std::size_t kPaperBytes = 630'000;
 /// distance map, so it does for any system that measures along rays.
 constexpr float kAlongRays = 4;
 
-class AskedBaseline final : public CustomMap {
+class AskedSystem final : public CustomMap {
   public:
-    AskedBaseline(std::unique_ptr<const Baseline> system, float margin_factor)
+    AskedSystem(std::unique_ptr<const System> system, float margin_factor)
         : system_(std::move(system)), margin_factor_(margin_factor) {}
 
     void contains_batch(std::span<const Vec3f> points,
@@ -37,19 +37,19 @@ class AskedBaseline final : public CustomMap {
     }
 
   private:
-    std::unique_ptr<const Baseline> system_;
+    std::unique_ptr<const System> system_;
     float margin_factor_;
 };
 
-Contestant asked(std::string label, std::string setting, std::unique_ptr<const Baseline> system,
+Contestant asked(std::string label, std::string setting, std::unique_ptr<const System> system,
                  float margin_factor = 1) {
     const std::size_t bytes = system->byte_count();
-    const auto map = std::make_shared<AskedBaseline>(std::move(system), margin_factor);
+    const auto map = std::make_shared<AskedSystem>(std::move(system), margin_factor);
     return {std::move(label), std::move(setting), bytes, map, map, false};
 }
 
 template <typename System>
-std::unique_ptr<const Baseline> held(System system) {
+std::unique_ptr<const System> held(System system) {
     return std::make_unique<System>(std::move(system));
 }
 

@@ -4,7 +4,7 @@
 
 using namespace echinus;
 
-Ways contacts_ways(const baselines::ClassifiedGrid& grid, std::size_t point_count) {
+Ways contacts_ways(const rivals::ClassifiedGrid& grid, std::size_t point_count) {
     Way batch = way_of<Contact>(
         "batch", point_count, [&](auto points, auto contacts) { grid.contacts_batch(points, 0, contacts); });
     batch.as_whole = true;

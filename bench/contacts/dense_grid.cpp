@@ -10,7 +10,7 @@ namespace {
 struct Arrays {
     explicit Arrays(std::size_t count) : depths(count), x(count), y(count), z(count) {}
 
-    baselines::DenseGrid::Contacts from(std::size_t first, std::size_t count) {
+    rivals::DenseGrid::Contacts from(std::size_t first, std::size_t count) {
         const auto part = [&](std::vector<float>& all) { return std::span(all).subspan(first, count); };
         return {part(depths), part(x), part(y), part(z)};
     }
@@ -20,7 +20,7 @@ struct Arrays {
 
 } // namespace
 
-Ways contacts_ways(const baselines::DenseGrid& grid, std::size_t point_count) {
+Ways contacts_ways(const rivals::DenseGrid& grid, std::size_t point_count) {
     const auto arrays = std::make_shared<Arrays>(point_count);
     return {{"vector loop",
              [=, &grid](std::span<const Vec3f> points, std::size_t first) {

@@ -4,7 +4,7 @@
 
 using namespace echinus;
 
-Ways contains_ways(const baselines::DenseGrid& grid, std::size_t point_count) {
+Ways contains_ways(const rivals::DenseGrid& grid, std::size_t point_count) {
     return {way_of<std::uint8_t>("vector loop", point_count,
                                  [&](auto points, auto inside) { grid.contains_batch(points, inside); })};
 }

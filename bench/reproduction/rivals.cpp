@@ -19,7 +19,7 @@
 
 using namespace echinus;
 using namespace echinus::comparison;
-using baselines::Baseline;
+using rivals::System;
 
 namespace {
 
@@ -28,7 +28,7 @@ using Rows = std::vector<std::vector<std::string>>;
 /// Something that was built at the paper's settings.
 struct Rival {
     std::string name;
-    std::unique_ptr<const Baseline> structure;
+    std::unique_ptr<const System> structure;
     double build_seconds;
     std::string instruction_set{echinus::instruction_set()}; ///< that it is asked with
 };
@@ -56,7 +56,7 @@ std::string megabytes(std::size_t bytes) {
 }
 
 /// Percent of the points of each set.
-void add_wrong(const Baseline& structure, const Subject& subject, std::vector<std::string>& row) {
+void add_wrong(const System& structure, const Subject& subject, std::vector<std::string>& row) {
     for (const JudgedPoints& set : subject.sets) {
         std::vector<std::uint8_t> inside(set.points.size());
         structure.contains_batch(set.points, inside);
@@ -73,19 +73,19 @@ void add_wrong(const Baseline& structure, const Subject& subject, std::vector<st
 #ifdef ECHINUS_HAS_SUPERQUADRIC_MAP
 Rival superquadric_rival(const Subject& subject, Rows& rows) {
     const Printed printed = printed_for(subject);
-    baselines::SuperquadricMapOptions options;
+    rivals::SuperquadricMapOptions options;
     options.segment_count = printed.segment_count;
     options.thread_count = 1;
     Rival result = rival("superquadric map", [&] {
-        return std::make_unique<baselines::SuperquadricMap>(
-            baselines::SuperquadricMap::build(subject.mesh, options));
+        return std::make_unique<rivals::SuperquadricMap>(
+            rivals::SuperquadricMap::build(subject.mesh, options));
     });
-    const auto& map = static_cast<const baselines::SuperquadricMap&>(*result.structure);
+    const auto& map = static_cast<const rivals::SuperquadricMap&>(*result.structure);
     rows.push_back({subject.name, fmt::format("{}", map.segment_count()), megabytes(map.byte_count()),
                     fmt::format("{:.2f}", static_cast<double>(map.byte_count()) / (1 << 20)),
                     fmt::format("{:.1f}", printed.superquadric_megabytes),
                     fmt::format("{:.1f}", result.build_seconds),
-                    fmt::format("{:.1f}", 100 * baselines::fit_error(map.report()).mean),
+                    fmt::format("{:.1f}", 100 * rivals::fit_error(map.report()).mean),
                     fmt::format("{:.1f}", 100 * map.report().uncovered_area_share)});
     add_wrong(map, subject, rows.back());
     return result;
@@ -96,11 +96,11 @@ Rival superquadric_rival(const Subject& subject, Rows& rows) {
 
 constexpr std::uint32_t kFieldSamples = 200;
 
-Rival field_rival(const Subject& subject, baselines::SampleFormat format, Rows& rows) {
-    const bool floats = format == baselines::SampleFormat::Float32;
+Rival field_rival(const Subject& subject, rivals::SampleFormat format, Rows& rows) {
+    const bool floats = format == rivals::SampleFormat::Float32;
     std::size_t node_count = 1;
     Rival result = rival(floats ? "distance field" : "distance field, 16 bit", [&] {
-        auto grid = std::make_unique<baselines::DenseGrid>(baselines::DenseGrid::with_samples(
+        auto grid = std::make_unique<rivals::DenseGrid>(rivals::DenseGrid::with_samples(
             subject.mesh, kFieldSamples, {.format = format, .thread_count = 1}));
         for (int axis = 0; axis < 3; ++axis) node_count *= grid->node_count(axis);
         return grid;
@@ -119,7 +119,7 @@ Rival field_rival(const Subject& subject, baselines::SampleFormat format, Rows& 
 // ---- Speed ----
 
 Rival distance_map_rival(const Subject& subject, std::string name) {
-    return rival(std::move(name), [&] { return baselines::distance_map(subject.mesh, {.thread_count = 1}); });
+    return rival(std::move(name), [&] { return rivals::distance_map(subject.mesh, {.thread_count = 1}); });
 }
 
 /// One particle after the other, as the superquadric map is asked.
@@ -154,11 +154,11 @@ void add_speeds(const Subject& subject, const std::vector<Rival>& rivals, Rows& 
     std::vector<std::uint8_t> inside(subject.sets[0].points.size());
     std::vector<Contact> contacts(inside.size());
     for (const JudgedPoints& set : subject.sets)
-        race(set, [&](const Baseline& structure, std::span<const Vec3f> points) {
+        race(set, [&](const System& structure, std::span<const Vec3f> points) {
             structure.contains_batch(points, std::span(inside).first(points.size()));
         });
     for (const JudgedPoints& set : subject.sets)
-        race(set, [&](const Baseline& structure, std::span<const Vec3f> points) {
+        race(set, [&](const System& structure, std::span<const Vec3f> points) {
             structure.contacts_batch(points, std::span(contacts).first(points.size()));
         });
 }
@@ -180,8 +180,8 @@ void measure_rivals(std::span<const Subject> subjects, Values& values) {
 #ifdef ECHINUS_HAS_SUPERQUADRIC_MAP
         rivals.push_back(superquadric_rival(subject, superquadrics));
 #endif
-        rivals.push_back(field_rival(subject, baselines::SampleFormat::Float32, fields));
-        rivals.push_back(field_rival(subject, baselines::SampleFormat::Snorm16, fields));
+        rivals.push_back(field_rival(subject, rivals::SampleFormat::Float32, fields));
+        rivals.push_back(field_rival(subject, rivals::SampleFormat::Snorm16, fields));
         add_speeds(subject, rivals, speeds);
     }
     values["rivals.superquadrics"] =

@@ -30,7 +30,7 @@ bool visit_face(RTCPointQueryFunctionArguments* arguments) {
     const std::vector<Vec3f>& vertices = nearest.mesh.vertices;
     const Vec3f p{arguments->query->x, arguments->query->y, arguments->query->z};
     const Vec3f on_face =
-        baselines::nearest_on_triangle(p, vertices[face[0]], vertices[face[1]], vertices[face[2]]);
+        rivals::nearest_on_triangle(p, vertices[face[0]], vertices[face[1]], vertices[face[2]]);
     const Vec3f offset = p - on_face;
     const float distance = std::sqrt(dot(offset, offset));
     if (distance >= arguments->query->radius) return false;

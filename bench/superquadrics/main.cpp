@@ -17,7 +17,7 @@
 #include <cstdio>
 
 using namespace echinus;
-using namespace echinus::baselines;
+using namespace echinus::rivals;
 namespace fs = std::filesystem;
 
 namespace {

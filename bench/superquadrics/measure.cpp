@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 using namespace echinus;
-using namespace echinus::baselines;
+using namespace echinus::rivals;
 
 namespace {
 

@@ -13,4 +13,4 @@ std::vector<std::string> head_of_measurements();
 
 /// @throws Error as both maps' builds do
 std::vector<std::string> measure(const std::string& name, const echinus::TriangleMesh& mesh,
-                                 const echinus::baselines::SuperquadricMapOptions& options);
+                                 const echinus::rivals::SuperquadricMapOptions& options);

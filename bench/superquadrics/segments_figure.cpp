@@ -7,7 +7,7 @@
 #include <string>
 
 using namespace echinus;
-using namespace echinus::baselines;
+using namespace echinus::rivals;
 
 namespace {
 

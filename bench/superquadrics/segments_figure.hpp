@@ -10,5 +10,5 @@
 /// @param options  width and height are those of one picture
 /// @throws Error as render()
 echinus::Image draw_segments_figure(const echinus::TriangleMesh& model,
-                                    const echinus::baselines::SuperquadricMap& map, const echinus::View& view,
+                                    const echinus::rivals::SuperquadricMap& map, const echinus::View& view,
                                     const echinus::RenderOptions& options);

@@ -12,8 +12,8 @@
 #include <echinus/exact_map.hpp>
 
 using namespace echinus;
-using baselines::ClassifiedGrid;
-using baselines::DenseGrid;
+using rivals::ClassifiedGrid;
+using rivals::DenseGrid;
 
 namespace {
 

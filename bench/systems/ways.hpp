@@ -7,10 +7,10 @@
 namespace echinus {
 class DistanceMap;
 class ExactMap;
-namespace baselines {
+namespace rivals {
 class ClassifiedGrid;
 class DenseGrid;
-} // namespace baselines
+} // namespace rivals
 } // namespace echinus
 class BulletRival;
 class CgalRival;
@@ -23,8 +23,8 @@ class OpenVdbRival;
 
 Ways contains_ways(const echinus::ExactMap& map, std::size_t point_count);
 Ways contains_ways(const echinus::DistanceMap& map, std::size_t point_count);
-Ways contains_ways(const echinus::baselines::ClassifiedGrid& grid, std::size_t point_count);
-Ways contains_ways(const echinus::baselines::DenseGrid& grid, std::size_t point_count);
+Ways contains_ways(const echinus::rivals::ClassifiedGrid& grid, std::size_t point_count);
+Ways contains_ways(const echinus::rivals::DenseGrid& grid, std::size_t point_count);
 Ways contains_ways(const NanoVdbRival& grid, std::size_t point_count);
 Ways contains_ways(const OpenVdbRival& grid, std::size_t point_count);
 Ways contains_ways(const EmbreeRival& embree, std::size_t point_count);
@@ -39,8 +39,8 @@ void list_floors(const echinus::TriangleMesh& mesh, std::vector<System>& list);
 
 Ways contacts_ways(const echinus::ExactMap& map, std::size_t point_count);
 Ways contacts_ways(const echinus::DistanceMap& map, std::size_t point_count);
-Ways contacts_ways(const echinus::baselines::ClassifiedGrid& grid, std::size_t point_count);
-Ways contacts_ways(const echinus::baselines::DenseGrid& grid, std::size_t point_count);
+Ways contacts_ways(const echinus::rivals::ClassifiedGrid& grid, std::size_t point_count);
+Ways contacts_ways(const echinus::rivals::DenseGrid& grid, std::size_t point_count);
 Ways contacts_ways(const NanoVdbRival& grid, std::size_t point_count);
 Ways contacts_ways(const OpenVdbRival& grid, std::size_t point_count);
 Ways contacts_ways(const EmbreeRival& embree, std::size_t point_count);

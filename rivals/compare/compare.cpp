@@ -79,7 +79,7 @@ struct Competitor {
 };
 
 /// Builds a structure, several times over when that is quick.
-Competitor build_timed(const System& system, const Recipe& recipe) {
+Competitor build_timed(const SystemType& system, const Recipe& recipe) {
     constexpr double kEnough = 0.1; // seconds
     constexpr std::size_t kMost = 5;
     Competitor result;
@@ -101,7 +101,7 @@ Competitor build_timed(const System& system, const Recipe& recipe) {
 
 /// A system around the mesh that is compared.
 struct Participant {
-    const System* system;
+    const SystemType* system;
     std::unique_ptr<Sizes> sizes;
 };
 
@@ -112,15 +112,15 @@ bool is_refusal(const Error& error) {
 
 std::vector<Participant> participants_of(const TriangleMesh& mesh, const CompareOptions& options,
                                          std::vector<Refusal>& refusals) {
-    std::vector<const System*> chosen;
+    std::vector<const SystemType*> chosen;
     for (const std::string& name : options.systems)
-        if (const System& system = system_named(name); std::ranges::find(chosen, &system) == chosen.end())
+        if (const SystemType& system = system_named(name); std::ranges::find(chosen, &system) == chosen.end())
             chosen.push_back(&system);
     if (chosen.empty())
-        for (const System& system : all_systems())
+        for (const SystemType& system : all_systems())
             if (system.available()) chosen.push_back(&system);
     std::vector<Participant> participants;
-    for (const System* system : chosen) {
+    for (const SystemType* system : chosen) {
         const Progress progress = [&options, system](std::string_view stage, double share) {
             if (options.report_progress)
                 options.report_progress(std::string(system->title) + ": " + std::string(stage), share);
@@ -148,7 +148,7 @@ constexpr Effort kForCurves{3, 0.5};
 constexpr double kPatience = 30;
 
 /// All competitors, asked for a set.
-/// @param ask  void (const Baseline&, Part of the set)
+/// @param ask  void (const System&, Part of the set)
 template <typename Ask>
 std::vector<Racer> racers_for(const std::vector<Competitor>& competitors, std::size_t point_count,
                               const Ask& ask) {
@@ -190,10 +190,10 @@ void measure(const JudgedSet& set, double radius, const Effort& effort,
     std::vector<std::uint8_t> inside(count);
     std::vector<Contact> contacts(count);
     const auto of = [](auto& all, Part part) { return std::span(all).subspan(part.begin, part.size()); };
-    const auto ask_sides = [&](const baselines::Baseline& structure, Part part) {
+    const auto ask_sides = [&](const rivals::System& structure, Part part) {
         structure.contains_batch(of(set.points, part), of(inside, part));
     };
-    const auto ask_contacts = [&](const baselines::Baseline& structure, Part part) {
+    const auto ask_contacts = [&](const rivals::System& structure, Part part) {
         structure.contacts_batch(of(set.points, part), of(contacts, part));
     };
     const std::vector<Pace> sides = race(racers_for(competitors, count, ask_sides), effort,
@@ -233,7 +233,7 @@ std::vector<Competitor> build_all(std::vector<Participant>& participants, const 
     std::vector<Competitor> competitors;
     std::vector<Participant> built;
     for (Participant& participant : participants) {
-        const System& system = *participant.system;
+        const SystemType& system = *participant.system;
         Stage(options, "building: " + std::string(system.title))(0);
         std::string reason = "it comes in this size only";
         try {

@@ -45,7 +45,7 @@ struct SetFigures {
 
 /// A system in one size.
 struct Figures {
-    const System* system;
+    const SystemType* system;
     std::size_t byte_count;
     std::string counted; ///< what the bytes are
     std::string excess;  ///< why it takes more bytes than the budget; empty when it does not
@@ -55,7 +55,7 @@ struct Figures {
 
 /// A system that would not be built, and why.
 struct Refusal {
-    const System* system;
+    const SystemType* system;
     std::string reason;
 };
 

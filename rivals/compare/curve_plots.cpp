@@ -35,7 +35,7 @@ std::vector<Curve> curves_of(const Comparison& comparison, Measure x, Measure y)
     std::vector<Curve> curves;
     for (const std::vector<Figures>& sizes : comparison.curves) {
         if (sizes.empty()) continue;
-        const System& system = *sizes.front().system;
+        const SystemType& system = *sizes.front().system;
         const auto [colour, dashed] = line_style_of(system);
         Curve curve{.name = std::string(system.title), .points = {}, .colour = colour, .dashed = dashed};
         for (const Figures& figures : sizes) curve.points.push_back({x(figures), y(figures)});
@@ -46,7 +46,7 @@ std::vector<Curve> curves_of(const Comparison& comparison, Measure x, Measure y)
 
 } // namespace
 
-LineStyle line_style_of(const System& system) {
+LineStyle line_style_of(const SystemType& system) {
     // Paul Tol's "muted", and grey for those that come in one size.
     static constexpr std::pair<std::string_view, const char*> kColours[] = {
         {"exact", "#0072b2"},

@@ -14,7 +14,7 @@ struct LineStyle {
     std::string colour;
     bool dashed;
 };
-LineStyle line_style_of(const System& system);
+LineStyle line_style_of(const SystemType& system);
 
 /// Near the surface (the set S), each system a curve over its sizes: error against bytes and time against
 /// error, of signs and of depths. An error of 0 is drawn at the edge, which the axis says.

@@ -42,7 +42,7 @@ Recipe recipe(Build build) {
 /// A system that has nothing to keep but the mesh.
 /// @param within  Recipe (const TriangleMesh&, std::size_t byte_budget)
 template <typename Within>
-decltype(System::on) plain(Within within) {
+decltype(SystemType::on) plain(Within within) {
     class Plain final : public Sizes {
       public:
         Plain(const TriangleMesh& mesh, const Within& within) : mesh_(mesh), within_(within) {}
@@ -70,7 +70,7 @@ class ExactSizes final : public Sizes {
   private:
     Recipe of(std::uint32_t divisions) const {
         return {[&mesh = mesh_, divisions] {
-                    return baselines::exact_map(mesh, {.divisions = divisions, .thread_count = 1});
+                    return rivals::exact_map(mesh, {.divisions = divisions, .thread_count = 1});
                 },
                 0};
     }
@@ -78,33 +78,33 @@ class ExactSizes final : public Sizes {
     const TriangleMesh& mesh_;
 };
 
-decltype(System::on) exact() {
+decltype(SystemType::on) exact() {
     return [](const TriangleMesh& mesh, const SystemOptions&, const Progress&) {
         return std::make_unique<ExactSizes>(mesh);
     };
 }
 
-decltype(System::on) distance(DirectionGrid grid) {
+decltype(SystemType::on) distance(DirectionGrid grid) {
     return plain([grid](const TriangleMesh& mesh, std::size_t byte_budget) -> Recipe {
         DistanceMapOptions options;
         options.grid = grid;
         options.thread_count = 1;
-        options = baselines::finest_within(mesh, byte_budget, options);
-        return {[&mesh, options] { return baselines::distance_map(mesh, options); }, 0};
+        options = rivals::finest_within(mesh, byte_budget, options);
+        return {[&mesh, options] { return rivals::distance_map(mesh, options); }, 0};
     });
 }
 
-decltype(System::on) dense(baselines::SampleFormat format) {
+decltype(SystemType::on) dense(rivals::SampleFormat format) {
     return plain([format](const TriangleMesh& mesh, std::size_t byte_budget) {
         return recipe([&mesh, byte_budget, format] {
-            return baselines::DenseGrid::with_bytes(mesh, byte_budget, {.format = format});
+            return rivals::DenseGrid::with_bytes(mesh, byte_budget, {.format = format});
         });
     });
 }
 
 Recipe classified(const TriangleMesh& mesh, std::size_t byte_budget) {
-    const std::int32_t steps = baselines::ClassifiedGrid::build(mesh, byte_budget).cell_steps();
-    return recipe([&mesh, steps] { return baselines::ClassifiedGrid::build_with_cells(mesh, steps); });
+    const std::int32_t steps = rivals::ClassifiedGrid::build(mesh, byte_budget).cell_steps();
+    return recipe([&mesh, steps] { return rivals::ClassifiedGrid::build_with_cells(mesh, steps); });
 }
 
 #ifdef ECHINUS_HAS_SUPERQUADRIC_MAP
@@ -119,12 +119,12 @@ class SuperquadricSizes final : public Sizes {
     Recipe within(std::size_t byte_budget) override {
         if (!segments_) {
             const double start = process_seconds();
-            segments_ = baselines::SuperquadricSegments::fit(mesh_, options_, progress_);
+            segments_ = rivals::SuperquadricSegments::fit(mesh_, options_, progress_);
             fit_seconds_ = process_seconds() - start;
         }
         options_.byte_budget = byte_budget;
         Recipe result = recipe([segments = *segments_, options = options_] {
-            return baselines::SuperquadricMap::sample(segments, options);
+            return rivals::SuperquadricMap::sample(segments, options);
         });
         result.shared_seconds = fit_seconds_;
         return result;
@@ -133,14 +133,14 @@ class SuperquadricSizes final : public Sizes {
   private:
     const TriangleMesh& mesh_;
     Progress progress_;
-    baselines::SuperquadricMapOptions options_;
-    std::optional<baselines::SuperquadricSegments> segments_;
+    rivals::SuperquadricMapOptions options_;
+    std::optional<rivals::SuperquadricSegments> segments_;
     double fit_seconds_ = 0;
 };
 #endif
 
 /// Systems that this program may have been built without: `on` is empty then.
-decltype(System::on) superquadric_if_there() {
+decltype(SystemType::on) superquadric_if_there() {
 #ifdef ECHINUS_HAS_SUPERQUADRIC_MAP
     return [](const TriangleMesh& mesh, const SystemOptions& options, const Progress& progress) {
         return std::make_unique<SuperquadricSizes>(mesh, options, progress);
@@ -150,31 +150,31 @@ decltype(System::on) superquadric_if_there() {
 #endif
 }
 
-decltype(System::on) openvdb_if_there() {
+decltype(SystemType::on) openvdb_if_there() {
 #ifdef ECHINUS_HAS_SPARSE_FIELD
     return plain([](const TriangleMesh& mesh, std::size_t byte_budget) {
-        const std::uint32_t samples = baselines::SparseField::with_bytes(mesh, byte_budget).sample_count();
-        return recipe([&mesh, samples] { return baselines::SparseField::with_samples(mesh, samples); });
+        const std::uint32_t samples = rivals::SparseField::with_bytes(mesh, byte_budget).sample_count();
+        return recipe([&mesh, samples] { return rivals::SparseField::with_samples(mesh, samples); });
     });
 #else
     return {};
 #endif
 }
 
-decltype(System::on) embree_if_there() {
+decltype(SystemType::on) embree_if_there() {
 #ifdef ECHINUS_HAS_EMBREE_TREE
     return plain([](const TriangleMesh& mesh, std::size_t) {
-        return recipe([&mesh] { return baselines::EmbreeTree::build(mesh); });
+        return recipe([&mesh] { return rivals::EmbreeTree::build(mesh); });
     });
 #else
     return {};
 #endif
 }
 
-decltype(System::on) bullet_if_there() {
+decltype(SystemType::on) bullet_if_there() {
 #ifdef ECHINUS_HAS_BULLET_MESH
     return plain([](const TriangleMesh& mesh, std::size_t) {
-        return recipe([&mesh] { return baselines::BulletMesh::build(mesh); });
+        return recipe([&mesh] { return rivals::BulletMesh::build(mesh); });
     });
 #else
     return {};
@@ -183,9 +183,9 @@ decltype(System::on) bullet_if_there() {
 
 } // namespace
 
-const std::vector<System>& all_systems() {
-    using baselines::SampleFormat;
-    static const std::vector<System> systems{
+const std::vector<SystemType>& all_systems() {
+    using rivals::SampleFormat;
+    static const std::vector<SystemType> systems{
         {"exact", "exact map", "", true, exact()},
         {"distance", "distance map", "", true, distance(DirectionGrid::Spherical)},
         {"distance-octahedral", "distance map, octahedral", "", true, distance(DirectionGrid::Octahedral)},
@@ -203,12 +203,12 @@ const std::vector<System>& all_systems() {
     return systems;
 }
 
-const System& system_named(std::string_view name) {
+const SystemType& system_named(std::string_view name) {
     const auto& systems = all_systems();
-    const auto found = std::ranges::find(systems, name, &System::name);
+    const auto found = std::ranges::find(systems, name, &SystemType::name);
     if (found == systems.end()) {
         std::string names;
-        for (const System& system : systems) (names += names.empty() ? "" : ", ") += system.name;
+        for (const SystemType& system : systems) (names += names.empty() ? "" : ", ") += system.name;
         throw Error(ErrorCode::InvalidOptions,
                     "there is no system '" + std::string(name) + "'; there are " + names);
     }

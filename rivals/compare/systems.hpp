@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rivals/systems/baseline.hpp"
+#include "rivals/systems/system.hpp"
 
 #include <echinus/mesh.hpp>
 
@@ -18,7 +18,7 @@ namespace echinus::comparison {
 /// Told by a build that takes long what it does and how much of that is done, 0 to 1.
 using Progress = std::function<void(std::string_view stage, double share)>;
 
-using Built = std::unique_ptr<const baselines::Baseline>;
+using Built = std::unique_ptr<const rivals::System>;
 
 /// How to build a system in a size that is settled, as often as one likes.
 struct Recipe {
@@ -45,7 +45,7 @@ struct SystemOptions {
 };
 
 /// A system that takes part.
-struct System {
+struct SystemType {
     std::string_view name;    ///< one word, as it is asked for: "dense-16bit"
     std::string_view title;   ///< for people: "dense grid, 16 bit"
     std::string_view package; ///< what it is built with, where that need not be there
@@ -57,10 +57,10 @@ struct System {
 };
 
 /// All that there are, ours first; also those that this program was built without.
-const std::vector<System>& all_systems();
+const std::vector<SystemType>& all_systems();
 
 /// @throws Error InvalidOptions for a name that no system has, naming those that do, and for a system that
 /// this program was built without, naming what it takes
-const System& system_named(std::string_view name);
+const SystemType& system_named(std::string_view name);
 
 } // namespace echinus::comparison

@@ -18,7 +18,7 @@ TEST(ClassifiedGridOracle, IsRightAboutSignsAndDepths) {
         for (const Vec3f& p : comparison::uniform_points(mesh, 3000)) points.push_back(p);
         for (const Vec3f& p : comparison::surface_points(mesh, 3000, 1e-5)) points.push_back(p);
         for (const std::size_t budget : {100'000U, 400'000U}) {
-            const auto grid = baselines::ClassifiedGrid::build(mesh, budget);
+            const auto grid = rivals::ClassifiedGrid::build(mesh, budget);
             std::vector<std::uint8_t> inside(points.size());
             grid.contains_batch(points, inside);
             std::vector<Contact> contacts(points.size());

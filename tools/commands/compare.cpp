@@ -103,7 +103,7 @@ std::vector<std::string> split_names(const std::string& text) {
 
 std::string names_of_systems() {
     std::string names;
-    for (const comparison::System& system : comparison::all_systems())
+    for (const comparison::SystemType& system : comparison::all_systems())
         if (system.available()) (names += names.empty() ? "" : ", ") += system.name;
     return names;
 }

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -194,4 +194,4 @@ void BulletMesh::contacts_batch(std::span<const Vec3f> points, float margin,
     }
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

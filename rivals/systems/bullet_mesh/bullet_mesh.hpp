@@ -1,13 +1,13 @@
 #pragma once
 
-#include "rivals/systems/baseline.hpp"
+#include "rivals/systems/system.hpp"
 
 #include <echinus/mesh.hpp>
 
 #include <memory>
 #include <span>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// Bullet's own static triangle mesh (btBvhTriangleMeshShape), asked as its users ask it; for reference.
 ///
@@ -17,7 +17,7 @@ namespace echinus::baselines {
 /// way out is that to the nearest contact of a sphere around the particle. A particle deeper than the
 /// sphere's radius, the reach, touches nothing: it is inside, and Bullet offers no way out. A longer reach
 /// costs time, since the sphere meets more faces.
-class BulletMesh final : public Baseline {
+class BulletMesh final : public System {
   public:
     /// What a game gives a soft body as its margin, in bounding radii.
     static constexpr double kUsualReach = 0.05;
@@ -40,7 +40,7 @@ class BulletMesh final : public Baseline {
     void contains_batch(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const override;
     void contacts_batch(std::span<const Vec3f> points, float margin,
                         std::span<Contact> contacts) const override;
-    using Baseline::contacts_batch;
+    using System::contacts_batch;
 
   private:
     struct Shape;
@@ -49,4 +49,4 @@ class BulletMesh final : public Baseline {
     std::unique_ptr<const Shape> shape_;
 };
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

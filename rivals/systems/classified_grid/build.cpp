@@ -15,7 +15,7 @@
 #include <optional>
 #include <string>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -406,4 +406,4 @@ std::int32_t ClassifiedGrid::cell_steps() const {
     return arrays_->frame.cell_steps;
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rivals/systems/baseline.hpp"
+#include "rivals/systems/system.hpp"
 
 #include <echinus/mesh.hpp>
 
@@ -18,11 +18,11 @@
 /// Written to be as good as we can: cells of two bits, in bricks of 4 x 4 x 4 of which only those on the
 /// surface are stored; particles tested 16 at a time, each with its own cell; the same lattice of integers
 /// and the same perturbation as ExactMap, so that both give the same answers on closed meshes.
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 struct GridArrays;
 
-class ClassifiedGrid final : public Baseline {
+class ClassifiedGrid final : public System {
   public:
     /// The finest cells whose bytes fit, to about one part in a hundred.
     /// @param mesh  closed; inside is where the winding number is not 0
@@ -59,7 +59,7 @@ class ClassifiedGrid final : public Baseline {
     /// @pre points_local.size() == contacts.size()
     void contacts_batch(std::span<const Vec3f> points_local, float margin,
                         std::span<Contact> contacts) const override;
-    using Baseline::contacts_batch;
+    using System::contacts_batch;
 
   private:
     explicit ClassifiedGrid(std::shared_ptr<const GridArrays> arrays) : arrays_(std::move(arrays)) {}
@@ -67,4 +67,4 @@ class ClassifiedGrid final : public Baseline {
     std::shared_ptr<const GridArrays> arrays_;
 };
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

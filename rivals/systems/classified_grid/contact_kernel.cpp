@@ -27,7 +27,7 @@
 
 #ifndef ECHINUS_CLASSIFIED_GRID_CONTACT_KERNEL_ONCE
 #define ECHINUS_CLASSIFIED_GRID_CONTACT_KERNEL_ONCE
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// A particle that needs a nearest point.
 struct Seeker {
@@ -76,11 +76,11 @@ struct ContactScratch {
     FaceList list;
 };
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace echinus::baselines::HWY_NAMESPACE {
+namespace echinus::rivals::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
 
@@ -586,11 +586,11 @@ HWY_ATTR void find_contacts(const GridArrays& grid, ContactScratch& scratch, flo
 
 #endif
 
-} // namespace echinus::baselines::HWY_NAMESPACE
+} // namespace echinus::rivals::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 HWY_EXPORT(find_contacts);
 
@@ -690,5 +690,5 @@ void contacts_kernel(const GridArrays& grid, std::span<const Vec3f> points_local
     }
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals
 #endif

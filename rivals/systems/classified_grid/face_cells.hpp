@@ -9,7 +9,7 @@
 
 /// Which cells of a grid a face meets: separating axes, with cells wider by GridFrame::kSlack. May name a
 /// cell too many, never one too few.
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// A face seen along one axis, as three half-planes that a square must reach to meet it (Schwarz and Seidel,
 /// "Fast parallel surface and solid voxelization on GPUs", 2010, section 4). All numbers are whole and below
@@ -100,4 +100,4 @@ void for_each_cell(const GridFrame& frame, const std::array<LatticePoint, 3>& fa
         }
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

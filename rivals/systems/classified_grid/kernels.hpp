@@ -7,7 +7,7 @@
 #include <span>
 
 /// The batch queries in vector instructions; simd/dispatch.hpp chooses which.
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 void contains_kernel(const GridArrays& grid, std::span<const Vec3f> points_local,
                      std::span<std::uint8_t> inside);
@@ -15,4 +15,4 @@ void contains_kernel(const GridArrays& grid, std::span<const Vec3f> points_local
 void contacts_kernel(const GridArrays& grid, std::span<const Vec3f> points_local, float margin,
                      std::span<Contact> contacts);
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

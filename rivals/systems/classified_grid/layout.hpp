@@ -11,7 +11,7 @@
 #include <vector>
 
 /// What a classified grid stores, and where a particle finds its cell.
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 using CellPlace = Vec3<std::int32_t>; ///< a cell by its column, row and layer
 
@@ -178,4 +178,4 @@ inline int winding_of_centre(const GridArrays& grid, std::uint32_t list, std::ui
     return grid.windings.empty() ? static_cast<int>(state & kInsideBit) : grid.windings[list];
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -14,7 +14,7 @@
 
 HWY_BEFORE_NAMESPACE();
 #if HWY_TARGET != HWY_SCALAR // the reference stands for it
-namespace echinus::baselines::HWY_NAMESPACE {
+namespace echinus::rivals::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
@@ -228,7 +228,7 @@ class FaceGather {
     const PackedPoint* vertices_;
 };
 
-} // namespace echinus::baselines::HWY_NAMESPACE
+} // namespace echinus::rivals::HWY_NAMESPACE
 #endif
 HWY_AFTER_NAMESPACE();
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -189,4 +189,4 @@ Contact contact_at(const GridArrays& grid, const Vec3f& point_local, bool inside
     return contact;
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

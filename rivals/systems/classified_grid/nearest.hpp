@@ -7,7 +7,7 @@
 #include <optional>
 
 /// The nearest point of the surface, one particle at a time. Places and lengths in lattice steps.
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 struct NearestPlace {
     Vec3d point;
@@ -37,4 +37,4 @@ bool is_inside(const GridArrays& grid, const Vec3f& point_local);
 int crossing_between(const GridArrays& grid, std::uint32_t face, const LatticePoint& from,
                      const LatticePoint& to);
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

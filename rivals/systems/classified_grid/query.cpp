@@ -9,7 +9,7 @@
 
 #include <cassert>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 int crossing_between(const GridArrays& grid, std::uint32_t face, const LatticePoint& from,
                      const LatticePoint& to) {
@@ -50,7 +50,7 @@ Contact contact(const GridArrays& grid, const Vec3f& point_local, bool inside, f
 }
 
 Contact ClassifiedGrid::contact(const Vec3f& point_local, float margin) const noexcept {
-    return baselines::contact(*arrays_, point_local, is_inside(*arrays_, point_local), margin);
+    return rivals::contact(*arrays_, point_local, is_inside(*arrays_, point_local), margin);
 }
 
 void ClassifiedGrid::contains_batch(std::span<const Vec3f> points_local,
@@ -67,4 +67,4 @@ void ClassifiedGrid::contacts_batch(std::span<const Vec3f> points_local, float m
     for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = contact(points_local[i], margin);
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

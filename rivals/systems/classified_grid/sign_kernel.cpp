@@ -21,7 +21,7 @@
 
 #ifndef ECHINUS_CLASSIFIED_GRID_SIGN_KERNEL_ONCE
 #define ECHINUS_CLASSIFIED_GRID_SIGN_KERNEL_ONCE
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// Particles that are looked at together: few enough that what is noted of them stays in the first cache.
 constexpr std::size_t kChunk = 1024;
@@ -53,11 +53,11 @@ struct SignScratch {
     std::int32_t sorted_lengths[kSize];
 };
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace echinus::baselines::HWY_NAMESPACE {
+namespace echinus::rivals::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
 
@@ -308,11 +308,11 @@ HWY_ATTR void contains_chunk(const GridArrays& grid, SignScratch& scratch, std::
 
 #endif
 
-} // namespace echinus::baselines::HWY_NAMESPACE
+} // namespace echinus::rivals::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 HWY_EXPORT(contains_chunk);
 
@@ -326,5 +326,5 @@ void contains_kernel(const GridArrays& grid, std::span<const Vec3f> points_local
     }
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals
 #endif

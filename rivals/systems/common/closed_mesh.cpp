@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 void require_closed(const TriangleMesh& mesh, std::string_view system) {
     require_valid(mesh);
@@ -53,4 +53,4 @@ double spacing_of_samples(const Box& box, std::uint32_t sample_count, std::uint3
     return box.longest_side() / (sample_count - 1);
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

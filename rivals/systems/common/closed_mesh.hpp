@@ -7,7 +7,7 @@
 #include <string_view>
 
 /// What the builders of several systems ask about a mesh first.
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// Throws unless the mesh has an inside: no system can say more about an open one than where its rule of
 /// sides happens to lead. Vertices on one point of ExactMap's lattice count as one, so that faces need not
@@ -35,4 +35,4 @@ std::array<double, 3> nodes_over(const Box& box, double spacing);
 /// @throws Error InvalidOptions unless sample_count lies in [2, most]
 double spacing_of_samples(const Box& box, std::uint32_t sample_count, std::uint32_t most);
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -2,7 +2,7 @@
 
 #include <echinus/geometry.hpp>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// The nearest point of a triangle: the region of Voronoi in which p lies, by inner products (Ericson,
 /// "Real-Time Collision Detection", 2005, section 5.1.5). In single precision, as games have it.
@@ -26,4 +26,4 @@ inline Vec3f nearest_on_triangle(const Vec3f& p, const Vec3f& a, const Vec3f& b,
     return a + ab * (vb * scale) + ac * (vc * scale);
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <string>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -147,4 +147,4 @@ DenseGrid DenseGrid::with_spacing(const TriangleMesh& mesh, double spacing, cons
     return DenseGrid(sampled(mesh, frame_of(box, spacing, options.format), options));
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

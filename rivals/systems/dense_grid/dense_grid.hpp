@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rivals/systems/baseline.hpp"
+#include "rivals/systems/system.hpp"
 
 #include <echinus/mesh.hpp>
 
@@ -10,7 +10,7 @@
 #include <span>
 #include <utility>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 struct SampledField;
 
@@ -42,7 +42,7 @@ struct DenseGridOptions {
 /// rounding of the samples. Where the distance is smooth it is second order: spacing^2 / 8 times the sum of
 /// its second derivatives along the axes. The side of a particle is certain where the field is farther from 0
 /// than the bound; details thinner than the spacing may be lost.
-class DenseGrid final : public Baseline {
+class DenseGrid final : public System {
   public:
     /// Offsets of 16-bit samples have 31 bits.
     static constexpr std::size_t kMostNodes = std::size_t{1} << 30;
@@ -98,7 +98,7 @@ class DenseGrid final : public Baseline {
     void contacts_batch(std::span<const Vec3f> points, const Contacts& contacts) const;
     void contacts_batch(std::span<const Vec3f> points, float margin,
                         std::span<Contact> contacts) const override;
-    using Baseline::contacts_batch;
+    using System::contacts_batch;
 
   private:
     explicit DenseGrid(std::shared_ptr<const SampledField> field) : field_(std::move(field)) {}
@@ -106,4 +106,4 @@ class DenseGrid final : public Baseline {
     std::shared_ptr<const SampledField> field_;
 };
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// What a query reads. Samples lie [z][y][x].
 struct SampledField {
@@ -28,4 +28,4 @@ struct SampledField {
 /// Gradients are divided by at least this squared and rooted, so that none is divided by 0.
 inline constexpr float kLeastGradientSq = 1e-30F;
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

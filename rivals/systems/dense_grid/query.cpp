@@ -8,7 +8,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -142,4 +142,4 @@ double DenseGrid::value_error_bound() const {
     return field_->spacing * kHalfDiagonal + 2 * sample_error_bound();
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -17,7 +17,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace echinus::baselines {
+namespace echinus::rivals {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -236,11 +236,11 @@ void contacts_lanes(const SampledField& field, std::span<const Vec3f> points,
 }
 
 } // namespace HWY_NAMESPACE
-} // namespace echinus::baselines
+} // namespace echinus::rivals
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -259,5 +259,5 @@ void contacts_kernel(const SampledField& field, std::span<const Vec3f> points,
     ECHINUS_DISPATCH(contacts_lanes)(field, points, contacts);
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals
 #endif

@@ -11,7 +11,7 @@
 #include <limits>
 #include <string>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -274,4 +274,4 @@ bool EmbreeTree::crossed(const Vec3f& from, const Vec3f& to) const {
     return scene_->first_hit(from, to - from, 1).hit.geomID != RTC_INVALID_GEOMETRY_ID;
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

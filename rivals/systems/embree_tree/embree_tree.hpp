@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rivals/systems/baseline.hpp"
+#include "rivals/systems/system.hpp"
 
 #include <echinus/mesh.hpp>
 
@@ -8,7 +8,7 @@
 #include <memory>
 #include <span>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// How a ray tracer tells on which side a particle is, by a ray along a fixed direction.
 enum class RaySides : std::uint8_t {
@@ -24,7 +24,7 @@ enum class RaySides : std::uint8_t {
 /// The representative of bounding-volume trees: Embree 3 with its robust intersections. Sides by rays, ways
 /// out by a point query with the distance to each face in single precision (Ericson, "Real-Time Collision
 /// Detection", 2005, section 5.1.5). It has one size, and that of the mesh: no resolution.
-class EmbreeTree final : public Baseline {
+class EmbreeTree final : public System {
   public:
     /// The tree is built with spatial splits for FirstHit and without for Parity: a face that was split may
     /// be reported more than once (Embree's manual, rtcSetSceneBuildQuality).
@@ -51,7 +51,7 @@ class EmbreeTree final : public Baseline {
     /// particle on it has that of the face.
     void contacts_batch(std::span<const Vec3f> points, float margin,
                         std::span<Contact> contacts) const override;
-    using Baseline::contacts_batch;
+    using System::contacts_batch;
 
     struct Nearest {
         Vec3f point;
@@ -72,4 +72,4 @@ class EmbreeTree final : public Baseline {
     std::unique_ptr<const Scene> scene_;
 };
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

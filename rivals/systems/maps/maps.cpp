@@ -9,15 +9,15 @@
 #include <string>
 #include <utility>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
 /// Both kinds of maps are asked in the same words.
 template <typename Map>
-class MapBaseline final : public Baseline {
+class MapSystem final : public System {
   public:
-    MapBaseline(Map map, std::string name, std::string_view counted)
+    MapSystem(Map map, std::string name, std::string_view counted)
         : map_(std::move(map)), name_(std::move(name)), counted_(counted) {}
 
     std::string name() const override { return name_; }
@@ -26,7 +26,7 @@ class MapBaseline final : public Baseline {
     void contains_batch(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const override {
         echinus::contains_batch(map_.view(), points, inside);
     }
-    using Baseline::contacts_batch;
+    using System::contacts_batch;
     void contacts_batch(std::span<const Vec3f> points, float margin,
                         std::span<Contact> contacts) const override {
         echinus::contacts_batch(map_.view(), points, margin, contacts);
@@ -38,11 +38,11 @@ class MapBaseline final : public Baseline {
     std::string_view counted_;
 };
 
-std::unique_ptr<const Baseline> behind_interface(DistanceMap map) {
+std::unique_ptr<const System> behind_interface(DistanceMap map) {
     constexpr const char* kNames[] = {"distance", "octahedral distance", "cube distance",
                                       "ellipsoidal distance"};
     const char* name = kNames[static_cast<std::size_t>(map.view().grid)];
-    return std::make_unique<MapBaseline<DistanceMap>>(std::move(map), name,
+    return std::make_unique<MapSystem<DistanceMap>>(std::move(map), name,
                                                       "offsets and entries of directions");
 }
 
@@ -69,13 +69,13 @@ struct Resolutions {
 
 } // namespace
 
-std::unique_ptr<const Baseline> exact_map(const TriangleMesh& mesh, const ExactMapOptions& options) {
+std::unique_ptr<const System> exact_map(const TriangleMesh& mesh, const ExactMapOptions& options) {
     require_closed(mesh, "a comparison");
-    return std::make_unique<MapBaseline<ExactMap>>(ExactMap::build(mesh, options), "exact",
+    return std::make_unique<MapSystem<ExactMap>>(ExactMap::build(mesh, options), "exact",
                                                    "bands, lists of faces, vertices, faces and tree");
 }
 
-std::unique_ptr<const Baseline> distance_map(const TriangleMesh& mesh, const DistanceMapOptions& options) {
+std::unique_ptr<const System> distance_map(const TriangleMesh& mesh, const DistanceMapOptions& options) {
     require_closed(mesh, "a comparison");
     return behind_interface(DistanceMap::build(mesh, options));
 }
@@ -111,4 +111,4 @@ DistanceMapOptions finest_within(const TriangleMesh& mesh, std::size_t byte_budg
     return resolutions.with(fits);
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rivals/systems/baseline.hpp"
+#include "rivals/systems/system.hpp"
 
 #include <echinus/distance_map.hpp>
 #include <echinus/exact_map.hpp>
@@ -8,15 +8,15 @@
 #include <memory>
 
 /// The maps of Echinus as systems among others.
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// "exact". At a number of bytes: options.byte_budget.
 /// @throws Error InvalidMesh for an open mesh, and as ExactMap::build() does
-std::unique_ptr<const Baseline> exact_map(const TriangleMesh& mesh, const ExactMapOptions& options = {});
+std::unique_ptr<const System> exact_map(const TriangleMesh& mesh, const ExactMapOptions& options = {});
 
 /// "distance", with "octahedral" where the grid of directions is one.
 /// @throws Error InvalidMesh for an open mesh, and as DistanceMap::build() does
-std::unique_ptr<const Baseline> distance_map(const TriangleMesh& mesh,
+std::unique_ptr<const System> distance_map(const TriangleMesh& mesh,
                                              const DistanceMapOptions& options = {});
 
 /// The finest grid of directions with which the map takes at most so many bytes, to about one part in a
@@ -28,4 +28,4 @@ std::unique_ptr<const Baseline> distance_map(const TriangleMesh& mesh,
 DistanceMapOptions finest_within(const TriangleMesh& mesh, std::size_t byte_budget,
                                  const DistanceMapOptions& options = {});
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

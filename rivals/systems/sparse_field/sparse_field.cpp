@@ -14,7 +14,7 @@
 #include <limits>
 #include <string>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -177,4 +177,4 @@ void SparseField::contacts_batch(std::span<const Vec3f> points, float margin,
     }
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

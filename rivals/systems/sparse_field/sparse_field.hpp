@@ -1,13 +1,13 @@
 #pragma once
 
-#include "rivals/systems/baseline.hpp"
+#include "rivals/systems/system.hpp"
 
 #include <echinus/mesh.hpp>
 
 #include <memory>
 #include <span>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// Signed distances as people really store them: a sparse grid of OpenVDB (Museth, "VDB: High-resolution
 /// sparse volumes with dynamic topology", ACM Transactions on Graphics 32(3), 2013), three voxels deep
@@ -18,7 +18,7 @@ namespace echinus::baselines {
 /// overlapping parts count for depths and not for sides. The interpolation errs as a dense grid's does:
 /// sqrt(3) / 2 of the voxel at most, if the samples were exact. Contacts outside are found within 1.26 voxels
 /// of the surface, however wide the margin.
-class SparseField final : public Baseline {
+class SparseField final : public System {
   public:
     static constexpr std::uint32_t kMostSamples = 4000; ///< one inner node of the tree is 4096 across
 
@@ -48,7 +48,7 @@ class SparseField final : public Baseline {
     void contains_batch(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const override;
     void contacts_batch(std::span<const Vec3f> points, float margin,
                         std::span<Contact> contacts) const override;
-    using Baseline::contacts_batch;
+    using System::contacts_batch;
 
   private:
     struct Grid;
@@ -57,4 +57,4 @@ class SparseField final : public Baseline {
     std::unique_ptr<const Grid> grid_;
 };
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

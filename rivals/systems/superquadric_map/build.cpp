@@ -13,7 +13,7 @@
 #include <mutex>
 #include <string>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -182,4 +182,4 @@ SuperquadricMap SuperquadricMap::build(const TriangleMesh& mesh, const Superquad
     return sample(SuperquadricSegments::fit(mesh, options, progress), options, progress);
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

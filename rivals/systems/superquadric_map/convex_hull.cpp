@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -44,4 +44,4 @@ std::vector<Triangle> convex_hull(std::span<const Vec3f> points) {
     return faces;
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

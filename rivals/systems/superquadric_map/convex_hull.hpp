@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// The faces of the convex hull of points: closed, counter-clockwise seen from outside, corners numbered as
 /// the points. By Bullet's exact integers (btConvexHullComputer, after Preparata and Hong 1977), to which
@@ -14,4 +14,4 @@ namespace echinus::baselines {
 /// @pre positions are finite
 std::vector<Triangle> convex_hull(std::span<const Vec3f> points);
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

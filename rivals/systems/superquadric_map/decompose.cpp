@@ -12,7 +12,7 @@
 #include <span>
 #include <string>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -167,4 +167,4 @@ Decomposition decompose(const TriangleMesh& mesh, const DecompositionOptions& op
     return numbered(std::move(segments));
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// Which segment each face belongs to.
 struct Decomposition {
@@ -43,4 +43,4 @@ struct DecompositionOptions {
 Decomposition decompose(const TriangleMesh& mesh, const DecompositionOptions& options,
                         const Progress& progress = {});
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

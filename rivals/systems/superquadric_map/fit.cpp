@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -157,4 +157,4 @@ SuperquadricFit fit_superquadric(std::span<const Vec3d> points) {
     return fit;
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

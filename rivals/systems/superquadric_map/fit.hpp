@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 struct SuperquadricFit {
     Superquadric shape;
@@ -39,4 +39,4 @@ SuperquadricFit fit_superquadric(std::span<const Vec3d> points);
 
 inline constexpr std::size_t kLeastPointCount = 12; ///< as many as there are parameters
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -152,4 +152,4 @@ int FitResiduals::df(const InputType& parameters, JacobianType& jacobian) const 
     return 0;
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

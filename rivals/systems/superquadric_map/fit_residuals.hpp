@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <span>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// A superquadric as twelve numbers without bounds: logits of the sizes' logarithms and of the
 /// exponents between their bounds, centre, quaternion (w, x, y, z) of any length but zero.
@@ -39,4 +39,4 @@ class FitResiduals : public Eigen::DenseFunctor<double> {
     std::span<const Vec3d> points_;
 };
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -10,7 +10,7 @@
 #include <mutex>
 #include <utility>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -93,4 +93,4 @@ FittedSegments fit_segments(const TriangleMesh& mesh, const DecompositionOptions
     return result;
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

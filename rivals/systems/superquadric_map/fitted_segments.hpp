@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// A segment and the superquadric around it.
 struct FittedSegment {
@@ -37,4 +37,4 @@ struct FittedSegments {
 FittedSegments fit_segments(const TriangleMesh& mesh, const DecompositionOptions& options,
                             unsigned thread_count, const Progress& progress);
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// What a query needs of a segment besides its grid.
 struct SegmentFrame {
@@ -72,4 +72,4 @@ struct SegmentArrays {
     }
 };
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

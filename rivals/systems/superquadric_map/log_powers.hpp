@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// ln(e^a + e^b) without overflow; minus infinity stands for ln 0.
 inline double log_of_sum(double a, double b) {
@@ -30,4 +30,4 @@ struct LogPowers {
           disc(omega_exponent / eta_exponent * section), whole(log_of_sum(disc, z)) {}
 };
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -126,4 +126,4 @@ std::string describe(const SuperquadricReport& report) {
     return text;
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

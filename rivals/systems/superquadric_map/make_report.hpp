@@ -6,7 +6,7 @@
 
 #include <echinus/mesh.hpp>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// The part of a segment's report that its own faces tell; area_share is still the area itself.
 /// @param fitted  before the enlargement
@@ -16,4 +16,4 @@ SegmentReport report_on(const Segment& segment, const Superquadric& fitted, doub
 void measure_coverage(const TriangleMesh& mesh, const SegmentArrays& map, double bounding_radius,
                       SuperquadricReport& report);
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -5,7 +5,7 @@
 #include <cassert>
 #include <cmath>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -78,4 +78,4 @@ void SuperquadricMap::contacts_batch(std::span<const Vec3f> points, float margin
     for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = contact(points[i], margin);
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

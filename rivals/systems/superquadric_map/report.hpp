@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// One segment of a superquadric map. Errors and shares of samples are relative, so that segments compare.
 struct SegmentReport {
@@ -46,4 +46,4 @@ FitError fit_error(const SuperquadricReport& report);
 /// A table for people: a line for each segment, then the surface that is not covered.
 std::string describe(const SuperquadricReport& report);
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

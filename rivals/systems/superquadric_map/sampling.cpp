@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -138,4 +138,4 @@ std::vector<float> outermost_crossings(const LatticeMesh& lattice, std::size_t o
     return outermost;
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// A point of a superellipse with half axes 1: the cosine and sine of an angle to the power of an exponent,
 /// or, by centre, what stands for them.
@@ -36,4 +36,4 @@ std::vector<float> outermost_crossings(const LatticeMesh& lattice, std::size_t o
                                        const Superquadric& shape, const SphericalGrid& grid,
                                        const std::vector<Vec3d>& sample_points);
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -8,7 +8,7 @@
 #include <cmath>
 
 /// One particle and one segment.
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// A place in a segment's frame as its superquadric sees it: on which ray, and how far out the superquadric
 /// is there.
@@ -128,4 +128,4 @@ inline SegmentAnswer ask(const SegmentArrays& map, std::size_t segment, const Ve
 Vec3f surface_normal(const SegmentArrays& map, std::size_t segment, const Vec3f& place,
                      const SuperquadricPlace& at);
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -178,4 +178,4 @@ SurfaceSamples sample_surface(std::span<const Vec3f> vertices, std::span<const T
     return samples;
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

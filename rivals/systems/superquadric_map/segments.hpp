@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// A segment of a surface and the solid that it stands for: the convex hull of its faces and, where that
 /// leaves gaps, of middles of chords, which run inwards from the faces at a right angle to the next wall.
@@ -43,4 +43,4 @@ struct SurfaceSamples {
 SurfaceSamples sample_surface(std::span<const Vec3f> vertices, std::span<const Triangle> faces,
                               std::size_t count);
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

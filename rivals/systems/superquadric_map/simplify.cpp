@@ -7,7 +7,7 @@
 #include <queue>
 #include <tuple>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -194,4 +194,4 @@ SimplifiedMesh simplify(const TriangleMesh& mesh, std::size_t face_limit) {
     return simplifier.result(mesh);
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// A mesh with fewer faces. Each is one of the original's, at corners that may have moved to other vertices.
 struct SimplifiedMesh {
@@ -22,4 +22,4 @@ struct SimplifiedMesh {
 /// @pre indices are in range, positions finite
 SimplifiedMesh simplify(const TriangleMesh& mesh, std::size_t face_limit);
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 double signed_power(double base, double exponent) {
     return std::copysign(std::pow(std::fabs(base), exponent), base);
@@ -71,4 +71,4 @@ TriangleMesh tessellate(const Superquadric& shape, std::uint32_t eta_count, std:
     return mesh;
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

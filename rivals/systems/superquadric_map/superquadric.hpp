@@ -15,7 +15,7 @@
 ///     F(x, y, z) = ((x / a1)^(2/e2) + (y / a2)^(2/e2))^(e2/e1) + (z / a3)^(2/e1)
 ///
 /// is 1. Exponents near 0 give boxes and cylinders, 1 ellipsoids, 2 double pyramids; all of these are convex.
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// Coordinates on a superquadric, radians. They are not angles of space unless both exponents are 1.
 struct SuperquadricAngles {
@@ -64,4 +64,4 @@ double signed_power(double base, double exponent);
 /// @param omega_count  faces of a row, at least 3
 TriangleMesh tessellate(const Superquadric& shape, std::uint32_t eta_count, std::uint32_t omega_count);
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

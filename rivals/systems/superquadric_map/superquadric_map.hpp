@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rivals/systems/baseline.hpp"
+#include "rivals/systems/system.hpp"
 #include "rivals/systems/superquadric_map/progress.hpp"
 #include "rivals/systems/superquadric_map/report.hpp"
 
@@ -42,7 +42,7 @@
 /// Wrong by sampling, by one distance a ray (all from the centre to the outermost face counts as solid), and
 /// where a hull leaves the solid. Depth is radial: at least the distance to the segment's surface, often
 /// more.
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// Where along eta and omega the samples lie.
 enum class SuperquadricSampling : std::uint8_t {
@@ -107,7 +107,7 @@ class SuperquadricSegments {
 
 /// Immutable; copies share the arrays. Any number of threads may query one map. Points are in the frame and
 /// unit of the mesh.
-class SuperquadricMap final : public Baseline {
+class SuperquadricMap final : public System {
   public:
     /// Time: HACD's (decompose.hpp), 0.1 s a segment for its fit, and the rays. The same mesh and options
     /// give the same map on one machine; powers and fits are the C library's and the compiler's, so others
@@ -148,7 +148,7 @@ class SuperquadricMap final : public Baseline {
     void contains_batch(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const override;
     void contacts_batch(std::span<const Vec3f> points, float margin,
                         std::span<Contact> contacts) const override;
-    using Baseline::contacts_batch;
+    using System::contacts_batch;
 
     /// What the map holds of the surface, and how well its superquadrics fit.
     const SuperquadricReport& report() const { return *report_; }
@@ -167,4 +167,4 @@ class SuperquadricMap final : public Baseline {
     std::shared_ptr<const SuperquadricReport> report_;
 };
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 namespace {
 
@@ -89,4 +89,4 @@ TriangleMesh SuperquadricMap::surface_of(std::size_t segment) const {
     return mesh;
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -66,7 +66,7 @@ TEST(CurvePlots, PutAnErrorOfZeroAtTheEdgeAndLeaveOutWhatHasNoSizes) {
 
 TEST(CurvePlots, HaveAColourForEachSystem) {
     std::set<std::string> colours;
-    for (const System& system : all_systems()) colours.insert(line_style_of(system).colour);
+    for (const SystemType& system : all_systems()) colours.insert(line_style_of(system).colour);
     EXPECT_EQ(colours.size(), all_systems().size());
     EXPECT_FALSE(colours.contains("#444444")); // that of a system without one
 }

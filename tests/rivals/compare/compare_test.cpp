@@ -135,7 +135,7 @@ TriangleMesh crowd_of_tetrahedra() {
 }
 
 TEST(Compare, GoesOnWithoutASystemThatCannotHaveTheMesh) {
-    if (!std::ranges::find(all_systems(), "superquadric", &System::name)->available())
+    if (!std::ranges::find(all_systems(), "superquadric", &SystemType::name)->available())
         GTEST_SKIP() << "built without superquadric maps";
     CompareOptions options = quick({"dense", "superquadric"});
     options.point_count = 100;

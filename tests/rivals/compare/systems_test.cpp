@@ -20,7 +20,7 @@ SystemOptions few_segments() {
 
 TEST(Systems, HaveNamesOfOneWordThatNoTwoShare) {
     std::set<std::string_view> names;
-    for (const System& system : all_systems()) {
+    for (const SystemType& system : all_systems()) {
         EXPECT_TRUE(names.insert(system.name).second) << system.name;
         EXPECT_EQ(system.name.find_first_of(" ,"), std::string_view::npos) << system.name;
         EXPECT_EQ(&system_named(system.name) == &system, true) << system.name;
@@ -39,7 +39,7 @@ TEST(Systems, ThatDoNotExistAreRefusedByNameWithThoseThatDo) {
 TEST(Systems, KeepWithinTheirBudgetAndUseMostOfIt) {
     const TriangleMesh torus = make_torus(1, 0.4, 30, 12);
     constexpr std::size_t kBudget = 400'000;
-    for (const System& system : all_systems()) {
+    for (const SystemType& system : all_systems()) {
         if (!system.available()) continue;
         const auto sizes = system.on(torus, few_segments(), {});
         const Built built = sizes->within(kBudget).build();
@@ -51,7 +51,7 @@ TEST(Systems, KeepWithinTheirBudgetAndUseMostOfIt) {
 
 TEST(Systems, BuildTheSameAgain) {
     const TriangleMesh torus = make_torus(1, 0.4, 20, 10);
-    for (const System& system : all_systems()) {
+    for (const SystemType& system : all_systems()) {
         if (!system.available()) continue;
         const Recipe recipe = system.on(torus, few_segments(), {})->within(350'000);
         EXPECT_EQ(recipe.build()->byte_count(), recipe.build()->byte_count()) << system.name;
@@ -60,7 +60,7 @@ TEST(Systems, BuildTheSameAgain) {
 
 TEST(Systems, RefuseABudgetBelowTheirCoarsestButForThoseWithoutSizes) {
     const TriangleMesh torus = make_torus(1, 0.4, 20, 10);
-    for (const System& system : all_systems()) {
+    for (const SystemType& system : all_systems()) {
         if (!system.available()) continue;
         const auto sizes = system.on(torus, few_segments(), {});
         EXPECT_EQ(sizes->usual().has_value(), system.name == "exact");

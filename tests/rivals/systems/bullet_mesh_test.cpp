@@ -9,7 +9,7 @@
 #include <vector>
 
 using namespace echinus;
-using baselines::BulletMesh;
+using rivals::BulletMesh;
 
 TEST(BulletMesh, TellsNearlyAllSidesThatTheExactMapTells) {
     for (const TriangleMesh& mesh : {make_torus(0.7, 0.3, 24, 12), make_box({1, 2, 0.3}, 2)}) {

@@ -16,7 +16,7 @@
 #include <vector>
 
 using namespace echinus;
-using baselines::ClassifiedGrid;
+using rivals::ClassifiedGrid;
 using test::joined;
 using test::translated;
 using test::turned_inside_out;

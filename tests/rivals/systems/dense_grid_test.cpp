@@ -13,9 +13,9 @@
 #include <vector>
 
 using namespace echinus;
-using baselines::DenseGrid;
-using baselines::DenseGridOptions;
-using baselines::SampleFormat;
+using rivals::DenseGrid;
+using rivals::DenseGridOptions;
+using rivals::SampleFormat;
 using test::expect_error;
 
 namespace {

@@ -11,8 +11,8 @@
 #include <vector>
 
 using namespace echinus;
-using baselines::EmbreeTree;
-using baselines::RaySides;
+using rivals::EmbreeTree;
+using rivals::RaySides;
 
 namespace {
 

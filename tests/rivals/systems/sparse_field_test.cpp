@@ -12,7 +12,7 @@
 #include <vector>
 
 using namespace echinus;
-using baselines::SparseField;
+using rivals::SparseField;
 using test::expect_error;
 
 namespace {

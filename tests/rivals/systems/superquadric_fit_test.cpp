@@ -15,7 +15,7 @@
 #include <vector>
 
 using namespace echinus;
-using namespace echinus::baselines;
+using namespace echinus::rivals;
 using comparison::PortableRandom;
 
 namespace {

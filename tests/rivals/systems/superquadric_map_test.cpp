@@ -17,7 +17,7 @@
 #include <vector>
 
 using namespace echinus;
-using namespace echinus::baselines;
+using namespace echinus::rivals;
 using test::joined;
 using test::translated;
 using test::turned_inside_out;

@@ -10,7 +10,7 @@
 #include <vector>
 
 using namespace echinus;
-using namespace echinus::baselines;
+using namespace echinus::rivals;
 
 TEST(SuperquadricMapOfTheHorse, HasSeventeenSegmentsOnRequestAndTellsMostParticlesRight) {
     const std::filesystem::path file = std::filesystem::path(ECHINUS_SHARED_MESHES) / "horse_6k.obj";

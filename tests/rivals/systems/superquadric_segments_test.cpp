@@ -18,7 +18,7 @@
 #include <vector>
 
 using namespace echinus;
-using namespace echinus::baselines;
+using namespace echinus::rivals;
 using comparison::PortableRandom;
 using test::joined;
 using test::translated;

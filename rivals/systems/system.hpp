@@ -10,14 +10,14 @@
 #include <string_view>
 
 /// The systems that answer the same questions as the maps of Echinus do.
-namespace echinus::baselines {
+namespace echinus::rivals {
 
 /// A structure around a closed mesh that can be asked about particles: what all systems have in common, so
 /// that a comparison treats them alike. Each is built by its own function with its own options. All points
 /// are in the mesh's frame and unit. Immutable once built; any number of threads may query one.
-class Baseline {
+class System {
   public:
-    virtual ~Baseline() = default;
+    virtual ~System() = default;
 
     /// Short, the same for all resolutions: "dense", "openvdb", "embree", "exact" ...
     virtual std::string name() const = 0;
@@ -46,11 +46,11 @@ class Baseline {
     }
 
   protected:
-    Baseline() = default;
-    Baseline(const Baseline&) = default;
-    Baseline(Baseline&&) = default;
-    Baseline& operator=(const Baseline&) = default;
-    Baseline& operator=(Baseline&&) = default;
+    System() = default;
+    System(const System&) = default;
+    System(System&&) = default;
+    System& operator=(const System&) = default;
+    System& operator=(System&&) = default;
 };
 
 /// The answer for a particle outside.
@@ -70,4 +70,4 @@ inline Contact contact_along(const Vec3f& point, float depth, const Vec3f& norma
     return result;
 }
 
-} // namespace echinus::baselines
+} // namespace echinus::rivals

@@ -1,7 +1,7 @@
 // What holds for every system behind the common interface.
 
 #include "bad_meshes.hpp"
-#include "rivals/systems/baseline.hpp"
+#include "rivals/systems/system.hpp"
 #include "rivals/systems/classified_grid/classified_grid.hpp"
 #include "rivals/systems/dense_grid/dense_grid.hpp"
 #include "rivals/systems/maps/maps.hpp"
@@ -29,14 +29,14 @@
 #include <vector>
 
 using namespace echinus;
-using baselines::Baseline;
+using rivals::System;
 
 namespace {
 
-struct System {
+struct TestedSystem {
     std::string name;
     double distance_error; ///< of depths and places on the unit sphere, by coarse resolutions
-    std::function<std::unique_ptr<const Baseline>(const TriangleMesh&)> build;
+    std::function<std::unique_ptr<const System>(const TriangleMesh&)> build;
     /// False where the first of two faces in one place is a matter of chance.
     bool tells_faces_in_one_place_apart = true;
     /// A particle beyond what the system knows of is not seen from outside.
@@ -44,12 +44,12 @@ struct System {
 };
 
 template <typename Kind>
-std::unique_ptr<const Baseline> held(Kind system) {
+std::unique_ptr<const System> held(Kind system) {
     return std::make_unique<Kind>(std::move(system));
 }
 
-std::vector<System> all_systems() {
-    using namespace baselines;
+std::vector<TestedSystem> all_systems() {
+    using namespace rivals;
     return {
         {"exact", 0.01, [](const TriangleMesh& mesh) { return exact_map(mesh); }},
         {"distance", 0.02, [](const TriangleMesh& mesh) { return distance_map(mesh); }},
@@ -102,10 +102,10 @@ std::vector<Vec3f> clear_points() {
 
 } // namespace
 
-TEST(EveryBaseline, TellsInsideFromOutsideOfASphere) {
+TEST(EverySystem, TellsInsideFromOutsideOfASphere) {
     const TriangleMesh sphere = make_sphere(1, 48, 24);
     const std::vector<Vec3f> points = clear_points();
-    for (const System& system : all_systems()) {
+    for (const TestedSystem& system : all_systems()) {
         const auto built = system.build(sphere);
         std::vector<std::uint8_t> inside(points.size(), 2);
         built->contains_batch(points, inside);
@@ -114,10 +114,10 @@ TEST(EveryBaseline, TellsInsideFromOutsideOfASphere) {
     }
 }
 
-TEST(EveryBaseline, PushesOutOfASphereAlongItsRadius) {
+TEST(EverySystem, PushesOutOfASphereAlongItsRadius) {
     const TriangleMesh sphere = make_sphere(1, 48, 24);
     const std::vector<Vec3f> points = clear_points();
-    for (const System& system : all_systems()) {
+    for (const TestedSystem& system : all_systems()) {
         const auto built = system.build(sphere);
         std::vector<Contact> contacts(points.size());
         built->contacts_batch(points, contacts);
@@ -138,11 +138,11 @@ TEST(EveryBaseline, PushesOutOfASphereAlongItsRadius) {
     }
 }
 
-TEST(EveryBaseline, SeesASphereFromOutsideWithinTheMargin) {
+TEST(EverySystem, SeesASphereFromOutsideWithinTheMargin) {
     const TriangleMesh sphere = make_sphere(1, 48, 24);
     constexpr float kMargin = 0.12F;
     const std::vector<Vec3f> points = clear_points();
-    for (const System& system : all_systems()) {
+    for (const TestedSystem& system : all_systems()) {
         const auto built = system.build(sphere);
         std::vector<Contact> contacts(points.size()), of_inside(points.size());
         built->contacts_batch(points, kMargin, contacts);
@@ -175,14 +175,14 @@ TEST(EveryBaseline, SeesASphereFromOutsideWithinTheMargin) {
     }
 }
 
-TEST(EveryBaseline, PutsWhatIsNotFiniteOutside) {
+TEST(EverySystem, PutsWhatIsNotFiniteOutside) {
     const TriangleMesh sphere = make_sphere(1, 48, 24);
     std::vector<Vec3f> points;
     for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                             -std::numeric_limits<float>::infinity()})
         for (const Vec3f& p : {Vec3f{bad, 0, 0}, Vec3f{0, bad, 0}, Vec3f{0, 0, bad}, Vec3f{bad, bad, bad}})
             points.push_back(p);
-    for (const System& system : all_systems()) {
+    for (const TestedSystem& system : all_systems()) {
         const auto built = system.build(sphere);
         std::vector<std::uint8_t> inside(points.size(), 2);
         built->contains_batch(points, inside);
@@ -195,17 +195,17 @@ TEST(EveryBaseline, PutsWhatIsNotFiniteOutside) {
     }
 }
 
-TEST(EveryBaseline, AnswersNoParticlesWithNothing) {
-    for (const System& system : all_systems()) {
+TEST(EverySystem, AnswersNoParticlesWithNothing) {
+    for (const TestedSystem& system : all_systems()) {
         const auto built = system.build(make_box({1, 1, 1}));
         built->contains_batch({}, {});
         built->contacts_batch({}, std::span<Contact>());
     }
 }
 
-TEST(EveryBaseline, HasANameOfItsOwnAndSaysWhatItsBytesAre) {
+TEST(EverySystem, HasANameOfItsOwnAndSaysWhatItsBytesAre) {
     std::set<std::string> names;
-    for (const System& system : all_systems()) {
+    for (const TestedSystem& system : all_systems()) {
         const auto built = system.build(make_box({1, 1, 1}));
         EXPECT_EQ(built->name(), system.name);
         EXPECT_TRUE(names.insert(built->name()).second) << system.name;
@@ -214,20 +214,20 @@ TEST(EveryBaseline, HasANameOfItsOwnAndSaysWhatItsBytesAre) {
     }
 }
 
-TEST(EveryBaseline, RefusesBadMeshes) {
-    for (const System& system : all_systems()) {
+TEST(EverySystem, RefusesBadMeshes) {
+    for (const TestedSystem& system : all_systems()) {
         SCOPED_TRACE(system.name);
         test::expect_bad_meshes_are_refused(system.build);
     }
 }
 
-TEST(EveryBaseline, FindsNothingInAFlatMesh) {
+TEST(EverySystem, FindsNothingInAFlatMesh) {
     std::vector<Vec3f> points;
     for (int i = 0; i < 20; ++i) {
         const float x = 0.05F * static_cast<float>(i);
         points.insert(points.end(), {{x, 0.2F, 0.01F}, {x, 0.2F, -0.01F}, {0.3F, x, 0.3F}});
     }
-    for (const System& system : all_systems()) {
+    for (const TestedSystem& system : all_systems()) {
         const auto built = system.build(test::flat_mesh());
         if (!system.tells_faces_in_one_place_apart) continue;
         std::vector<std::uint8_t> inside(points.size(), 2);
@@ -236,20 +236,20 @@ TEST(EveryBaseline, FindsNothingInAFlatMesh) {
     }
 }
 
-TEST(DistanceMapBaseline, UsesItsBudgetAndNoMore) {
+TEST(DistanceMapSystem, UsesItsBudgetAndNoMore) {
     const TriangleMesh mesh = make_torus(0.7, 0.3, 24, 12);
     for (const DirectionGrid grid : {DirectionGrid::Spherical, DirectionGrid::Octahedral})
         for (const std::size_t budget : {20'000U, 630'000U}) {
             DistanceMapOptions options;
             options.grid = grid;
-            const auto map = baselines::distance_map(mesh, baselines::finest_within(mesh, budget, options));
+            const auto map = rivals::distance_map(mesh, rivals::finest_within(mesh, budget, options));
             EXPECT_LE(map->byte_count(), budget);
             EXPECT_GT(map->byte_count(), budget * 9 / 10);
         }
 }
 
-TEST(DistanceMapBaseline, RefusesABudgetThatTheCoarsestMapExceeds) {
+TEST(DistanceMapSystem, RefusesABudgetThatTheCoarsestMapExceeds) {
     test::expect_error(ErrorCode::InvalidOptions, "budget", [] {
-        (void)baselines::finest_within(make_box({1, 1, 1}), 50);
+        (void)rivals::finest_within(make_box({1, 1, 1}), 50);
     });
 }
