@@ -1,9 +1,7 @@
 #pragma once
 
-#include "rivals/compare/errors.hpp"
+#include "rivals/compare/measuring.hpp"
 #include "rivals/compare/point_sets.hpp"
-#include "rivals/compare/systems.hpp"
-#include "rivals/compare/turns.hpp"
 
 #include <echinus/mesh.hpp>
 
@@ -32,15 +30,6 @@ struct CompareOptions {
 
     static constexpr std::size_t kTopOfCurve = 8;
     static constexpr std::size_t kMostBytes = 1'000'000'000; ///< of a budget, and of what curves are made of
-};
-
-/// What was measured of a system with one set of particles.
-struct SetFigures {
-    std::string set; ///< U, S or C (point_sets.hpp)
-    Pace contains, contacts;
-    /// Signs of contains_batch(), depths and normals of contacts_batch(); of a system that would take long
-    /// for the whole set, of the particles that it was timed with.
-    ErrorSummary errors;
 };
 
 /// A system in one size.

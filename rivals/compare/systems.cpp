@@ -31,7 +31,7 @@ namespace {
 
 /// A function that builds, and returns its structure by value.
 template <typename Build>
-Recipe recipe(Build build) {
+Builder builder(Build build) {
     return {[build] {
                 using Structure = decltype(build());
                 return std::make_unique<const Structure>(build());
@@ -40,13 +40,13 @@ Recipe recipe(Build build) {
 }
 
 /// A system that has nothing to keep but the mesh.
-/// @param within  Recipe (const TriangleMesh&, std::size_t byte_budget)
+/// @param within  Builder (const TriangleMesh&, std::size_t byte_budget)
 template <typename Within>
 decltype(SystemType::on) plain(Within within) {
     class Plain final : public Sizes {
       public:
         Plain(const TriangleMesh& mesh, const Within& within) : mesh_(mesh), within_(within) {}
-        Recipe within(std::size_t byte_budget) override { return within_(mesh_, byte_budget); }
+        Builder within(std::size_t byte_budget) override { return within_(mesh_, byte_budget); }
 
       private:
         const TriangleMesh& mesh_;
@@ -60,15 +60,15 @@ decltype(SystemType::on) plain(Within within) {
 class ExactSizes final : public Sizes {
   public:
     explicit ExactSizes(const TriangleMesh& mesh) : mesh_(mesh) {}
-    Recipe within(std::size_t byte_budget) override {
+    Builder within(std::size_t byte_budget) override {
         const ExactMapOptions options{.byte_budget = byte_budget, .thread_count = 1};
         const ExactMap map = ExactMap::build(mesh_, options);
         return of(map.view().divisions);
     }
-    std::optional<Recipe> usual() override { return of(0); }
+    std::optional<Builder> usual() override { return of(0); }
 
   private:
-    Recipe of(std::uint32_t divisions) const {
+    Builder of(std::uint32_t divisions) const {
         return {[&mesh = mesh_, divisions] {
                     return rivals::exact_map(mesh, {.divisions = divisions, .thread_count = 1});
                 },
@@ -85,7 +85,7 @@ decltype(SystemType::on) exact() {
 }
 
 decltype(SystemType::on) distance(DirectionGrid grid) {
-    return plain([grid](const TriangleMesh& mesh, std::size_t byte_budget) -> Recipe {
+    return plain([grid](const TriangleMesh& mesh, std::size_t byte_budget) -> Builder {
         DistanceMapOptions options;
         options.grid = grid;
         options.thread_count = 1;
@@ -96,15 +96,15 @@ decltype(SystemType::on) distance(DirectionGrid grid) {
 
 decltype(SystemType::on) dense(rivals::SampleFormat format) {
     return plain([format](const TriangleMesh& mesh, std::size_t byte_budget) {
-        return recipe([&mesh, byte_budget, format] {
+        return builder([&mesh, byte_budget, format] {
             return rivals::DenseGrid::with_bytes(mesh, byte_budget, {.format = format});
         });
     });
 }
 
-Recipe classified(const TriangleMesh& mesh, std::size_t byte_budget) {
+Builder classified(const TriangleMesh& mesh, std::size_t byte_budget) {
     const std::int32_t steps = rivals::ClassifiedGrid::build(mesh, byte_budget).cell_steps();
-    return recipe([&mesh, steps] { return rivals::ClassifiedGrid::build_with_cells(mesh, steps); });
+    return builder([&mesh, steps] { return rivals::ClassifiedGrid::build_with_cells(mesh, steps); });
 }
 
 #ifdef ECHINUS_HAS_SUPERQUADRIC_MAP
@@ -116,14 +116,14 @@ class SuperquadricSizes final : public Sizes {
         options_.segment_count = options.segment_count;
         options_.thread_count = 1;
     }
-    Recipe within(std::size_t byte_budget) override {
+    Builder within(std::size_t byte_budget) override {
         if (!segments_) {
             const double start = process_seconds();
             segments_ = rivals::SuperquadricSegments::fit(mesh_, options_, progress_);
             fit_seconds_ = process_seconds() - start;
         }
         options_.byte_budget = byte_budget;
-        Recipe result = recipe([segments = *segments_, options = options_] {
+        Builder result = builder([segments = *segments_, options = options_] {
             return rivals::SuperquadricMap::sample(segments, options);
         });
         result.shared_seconds = fit_seconds_;
@@ -154,7 +154,7 @@ decltype(SystemType::on) openvdb_if_there() {
 #ifdef ECHINUS_HAS_SPARSE_FIELD
     return plain([](const TriangleMesh& mesh, std::size_t byte_budget) {
         const std::uint32_t samples = rivals::SparseField::with_bytes(mesh, byte_budget).sample_count();
-        return recipe([&mesh, samples] { return rivals::SparseField::with_samples(mesh, samples); });
+        return builder([&mesh, samples] { return rivals::SparseField::with_samples(mesh, samples); });
     });
 #else
     return {};
@@ -164,7 +164,7 @@ decltype(SystemType::on) openvdb_if_there() {
 decltype(SystemType::on) embree_if_there() {
 #ifdef ECHINUS_HAS_EMBREE_TREE
     return plain([](const TriangleMesh& mesh, std::size_t) {
-        return recipe([&mesh] { return rivals::EmbreeTree::build(mesh); });
+        return builder([&mesh] { return rivals::EmbreeTree::build(mesh); });
     });
 #else
     return {};
@@ -174,7 +174,7 @@ decltype(SystemType::on) embree_if_there() {
 decltype(SystemType::on) bullet_if_there() {
 #ifdef ECHINUS_HAS_BULLET_MESH
     return plain([](const TriangleMesh& mesh, std::size_t) {
-        return recipe([&mesh] { return rivals::BulletMesh::build(mesh); });
+        return builder([&mesh] { return rivals::BulletMesh::build(mesh); });
     });
 #else
     return {};

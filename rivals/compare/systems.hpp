@@ -21,7 +21,7 @@ using Progress = std::function<void(std::string_view stage, double share)>;
 using Built = std::unique_ptr<const rivals::System>;
 
 /// How to build a system in a size that is settled, as often as one likes.
-struct Recipe {
+struct Builder {
     std::function<Built()> build;
     /// Processor time of what all sizes have in common and `build` need not do again, seconds.
     double shared_seconds = 0;
@@ -34,10 +34,10 @@ class Sizes {
 
     /// The finest that takes at most so many bytes. A system that has no sizes is built as it is.
     /// @throws Error InvalidOptions when the coarsest exceeds the budget, or as the system's own build does
-    virtual Recipe within(std::size_t byte_budget) = 0;
+    virtual Builder within(std::size_t byte_budget) = 0;
 
     /// The size that people use, for a system that is worth a look even where its coarsest does not fit.
-    virtual std::optional<Recipe> usual() { return {}; }
+    virtual std::optional<Builder> usual() { return {}; }
 };
 
 struct SystemOptions {

@@ -45,6 +45,18 @@ class System {
         contacts_batch(points, 0, contacts);
     }
 
+    /// Of one particle: the scalar query where a system has one, and a batch of one where not.
+    virtual bool contains(const Vec3f& point) const {
+        std::uint8_t inside = 0;
+        contains_batch({&point, 1}, {&inside, 1});
+        return inside != 0;
+    }
+    virtual Contact contact(const Vec3f& point, float margin = 0) const {
+        Contact contact;
+        contacts_batch({&point, 1}, margin, {&contact, 1});
+        return contact;
+    }
+
   protected:
     System() = default;
     System(const System&) = default;

@@ -45,11 +45,11 @@ class ClassifiedGrid final : public System {
 
     /// Is the particle inside? Decided with exact integers: what contains_batch() is compared with.
     /// NaN, infinity and what is beyond the grid count as outside.
-    bool contains(const Vec3f& point_local) const noexcept;
+    bool contains(const Vec3f& point_local) const noexcept override;
 
     /// Inside?, and the nearest point of the surface when inside or within the margin. The global minimum, to
     /// the rounding of double; contacts_batch() rounds as float does.
-    Contact contact(const Vec3f& point_local, float margin = 0) const noexcept;
+    Contact contact(const Vec3f& point_local, float margin = 0) const noexcept override;
 
     /// contains() of many points, bit for bit. Allocates scratch memory. Any number of threads.
     /// @param inside  [n] 1 or 0. @pre points_local.size() == inside.size()

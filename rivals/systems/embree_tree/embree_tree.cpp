@@ -20,10 +20,6 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr Vec3f kDirection{0.3F, 0.5F, 0.81F};
 constexpr std::size_t kPacket = 16;
 
-bool is_finite(const Vec3f& p) {
-    return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-
 /// Embree's memory, and the copy of the mesh in it.
 struct Surface {
     const Vec3f* vertices = nullptr;

@@ -42,7 +42,7 @@ class EmbreeTree final : public System {
     std::size_t byte_count() const override;
     std::string_view counted() const override { return "tree, vertices and faces, by Embree's own account"; }
 
-    bool contains(const Vec3f& point) const;
+    bool contains(const Vec3f& point) const override; ///< one ray, not in a packet
     /// Rays one by one.
     void contains_one_by_one(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const;
     /// Rays in packets of sixteen, for which Embree has kernels of its own.

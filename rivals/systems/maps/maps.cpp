@@ -31,6 +31,10 @@ class MapSystem final : public System {
                         std::span<Contact> contacts) const override {
         echinus::contacts_batch(map_.view(), points, margin, contacts);
     }
+    bool contains(const Vec3f& point) const override { return echinus::contains(map_.view(), point); }
+    Contact contact(const Vec3f& point, float margin) const override {
+        return echinus::contact(map_.view(), point, margin);
+    }
 
   private:
     Map map_;
@@ -43,7 +47,7 @@ std::unique_ptr<const System> behind_interface(DistanceMap map) {
                                       "ellipsoidal distance"};
     const char* name = kNames[static_cast<std::size_t>(map.view().grid)];
     return std::make_unique<MapSystem<DistanceMap>>(std::move(map), name,
-                                                      "offsets and entries of directions");
+                                                    "offsets and entries of directions");
 }
 
 /// A resolution is one number: longitudes and colatitudes, or divisions.
@@ -72,7 +76,7 @@ struct Resolutions {
 std::unique_ptr<const System> exact_map(const TriangleMesh& mesh, const ExactMapOptions& options) {
     require_closed(mesh, "a comparison");
     return std::make_unique<MapSystem<ExactMap>>(ExactMap::build(mesh, options), "exact",
-                                                   "bands, lists of faces, vertices, faces and tree");
+                                                 "bands, lists of faces, vertices, faces and tree");
 }
 
 std::unique_ptr<const System> distance_map(const TriangleMesh& mesh, const DistanceMapOptions& options) {

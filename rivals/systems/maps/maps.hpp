@@ -16,8 +16,7 @@ std::unique_ptr<const System> exact_map(const TriangleMesh& mesh, const ExactMap
 
 /// "distance", with "octahedral" where the grid of directions is one.
 /// @throws Error InvalidMesh for an open mesh, and as DistanceMap::build() does
-std::unique_ptr<const System> distance_map(const TriangleMesh& mesh,
-                                             const DistanceMapOptions& options = {});
+std::unique_ptr<const System> distance_map(const TriangleMesh& mesh, const DistanceMapOptions& options = {});
 
 /// The finest grid of directions with which the map takes at most so many bytes, to about one part in a
 /// hundred: as many longitudes as colatitudes, or the divisions of an octahedron or a cube. Costs a few

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "rivals/systems/system.hpp"
 #include "rivals/systems/superquadric_map/progress.hpp"
 #include "rivals/systems/superquadric_map/report.hpp"
+#include "rivals/systems/system.hpp"
 
 #include <echinus/contact.hpp>
 #include <echinus/distance_map.hpp>
@@ -138,12 +138,12 @@ class SuperquadricMap final : public System {
     std::uint32_t eta_count() const;
 
     /// Is the particle in a segment? NaN and infinity are not.
-    bool contains(const Vec3f& point_local) const noexcept;
+    bool contains(const Vec3f& point_local) const noexcept override;
 
     /// Inside?, and the way out along the ray from the centre of the segment that the particle is deepest in;
     /// outside, of the one whose surface is nearest, along its ray, if within the margin. The normal is that
     /// of the map's surface there; the face is unknown. @param margin  not negative, NaN counts as 0
-    Contact contact(const Vec3f& point_local, float margin = 0) const noexcept;
+    Contact contact(const Vec3f& point_local, float margin = 0) const noexcept override;
 
     void contains_batch(std::span<const Vec3f> points, std::span<std::uint8_t> inside) const override;
     void contacts_batch(std::span<const Vec3f> points, float margin,

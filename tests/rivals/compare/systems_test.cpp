@@ -53,8 +53,8 @@ TEST(Systems, BuildTheSameAgain) {
     const TriangleMesh torus = make_torus(1, 0.4, 20, 10);
     for (const SystemType& system : all_systems()) {
         if (!system.available()) continue;
-        const Recipe recipe = system.on(torus, few_segments(), {})->within(350'000);
-        EXPECT_EQ(recipe.build()->byte_count(), recipe.build()->byte_count()) << system.name;
+        const Builder builder = system.on(torus, few_segments(), {})->within(350'000);
+        EXPECT_EQ(builder.build()->byte_count(), builder.build()->byte_count()) << system.name;
     }
 }
 

@@ -1,0 +1,202 @@
+#!/usr/bin/env python3
+"""Fills the tables of a page in docs/ from bench/results/: what lies between <!-- begin NAME --> and
+<!-- end NAME --> is replaced, the prose around it stays. scripts/bench runs it."""
+
+import argparse
+import csv
+import json
+import math
+import pathlib
+import re
+
+
+class Results:
+    """The records of one task, and the machine that they are from."""
+
+    def __init__(self, folder, task):
+        lines = (folder / f"{task}.csv").read_text().splitlines()
+        self.machine = lines[0].removeprefix("# ")
+        self.records = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+    def where(self, **wanted):
+        return [r for r in self.records if all(r[column] == value for column, value in wanted.items())]
+
+    def distinct(self, column, **wanted):
+        return list(dict.fromkeys(r[column] for r in self.where(**wanted)))
+
+
+def number(text, scale=1.0):
+    """Three digits, as a reader compares them."""
+    if text in ("", None):
+        return ""
+    value = scale * float(text)
+    if value == 0 or math.isnan(value):
+        return "0" if value == 0 else ""
+    if abs(value) < 0.001:
+        return f"{value:.0e}"
+    digits = max(0, 2 - math.floor(math.log10(abs(value))))
+    return f"{value:.{digits}f}"
+
+
+def table(rows):
+    head, *body = [[str(cell) for cell in row] for row in rows]
+    lines = [head, ["---"] + ["--:"] * (len(head) - 1)] + body
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def label(record):
+    return f"**{record['system']}**" if record["role"] == "ours" else record["system"]
+
+
+def per_set(results, column, scale=1.0, **wanted):
+    """The cells U, S and C of a column."""
+    return [number(next((r[column] for r in results.where(set=s, **wanted)), ""), scale) for s in "USC"]
+
+
+# ---- The pages, a function each: from the folder of results to the texts of the sections
+
+
+def query_tables(results, task):
+    parts = []
+    for mesh in results.distinct("mesh"):
+        for call in results.distinct("call", mesh=mesh):
+            rows = [["system", "MB", "build, ms", "ns, U", "S", "C", "wrong, %, U", "S", "C", "farthest wrong, R"]]
+            if task == "contacts":
+                rows[0] += ["depth error on S, R: mean", "99 %", "worst"]
+            records = results.where(mesh=mesh, call=call, set="U")
+            for r in records:
+                one = dict(mesh=mesh, call=call, system=r["system"])
+                near = results.where(set="S", **one)[0]
+                farthest = max(results.where(**one), key=lambda s: float(s["farthest_wrong"]))["farthest_wrong"]
+                rows.append([label(r), number(r["bytes"], 1e-6), number(r["build_ms"])]
+                            + per_set(results, "ns", **one) + per_set(results, "wrong_share", 100, **one)
+                            + ["none" if float(farthest) == 0 else number(farthest)])
+                if task == "contacts":
+                    rows[-1] += [number(near[c]) for c in ("depth_mean", "depth_99", "depth_worst")]
+            parts.append(f"`{mesh}`, {records[0]['faces']} faces, calls of {call} particles:\n\n{table(rows)}")
+    return "\n\n".join(parts)
+
+
+def queries(folder, task):
+    results = Results(folder, task)
+    return {task: query_tables(results, task), f"{task} machine": results.machine}
+
+
+def build(folder):
+    results = Results(folder, "build")
+    systems = results.distinct("system")
+    rows = [["mesh", "faces"] + [f"{s}, ms" for s in systems]]
+    for mesh in results.distinct("mesh"):
+        for faces in results.distinct("faces", mesh=mesh):
+            found = {r["system"]: number(r["ms"]) for r in results.where(mesh=mesh, faces=faces)}
+            rows.append([mesh, faces] + [found.get(s, "") for s in systems])
+    return {"build": table(rows), "build machine": results.machine}
+
+
+def cloth(folder):
+    results = Results(folder, "cloth")
+    rows = [["collider", "particles", "MB", "ms a frame", "of it constraints, ms", "collision, ms", "frames to rest",
+             "inside at the end", "deepest at the end, R", "deepest ever, R"]]
+    for r in results.records:
+        rest = r["frames"] if r["rested"] == "yes" else f"stopped at {r['frames']}"
+        rows.append([f"{r['system']}: {r['setting']}", r["particles"], number(r["bytes"], 1e-6),
+                     number(r["frame_ms"]), number(r["constraint_ms"]), number(r["collision_ms"]), rest,
+                     r["inside_at_end"], number(r["deepest_at_end"]), number(r["deepest"])])
+    return {"cloth": table(rows), "cloth machine": results.machine}
+
+
+def figures(folder):
+    results = Results(folder, "figures")
+    values = {"figures machine": results.machine}
+    for mesh in results.distinct("mesh"):
+        ask = dict(mesh=mesh, task="contains")
+        largest = results.distinct("call", **ask)[0]
+        rows = [["system", "MB", "build, ms", "wrong side, %, U", "S", "C", "farthest wrong, R",
+                 "depth error on S, R: mean", "worst"]]
+        for r in results.where(call=largest, set="U", **ask):
+            one = dict(mesh=mesh, call=largest, system=r["system"])
+            farthest = max(float(s["farthest_wrong"]) for s in results.where(task="contains", **one))
+            depth = results.where(task="contacts", set="S", **one)[0]
+            rows.append([label(r), number(r["bytes"], 1e-6), number(r["build_ms"])]
+                        + per_set(results, "wrong_share", 100, task="contains", **one)
+                        + ["none" if farthest == 0 else number(farthest), number(depth["depth_mean"]),
+                           number(depth["depth_worst"])])
+        values[f"{mesh} sizes"] = table(rows)
+        rows = [["particles in a call, system", "inside or outside, ns, U", "S", "C", "contact, ns, U", "S", "C"]]
+        for call in results.distinct("call", **ask):
+            for r in results.where(call=call, set="U", **ask):
+                one = dict(mesh=mesh, call=call, system=r["system"])
+                rows.append([f"{call}, {label(r)}"] + per_set(results, "ns", task="contains", **one)
+                            + per_set(results, "ns", task="contacts", **one))
+        values[f"{mesh} times"] = table(rows)
+    rows = [["model, system", "particles", "MB", "ms a frame", "frames a second", "frames to rest", "inside at the end",
+             "deepest ever, R"]]
+    for r in results.where(task="cloth"):
+        rest = r["frames"] if r["rested"] == "yes" else f"not within {r['frames']}"
+        rows.append([f"{r['mesh']}, {r['system']}", r["particles"], number(r["bytes"], 1e-6), number(r["frame_ms"]),
+                     number(1000 / float(r["frame_ms"])), rest, r["inside_at_end"], number(r["deepest"])])
+    values["cloth"] = table(rows)
+    return values
+
+
+def reproduction(folder):
+    results = Results(folder, "reproduction")
+    sizes, wrong = [], []
+    for mesh in results.distinct("mesh"):
+        size_rows = [["pole", "entries per direction, mean", "most", "float32, flat: MB", "unorm16, flat: MB",
+                      "12 + 4 bytes: MB", "12 + 4 bytes: MiB"]]
+        wrong_rows = [["pole, correction", "U", "S", "S missed", "S invented", "C"]]
+        for r in results.where(mesh=mesh):
+            if r["correction"] == "none":
+                arrays = float(r["bytes_dynamic_arrays"])
+                size_rows.append([r["pole"], r["mean_entries"], r["max_entries"]]
+                                 + [f"{float(r[c]) / 1e6:.3f}" for c in ("bytes_float", "bytes_16_bit")]
+                                 + [f"{arrays / 1e6:.3f}", f"{arrays / 2**20:.3f}"])
+            invented = float(r["wrong_S"]) - float(r["missed_S"])
+            wrong_rows.append([f"{r['pole']}, {r['correction']}", f"{float(r['wrong_U']):.3f}"]
+                              + [f"{v:.2f}" for v in (float(r["wrong_S"]), float(r["missed_S"]), invented,
+                                                      float(r["wrong_C"]))])
+        sizes.append(f"**{mesh}**\n\n{table(size_rows)}")
+        wrong.append(f"**{mesh}**\n\n{table(wrong_rows)}")
+    rows = [["scene", "particles", "sticks", "iterations", "queries per frame", "ns per query", "ms per frame",
+             "frames per second", "frames to rest", "inside at rest", "deepest / R"]]
+    for name in ("horse", "torus"):
+        r = json.loads(pathlib.Path(f"out/reproduction/{name}/report.json").read_text())
+        rows.append([name, r["particles"], r["sticks"], r["iterations"], round(r["queries_per_frame"]),
+                     number(r["ns_per_query"]), number(r["ms_per_frame"]["total"]), number(r["frames_per_second"]),
+                     r["frames_to_rest"] or "not reached", r["inside_at_rest"], number(r["deepest"]["in_radii"])])
+    return {"sizes": "\n\n".join(sizes), "wrong sides": "\n\n".join(wrong), "rates": table(rows),
+            "machine": results.machine}
+
+
+PAGES = {
+    "contains": ("performance_tables.md", lambda folder: queries(folder, "contains")),
+    "contacts": ("performance_tables.md", lambda folder: queries(folder, "contacts")),
+    "build": ("performance_tables.md", build),
+    "cloth": ("cloth_on_each.md", cloth),
+    "figures": ("figures.md", figures),
+    "reproduction": ("reproduction.md", reproduction),
+}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("task", choices=PAGES)
+    parser.add_argument("--results", type=pathlib.Path, required=True)
+    parser.add_argument("--commit", required=True, help="that was measured, and when")
+    parser.add_argument("--output", type=pathlib.Path, required=True, help="folder of the page")
+    arguments = parser.parse_args()
+    name, sections = PAGES[arguments.task]
+    values = sections(arguments.results)
+    values[f"{arguments.task} commit"] = arguments.commit
+    text = (pathlib.Path("docs") / name).read_text()
+    for section, value in values.items():
+        marks = f"<!-- begin {section} -->", f"<!-- end {section} -->"
+        pattern = re.escape(marks[0]) + "(\n?).*?\n?" + re.escape(marks[1])
+        text = re.sub(pattern, lambda m: f"{marks[0]}{m[1]}{value}{m[1]}{marks[1]}", text, flags=re.DOTALL)
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    (arguments.output / name).write_text(text)
+    print(f"See {arguments.output / name}")
+
+
+main()

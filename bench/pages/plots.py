@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+"""Draws the plots of docs/performance_tables.md from bench/results/: time against error, time and error against
+bytes, build time against faces. scripts/bench runs it."""
+
+import argparse
+import csv
+import pathlib
+
+import matplotlib
+
+matplotlib.use("svg")
+matplotlib.rcParams.update({"svg.hashsalt": "echinus", "svg.fonttype": "none", "font.size": 9,
+                            "axes.spines.top": False, "axes.spines.right": False})
+import matplotlib.pyplot as pyplot  # noqa: E402: after the choice of the backend
+
+SMALLEST_ERROR = 1e-4  # per cent: an error of 0 is drawn at the edge
+
+
+def records(folder, task):
+    lines = (folder / f"{task}.csv").read_text().splitlines()
+    return list(csv.DictReader(line for line in lines if not line.startswith("#")))
+
+
+def plot(curves, x_label, y_label, path):
+    """curves: name -> (points, is ours)"""
+    figure, axes = pyplot.subplots(figsize=(7, 4.2), layout="constrained")
+    for name, (points, ours) in curves.items():
+        axes.plot(*zip(*sorted(points)), "o-" if ours else "s--", label=name, markersize=4, linewidth=1.2)
+    axes.set(xscale="log", yscale="log", xlabel=x_label, ylabel=y_label)
+    axes.grid(True, which="major", alpha=0.3)
+    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
+    figure.savefig(path, metadata={"Date": None})
+    pyplot.close(figure)
+
+
+def curves_of(rows, x, y):
+    curves = {}
+    for r in rows:
+        curves.setdefault(r["system"], ([], r.get("role") == "ours"))[0].append((x(r), y(r)))
+    return curves
+
+
+def nanoseconds(r):
+    return float(r["ns"])
+
+
+def megabytes(r):
+    return float(r["bytes"]) / 1e6
+
+
+def wrong_percent(r):
+    return max(100 * float(r["wrong_share"]), SMALLEST_ERROR)
+
+
+def depth_percent(r):
+    return max(100 * float(r["depth_mean"]), SMALLEST_ERROR)
+
+
+def draw(task, folder, images):
+    rows = records(folder, task)
+    ns, wrong, size = "ns a particle", "on the wrong side, %", "MB"
+    if task in ("contains", "contacts"):
+        first = [r for r in rows if r["mesh"] == rows[0]["mesh"] and r["set"] == "S" and r["call"] == rows[0]["call"]]
+        plot(curves_of(first, wrong_percent, nanoseconds), wrong, ns, images / f"{task}_time_error.svg")
+    elif task == "bytes":
+        for question in ("contains", "contacts"):
+            some = [r for r in rows if r["task"] == question]
+            plot(curves_of(some, megabytes, nanoseconds), size, ns, images / f"{question}_time_bytes.svg")
+        sides = [r for r in rows if r["task"] == "contains"]
+        plot(curves_of(sides, megabytes, wrong_percent), size, wrong, images / "contains_error_bytes.svg")
+        depths = [r for r in rows if r["task"] == "contacts"]
+        plot(curves_of(depths, megabytes, depth_percent), size, "mean error of the depth, % of R",
+             images / "contacts_error_bytes.svg")
+    elif task == "build":
+        tori = [r for r in rows if r["mesh"].startswith("torus")]
+        plot(curves_of(tori, lambda r: float(r["faces"]), lambda r: float(r["ms"])), "faces", "ms",
+             images / "build_faces.svg")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("task", choices=["contains", "contacts", "bytes", "build"])
+    parser.add_argument("--results", type=pathlib.Path, required=True)
+    parser.add_argument("--images", type=pathlib.Path, required=True)
+    arguments = parser.parse_args()
+    arguments.images.mkdir(parents=True, exist_ok=True)
+    draw(arguments.task, arguments.results, arguments.images)
+
+
+main()
