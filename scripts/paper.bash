@@ -1,4 +1,4 @@
-# The paper's models, maps, simulations and figures, for scripts/demo and scripts/reproduce; sourced, not run.
+# The paper's models, maps, simulations and figures, for scripts/demo and scripts/bench reproduction; sourced, not run.
 # The caller sets `echinus`, the program, and `out`, the folder for what is made.
 
 step() { printf '\n== %s (%d s)\n' "$*" "$SECONDS"; }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fills the tables of a page in docs/ from bench/results/: what lies between <!-- begin NAME --> and
+"""Fills the tables of pages in docs/ from bench/results/: what lies between <!-- begin NAME --> and
 <!-- end NAME --> is replaced, the prose around it stays. scripts/bench runs it."""
 
 import argparse
@@ -56,30 +56,39 @@ def per_set(results, column, scale=1.0, **wanted):
 # ---- The pages, a function each: from the folder of results to the texts of the sections
 
 
+SUMMARY = ("exact map", "distance map", "classified grid", "dense grid 0.63 MB", "OpenVDB 2R/200", "Embree", "CGAL")
+
+
+def query_table(results, task, mesh, call, chosen=None):
+    rows = [["system", "MB", "build, ms", "ns, U", "S", "C", "wrong, %, U", "S", "C", "farthest wrong, R"]]
+    if task == "contacts":
+        rows[0] += ["depth error on S, R: mean", "99 %", "worst"]
+    for r in results.where(mesh=mesh, call=call, set="U"):
+        if chosen and r["system"] not in chosen:
+            continue
+        one = dict(mesh=mesh, call=call, system=r["system"])
+        near = results.where(set="S", **one)[0]
+        farthest = max(float(s["farthest_wrong"]) for s in results.where(**one))
+        rows.append([label(r), number(r["bytes"], 1e-6), number(r["build_ms"])]
+                    + per_set(results, "ns", **one) + per_set(results, "wrong_share", 100, **one)
+                    + ["none" if farthest == 0 else number(farthest)])
+        if task == "contacts":
+            rows[-1] += [number(near[c]) for c in ("depth_mean", "depth_99", "depth_worst")]
+    return table(rows)
+
+
 def query_tables(results, task):
-    parts = []
-    for mesh in results.distinct("mesh"):
-        for call in results.distinct("call", mesh=mesh):
-            rows = [["system", "MB", "build, ms", "ns, U", "S", "C", "wrong, %, U", "S", "C", "farthest wrong, R"]]
-            if task == "contacts":
-                rows[0] += ["depth error on S, R: mean", "99 %", "worst"]
-            records = results.where(mesh=mesh, call=call, set="U")
-            for r in records:
-                one = dict(mesh=mesh, call=call, system=r["system"])
-                near = results.where(set="S", **one)[0]
-                farthest = max(results.where(**one), key=lambda s: float(s["farthest_wrong"]))["farthest_wrong"]
-                rows.append([label(r), number(r["bytes"], 1e-6), number(r["build_ms"])]
-                            + per_set(results, "ns", **one) + per_set(results, "wrong_share", 100, **one)
-                            + ["none" if float(farthest) == 0 else number(farthest)])
-                if task == "contacts":
-                    rows[-1] += [number(near[c]) for c in ("depth_mean", "depth_99", "depth_worst")]
-            parts.append(f"`{mesh}`, {records[0]['faces']} faces, calls of {call} particles:\n\n{table(rows)}")
-    return "\n\n".join(parts)
+    return "\n\n".join(
+        f"`{mesh}`, {results.where(mesh=mesh)[0]['faces']} faces, calls of {call} particles:\n\n"
+        + query_table(results, task, mesh, call)
+        for mesh in results.distinct("mesh") for call in results.distinct("call", mesh=mesh))
 
 
 def queries(folder, task):
     results = Results(folder, task)
-    return {task: query_tables(results, task), f"{task} machine": results.machine}
+    mesh, call = results.records[0]["mesh"], results.records[0]["call"]
+    return {task: query_tables(results, task), f"{task} machine": results.machine,
+            f"{task} summary": query_table(results, task, mesh, call, SUMMARY)}
 
 
 def build(folder):
@@ -169,34 +178,38 @@ def reproduction(folder):
             "machine": results.machine}
 
 
-PAGES = {
-    "contains": ("performance_tables.md", lambda folder: queries(folder, "contains")),
-    "contacts": ("performance_tables.md", lambda folder: queries(folder, "contacts")),
-    "build": ("performance_tables.md", build),
-    "cloth": ("cloth_on_each.md", cloth),
-    "figures": ("figures.md", figures),
-    "reproduction": ("reproduction.md", reproduction),
+TASKS = {
+    "contains": (["performance.md", "performance_tables.md"], lambda folder: queries(folder, "contains")),
+    "contacts": (["performance.md", "performance_tables.md"], lambda folder: queries(folder, "contacts")),
+    "build": (["performance_tables.md"], build),
+    "cloth": (["cloth_on_each.md"], cloth),
+    "figures": (["figures.md"], figures),
+    "reproduction": (["reproduction.md"], reproduction),
 }
+
+
+def filled(text, values):
+    for section, value in values.items():
+        begin, end = f"<!-- begin {section} -->", f"<!-- end {section} -->"
+        pattern = re.escape(begin) + "(\n?).*?\n?" + re.escape(end)
+        text = re.sub(pattern, lambda m: f"{begin}{m[1]}{value}{m[1]}{end}", text, flags=re.DOTALL)
+    return text
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("task", choices=PAGES)
+    parser.add_argument("task", choices=TASKS)
     parser.add_argument("--results", type=pathlib.Path, required=True)
     parser.add_argument("--commit", required=True, help="that was measured, and when")
-    parser.add_argument("--output", type=pathlib.Path, required=True, help="folder of the page")
+    parser.add_argument("--output", type=pathlib.Path, required=True, help="folder for the pages")
     arguments = parser.parse_args()
-    name, sections = PAGES[arguments.task]
-    values = sections(arguments.results)
-    values[f"{arguments.task} commit"] = arguments.commit
-    text = (pathlib.Path("docs") / name).read_text()
-    for section, value in values.items():
-        marks = f"<!-- begin {section} -->", f"<!-- end {section} -->"
-        pattern = re.escape(marks[0]) + "(\n?).*?\n?" + re.escape(marks[1])
-        text = re.sub(pattern, lambda m: f"{marks[0]}{m[1]}{value}{m[1]}{marks[1]}", text, flags=re.DOTALL)
+    pages, sections = TASKS[arguments.task]
+    values = sections(arguments.results) | {f"{arguments.task} commit": arguments.commit}
     arguments.output.mkdir(parents=True, exist_ok=True)
-    (arguments.output / name).write_text(text)
-    print(f"See {arguments.output / name}")
+    for page in pages:
+        (arguments.output / page).write_text(filled((pathlib.Path("docs") / page).read_text(), values))
+        print(f"See {arguments.output / page}")
+
 
 
 main()

@@ -1,14 +1,13 @@
 #!/usr/bin/env bash
-# Checks exact maps by CGAL's exact predicates and writes the tables of docs/accuracy.md: every generated
-# mesh, and every mesh of a folder. Takes about an hour with ten million points; a few minutes with --points
-# 500000.
+# Judges exact maps by CGAL's exact predicates and writes the tables of docs/accuracy.md: every generated mesh, and
+# every mesh of a folder. Takes about an hour with ten million points; a few minutes with --points 500000.
 #
-#   scripts/accuracy [--points N] [FOLDER]     FOLDER: ../shared/meshes, if available
+#   scripts/bench accuracy [--points N] [FOLDER]     FOLDER: ../shared/meshes, where it is at hand
 #
-# Fails when a mesh does not pass; the tables are written all the same. Each mesh's figures, by rule and kind
-# of point, are left in out/accuracy/MESH.json.
+# Fails when a mesh does not hold; the tables are written all the same. Each mesh's figures, by rule and kind of point,
+# are left in out/accuracy/MESH.json.
 set -euo pipefail
-cd "$(dirname "$0")/.."
+cd "$(dirname "$0")/../.."
 points=10000000
 folder=../shared/meshes # the development meshes: not part of the repository
 out=out/accuracy
@@ -23,7 +22,7 @@ while [ $# -gt 0 ]; do
         shift 2
         ;;
     -*)
-        echo "accuracy: unknown option '$1'; usage: scripts/accuracy [--points N] [FOLDER]" >&2
+        echo "accuracy: unknown option '$1'; usage: scripts/bench accuracy [--points N] [FOLDER]" >&2
         exit 2
         ;;
     *)
@@ -94,7 +93,7 @@ for file in "$folder"/*.obj "$folder"/*.off; do
     judge "$name" "$file"
 done
 
-# Replaces the text between the page's markers; the prose around them stays.
+# What lies between the page's markers is replaced; the prose around them stays.
 tables=$out/tables.md
 write_tables >"$tables"
 sed -i -e "/^<!-- tables/,/^<!-- end of tables/{/^<!-- tables/{p;r $tables" -e "};/^<!-- end of tables/p;d}" "$page"

@@ -1,10 +1,10 @@
 // What holds for every system behind the common interface.
 
 #include "bad_meshes.hpp"
-#include "rivals/systems/system.hpp"
 #include "rivals/systems/classified_grid/classified_grid.hpp"
 #include "rivals/systems/dense_grid/dense_grid.hpp"
 #include "rivals/systems/maps/maps.hpp"
+#include "rivals/systems/system.hpp"
 #ifdef ECHINUS_HAS_SPARSE_FIELD
 #include "rivals/systems/sparse_field/sparse_field.hpp"
 #endif
