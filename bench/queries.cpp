@@ -21,11 +21,10 @@ const char* name_of(Question question) {
     return question == Question::Sides ? "contains" : "contacts";
 }
 
-Effort effort_for(Question question, const Setting& setting, std::size_t point_count) {
+Effort effort_for(Question question, const Setting& setting) {
     Effort effort = setting.effort;
     effort.sides = question == Question::Sides;
     effort.contacts = question == Question::Contacts;
-    if (point_count <= 100'000) effort.passes *= 3;
     return effort;
 }
 
@@ -51,8 +50,11 @@ Records query_records(const std::vector<std::string>& more) {
     return Records(columns);
 }
 
-void add_queries(const Setting& setting, const Subject& subject, JudgedSet& set, const std::string& call,
-                 const BuiltSystems& systems, const Effort& effort, Records& records) {
+void add_queries(const Setting& setting, const Subject& subject, JudgedSet& set, const BuiltSystems& systems,
+                 const Effort& effort, Records& records) {
+    const std::string call = effort.one_by_one      ? "1"
+                             : effort.call_size > 0 ? fmt::format("{}", effort.call_size)
+                                                    : "whole set";
     if (set.truth.inside.empty()) judge(subject, setting.truth_cache, set);
     const char* const task = name_of(effort.sides ? Question::Sides : Question::Contacts);
     const std::vector<SetFigures> figures =

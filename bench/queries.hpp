@@ -9,8 +9,8 @@ enum class Question { Sides, Contacts };
 /// "contains" or "contacts"
 const char* name_of(Question question);
 
-/// The effort that asks one of the two, for a set of so many particles: small sets are quick, so more passes.
-echinus::comparison::Effort effort_for(Question question, const Setting& setting, std::size_t point_count);
+/// The effort that asks one of the two.
+echinus::comparison::Effort effort_for(Question question, const Setting& setting);
 
 /// Systems that were built, ready to be asked.
 struct BuiltSystems {
@@ -25,7 +25,5 @@ BuiltSystems build_all(std::vector<BenchSystem> systems);
 Records query_records(const std::vector<std::string>& more = {});
 
 /// Lets all systems answer for a set, and adds a record for each. Judges the set if it is not yet judged.
-/// @param call  for the column: how many particles a call has
 void add_queries(const Setting& setting, const Subject& subject, echinus::comparison::JudgedSet& set,
-                 const std::string& call, const BuiltSystems& systems,
-                 const echinus::comparison::Effort& effort, Records& records);
+                 const BuiltSystems& systems, const echinus::comparison::Effort& effort, Records& records);

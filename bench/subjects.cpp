@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -28,6 +29,18 @@ std::vector<comparison::JudgedSet> Subject::sets(std::size_t count) const {
     return {{"U", comparison::uniform_points(mesh, count), {}},
             {"S", comparison::surface_points(mesh, count), {}},
             {"C", comparison::cloth_points(mesh, side, side, up), {}}};
+}
+
+std::vector<comparison::JudgedSet> Subject::sets_for_calls(std::size_t count, std::size_t call_size) const {
+    std::vector<comparison::JudgedSet> result = sets(count);
+    for (comparison::JudgedSet& set : result) {
+        const std::size_t calls = std::max<std::size_t>(1, set.points.size() / call_size);
+        std::vector<Vec3f> dealt;
+        for (std::size_t call = 0; call < calls; ++call)
+            for (std::size_t i = call; i < set.points.size(); i += calls) dealt.push_back(set.points[i]);
+        set.points = std::move(dealt);
+    }
+    return result;
 }
 
 TriangleMesh torus_of(std::size_t face_count) {

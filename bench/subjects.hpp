@@ -21,6 +21,9 @@ struct Subject {
 
     /// U, S and C of `count` particles each, not yet judged. C has a square number, so perhaps a few fewer.
     std::vector<echinus::comparison::JudgedSet> sets(std::size_t count) const;
+    /// The same, dealt out to calls of `call_size` particles like cards: each of them is such a set in small.
+    std::vector<echinus::comparison::JudgedSet> sets_for_calls(std::size_t count,
+                                                               std::size_t call_size) const;
 };
 
 /// The meshes of the comparison, each made when it is its turn: horse_6k, the torus of 2880 faces,

@@ -77,10 +77,15 @@ def query_table(results, task, mesh, call, chosen=None):
     return table(rows)
 
 
+def particles_in(results, mesh, call):
+    count = int(results.where(mesh=mesh, call=call)[0]["particles"]) if call == "whole set" else int(call)
+    return f"{count:,}".replace(",", " ")
+
+
 def query_tables(results, task):
     return "\n\n".join(
-        f"`{mesh}`, {results.where(mesh=mesh)[0]['faces']} faces, calls of {call} particles:\n\n"
-        + query_table(results, task, mesh, call)
+        f"`{mesh}`, {results.where(mesh=mesh)[0]['faces']} faces, {particles_in(results, mesh, call)} particles in a call:"
+        + "\n\n" + query_table(results, task, mesh, call)
         for mesh in results.distinct("mesh") for call in results.distinct("call", mesh=mesh))
 
 
@@ -135,7 +140,7 @@ def figures(folder):
         for call in results.distinct("call", **ask):
             for r in results.where(call=call, set="U", **ask):
                 one = dict(mesh=mesh, call=call, system=r["system"])
-                rows.append([f"{call}, {label(r)}"] + per_set(results, "ns", task="contains", **one)
+                rows.append([f"{particles_in(results, mesh, call)}, {label(r)}"] + per_set(results, "ns", task="contains", **one)
                             + per_set(results, "ns", task="contacts", **one))
         values[f"{mesh} times"] = table(rows)
     rows = [["model, system", "particles", "MB", "ms a frame", "frames a second", "frames to rest", "inside at the end",

@@ -39,8 +39,7 @@ Records measure_bytes(const Setting& setting) {
         const auto sizes = type.on(horse.mesh, {}, [](std::string_view, double) {});
         BuiltSystems systems = build_all(sizes_of(type, *sizes, max_bytes));
         for (const Question question : {Question::Sides, Question::Contacts})
-            add_queries(setting, horse, near_surface, std::to_string(point_count), systems,
-                        effort_for(question, setting, point_count), records);
+            add_queries(setting, horse, near_surface, systems, effort_for(question, setting), records);
     }
     return records;
 }

@@ -4,22 +4,26 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 using namespace echinus;
 using namespace echinus::comparison;
 
 namespace {
 
-constexpr std::size_t kSmallCall = 10'000;
+constexpr std::size_t kSmallCall = 10'000; // particles
 
 void measure_on(const Subject& subject, Question question, const Setting& setting, Records& records) {
     setting.report_progress(fmt::format("{} {}: building", name_of(question), subject.name), 0);
     const BuiltSystems systems = build_all(systems_on(subject));
-    std::vector<std::size_t> counts{subject.large ? setting.large_point_count : setting.point_count};
-    if (!subject.large) counts.push_back(kSmallCall);
-    for (const std::size_t count : counts)
-        for (JudgedSet& set : subject.sets(count))
-            add_queries(setting, subject, set, fmt::format("{}", count), systems,
-                        effort_for(question, setting, count), records);
+    const std::size_t count = subject.large ? setting.large_point_count : setting.point_count;
+    for (JudgedSet& set : subject.sets(count))
+        add_queries(setting, subject, set, systems, effort_for(question, setting), records);
+    if (subject.large) return;
+    Effort effort = effort_for(question, setting);
+    effort.call_size = kSmallCall;
+    for (JudgedSet& set : subject.sets_for_calls(std::max(count / 10, kSmallCall), kSmallCall))
+        add_queries(setting, subject, set, systems, effort, records);
 }
 
 Records measure_all(Question question, const Setting& setting) {

@@ -25,19 +25,20 @@ void add_query_figures(const Subject& subject, const Setting& setting, Records& 
     std::erase_if(chosen, [](const BenchSystem& system) { return !is_chosen(system.name); });
     setting.report_progress("figures: building " + subject.name, 0);
     const BuiltSystems systems = build_all(std::move(chosen));
-    struct Call {
-        std::size_t set_size;
-        bool one_by_one;
-    };
-    for (const auto& [set_size, one_by_one] :
-         {Call{setting.point_count, false}, Call{10'000, false}, Call{1000, false}, Call{10'000, true}})
-        for (JudgedSet& set : subject.sets(set_size))
+    const auto add = [&](std::vector<JudgedSet> sets, std::size_t call_size, bool one_by_one) {
+        for (JudgedSet& set : sets)
             for (const Question question : {Question::Sides, Question::Contacts}) {
-                Effort effort = effort_for(question, setting, set_size);
+                Effort effort = effort_for(question, setting);
+                effort.call_size = call_size;
                 effort.one_by_one = one_by_one;
-                add_queries(setting, subject, set, fmt::format("{}", one_by_one ? 1 : set_size), systems,
-                            effort, records);
+                add_queries(setting, subject, set, systems, effort, records);
             }
+    };
+    add(subject.sets(setting.point_count), 0, false);
+    const std::size_t count = std::max<std::size_t>(setting.point_count / 10, 10'000);
+    for (const std::size_t call_size : {10'000U, 1000U})
+        add(subject.sets_for_calls(count, call_size), call_size, false);
+    add(subject.sets(count), 0, true);
 }
 
 void add_cloth_figures(const Subject& subject, const char* scene_file, const Setting& setting,

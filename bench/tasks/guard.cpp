@@ -18,7 +18,7 @@ using namespace echinus::comparison;
 namespace {
 
 constexpr int kPasses = 9;
-constexpr double kTolerated = 0.1; // of a ratio: nobody minds less
+constexpr double kTolerated = 0.1; // of a ratio
 constexpr double kSpreads = 3;
 
 using Record = Records::Record;
@@ -67,7 +67,7 @@ void add_query_ratios(const Subject& horse, const Setting& setting, Records& rec
     const BuiltSystems systems = build_all(std::move(chosen));
     for (const Question question : {Question::Sides, Question::Contacts})
         for (const JudgedSet& set : horse.sets(setting.point_count)) { // unjudged: only times count
-            Effort effort = effort_for(question, setting, setting.point_count);
+            Effort effort = effort_for(question, setting);
             effort.passes = kPasses;
             effort.enough_seconds = std::numeric_limits<double>::infinity();
             const std::vector<SetFigures> figures =

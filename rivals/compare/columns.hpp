@@ -21,8 +21,8 @@ std::vector<Column> time_columns(const Comparison& comparison);
 /// Share of wrong signs for each set; errors of depth and normal on S, where they matter.
 std::vector<Column> error_columns(const Comparison& comparison);
 
-/// What a table needs beside it: who exceeds the budget and why, who refused, and whether
-/// systems mean different things by inside.
+/// What a table needs beside it: systems that exceed the budget and why, systems that refused the mesh, and
+/// whether systems mean different things by inside.
 std::vector<std::string> remarks_on(const Comparison& comparison);
 
 } // namespace echinus::comparison

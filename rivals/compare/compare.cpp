@@ -16,7 +16,7 @@ namespace echinus::comparison {
 
 namespace {
 
-constexpr std::size_t kFewestPoints = 100;
+constexpr std::size_t kMinPoints = 100;
 
 // ---- What is true ----
 
@@ -178,7 +178,7 @@ std::vector<BuiltSystem> build_all(std::vector<SystemOnMesh>& on_mesh, const Com
 std::vector<std::size_t> budgets_of(const CompareOptions& options) {
     std::vector<std::size_t> budgets;
     std::size_t budget =
-        std::min(options.byte_budget * CompareOptions::kTopOfCurve, CompareOptions::kMostBytes);
+        std::min(options.byte_budget * CompareOptions::kTopOfCurve, CompareOptions::kMaxBytes);
     for (std::size_t k = 0; k < options.curve_length; ++k, budget /= 2) budgets.push_back(budget);
     std::ranges::reverse(budgets);
     return budgets;
@@ -218,11 +218,11 @@ std::vector<std::vector<Figures>> measure_curves(std::vector<SystemOnMesh>& on_m
 }
 
 void require_usable(const CompareOptions& options) {
-    if (options.byte_budget == 0 || options.byte_budget > CompareOptions::kMostBytes)
+    if (options.byte_budget == 0 || options.byte_budget > CompareOptions::kMaxBytes)
         throw Error(ErrorCode::InvalidOptions, "the byte budget is " + std::to_string(options.byte_budget) +
                                                    ", outside [1, " +
-                                                   std::to_string(CompareOptions::kMostBytes) + "]");
-    if (options.point_count < kFewestPoints)
+                                                   std::to_string(CompareOptions::kMaxBytes) + "]");
+    if (options.point_count < kMinPoints)
         throw Error(ErrorCode::InvalidOptions,
                     "point_count is " + std::to_string(options.point_count) + ", below 100");
 }

@@ -29,7 +29,7 @@ struct CompareOptions {
     std::function<void(const std::string& what, double fraction)> report_progress{};
 
     static constexpr std::size_t kTopOfCurve = 8;
-    static constexpr std::size_t kMostBytes = 1'000'000'000; ///< of a budget, and of what curves are made of
+    static constexpr std::size_t kMaxBytes = 1'000'000'000; ///< of a budget, and of what curves are made of
 };
 
 /// A system in one size.
@@ -71,7 +71,7 @@ struct Comparison {
 /// Times are processor times, and those of one run compare with each other alone. All else depends on mesh
 /// and options only.
 /// @throws Error InvalidMesh for a mesh that is not closed or has no area; InvalidOptions for a system that
-/// does not exist or is not there, when none fits, for a budget of 0 or above kMostBytes, or fewer than 100
+/// does not exist or is not there, when none fits, for a budget of 0 or above kMaxBytes, or fewer than 100
 /// particles; and what report_progress throws
 Comparison compare(const TriangleMesh& mesh, const CompareOptions& options = {});
 

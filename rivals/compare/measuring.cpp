@@ -8,9 +8,6 @@ namespace echinus::comparison {
 
 namespace {
 
-/// Sets with fewer particles are asked for again within a turn, so that the clock has something to tell.
-constexpr std::size_t kLeastOfATurn = 20'000;
-
 template <typename Items>
 auto part_of(Items& all, Part part) {
     return std::span(all).subspan(part.begin, part.size());
@@ -60,20 +57,21 @@ class Interview {
 /// @param ask  void (const rivals::System&, Part of the set)
 template <typename Ask>
 std::vector<Racer> racers_for(std::span<const rivals::System* const> systems, std::size_t point_count,
-                              double patience_seconds, const Ask& ask) {
+                              const Effort& effort, const Ask& ask) {
+    std::vector<Part> calls;
+    if (effort.call_size > 0)
+        for (std::size_t end = effort.call_size; end <= point_count; end += effort.call_size)
+            calls.push_back({end - effort.call_size, end});
     std::vector<Racer> racers;
     for (const rivals::System* system : systems) {
         const auto run = [&ask, system](Part part) { ask(*system, part); };
-        racers.push_back({run, parts_for(run, point_count, patience_seconds)});
+        racers.push_back({run, calls.empty() ? parts_for(run, point_count, effort.patience_seconds) : calls});
     }
     return racers;
 }
 
-std::vector<Pace> paces_of(std::vector<Racer> racers, std::size_t point_count, const Effort& effort,
+std::vector<Pace> paces_of(const std::vector<Racer>& racers, const Effort& effort,
                            const std::function<void(double)>& report_progress) {
-    for (Racer& racer : racers)
-        if (racer.parts.size() == 1)
-            racer.parts.resize(std::max<std::size_t>(1, kLeastOfATurn / point_count), racer.parts.front());
     TurnOptions turns;
     turns.passes = effort.passes;
     turns.enough_seconds = effort.enough_seconds;
@@ -109,12 +107,12 @@ std::vector<SetFigures> measure(std::span<const rivals::System* const> systems, 
     std::vector<Pace> sides(systems.size()), contacts(systems.size());
     const double share = effort.sides && effort.contacts ? 0.5 : 1;
     if (effort.sides) {
-        racers = racers_for(systems, count, effort.patience_seconds, ask_sides);
-        sides = paces_of(racers, count, effort, [&](double f) { report_progress(share * f); });
+        racers = racers_for(systems, count, effort, ask_sides);
+        sides = paces_of(racers, effort, [&](double f) { report_progress(share * f); });
     }
     if (effort.contacts) {
-        racers = racers_for(systems, count, effort.patience_seconds, ask_contacts);
-        contacts = paces_of(racers, count, effort, [&](double f) { report_progress(1 - share * (1 - f)); });
+        racers = racers_for(systems, count, effort, ask_contacts);
+        contacts = paces_of(racers, effort, [&](double f) { report_progress(1 - share * (1 - f)); });
     }
     for (std::size_t k = 0; k < systems.size(); ++k) {
         figures[k] = {set.name, std::move(sides[k]), std::move(contacts[k]), {}};

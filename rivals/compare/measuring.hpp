@@ -37,6 +37,8 @@ struct Effort {
     /// Seconds. A system that seems to need longer for a set answers for parts of it; judged by a trial in
     /// small calls, in which systems that gain by the size of a call look slower than they are.
     double patience_seconds = 30;
+    std::size_t call_size =
+        0;                   ///< particles in a call, of which a turn makes several; 0: one call for the set
     bool one_by_one = false; ///< a call for each particle instead of one for the set
     bool sides = true, contacts = true;
     double undecided = 0; ///< as in errors_of()

@@ -71,15 +71,15 @@ double median_of(std::vector<double> values) {
 
 std::vector<Part> parts_for(const std::function<void(Part)>& run, std::size_t item_count,
                             double patience_seconds) {
-    constexpr std::size_t kPart = 1000, kFewest = 10;
+    constexpr std::size_t kPart = 1000, kMinParts = 10;
     const std::vector<Part> whole{{0, item_count}};
-    if (item_count <= kFewest * kPart) return whole;
+    if (item_count <= kMinParts * kPart) return whole;
     double seconds = 0; // for a part
-    for (const Part& part : spread_parts(item_count, kFewest, kPart))
-        seconds += seconds_of(run, part) / kFewest;
+    for (const Part& part : spread_parts(item_count, kMinParts, kPart))
+        seconds += seconds_of(run, part) / kMinParts;
     const double affordable = patience_seconds / seconds;
     if (affordable * kPart >= static_cast<double>(item_count)) return whole;
-    return spread_parts(item_count, std::max(static_cast<std::size_t>(affordable), kFewest), kPart);
+    return spread_parts(item_count, std::max(static_cast<std::size_t>(affordable), kMinParts), kPart);
 }
 
 std::vector<Pace> take_turns(const std::vector<Racer>& racers, const TurnOptions& options) {

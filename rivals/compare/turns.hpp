@@ -25,7 +25,8 @@ struct Racer {
 struct TurnOptions {
     std::size_t warm_up = 20'000; ///< items done before a part without being timed, as many as it has at most
     int passes = 5;
-    double enough_seconds = std::numeric_limits<double>::infinity(); ///< who was timed so long drops out
+    double enough_seconds =
+        std::numeric_limits<double>::infinity(); ///< a racer that was timed so long drops out
     std::function<void(double fraction)> report_progress;
 };
 
@@ -33,7 +34,7 @@ struct TurnOptions {
 struct Pace {
     double ns;                   ///< per item: the median over passes
     double spread;               ///< half the distance between their quartiles, by it; NaN after one pass
-    std::vector<double> pass_ns; ///< [passes, or fewer for who dropped out] per item
+    std::vector<double> pass_ns; ///< [passes, or fewer for one that dropped out] per item
 };
 
 /// Races on the calling thread, by its processor time. All racers take their turn, there and back, `passes`
@@ -42,9 +43,9 @@ struct Pace {
 /// caches, as they would be in a program that uses one of them.
 std::vector<Pace> take_turns(const std::vector<Racer>& racers, const TurnOptions& options);
 
-/// What a racer should do in a turn: all items in one part if a short trial says that this takes no longer
-/// than `patience`, and otherwise as many parts of a thousand items as it can do in that time, but no fewer
-/// than ten, spread evenly over all.
+/// What a racer should do in a turn: all items in one part if a short trial says that this takes at most
+/// `patience_seconds`, and otherwise as many parts of a thousand items as it can do in that time, at least
+/// ten, spread evenly over all.
 std::vector<Part> parts_for(const std::function<void(Part)>& run, std::size_t item_count,
                             double patience_seconds);
 

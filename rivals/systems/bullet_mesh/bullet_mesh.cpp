@@ -145,10 +145,10 @@ struct BulletMesh::Shape {
 
 BulletMesh BulletMesh::build(const TriangleMesh& mesh, double reach) {
     require_closed(mesh, "a ray that tells sides");
-    if (mesh.faces.size() > kMostFaces)
+    if (mesh.faces.size() > kMaxFaces)
         throw Error(ErrorCode::InvalidMesh, "the mesh has " + std::to_string(mesh.faces.size()) +
                                                 " faces; Bullet's compressed tree takes " +
-                                                std::to_string(kMostFaces));
+                                                std::to_string(kMaxFaces));
     if (!(reach >= 1e-3 && reach <= 2))
         throw Error(ErrorCode::InvalidOptions,
                     "the reach is to lie in [0.001, 2] bounding radii; it is " + std::to_string(reach));

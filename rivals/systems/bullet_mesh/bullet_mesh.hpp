@@ -21,12 +21,12 @@ class BulletMesh final : public System {
   public:
     /// What a game gives a soft body as its margin, in bounding radii.
     static constexpr double kUsualReach = 0.05;
-    static constexpr std::size_t kMostFaces = (std::size_t{1} << 21) - 1; ///< of Bullet's compressed tree
+    static constexpr std::size_t kMaxFaces = (std::size_t{1} << 21) - 1; ///< of Bullet's compressed tree
 
     /// @param mesh   closed; copied
     /// @param reach  radius of the sphere, in bounding radii of the mesh; from 1e-3 to 2
     /// @throws Error InvalidMesh as inspect() does, for an open mesh, when the bounding radius lies outside
-    /// [1e-15, 1e15], or for more than kMostFaces faces; InvalidOptions for a reach out of range
+    /// [1e-15, 1e15], or for more than kMaxFaces faces; InvalidOptions for a reach out of range
     static BulletMesh build(const TriangleMesh& mesh, double reach = kUsualReach);
 
     BulletMesh(BulletMesh&&) noexcept;

@@ -20,7 +20,7 @@ namespace echinus::rivals {
 namespace {
 
 constexpr std::size_t kNarrowLimit = std::numeric_limits<std::uint16_t>::max();
-constexpr std::int32_t kMostBricks = 1 << 28;
+constexpr std::int32_t kMaxBricks = 1 << 28;
 constexpr std::int32_t kMargin = 2 * GridFrame::kSlack; // what is beyond the grid is outside
 
 /// The mesh on the lattice: every face, those without area too, since they count for distances.
@@ -67,7 +67,7 @@ std::optional<GridFrame> frame_for(const SnappedMesh& mesh, std::int32_t cell_st
         frame.brick_counts[d] = (frame.cell_counts[d] + Brick::kEdge - 1) / Brick::kEdge;
         bricks *= frame.brick_counts[d];
     }
-    if (bricks > kMostBricks) return std::nullopt;
+    if (bricks > kMaxBricks) return std::nullopt;
     frame.cell_limits = {static_cast<float>(frame.cell_counts[0]), static_cast<float>(frame.cell_counts[1]),
                          static_cast<float>(frame.cell_counts[2])};
     frame.cells_per_unit = static_cast<float>(frame.lattice.inverse_step / cell_steps);
@@ -378,7 +378,7 @@ Coverage finest_within(const SnappedMesh& mesh, std::size_t budget) {
 ClassifiedGrid ClassifiedGrid::build(const TriangleMesh& mesh, std::size_t byte_budget) {
     const SnappedMesh snapped(mesh);
     GridArrays grid = grid_of(snapped, finest_within(snapped, byte_budget));
-    if (grid.byte_count() > byte_budget) // winding numbers beyond 0 and 1 were not foreseen
+    if (grid.byte_count() > byte_budget) // winding numbers beyond 0 and 1 were not counted on
         grid = grid_of(snapped,
                        finest_within(snapped, byte_budget - grid.windings.size() * sizeof(std::int16_t)));
     return ClassifiedGrid(std::make_shared<const GridArrays>(std::move(grid)));

@@ -49,19 +49,19 @@ enum FaceNumber : std::size_t {
 
 /// All faces within `reach` of a middle.
 struct FaceList {
-    static constexpr std::size_t kMostLanes = 16;
+    static constexpr std::size_t kMaxLanes = 16;
 
     Vec3<std::int32_t> middle;
     double reach = -1; ///< less than any distance: no list yet
     std::size_t count = 0, capacity = 0;
-    std::vector<std::uint32_t> faces;  ///< [face_count + kMostLanes], the first `count` are in the list
+    std::vector<std::uint32_t> faces;  ///< [face_count + kMaxLanes], the first `count` are in the list
     std::vector<float> numbers;        ///< [kFaceNumbers][capacity]
     std::vector<float> distances;      ///< [capacity] from the middle of a group
     std::vector<std::uint32_t> chosen; ///< [capacity] which of the list a group needs
 
     void reserve(std::size_t size) {
-        if (size + kMostLanes <= capacity) return;
-        capacity = (size + size / 2 + 2 * kMostLanes) / kMostLanes * kMostLanes;
+        if (size + kMaxLanes <= capacity) return;
+        capacity = (size + size / 2 + 2 * kMaxLanes) / kMaxLanes * kMaxLanes;
         numbers.assign(kFaceNumbers * capacity, 0);
         distances.assign(capacity, 0);
         chosen.assign(capacity, 0);
@@ -405,7 +405,7 @@ class ContactKernel {
         }
     }
 
-    /// Once each; without a branch, as nobody can foresee which faces came before.
+    /// Once each; without a branch, which would be mispredicted.
     HWY_ATTR HWY_INLINE void take(std::uint32_t face) {
         list_.faces[list_.count] = face;
         list_.count += s_.stamps[face] != s_.stamp ? 1 : 0;
@@ -623,8 +623,8 @@ class CurveKey {
   private:
     std::uint32_t place(float g) const {
         const float v = g * scale_;
-        constexpr float kMost = (1 << kBitsPerAxis) - 1;
-        return v > 0 ? static_cast<std::uint32_t>(std::min(v, kMost)) : 0;
+        constexpr float kMax = (1 << kBitsPerAxis) - 1;
+        return v > 0 ? static_cast<std::uint32_t>(std::min(v, kMax)) : 0;
     }
     const GridFrame& frame_;
     float scale_;
@@ -660,7 +660,7 @@ void contacts_kernel(const GridArrays& grid, std::span<const Vec3f> points_local
                      std::span<Contact> contacts) {
     ContactScratch scratch;
     scratch.stamps.resize(grid.face_count());
-    scratch.list.faces.resize(grid.face_count() + FaceList::kMostLanes);
+    scratch.list.faces.resize(grid.face_count() + FaceList::kMaxLanes);
     scratch.inside.resize(std::min(kChunk, points_local.size()));
     const float margin_cells = margin > 0 ? margin * grid.frame.cells_per_unit * 1.001F + 1 : 0;
     // Farther away float would round too much.

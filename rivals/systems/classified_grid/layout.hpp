@@ -44,7 +44,7 @@ inline std::uint32_t rank_in_brick(const Brick& brick, std::uint32_t cell) {
     constexpr std::uint64_t kSurfaceBits = 0xAAAA'AAAA'AAAA'AAAA;
     const std::uint64_t low = (brick.states[0] | std::uint64_t{brick.states[1]} << 32) & kSurfaceBits;
     const std::uint64_t high = (brick.states[2] | std::uint64_t{brick.states[3]} << 32) & kSurfaceBits;
-    // Without a branch: which half a particle is in cannot be foreseen.
+    // Without a branch: which half a particle is in cannot be predicted.
     const std::uint64_t below = (std::uint64_t{1} << (2 * (cell & 31))) - 1;
     const std::uint64_t in_high = ~std::uint64_t{0} * (cell >> 5);
     const std::uint64_t before_low = low & (below | in_high);

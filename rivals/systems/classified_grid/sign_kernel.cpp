@@ -25,7 +25,7 @@ namespace echinus::rivals {
 
 /// Particles that are looked at together: few enough that what is noted of them stays in the first cache.
 constexpr std::size_t kChunk = 1024;
-constexpr std::size_t kMostLanes = 16;
+constexpr std::size_t kMaxLanes = 16;
 constexpr std::size_t kLongest = 63; ///< lists of this length and more are sorted alike
 
 /// A particle in a cell on the surface, from the cell's centre, in lattice steps: whole numbers.
@@ -41,7 +41,7 @@ struct alignas(16) CellOfParticle {
 };
 
 struct SignScratch {
-    static constexpr std::size_t kSize = kChunk + kMostLanes;
+    static constexpr std::size_t kSize = kChunk + kMaxLanes;
 
     alignas(64) float x[kSize], y[kSize], z[kSize];
     alignas(64) std::int32_t centre_x[kSize], centre_y[kSize], centre_z[kSize];
@@ -101,7 +101,7 @@ class SignKernel {
         const std::size_t n = hn::Lanes(df);
         const CellLookup lookup(grid_);
         std::size_t count = 0, i = 0;
-        alignas(64) float padded[3 * kMostLanes] = {};
+        alignas(64) float padded[3 * kMaxLanes] = {};
         for (; i < points_.size(); i += n) {
             const std::size_t left = points_.size() - i;
             const float* from = &points_[i].x;
@@ -116,7 +116,7 @@ class SignKernel {
             const auto bytes = hn::DemoteTo(d8, bits);
             auto on_surface = hn::Gt(found.state, hn::Set(di, std::int32_t{kInsideBit}));
             if (HWY_UNLIKELY(left < n)) {
-                alignas(64) std::uint8_t answers[kMostLanes];
+                alignas(64) std::uint8_t answers[kMaxLanes];
                 hn::StoreU(bytes, d8, answers);
                 std::memcpy(&inside_[i], answers, left);
                 on_surface = hn::And(on_surface, hn::RebindMask(di, hn::FirstN(df, left)));
@@ -182,7 +182,7 @@ class SignKernel {
             s_.cells_of[to] = {s_.centre_x[i], s_.centre_y[i], s_.centre_z[i], s_.particles[i]};
             s_.sorted_lengths[to] = static_cast<std::int32_t>(s_.lengths[i]);
         }
-        for (std::size_t i = count; i < count + kMostLanes; ++i) {
+        for (std::size_t i = count; i < count + kMaxLanes; ++i) {
             s_.places[i] = {};
             s_.cells_of[i] = {};
             s_.sorted_lengths[i] = 0;
@@ -220,7 +220,7 @@ class SignKernel {
             if (HWY_UNLIKELY(!hn::AllFalse(di, unsure)))
                 winding = hn::Add(winding, crossings_exactly(i, static_cast<std::uint32_t>(k), unsure));
         }
-        alignas(64) std::int32_t windings[kMostLanes];
+        alignas(64) std::int32_t windings[kMaxLanes];
         hn::Store(winding, di, windings);
         const std::size_t valid = std::min(n, count - i);
         for (std::size_t lane = 0; lane < valid; ++lane)
@@ -278,7 +278,7 @@ class SignKernel {
     template <class M>
     HWY_ATTR HWY_NOINLINE hn::VFromD<Ints> crossings_exactly(std::size_t i, std::uint32_t k, M unsure) const {
         const Ints di;
-        alignas(64) std::int32_t lanes[kMostLanes];
+        alignas(64) std::int32_t lanes[kMaxLanes];
         hn::Store(hn::IfThenElseZero(unsure, hn::Set(di, 1)), di, lanes);
         for (std::size_t lane = 0; lane < hn::Lanes(di); ++lane) {
             if (lanes[lane] == 0) continue;

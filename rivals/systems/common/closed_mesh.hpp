@@ -28,7 +28,7 @@ struct Box {
 Box box_of(const TriangleMesh& mesh);
 
 /// The nodes of a grid from the box's lowest corner on that has a cell everywhere in the box: two at least
-/// along each axis. In double, since nobody bounded the spacing yet.
+/// along each axis. In double, since the spacing is not yet bounded.
 std::array<double, 3> nodes_over(const Box& box, double spacing);
 
 /// The spacing that puts so many samples along the box's longest side, ends included.

@@ -16,8 +16,8 @@ namespace echinus::rivals {
 namespace {
 
 /// Nodes that are asked about at once: enough for all cores, few enough to need little memory.
-constexpr std::size_t kMostAtOnce = std::size_t{1} << 17;
-constexpr float kMostSteps = 32767;
+constexpr std::size_t kMaxAtOnce = std::size_t{1} << 17;
+constexpr float kMaxSteps = 32767;
 
 std::size_t bytes_of_sample(SampleFormat format) {
     return format == SampleFormat::Float32 ? sizeof(float) : sizeof(std::int16_t);
@@ -34,10 +34,10 @@ SampledField frame_of(const Box& box, double spacing, SampleFormat format) {
                     "the spacing of a dense grid is to be positive and at most the mesh's longest side, " +
                         std::to_string(box.longest_side()) + "; it is " + std::to_string(spacing));
     const std::array<double, 3> nodes = nodes_over(box, spacing);
-    if (count_of(nodes) > static_cast<double>(DenseGrid::kMostNodes))
+    if (count_of(nodes) > static_cast<double>(DenseGrid::kMaxNodes))
         throw Error(ErrorCode::InvalidOptions, "a dense grid of " + std::to_string(count_of(nodes)) +
                                                    " nodes is asked for; most are " +
-                                                   std::to_string(DenseGrid::kMostNodes));
+                                                   std::to_string(DenseGrid::kMaxNodes));
     SampledField field;
     field.low = box.low;
     field.high = box.high;
@@ -65,8 +65,8 @@ std::vector<float> signed_distances(const TriangleMesh& mesh, const SampledField
                                  static_cast<std::size_t>(field.nodes[2]));
     std::vector<Vec3f> points;
     std::vector<Contact> contacts;
-    for (std::size_t begin = 0; begin < distances.size(); begin += kMostAtOnce) {
-        const std::size_t count = std::min(kMostAtOnce, distances.size() - begin);
+    for (std::size_t begin = 0; begin < distances.size(); begin += kMaxAtOnce) {
+        const std::size_t count = std::min(kMaxAtOnce, distances.size() - begin);
         points.resize(count);
         contacts.resize(count);
         for (std::size_t i = 0; i < count; ++i) points[i] = place_of(field, begin + i);
@@ -79,10 +79,10 @@ std::vector<float> signed_distances(const TriangleMesh& mesh, const SampledField
 void store_as_snorm16(const std::vector<float>& distances, SampledField& field) {
     float largest = 0;
     for (const float distance : distances) largest = std::max(largest, std::abs(distance));
-    field.step = largest / kMostSteps;
+    field.step = largest / kMaxSteps;
     field.snorm16.reserve(distances.size());
     for (const float distance : distances) {
-        const float steps = std::clamp(distance / field.step, -kMostSteps, kMostSteps);
+        const float steps = std::clamp(distance / field.step, -kMaxSteps, kMaxSteps);
         field.snorm16.push_back(static_cast<std::int16_t>(std::lround(steps)));
     }
 }
@@ -100,9 +100,9 @@ std::shared_ptr<const SampledField> sampled(const TriangleMesh& mesh, SampledFie
 /// By halving: bytes fall as the spacing grows.
 double finest_spacing_within(const Box& box, std::size_t byte_budget, SampleFormat format) {
     const std::size_t sample = bytes_of_sample(format);
-    if (byte_budget < 8 * sample || byte_budget > DenseGrid::kMostNodes * sample)
+    if (byte_budget < 8 * sample || byte_budget > DenseGrid::kMaxNodes * sample)
         throw Error(ErrorCode::InvalidOptions, "a dense grid takes " + std::to_string(8 * sample) + " to " +
-                                                   std::to_string(DenseGrid::kMostNodes * sample) +
+                                                   std::to_string(DenseGrid::kMaxNodes * sample) +
                                                    " bytes; the budget is " + std::to_string(byte_budget));
     const double most_nodes = static_cast<double>(byte_budget / sample);
     double too_fine = 0, coarse_enough = box.longest_side();
@@ -131,7 +131,7 @@ Box padded_box(const TriangleMesh& mesh, double padding) {
 DenseGrid DenseGrid::with_samples(const TriangleMesh& mesh, std::uint32_t sample_count,
                                   const DenseGridOptions& options) {
     const Box box = padded_box(mesh, options.padding);
-    const double spacing = spacing_of_samples(box, sample_count, kMostSamples);
+    const double spacing = spacing_of_samples(box, sample_count, kMaxSamples);
     return DenseGrid(sampled(mesh, frame_of(box, spacing, options.format), options));
 }
 

@@ -45,20 +45,20 @@ struct DenseGridOptions {
 class DenseGrid final : public System {
   public:
     /// Offsets of 16-bit samples have 31 bits.
-    static constexpr std::size_t kMostNodes = std::size_t{1} << 30;
-    static constexpr std::uint32_t kMostSamples = 1U << 20; ///< along the longest side
+    static constexpr std::size_t kMaxNodes = std::size_t{1} << 30;
+    static constexpr std::uint32_t kMaxSamples = 1U << 20; ///< along the longest side
 
     /// So many samples along the longest side of the grid's box, and as close along the others. Time
     /// O(samples), each a nearest point.
     /// @param mesh  closed; inside is where the winding number is not 0
     /// @throws Error InvalidMesh as inspect() does, for an open mesh, or when the bounding radius lies
     /// outside [1e-15, 1e15]; InvalidOptions for a padding out of range, or unless sample_count
-    /// lies in [2, kMostSamples] and there are at most kMostNodes nodes
+    /// lies in [2, kMaxSamples] and there are at most kMaxNodes nodes
     static DenseGrid with_samples(const TriangleMesh& mesh, std::uint32_t sample_count,
                                   const DenseGridOptions& options = {});
 
     /// The finest spacing with which the samples take at most so many bytes.
-    /// @throws Error as above; InvalidOptions for a budget below 8 samples or above kMostNodes
+    /// @throws Error as above; InvalidOptions for a budget below 8 samples or above kMaxNodes
     static DenseGrid with_bytes(const TriangleMesh& mesh, std::size_t byte_budget,
                                 const DenseGridOptions& options = {});
 

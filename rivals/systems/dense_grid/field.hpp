@@ -26,6 +26,6 @@ struct SampledField {
 };
 
 /// Gradients are divided by at least this squared and rooted, so that none is divided by 0.
-inline constexpr float kLeastGradientSq = 1e-30F;
+inline constexpr float kMinGradientSq = 1e-30F;
 
 } // namespace echinus::rivals

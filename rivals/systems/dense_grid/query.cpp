@@ -94,7 +94,7 @@ void DenseGrid::contacts_batch(std::span<const Vec3f> points, const Contacts& co
     for (std::size_t i = 0; i < points.size(); ++i) {
         const auto [distance, gradient] = sample(points[i]);
         const float length_sq = gradient.x * gradient.x + gradient.y * gradient.y + gradient.z * gradient.z;
-        const float scale = 1 / std::sqrt(std::max(length_sq, kLeastGradientSq));
+        const float scale = 1 / std::sqrt(std::max(length_sq, kMinGradientSq));
         contacts.depths[i] = -distance;
         contacts.normals_x[i] = gradient.x * scale;
         contacts.normals_y[i] = gradient.y * scale;

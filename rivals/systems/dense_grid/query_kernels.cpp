@@ -118,7 +118,7 @@ class Kernel {
         const Floats y = hn::Mul(mix(hn::Sub(s10, s00), hn::Sub(s11, s01), c.z), scale);
         const Floats z = hn::Mul(hn::Sub(high_z, low_z), scale);
         const Floats length_sq = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
-        const Floats to_unit = hn::Div(splat(1), hn::Sqrt(hn::Max(length_sq, splat(kLeastGradientSq))));
+        const Floats to_unit = hn::Div(splat(1), hn::Sqrt(hn::Max(length_sq, splat(kMinGradientSq))));
         store(hn::Neg(distance(c, low_z, high_z)), depth);
         store(hn::Mul(x, to_unit), normal_x);
         store(hn::Mul(y, to_unit), normal_y);

@@ -84,8 +84,8 @@ std::unique_ptr<const System> distance_map(const TriangleMesh& mesh, const Dista
     return behind_interface(DistanceMap::build(mesh, options));
 }
 
-/// Bytes grow nearly as the square of the resolution, so that a map of any resolution foretells the next to
-/// try; bisection has the last word where it does not.
+/// Bytes grow nearly as the square of the resolution, so a map of any resolution predicts the next to
+/// try; bisection decides where it does not.
 DistanceMapOptions finest_within(const TriangleMesh& mesh, std::size_t byte_budget,
                                  const DistanceMapOptions& options) {
     require_closed(mesh, "a comparison");
@@ -99,10 +99,10 @@ DistanceMapOptions finest_within(const TriangleMesh& mesh, std::size_t byte_budg
     double resolution = resolutions.least;
     for (int builds = 0; builds < 12 && too_fine - fits > 1; ++builds) {
         if (static_cast<double>(most_bytes) > 0.99 * wanted) break;
-        const double foretold = resolution * std::sqrt(wanted / static_cast<double>(bytes) * 0.998);
+        const double predicted = resolution * std::sqrt(wanted / static_cast<double>(bytes) * 0.998);
         const double middle = (fits + 1.0 * too_fine) / 2;
-        // Early on only what is foretold, since the middle of all resolutions is a huge map.
-        const double next = builds < 6 ? foretold : std::min(foretold, middle);
+        // The prediction alone in the first builds, since the middle of all resolutions is a huge map.
+        const double next = builds < 6 ? predicted : std::min(predicted, middle);
         resolution = std::clamp(std::floor(next), fits + 1.0, too_fine - 1.0);
         bytes = resolutions.bytes(mesh, static_cast<std::uint32_t>(resolution));
         if (bytes > byte_budget) {

@@ -25,7 +25,7 @@ constexpr float kVoxelsKnown = kVoxelsOutside - 1.7321F;
 /// The low corner of the mesh's box in voxels: far enough from 0 for the voxels outside it, so that all lie
 /// in one inner node of the tree, whose table of children is most of a small grid.
 constexpr double kFirstVoxel = 8;
-constexpr double kMostVoxels = 1 << 30;
+constexpr double kMaxVoxels = 1 << 30;
 
 } // namespace
 
@@ -37,10 +37,10 @@ struct SparseField::Grid {
     std::size_t bytes = 0;
 
     Grid(const TriangleMesh& mesh, const Box& box, std::uint32_t sample_count_)
-        : low(box.low), spacing(spacing_of_samples(box, sample_count_, kMostSamples)),
+        : low(box.low), spacing(spacing_of_samples(box, sample_count_, kMaxSamples)),
           sample_count(sample_count_) {
         const auto nodes = nodes_over(box, spacing);
-        if (nodes[0] * nodes[1] * nodes[2] > kMostVoxels)
+        if (nodes[0] * nodes[1] * nodes[2] > kMaxVoxels)
             throw Error(ErrorCode::InvalidOptions,
                         std::to_string(sample_count) + " samples along the longest side make a box of " +
                             std::to_string(nodes[0] * nodes[1] * nodes[2]) + " voxels; most are 2^30");
@@ -87,7 +87,7 @@ std::unique_ptr<const Grid> finest_within(const TriangleMesh& mesh, const Box& b
                                                    std::to_string(best->bytes) + " bytes; the budget is " +
                                                    std::to_string(byte_budget));
     const auto top_of_tree = static_cast<double>(best->bytes); // all fields have it
-    std::uint32_t too_fine = SparseField::kMostSamples + 1;
+    std::uint32_t too_fine = SparseField::kMaxSamples + 1;
     double bytes_too_fine = 0;
     double next = 16;
     for (int builds = 0; builds < 12 && too_fine - best->sample_count > 1; ++builds) {
@@ -108,9 +108,9 @@ std::unique_ptr<const Grid> finest_within(const TriangleMesh& mesh, const Box& b
             next = samples * std::clamp(std::cbrt(room), 1.02, 4.0);
         } else {
             const double power = std::log(bytes_too_fine / bytes) / std::log(too_fine / samples);
-            const double foretold = samples * std::pow(budget * (1 + kGoodEnough) / 2 / bytes, 1 / power);
+            const double predicted = samples * std::pow(budget * (1 + kGoodEnough) / 2 / bytes, 1 / power);
             // From the third on by halves in turn: samples fall into blocks of 8, so that bytes jump.
-            next = builds % 2 == 0 ? (samples + too_fine) / 2 : foretold;
+            next = builds % 2 == 0 ? (samples + too_fine) / 2 : predicted;
         }
     }
     return best;

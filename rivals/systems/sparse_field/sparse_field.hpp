@@ -20,13 +20,13 @@ namespace echinus::rivals {
 /// of the surface, however wide the margin.
 class SparseField final : public System {
   public:
-    static constexpr std::uint32_t kMostSamples = 4000; ///< one inner node of the tree is 4096 across
+    static constexpr std::uint32_t kMaxSamples = 4000; ///< one inner node of the tree is 4096 across
 
     /// So many samples along the longest side of the mesh's box. Built on all cores, in the order that
     /// OpenVDB likes; the samples do not depend on it.
     /// @param mesh  closed
     /// @throws Error InvalidMesh as inspect() does, for an open mesh, or when the bounding radius lies
-    /// outside [1e-15, 1e15]; InvalidOptions unless sample_count lies in [2, kMostSamples] and the box has
+    /// outside [1e-15, 1e15]; InvalidOptions unless sample_count lies in [2, kMaxSamples] and the box has
     /// at most 2^30 voxels
     static SparseField with_samples(const TriangleMesh& mesh, std::uint32_t sample_count);
 

@@ -53,12 +53,11 @@ SphericalGrid grid_for(const SuperquadricMapOptions& options, std::size_t segmen
         if (fits + step <= SuperquadricMapOptions::kMaxSampleCount &&
             bytes(fits + step) <= options.byte_budget)
             fits += step;
-    constexpr std::uint32_t kLeast = SuperquadricMapOptions::kMinSampleCount;
-    if (fits < kLeast)
+    constexpr std::uint32_t kMin = SuperquadricMapOptions::kMinSampleCount;
+    if (fits < kMin)
         throw Error(ErrorCode::InvalidOptions, "the byte budget of " + std::to_string(options.byte_budget) +
                                                    " is too small: " + std::to_string(segment_count) +
-                                                   " segments take at least " +
-                                                   std::to_string(bytes(kLeast)));
+                                                   " segments take at least " + std::to_string(bytes(kMin)));
     return {fits, fits, PoleAxis::Z};
 }
 

@@ -28,8 +28,8 @@ struct Normalisation {
     double scale = 0;
 
     explicit Normalisation(std::span<const Vec3d> points) {
-        if (points.size() < kLeastPointCount)
-            throw Error(ErrorCode::InvalidMesh, "a superquadric takes " + std::to_string(kLeastPointCount) +
+        if (points.size() < kMinPointCount)
+            throw Error(ErrorCode::InvalidMesh, "a superquadric takes " + std::to_string(kMinPointCount) +
                                                     " points or more to fit, not " +
                                                     std::to_string(points.size()));
         for (std::size_t i = 0; i < points.size(); ++i) {

@@ -33,10 +33,10 @@ struct SuperquadricFit {
 /// Several descriptions may belong to one surface: axes may be exchanged where exponents allow, signs always.
 ///
 /// @param points  [n] on the surface, from all sides, each of the same weight
-/// @throws Error InvalidMesh when there are fewer than kLeastPointCount, or one is not finite, or all are one
+/// @throws Error InvalidMesh when there are fewer than kMinPointCount, or one is not finite, or all are one
 /// point
 SuperquadricFit fit_superquadric(std::span<const Vec3d> points);
 
-inline constexpr std::size_t kLeastPointCount = 12; ///< as many as there are parameters
+inline constexpr std::size_t kMinPointCount = 12; ///< as many as there are parameters
 
 } // namespace echinus::rivals

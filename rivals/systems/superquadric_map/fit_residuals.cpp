@@ -24,8 +24,8 @@ struct Bounded {
     /// d value / d logit
     double slope(double value) const { return (value - least) * (largest - value) / (largest - least); }
 };
-constexpr Bounded kExponent{Superquadric::kLeastExponent, Superquadric::kLargestExponent};
-const Bounded kLogSize{std::log(FitParameters::kLeastSize), std::log(FitParameters::kLargestSize)};
+constexpr Bounded kExponent{Superquadric::kMinExponent, Superquadric::kMaxExponent};
+const Bounded kLogSize{std::log(FitParameters::kMinSize), std::log(FitParameters::kMaxSize)};
 
 double size_from(double logit) {
     return std::exp(kLogSize.from(logit));
@@ -83,7 +83,7 @@ double ratio_or_zero(double numerator, double denominator) {
 } // namespace
 
 Eigen::VectorXd FitParameters::of(const Superquadric& shape) {
-    const auto size = [](double value) { return kLogSize.logit(std::log(std::max(value, kLeastSize))); };
+    const auto size = [](double value) { return kLogSize.logit(std::log(std::max(value, kMinSize))); };
     Eigen::VectorXd p(kCount);
     p << size(shape.sizes.x), size(shape.sizes.y), size(shape.sizes.z), kExponent.logit(shape.eta_exponent),
         kExponent.logit(shape.omega_exponent), shape.centre.x, shape.centre.y, shape.centre.z,

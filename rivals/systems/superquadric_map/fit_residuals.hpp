@@ -19,7 +19,7 @@ struct FitParameters {
     enum Index : Eigen::Index { kSize = 0, kEtaExponent = 3, kOmegaExponent = 4, kCentre = 5, kRotation = 8 };
     static constexpr Eigen::Index kCount = 12;
     /// In units of the points' largest distance from their mean.
-    static constexpr double kLeastSize = 1e-3, kLargestSize = 2;
+    static constexpr double kMinSize = 1e-3, kMaxSize = 2;
 
     static Eigen::VectorXd of(const Superquadric& shape);
     static Superquadric shape_of(const Eigen::VectorXd& parameters);

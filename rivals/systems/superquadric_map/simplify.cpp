@@ -146,11 +146,11 @@ class Simplifier {
         });
     }
     bool stays_upright(std::uint32_t number, std::uint32_t from, std::uint32_t to) const {
-        constexpr double kLeastCosine = 0.2;
+        constexpr double kMinCosine = 0.2;
         Triangle moved = faces_[number];
         std::ranges::replace(moved, from, to);
         const Vec3d before = normal_of(faces_[number]), after = normal_of(moved);
-        return dot(before, after) > kLeastCosine * length(before) * length(after);
+        return dot(before, after) > kMinCosine * length(before) * length(after);
     }
 
     void collapse(std::uint32_t from, std::uint32_t to) {

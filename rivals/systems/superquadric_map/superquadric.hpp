@@ -25,7 +25,7 @@ struct SuperquadricAngles {
 
 struct Superquadric {
     /// Beyond them fits are ill-conditioned or the solid is not convex (Solina and Bajcsy 1990, section III).
-    static constexpr double kLeastExponent = 0.1, kLargestExponent = 2;
+    static constexpr double kMinExponent = 0.1, kMaxExponent = 2;
 
     Vec3d centre;              ///< in the frame of the points that were fitted
     Rotation rotation;         ///< from the superquadric's frame to theirs

@@ -183,7 +183,7 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
     CompareOptions options = quick({"exact"});
     options.byte_budget = 0;
     test::expect_error(ErrorCode::InvalidOptions, "budget", [&] { (void)compare(torus(), options); });
-    options.byte_budget = CompareOptions::kMostBytes + 1;
+    options.byte_budget = CompareOptions::kMaxBytes + 1;
     test::expect_error(ErrorCode::InvalidOptions, "budget", [&] { (void)compare(torus(), options); });
     options = quick({"exact"});
     options.point_count = 99;

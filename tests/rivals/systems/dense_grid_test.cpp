@@ -237,7 +237,7 @@ TEST(DenseGrid, RefusesBadMeshes) {
 
 TEST(DenseGrid, RefusesSizesThatNoGridHas) {
     const TriangleMesh mesh = make_box({1, 1, 1});
-    for (const std::uint32_t count : {0U, 1U, DenseGrid::kMostSamples + 1})
+    for (const std::uint32_t count : {0U, 1U, DenseGrid::kMaxSamples + 1})
         expect_error(ErrorCode::InvalidOptions, std::to_string(count),
                      [&] { DenseGrid::with_samples(mesh, count); });
     expect_error(ErrorCode::InvalidOptions, "nodes", [&] { DenseGrid::with_samples(mesh, 2000); });

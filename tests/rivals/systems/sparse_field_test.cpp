@@ -116,7 +116,7 @@ TEST(SparseField, UsesItsBudgetAndNoMore) {
 
 TEST(SparseField, RefusesSizesThatNoFieldHas) {
     const TriangleMesh mesh = make_box({1, 1, 1});
-    for (const std::uint32_t count : {0U, 1U, SparseField::kMostSamples + 1, 0xFFFF'FFFFU})
+    for (const std::uint32_t count : {0U, 1U, SparseField::kMaxSamples + 1, 0xFFFF'FFFFU})
         expect_error(ErrorCode::InvalidOptions, std::to_string(count),
                      [&] { SparseField::with_samples(mesh, count); });
     expect_error(ErrorCode::InvalidOptions, "voxels", [&] { SparseField::with_samples(mesh, 2000); });

@@ -231,8 +231,8 @@ TEST(SuperquadricFit, TakesFlatAndLinearPointsForVeryThinSolids) {
         const Superquadric shape = fit_superquadric(points).shape;
         EXPECT_TRUE(is_finite(shape.centre) && is_finite(shape.sizes));
         EXPECT_GT(std::min({shape.sizes.x, shape.sizes.y, shape.sizes.z}), 0);
-        EXPECT_GE(shape.eta_exponent, Superquadric::kLeastExponent);
-        EXPECT_LE(shape.eta_exponent, Superquadric::kLargestExponent);
+        EXPECT_GE(shape.eta_exponent, Superquadric::kMinExponent);
+        EXPECT_LE(shape.eta_exponent, Superquadric::kMaxExponent);
     }
 }
 
