@@ -35,10 +35,10 @@ std::vector<BenchSystem> systems_on(const Subject& subject) {
         distance("octahedral distance map", mesh, DirectionGrid::Octahedral),
     };
     // As many bytes as the exact map: the two answer alike.
-    list.push_back(
-        bench_system("classified grid", false, [&mesh, bytes = ExactMap::build(mesh).view().byte_count()] {
-            return ClassifiedGrid::build(mesh, bytes);
-        }));
+    const ExactMap map = ExactMap::build(mesh);
+    list.push_back(bench_system("classified grid", false, [&mesh, bytes = map.view().byte_count()] {
+        return ClassifiedGrid::build(mesh, bytes);
+    }));
     list.push_back(dense("dense grid 0.63 MB", mesh, SampleFormat::Float32));
     list.push_back(dense("dense grid 0.63 MB 16 bit", mesh, SampleFormat::Snorm16));
     if (!subject.large) // as many samples across the bounding sphere as the paper's distance field has
