@@ -125,18 +125,14 @@ Containment classify(const ExactMapView& map, Vec3f point_local) noexcept;
 /// bound search. Where parts overlap or are nested, the nearest point may lie inside the solid: faces that do
 /// not bound it count as surface too.
 ///
-/// The cost grows with the number of faces that are about equally near: about a microsecond near the surface,
-/// but from the centre of a sphere all faces are searched, at 30 to 45 ns each (1.1 ms for 40 000 faces, 86
-/// ms for 2 million; 0.1 ms and 2 ms at a tenth of the radius from the centre).
-///
 /// The normal is the direction from the surface point to a particle outside, or from a particle inside to the
 /// surface point. For a particle within two lattice steps of the surface, where snapping would leave this to
 /// chance, it is the angle-weighted pseudonormal of the faces that meet there (Baerentzen and Aanaes 2005).
 ///
-/// Cost: contains(), and for particles inside or with a margin the search. That visits few faces when the
-/// particle is much closer to some of them than to the rest, and in the worst case, when nearly all are
-/// equally far, nearly all of them: at the centre of a sphere 1.8 ms for 40 000 faces, 95 ms for 2 million.
-/// A margin bounds the search for particles outside.
+/// Cost: contains(), and for particles inside or with a margin the search, about a microsecond near the
+/// surface. It grows with the number of faces that are about equally near: from the centre of a sphere it
+/// visits them all, at 30 to 45 ns each (1.1 ms for 40 000 faces, 86 ms for 2 million). A margin bounds the
+/// search for particles outside.
 /// @param margin  particles outside get a contact too when the surface is at most this far; not negative,
 ///                NaN counts as 0
 Contact contact(const ExactMapView& map, Vec3f point_local, float margin = 0) noexcept;
