@@ -9,7 +9,7 @@
 
 Deflater::Deflater() {
     constexpr int kWindowBits = 15, kMemoryLevel = 9;
-    // The arguments are constants, so what can fail is the memory.
+    // The arguments are constants, so only memory can fail.
     if (deflateInit2(&stream_, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kWindowBits, kMemoryLevel, Z_RLE) != Z_OK)
         throw std::bad_alloc();
 }

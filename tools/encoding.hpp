@@ -19,7 +19,7 @@ class Deflater {
     ~Deflater();
 
     void add(std::span<const std::uint8_t> bytes);
-    /// All that was added, compressed. To be called once, at the end.
+    /// All added bytes, compressed. Call once, at the end.
     std::vector<std::uint8_t> finish();
 
   private:

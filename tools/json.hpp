@@ -45,12 +45,12 @@ class Json {
     static Json object();
     static Json array();
 
-    /// @pre an object; a key that is there gets the new value
+    /// @pre an object; an existing key gets the new value
     void add(const std::string& key, const Json& value);
     /// @pre an array
     void push_back(const Json& value);
     /// The members of an object with these keys, in this order.
-    /// @pre all are there
+    /// @pre all exist
     Json part(std::initializer_list<const char*> keys) const;
 
     // As text. Strings need not be UTF-8, as names of files are not; bytes that are not are replaced.

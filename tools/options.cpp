@@ -17,7 +17,7 @@ std::optional<std::size_t> parse_byte_count(std::string_view text) {
                                                               {"KiB", 1024},
                                                               {"MiB", 1024 * 1024},
                                                               {"GiB", 1024 * 1024 * 1024}};
-    constexpr double kMost = 1e15; // so that it is a number of bytes
+    constexpr double kMost = 1e15; // still fits a number of bytes
     double number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc{}) return {};
@@ -114,7 +114,7 @@ Command Command::add_command(const std::string& name, const std::string& descrip
 }
 
 void Command::require_command(const std::string& noun) const {
-    app_->require_subcommand(0, 1); // a missing one is refused here: CLI11 would not say that it is misspelt
+    app_->require_subcommand(0, 1); // a missing one is refused here: CLI11 would not report a misspelt one
     app_->callback([app = app_, noun] {
         if (app->get_subcommands().empty()) throw WrongUse(noun + " is required");
     });

@@ -47,21 +47,21 @@ class Option {
     Option range(std::uint64_t least, std::uint64_t most) const;
     Option not_empty() const;
     Option excludes(const std::string& other_option) const;
-    /// What the help calls the argument.
+    /// The argument's name in the help.
     Option type_name(const std::string& name) const;
     /// The help shows the variable's value as the default.
     Option show_default() const;
     Option default_text(const std::string& text) const;
 
     bool given() const;
-    /// As sentences call it: "--json".
+    /// Its name in sentences: "--json".
     std::string name() const;
 
   private:
     CLI::Option* option_;
 };
 
-/// A command, or a group of its options in the help. Refers to what the Program holds.
+/// A command, or a group of its options in the help. Refers to members of the Program.
 class Command {
   public:
     explicit Command(CLI::App* app) : app_(app) {}
@@ -82,7 +82,7 @@ class Command {
     Option add_numbers(const std::string& name, char separator, std::initializer_list<double*> variables,
                        const std::string& description) const;
     void footer(const std::string& text) const;
-    /// What to do when the command was given.
+    /// The action to run when the command is given.
     void action(std::function<void()> act) const;
 
   private:

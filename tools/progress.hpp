@@ -5,16 +5,16 @@
 #include <string>
 
 /// A bar on standard error that shows how much of a long task is done, and nothing at all when standard error
-/// is not a terminal. A function object, so that it can be handed to whatever reports a fraction.
+/// is not a terminal. A function object, so that it can be passed as any progress callback.
 class ProgressBar {
   public:
     explicit ProgressBar(std::string label);
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
-    /// Erases the bar, so that what is printed next starts on a clean line.
+    /// Erases the bar, so that further output starts on a clean line.
     ~ProgressBar();
 
-    /// @param fraction  of the task that is done, 0 to 1; may be called as often as one likes
+    /// @param fraction  of the task that is done, 0 to 1; may be called at any rate
     void operator()(double fraction);
 
   private:

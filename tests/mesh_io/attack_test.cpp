@@ -16,7 +16,8 @@ using namespace echinus;
 using namespace echinus::test;
 namespace fs = std::filesystem;
 
-// A reader of hostile bytes refuses them with an Error or gives a mesh that everything else accepts.
+// A reader of hostile bytes either refuses them with an Error or gives a mesh that all other functions
+// accept.
 
 namespace {
 
@@ -61,7 +62,7 @@ class Attack : public TemporaryFolderTest {
     }
 };
 
-/// As far as the last word that the format itself needs: a name may follow it in text STL.
+/// Up to the last word that the format requires: a name may follow it in text STL.
 std::size_t end_of_promises(const SmallFile& file) {
     const std::size_t end_of_solid = file.content.find("endsolid");
     if (end_of_solid != std::string::npos) return end_of_solid + 8;

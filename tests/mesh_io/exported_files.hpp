@@ -8,7 +8,7 @@
 
 namespace echinus::test {
 
-/// A kind of file that Assimp can write: its exporter's name and the ending of the file's name.
+/// A kind of file that Assimp can write: its exporter's name and the extension of the file's name.
 struct ExportedKind {
     const char* exporter;
     const char* ending;

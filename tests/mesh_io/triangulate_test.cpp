@@ -39,8 +39,8 @@ double shoelace_area(const std::vector<Vec3f>& flat) {
     return sum / 2;
 }
 
-/// In the plane z = 0, counter-clockwise: the triangles must cover the polygon exactly once, so all turn the
-/// same way and their areas add up to the polygon's.
+/// In the plane z = 0, counter-clockwise: the triangles must cover the polygon exactly once, so all have the
+/// same orientation and their areas add up to the polygon's.
 void expect_covered(const std::vector<Vec3f>& flat) {
     const TriangleMesh mesh = triangulate(one_polygon(flat), kSource);
     ASSERT_EQ(mesh.faces.size(), flat.size() - 2);

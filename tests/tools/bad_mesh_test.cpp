@@ -12,7 +12,7 @@ namespace {
 /// Meshes that no sensible program makes, given to the commands that read one.
 class BadMesh : public CommandLineTest {
   protected:
-    /// Neither `info` nor `build` may take it; both name the file and say what is wrong.
+    /// Both `info` and `build` must refuse it, naming the file and the fault.
     void expect_refusal(const std::string& name, const std::string& text, const std::string& words) const {
         write(name, text);
         expect_refusal(name, words);

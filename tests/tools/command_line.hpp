@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-/// What running the echinus program gave.
+/// The result of running the echinus program.
 struct ProgramResult {
     int exit_status = -1; ///< -1: killed by a signal
     std::string output;   ///< standard output
@@ -15,24 +15,23 @@ struct ProgramResult {
     std::size_t error_line_count() const;
 };
 
-/// A test with an empty folder of its own, from which it runs the program that was built.
+/// A test with its own empty folder, from which it runs the built program.
 class CommandLineTest : public testing::Test {
   protected:
     void SetUp() override;
     void TearDown() override;
 
     /// Runs `echinus` with these arguments in the test's folder; `input` becomes its standard input. Standard
-    /// output is caught, or goes to the file `output_target`.
+    /// output is captured, or goes to the file `output_target`.
     ProgramResult run(const std::vector<std::string>& arguments, const std::string& input = "",
                       const std::string& output_target = "") const;
 
     /// The run must fail in the way the command line promises: this exit status, one line on standard error
-    /// that begins with "echinus: " and contains `words`, and no file in the folder that was not there
-    /// before.
+    /// that begins with "echinus: " and contains `words`, and no new file in the folder.
     void expect_failure(int exit_status, const std::string& words, const std::vector<std::string>& arguments,
                         const std::string& input = "") const;
 
-    /// The run must succeed without a word on standard error; gives its standard output.
+    /// The run must succeed without output on standard error; returns its standard output.
     std::string expect_success(const std::vector<std::string>& arguments,
                                const std::string& input = "") const;
 

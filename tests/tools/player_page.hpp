@@ -10,8 +10,8 @@
 
 namespace echinus::test {
 
-/// What a page of `simulate --html` holds, read as docs/command_line.md describes it, without the program's
-/// code.
+/// The contents of a page of `simulate --html`, read as docs/command_line.md describes it, without the
+/// program's code.
 struct PlayerPage {
     using Point = std::array<double, 3>;
 

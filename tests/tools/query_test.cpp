@@ -39,7 +39,7 @@ std::string csv_text(const std::vector<Vec3f>& points) {
     return text.str();
 }
 
-/// What the answers' array must hold behind its header.
+/// The expected contents of the answers' array behind its header.
 std::string records(const std::vector<Contact>& contacts) {
     std::string bytes;
     for (const Contact& contact : contacts) {

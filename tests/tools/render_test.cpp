@@ -7,7 +7,7 @@ using namespace echinus::test;
 
 namespace {
 
-/// Options for a picture that is drawn in no time.
+/// Options for a picture that is drawn quickly.
 const std::vector<std::string> kSmall{"--width", "60", "--height", "40", "--samples", "1"};
 
 std::vector<std::string> render(std::vector<std::string> arguments,

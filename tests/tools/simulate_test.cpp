@@ -16,7 +16,7 @@ class SimulateCommand : public CommandLineTest {
         return nlohmann::json::parse(expect_success(arguments));
     }
 
-    /// With an exact map none is inside at rest, and none ever was.
+    /// With an exact map no particle is inside at rest, or ever was.
     void expect_none_inside(const std::string& scene) const {
         const nlohmann::json report = simulate((kSource / "scenes" / scene).string());
         EXPECT_EQ(report.at("map_kind"), "exact");
@@ -25,8 +25,8 @@ class SimulateCommand : public CommandLineTest {
         EXPECT_EQ(report.at("lost_count"), 0);
     }
 
-    /// Runs one of the scenes that ship until it rests. The hash is of every bit of the last two frames: who
-    /// changes a map or the solver on purpose changes it here.
+    /// Runs one of the scenes that ship until it rests. The hash covers every bit of the last two frames;
+    /// update it here after an intended change of a map or the solver.
     void expect_rest(const std::string& scene, const std::string& state_hash) const {
         const nlohmann::json report = simulate((kSource / "scenes" / scene).string());
         EXPECT_EQ(report.at("state_hash"), state_hash);

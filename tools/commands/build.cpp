@@ -28,15 +28,15 @@ struct BuildArguments {
     std::uint32_t cells_per_octant = 0;
     DistanceMapOptions distance;
     CentreChoice centre = CentreChoice::BoundingSphere;
-    std::vector<Option> exact_only, distance_only;  ///< options that belong to one kind
-    std::vector<Option> counted_only, divided_only; ///< ... to some grids of a distance map
+    std::vector<Option> exact_only, distance_only;  ///< options of one kind of map
+    std::vector<Option> counted_only, divided_only; ///< options of some grids of a distance map
     unsigned thread_count = 0;
     bool repair = false;
     bool allow_open = false;
     bool json = false;
 };
 
-/// An option of the other kind would have no effect, and whoever gives it expects one.
+/// An option of the other kind would silently have no effect.
 void refuse_options_of_the_other_kind(const BuildArguments& arguments) {
     const bool exact = arguments.kind == MapKind::Exact;
     for (const Option option : exact ? arguments.distance_only : arguments.exact_only)
@@ -64,9 +64,9 @@ DistanceMapOptions distance_options_of(const BuildArguments& arguments) {
     return options;
 }
 
-/// Behind a hole a distance map does not know what is inside, and an exact map is not certain of it, so that
-/// such answers must be asked for. What has no volume has no inside. The correction of a distance map of a
-/// mesh that is inside out would take off where it should add; an exact map does not care.
+/// Behind a hole a distance map is wrong about what is inside, and an exact map is uncertain, so such maps
+/// need an explicit option. A mesh without volume has no inside. For an inside-out mesh, the correction of a
+/// distance map would have the wrong sign; an exact map is unaffected.
 void require_solid(const MeshReport& report, const TriangleMesh& mesh, const BuildArguments& arguments) {
     const bool exact = arguments.kind == MapKind::Exact;
     const std::string name = arguments.mesh.name();

@@ -7,7 +7,7 @@
 
 #include <string>
 
-/// What `compare` says, as the object of --json.
+/// The result of `compare`, as the object of --json.
 Json to_json(const echinus::comparison::Comparison& comparison,
              const echinus::comparison::CompareOptions& options, const std::string& mesh_name);
 
@@ -15,8 +15,8 @@ Json to_json(const echinus::comparison::Comparison& comparison,
 std::string to_text(const echinus::comparison::Comparison& comparison,
                     const echinus::comparison::CompareOptions& options, const std::string& mesh_name);
 
-/// The same as one HTML document with tables, plots and a picture of the model. All is in it, so that it can
-/// be sent by mail: it loads nothing from elsewhere and runs no script.
+/// The same as one HTML document with tables, plots and a picture of the model. It is self-contained and can
+/// be sent by mail: it loads nothing and runs no script.
 std::string to_html(const echinus::comparison::Comparison& comparison,
                     const echinus::comparison::CompareOptions& options, const std::string& mesh_name,
                     const echinus::Image& picture);

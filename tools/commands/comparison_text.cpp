@@ -13,7 +13,7 @@ namespace {
 
 // ---- JSON ----
 
-/// Null where there was nothing to judge.
+/// Null without answers to judge.
 Json to_json(const Spread& spread) {
     if (spread.count == 0) return nullptr;
     return {{"mean", spread.mean}, {"percentile_99", spread.most}, {"worst", spread.worst}};

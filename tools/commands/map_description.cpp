@@ -33,7 +33,7 @@ const char* name_of(echinus::InsideRule rule) {
     return rule == echinus::InsideRule::Nonzero ? "nonzero" : "parity";
 }
 
-/// What the bytes of an exact map are spent on.
+/// The bytes of an exact map, by purpose.
 struct ExactMapBytes {
     std::size_t bands, references, mesh, tree;
 
@@ -77,7 +77,7 @@ std::string histogram_text(const DistanceMapView& map) {
     return text;
 }
 
-// ---- What each kind has of its own ----
+// ---- Specific to each kind ----
 
 const char* name_of(const DistanceMap&) {
     return "distance";
@@ -188,7 +188,7 @@ std::string own_text(const ExactMap&) {
     return {};
 }
 
-// ---- What both have ----
+// ---- Common to both ----
 
 template <typename Map>
 Json to_json(const MapDescription& description, const Map& map) {

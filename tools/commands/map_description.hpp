@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string>
 
-/// What `build` and `info` say about a map.
+/// The description of a map by `build` and `info`.
 struct MapDescription {
     const echinus::AnyMap& map;
     echinus::MapFileNotes notes;

@@ -6,7 +6,7 @@
 
 #include <string>
 
-/// What `info` says about a mesh, as the object of --json.
+/// The description of a mesh by `info`, as the object of --json.
 Json to_json(const echinus::MeshReport& report);
 
 /// The same as a table for people, with the first faces at fault.
@@ -16,13 +16,13 @@ std::string to_text(const echinus::MeshReport& report, const std::string& title)
 /// closed.
 std::string describe_openness(const echinus::MeshReport& report);
 
-/// What repair() did or would do, as an object.
+/// The report of repair(), done or planned, as an object.
 Json to_json(const echinus::RepairReport& report);
 
 /// The same as a phrase: "2 duplicate faces dropped, 1 inside-out component turned", or "nothing to mend".
 std::string to_text(const echinus::RepairReport& report);
 
-/// What --repair would do about a mesh, and whether that makes it closed.
+/// What --repair would do to a mesh, and whether the result is closed.
 struct RepairOutlook {
     echinus::RepairReport report;
     bool closed_then = false;

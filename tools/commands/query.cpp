@@ -42,7 +42,7 @@ void require_sound(const QueryArguments& arguments) {
     require_another_file(arguments.points, arguments.target);
 }
 
-/// By the ending of the name; on standard output that of the points.
+/// By the name's extension; on standard output the points' format.
 TableFormat format_of_answers(const fs::path& target, TableFormat format_of_points) {
     if (target.extension() == ".npy") return TableFormat::Npy;
     if (target.extension() == ".csv") return TableFormat::Csv;

@@ -17,10 +17,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Below this a picture shows nothing, and a page of six has no room for them.
+/// A smaller picture shows nothing, and a page of six has no room for them.
 constexpr std::uint32_t kLeastSide = 10;
 
-/// What all pictures have in common.
+/// Common to all pictures.
 struct PictureArguments {
     fs::path target;
     RenderOptions options;
@@ -121,8 +121,8 @@ struct MapPicture : PictureArguments {
     MeshArgument mesh;
 };
 
-/// Of one mesh: all its vertices lie in the map's sphere, and some on it. A mended mesh, or one written with
-/// other digits, still is.
+/// Does the map belong to the mesh? Then all vertices lie in the map's sphere, and some on it, even after
+/// repair or rounding.
 void require_same_model(const TriangleMesh& mesh, const AnyMap& map, const std::string& map_name) {
     const auto [centre, radius] =
         std::visit([](const auto& kind) { return std::pair(kind.view().centre, kind.view().radius); }, map);

@@ -34,7 +34,7 @@ struct NameOfModel {
     std::string operator()(const BoxModel&) const { return "box"; }
 };
 
-/// The push-out needs an inside; a hole would let cloth through, and the judge could not tell.
+/// The push-out needs an inside; a hole would let cloth through without the judge noticing.
 void require_closed(const TriangleMesh& mesh, const fs::path& scene_path) {
     const MeshReport report = inspect(mesh);
     if (report.closed) return;

@@ -15,16 +15,16 @@ std::optional<std::filesystem::path> model_file(const echinus::Scene& scene,
                                                 const std::filesystem::path& scene_path,
                                                 std::vector<std::filesystem::path> folders);
 
-/// The mesh of a scene's model, read from its file or generated, and repaired as the scene wants it.
+/// The mesh of a scene's model, read from its file or generated, and repaired by the scene's options.
 /// @param file  what model_file() found
 /// @throws echinus::Error as read_scene's parts do, and InvalidMesh when the mesh is not closed in the end
 echinus::RepairedMesh load_model(const echinus::Scene& scene, const std::filesystem::path& scene_path,
                                  const std::optional<std::filesystem::path>& file);
 
-/// The model's file without folders, or what shape is generated.
+/// The name of the model's file without folders, or of the generated shape.
 std::string model_name(const echinus::Scene& scene);
 
-/// What a file NOTICE in the model's folder says of where the models come from, for those who hand on
-/// pictures of them; empty where there is none.
+/// The file NOTICE in the model's folder, on the source of the models, to accompany published pictures; empty
+/// where there is none.
 /// @throws echinus::Error Unreadable
 std::string notice_beside(const std::filesystem::path& model_file);

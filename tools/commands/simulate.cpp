@@ -35,8 +35,7 @@ struct SimulateArguments {
     bool json = false;
 };
 
-/// The folder that is written, with the positions of the cloth in every saved frame: one point cache, or one
-/// OBJ for each.
+/// The output folder, with the positions of the cloth in every saved frame: one point cache, or one OBJ each.
 class ResultFolder {
   public:
     ResultFolder(const fs::path& target, bool obj) : folder_(target), obj_(obj) {}
@@ -69,7 +68,7 @@ class ResultFolder {
     std::optional<PointCacheWriter> cache_;
 };
 
-/// The page that is written. Made before the work, so that what is missing is missed at once.
+/// The output page. Constructed before the simulation, so that a missing player fails at once.
 struct Page {
     Page(const fs::path& target, const fs::path& player_path) : player(player_path), output(target) {}
 
@@ -78,12 +77,12 @@ struct Page {
     std::optional<Recording> recording;
 };
 
-/// Where a simulation goes to: either, or both.
+/// The output of a simulation: a folder, a page, or both.
 struct Results {
     std::optional<ResultFolder> folder;
     std::optional<Page> page;
 
-    /// To be called at the start and after each step.
+    /// Call at the start and after each step.
     void watch(const Simulation& simulation, std::uint32_t stride) {
         if (folder && simulation.frame() % stride == 0) folder->add(simulation);
         if (page) page->recording->watch(simulation);
@@ -110,7 +109,7 @@ std::vector<SavedPose> run(Simulation& simulation, Results& results, std::uint32
     return poses;
 }
 
-/// What is wrong with the options of a scene's map is wrong with the scene.
+/// Reports errors in the options of a scene's map as errors of the scene.
 AnyMap map_of_scene(const Scene& scene, const TriangleMesh& mesh, const SimulateArguments& arguments) {
     try {
         return build_map(mesh, scene.map, arguments.thread_count);
@@ -140,7 +139,7 @@ std::uint32_t page_stride(const SimulateArguments& arguments, const Scene& scene
     return arguments.stride.value_or(stride_for_display(scene.simulation.time_step));
 }
 
-/// Before the work, so that what cannot be written is refused at once.
+/// Before the simulation, so that output that cannot be written is refused at once.
 void open(Results& results, const SimulateArguments& arguments, const Scene& scene) {
     if (!arguments.target.empty()) results.folder.emplace(arguments.target, arguments.obj);
     if (!arguments.page.empty()) {

@@ -41,7 +41,7 @@ std::string read_player(const fs::path& path) {
     }
 }
 
-// ---- What goes into it ----
+// ---- Its contents ----
 
 constexpr int kFormat = 1;
 static_assert(std::endian::native == std::endian::little, "shapes are written as they lie in memory");

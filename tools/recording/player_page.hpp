@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-/// The page that plays recordings, as `scripts/web` builds it, cut in two where a recording goes.
+/// The page that plays recordings, as built by `scripts/web`, cut in two at the place for a recording.
 class Player {
   public:
     /// @param path  empty: the one that is installed with this program
@@ -26,11 +26,11 @@ class Player {
     std::size_t place_;
 };
 
-/// What a page tells and shows of a simulation.
+/// The contents of a simulation's page.
 struct PlayedSimulation {
     const SimulationResult& result;
     const Recording& recording;
-    std::string scene_name; ///< without folders, since pages are handed on
+    std::string scene_name; ///< without folders, since pages are shared
     std::string model_name;
     std::string notice;                    ///< of the model's source; may be empty
     std::uint32_t cloth_columns;           ///< particles in each row of the sheet

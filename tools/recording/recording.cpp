@@ -23,7 +23,7 @@ std::size_t count_inside(const ExactMap& model, const Collider& collider, std::s
     return static_cast<std::size_t>(std::count(inside.begin(), inside.end(), 1));
 }
 
-/// Those that are due, and the last.
+/// The frames that are due, and the last.
 std::uint64_t most_recorded(std::uint32_t frame_limit, std::uint64_t stride) {
     return frame_limit / stride + 2;
 }

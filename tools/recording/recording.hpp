@@ -15,15 +15,16 @@ struct RecordedFrame {
     std::size_t inside_count;              ///< particles inside the model, by its exact map
 };
 
-/// What a page plays: a simulation's cloth and collider in some of its frames, the first and the last among
-/// them.
+/// The recording that a page plays: a simulation's cloth and collider in some of its frames, including the
+/// first and the last.
 class Recording {
   public:
-    /// @param model   an exact map of the collider's mesh, which judges the particles whatever map moves them
-    /// @param stride  every so many frames, at least 1
+    /// @param model   an exact map of the collider's mesh, which judges the particles, whichever map the
+    /// simulation uses
+    /// @param stride  frames from one recorded frame to the next, at least 1
     Recording(echinus::ExactMap model, std::uint32_t stride) : model_(std::move(model)), stride_(stride) {}
 
-    /// Records the frame if it is due. To be called at the start and after each step.
+    /// Records the frame if it is due. Call at the start and after each step.
     void watch(const echinus::Simulation& simulation);
     /// Records the last frame, due or not.
     void finish(const echinus::Simulation& simulation);

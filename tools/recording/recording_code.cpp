@@ -17,7 +17,7 @@ struct Range {
     float greatest = -least;
 };
 
-/// Of a frame's coordinates along one axis.
+/// The range of a frame's coordinates along one axis.
 Range range_of(const RecordedFrame& frame, std::size_t axis) {
     Range range;
     for (const Vec3f& position : frame.positions) {

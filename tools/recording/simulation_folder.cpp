@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Reads values out of report.json, and says which is wrong.
+/// Reads values from report.json, and names a wrong one.
 class ReportReader {
   public:
     explicit ReportReader(const fs::path& path) : name_(path.string()) {
@@ -65,8 +65,8 @@ RigidTransform read_transform(const ReportReader& reader, const json& pose) {
     return {Rotation{q[0], q[1], q[2], q[3]}.normalised(), {x, y, z}};
 }
 
-/// How different a cloth looks at two moments: the mean distance between its points, of which what is common
-/// to all, as while it falls, counts little.
+/// How different a cloth looks at two moments: the mean distance between its points, with little weight for
+/// motion common to all, as in a fall.
 double difference(const std::vector<Vec3f>& a, const std::vector<Vec3f>& b) {
     constexpr double kWeightOfCommonMotion = 0.25;
     Vec3d common;

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-/// What `echinus simulate SCENE -o DIR` left in a folder: cloth.obj, cloth.pc2, report.json and the
-/// collider's mesh. A *sample* is a moment whose positions were saved.
+/// The output folder of `echinus simulate SCENE -o DIR`: cloth.obj, cloth.pc2, report.json and the collider's
+/// mesh. A *sample* is a moment whose positions were saved.
 class SimulationFolder {
   public:
     /// @throws echinus::Error Unreadable, WrongFormat, Damaged ...; the sentence begins with the path of the
@@ -26,7 +26,7 @@ class SimulationFolder {
 
     std::vector<echinus::Vec3f> cloth_positions(std::size_t sample) const { return cache_.positions(sample); }
     echinus::TriangleMesh cloth(std::size_t sample) const;
-    /// In the world, where it stood at that sample.
+    /// In the world, at its pose in that sample.
     echinus::TriangleMesh collider(std::size_t sample) const;
 
     /// Against gravity; +z where there is none.
