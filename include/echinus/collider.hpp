@@ -53,9 +53,9 @@ Vec3d velocity_at(const Collider& collider, const Vec3d& point_world);
 RigidTransform pose_after(const Collider& collider, double seconds);
 
 // Queries: as those of the map. noexcept, no allocation (but a custom map's own), any number of threads. A
-// point is taken to the local frame in double and rounded to float there, so a collider may stand far from
-// the origin as long as the caller's float positions still resolve it. A point that overflows float in the
-// local frame is outside. NaN or infinity in a point: outside, no contact, nothing met. Cost per call: the
+// point is transformed to the local frame in double and rounded to float there, so a collider may stand far
+// from the origin as long as the caller's float positions resolve it. A point that overflows float in the
+// local frame is outside. NaN or infinity in a point: outside, no contact, no crossing. Cost per call: the
 // map's query, and the conversion of the pose to a matrix, once per batch.
 // @pre the pose is finite and its rotation of unit length, scale is finite and has no 0, and a custom map is
 // not null. Nothing checks this here: with another rotation the answers are not meaningful. (A simulation

@@ -17,7 +17,7 @@ enum class Feature : std::uint8_t {
     Vertex,
 };
 
-/// What a query answers for one particle: inside?, how deep, which way out. The same for every kind of map.
+/// A query's answer for one particle: inside or not, how deep, which way out. The same for every kind of map.
 ///
 /// The push-out moves the particle to `point`. For a particle that is outside and farther than the margin, or
 /// not finite, the members keep their defaults (not inside, depth 0, normal 0, face -1), and `point` is the
@@ -29,7 +29,7 @@ struct Contact {
     Vec3f normal;  ///< unit normal of the surface at `point`, out of the solid; 0 when there is no contact
     float depth{}; ///< distance from the particle to `point`: positive inside, negative outside, 0 for no
                    ///< contact
-    std::int32_t face = kUnknownFace; ///< the face of the mesh that `point` lies on, where the map knows it
+    std::int32_t face = kUnknownFace; ///< the face of the mesh that contains `point`, if the map knows it
     bool inside = false;
     /// False where the mesh is open and `inside` was decided by the generalised winding number
     /// (exact_map.hpp). Always true with a distance map, which does not judge its answers.

@@ -18,16 +18,15 @@ ECHINUS_EXPORT_BEGIN
 /// The paper's map: around the centre C of the model's bounding sphere a grid of directions, and for each
 /// direction the sorted distances of all points where its ray meets the surface (Vogiannou et al., "Distance
 /// Maps for Collision Detection of Deformable Models", section 2). A sampled map: near silhouettes and
-/// between samples it can be wrong; docs/reproduction.md says how often.
+/// between samples it can be wrong; docs/reproduction.md has the rates.
 ///
 /// All points are in the frame and unit of the mesh that the map was built from ("local").
 namespace echinus {
 
-/// What is done about mesh vertices that linear interpolation between samples passes by (the paper's figure
-/// 1b).
+/// The treatment of mesh vertices that linear interpolation between samples misses (the paper's figure 1b).
 enum class VertexCorrection : std::uint8_t {
     None,  ///< entries are the exact crossings
-    Paper, ///< the four samples around a vertex are increased by what is missing, on every layer
+    Paper, ///< the four samples around a vertex are increased by the missing distance, on every layer
     /// Layers where the ray leaves the solid are increased, layers where it enters are decreased, so that the
     /// map errs on the side of the solid on both.
     Signed,
@@ -58,7 +57,7 @@ struct DistanceMapOptions {
     VertexCorrection correction =
         VertexCorrection::Signed;                    ///< None is unbiased; Signed misses fewer particles
     EntryFormat entry_format = EntryFormat::Float32; ///< Unorm16 halves the entries
-    /// Spherical and ellipsoidal: samples crowd at the poles; put them where detail is.
+    /// Spherical and ellipsoidal: samples crowd at the poles; put the poles where the detail is.
     PoleAxis pole_axis = PoleAxis::Z;
     CentreChoice centre = CentreChoice::BoundingSphere; ///< the paper's; Search: five times the build time
     unsigned thread_count = 0; ///< 0: all cores. The bytes of the map do not depend on it.
@@ -122,12 +121,12 @@ class DistanceMap {
   public:
     /// Builds the map on all cores; same mesh and options, same bytes, whatever the number of threads.
     /// Time O(faces + crossings + directions).
-    /// @param mesh  closed; behind a hole answers are wrong, and wrong_parity_share tells how many directions
-    /// see one. VertexCorrection::Signed also wants faces that are counter-clockwise seen from outside. A
-    /// solid so flat or thin that no ray meets it gives a map without entries, for which everything is
-    /// outside
+    /// @param mesh  closed; behind a hole answers are wrong, and wrong_parity_share is the share of
+    /// directions that see one. VertexCorrection::Signed also requires faces that are counter-clockwise seen
+    /// from outside. A solid so flat or thin that no ray meets it gives a map without entries, for which
+    /// everything is outside
     /// @throws Error InvalidMesh as inspect() does, or when the bounding radius lies outside [1e-15, 1e15];
-    /// InvalidOptions when a count that the grid looks at lies outside the bounds above
+    /// InvalidOptions when a count that the grid uses lies outside the bounds above
     static DistanceMap build(const TriangleMesh& mesh, const DistanceMapOptions& options = {});
 
     /// A map of arrays that already exist. They belong to `storage`, which the map keeps alive. The file
@@ -198,8 +197,8 @@ std::vector<std::size_t> entry_histogram(const DistanceMapView& map);
 /// section 2.2: "rarely ... less than 3"). 1 to 4, or 0 where no query looks: outside the sphere, not finite.
 int usable_sample_count(const DistanceMapView& map, Vec3f point_local) noexcept;
 
-/// The surface as the map sees it (figures 2 and 3): where four neighbouring directions have the same number
-/// of entries, each layer is a quadrilateral, cut into two triangles; on an octahedron, where three have, a
+/// The surface of the map (figures 2 and 3): where four neighbouring directions have the same number of
+/// entries, each layer is a quadrilateral, cut into two triangles; on an octahedron, where three have, a
 /// triangle.
 struct MapSurface {
     TriangleMesh mesh;                ///< local frame; wound so that faces look out of the solid

@@ -126,8 +126,9 @@ Containment classify(const ExactMapView& map, Vec3f point_local) noexcept;
 /// not bound it count as surface too.
 ///
 /// The normal is the direction from the surface point to a particle outside, or from a particle inside to the
-/// surface point. For a particle within two lattice steps of the surface, where snapping would leave this to
-/// chance, it is the angle-weighted pseudonormal of the faces that meet there (Baerentzen and Aanaes 2005).
+/// surface point. For a particle within two lattice steps of the surface, where snapping would make this
+/// direction arbitrary, it is the angle-weighted pseudonormal of the faces that meet there (Baerentzen and
+/// Aanaes 2005).
 ///
 /// Cost: contains(), and for particles inside or with a margin the search, about a microsecond near the
 /// surface. It grows with the number of faces that are about equally near: from the centre of a sphere it
@@ -158,8 +159,8 @@ void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 
 /// Where a particle that moves along a segment first meets the surface.
 struct SweepHit {
-    float fraction = 1; ///< of the segment: 0 at `from`, 1 at `to`; 1 when nothing is met
-    Vec3f point;        ///< from + fraction (to - from), local; `to` when nothing is met
+    float fraction = 1; ///< of the segment: 0 at `from`, 1 at `to`; 1 without a crossing
+    Vec3f point;        ///< from + fraction (to - from), local; `to` without a crossing
     /// Unit normal of the face, out of the solid; 0 when nothing is met. Where both sides of the face are
     /// solid, or neither is, it points out of the face's front.
     Vec3f normal;
@@ -179,7 +180,7 @@ struct SweepHit {
 /// within one gap of a cell, else the faces whose boxes the segment meets before its first crossing.
 SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexcept;
 
-// ---- A surface that moves
+// ---- Deforming surfaces
 
 /// Builds maps of a surface whose vertices move while its triangles stay the same, such as an animated body:
 /// memory is reused from one map to the next. Not for several threads at once.
@@ -205,8 +206,7 @@ class ExactMapBuilder {
 
 // ---- Looking at a map
 
-/// The mesh as the map holds it, on its lattice: without the faces that were dropped, which have no area
-/// there.
+/// The map's mesh, on its lattice, without the dropped faces, which have no area there.
 struct ExactMapSurface {
     TriangleMesh mesh; ///< local frame
     /// [face_count] The length of the longest list that each face is in: a query near the face may have to

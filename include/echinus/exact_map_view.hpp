@@ -23,7 +23,7 @@ enum class InsideRule : std::uint8_t {
     Parity, ///< an odd winding number: a part within a part is a hole
 };
 
-/// Indices that are stored in 16 bits where they fit. At most one of the two spans is used.
+/// Indices, in 16 bits where they fit. At most one of the two spans is used.
 struct IndexArray {
     std::span<const std::uint16_t> narrow;
     std::span<const std::uint32_t> wide;
@@ -41,8 +41,8 @@ struct Band {
 };
 static_assert(sizeof(Band) == 8);
 
-/// Boxes around the faces of up to eight subtrees: a node of a tree that is eight wide, so that all eight
-/// boxes are compared at once.
+/// Boxes around the faces of up to eight subtrees: a node of an eight-wide tree, so that all eight boxes are
+/// compared at once.
 struct TreeNode {
     static constexpr std::size_t kWidth = 8;
     static constexpr std::uint32_t kLeaf = 0x8000'0000;
@@ -62,7 +62,7 @@ struct BorderEdge {
 };
 static_assert(sizeof(BorderEdge) == 12);
 
-/// A map as plain arrays, wherever they lie. Owns nothing, copies cheaply, and is what all queries take.
+/// A map as plain arrays, wherever they lie, the argument of all queries. Owns nothing, copies cheaply.
 /// validate() in src/map_file checks the invariants for untrusted bytes.
 struct ExactMapView {
     static constexpr int kBandUnit = 16;
@@ -89,11 +89,11 @@ struct ExactMapView {
     /// Beyond a cell's last band it is 0.
     std::span<const std::int16_t> winding_below;
     IndexArray references; ///< [reference_count] faces
-    /// [reference_count] Which of the 16 parts of its cell a face touches, a bit each
-    /// (src/directions/octahedral_cells.hpp). A query looks only at the faces of its own part.
+    /// [reference_count] Which of the 16 parts of its cell a face touches, one bit each
+    /// (src/directions/octahedral_cells.hpp). A query tests only the faces of its own part.
     std::span<const std::uint16_t> reference_parts;
-    /// [vertex_count] on the lattice. Four bytes before the first can be read, so that a vector of four
-    /// numbers holds any vertex as its last three.
+    /// [vertex_count] on the lattice. Four bytes before the first are readable, so that a vector of four
+    /// numbers can load any vertex as its last three.
     std::span<const Vec3<std::int32_t>> vertices;
     IndexArray corners;                 ///< [3 face_count] vertices of each face
     IndexArray face_numbers;            ///< [face_count] each face's number in the mesh
@@ -102,7 +102,7 @@ struct ExactMapView {
 
     std::size_t cell_count() const { return std::size_t{8} * divisions * divisions; }
     std::size_t face_count() const { return face_numbers.size(); }
-    /// All that a query reads, mesh and tree included.
+    /// The bytes of all arrays that queries read, mesh and tree included.
     std::size_t byte_count() const {
         return band_offsets.size_bytes() + outer_limits.size_bytes() + bands.size_bytes() +
                winding_below.size_bytes() + references.size_bytes() + reference_parts.size_bytes() +

@@ -43,7 +43,7 @@ struct Vec3 {
 using Vec3f = Vec3<float>;
 using Vec3d = Vec3<double>;
 
-// The order of the additions below is part of the promise of equal bits on every machine.
+// The order of the additions below is part of the guarantee of equal bits on every machine.
 template <typename T>
 constexpr T dot(const Vec3<T>& a, const Vec3<T>& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;

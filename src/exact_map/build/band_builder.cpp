@@ -22,7 +22,7 @@ int sum_of_crossings(std::span<const Interval> intervals) {
     return sum;
 }
 
-/// Of a cell's cone between two L1 norms, but for a factor that all cells share.
+/// The volume of a cell's cone between two L1 norms, up to a common factor.
 double volume(std::uint16_t lower, std::uint16_t upper, double whole) {
     const double low = std::min(whole, static_cast<double>(lower) * ExactMapView::kBandUnit);
     const double high = std::min(whole, static_cast<double>(upper) * ExactMapView::kBandUnit);
@@ -58,8 +58,8 @@ std::span<const Interval> IntervalSorter::sorted(std::span<Interval> intervals) 
     return intervals;
 }
 
-/// Puts each where it belongs by counting how many come before it. All pairs are compared, but without a
-/// branch that a processor could mispredict: for lists as short as most are, that is faster than sorting.
+/// Sorts by counting how many come before each. Compares all pairs, but without a branch that a processor
+/// could mispredict: for most lists, which are short, that is faster than sorting.
 std::span<const Interval> IntervalSorter::ranked(std::span<const Interval> intervals) {
     std::array<std::uint32_t, kFew> rank;
     for (std::size_t i = 0; i < intervals.size(); ++i) {
@@ -109,8 +109,8 @@ void BandBuilder::append(const MergedBand& band, std::int16_t winding_below) {
     append_references(band.intervals, [](const Interval&) { return true; });
 }
 
-/// Appends faces that belong to a band, but those seen edge-on; each is written and then kept or not, so that
-/// nothing need be predicted.
+/// Appends the faces of a band, except those seen edge-on; each is written and then kept or not, so that no
+/// branch is mispredicted.
 template <typename Belongs>
 void BandBuilder::append_references(std::span<const Interval> intervals, const Belongs& belongs) {
     std::uint32_t* faces = result_.references.room_for(intervals.size());
@@ -140,9 +140,9 @@ void BandBuilder::append_closed() {
     }
 }
 
-/// Where to cut a band in two, so that a query need look only at the faces of its side: those of the lower
-/// half tell how often the ray crosses the surface before the particle, those of the upper how often beyond.
-/// Faces on both sides are listed twice.
+/// Where to cut a band in two, so that a query needs only the faces of its side: those of the lower half give
+/// the ray's crossings before the particle, those of the upper half the crossings beyond. Faces on both sides
+/// are listed twice.
 std::optional<std::uint16_t> BandBuilder::split_of(std::span<const Interval> intervals) {
     constexpr std::size_t kLeastFaces = 6;
     constexpr double kLeastGain = 0.3; // of the cost; for less, memory is better spent on more cells
@@ -150,7 +150,7 @@ std::optional<std::uint16_t> BandBuilder::split_of(std::span<const Interval> int
     if (count < kLeastFaces) return std::nullopt;
     double best_cost = (1 - kLeastGain) * static_cast<double>(count * count);
 
-    // However high the cut, as long as it leaves few enough below: do too many reach beyond it?
+    // At the highest cut that leaves few enough below: do too many reach beyond it?
     const auto most_below = std::min(count - 1, static_cast<std::size_t>(std::sqrt(best_cost)));
     const std::uint16_t highest = intervals[most_below].lower();
     std::size_t least_above = 0;
@@ -182,8 +182,8 @@ void BandBuilder::append_split(const MergedBand& band, std::uint16_t limit, std:
     append_references(band.intervals, [=](const Interval& interval) { return interval.upper() > limit; });
 }
 
-/// The same, with gaps cut into pieces by bands without faces. A band in which crossings do not tell the
-/// winding number gets such a band right above it, with nothing but an uncertain gap between the two.
+/// The same, with gaps cut into pieces by bands without faces. A band in which crossings do not determine the
+/// winding number gets such a band right above it, with only an uncertain gap between the two.
 void BandBuilder::append_open(std::uint32_t cell) {
     const double whole = l1_at_sphere(cell);
     uncertain_ = 0;
@@ -201,7 +201,7 @@ void BandBuilder::append_open(std::uint32_t cell) {
     constexpr double kBeyondOtherRays = 1.05; // the middle's is not the longest way to the sphere
     const auto end = static_cast<std::uint16_t>(kBeyondOtherRays * whole / ExactMapView::kBandUnit);
     const std::uint16_t limit = std::max(end, lower);
-    append_limit(limit, limit, append_gap(cell, lower, limit, 0)); // beyond it nobody looked
+    append_limit(limit, limit, append_gap(cell, lower, limit, 0)); // nothing was examined beyond it
     result_.volumes.push_back({uncertain_, whole * whole * whole});
 }
 

@@ -15,7 +15,7 @@
 
 namespace echinus {
 
-/// A cell's part of the bounding sphere, but for a factor that all cells share.
+/// A cell's part of the bounding sphere, up to a common factor.
 struct CellVolume {
     double uncertain, whole;
 };
@@ -52,7 +52,7 @@ class IntervalSorter {
 class BandBuilder {
   public:
     /// @param gap_states  of an open surface; none when it is closed
-    /// @param result      to which the bands are appended
+    /// @param result      receives the bands at its end
     BandBuilder(const OctahedralCells& cells, const GapStates* gap_states, BandList& result)
         : cells_(cells), gap_states_(gap_states), result_(result) {}
 

@@ -38,14 +38,14 @@ struct BandDetail {
     int gap_halvings = GapStates::kMostHalvings; ///< that an open surface's gaps may take
 };
 
-/// Finds the bands of every cell; keeps the memory that this takes for the next time.
+/// Finds the bands of every cell; keeps its memory for the next time.
 class BandFinder {
   public:
     /// Faces pass through no more cells, counted together, whatever the limit.
     static constexpr std::size_t kMostIntervals = std::size_t{1} << 28;
 
-    /// Finds the bands of every cell and the winding numbers between them, and puts them where `result` has
-    /// memory from another time. Does not depend on the number of threads.
+    /// Finds the bands of every cell and the winding numbers between them; reuses the memory of `result`.
+    /// Does not depend on the number of threads.
     /// @param border      of the surface; empty when it is closed
     /// @param byte_limit  on byte_count(). It holds for edge-on faces too, as if they had references. What
     ///                    exceeds it is given up as soon as that shows, so that time and memory are bounded

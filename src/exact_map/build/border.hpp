@@ -6,10 +6,10 @@
 
 #include <vector>
 
-/// The border of an open surface; exact_map/border_part.hpp says what it is needed for.
+/// The border of an open surface; exact_map/border_part.hpp explains its use.
 namespace echinus {
 
-/// The edges along which a different number of faces runs one way than the other, ascending. Vertices on one
+/// The edges along which different numbers of faces run in the two directions, ascending. Vertices on one
 /// lattice point count as one. Empty when the surface is closed, as it surely is where mesh/is_closed.hpp
 /// finds it so: that takes less time, and what collapses on the lattice has no border there.
 std::vector<BorderEdge> find_border(const LatticeMesh& lattice);

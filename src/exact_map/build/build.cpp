@@ -112,8 +112,8 @@ ExactMapStatistics statistics_of(std::size_t face_count, std::size_t dropped_fac
     return statistics;
 }
 
-/// The way from vertices to a map, with all that is worth keeping from one moment of a mesh to the next: what
-/// follows from the faces alone, the order of the tree, from which the next differs little, and memory.
+/// The steps from vertices to a map. Keeps what helps from one pose of a mesh to the next: the data that
+/// depend on the faces alone, the order of the tree, which changes little, and memory.
 class MapMaker {
   public:
     /// @param faces  are to stay in place
@@ -158,8 +158,8 @@ void MapMaker::snap(std::span<const Vec3f> vertices) {
     if (dropped_faces_ != 0) add_collapsed_faces();
 }
 
-/// Faces that shrank to a segment or a point on the lattice take no part in what is inside. But they are
-/// still the nearest surface for who is near them: a needle may consist of them.
+/// Faces that shrank to a segment or a point on the lattice take no part in what is inside. But they may
+/// still be the nearest surface of a particle: a needle may consist of them.
 void MapMaker::add_collapsed_faces() {
     std::vector<bool> kept(faces_.size());
     for (std::uint32_t number : lattice_.face_numbers) kept[number] = true;
@@ -195,7 +195,7 @@ void MapMaker::order_faces() {
     });
 }
 
-/// Everything of the arrays but the bands.
+/// All arrays except the bands.
 void MapMaker::set_surface(std::span<const Vec3f> vertices) {
     parallel_invoke(
         options_.thread_count,
@@ -259,7 +259,7 @@ std::uint32_t MapMaker::set_bands_within(const ByteRange& bytes, std::uint32_t m
 }
 
 ExactMap MapMaker::make(std::span<const Vec3f> vertices) {
-    if (arrays_.use_count() != 1) arrays_ = std::make_shared<OwnedArrays>(); // somebody reads the old ones
+    if (arrays_.use_count() != 1) arrays_ = std::make_shared<OwnedArrays>(); // the old ones are still in use
     snap(vertices);
     set_surface(vertices);
     const std::uint32_t divisions = set_bands();
@@ -288,7 +288,7 @@ ExactMapBuilder::ExactMapBuilder(ExactMapBuilder&&) noexcept = default;
 ExactMapBuilder& ExactMapBuilder::operator=(ExactMapBuilder&&) noexcept = default;
 
 const ExactMap& ExactMapBuilder::rebuild(std::span<const Vec3f> vertices) {
-    memory_->map.reset(); // which lets go of the arrays, unless somebody has a copy
+    memory_->map.reset(); // which releases the arrays, unless a copy holds them
     return memory_->map.emplace(memory_->maker.make(vertices));
 }
 

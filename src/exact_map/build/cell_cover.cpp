@@ -208,8 +208,8 @@ class OctantCover {
         const double slope = inner.along_x * scale;
         const double upright = (inner.at_origin + inner.most_in_part()) * scale;
         const double turned = slope - 2 + (inner.at_origin - inner.least_in_part()) * scale;
-        // Rounded up where the half-plane begins and down where it ends. Which it does is anybody's guess, so
-        // both are written and one is kept.
+        // Rounded up where the half-plane begins and down where it ends. Which one it is cannot be predicted,
+        // so both are written and one is kept.
         const bool begins = inner.along_y > 0;
         constexpr std::size_t kSpare = 8;
         firsts_[begins ? first_count_ : kSpare] = {slope, upright + 1, turned + 1};
@@ -320,7 +320,7 @@ class OctantCover {
             {cells_.index(octant_, i, j, down), static_cast<std::uint16_t>(parts), middle, l1.low, l1.high});
     }
 
-    /// What the plane has over the parts, where that is better than what the polygon has as a whole.
+    /// The range of the plane over the parts, where that is tighter than the range of the whole polygon.
     template <bool down>
     Range l1_range(std::int32_t i, std::int32_t j, std::uint32_t parts) const {
         if (!std::isfinite(reciprocal_error_)) return l1_; // edge-on
@@ -347,7 +347,7 @@ class OctantCover {
                          std::max(part_highs_[highs[2]], part_highs_[highs[3]]))};
     }
 
-    /// Without a branch, as the sides that a middle is beyond cannot be foretold.
+    /// Without a branch, since the outcome is unpredictable.
     MiddleRay middle_ray(std::int32_t i, std::int32_t j, bool down) const {
         constexpr double kThird = kPartsPerSide / 3.0;
         const double offset = down ? 2 * kThird : kThird;
@@ -384,8 +384,8 @@ class OctantCover {
 };
 
 /// Nearer to the origin than this many lattice steps, directions of cut corners cannot be told apart in
-/// double. What a face has there is put into every part of every cell of the octant; the centre of a map is
-/// seldom that close to a surface.
+/// double. A face there is put into every part of every cell of the octant; the centre of a map is seldom
+/// that close to a surface.
 constexpr double kNear = 8;
 
 void cover_near_octant(const OctahedralCells& cells, std::uint32_t octant, const Polygon& polygon,
@@ -423,7 +423,7 @@ std::uint32_t reached_sides(const std::array<LatticePoint, 3>& face) {
     return reaches(&LatticePoint::x) | reaches(&LatticePoint::y) << 1 | reaches(&LatticePoint::z) << 2;
 }
 
-/// To where all coordinates of the octant are positive.
+/// Mirrors to where all coordinates of the octant are positive.
 Vec3d mirrored(const Vec3d& v, std::uint32_t octant) {
     constexpr std::array<double, 2> kSign{1, -1};
     return {v.x * kSign[octant & 1U], v.y * kSign[octant >> 1 & 1U], v.z * kSign[octant >> 2 & 1U]};

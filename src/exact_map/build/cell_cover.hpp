@@ -10,10 +10,10 @@
 
 namespace echinus {
 
-/// What a face does to the ray through a cell's middle.
+/// Whether a face meets the ray through a cell's middle.
 enum class MiddleRay : std::uint8_t {
     Misses,
-    Meets,  ///< meets its directions, that is; of a face seen edge-on nothing is said
+    Meets,  ///< the ray lies within the face's directions; meaningless for a face seen edge-on
     Unsure, ///< rounding might decide
 };
 

@@ -9,8 +9,8 @@
 
 namespace echinus {
 
-/// Snaps the mesh to the lattice of a centre from which a query is expected to test few faces, as told by
-/// maps of few cells. Some twenty coarse builds.
+/// Snaps the mesh to the lattice of a centre from which queries should test few faces, estimated by maps of
+/// few cells. About twenty coarse builds.
 /// @throws Error as LatticeSnapper::snap()
 void snap_around_best_centre(LatticeSnapper& snapper, std::span<const Vec3f> vertices, unsigned thread_count,
                              BandFinder& finder, LatticeMesh& best);

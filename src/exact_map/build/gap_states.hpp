@@ -17,14 +17,14 @@ struct GapPiece {
     std::int16_t winding; ///< or ExactMapView::kUncertain
 };
 
-/// Finds out where the generalised winding number of an open surface keeps clear of halves.
+/// Finds where the generalised winding number of an open surface stays clear of halves.
 ///
 /// Between crossings it is a smooth function whose slope the border bounds, edge by edge, by length over
 /// 4 pi distance^2 (the law of Biot and Savart: a solid angle is the potential of a current in its border).
 /// So from its value at one place its range in a convex region follows, if no border edge comes near.
 ///
-/// That takes time in proportion to border edges times pieces. What would take more than some seconds is not
-/// looked at: it stays uncertain, as nearly all of a soup of triangles is anyway.
+/// That takes time proportional to border edges times pieces. Work beyond some seconds is skipped, and its
+/// gaps stay uncertain, as nearly all of a triangle soup is anyway.
 class GapStates {
   public:
     static constexpr int kMostHalvings = 5;

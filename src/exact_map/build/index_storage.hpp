@@ -9,7 +9,7 @@
 
 namespace echinus {
 
-/// What an IndexArray looks at. Keeps its memory.
+/// The storage of an IndexArray. Keeps its memory between uses.
 class IndexStorage {
   public:
     /// Of numbers that are all below `bound`.

@@ -7,8 +7,7 @@
 
 namespace echinus {
 
-/// Divisions of each octant that suit a mesh when nothing else is asked for. docs/performance.md has the
-/// sweep behind the rule.
+/// The default divisions of each octant for a mesh. docs/performance.md has the sweep behind the rule.
 /// @param open  the surface has a border
 std::uint32_t default_divisions(std::size_t face_count, bool open);
 
