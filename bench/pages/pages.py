@@ -150,7 +150,38 @@ def figures(folder):
         rows.append([f"{r['mesh']}, {r['system']}", r["particles"], number(r["bytes"], 1e-6), number(r["frame_ms"]),
                      number(1000 / float(r["frame_ms"])), rest, r["inside_at_end"], number(r["deepest"])])
     values["cloth"] = table(rows)
+    values["readme"] = readme_table(results, "horse")
     return values
+
+
+def readme_table(results, mesh):
+    """The README's: a question a row, a number a cell, near the surface unless the row says otherwise."""
+    colliders = {"exact map": "exact map", "distance map": "distance map", "dense grid 0.63 MB 16 bit": "dense grid 16 bit",
+                 "Embree": "Embree's tree"}
+
+    def row(question, task, column, call="whole set", set="S", unit="", scale=1.0):
+        found = {r["system"]: number(r[column], scale) for r in results.where(mesh=mesh, task=task, call=call, set=set)}
+        return [question] + [f"{found[s]}{unit}" if found.get(s) else "" for s in colliders]
+
+    cloth = {r["system"]: r for r in results.where(mesh=mesh, task="cloth")}
+
+    many = particles_in(results, mesh, "whole set")
+    return table([
+        ["", "exact map", "distance map", "dense grid, 16 bits", "Embree"],
+        row("memory", "contains", "bytes", unit=" MB", scale=1e-6),
+        row("build", "contains", "build_ms", unit=" ms"),
+        row("on the wrong side", "contains", "wrong_share", unit=" %", scale=100),
+        row("the farthest of them from the surface", "contains", "farthest_wrong", unit=" R"),
+        row("error of the depth, mean", "contacts", "depth_mean", unit=" R"),
+        row(f"inside or outside, calls of {many}", "contains", "ns", unit=" ns"),
+        row("the same, anywhere in the bounding sphere", "contains", "ns", set="U", unit=" ns"),
+        row(f"contacts, calls of {many}", "contacts", "ns", unit=" ns"),
+        row("contacts, calls of 10 000", "contacts", "ns", "10000", unit=" ns"),
+        row("contacts, calls of 1000", "contacts", "ns", "1000", unit=" ns"),
+        row("contacts, a call for each particle", "contacts", "ns", "1", unit=" ns"),
+        ["cloth of 10 000 particles, a frame"] + [f"{number(cloth[s]['frame_ms'])} ms" for s in colliders.values()],
+        ["particles of it inside at rest"] + [cloth[s]["inside_at_end"] for s in colliders.values()],
+    ])
 
 
 def reproduction(folder):
@@ -188,7 +219,7 @@ TASKS = {
     "contacts": (["performance.md", "performance_tables.md"], lambda folder: queries(folder, "contacts")),
     "build": (["performance_tables.md"], build),
     "cloth": (["cloth_on_each.md"], cloth),
-    "figures": (["figures.md"], figures),
+    "figures": (["figures.md", "../README.md"], figures),
     "reproduction": (["reproduction.md"], reproduction),
 }
 
