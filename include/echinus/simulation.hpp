@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,7 +46,7 @@ struct Deformable {
     /// compliance; 0 for a particle that is pinned: it stays where it is, and no collider moves it.
     std::vector<float> inverse_masses;
     std::vector<Stick> sticks;   ///< in the order in which they are relaxed
-    std::vector<Triangle> faces; ///< for pictures; nothing is computed from them
+    std::vector<Triangle> faces; ///< for pictures and wind; they do not collide
 
     std::size_t particle_count() const { return positions.size(); }
 };
@@ -57,7 +58,7 @@ struct ClothOptions {
     std::uint32_t row_count = 100;    ///< particles along y; at least 2. Time per step grows with the product
     double width = 1;                 ///< along x, units
     double height = 1;                ///< along y, units
-    RigidTransform pose{};            ///< where the sheet starts
+    RigidTransform pose{};            ///< where the sheet starts; its rotation of unit length, to 1e-4
     std::vector<std::uint32_t> pins{}; ///< particles that never move: row * column_count + column
 };
 
@@ -68,12 +69,15 @@ struct ClothOptions {
 /// @throws Error InvalidOptions
 Deformable make_cloth(const ClothOptions& options);
 
-/// When a deformable counts as come to rest: every particle has stayed within `distance` of one place for
-/// `frame_count` frames in a row. Not a bound on speed: gravity alone adds 0.04 units per second in one frame
-/// of 1/240 s, and a particle that contacts and sticks pass to and fro by a hair trembles at such a speed for
-/// ever.
+/// When a deformable counts as at rest: for `frame_count` frames in a row every particle has stayed
+/// within `distance` of one place and has been no faster than `speed`. Neither suffices alone: a particle
+/// that trembles stays near one place, and cloth at the end of a swing is slow for a moment.
+///
+/// A much lower speed may never be reached: gravity alone adds 0.04 units per second in one frame of 1/240 s,
+/// and a particle that contacts and sticks move slightly back and forth trembles at such a speed forever.
 struct RestCondition {
     double distance = 0.001;        ///< units
+    double speed = 0.1;             ///< units per second, at the end of a frame; may be infinite
     std::uint32_t frame_count = 60; ///< at least 1
 };
 
@@ -103,7 +107,11 @@ struct SimulationOptions {
     /// Xpbd: how far a stick gives per unit of force, by StickKind: length / (mass * length / s^2), with the
     /// masses of the particles. 0 does not give.
     std::array<double, kStickKindCount> compliance{0, 1e-6, 1e-4};
-    double thickness = 0; ///< distance that particles keep from colliders, units
+    /// Distance that particles keep from colliders, units. If not given, half the mean rest length of the
+    /// structural sticks, or 0 without any: with that the model cuts few faces of a cloth, and the cloth lies
+    /// close (docs/thickness.md). 0 is possible and slow: particles on the surface itself need a query in
+    /// every relaxation, and a face in twenty is cut.
+    std::optional<double> thickness{};
     /// Coulomb's coefficient: tangential motion relative to the collider is shortened by this times the
     /// length of the push, and never reversed. 0 is ice.
     double friction = 0.5;
@@ -111,6 +119,10 @@ struct SimulationOptions {
     /// false: no particle is rescued; those that cross the surface of an exact map are counted as lost and
     /// left there. Only for showing what the proof at the end of a frame is good for.
     bool keep_free = true;
+    /// Accept exact maps of open meshes. Nothing is promised for them: near a gap it is only estimated what
+    /// is inside, so particles get in there, some are pushed out through the surface, and lost_count tells
+    /// how often. A closed mesh, mended by repair() perhaps, or a distance map is better.
+    bool allow_open_colliders = false;
     /// A particle farther than this from the middle of where the deformable began ends the simulation as
     /// diverged, units. 0: 10 000 times the deformable's extent at the start.
     double bound = 0;
@@ -139,10 +151,12 @@ struct SimulationProfile {
 /// machine; it runs on one thread. Copies are independent.
 class Simulation {
   public:
-    /// Allocates all that step() needs.
-    /// @throws Error InvalidOptions when an option is out of range, the arrays of the deformable do not fit
-    /// together, a stick names a particle that does not exist, a number is not finite, a collider's scale is
-    /// 0, or its custom map a null pointer
+    /// Allocates all that step() needs. Rotations whose quaternion is off the unit length by no more than
+    /// 1e-4, as rounding to float leaves them, are brought to it.
+    /// @throws Error InvalidOptions, naming what is at fault, when an option is out of range, the arrays of
+    /// the deformable do not fit together, a stick or a face names a particle that does not exist, a number
+    /// is not finite, or a collider has a scale of 0, a rotation that is not of unit length, a null pointer
+    /// for a map, or the exact map of an open mesh without options.allow_open_colliders
     Simulation(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
     ~Simulation();
     Simulation(const Simulation& other);
@@ -164,7 +178,8 @@ class Simulation {
     /// So no particle passes through an exact map, however fast it is or thin the model: with one exact map
     /// lost_count stays 0. The limits of that promise:
     /// - It is about particles. An edge of the model may stick out between them.
-    /// - Distance maps and custom maps are not swept; nothing is promised for them.
+    /// - Distance maps and custom maps are not swept. Nothing is promised for them, nor for the exact map of
+    ///   an open mesh.
     /// - Pinned particles are left where they are.
     /// - A particle that begins inside is pushed to the nearest surface point, and kept outside once it is
     ///   outside.
@@ -178,6 +193,7 @@ class Simulation {
     const Deformable& deformable() const;
     std::span<const Vec3f> positions() const { return deformable().positions; }
     const std::vector<Collider>& colliders() const;
+    /// As given, with the thickness in force.
     const SimulationOptions& options() const;
     /// Frames computed so far.
     std::uint32_t frame() const;

@@ -147,6 +147,12 @@ void JsonObject::read(const char* key, double& value, Range range) {
     value = found->get<double>();
 }
 
+void JsonObject::read(const char* key, std::optional<double>& value, Range range) {
+    double number = 0;
+    read(key, number, range);
+    if (has(key)) value = number;
+}
+
 void JsonObject::read(const char* key, std::uint32_t& value, Range range) {
     const json* found = find(key);
     if (found == nullptr) return;

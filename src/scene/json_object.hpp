@@ -35,6 +35,7 @@ class JsonObject {
     void require(const char* key);
 
     void read(const char* key, double& value, Range range);
+    void read(const char* key, std::optional<double>& value, Range range);
     void read(const char* key, std::uint32_t& value, Range range);
     void read(const char* key, Vec3d& value, Range range);
     void read(const char* key, std::array<double, 2>& value, Range range);

@@ -272,12 +272,13 @@ void read_end(JsonObject& root, Scene& scene) {
     auto rest = root.object("at_rest");
     if (!rest) return;
     rest->read("distance", scene.simulation.rest.distance, {0, 1e9});
+    rest->read("speed", scene.simulation.rest.speed, {0, 1e9});
     rest->read("frames", scene.simulation.rest.frame_count, {1, 1e9});
     rest->finish();
 }
 
 std::string read_text(const fs::path& path) {
-    // A scene has some hundred bytes; whoever names a device or a mesh by mistake should hear of it soon.
+    // A scene has some hundred bytes; a device or a mesh that was named by mistake is refused soon.
     constexpr std::size_t kLargest = std::size_t{1} << 20;
     std::error_code ignored;
     if (fs::is_directory(path, ignored))

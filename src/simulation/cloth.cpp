@@ -1,3 +1,5 @@
+#include "simulation/validation.hpp"
+
 #include <echinus/error.hpp>
 #include <echinus/simulation.hpp>
 
@@ -15,7 +17,7 @@ void require(bool condition, const std::string& sentence) {
 /// 16 million particles: 1 GB of particles and sticks.
 constexpr std::uint64_t kMaxParticleCount = std::uint64_t{1} << 24;
 
-void require_valid(const ClothOptions& options) {
+void require_possible(const ClothOptions& options) {
     const std::uint64_t particle_count = std::uint64_t{options.column_count} * options.row_count;
     require(options.column_count >= 2 && options.row_count >= 2 && particle_count <= kMaxParticleCount,
             "a cloth of " + std::to_string(options.column_count) + " x " + std::to_string(options.row_count) +
@@ -25,6 +27,7 @@ void require_valid(const ClothOptions& options) {
                 options.height > 0,
             "the width and height of a cloth must be positive and finite; they are " +
                 std::to_string(options.width) + " and " + std::to_string(options.height));
+    require_valid(options.pose, "the cloth");
     for (const std::uint32_t pin : options.pins)
         require(pin < particle_count, "the cloth has no particle " + std::to_string(pin) +
                                           " to pin; its last one is " + std::to_string(particle_count - 1));
@@ -105,7 +108,7 @@ class Weaver {
 } // namespace
 
 Deformable make_cloth(const ClothOptions& options) {
-    require_valid(options);
+    require_possible(options);
     return Weaver(options).weave();
 }
 

@@ -24,7 +24,7 @@ ColliderNow::ColliderNow(const Collider& collider, const RigidTransform& previou
     : map(std::get_if<ExactMap>(&collider.map.kind)->view()), scale(collider.scale), local(collider),
       body(collider.pose, {1, 1, 1}), material(previous_pose, collider.pose),
       step(map.radius / static_cast<float>(kLatticeExtent) * largest(collider.scale)), guard(kGuard * step),
-      thickness(std::max(static_cast<float>(options.thickness), 2 * guard)),
+      thickness(std::max(static_cast<float>(options.thickness.value()), 2 * guard)),
       friction(static_cast<float>(options.friction)),
       coordinate_sum(static_cast<float>(std::fabs(collider.pose.translation.x) +
                                         std::fabs(collider.pose.translation.y) +

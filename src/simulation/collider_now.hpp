@@ -24,6 +24,7 @@ struct ColliderNow {
     float friction;
     float coordinate_sum; ///< of where the collider stands: what rounding is judged by
 
+    /// @pre the options have a thickness
     ColliderNow(const Collider& collider, const RigidTransform& previous_pose,
                 const SimulationOptions& options);
 

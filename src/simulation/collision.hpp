@@ -40,7 +40,7 @@ class Collision {
     virtual void end_frame(const Particles&) {}
 };
 
-/// By the kind of the collider's map. @pre the collider is valid
+/// By the kind of the collider's map. @pre the collider is valid, and the options have a thickness
 std::unique_ptr<Collision> make_collision(const Collider& collider, const Particles& particles,
                                           const SimulationOptions& options);
 

@@ -44,7 +44,7 @@ Vec3f answer(const Collider& collider, const Contact& contact, const Vec3f& posi
 
 ContactCollision::ContactCollision(const Collider& collider, const Particles& particles,
                                    const SimulationOptions& options)
-    : collider_(collider), rules_{static_cast<float>(options.thickness),
+    : collider_(collider), rules_{static_cast<float>(options.thickness.value()),
                                   static_cast<float>(options.friction)},
       reach_(plan_for(collider).reach_in_thicknesses * rules_.thickness),
       places_(std::min(plan_for(collider).piece_size, particles.count())), contacts_(places_.size()) {}

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace echinus {
@@ -16,22 +15,25 @@ class RestWatch {
         : condition_(condition), places_(positions) {}
 
     /// To be called after each frame.
-    void watch(const std::vector<Vec3f>& positions) {
-        const bool all_stay =
-            std::equal(positions.begin(), positions.end(), places_.begin(),
-                       [limit = static_cast<float>(condition_.distance * condition_.distance)](
-                           const Vec3f& position, const Vec3f& place) {
-                           const Vec3f away = position - place;
-                           return dot(away, away) <= limit;
-                       });
-        quiet_frame_count_ = all_stay ? quiet_frame_count_ + 1 : 0;
-        if (!all_stay) places_ = positions;
+    void watch(const std::vector<Vec3f>& positions, double largest_speed) {
+        const bool all_near = all_stay(positions);
+        if (!all_near) places_ = positions;
+        quiet_frame_count_ = all_near && largest_speed <= condition_.speed ? quiet_frame_count_ + 1 : 0;
     }
     bool at_rest() const { return quiet_frame_count_ >= condition_.frame_count; }
 
   private:
+    bool all_stay(const std::vector<Vec3f>& positions) const {
+        const auto distance_sq = static_cast<float>(condition_.distance * condition_.distance);
+        return std::equal(positions.begin(), positions.end(), places_.begin(),
+                          [=](const Vec3f& position, const Vec3f& place) {
+                              const Vec3f away = position - place;
+                              return dot(away, away) <= distance_sq;
+                          });
+    }
+
     RestCondition condition_;
-    std::vector<Vec3f> places_; ///< where each particle was, quiet_frame_count_ frames ago
+    std::vector<Vec3f> places_; ///< near which all have stayed, for quiet_frame_count_ frames or longer
     std::uint32_t quiet_frame_count_ = 0;
 };
 

@@ -25,6 +25,34 @@ Sphere box_sphere(std::span<const Vec3f> points) {
     return {(low + high) * 0.5, length(high - low) / 2};
 }
 
+/// Half the particles' spacing: of a cloth at rest hardly a face is cut by the model, and it lies close
+/// (docs/thickness.md).
+double default_thickness(const Deformable& deformable) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (const Stick& stick : deformable.sticks) {
+        if (stick.kind != StickKind::Structural) continue;
+        sum += double{stick.rest_length};
+        ++count;
+    }
+    return count == 0 ? 0 : sum / static_cast<double>(count) / 2;
+}
+
+SimulationOptions with_thickness(SimulationOptions options, const Deformable& deformable) {
+    if (!options.thickness) options.thickness = default_thickness(deformable);
+    return options;
+}
+
+/// Rotations that are of unit length to rounding in double stay as they are, to the bit.
+std::vector<Collider> with_unit_rotations(std::vector<Collider> colliders) {
+    constexpr double kRounding = 1e-12;
+    for (Collider& collider : colliders) {
+        Rotation& r = collider.pose.rotation;
+        if (std::abs(r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z - 1) > kRounding) r = r.normalised();
+    }
+    return colliders;
+}
+
 /// x' = x + (1 - drag) (x - x_previous) + a dt^2 (Jakobsen 2001, section 2), of one coordinate. Plain arrays
 /// that do not overlap and no branch, for the compiler's vectors.
 /// @param mobility  1, or 0 of a particle that is pinned
@@ -42,13 +70,13 @@ void integrate_coordinate(float* __restrict positions, float* __restrict previou
 
 Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colliders_in,
                            const SimulationOptions& options_in)
-    : deformable((require_valid(options_in), require_valid(deformable_in), require_valid(colliders_in),
-                  std::move(deformable_in))),
-      colliders(std::move(colliders_in)), options(options_in),
-      largest_speed(std::numeric_limits<double>::infinity()), particles_(deformable),
-      sticks_(weighted_sticks(deformable, options)), collisions_(colliders, particles_, options),
-      rest_(options.rest, deformable.positions), goals_give_way_(sticks_.gives_way()),
-      substep_seconds_(options.time_step / options.substep_count) {
+    : deformable((require_valid(options_in), require_valid(deformable_in),
+                  require_valid(colliders_in, options_in), std::move(deformable_in))),
+      colliders(with_unit_rotations(std::move(colliders_in))),
+      options(with_thickness(options_in, deformable)), largest_speed(std::numeric_limits<double>::infinity()),
+      particles_(deformable), sticks_(weighted_sticks(deformable, options)),
+      collisions_(colliders, particles_, options), rest_(options.rest, deformable.positions),
+      goals_give_way_(sticks_.gives_way()), substep_seconds_(options.time_step / options.substep_count) {
     const Sphere start = box_sphere(deformable.positions);
     start_centre_ = start.centre;
     // A single particle has no extent; its bound is then in the caller's unit.
@@ -140,7 +168,7 @@ void Simulation::Solver::judge_frame() {
         largest_motion_sq = std::max(largest_motion_sq, dot(motion, motion));
     }
     largest_speed = std::sqrt(double{largest_motion_sq}) / substep_seconds_;
-    rest_.watch(deformable.positions);
+    rest_.watch(deformable.positions, largest_speed);
 }
 
 /// The velocity is what the particle moved in the last substep.

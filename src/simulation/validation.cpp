@@ -2,6 +2,8 @@
 
 #include <echinus/error.hpp>
 
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <variant>
@@ -21,12 +23,26 @@ void require_within(const char* name, double value, double least, double most) {
          std::to_string(least) + ", " + std::to_string(most) + "]");
 }
 
-bool is_finite(const RigidTransform& pose) {
-    const Rotation& r = pose.rotation;
-    return echinus::is_finite(pose.translation) && std::isfinite(r.w + r.x + r.y + r.z);
+double length(const Rotation& r) {
+    return std::sqrt(r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z);
+}
+
+std::string as_text(const Rotation& r) {
+    return "[" + std::to_string(r.w) + ", " + std::to_string(r.x) + ", " + std::to_string(r.y) + ", " +
+           std::to_string(r.z) + "]";
 }
 
 } // namespace
+
+void require_valid(const RigidTransform& pose, const std::string& owner) {
+    if (!is_finite(pose.translation)) fail(owner + " has a translation that is not finite");
+    // As far as rounding to float leads a unit quaternion, and more. Written so that NaN fails it.
+    constexpr double kTolerance = 1e-4;
+    const double size = length(pose.rotation);
+    if (!(size >= 1 - kTolerance && size <= 1 + kTolerance))
+        fail(owner + " has the rotation " + as_text(pose.rotation) + ", a quaternion of length " +
+             std::to_string(size) + "; it must be 1. Rotation::about() makes one from axis and angle");
+}
 
 void require_valid(const SimulationOptions& options) {
     constexpr double kLargest = 1e9;
@@ -37,14 +53,15 @@ void require_valid(const SimulationOptions& options) {
         fail("simulation option substep_count is " + std::to_string(options.substep_count) +
              "; it must be 1 with the Verlet solver, whose sticks would become stiffer");
     require_within("drag", options.drag, 0, 1);
-    require_within("thickness", options.thickness, 0, kLargest);
+    require_within("thickness", options.thickness.value_or(0), 0, kLargest);
     require_within("friction", options.friction, 0, kLargest);
     require_within("bound", options.bound, 0, 1e30);
     require_within("rest.distance", options.rest.distance, 0, 1e9);
+    require_within("rest.speed", options.rest.speed, 0, std::numeric_limits<double>::infinity());
     require_within("rest.frame_count", options.rest.frame_count, 1, kLargest);
     for (const double stiffness : options.stiffness) require_within("stiffness", stiffness, 0, 1.99);
     for (const double compliance : options.compliance) require_within("compliance", compliance, 0, kLargest);
-    if (!echinus::is_finite(options.gravity)) fail("simulation option gravity is not finite");
+    if (!is_finite(options.gravity)) fail("simulation option gravity is not finite");
 }
 
 void require_valid(const Deformable& deformable) {
@@ -56,9 +73,8 @@ void require_valid(const Deformable& deformable) {
              std::to_string(deformable.inverse_masses.size()) + " inverse masses; it needs as many of each");
     for (std::size_t i = 0; i < count; ++i) {
         const float inverse_mass = deformable.inverse_masses[i];
-        if (!echinus::is_finite(deformable.positions[i]) ||
-            !echinus::is_finite(deformable.previous_positions[i]) || !(inverse_mass >= 0) ||
-            !std::isfinite(inverse_mass))
+        if (!is_finite(deformable.positions[i]) || !is_finite(deformable.previous_positions[i]) ||
+            !(inverse_mass >= 0) || !std::isfinite(inverse_mass))
             fail("particle " + std::to_string(i) +
                  " has a position that is not finite or an inverse mass that is negative or not finite");
     }
@@ -71,21 +87,32 @@ void require_valid(const Deformable& deformable) {
             static_cast<std::size_t>(stick.kind) >= kStickKindCount)
             fail("stick " + std::to_string(i) + " has a rest length or a kind out of range");
     }
+    for (std::size_t i = 0; i < deformable.faces.size(); ++i)
+        for (const std::uint32_t particle : deformable.faces[i])
+            if (particle >= count)
+                fail("face " + std::to_string(i) + " names particle " + std::to_string(particle) +
+                     "; the last one is " + std::to_string(count - 1));
 }
 
-void require_valid(const std::vector<Collider>& colliders) {
+void require_valid(const std::vector<Collider>& colliders, const SimulationOptions& options) {
     for (std::size_t i = 0; i < colliders.size(); ++i) {
         const Collider& collider = colliders[i];
+        const std::string name = "collider " + std::to_string(i);
         for (const double scale : {collider.scale.x, collider.scale.y, collider.scale.z})
             if (scale == 0 || !std::isfinite(scale))
-                fail("collider " + std::to_string(i) + " has a scale of " + std::to_string(scale) +
-                     "; it must be finite and not 0");
+                fail(name + " has a scale of " + std::to_string(scale) + "; it must be finite and not 0");
+        require_valid(collider.pose, name);
+        if (!is_finite(collider.linear_velocity) || !is_finite(collider.angular_velocity))
+            fail(name + " has a velocity that is not finite");
         const auto* custom = std::get_if<std::shared_ptr<const CustomMap>>(&collider.map.kind);
-        if (custom != nullptr && *custom == nullptr)
-            fail("collider " + std::to_string(i) + " has a custom map that is a null pointer");
-        if (!is_finite(collider.pose) || !echinus::is_finite(collider.linear_velocity) ||
-            !echinus::is_finite(collider.angular_velocity))
-            fail("collider " + std::to_string(i) + " has a pose or a velocity that is not finite");
+        if (custom != nullptr && *custom == nullptr) fail(name + " has a custom map that is a null pointer");
+        const auto* exact = std::get_if<ExactMap>(&collider.map.kind);
+        if (exact != nullptr && !exact->view().border.empty() && !options.allow_open_colliders)
+            fail(name + " has the exact map of an open mesh, with " +
+                 std::to_string(exact->view().border.size()) +
+                 " edges at gaps, where particles get in; close the mesh (repair() mends some), use a "
+                 "distance "
+                 "map, or set allow_open_colliders and lose particles");
     }
 }
 

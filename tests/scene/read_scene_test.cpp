@@ -24,7 +24,7 @@ const char* const kFullScene = R"({
               "rotation": {"axis": [1, 0, 0], "degrees": -90}, "velocity": [1, 2, -3], "thickness": 0.02, "pins": [[0, 0], [19, 29]]},
     "material": {"structural": 1.1, "shear": 0.9, "bending": 0.2, "friction": 0.7, "drag": 0.003},
     "gravity": [0, -9.8, 0], "time_step": 0.01, "iterations": 12,
-    "frame_limit": 500, "at_rest": {"distance": 0.02, "frames": 25}
+    "frame_limit": 500, "at_rest": {"distance": 0.02, "speed": 0.3, "frames": 25}
 })";
 
 std::string refusal(const std::string& text) {
@@ -95,7 +95,21 @@ TEST(Scene, IsReadKeyByKey) {
     EXPECT_EQ(scene.simulation.iteration_count, 12u);
     EXPECT_EQ(scene.frame_limit, 500u);
     EXPECT_EQ(scene.simulation.rest.distance, 0.02);
+    EXPECT_EQ(scene.simulation.rest.speed, 0.3);
     EXPECT_EQ(scene.simulation.rest.frame_count, 25u);
+}
+
+TEST(Scene, KeepsHalfTheSpacingAwayUnlessItHasAThickness) {
+    const AnyMap map = ExactMap::build(make_box({1, 1, 1}));
+    const auto thickness = [&](const std::string& key) {
+        const Scene scene = parse_scene(
+            R"({"model": {"box": {}}, "cloth": {"size": [2, 2], "particles": [11, 11])" + key + "}}",
+            "a.json");
+        return make_simulation(scene, map).options().thickness.value();
+    };
+    EXPECT_NEAR(thickness(""), 0.1, 1e-6);
+    EXPECT_EQ(thickness(R"(, "thickness": 0)"), 0);
+    EXPECT_EQ(thickness(R"(, "thickness": 0.02)"), 0.02);
 }
 
 TEST(Scene, NeedsOnlyAModelAndTheSizeOfTheCloth) {

@@ -145,7 +145,7 @@ TEST(Solver, SeparatesStatesThatDifferOnlyInVelocity) {
 }
 
 TEST(Solver, RestsWhenItHasStayedNearOnePlaceForSoManyFrames) {
-    const RestCondition rest{.distance = 0.0013, .frame_count = 5};
+    const RestCondition rest{.distance = 0.0013, .speed = 1, .frame_count = 5};
     Simulation simulation(single_particle({}, {0.01F, 0, 0}), {},
                           {.time_step = 0.01, .gravity = {}, .drag = 0.5, .rest = rest});
     // It goes by 5, 2.5, 1.25, 0.6 ... mm. The third step alone is short enough but leads too far with the
@@ -153,6 +153,20 @@ TEST(Solver, RestsWhenItHasStayedNearOnePlaceForSoManyFrames) {
     for (int i = 0; i < 8; ++i) simulation.step();
     EXPECT_FALSE(simulation.at_rest());
     simulation.step();
+    EXPECT_TRUE(simulation.at_rest());
+}
+
+TEST(Solver, DoesNotRestWhileAParticleTremblesInItsPlace) {
+    Simulation simulation(single_particle({}, {}), {},
+                          {.gravity = {}, .drag = 0, .rest = {.frame_count = 20}});
+    // To and fro by 0.8 mm, at 0.2 units per second.
+    for (int i = 0; i < 100; ++i) {
+        simulation.set_particle_velocity(0, {i % 2 == 0 ? 0.2 : -0.2, 0, 0});
+        simulation.step();
+        ASSERT_FALSE(simulation.at_rest()) << "frame " << i;
+    }
+    simulation.set_particle_velocity(0, {});
+    for (int i = 0; i < 21; ++i) simulation.step();
     EXPECT_TRUE(simulation.at_rest());
 }
 

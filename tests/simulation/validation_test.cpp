@@ -1,3 +1,5 @@
+#include "support/expect_error.hpp"
+
 #include <echinus/error.hpp>
 #include <echinus/simulation.hpp>
 
@@ -52,6 +54,7 @@ TEST(SimulationSetUp, NamesTheOptionOutOfRange) {
     expect_names(refusal_of_option([](auto& o) { o.gravity.y = kNaN; }), "gravity");
     expect_names(refusal_of_option([](auto& o) { o.bound = -1; }), "bound");
     expect_names(refusal_of_option([](auto& o) { o.rest.distance = -1; }), "rest.distance");
+    expect_names(refusal_of_option([](auto& o) { o.rest.speed = kNaN; }), "rest.speed");
     expect_names(refusal_of_option([](auto& o) { o.rest.frame_count = 0; }), "rest.frame_count");
 }
 
@@ -72,7 +75,56 @@ TEST(SimulationSetUp, RefusesAColliderWhoseScaleIsZeroOrNoNumber) {
     EXPECT_FALSE(is_refused({1, -2, 0.5}));
 }
 
-TEST(SimulationSetUp, NamesTheParticleOrStickAtFault) {
+TEST(SimulationSetUp, RefusesARotationThatIsNotOfUnitLength) {
+    const ExactMap map = ExactMap::build(make_box({1, 1, 1}));
+    for (const Rotation& rotation :
+         {Rotation{0, 0, 0, 0}, Rotation{2, 0, 0, 0}, Rotation{1, 0.1, 0, 0}, Rotation{kNaN, 0, 0, 0}}) {
+        const std::vector<Collider> colliders{{.map = map}, {.map = map, .pose = {rotation, {}}}};
+        test::expect_error(ErrorCode::InvalidOptions, "collider 1 has the rotation",
+                           [&] { Simulation(make_cloth({}), colliders, {}); });
+        test::expect_error(ErrorCode::InvalidOptions, "the cloth has the rotation", [&] {
+            make_cloth({.pose = {rotation, {}}});
+        });
+    }
+}
+
+TEST(SimulationSetUp, BringsARotationThatWasRoundedToUnitLength) {
+    const Rotation exact = Rotation::about({1, 2, 3}, 0.7);
+    const Rotation rounded{float(exact.w), float(exact.x), float(exact.y), float(exact.z)};
+    const ExactMap map = ExactMap::build(make_box({1, 1, 1}));
+    const Simulation simulation(make_cloth({}),
+                                {{.map = map, .pose = {rounded, {}}}, {.map = map, .pose = {exact, {}}}}, {});
+    const Rotation& r = simulation.colliders()[0].pose.rotation;
+    EXPECT_NEAR(r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z, 1, 1e-15);
+    EXPECT_NEAR(r.w, exact.w, 1e-6);
+    EXPECT_EQ(simulation.colliders()[1].pose.rotation.w, exact.w);
+}
+
+TEST(SimulationSetUp, RefusesTheExactMapOfAnOpenMeshUnlessItIsAllowed) {
+    TriangleMesh open = make_box({1, 1, 1});
+    open.faces.pop_back();
+    const std::vector<Collider> colliders{{.map = ExactMap::build(open)}};
+    test::expect_error(ErrorCode::InvalidOptions,
+                       "collider 0 has the exact map of an open mesh, with 3 edges",
+                       [&] { Simulation(make_cloth({}), colliders, {}); });
+    EXPECT_NO_THROW(Simulation(make_cloth({}), colliders, {.allow_open_colliders = true}));
+    EXPECT_NO_THROW(Simulation(make_cloth({}), {{.map = DistanceMap::build(open)}}, {}));
+}
+
+TEST(SimulationSetUp, KeepsHalfTheSpacingOfTheParticlesAwayUnlessToldOtherwise) {
+    const auto thickness = [](const Deformable& deformable, const SimulationOptions& options) {
+        return Simulation(deformable, {}, options).options().thickness.value();
+    };
+    const Deformable sheet = make_cloth({.column_count = 11, .row_count = 11, .width = 2, .height = 2});
+    EXPECT_NEAR(thickness(sheet, {}), 0.1, 1e-6);
+    EXPECT_EQ(thickness(sheet, {.thickness = 0}), 0);
+    EXPECT_EQ(thickness(sheet, {.thickness = 0.3}), 0.3);
+    Deformable loose = sheet;
+    loose.sticks.clear();
+    EXPECT_EQ(thickness(loose, {}), 0);
+}
+
+TEST(SimulationSetUp, NamesTheParticleStickOrFaceAtFault) {
     expect_names(refusal([](Deformable& d, auto&) { d.positions[4].x = float(kNaN); }), "particle 4");
     expect_names(refusal([](Deformable& d, auto&) { d.previous_positions[5].z = float(1 / 0.0F); }),
                  "particle 5");
@@ -80,6 +132,7 @@ TEST(SimulationSetUp, NamesTheParticleOrStickAtFault) {
     expect_names(refusal([](Deformable& d, auto&) { d.sticks[2].b = 9; }), "stick 2");
     expect_names(refusal([](Deformable& d, auto&) { d.sticks[3].a = d.sticks[3].b; }), "stick 3");
     expect_names(refusal([](Deformable& d, auto&) { d.sticks[1].rest_length = float(kNaN); }), "stick 1");
+    expect_names(refusal([](Deformable& d, auto&) { d.faces[5][2] = 9; }), "face 5 names particle 9");
     expect_names(refusal([](Deformable& d, auto&) { d.inverse_masses.pop_back(); }), "8 inverse masses");
     expect_names(refusal([](Deformable& d, auto&) { d = {}; }), "no particles");
 }

@@ -123,6 +123,7 @@ Json to_json(const SimulationResult& result) {
     const Rates rates = rates_of(simulation);
     const Strain strain = strain_of(deformable);
     const double radius = result.collider_radius;
+    const double thickness = options.thickness.value();
     Json rest_frame = nullptr;
     if (simulation.at_rest()) rest_frame = simulation.frame();
     return {
@@ -151,8 +152,8 @@ Json to_json(const SimulationResult& result) {
         {"deepest", {{"absolute", result.verdict.deepest}, {"in_radii", result.verdict.deepest / radius}}},
         {"strain", {{"mean", strain.mean}, {"largest", strain.largest}}},
         {"largest_speed", simulation.largest_speed()},
-        {"thickness", options.thickness},
-        {"thickness_in_radii", options.thickness / radius},
+        {"thickness", thickness},
+        {"thickness_in_radii", thickness / radius},
         {"gravity", to_json(options.gravity)},
         {"model",
          {{"faces", result.model.face_count}, {"vertices", result.model.vertex_count}, {"radius", radius}}},
@@ -189,8 +190,8 @@ std::string to_text(const SimulationResult& result) {
                                                 static_cast<double>(particle_count))));
     add("deepest", fmt::format("{:.5f} = {:.5f} R", result.verdict.deepest,
                                result.verdict.deepest / result.collider_radius));
-    add("thickness", fmt::format("{:.5f} = {:.5f} R", simulation.options().thickness,
-                                 simulation.options().thickness / result.collider_radius));
+    const double thickness = simulation.options().thickness.value();
+    add("thickness", fmt::format("{:.5f} = {:.5f} R", thickness, thickness / result.collider_radius));
     add("strain", percent(strain.mean) + " mean, " + percent(strain.largest) + " largest");
     add("state hash", fmt::format("{:016x}", simulation.state_hash()));
     return text;

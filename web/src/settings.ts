@@ -14,7 +14,7 @@ export interface Settings {
     /** Of the cloth; rounded to a square number. */
     particles: number;
     friction: number;
-    /** The distance that particles keep from the model, in hundredths of its radius. */
+    /** What particles keep from the model, in distances between neighbouring particles. */
     thickness: number;
     /** Radii of the model per second. */
     wind: number;
@@ -47,7 +47,7 @@ export const DEFAULTS: Readonly<Settings> = {
     directions: 40_000,
     particles: 10_000,
     friction: 0.5,
-    thickness: 1,
+    thickness: 0.5,
     wind: 0,
     motion: 'still',
     up: 'auto',
@@ -74,7 +74,7 @@ export const RANGES = {
     directions: [400, 640_000],
     particles: [100, 100_000],
     friction: [0, 1.5],
-    thickness: [0.2, 5],
+    thickness: [0.1, 2],
     wind: [0, 10],
     slice: [-1, 1],
 } as const satisfies { [K in keyof Settings]?: readonly [number, number] };

@@ -407,6 +407,7 @@ export interface SceneDescription {
         position?: Vec3;
         rotation?: { axis: Vec3; degrees: number };
         velocity?: Vec3;
+        /** Default: half the distance between neighbouring particles. */
         thickness?: number;
         /** [column, row] of fixed particles. */
         pins?: readonly (readonly [number, number])[];
@@ -425,7 +426,7 @@ export interface SceneDescription {
     iterations?: number;
     substeps?: number;
     frame_limit?: number;
-    at_rest?: { distance?: number; frames?: number };
+    at_rest?: { distance?: number; speed?: number; frames?: number };
 }
 
 /** A validated scene. */
@@ -441,8 +442,12 @@ export class Scene extends Deletable {
     makeModel(): Mesh;
     /** With the scene's options. */
     buildMap(mesh: Mesh): AnyMap;
-    /** The scene's cloth and collider, ready to step. The map may be of another kind than the scene's. */
-    makeSimulation(map: AnyMap): Simulation;
+    /**
+     * The scene's cloth and collider, ready to step. The map may be of another kind than the scene's.
+     * @param options  allowOpenCollider: accept the exact map of an open mesh, near whose gaps particles get in and out
+     * @throws InvalidOptions for the exact map of an open mesh otherwise
+     */
+    makeSimulation(map: AnyMap, options?: { allowOpenCollider?: boolean }): Simulation;
 }
 
 /** Cloth on one collider. The same scene and map give the same positions, bit for bit, in every browser and in native C++. */

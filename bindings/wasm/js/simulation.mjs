@@ -17,8 +17,8 @@ export class Scene extends Handle {
     buildMap(mesh) {
         return wrapMap(this.core, this.core.try('scene_build_map', this.address, requireOwn(this.core, mesh, Mesh)));
     }
-    makeSimulation(map) {
-        return new Simulation(this.core, this.core.try('simulation_make', this.address, requireMap(this.core, map)));
+    makeSimulation(map, { allowOpenCollider = false } = {}) {
+        return new Simulation(this.core, this.core.try('simulation_make', this.address, requireMap(this.core, map), allowOpenCollider ? 1 : 0));
     }
 }
 

@@ -69,7 +69,9 @@ const Collider& collider_of(const Simulation& simulation) {
 
 /// The scene's options, with the particles and the collider of a simulation in their present state.
 Simulation continue_with(const Simulation& simulation, const Scene& scene) {
-    return Simulation(simulation.deformable(), simulation.colliders(), scene.simulation);
+    SimulationOptions options = scene.simulation;
+    options.allow_open_colliders = simulation.options().allow_open_colliders;
+    return Simulation(simulation.deformable(), simulation.colliders(), options);
 }
 
 } // namespace
@@ -92,8 +94,13 @@ ECHINUS_EXPORT(scene_delete) void scene_delete(Scene* scene) {
     delete scene;
 }
 
-ECHINUS_EXPORT(simulation_make) Simulation* simulation_make(const Scene* scene, const AnyMap* map) {
-    return make_handle([&] { return make_simulation(*scene, *map); });
+ECHINUS_EXPORT(simulation_make)
+Simulation* simulation_make(const Scene* scene, const AnyMap* map, bool allow_open_collider) {
+    return make_handle([&] {
+        Scene with_choice = *scene;
+        with_choice.simulation.allow_open_colliders = allow_open_collider;
+        return make_simulation(with_choice, *map);
+    });
 }
 ECHINUS_EXPORT(simulation_continue)
 Simulation* simulation_continue(const Simulation* simulation, const Scene* scene) {

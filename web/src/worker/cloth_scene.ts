@@ -20,7 +20,12 @@ const FROM_Z: Record<Axis, { axis: [number, number, number]; degrees: number } |
 
 export const columnsOf = (particles: number): number => Math.max(2, Math.round(Math.sqrt(particles)));
 
-export const thicknessOf = (settings: Settings, { radius }: Body): number => 0.01 * settings.thickness * radius;
+/** Edge of the square cloth, in radii of the model. */
+const SIZE = 2.25;
+
+/** By the distance between neighbouring particles: a finer cloth lies closer, and as few of its faces are cut. */
+export const thicknessOf = (settings: Settings, { radius }: Body): number =>
+    (settings.thickness * SIZE * radius) / (columnsOf(settings.particles) - 1);
 
 /**
  * A cloth above the model. Lengths and gravity scale with the model's radius, so the cloth falls equally fast on a
@@ -35,9 +40,9 @@ export function sceneFor(settings: Settings, body: Body): SceneDescription {
     const rotation = FROM_Z[body.up];
     return {
         model: 'model.obj', // a scene needs a name; its map already exists
-        cloth: { size: [2.25 * radius, 2.25 * radius], particles: [columns, columns], position, thickness, ...(rotation && { rotation }) },
+        cloth: { size: [SIZE * radius, SIZE * radius], particles: [columns, columns], position, thickness, ...(rotation && { rotation }) },
         material: { friction: settings.friction },
         gravity: UNIT[body.up].map((part) => -9.81 * radius * part) as [number, number, number],
-        at_rest: { distance: 0.001 * radius },
+        at_rest: { distance: 0.001 * radius, speed: 0.1 * radius },
     };
 }

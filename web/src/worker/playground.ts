@@ -129,7 +129,7 @@ export class Playground {
     restart(): void {
         const scene = this.#echinus.parseScene(sceneFor(this.#settings, this.body));
         const { map } = this;
-        const simulation = scene.makeSimulation(map);
+        const simulation = scene.makeSimulation(map, { allowOpenCollider: true });
         this.#dropCloth();
         this.#clothMap = map;
         this.#scene = scene;
