@@ -19,23 +19,6 @@ namespace {
 constexpr double kThickness = 0.01;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-/// An exact map that is asked as if it were the user's.
-class AskedExactMap final : public CustomMap {
-  public:
-    explicit AskedExactMap(ExactMap map) : map_(std::move(map)) {}
-    void contains_batch(std::span<const Vec3f> points,
-                        std::span<std::uint8_t> inside) const noexcept override {
-        echinus::contains_batch(map_.view(), points, inside);
-    }
-    void contacts_batch(std::span<const Vec3f> points, float margin,
-                        std::span<Contact> contacts) const noexcept override {
-        echinus::contacts_batch(map_.view(), points, margin, contacts);
-    }
-
-  private:
-    ExactMap map_;
-};
-
 /// Does the simulation go through with it? All positions finite after some frames, or an orderly end.
 void expect_no_harm(const Contact& answer) {
     Simulation simulation(test::sheet_at(0.2, 0.5, 9),
@@ -52,20 +35,6 @@ void expect_no_harm(const Contact& answer) {
 
 } // namespace
 
-TEST(CustomMapSimulation, BringsASheetToRestOutsideOfAnAnalyticBall) {
-    Simulation simulation(test::sheet_at(1.05, 2, 21), {{.map = std::make_shared<test::AnalyticBall>(1.0F)}},
-                          {.thickness = kThickness, .friction = 0.8});
-    test::run_to_rest(simulation, 6000);
-    test::expect_draped_over_unit_ball(simulation, kThickness);
-}
-
-TEST(CustomMapSimulation, LaysASheetAsFlatOnABoxAsTheMapBehindItDoes) {
-    const auto asked = std::make_shared<AskedExactMap>(ExactMap::build(make_box({1, 1, 1})));
-    Simulation simulation(test::sheet_at(0.55, 0.5, 15), {{.map = asked}}, {.thickness = kThickness});
-    test::run_to_rest(simulation, 1000);
-    for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(p.z, 0.5 + kThickness, 1e-3);
-}
-
 TEST(CustomMapSimulation, PushesOutOfABallThatMovesAndTurns) {
     const Collider ball{.map = std::make_shared<test::AnalyticBall>(1.0F),
                         .linear_velocity = {0, 0, 0.5},
@@ -80,17 +49,6 @@ TEST(CustomMapSimulation, PushesOutOfABallThatMovesAndTurns) {
         height = std::max(height, p.z);
     }
     EXPECT_GT(height, 1.4F);
-}
-
-TEST(CustomMapSimulation, GivesTheSameStateEachTime) {
-    const auto hash = [] {
-        Simulation simulation(test::sheet_at(1.05, 1, 15),
-                              {{.map = std::make_shared<test::AnalyticBall>(1.0F)}},
-                              {.thickness = kThickness});
-        for (int i = 0; i < 100; ++i) simulation.step();
-        return simulation.state_hash();
-    };
-    EXPECT_EQ(hash(), hash());
 }
 
 TEST(CustomMapSimulation, ComesToNoHarmByAnswersThatMakeNoSense) {

@@ -143,44 +143,6 @@ TEST(ExactCollision, DoesNotAddToTheSpeedOfAParticle) {
     EXPECT_GT(simulation.profile().contact_count, 100u);
 }
 
-TEST(ExactCollision, LaysASheetFlatOnABoxAtItsThickness) {
-    Simulation simulation(test::sheet_at(0.55, 0.5, 15), {{.map = ExactMap::build(make_box({1, 1, 1}))}},
-                          {.thickness = kThickness});
-    test::run_to_rest(simulation, 1000);
-    for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(p.z, 0.5 + kThickness, 1e-3);
-}
-
-TEST(ExactCollision, BringsASheetOnASphereToRestOutside) {
-    const TriangleMesh sphere = make_sphere(1, 80, 40);
-    Simulation simulation(test::sheet_at(1.05, 2, 21), {{.map = ExactMap::build(sphere)}},
-                          {.thickness = kThickness, .friction = 0.8});
-    test::run_to_rest(simulation, 6000);
-    std::size_t touching = 0;
-    for (const Vec3f& p : simulation.positions()) {
-        EXPECT_LT(winding_number(sphere, Vec3d(p)), 0.5);
-        touching += length(p) < 1 + 2 * kThickness ? 1 : 0;
-    }
-    EXPECT_GT(touching, simulation.positions().size() / 4);
-}
-
-TEST(ExactCollision, HoldsASheetOnASlopeThatFrictionCanHoldAndNotOnASteeperOne) {
-    const ExactMap box = ExactMap::build(make_box({2, 2, 1}));
-    EXPECT_LT(test::slid_down_slope(box, std::atan(0.4)), 0.005);
-    EXPECT_GT(test::slid_down_slope(box, std::atan(0.6)), 0.05);
-}
-
-TEST(ExactCollision, CarriesTurnsAndLiftsASheetAlongWithItsCollider) {
-    const Collider box{.map = ExactMap::build(make_box({2, 2, 1})),
-                       .linear_velocity = {0.2, 0, 0.3},
-                       .angular_velocity = {0, 0, 1}};
-    Simulation simulation(test::sheet_at(0.5 + kThickness, 0.3, 7), {box},
-                          {.thickness = kThickness, .friction = 0.8});
-    const Vec3f corner = simulation.positions()[0];
-    for (int i = 0; i < 240; ++i) simulation.step();
-    const Vec3d expected = simulation.colliders()[0].pose.to_world(Vec3d(corner));
-    EXPECT_NEAR(length(Vec3d(simulation.positions()[0]) - expected), 0, 0.02);
-}
-
 TEST(ExactCollision, LetsAParticleOutThatBeganInsideAndKeepsItOutsideFromThenOn) {
     const Collider sphere{.map = ExactMap::build(make_sphere(1, 80, 40))};
     Simulation simulation(particles_at({{0.1F, 0.05F, 0.8F}, {0, 0, 0}}), {sphere},
@@ -190,16 +152,6 @@ TEST(ExactCollision, LetsAParticleOutThatBeganInsideAndKeepsItOutsideFromThenOn)
     for (int i = 0; i < 60; ++i) EXPECT_EQ(step_and_count_lost(simulation), 0u);
     // Pushed, not thrown.
     for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(length(p), 1 + kThickness, 5e-3);
-    EXPECT_EQ(simulation.profile().lost_count, 0u);
-}
-
-TEST(ExactCollision, LeavesPinnedParticlesAloneEvenInside) {
-    Deformable particle = particles_at({{0, 0, 0.5F}});
-    particle.inverse_masses = {0};
-    Simulation simulation(particle, {{.map = ExactMap::build(make_sphere(1, 80, 40))}},
-                          {.thickness = kThickness});
-    for (int i = 0; i < 10; ++i) simulation.step();
-    EXPECT_EQ(simulation.positions()[0], (Vec3f{0, 0, 0.5F}));
     EXPECT_EQ(simulation.profile().lost_count, 0u);
 }
 
@@ -213,6 +165,20 @@ TEST(ExactCollision, KeepsAParticleFreeOfTwoCollidersWhileThereIsRoom) {
     simulation.set_collider_velocity(1, {}, {});
     EXPECT_EQ(lost_in(simulation, 60), 0u);
     EXPECT_EQ(simulation.profile().lost_count, 0u);
+}
+
+TEST(ExactCollision, CountsTheParticlesThatGetInsideAnOpenMesh) {
+    TriangleMesh open = make_box({1, 1, 1}, 4);
+    std::erase_if(open.faces, [&](const Triangle& face) {
+        return std::ranges::all_of(face, [&](std::uint32_t v) { return open.vertices[v].z > 0.49F; });
+    });
+    Simulation simulation(test::sheet_at(0.6, 0.8, 9), {{.map = ExactMap::build(open)}},
+                          {.thickness = kThickness, .allow_open_colliders = true});
+    for (int i = 0; i < 60; ++i) simulation.step();
+    const auto inside_count = std::ranges::count_if(
+        simulation.positions(), [&](const Vec3f& p) { return contains(simulation.colliders()[0], p); });
+    EXPECT_GT(inside_count, 0);
+    EXPECT_GE(simulation.profile().lost_count, static_cast<std::uint64_t>(inside_count));
 }
 
 TEST(ExactCollision, CountsWhatTwoCollidersThatOverlapLeaveNoRoomFor) {
@@ -231,37 +197,4 @@ TEST(ExactCollision, AnswersParticlesThatHardlyMoveFromMemory) {
     for (int i = 0; i < 100; ++i) simulation.step();
     EXPECT_EQ(simulation.profile().query_count, 100u * 100u * 10u);
     EXPECT_LT(simulation.profile().map_query_count, simulation.profile().query_count / 20);
-}
-
-TEST(ExactCollision, GivesTheSameBitsOnEveryRunAndInEveryCopy) {
-    const auto start = [] {
-        const Collider torus{.map = ExactMap::build(make_torus(1, 0.4, 30, 16)),
-                             .angular_velocity = {0.2, 0.1, 0.5}};
-        return Simulation(test::sheet_at(0.45, 2, 20), {torus}, {.thickness = kThickness});
-    };
-    Simulation first = start();
-    Simulation second = start();
-    for (int i = 0; i < 100; ++i) first.step();
-    for (int i = 0; i < 50; ++i) second.step();
-    Simulation copy = second;
-    for (int i = 0; i < 50; ++i) second.step();
-    for (int i = 0; i < 50; ++i) copy.step();
-    EXPECT_GT(first.profile().contact_count, 0u);
-    EXPECT_EQ(first.state_hash(), second.state_hash());
-    EXPECT_EQ(first.state_hash(), copy.state_hash());
-}
-
-TEST(ExactCollision, GivesTheSameBitsUnderEachInstructionSet) {
-    const ExactMap torus = ExactMap::build(make_torus(1, 0.4, 30, 16));
-    std::vector<std::uint64_t> hashes;
-    test::under_each_instruction_set([&](std::string_view) {
-        const Collider turning{
-            .map = torus, .linear_velocity = {0, 0, 0.4}, .angular_velocity = {0.2, 0.1, 2}};
-        const Collider still{.map = torus, .pose = {Rotation::about({1, 2, 3}, 1), {0.3, 0.2, -1}}};
-        Simulation simulation(test::sheet_at(0.45, 2, 23), {turning, still}, {.thickness = kThickness});
-        for (int i = 0; i < 100; ++i) simulation.step();
-        EXPECT_GT(simulation.profile().contact_count, 0u);
-        hashes.push_back(simulation.state_hash());
-    });
-    for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes.front());
 }

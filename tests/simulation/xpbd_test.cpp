@@ -38,13 +38,13 @@ Deformable chain(std::size_t particle_count, float mass) {
     return chain;
 }
 
-/// How far the end of a chain hangs below its length, once it hangs still.
-double sag(const Deformable& chain, SimulationOptions options) {
+/// How far the end of a chain hangs below its length, once it hangs still. Drag counts per frame, and so does
+/// the time that this takes.
+double sag(const Deformable& chain, SimulationOptions options, int frame_count) {
     options.gravity = {0, 0, -kGravity};
     options.drag = 0.05;
     options.bound = 100;
     Simulation simulation(chain, {}, options);
-    const int frame_count = static_cast<int>(5 / options.time_step);
     for (int i = 0; i < frame_count; ++i) simulation.step();
     return chain.positions.back().z - simulation.positions().back().z;
 }
@@ -89,7 +89,7 @@ TEST(Xpbd, HangsAMassFromASpringAsLowAsHookeSays) {
                                                         .substep_count = substeps,
                                                         .compliance = {compliance, 0, 0}};
                         const double expected = mass * kGravity * compliance;
-                        EXPECT_NEAR(sag(chain(2, mass), options), expected, 0.01 * expected + 1e-6)
+                        EXPECT_NEAR(sag(chain(2, mass), options, 1000), expected, 0.01 * expected + 1e-6)
                             << "mass " << mass << ", compliance " << compliance << ", step " << time_step
                             << ", " << iterations << " iterations, " << substeps << " substeps";
                     }
@@ -104,13 +104,13 @@ TEST(Xpbd, HangsAChainEquallyLowForAnyNumberOfIterationsAndAnyTimeStep) {
                                             .time_step = time_step,
                                             .iteration_count = iterations,
                                             .compliance = {kCompliance, 0, 0}};
-            EXPECT_NEAR(sag(chain(6, 1), options), expected, 0.02 * expected);
+            EXPECT_NEAR(sag(chain(6, 1), options, 5000), expected, 0.02 * expected);
         }
 }
 
 TEST(Xpbd, IsNeededForThatSinceSticksBecomeStifferWithEveryIteration) {
     const auto sag_of_sticks = [](std::uint32_t iterations) {
-        return sag(chain(6, 1), {.iteration_count = iterations, .stiffness = {0.05, 0, 0}});
+        return sag(chain(6, 1), {.iteration_count = iterations, .stiffness = {0.05, 0, 0}}, 1200);
     };
     EXPECT_GT(sag_of_sticks(2), 3 * sag_of_sticks(20));
 }
@@ -190,7 +190,7 @@ TEST(Xpbd, DrapesASheetOverASphereAndABoxWithNoneInside) {
         options.thickness = kThickness;
         options.friction = 0.8;
         options.drag = 0.02; // the corners swing, and small steps damp them little
-        Simulation simulation(test::sheet_at(0.55, 1.2, 25), {{.map = ExactMap::build(mesh)}}, options);
+        Simulation simulation(test::sheet_at(0.55, 1.2, 17), {{.map = ExactMap::build(mesh)}}, options);
         while (!simulation.at_rest() && simulation.frame() < 2000) {
             simulation.step();
             if (simulation.frame() % 50 == 0) ASSERT_EQ(inside_count(simulation, mesh), 0u);

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <echinus/custom_map.hpp>
+#include <echinus/exact_map.hpp>
+
+#include <utility>
 
 namespace echinus::test {
 
@@ -36,6 +39,23 @@ class AnalyticBall final : public CustomMap {
 
     float radius_;
     Vec3f centre_;
+};
+
+/// An exact map that is asked as if it were the user's.
+class AskedExactMap final : public CustomMap {
+  public:
+    explicit AskedExactMap(ExactMap map) : map_(std::move(map)) {}
+    void contains_batch(std::span<const Vec3f> points,
+                        std::span<std::uint8_t> inside) const noexcept override {
+        echinus::contains_batch(map_.view(), points, inside);
+    }
+    void contacts_batch(std::span<const Vec3f> points, float margin,
+                        std::span<Contact> contacts) const noexcept override {
+        echinus::contacts_batch(map_.view(), points, margin, contacts);
+    }
+
+  private:
+    ExactMap map_;
 };
 
 /// Gives every particle the same answer.
