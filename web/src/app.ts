@@ -427,8 +427,8 @@ class App {
 
 function mapNote(kind: MapNews['kind'], closed: boolean): string {
     if (kind === 'distance') return 'Out along the ray from the centre, as in the paper: watch the cloth creep along a leg.';
-    if (closed) return 'Out by the shortest way. Nothing gets through: every step is proved.';
-    return 'Out by the shortest way. The mesh is open: near its gaps sides are estimated, and the cloth may get in there.';
+    if (closed) return 'Out by the shortest way. No particle gets through: every step is proved. Sharp parts may show between particles.';
+    return 'Out by the shortest way. The mesh is open: near its gaps sides are estimated, and particles may get in there.';
 }
 
 /** From the centre to the highest vertex: an instructive ray for most models. */

@@ -129,13 +129,13 @@ function withoutWorker() {
     };
 }
 
-test('that nothing gets through is said of closed meshes alone', async () => {
+test('that no particle gets through is said of closed meshes alone', async () => {
     const page = await openPage();
-    assert.match(await page.locator('#map-note').textContent(), /Nothing gets through/);
+    assert.match(await page.locator('#map-note').textContent(), /No particle gets through/);
     await drop(page, [['open.obj', OPEN]]);
     await untilTitle(page, 'open.obj, 3 faces');
     assert.match(await page.locator('#map-note').textContent(), /The mesh is open/);
-    assert.doesNotMatch(await page.locator('#map-note').textContent(), /Nothing gets through/);
+    assert.doesNotMatch(await page.locator('#map-note').textContent(), /No particle gets through/);
     await page.context().close();
 });
 
