@@ -9,7 +9,7 @@
 
 namespace echinus {
 
-/// A collider with an exact map as it stands in one substep, and what keeping particles off it needs.
+/// A collider with an exact map as it stands in one substep, and what is needed to keep particles off it.
 ///
 /// Lengths are those of the world in the *body frame*: the collider's frame with its scale applied. The map
 /// is asked in its own frame, *local*.
@@ -19,17 +19,17 @@ struct ColliderNow {
     FrameChange local, body;
     MaterialMotion material;
     float step;      ///< of the lattice, in world units
-    float guard;     ///< nearer to the surface no particle is left
+    float guard;     ///< no particle is left nearer to the surface than this
     float thickness; ///< at least two guards
     float friction;
-    float coordinate_sum; ///< of where the collider stands: what rounding is judged by
+    float coordinate_sum; ///< of where the collider stands; bounds what is lost in rounding
 
     /// @pre the options have a thickness
     ColliderNow(const Collider& collider, const RigidTransform& previous_pose,
                 const SimulationOptions& options);
 
     Vec3f to_body(const Vec3f& point_local) const { return Vec3f(times(Vec3d(point_local), scale)); }
-    /// Outside? Whatever way the particle came.
+    /// Is the place outside, whichever way the particle came?
     bool outside(const Vec3f& position) const { return !contains(map, local.point_to_local(position)); }
 };
 

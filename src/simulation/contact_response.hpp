@@ -34,8 +34,8 @@ inline bool needs_response(const Vec3f& position, const Contact& contact, float 
 /// every relaxation, and creep uphill.
 Vec3f wanted_push(const Vec3f& position, const Contact& contact, float thickness);
 
-/// The part of the wanted push that is carried out. Going back is free: as far as the particle came against
-/// the push in this frame, it is pushed. The rest of the push would be new motion. Outside the surface it is
+/// The part of the wanted push that is carried out. As far as the particle came against the push in this
+/// frame, it is pushed back. The rest of the push would be new motion. Outside the surface it is
 /// left out: there the map's answer may change from one cell of directions to the next, and a particle that
 /// was thrown by it would never rest. Inside, a tenth of it in every relaxation leads the particle out.
 /// @param motion  since the last frame, relative to the collider's material

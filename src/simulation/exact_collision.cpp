@@ -46,7 +46,7 @@ void ExactCollision::relax(Particles& particles, SimulationProfile& profile) {
 ///
 /// Particles with about the same reach are asked for together.
 void ExactCollision::ask(Particles& particles, SimulationProfile& profile) {
-    // Above 0 also where that is too little for a float, so that doubling gets somewhere.
+    // Above 0 even where twice the thickness is too small for a float, so that doubling gets somewhere.
     const float least_reach = std::max(2 * now_.thickness, std::numeric_limits<float>::min());
     float reach = least_reach;
     std::size_t left = 0;
@@ -80,8 +80,8 @@ void ExactCollision::ask(Particles& particles, SimulationProfile& profile) {
     }
 }
 
-/// How far from the particle surface is looked for: what it may come to in the next relaxations, or twice as
-/// far as there was none.
+/// How far from the particle the map looks for surface: as far as the particle may get in the next
+/// relaxations, or twice as far as there was none before.
 float ExactCollision::reach_of(std::size_t i, const Particles& particles) const {
     const float speed = length(particles.positions[i] - particles.previous[i]);
     const float needed = 2 * (now_.thickness + speed);
@@ -133,7 +133,7 @@ std::span<const std::uint32_t> ExactCollision::find_unproven(const Particles& pa
     const PointArrays& free_now = moves_ ? moved_along_ : particles.frame_start;
     unproven_.count = 0;
     list_unproven(known_, now_, particles.positions, free_now, unproven_);
-    // What was just compared with the frame's start says nothing about these.
+    // These were compared with where they were at the start of the frame, not with where they were free last.
     for (const std::uint32_t i : free_places_.exceptions())
         if (is_known_free(known_, now_, i, particles.positions[i], free_now[i])) unproven_.add(i);
     const auto is_proven = [&](std::uint32_t i) { return particles.pinned(i) || !is_unproven(i, particles); };

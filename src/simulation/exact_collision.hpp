@@ -14,8 +14,8 @@ namespace echinus {
 
 /// Collision with an exact map.
 ///
-/// In the relaxations a particle is asked for its nearest point only when it has moved so far since the last
-/// answer that another one is possible (KnownContacts); those that have to be are asked for together.
+/// In the relaxations the map is asked for a particle's nearest point only when the particle has moved so far
+/// since the last answer that another one is possible (KnownContacts). Such particles are asked for together.
 ///
 /// After the relaxations comes the proof (SweptParticle). Most particles are proven free by what is known
 /// already; the others are swept.

@@ -60,9 +60,9 @@ std::size_t push_known(const KnownContacts& known, const ColliderNow& collider, 
 bool push_one(const KnownContacts& known, const ColliderNow& collider, std::size_t i,
               Particles& particles) noexcept;
 
-/// Lists the particles of which it is not known that they are free: those for which not both the place where
-/// they are and the one where they were free last lie in the ball without surface, which is convex.
-/// @param free_places  in the world, carried along with the collider
+/// Lists the particles that are not known to be free. A particle is known to be free when the place where it
+/// is and the place where it was free last both lie in the ball without surface, which is convex.
+/// @param free_places  in the world, moved along with the collider
 void list_unproven(const KnownContacts& known, const ColliderNow& collider, const PointArrays& positions,
                    const PointArrays& free_places, ParticleList& unproven) noexcept;
 

@@ -10,7 +10,7 @@ namespace echinus {
 /// now: p - previous_pose(pose^-1(p)), an affine function of p. Not velocity times time, whose error for a
 /// rotation would push particles outwards a little in every frame.
 struct MaterialMotion {
-    Vec3f turn_x, turn_y, turn_z; ///< rows of a matrix; 0 of a collider that stands still
+    Vec3f turn_x, turn_y, turn_z; ///< rows of a matrix; 0 for a collider that stands still
     Vec3f centre, shift;
 
     MaterialMotion() = default;

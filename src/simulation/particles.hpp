@@ -9,7 +9,7 @@
 
 namespace echinus {
 
-/// Points as a structure of arrays: what one instruction does to many of them lies side by side.
+/// Points as a structure of arrays, so that one instruction can work on many of them.
 struct PointArrays {
     /// Floats after the last one, which a kernel may read and write back unchanged.
     static constexpr std::size_t kPadding = 64;
@@ -44,7 +44,7 @@ struct Particles {
     PointArrays positions;
     PointArrays previous;        ///< one substep ago
     PointArrays frame_start;     ///< where they were when the frame began
-    std::vector<float> mobility; ///< 1, or 0 of a particle that is pinned
+    std::vector<float> mobility; ///< 1, or 0 for a particle that is pinned
 
     explicit Particles(const Deformable& deformable) {
         for (const float inverse_mass : deformable.inverse_masses)

@@ -18,8 +18,8 @@ namespace echinus {
 ///     Scattered    anyhow
 enum class RunShape : std::uint8_t { SideBySide, Neighbours, EverySecond, Scattered };
 
-/// Consecutive sticks of one shape. But for scattered ones no two share a particle, so that relaxing many at
-/// once gives the same bits as one after the other; and all share their corrections alike.
+/// Consecutive sticks of one shape. Except in a scattered run no two share a particle, so that relaxing many
+/// at once gives the same bits as one after the other; and all share their corrections alike.
 struct StickRun {
     RunShape shape = RunShape::Scattered;
     std::uint32_t a = 0, b = 0; ///< particles of the first stick
@@ -43,7 +43,7 @@ struct StickArrays {
     /// [count] Parts of a stick's error that its two ends take: by their masses, and by the stiffness or the
     /// compliance.
     std::vector<float> share_a, share_b;
-    std::vector<float> yield;        ///< [count] The part by which its goal gives way; 0 of a stick
+    std::vector<float> yield;        ///< [count] The part by which its goal gives way; 0 for a stick
     std::vector<float> rest_lengths; ///< [count + PointArrays::kPadding]
     std::vector<float> goal_lengths; ///< the same
     std::vector<StickRun> runs;

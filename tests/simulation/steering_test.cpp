@@ -51,7 +51,7 @@ TEST(Steering, LeavesAPinnedParticleWhereItIs) {
     EXPECT_GT(simulation.positions()[35].z, 0);
 }
 
-TEST(Steering, DragsNobodyIntoAModel) {
+TEST(Steering, DragsNoParticleIntoAModel) {
     const TriangleMesh torus = make_torus(1, 0.4, 24, 12);
     const Collider collider{.map = ExactMap::build(torus)};
     const ClothOptions cloth{.column_count = 20,
