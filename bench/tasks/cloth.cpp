@@ -135,11 +135,12 @@ Records measure_cloth(const Setting& setting) {
     ClothScene scene = read_cloth_scene(setting, setting.is_short ? "horse_small.json" : "horse.json");
     ClothLimits limits;
     if (setting.is_short) limits = {.frame_limit = 220, .first_timed = 180, .timed_count = 40};
-    add_runs(setting, scene, cloth_systems(scene.mesh, scene.scene.simulation.thickness), limits, records);
+    add_runs(setting, scene, cloth_systems(scene.mesh, scene.scene.simulation.thickness.value()), limits,
+             records);
     if (setting.is_short) return records;
     // Ten times as many particles in the same sheet, on our maps, timed only.
     scene.scene.cloth.column_count = scene.scene.cloth.row_count = 316;
-    std::vector<ClothSystem> ours = cloth_systems(scene.mesh, scene.scene.simulation.thickness);
+    std::vector<ClothSystem> ours = cloth_systems(scene.mesh, scene.scene.simulation.thickness.value());
     std::erase_if(ours, [](const ClothSystem& system) {
         return system.name != "exact map" && system.name != "distance map";
     });

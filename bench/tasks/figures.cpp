@@ -44,7 +44,7 @@ void add_query_figures(const Subject& subject, const Setting& setting, Records& 
 void add_cloth_figures(const Subject& subject, const char* scene_file, const Setting& setting,
                        Records& records) {
     const ClothScene scene{read_scene(setting.scenes / scene_file), subject.mesh};
-    std::vector<ClothSystem> systems = cloth_systems(scene.mesh, scene.scene.simulation.thickness);
+    std::vector<ClothSystem> systems = cloth_systems(scene.mesh, scene.scene.simulation.thickness.value());
     std::erase_if(systems, [](const ClothSystem& system) { return !is_chosen(system.name); });
     ClothLimits limits;
     if (setting.is_short) limits = {.frame_limit = 200, .first_timed = 180, .timed_count = 20};
