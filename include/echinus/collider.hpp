@@ -58,8 +58,7 @@ RigidTransform pose_after(const Collider& collider, double seconds);
 // local frame is outside. NaN or infinity in a point: outside, no contact, no crossing. Cost per call: the
 // map's query, and the conversion of the pose to a matrix, once per batch.
 // @pre the pose is finite and its rotation of unit length, scale is finite and has no 0, and a custom map is
-// not null. Nothing checks this here: with another rotation the answers are not meaningful. (A simulation
-// checks its colliders.)
+// not null. Nothing checks this here: with another rotation the answers are not meaningful.
 
 bool contains(const Collider& collider, Vec3f point_world) noexcept;
 
