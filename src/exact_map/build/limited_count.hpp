@@ -5,8 +5,8 @@
 
 namespace echinus {
 
-/// What several threads have counted together, and whether it is more than is allowed. Whether it is in the
-/// end does not depend on who counted what.
+/// What several threads have counted together, and whether it exceeds what is allowed. The final verdict does
+/// not depend on which thread counted what.
 class LimitedCount {
   public:
     explicit LimitedCount(std::size_t most) : most_(most) {}

@@ -19,8 +19,8 @@ std::uint32_t default_divisions(std::size_t face_count, bool open);
 /// most 91 bytes a face: up to 3 vertices of 12 bytes, 3 corners and a number of 4, 3 border edges of 12, and
 /// 128/56 of the tree. A face lies in 8 cells at most. There it is listed once or, when its band is split,
 /// twice, at 6 bytes; and it makes one band at most, or two halves, of 10 bytes each. That is 91 + 8 (2 * 6 +
-/// 2 * 10) = 347. Of an open surface no band is split. There a face makes one band, which may need another
-/// without faces to mark what is beyond it, and the gap below the band may be cut into two pieces
+/// 2 * 10) = 347. In a map of an open surface no band is split. There a face makes one band, which may need
+/// another without faces to mark what is beyond it, and the gap below the band may be cut into two pieces
 /// (GapStates): 91 + 8 (6 + 3 * 10) = 379. What does not grow with the faces is a few cells and nodes of the
 /// tree.
 /// @param vertex_count  of the mesh; those beyond 3 a face, which no face uses, come on top
