@@ -14,10 +14,10 @@ struct ClothSystem {
     std::string name, setting; ///< resolution and the like, in words
     std::size_t bytes = 0;
     echinus::ColliderMap map;
-    bool only_timed = false; ///< its run ends once it is timed: too slow to be waited for
+    bool only_timed = false; ///< its run ends once it is timed: too slow to complete
 };
 
-/// The systems of rivals/systems/ around one mesh; those that come in sizes have the paper's.
+/// The systems of rivals/systems/ around one mesh; those with several sizes have the paper's.
 /// @param thickness  of the scene, in the mesh's unit
 std::vector<ClothSystem> cloth_systems(const echinus::TriangleMesh& mesh, double thickness);
 
@@ -32,7 +32,7 @@ struct ClothLimits {
     std::uint32_t first_timed = 180, timed_count = 100;
 };
 
-/// What became of a cloth.
+/// The result of one cloth's simulation.
 struct ClothOutcome {
     std::uint32_t frames = 0;
     bool rested = false;
@@ -43,7 +43,7 @@ struct ClothOutcome {
 };
 
 /// Runs the scene with each system until the cloth rests, or to the limit. They take turns of a few frames,
-/// so that what else the machine does slows all alike. The judge is an exact map.
+/// so that other load on the machine slows all alike. The judge is an exact map.
 std::vector<ClothOutcome> run_cloths(const ClothScene& scene, const std::vector<ClothSystem>& systems,
                                      const ClothLimits& limits,
                                      const std::function<void(double)>& report_progress);

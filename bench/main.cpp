@@ -1,4 +1,4 @@
-// Measures Echinus beside its rivals; scripts/bench runs it and says what the tasks are.
+// Measures Echinus beside its rivals; scripts/bench runs it and lists the tasks.
 
 #include "pinning.hpp"
 #include "progress.hpp"

@@ -4,7 +4,7 @@
 
 namespace {
 
-/// What the process may use, before anything was pinned.
+/// The cores that the process may use, before anything was pinned.
 const cpu_set_t& all_cores() {
     static const cpu_set_t cores = [] {
         cpu_set_t set;

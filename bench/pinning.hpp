@@ -1,7 +1,7 @@
 #pragma once
 
-/// Keeps the calling thread, and threads that it starts from now on, on one core: the last of those that it
-/// may use, which has the least to do for the system.
+/// Keeps the calling thread, and threads that it starts from now on, on one core: the last of those it may
+/// use, which the system uses least.
 void pin_to_one_core();
 
 /// Lets the calling thread run on every core again.

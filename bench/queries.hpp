@@ -3,7 +3,7 @@
 #include "systems.hpp"
 #include "task.hpp"
 
-/// What of a query is measured.
+/// The measured parts of a query.
 enum class Question { Sides, Contacts };
 
 /// "contains" or "contacts"
@@ -12,7 +12,7 @@ const char* name_of(Question question);
 /// The effort that asks one of the two.
 echinus::comparison::Effort effort_for(Question question, const Setting& setting);
 
-/// Systems that were built, ready to be asked.
+/// Built systems, ready for queries.
 struct BuiltSystems {
     std::vector<BenchSystem> list;
     std::vector<echinus::comparison::TimedBuild> builds;

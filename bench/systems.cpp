@@ -34,7 +34,7 @@ std::vector<BenchSystem> systems_on(const Subject& subject) {
         distance("distance map", mesh, DirectionGrid::Spherical),
         distance("octahedral distance map", mesh, DirectionGrid::Octahedral),
     };
-    // As many bytes as the exact map: the two answer alike.
+    // As many bytes as the exact map, which gives the same answers.
     const ExactMap map = ExactMap::build(mesh);
     list.push_back(bench_system("classified grid", false, [&mesh, bytes = map.view().byte_count()] {
         return ClassifiedGrid::build(mesh, bytes);

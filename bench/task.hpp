@@ -7,10 +7,10 @@
 #include <functional>
 #include <string>
 
-/// What a task is measured with.
+/// The settings of a task.
 struct Setting {
     std::filesystem::path meshes, debian_horse, scenes, truth_cache;
-    bool is_short = false;                   ///< to see that all works: few particles, no large meshes
+    bool is_short = false;                   ///< a smoke run: few particles, no large meshes
     std::size_t point_count = 1'000'000;     ///< of a set
     std::size_t large_point_count = 200'000; ///< of a set around a large mesh
     echinus::comparison::Effort effort{.passes = 5, .enough_seconds = 3, .patience_seconds = 10};
@@ -31,6 +31,6 @@ Records measure_reproduction(const Setting& setting);
 /// task, system, set, against, ratio, spread.
 Records measure_ratios(const Setting& setting);
 
-/// Compares the ratios with recorded ones and says what got slower or faster.
+/// Compares the ratios with recorded ones and reports what got slower or faster.
 /// @return the exit status: 1 if something got slower, in two runs
 int guard(const Setting& setting, const std::filesystem::path& recorded);

@@ -50,8 +50,7 @@ class Input {
 /// temporary copy of standard input, removed at the end.
 class InputFile {
   public:
-    /// @param format  the ending that tells a reader what standard input holds, such as "obj"; without
-    ///                meaning for a file
+    /// @param format  the extension for the contents of standard input, such as "obj"; ignored for a file
     /// @throws echinus::Error Unreadable
     InputFile(const std::filesystem::path& argument, const std::string& format);
     InputFile(const InputFile&) = delete;

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Judges exact maps by CGAL's exact predicates and writes the tables of docs/accuracy.md: every generated mesh, and
-# every mesh of a folder. Takes about an hour with ten million points; a few minutes with --points 500000.
+# Checks exact maps by CGAL's exact predicates and writes the tables of docs/accuracy.md: every generated
+# mesh, and every mesh of a folder. Takes about an hour with ten million points; a few minutes with --points
+# 500000.
 #
 #   scripts/bench accuracy [--points N] [FOLDER]     FOLDER: ../shared/meshes, where it is at hand
 #
-# Fails when a mesh does not hold; the tables are written all the same. Each mesh's figures, by rule and kind of point,
-# are left in out/accuracy/MESH.json.
+# Fails when a mesh does not pass; the tables are written all the same. Each mesh's figures, by rule and kind
+# of point, are left in out/accuracy/MESH.json.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 points=10000000
@@ -93,7 +94,7 @@ for file in "$folder"/*.obj "$folder"/*.off; do
     judge "$name" "$file"
 done
 
-# What lies between the page's markers is replaced; the prose around them stays.
+# Replaces the text between the page's markers; the prose around them stays.
 tables=$out/tables.md
 write_tables >"$tables"
 sed -i -e "/^<!-- tables/,/^<!-- end of tables/{/^<!-- tables/{p;r $tables" -e "};/^<!-- end of tables/p;d}" "$page"

@@ -1,4 +1,4 @@
-// The task cloth: the same cloth falls on each system, and what a frame of a larger one takes.
+// The task cloth: the same cloth falls on each system, and the time of a larger one's frame.
 
 #include "cloth_run.hpp"
 #include "rivals/compare/systems.hpp"
@@ -16,14 +16,14 @@ using namespace echinus::rivals;
 
 namespace {
 
-/// What the paper gives for the horse (section 2.3).
+/// The paper's figures for the horse (section 2.3).
 constexpr std::size_t kPaperBytes = 630'000;
 
 /// Along a ray the surface is farther than it is; a simulation looks four times as far along those of a
 /// distance map, so it does for any system that measures along rays.
 constexpr float kAlongRays = 4;
 
-/// Asks a system for contacts alone.
+/// Queries a system for contacts only.
 class AskedSystem final : public CustomMap {
   public:
     AskedSystem(comparison::Built system, float margin_factor)
@@ -56,7 +56,7 @@ ClothSystem distance(const char* name, std::string setting, const TriangleMesh& 
     return {name, std::move(setting), bytes, std::move(map)};
 }
 
-/// Padded by the thickness, without which a grid knows of nothing above the model's highest point.
+/// Padded by the thickness, without which a grid has no contacts above the model's highest point.
 ClothSystem dense(const char* name, const TriangleMesh& mesh, SampleFormat format, double thickness) {
     DenseGrid grid = DenseGrid::with_bytes(mesh, kPaperBytes, {.format = format, .padding = thickness});
     const std::string setting =

@@ -1,5 +1,5 @@
-// The task figures: every figure of the README's tables, on meshes that everybody can have: Debian's horse
-// and a generated torus. Calls of four sizes, and the cloth on each system.
+// The task figures: every figure of the README's tables, on freely available meshes: Debian's horse and a
+// generated torus. Calls of four sizes, and the cloth on each system.
 
 #include "cloth_run.hpp"
 #include "queries.hpp"

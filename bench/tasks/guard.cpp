@@ -1,5 +1,5 @@
 // The guard: what got slower since bench/recorded.csv was recorded? Ours and two rivals take turns, so the
-// ratios of their times hardly depend on what else the machine does.
+// ratios of their times hardly depend on the machine's load.
 
 #include "builds.hpp"
 #include "queries.hpp"
@@ -110,7 +110,7 @@ std::string key_of(const Record& record) {
     return subject_of(record) + " beside " + record.at("against") + " on " + record.at("mesh");
 }
 
-/// By which factor a ratio changed, and by which it may.
+/// The factor by which a ratio changed, and the tolerated one.
 struct Change {
     std::string against;
     double factor, tolerance;

@@ -23,15 +23,15 @@ constexpr std::pair<VertexCorrection, const char*> kCorrections[] = {{VertexCorr
                                                                      {VertexCorrection::Signed, "signed"}};
 
 /// Each direction a dynamic array of a 32-bit program (three pointers) with its floats on the heap: the
-/// layout that comes nearest to what the paper prints.
+/// layout that comes nearest to the paper's figure.
 double dynamic_array_bytes(const DistanceMapView& map) {
     return 12 * static_cast<double>(map.direction_count()) + 4 * static_cast<double>(map.entry_count());
 }
 
 /// Shares of a set's particles, in percent.
 struct WrongSides {
-    double missed = 0;   ///< inside, but said to be outside
-    double invented = 0; ///< outside, but said to be inside
+    double missed = 0;   ///< inside, but answered as outside
+    double invented = 0; ///< outside, but answered as inside
 };
 
 WrongSides wrong_sides(const DistanceMapView& map, const JudgedSet& set) {

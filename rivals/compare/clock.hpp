@@ -10,8 +10,8 @@ inline double seconds_of(clockid_t clock) {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Processor time of the calling thread: other programs on the machine prolong it little. What they still
-/// add, through shared caches and the clock rate, medians of several turns are nearly free of.
+/// Processor time of the calling thread, which other programs on the machine prolong little. Medians of
+/// several turns remove most of their remaining influence, through shared caches and the clock rate.
 inline double thread_seconds() {
     return seconds_of(CLOCK_THREAD_CPUTIME_ID);
 }

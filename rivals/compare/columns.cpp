@@ -10,14 +10,14 @@ namespace echinus::comparison {
 
 namespace {
 
-/// Three digits, as a reader compares them, without exponents.
+/// Three digits, for easy comparison, without exponents.
 std::string digits(double value) {
     if (value > 0 && value < 0.00005) return "<0.0001";
     const int places = value >= 100 ? 0 : value >= 10 ? 1 : value >= 1 ? 2 : value >= 0.1 ? 3 : 4;
     return value == 0 ? "0" : fmt::format("{:.{}f}", value, places);
 }
 
-/// Of a set; a dash where the system was not asked about it.
+/// A figure of a set; a dash where the system was not measured on it.
 template <typename Value>
 Column of_set(const char* group, const std::string& set, Value value) {
     return {group, set, [set, value](const Figures& figures) -> std::string {

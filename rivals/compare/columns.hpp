@@ -10,7 +10,7 @@ namespace echinus::comparison {
 
 /// A column of a table with a row for each system, for terminals and pages alike.
 struct Column {
-    std::string group; ///< what neighbouring columns have in common, with the unit
+    std::string group; ///< the common heading of neighbouring columns, with the unit
     std::string head;
     std::function<std::string(const Figures&)> cell;
 };
@@ -21,8 +21,8 @@ std::vector<Column> time_columns(const Comparison& comparison);
 /// Share of wrong signs for each set; errors of depth and normal on S, where they matter.
 std::vector<Column> error_columns(const Comparison& comparison);
 
-/// What a table needs beside it: systems that exceed the budget and why, systems that refused the mesh, and
-/// whether systems mean different things by inside.
+/// The notes of a table: systems that exceed the budget and why, systems that refused the mesh, and whether
+/// systems define inside differently.
 std::vector<std::string> remarks_on(const Comparison& comparison);
 
 } // namespace echinus::comparison

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMinPoints = 100;
 
-// ---- What is true ----
+// ---- Truth ----
 
 Vec3f way_out_of(const Vec3f& point, const Contact& nearest) {
     const Vec3f way = nearest.point - point;
@@ -65,7 +65,7 @@ bool parts_overlap(const TriangleMesh& mesh, const std::vector<JudgedSet>& sets)
     });
 }
 
-// ---- What is built ----
+// ---- Building ----
 
 struct BuiltSystem {
     Built system;
@@ -84,7 +84,7 @@ struct SystemOnMesh {
     std::unique_ptr<Sizes> sizes;
 };
 
-/// Does a system say that it cannot have this size, or this mesh, which others can?
+/// Does a system refuse this size or this mesh, while others may accept it?
 bool is_refusal(const Error& error) {
     return error.code() == ErrorCode::InvalidOptions || error.code() == ErrorCode::InvalidMesh;
 }
@@ -114,7 +114,7 @@ std::vector<SystemOnMesh> systems_on(const TriangleMesh& mesh, const CompareOpti
     return on_mesh;
 }
 
-// ---- What is measured ----
+// ---- Measuring ----
 
 constexpr Effort kForTable{.passes = 5, .enough_seconds = 1, .undecided = kUndecided};
 constexpr Effort kForCurves{.passes = 3, .enough_seconds = 0.5, .undecided = kUndecided};
@@ -127,7 +127,7 @@ void measure_all(const JudgedSet& set, double radius, const Effort& effort,
     for (std::size_t k = 0; k < built.size(); ++k) built[k].figures.sets.push_back(std::move(figures[k]));
 }
 
-// ---- All of it ----
+// ---- Everything ----
 
 /// Work for which one bar is shown.
 class Stage {
@@ -184,7 +184,7 @@ std::vector<std::size_t> budgets_of(const CompareOptions& options) {
     return budgets;
 }
 
-/// A system in all the sizes that it can be had in.
+/// A system in all its available sizes.
 std::vector<BuiltSystem> build_sizes(SystemOnMesh& one, const CompareOptions& options) {
     std::vector<BuiltSystem> sizes;
     for (const std::size_t budget : budgets_of(options)) {

@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-/// The paper's comparison, for any mesh: what each system takes in bytes and time, and how often and how much
-/// it is wrong.
+/// The paper's comparison, for any mesh: each system's bytes and time, and how often and how far it is wrong.
 namespace echinus::comparison {
 
 /// In R: a little more than the exact map's lattice step.
@@ -36,13 +35,13 @@ struct CompareOptions {
 struct Figures {
     const SystemType* system;
     std::size_t byte_count;
-    std::string counted; ///< what the bytes are
+    std::string counted; ///< what the bytes comprise
     std::string excess;  ///< why it takes more bytes than the budget; empty when it does not
     double build_ms;     ///< processor time of all threads, the median of several builds where they are quick
     std::vector<SetFigures> sets;
 };
 
-/// A system that would not be built, and why.
+/// A system that could not be built, and why.
 struct Refusal {
     const SystemType* system;
     std::string reason;
@@ -62,14 +61,13 @@ struct Comparison {
     std::vector<std::vector<Figures>> curves;
 };
 
-/// Builds all systems around the mesh and asks them about the same particles, taking turns on one thread. The
-/// judge is an ExactMap, asked for the nearest point; that it is right shows echinus-check
-/// (docs/accuracy.md). Where parts of the surface overlap, depths inside are to the nearest surface, within
-/// the solid or not. The map is exact on its lattice: particles nearer to the surface than kUndecided R are
-/// on no wrong side.
+/// Builds all systems around the mesh and queries them with the same particles, taking turns on one thread.
+/// The judge is an ExactMap's nearest point; echinus-check verifies it (docs/accuracy.md). Where parts of the
+/// surface overlap, depths inside are to the nearest surface, within the solid or not. The map is exact on
+/// its lattice: particles nearer to the surface than kUndecided R never count as wrong.
 ///
-/// Times are processor times, and those of one run compare with each other alone. All else depends on mesh
-/// and options only.
+/// Times are processor times, comparable only within one run. Everything else depends on mesh and options
+/// only.
 /// @throws Error InvalidMesh for a mesh that is not closed or has no area; InvalidOptions for a system that
 /// does not exist or is not there, when none fits, for a budget of 0 or above kMaxBytes, or fewer than 100
 /// particles; and what report_progress throws

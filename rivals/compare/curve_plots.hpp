@@ -8,8 +8,8 @@
 
 namespace echinus::comparison {
 
-/// The colour of a system wherever it is drawn, as SVG writes it; of those that tell apart with every common
-/// kind of colour blindness. Dashed: not a map of Echinus.
+/// The SVG colour of a system in all plots; distinguishable with every common kind of colour blindness.
+/// Dashed: not a map of Echinus.
 struct LineStyle {
     std::string colour;
     bool dashed;
@@ -17,7 +17,7 @@ struct LineStyle {
 LineStyle line_style_of(const SystemType& system);
 
 /// Near the surface (the set S), each system a curve over its sizes: error against bytes and time against
-/// error, of signs and of depths. An error of 0 is drawn at the edge, which the axis says.
+/// error, of signs and of depths. An error of 0 is drawn at the edge, as noted on the axis.
 /// @pre comparison.curves is not empty
 std::vector<Plot> curve_plots(const Comparison& comparison);
 

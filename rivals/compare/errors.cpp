@@ -21,8 +21,8 @@ Spread spread_of(std::vector<double> errors) {
     return spread;
 }
 
-/// Between two directions of about unit length, in degrees. By both products, since the arc cosine alone
-/// knows nothing of angles below a thousandth of a degree.
+/// Between two directions of about unit length, in degrees. By both products, since the arc cosine alone does
+/// not resolve angles below a thousandth of a degree.
 double angle_between(const Vec3f& a, const Vec3f& b) {
     if (length(a) == 0) return 90;
     const double angle = std::atan2(length(cross(Vec3d(a), Vec3d(b))), dot(Vec3d(a), Vec3d(b)));

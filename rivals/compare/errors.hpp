@@ -7,25 +7,25 @@
 #include <span>
 #include <vector>
 
-/// How far the answers of a system are from what is true.
+/// How far the answers of a system are from the truth.
 namespace echinus::comparison {
 
-/// What is true of a set of particles.
+/// The true answers for a set of particles.
 struct Truth {
     std::vector<std::uint8_t> inside; ///< [n]
     std::vector<float> distance;      ///< [n] to the nearest point of the surface, in the mesh's unit
     std::vector<Vec3f> way_out;       ///< [n] unit, from a particle inside to that point; empty if not known
 };
 
-/// What a system said about some of them. All arrays have the length of `asked`.
+/// A system's answers about some of them. All arrays have the length of `asked`.
 struct Answers {
     std::vector<std::uint32_t> asked; ///< the numbers of the particles
     std::vector<std::uint8_t> inside;
-    std::vector<float> depth;  ///< positive inside; empty when only the sign was asked
-    std::vector<Vec3f> normal; ///< unit, or 0 where the system knows no way out; empty as above
+    std::vector<float> depth;  ///< positive inside; empty when only signs were queried
+    std::vector<Vec3f> normal; ///< unit, or 0 where the system has no way out; empty as above
 };
 
-/// Mean, ninety-ninth percentile and worst of an error; all 0 when there was nothing to judge.
+/// Mean, ninety-ninth percentile and worst of an error; all 0 without particles to judge.
 struct Spread {
     std::size_t count = 0;                ///< of errors
     double mean = 0, most = 0, worst = 0; ///< 99 % of errors are at most `most`
@@ -44,8 +44,8 @@ struct ErrorSummary {
 };
 
 /// @param radius     R of the mesh's bounding sphere: the unit of lengths
-/// @param undecided  particles nearer to the surface than this, in R, are on no wrong side: what the truth
-/// itself does not know
+/// @param undecided  particles nearer to the surface than this, in R, never count as wrong, since the truth
+/// itself is uncertain there
 ErrorSummary errors_of(const Truth& truth, double radius, const Answers& answers, double undecided = 0);
 
 } // namespace echinus::comparison

@@ -13,7 +13,7 @@ auto part_of(Items& all, Part part) {
     return std::span(all).subspan(part.begin, part.size());
 }
 
-/// Room for the answers, and the two questions.
+/// Memory for the answers, and the two queries.
 class Interview {
   public:
     Interview(const JudgedSet& set, bool one_by_one)
@@ -29,7 +29,7 @@ class Interview {
         for (std::size_t i = part.begin; i < part.end; ++i) contacts_[i] = system.contact(set_.points[i]);
     }
 
-    /// Asks once more, since another system answered last.
+    /// Queries once more, since another system answered last.
     Answers answers(const rivals::System& system, const std::vector<Part>& parts, const Effort& effort) {
         Answers answers;
         for (const Part& part : parts) {
@@ -53,7 +53,7 @@ class Interview {
     std::vector<Contact> contacts_;
 };
 
-/// All systems with one question.
+/// All systems with one query.
 /// @param ask  void (const rivals::System&, Part of the set)
 template <typename Ask>
 std::vector<Racer> racers_for(std::span<const rivals::System* const> systems, std::size_t point_count,

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-/// What `echinus compare` and the benchmarks have in common: systems answer for a set of particles in turns,
-/// and a judge says how wrong the answers are.
+/// Shared by `echinus compare` and the benchmarks: systems answer for a set of particles in turns, and a
+/// judge measures the errors of the answers.
 namespace echinus::comparison {
 
-/// A set of particles and what is true of them; where the truth is empty, no errors are found.
+/// A set of particles and the truth about them; where the truth is empty, no errors are computed.
 struct JudgedSet {
     std::string name;
     std::vector<Vec3f> points;
@@ -30,10 +30,10 @@ struct TimedBuild {
 /// @throws Error as the builder does
 TimedBuild build_timed(const Builder& builder);
 
-/// How thoroughly, and what is asked.
+/// The effort and the kinds of query.
 struct Effort {
     int passes = 5;
-    double enough_seconds = 1; ///< a system that took so long in all passes answers no more
+    double enough_seconds = 1; ///< a system that took this long in all passes stops
     /// Seconds. A system that seems to need longer for a set answers for parts of it; judged by a trial in
     /// small calls, in which systems that gain by the size of a call look slower than they are.
     double patience_seconds = 30;
@@ -44,11 +44,11 @@ struct Effort {
     double undecided = 0; ///< as in errors_of()
 };
 
-/// What was measured of a system with one set of particles.
+/// The measurements of a system on one set of particles.
 struct SetFigures {
     std::string set{}; ///< its name
-    Pace contains{};   ///< left empty where sides were not asked for
-    Pace contacts{};   ///< left empty where contacts were not asked for
+    Pace contains{};   ///< empty where sides were not queried
+    Pace contacts{};   ///< empty where contacts were not queried
     /// Sides of contains_batch(), depths and normals of contacts_batch(); of a system that would take long
     /// for the whole set, of the particles that it was timed with.
     ErrorSummary errors{};

@@ -141,8 +141,8 @@ class Sheet {
     std::vector<double> heights_; ///< [rows * columns]
 };
 
-/// Into how many a sample of a coarse sheet is divided: an odd number, so that there is one in its middle; so
-/// many that the boxes of smoothing, which are whole samples wide, come near to what is asked.
+/// Into how many a sample of a coarse sheet is divided: an odd number, so that there is one in its middle;
+/// enough for the smoothing boxes, which are whole samples wide, to approximate the requested width.
 std::size_t division_of(std::size_t sample_count) {
     constexpr std::size_t kFine = 300;
     return sample_count >= kFine ? 1 : 2 * (kFine / (2 * sample_count)) + 1;

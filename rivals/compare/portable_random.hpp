@@ -5,8 +5,8 @@
 
 namespace echinus::comparison {
 
-/// Random numbers with the same bits on every machine. The standard fixes what its engines give but not what
-/// its distributions make of it, so those are our own, and the normal one takes no function of the C library.
+/// Random numbers with the same bits on every machine. The standard fixes the output of its engines but not
+/// of its distributions, so those are our own, and the normal one uses no function of the C library.
 class PortableRandom {
   public:
     explicit PortableRandom(std::uint64_t seed) : engine_(seed) {}

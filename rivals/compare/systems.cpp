@@ -39,7 +39,7 @@ Builder builder(Build build) {
             0};
 }
 
-/// A system that has nothing to keep but the mesh.
+/// A system that keeps nothing but the mesh.
 /// @param within  Builder (const TriangleMesh&, std::size_t byte_budget)
 template <typename Within>
 decltype(SystemType::on) plain(Within within) {

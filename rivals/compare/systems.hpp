@@ -15,12 +15,12 @@
 
 namespace echinus::comparison {
 
-/// Told by a build that takes long what it does and how much of that is done, 0 to 1.
+/// Called by a long build with its present step and the share of it that is done, 0 to 1.
 using Progress = std::function<void(std::string_view stage, double share)>;
 
 using Built = std::unique_ptr<const rivals::System>;
 
-/// How to build a system in a size that is settled, as often as one likes.
+/// Builds a system in a fixed size, any number of times.
 struct Builder {
     std::function<Built()> build;
     /// Processor time of what all sizes have in common and `build` need not do again, seconds.
@@ -32,11 +32,11 @@ class Sizes {
   public:
     virtual ~Sizes() = default;
 
-    /// The finest that takes at most so many bytes. A system that has no sizes is built as it is.
+    /// The finest that takes at most this many bytes. A system without sizes is built as it is.
     /// @throws Error InvalidOptions when the coarsest exceeds the budget, or as the system's own build does
     virtual Builder within(std::size_t byte_budget) = 0;
 
-    /// The size that people use, for a system that is worth a look even where its coarsest does not fit.
+    /// The usual size, for a system worth showing even where its coarsest exceeds the budget.
     virtual std::optional<Builder> usual() { return {}; }
 };
 
@@ -46,7 +46,7 @@ struct SystemOptions {
 
 /// A system that takes part.
 struct SystemType {
-    std::string_view name;    ///< one word, as it is asked for: "dense-16bit"
+    std::string_view name;    ///< one word, as in options: "dense-16bit"
     std::string_view title;   ///< for people: "dense grid, 16 bit"
     std::string_view package; ///< what it is built with, where that need not be there
     bool has_sizes;           ///< does its number of bytes depend on a budget?
@@ -56,11 +56,11 @@ struct SystemType {
     bool available() const { return static_cast<bool>(on); }
 };
 
-/// All that there are, ours first; also those that this program was built without.
+/// All systems, ours first; including those that this program was built without.
 const std::vector<SystemType>& all_systems();
 
 /// @throws Error InvalidOptions for a name that no system has, naming those that do, and for a system that
-/// this program was built without, naming what it takes
+/// this program was built without, naming what it needs
 const SystemType& system_named(std::string_view name);
 
 } // namespace echinus::comparison

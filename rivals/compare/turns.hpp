@@ -14,7 +14,7 @@ struct Part {
     std::size_t size() const { return end - begin; }
 };
 
-/// One of those that take turns.
+/// A participant that takes turns.
 struct Racer {
     /// Does its work for a part, in one call.
     std::function<void(Part)> run;
@@ -26,11 +26,11 @@ struct TurnOptions {
     std::size_t warm_up = 20'000; ///< items done before a part without being timed, as many as it has at most
     int passes = 5;
     double enough_seconds =
-        std::numeric_limits<double>::infinity(); ///< a racer that was timed so long drops out
+        std::numeric_limits<double>::infinity(); ///< a racer that was timed this long drops out
     std::function<void(double fraction)> report_progress;
 };
 
-/// What a racer took.
+/// The times of a racer.
 struct Pace {
     double ns;                   ///< per item: the median over passes
     double spread;               ///< half the distance between their quartiles, by it; NaN after one pass

@@ -17,10 +17,10 @@ namespace echinus {
 std::filesystem::path new_part(const std::filesystem::path& folder);
 
 /// Locks an open part until all copies of the descriptor are closed.
-/// @returns false where somebody else holds the lock, or the file system knows none
+/// @returns false where another process holds the lock, or the file system has no locks
 bool lock_part(int descriptor) noexcept;
 
-/// Removes the parts in this folder that nobody holds. What cannot be removed stays.
+/// Removes the unlocked parts in this folder. Parts that cannot be removed stay.
 void remove_abandoned_parts(const std::filesystem::path& folder) noexcept;
 
 } // namespace echinus

@@ -22,7 +22,7 @@ std::size_t bytes_of(const TriangleMesh& mesh, const ExactMapOptions& options = 
     return map.view().byte_count();
 }
 
-/// The bytes of the coarsest map, as the refusal of a smaller budget tells them.
+/// The bytes of the coarsest map, from the error for a smaller budget.
 std::size_t least_bytes(const TriangleMesh& mesh) {
     try {
         ExactMap::build(mesh, {.byte_budget = 1});

@@ -18,7 +18,7 @@ namespace echinus::rivals {
 
 namespace {
 
-/// Not along an axis, where meshes like to have their edges; longer than the unit sphere's diameter.
+/// Not along an axis, where meshes often have edges; longer than the unit sphere's diameter.
 const btVector3 kRay(0.9F, 1.5F, 2.43F);
 
 /// The facing of the nearest face: Bullet turns the normal it reports to the ray, so the face's own is taken
@@ -104,7 +104,7 @@ struct BulletMesh::Shape {
     std::vector<Vec3f> vertices;
     std::vector<Triangle> faces;
     btTriangleIndexVertexArray arrays; ///< refers to both
-    /// Not const, since Bullet's functions that only ask are not.
+    /// Not const, since Bullet's query functions are not.
     mutable btBvhTriangleMeshShape shape;
 
     Shape(const TriangleMesh& mesh, const Sphere& sphere, double reach_)

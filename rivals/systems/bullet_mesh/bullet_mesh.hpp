@@ -9,17 +9,17 @@
 
 namespace echinus::rivals {
 
-/// Bullet's own static triangle mesh (btBvhTriangleMeshShape), asked as its users ask it; for reference.
+/// Bullet's own static triangle mesh (btBvhTriangleMeshShape), queried as its users do; for reference.
 ///
-/// To Bullet such a mesh is a sheet, not a solid. It has no test for a particle in it, so the side is told by
-/// a ray: is the first face along a fixed direction seen from behind? (Of two faces in one place either may
-/// be first.) It has no depth of a particle either, only contacts of small shapes with single faces, so the
-/// way out is that to the nearest contact of a sphere around the particle. A particle deeper than the
-/// sphere's radius, the reach, touches nothing: it is inside, and Bullet offers no way out. A longer reach
-/// costs time, since the sphere meets more faces.
+/// To Bullet such a mesh is a sheet, not a solid. It has no test for a particle in it, so a ray decides the
+/// side: is the first face along a fixed direction seen from behind? (Of two faces in one place either may be
+/// first.) It has no depth of a particle either, only contacts of small shapes with single faces, so the way
+/// out is that to the nearest contact of a sphere around the particle. A particle deeper than the sphere's
+/// radius, the reach, touches nothing: it is inside, and Bullet offers no way out. A longer reach costs time,
+/// since the sphere meets more faces.
 class BulletMesh final : public System {
   public:
-    /// What a game gives a soft body as its margin, in bounding radii.
+    /// A typical soft-body margin in games, in bounding radii.
     static constexpr double kUsualReach = 0.05;
     static constexpr std::size_t kMaxFaces = (std::size_t{1} << 21) - 1; ///< of Bullet's compressed tree
 

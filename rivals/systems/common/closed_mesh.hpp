@@ -6,12 +6,11 @@
 #include <cstdint>
 #include <string_view>
 
-/// What the builders of several systems ask about a mesh first.
+/// Common first checks of the builders of several systems.
 namespace echinus::rivals {
 
-/// Throws unless the mesh has an inside: no system can say more about an open one than where its rule of
-/// sides happens to lead. Vertices on one point of ExactMap's lattice count as one, so that faces need not
-/// share vertices.
+/// Throws unless the mesh has an inside: for an open one, the answers of every system are an accident of its
+/// rule. Vertices on one point of ExactMap's lattice count as one, so that faces need not share vertices.
 /// @param system  for the sentence, such as "a dense grid"
 /// @throws Error InvalidMesh as inspect() does, for an open mesh, or when the bounding radius lies outside
 /// [1e-15, 1e15]
@@ -31,7 +30,7 @@ Box box_of(const TriangleMesh& mesh);
 /// along each axis. In double, since the spacing is not yet bounded.
 std::array<double, 3> nodes_over(const Box& box, double spacing);
 
-/// The spacing that puts so many samples along the box's longest side, ends included.
+/// The spacing that puts this many samples along the box's longest side, ends included.
 /// @throws Error InvalidOptions unless sample_count lies in [2, most]
 double spacing_of_samples(const Box& box, std::uint32_t sample_count, std::uint32_t most);
 

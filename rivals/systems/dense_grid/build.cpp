@@ -1,5 +1,5 @@
-// From a mesh to samples: the fastest exact distances at hand, those of an exact map, on all cores if asked
-// to, so that the grid's build time is not held against it.
+// From a mesh to samples: the fastest exact distances available, those of an exact map, on all cores if
+// requested, to be fair to the grid's build time.
 
 #include "rivals/systems/common/closed_mesh.hpp"
 #include "rivals/systems/dense_grid/field.hpp"
@@ -27,7 +27,7 @@ double count_of(const std::array<double, 3>& nodes) {
     return nodes[0] * nodes[1] * nodes[2];
 }
 
-/// All that is known before the samples are.
+/// Everything except the samples.
 SampledField frame_of(const Box& box, double spacing, SampleFormat format) {
     if (!(spacing > 0) || spacing > box.longest_side())
         throw Error(ErrorCode::InvalidOptions,

@@ -31,24 +31,24 @@ struct DenseGridOptions {
 };
 
 /// Signed distances at the nodes of a regular grid over the mesh's own box, or a padded one, read by
-/// trilinear interpolation: what one writes oneself when no library is at hand, and the speed to beat. The
-/// samples are exact, from ExactMap.
+/// trilinear interpolation: what a programmer writes without a library, and the speed to beat. The samples
+/// are exact, from ExactMap.
 ///
-/// Wrong by interpolation. The signed distance of a solid changes by at most as much as one moves (its
-/// gradient has length 1: Osher and Fedkiw, "Level Set Methods and Dynamic Implicit Surfaces", 2003, chapter
-/// 2), and the interpolation is a mean of eight corners, so its error is at most the weighted mean of the
-/// distances to them: at most sqrt(sum of w_i |p - c_i|^2) = spacing sqrt(sum of t (1 - t)) over the three
-/// axes, which is largest at a cell's centre: sqrt(3) / 2 of the spacing. value_error_bound() adds the
-/// rounding of the samples. Where the distance is smooth it is second order: spacing^2 / 8 times the sum of
-/// its second derivatives along the axes. The side of a particle is certain where the field is farther from 0
-/// than the bound; details thinner than the spacing may be lost.
+/// Wrong by interpolation. The signed distance of a solid changes by at most the distance moved (its gradient
+/// has length 1: Osher and Fedkiw, "Level Set Methods and Dynamic Implicit Surfaces", 2003, chapter 2), and
+/// the interpolation is a mean of eight corners, so its error is at most the weighted mean of the distances
+/// to them: at most sqrt(sum of w_i |p - c_i|^2) = spacing sqrt(sum of t (1 - t)) over the three axes, which
+/// is largest at a cell's centre: sqrt(3) / 2 of the spacing. value_error_bound() adds the rounding of the
+/// samples. Where the distance is smooth it is second order: spacing^2 / 8 times the sum of its second
+/// derivatives along the axes. The side of a particle is certain where the field is farther from 0 than the
+/// bound; details thinner than the spacing may be lost.
 class DenseGrid final : public System {
   public:
     /// Offsets of 16-bit samples have 31 bits.
     static constexpr std::size_t kMaxNodes = std::size_t{1} << 30;
     static constexpr std::uint32_t kMaxSamples = 1U << 20; ///< along the longest side
 
-    /// So many samples along the longest side of the grid's box, and as close along the others. Time
+    /// This many samples along the longest side of the grid's box, and as close along the others. Time
     /// O(samples), each a nearest point.
     /// @param mesh  closed; inside is where the winding number is not 0
     /// @throws Error InvalidMesh as inspect() does, for an open mesh, or when the bounding radius lies
@@ -84,7 +84,7 @@ class DenseGrid final : public System {
         float distance = 0; ///< negative inside
         Vec3f gradient;     ///< of length 1, but for the interpolation's error; 0 beyond the box
     };
-    /// What the batches are compared with, bit for bit. Beyond the box, and where the point is not finite,
+    /// The reference for the batches, bit for bit. Beyond the box, and where the point is not finite,
     /// distance and gradient are 0, which is outside.
     Sample sample(const Vec3f& point) const noexcept;
 

@@ -6,7 +6,7 @@
 
 namespace echinus::rivals {
 
-/// What a query reads. Samples lie [z][y][x].
+/// The data that queries read. Samples lie [z][y][x].
 struct SampledField {
     Vec3f low, high;          ///< the padded box; the first node is at its low corner
     float nodes_per_unit = 0; ///< 1 / spacing

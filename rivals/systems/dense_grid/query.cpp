@@ -1,4 +1,4 @@
-// One particle at a time: what the kernels are compared with.
+// One particle at a time: the reference for the kernels.
 
 #include "rivals/systems/dense_grid/kernels.hpp"
 #include "simd/dispatch.hpp"

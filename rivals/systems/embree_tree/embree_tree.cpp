@@ -16,7 +16,7 @@ namespace echinus::rivals {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// Not along an axis, where meshes like to have their edges.
+/// Not along an axis, where meshes often have edges.
 constexpr Vec3f kDirection{0.3F, 0.5F, 0.81F};
 constexpr std::size_t kPacket = 16;
 

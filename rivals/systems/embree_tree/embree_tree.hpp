@@ -10,7 +10,7 @@
 
 namespace echinus::rivals {
 
-/// How a ray tracer tells on which side a particle is, by a ray along a fixed direction.
+/// How a ray tracer decides the side of a particle, by a ray along a fixed direction.
 enum class RaySides : std::uint8_t {
     /// An odd number of faces crossed. A ray through an edge or a vertex may meet the faces there twice, or
     /// not at all: Embree's robust mode closes the gaps between faces and does not count each crossing once

@@ -32,7 +32,7 @@ struct DecompositionOptions {
 /// reports. So a mesh of more than `face_limit` faces is simplified first, and each face of the original
 /// belongs to the segment of the face it became or, where it vanished, of the nearest one from edge to edge.
 /// Segments of a simplified mesh are less good: of the horse in 17 segments, 2.4 % of the particles near the
-/// surface are told wrongly with 4000 faces, 1.7 % with all 6000.
+/// surface are on the wrong side with 4000 faces, 1.7 % with all 6000.
 ///
 /// HACD cannot reach a count below that of the parts of a mesh that are farther than 1.5 % of the diagonal
 /// from each other: then there is a segment for each. Nor can there be more segments than faces.

@@ -21,8 +21,8 @@ struct CrossingLanes {
 /// A filter in single precision for crossing_on().
 ///
 /// With corners a, b, c counted from the particle p, the ray from the origin through p passes an edge (a, b)
-/// on the side that the sign of p . (a x b) tells, and p lies on the side of the plane that the sign of
-/// a . (b x c) tells; added to the sum of the former, that is the volume as seen from the origin.
+/// on the side given by the sign of p . (a x b), and p lies on the side of the plane given by the sign of a .
+/// (b x c); added to the sum of the former, that is the volume as seen from the origin.
 ///
 /// Corners are exact here: differences of whole numbers up to 2^19. With m^2 the largest of |a|^2, |b|^2,
 /// |c|^2 and u = 2^-24, each component of a x b is off by at most 4 u m^2, and its product with a vector v by

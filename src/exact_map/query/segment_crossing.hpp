@@ -54,8 +54,8 @@ inline std::optional<SegmentCrossing> crossing_with_face(const std::array<Lattic
     const bool from_front = from_distance != 0 ? from_distance > 0 : at_zero > 0;
     const bool to_front = to_distance != 0 ? to_distance > 0 : at_zero > 0;
     if (from_front == to_front) return std::nullopt;
-    // The segment's line passes the edge from v to w on the side that tells the sign of
-    // way . ((v - from) x (w - from)). No edge is parallel to it, or both ends would be on one side.
+    // The segment's line passes the edge from v to w on the side given by the sign of way . ((v - from) x (w
+    // - from)). No edge is parallel to it, or both ends would be on one side.
     const LatticePoint way = to - from;
     const auto passes_inside = [&](const LatticePoint& v, const LatticePoint& w) {
         const std::int64_t volume = dot(way, cross(v - from, w - from));

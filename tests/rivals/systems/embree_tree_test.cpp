@@ -26,7 +26,7 @@ std::vector<TriangleMesh> meshes() {
     return {make_torus(0.7, 0.3, 24, 12), make_box({1, 2, 0.3}, 2), make_sphere(1, 16, 8)};
 }
 
-/// How many of the points are not on the side that the exact map tells.
+/// How many of the points are not on the exact map's side.
 std::size_t wrong_sides(const TriangleMesh& mesh, const std::vector<Vec3f>& points, RaySides sides) {
     std::vector<std::uint8_t> truth(points.size()), answers(points.size());
     const ExactMap judge = ExactMap::build(mesh);

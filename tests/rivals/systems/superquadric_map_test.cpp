@@ -54,7 +54,7 @@ std::vector<Vec3f> points_around(const TriangleMesh& mesh, std::size_t count = 4
     return points;
 }
 
-/// How far from the surface the map still tells inside from outside wrongly.
+/// The largest distance from the surface at which the map is wrong about the side.
 double farthest_wrong(const SuperquadricMap& map, const TriangleMesh& mesh) {
     const ExactMap exact = ExactMap::build(mesh);
     double farthest = 0;
