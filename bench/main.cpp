@@ -26,7 +26,7 @@ const std::map<std::string, Records (*)(const Setting&)> kTasks{
 };
 
 struct Arguments {
-    std::string task, instruction_set;
+    std::string task, instruction_set, commit;
     Setting setting;
     fs::path target, recorded;
 };
@@ -42,7 +42,8 @@ int run(Arguments& arguments) {
     if (!arguments.instruction_set.empty()) use_instruction_set(arguments.instruction_set);
     pin_to_one_core();
     if (arguments.task == "guard") return guard(setting, arguments.recorded);
-    kTasks.at(arguments.task)(setting).write(arguments.target, {comparison::describe_machine()});
+    kTasks.at(arguments.task)(setting).write(arguments.target,
+                                             {comparison::describe_machine(), arguments.commit});
     return 0;
 }
 
@@ -62,6 +63,7 @@ int main(int argument_count, char** argument_values) {
     app.add_flag("--short", setting.is_short, "Few particles, few passes: to see that all works");
     app.add_option("--instruction-set", arguments.instruction_set, "For ours, instead of the widest vectors");
     app.add_option("--recorded", arguments.recorded, "CSV file that the guard compares with");
+    app.add_option("--commit", arguments.commit, "That is measured, and when: a comment of the CSV file");
     app.add_option("-o,--output", arguments.target, "CSV file");
     CLI11_PARSE(app, argument_count, argument_values);
     try {

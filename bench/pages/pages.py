@@ -11,11 +11,11 @@ import re
 
 
 class Results:
-    """The records of one task, and the machine that they are from."""
+    """The records of one task, the machine that they are from, and the commit."""
 
     def __init__(self, folder, task):
         lines = (folder / f"{task}.csv").read_text().splitlines()
-        self.machine = lines[0].removeprefix("# ")
+        self.machine, self.commit = (line.removeprefix("# ") for line in lines[:2])
         self.records = list(csv.DictReader(line for line in lines if not line.startswith("#")))
 
     def where(self, **wanted):
@@ -92,7 +92,7 @@ def query_tables(results, task):
 def queries(folder, task):
     results = Results(folder, task)
     mesh, call = results.records[0]["mesh"], results.records[0]["call"]
-    return {task: query_tables(results, task), f"{task} machine": results.machine,
+    return {task: query_tables(results, task), f"{task} machine": results.machine, f"{task} commit": results.commit,
             f"{task} summary": query_table(results, task, mesh, call, SUMMARY)}
 
 
@@ -104,7 +104,7 @@ def build(folder):
         for faces in results.distinct("faces", mesh=mesh):
             found = {r["system"]: number(r["ms"]) for r in results.where(mesh=mesh, faces=faces)}
             rows.append([mesh, faces] + [found.get(s, "") for s in systems])
-    return {"build": table(rows), "build machine": results.machine}
+    return {"build": table(rows), "build machine": results.machine, "build commit": results.commit}
 
 
 def cloth(folder):
@@ -116,12 +116,12 @@ def cloth(folder):
         rows.append([f"{r['system']}: {r['setting']}", r["particles"], number(r["bytes"], 1e-6),
                      number(r["frame_ms"]), number(r["constraint_ms"]), number(r["collision_ms"]), rest,
                      r["inside_at_end"], number(r["deepest_at_end"]), number(r["deepest"])])
-    return {"cloth": table(rows), "cloth machine": results.machine}
+    return {"cloth": table(rows), "cloth machine": results.machine, "cloth commit": results.commit}
 
 
 def figures(folder):
     results = Results(folder, "figures")
-    values = {"figures machine": results.machine}
+    values = {"figures machine": results.machine, "figures commit": results.commit}
     for mesh in results.distinct("mesh"):
         ask = dict(mesh=mesh, task="contains")
         largest = results.distinct("call", **ask)[0]
@@ -236,11 +236,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("task", choices=TASKS)
     parser.add_argument("--results", type=pathlib.Path, required=True)
-    parser.add_argument("--commit", required=True, help="that was measured, and when")
     parser.add_argument("--output", type=pathlib.Path, required=True, help="folder for the pages")
     arguments = parser.parse_args()
     pages, sections = TASKS[arguments.task]
-    values = sections(arguments.results) | {f"{arguments.task} commit": arguments.commit}
+    values = sections(arguments.results)
     arguments.output.mkdir(parents=True, exist_ok=True)
     for page in pages:
         (arguments.output / page).write_text(filled((pathlib.Path("docs") / page).read_text(), values))
