@@ -16,8 +16,8 @@
 ECHINUS_EXPORT_BEGIN
 
 /// The set-up of a simulation as JSON (docs/scenes.md has every key). Library echinus::scene (needs
-/// nlohmann-json). It reads no meshes: the caller reads the model, with echinus::io or otherwise, and hands
-/// in its map.
+/// nlohmann-json). It reads no meshes: the caller reads the model, with echinus::io or otherwise, and passes
+/// its map.
 namespace echinus {
 
 struct ModelFile {
@@ -40,8 +40,8 @@ using MapOptions = std::variant<ExactMapOptions, DistanceMapOptions>;
 
 using SceneModel = std::variant<ModelFile, TorusModel, SphereModel, BoxModel>;
 
-/// Everything that a simulation starts from. A scene that was read is complete and each number in its
-/// range; whether a shape is possible, its generator tells.
+/// The complete initial state of a simulation. A scene that was read is complete, with each number in its
+/// range; the generators check whether a shape is possible.
 struct Scene {
     SceneModel model;
     RepairOptions repair; ///< for the mesh, before the map is built
@@ -53,7 +53,7 @@ struct Scene {
     ClothOptions cloth;
     Vec3d cloth_velocity; ///< of all particles at the start that are not pinned
     SimulationOptions simulation;
-    std::uint32_t frame_limit = 3000; ///< the simulation ends here when it has not come to rest
+    std::uint32_t frame_limit = 3000; ///< the simulation ends here at the latest
 };
 
 /// @throws Error Unreadable, or InvalidScene with a sentence that begins with the path and names the key at
@@ -61,25 +61,25 @@ struct Scene {
 /// out of range
 Scene read_scene(const std::filesystem::path& path);
 
-/// The same from text; `name` stands for the path in errors.
+/// The same from text; `name` replaces the path in errors.
 Scene parse_scene(std::string_view json, const std::string& name);
 
-/// What a scene has under `map`, alone; {} gives the defaults.
+/// Only the object under a scene's `map`; {} gives the defaults.
 /// @throws Error InvalidScene as above
 MapOptions parse_map_options(std::string_view json, const std::string& name);
 
-/// Where a model's file lies: the first of the folders that has it. An absolute name needs no folder.
-/// @throws Error Unreadable, naming the folders that were looked through
+/// The path of a model's file, in the first of the folders that has it. An absolute name needs no folder.
+/// @throws Error Unreadable, naming the folders that were searched
 std::filesystem::path find_model(const ModelFile& model, std::span<const std::filesystem::path> folders);
 
-/// The mesh of a model that is no file.
+/// The mesh of a generated model.
 /// @throws Error InvalidOptions as the generators do
 TriangleMesh make_mesh(const TorusModel& model);
 TriangleMesh make_mesh(const SphereModel& model);
 TriangleMesh make_mesh(const BoxModel& model);
 
-/// A map of the kind that the options are of.
-/// @param thread_count  0: all cores; stands in place of the one in the options
+/// A map of the options' kind.
+/// @param thread_count  0: all cores; replaces the one in the options
 /// @throws Error as the map's build() does
 AnyMap build_map(const TriangleMesh& mesh, const MapOptions& options, unsigned thread_count = 0);
 

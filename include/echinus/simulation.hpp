@@ -21,7 +21,7 @@ ECHINUS_EXPORT_BEGIN
 /// dynamics, XPBD (Macklin et al. 2016), in small steps (Macklin et al. 2019), where sticks are springs.
 namespace echinus {
 
-/// What a stick stands for; each kind has its own stiffness.
+/// The purpose of a stick; each kind has its own stiffness.
 enum class StickKind : std::uint8_t {
     Structural, ///< between neighbours of a row or column: keeps the cloth from stretching
     Shear,      ///< between neighbours along a diagonal: keeps its squares square
@@ -29,7 +29,7 @@ enum class StickKind : std::uint8_t {
 };
 inline constexpr std::size_t kStickKindCount = 3;
 
-/// Two particles that want to be `rest_length` apart.
+/// Pulls or pushes two particles to the distance `rest_length`.
 struct Stick {
     std::uint32_t a, b;
     float rest_length; ///< not negative
@@ -43,7 +43,7 @@ struct Deformable {
     /// substep_count.
     std::vector<Vec3f> previous_positions;
     /// [particle_count] 1 / mass, in any unit where only ratios count, which they do unless sticks have a
-    /// compliance; 0 for a particle that is pinned: it stays where it is, and no collider moves it.
+    /// compliance; 0 for a pinned particle: it stays in place, and no collider moves it.
     std::vector<float> inverse_masses;
     std::vector<Stick> sticks;   ///< in the order in which they are relaxed
     std::vector<Triangle> faces; ///< for pictures and wind; they do not collide
@@ -64,8 +64,8 @@ struct ClothOptions {
 
 /// A sheet with structural, shear and bending sticks; for 100 x 100 particles 59 002 of them. Particle (row,
 /// column) has index row * column_count + column; every face turns its front along the sheet's local z.
-/// Sticks run through the sheet row by row, those that follow each other sharing no particle where that can
-/// be had: the processor then works on several at once.
+/// Sticks are ordered row by row, with no common particle between successive sticks where possible, so that
+/// the processor can work on several at once.
 /// @throws Error InvalidOptions
 Deformable make_cloth(const ClothOptions& options);
 
@@ -86,15 +86,15 @@ enum class SolverKind : std::uint8_t {
     /// As sticks (Jakobsen 2001): each relaxation removes a share of the error. More relaxations per second
     /// make a stiffer cloth.
     Verlet,
-    /// As springs (XPBD: Macklin et al. 2016, equation 18): what they give under a force does not depend on
-    /// the number of relaxations, once they are enough, nor on the time step.
+    /// As springs (XPBD: Macklin et al. 2016, equation 18): their extension under a force depends neither on
+    /// the number of relaxations, once there are enough, nor on the time step.
     Xpbd,
 };
 
 struct SimulationOptions {
     SolverKind solver = SolverKind::Verlet;
     double time_step = 1.0 / 240; ///< seconds per frame. Half of it: twice the time, a quarter of the stretch
-    /// Relaxations per substep, of all sticks and then of all contacts: more cost time and stretch less.
+    /// Relaxations per substep, of all sticks and then of all contacts: more take longer and stretch less.
     std::uint32_t iteration_count = 10;
     /// Xpbd: steps of time_step / substep_count that a frame is made of. For the same number of relaxations
     /// in all, substeps of one each stretch least (Macklin et al. 2019). Verlet: 1.
@@ -117,7 +117,7 @@ struct SimulationOptions {
     double friction = 0.5;
     RestCondition rest{};
     /// false: no particle is rescued; those that cross the surface of an exact map are counted as lost and
-    /// left there. Only for showing what the proof at the end of a frame is good for.
+    /// left there. Only to demonstrate the effect of the proof at the end of a frame.
     bool keep_free = true;
     /// Accept exact maps of open meshes. Nothing is promised for them: near a gap it is only estimated what
     /// is inside, so particles get in there, some are pushed out through the surface, and lost_count tells
@@ -128,15 +128,15 @@ struct SimulationOptions {
     double bound = 0;
 };
 
-/// What step() spent and counted since the simulation began. Time is not part of the result.
+/// Times and counts of step() since the simulation began. Times are not part of the result.
 struct SimulationProfile {
     double integration_seconds = 0;  ///< Verlet, moving the colliders, and the check for divergence and rest
     double constraint_seconds = 0;   ///< sticks
     double collision_seconds = 0;    ///< queries, push-out and friction
-    std::uint64_t query_count = 0;   ///< particles asked, each iteration and collider counted
+    std::uint64_t query_count = 0;   ///< particle queries, counted per iteration and collider
     std::uint64_t contact_count = 0; ///< of them, those that were pushed
-    /// Of them, those that took the map to answer; beside an exact map a particle that has hardly moved is
-    /// answered from memory.
+    /// Of them, those that needed the map; beside an exact map, a particle that has hardly moved is answered
+    /// from memory.
     std::uint64_t map_query_count = 0;
     /// Times that a particle was rescued: not free of all exact maps after the constraints of a frame, though
     /// it was once, and put back to a free place. docs/conventions.md defines free, rescued and lost.
@@ -183,8 +183,8 @@ class Simulation {
     /// - Pinned particles are left where they are.
     /// - A particle that begins inside is pushed to the nearest surface point, and kept outside once it is
     ///   outside.
-    /// - A particle that several exact maps squeeze until it finds no room goes to where the first of them,
-    ///   or else the next, knows it to be free, and counts as lost to the others.
+    /// - A particle that several exact maps squeeze until it finds no room goes to where it was last free of
+    ///   the first of them, or else of the next, and counts as lost to the others.
     /// - Far from the origin, where floats are too coarse for the room around the last free place, a particle
     ///   may find none, and counts as lost.
     /// @throws Error Diverged, naming the frame; afterwards only reading is allowed
@@ -199,7 +199,7 @@ class Simulation {
     std::uint32_t frame() const;
     /// Speed of the fastest particle in the last substep, units per second; infinite before the first.
     double largest_speed() const;
-    /// Has the rest condition held for as many frames as it asks?
+    /// Has the rest condition held for the required number of frames?
     bool at_rest() const;
     const SimulationProfile& profile() const;
     /// XXH64 of the bits of all positions and previous positions.
@@ -210,15 +210,14 @@ class Simulation {
     void set_collider_velocity(std::size_t collider_index, const Vec3d& linear, const Vec3d& angular);
 
     /// Gives a particle a velocity, units per second, from which the next frame goes on as from any other:
-    /// sticks pull at it and colliders stop it, so a hand that drags particles, setting their velocities
-    /// before each frame to what would take them to it, drags none of them into a model. A pinned particle
-    /// stays.
+    /// sticks pull at it and colliders stop it, so a hand that drags particles by setting their velocities
+    /// towards itself before each frame drags none of them into a model. A pinned particle stays.
     /// @pre particle < particle_count(), and the velocity is finite
     void set_particle_velocity(std::size_t particle, const Vec3d& velocity);
 
     /// Wind for the time of one frame: of the velocity with which air moves across a face, along its normal,
-    /// particles take on the share rate * time_step, each as the mean over the faces around it. Along a face
-    /// air slips by. To be called before each frame; allocates the first time.
+    /// particles take on the share rate * time_step, each as the mean over the faces around it. Air slips
+    /// along faces. Call before each frame; allocates the first time.
     /// @param wind  of the air, units per second; 0 is air at rest, which brakes
     /// @param rate  per second: the higher, the lighter the cloth. Not negative
     /// @pre both are finite

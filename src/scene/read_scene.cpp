@@ -79,7 +79,7 @@ RepairOptions read_repair(JsonObject& scene) {
     return options;
 }
 
-/// A key that is right for another choice is no misspelling: the sentence says what it needs.
+/// A key that is valid for another choice is no misspelling: the sentence names the choice that it needs.
 /// @param choice  the key that chooses, and the word that these keys need
 void refuse_keys_of_other_choice(const JsonObject& object, std::initializer_list<const char*> keys,
                                  const std::string& choice, const std::string& word) {

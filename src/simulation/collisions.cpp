@@ -81,7 +81,7 @@ bool Collisions::is_lost(std::uint32_t particle, const Particles& particles) con
                        [&](const auto& collision) { return collision->is_lost(particle, particles); });
 }
 
-/// @return the number of colliders to which the particle is lost and that were not told so before
+/// @return the number of colliders to which the particle is newly lost
 std::size_t Collisions::mark_lost(std::uint32_t particle, const Particles& particles) {
     return static_cast<std::size_t>(
         std::count_if(collisions_.begin(), collisions_.end(), [&](const auto& collision) {

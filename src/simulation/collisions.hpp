@@ -20,7 +20,7 @@ class Collisions {
     void begin_substep(std::vector<Collider>& colliders, double seconds);
     void relax(Particles& particles, SimulationProfile& profile);
     /// The proof at the end of a frame: rescues the particles that are not proven free, and counts those that
-    /// are lost all the same.
+    /// are lost nevertheless.
     void keep_free(Particles& particles, SimulationProfile& profile);
 
   private:

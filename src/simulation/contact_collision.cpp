@@ -8,7 +8,7 @@ namespace echinus {
 
 namespace {
 
-/// In how large pieces a map is asked about the particles, and for contacts within how many thicknesses.
+/// The size of the pieces of a query, and the margin of its contacts in thicknesses.
 struct QueryPlan {
     std::size_t piece_size;
     float reach_in_thicknesses;

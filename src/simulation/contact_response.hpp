@@ -5,7 +5,7 @@
 
 namespace echinus {
 
-/// How a particle answers a contact.
+/// How a particle responds to a contact.
 struct ResponseRules {
     float thickness = 0; ///< distance to keep from the surface, units
     float friction = 0;  ///< tangential motion taken per length of push
@@ -45,8 +45,8 @@ Vec3f granted_push(const Vec3f& wanted, const Vec3f& motion, bool inside);
 /// never reversed. @pre normal has unit length
 Vec3f apply_friction(const Vec3f& motion, const Vec3f& normal, float grip);
 
-/// What an exact contact leaves of a particle's motion, and how much of the push was not a way back but new
-/// motion: the particle is put where it belongs, and the excess is not added to its velocity.
+/// The motion that an exact contact leaves, and the part of the push that was new motion rather than a way
+/// back: the particle is put where it belongs, and the excess is not added to its velocity.
 struct PushedOut {
     Vec3f motion;
     float excess;

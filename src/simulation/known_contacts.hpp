@@ -16,7 +16,7 @@ namespace echinus {
 ///
 /// Kept in the body frame, and for the present substep in the world.
 struct KnownContacts {
-    /// Stands for no plane.
+    /// Marks a missing plane.
     static constexpr float kNoPlane = std::numeric_limits<float>::infinity();
     /// A pinned particle has this clearance, so that the map is never asked. Its square is finite.
     static constexpr float kNeverAsk = 1e18F;

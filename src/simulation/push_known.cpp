@@ -19,8 +19,8 @@
 namespace echinus {
 namespace {
 
-/// Of lengths and coordinates: what a distance between two places in the world may be off by, since both were
-/// rounded to single precision in two frames, and their distance was computed in it: less than 12 x 2^-24.
+/// Relative to lengths and coordinates: the error of a distance between two places in the world, since both
+/// were rounded to single precision in two frames, as was their distance: less than 12 x 2^-24.
 constexpr float kRounding = 1.0F / (1 << 20);
 
 } // namespace

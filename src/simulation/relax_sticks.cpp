@@ -18,14 +18,14 @@ HWY_BEFORE_NAMESPACE();
 namespace echinus {
 namespace HWY_NAMESPACE {
 
-/// What a run's sticks have in common.
+/// Common to all sticks of a run.
 class LaneStick {
   public:
     explicit LaneStick(const StickRun& run)
         : share_a_(hn::Set(Floats(), run.share_a)), share_b_(hn::Set(Floats(), run.share_b)),
           yield_(hn::Set(Floats(), run.yield)), gives_way_(run.yield != 0) {}
 
-    /// Operation by operation what relax_one() does. @param left  sticks from the first lane on
+    /// The same operations as relax_one(). @param left  sticks from the first lane on
     void operator()(PointLanes& a, PointLanes& b, float* goal_lengths, std::size_t left) const {
         const Floats d;
         const PointLanes across = b - a;

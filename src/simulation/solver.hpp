@@ -14,7 +14,7 @@
 
 namespace echinus {
 
-/// What a simulation is made of. `deformable` is what the user sees: it changes when a frame is complete.
+/// The parts of a simulation. `deformable` is the user's view: it changes when a frame is complete.
 class Simulation::Solver {
   public:
     Solver(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);

@@ -15,7 +15,7 @@ namespace echinus {
 ///     SideBySide   a, a+1, a+2 ... and b, b+1, b+2 ...            two rows of a cloth
 ///     Neighbours   (a, a+1), (a+2, a+3) ...                       every second stick along a row
 ///     EverySecond  (a, a+2), (a+1, a+3), (a+4, a+6), (a+5, a+7)   every second bending stick along a row
-///     Scattered    anyhow
+///     Scattered    in any order
 enum class RunShape : std::uint8_t { SideBySide, Neighbours, EverySecond, Scattered };
 
 /// Consecutive sticks of one shape. Except in a scattered run no two share a particle, so that relaxing many

@@ -16,7 +16,7 @@ SweptParticle::SweptParticle(const ColliderNow& collider, const FreePlaces& free
 /// Of a particle that was free.
 bool SweptParticle::is_free_at(const Vec3f& place_local) const {
     if (sweep(now_.map, free_local_, place_local).found()) return false;
-    // In a closed surface the sweep's silence says this too.
+    // For a closed surface, a sweep without a crossing implies this too.
     return now_.map.border.empty() || !contains(now_.map, place_local);
 }
 

@@ -12,7 +12,7 @@
 
 namespace echinus {
 
-/// One particle, and its way from where it was free last of a collider with an exact map.
+/// One particle, and its path from where it was last free of a collider with an exact map.
 ///
 /// A particle is *free* when it is outside and the chord from that place, both in the map's frame, crosses no
 /// surface. It is *unproven* while that is not certain: the lattice rounds, so a place nearer to the surface

@@ -19,7 +19,7 @@ class Wind {
     void blow(std::span<const Triangle> faces, const Vec3f& wind_step, float share, Particles& particles);
 
   private:
-    /// What the faces around a particle would have it move.
+    /// The motion that the faces around a particle would give it.
     struct Gust {
         Vec3f sum;
         std::uint32_t face_count = 0;
