@@ -188,7 +188,7 @@ TEST_F(QueryCommand, RefusesPointsThatItCannotRead) {
            "its header promises 5 points, but the file ends before");
     refuse("bad.npy", npy_text(kPoints) + "x",
            "its header promises 5 points, but the file goes on behind them");
-    refuse("bad.csv", "", "it holds no points");
+    refuse("bad.csv", "", "it holds neither points nor a line of names");
     refuse("bad.csv", "1,2,3\n1,2\n", "line 2");
     refuse("bad.txt", "{\"x\": 1}\n", "line 1");
     expect_failure(1, "missing.npy", {"query", "box.ech", "missing.npy", "-o", "answers.npy"});
