@@ -98,7 +98,7 @@ for (const map of ['exact', 'distance'])
         // By the cloth's own clock, so that drawing speed does not matter.
         await untilFrame(page, 120 + (await page.evaluate(() => Number(document.body.dataset.frame))));
         await page.waitForTimeout(400); // until the figures are updated
-        if (map === 'exact') assert.equal(await figure(page, 'inside'), '0', 'nobody is dragged into the model');
+        if (map === 'exact') assert.equal(await figure(page, 'inside'), '0', 'no particle is dragged into the model');
         await picture(page, `dragged_${map}`);
         await page.mouse.up();
         await page.waitForFunction(() => !document.querySelector('#canvas.dragging'));

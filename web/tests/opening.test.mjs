@@ -129,7 +129,7 @@ function withoutWorker() {
     };
 }
 
-test('that no particle gets through is said of closed meshes alone', async () => {
+test('only closed meshes get the note that no particle gets through', async () => {
     const page = await openPage();
     assert.match(await page.locator('#map-note').textContent(), /No particle gets through/);
     await drop(page, [['open.obj', OPEN]]);
