@@ -15,7 +15,7 @@ using namespace echinus;
 
 namespace {
 
-/// Cells hold names and numbers of ours: no quotes, no commas.
+/// Cells hold no quotes, and no commas: add() drops them.
 std::vector<std::string> cells_of(const std::string& line) {
     std::vector<std::string> cells(1);
     for (const char c : line)
@@ -54,6 +54,7 @@ Records Records::read(const std::filesystem::path& path) {
 }
 
 void Records::add(Record record) {
+    for (auto& [column, cell] : record) std::erase(cell, ','); // which separates cells
     records_.push_back(std::move(record));
 }
 

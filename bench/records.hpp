@@ -15,7 +15,7 @@ class Records {
     /// @throws echinus::Error Unreadable, or Damaged when a line has another number of cells than the head
     static Records read(const std::filesystem::path& path);
 
-    /// Columns that a record does not have stay empty. @pre it has no others
+    /// Columns that a record does not have stay empty; commas in its cells are dropped. @pre it has no others
     void add(Record record);
     /// Writes the file whole; lines of comment, such as the machine, begin with #.
     void write(const std::filesystem::path& path, const std::vector<std::string>& comments) const;
