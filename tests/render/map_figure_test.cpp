@@ -41,7 +41,8 @@ int count_greenish(const Image& image, std::uint32_t left, std::uint32_t right) 
 } // namespace
 
 TEST(MapFigure, ShowsTheModelInGreyAndTheLayersInTheirColours) {
-    const Image figure = draw_map_figure(kTorus, small_map(kTorus), View{}, small_options());
+    const DistanceMap map = small_map(kTorus);
+    const Image figure = draw_map_figure(kTorus, map, View{}, small_options());
     ASSERT_EQ(figure.width, 200U);
     ASSERT_EQ(figure.height, 100U);
     EXPECT_EQ(count_greenish(figure, 0, 100), 0);
@@ -66,7 +67,8 @@ TEST(MapFigure, ReportsTheProgressOfBothHalvesAsOne) {
     std::vector<double> shares;
     RenderOptions options = small_options();
     options.progress = [&](double share) { shares.push_back(share); };
-    draw_map_figure(kTorus, small_map(kTorus), View{}, options);
+    const DistanceMap map = small_map(kTorus);
+    draw_map_figure(kTorus, map, View{}, options);
     ASSERT_EQ(shares.size(), 200U);
     EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
     EXPECT_EQ(shares.back(), 1);
@@ -84,5 +86,6 @@ TEST(MapFigure, RefusesAMapWithoutSurface) {
 TEST(MapFigure, RefusesAFigureOfOnePixel) {
     RenderOptions options = small_options();
     options.width = 1;
-    EXPECT_THROW(draw_map_figure(kTorus, small_map(kTorus), View{}, options), Error);
+    const DistanceMap map = small_map(kTorus);
+    EXPECT_THROW(draw_map_figure(kTorus, map, View{}, options), Error);
 }
