@@ -121,7 +121,7 @@ struct SimulationOptions {
     bool keep_free = true;
     /// Accept exact maps of open meshes. Nothing is promised for them: near a gap it is only estimated what
     /// is inside, so particles get in there, some are pushed out through the surface, and lost_count tells
-    /// how often. A closed mesh, mended by repair() perhaps, or a distance map is better.
+    /// how often. Prefer a closed mesh (see repair()) or a distance map.
     bool allow_open_colliders = false;
     /// A particle farther than this from the middle of where the deformable began ends the simulation as
     /// diverged, units. 0: 10 000 times the deformable's extent at the start.
@@ -147,8 +147,8 @@ struct SimulationProfile {
     std::uint64_t lost_count = 0;
 };
 
-/// A deformable among colliders. The same input gives the same positions bit for bit, on every run and
-/// machine; it runs on one thread. Copies are independent.
+/// A deformable among colliders. The same input gives the same positions bit for bit, on every run and with
+/// every instruction set; tested on x86-64 and WebAssembly. It runs on one thread. Copies are independent.
 class Simulation {
   public:
     /// Allocates all that step() needs. Rotations whose quaternion is off the unit length by no more than
@@ -175,18 +175,18 @@ class Simulation {
     /// is put before the crossing, where the same sweep finds it free, or goes back to where it was free,
     /// moved along with the collider.
     ///
-    /// So no particle passes through an exact map, however fast it is or thin the model: with one exact map
-    /// lost_count stays 0. The limits of that promise:
+    /// So no particle passes through an exact map, however fast it is or thin the model: with one exact map,
+    /// near enough to the origin for floats, lost_count stays 0. The limits of that promise:
     /// - It is about particles. An edge of the model may stick out between them.
     /// - Distance maps and custom maps are not swept. Nothing is promised for them, nor for the exact map of
     ///   an open mesh.
     /// - Pinned particles are left where they are.
     /// - A particle that begins inside is pushed to the nearest surface point, and kept outside once it is
     ///   outside.
-    /// - A particle that several exact maps squeeze until it finds no room goes to where it was last free of
-    ///   the first of them, or else of the next, and counts as lost to the others.
-    /// - Far from the origin, where floats are too coarse for the room around the last free place, a particle
-    ///   may find none, and counts as lost.
+    /// - A particle that several exact maps squeeze until it cannot be placed goes to where it was last free
+    ///   of the first of them, or else of the next, and counts as lost to the others.
+    /// - Far from the origin, floats may be too coarse for the room around the last free place. A particle
+    ///   that cannot be placed there counts as lost.
     /// @throws Error Diverged, naming the frame; afterwards only reading is allowed
     void step();
 
