@@ -1,6 +1,6 @@
 #include "directions/lattice.hpp"
 
-#include "directions/crossing.hpp"
+#include "directions/face_cone.hpp"
 
 #include <echinus/error.hpp>
 

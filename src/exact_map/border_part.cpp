@@ -1,6 +1,6 @@
 #include "exact_map/border_part.hpp"
 
-#include "directions/crossing.hpp"
+#include "directions/face_cone.hpp"
 
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,6 @@
-#include "directions/crossing.hpp"
-#include "directions/crossings.hpp"
+#include "directions/cast_rays.hpp"
 #include "directions/cube_samples.hpp"
+#include "directions/face_cone.hpp"
 #include "directions/octahedral_samples.hpp"
 #include "directions/samples_in_cap.hpp"
 #include "support/random_points.hpp"

@@ -1,4 +1,4 @@
-#include "directions/crossing.hpp"
+#include "directions/face_cone.hpp"
 #include "distance_map/build/vertex_layers.hpp"
 
 #include <echinus/mesh.hpp>

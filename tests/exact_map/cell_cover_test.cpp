@@ -1,4 +1,4 @@
-#include "directions/crossing.hpp"
+#include "directions/face_cone.hpp"
 #include "exact_map/build/cell_cover.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "directions/crossings.hpp"
+#include "directions/cast_rays.hpp"
 #include "oracle/exact_judge.hpp"
 #include "oracle/test_meshes.hpp"
 

@@ -1,7 +1,7 @@
 // Inspects maps: their surfaces and cells, and their data along one ray.
 
 #include "arrays.hpp"
-#include "directions/crossing.hpp"
+#include "directions/face_cone.hpp"
 #include "directions/octahedral_cells.hpp"
 #include "distance_map/interpolation.hpp"
 #include "exact_map/layout.hpp"

@@ -1,7 +1,7 @@
 #include "rivals/systems/superquadric_map/sampling.hpp"
 
-#include "directions/crossing.hpp"
 #include "directions/direction_cap.hpp"
+#include "directions/face_cone.hpp"
 
 #include <algorithm>
 #include <array>

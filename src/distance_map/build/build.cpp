@@ -1,8 +1,8 @@
 // Building a distance map: paper section 2.1.
 
-#include "directions/crossings.hpp"
+#include "directions/cast_rays.hpp"
 #include "directions/lattice.hpp"
-#include "distance_map/build/centre_search.hpp"
+#include "distance_map/build/centre_of_fewest_errors.hpp"
 #include "distance_map/build/centre_side.hpp"
 #include "distance_map/build/vertex_correction.hpp"
 #include "distance_map/layout.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "directions/crossings.hpp"
+#include "directions/cast_rays.hpp"
 #include "directions/lattice.hpp"
 
 #include <echinus/distance_map.hpp>

@@ -1,6 +1,6 @@
 #include "distance_map/build/vertex_layers.hpp"
 
-#include "directions/crossing.hpp"
+#include "directions/face_cone.hpp"
 #include "directions/samples_in_cap.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "exact_map/build/border.hpp"
 
-#include "directions/crossing.hpp"
+#include "directions/face_cone.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -2,7 +2,7 @@
 
 #include "exact_map/build/bands.hpp"
 #include "exact_map/build/border.hpp"
-#include "exact_map/build/centre_search.hpp"
+#include "exact_map/build/centre_of_fewest_tests.hpp"
 #include "exact_map/build/face_tree.hpp"
 #include "exact_map/build/index_storage.hpp"
 #include "exact_map/build/resolution.hpp"

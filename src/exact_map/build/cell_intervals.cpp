@@ -1,6 +1,6 @@
 #include "exact_map/build/cell_intervals.hpp"
 
-#include "directions/crossing.hpp"
+#include "directions/face_cone.hpp"
 #include "exact_map/layout.hpp"
 #include "geometry/parallel.hpp"
 

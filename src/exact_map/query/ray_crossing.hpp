@@ -1,6 +1,6 @@
 #pragma once
 
-#include "directions/crossing.hpp"
+#include "directions/face_cone.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 /// How a face counts for a particle p of the lattice: +1 or -1 if the ray from the origin through p leaves or
 /// enters the solid there, on one side of p, else 0. Particle and ray are perturbed together: p counts as p +
-/// (e, e^2, e^3), as in directions/crossing.hpp.
+/// (e, e^2, e^3), as in directions/face_cone.hpp.
 namespace echinus {
 
 enum class RaySide : std::uint8_t {

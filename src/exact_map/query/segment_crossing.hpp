@@ -1,6 +1,6 @@
 #pragma once
 
-#include "directions/crossing.hpp"
+#include "directions/face_cone.hpp"
 
 #include <array>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "directions/crossing.hpp"
+#include "directions/face_cone.hpp"
 #include "rivals/compare/portable_random.hpp"
 #include "rivals/systems/superquadric_map/convex_hull.hpp"
 #include "rivals/systems/superquadric_map/decompose.hpp"

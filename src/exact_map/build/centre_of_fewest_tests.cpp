@@ -1,4 +1,4 @@
-#include "exact_map/build/centre_search.hpp"
+#include "exact_map/build/centre_of_fewest_tests.hpp"
 
 #include "directions/centre_search.hpp"
 #include "exact_map/build/resolution.hpp"

@@ -1,4 +1,4 @@
-#include "directions/crossings.hpp"
+#include "directions/cast_rays.hpp"
 #include "support/mesh_assembly.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "directions/crossing.hpp"
+#include "directions/face_cone.hpp"
 
 #include <gtest/gtest.h>
 
