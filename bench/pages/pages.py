@@ -38,6 +38,22 @@ def number(text, scale=1.0):
     return f"{value:.{digits}f}"
 
 
+def percent(share):
+    """Three digits, however small: per cent are never written in powers of ten."""
+    value = 100 * float(share)
+    if value == 0:
+        return "0"
+    text = f"{value:.{max(0, 2 - math.floor(math.log10(value)))}f}"
+    return text.rstrip("0") if value < 0.01 else text
+
+
+def in_one_notation(texts, scale):
+    """Numbers that are compared: all in powers of ten where one of them is too small for three decimals."""
+    if not any(0 < scale * float(text) < 0.001 for text in texts if text):
+        return [number(text, scale) for text in texts]
+    return [f"{scale * float(text):.1e}" if text and float(text) else text for text in texts]
+
+
 def table(rows):
     head, *body = [[str(cell) for cell in row] for row in rows]
     lines = [head, ["---"] + ["--:"] * (len(head) - 1)] + body
@@ -48,9 +64,9 @@ def label(record):
     return f"**{record['system']}**" if record["role"] == "ours" else record["system"]
 
 
-def per_set(results, column, scale=1.0, **wanted):
+def per_set(results, column, form=number, **wanted):
     """The cells U, S and C of a column."""
-    return [number(next((r[column] for r in results.where(set=s, **wanted)), ""), scale) for s in "USC"]
+    return [form(r[column]) if r else "" for r in (next(iter(results.where(set=s, **wanted)), None) for s in "USC")]
 
 
 # ---- The pages, a function each: from the folder of results to the texts of the sections
@@ -70,7 +86,7 @@ def query_table(results, task, mesh, call, chosen=None):
         near = results.where(set="S", **one)[0]
         farthest = max(float(s["farthest_wrong"]) for s in results.where(**one))
         rows.append([label(r), number(r["bytes"], 1e-6), number(r["build_ms"])]
-                    + per_set(results, "ns", **one) + per_set(results, "wrong_share", 100, **one)
+                    + per_set(results, "ns", **one) + per_set(results, "wrong_share", percent, **one)
                     + ["none" if farthest == 0 else number(farthest)])
         if task == "contacts":
             rows[-1] += [number(near[c]) for c in ("depth_mean", "depth_99", "depth_worst")]
@@ -132,7 +148,7 @@ def figures(folder):
             farthest = max(float(s["farthest_wrong"]) for s in results.where(task="contains", **one))
             depth = results.where(task="contacts", set="S", **one)[0]
             rows.append([label(r), number(r["bytes"], 1e-6), number(r["build_ms"])]
-                        + per_set(results, "wrong_share", 100, task="contains", **one)
+                        + per_set(results, "wrong_share", percent, task="contains", **one)
                         + ["none" if farthest == 0 else number(farthest), number(depth["depth_mean"]),
                            number(depth["depth_worst"])])
         values[f"{mesh} sizes"] = table(rows)
@@ -155,13 +171,16 @@ def figures(folder):
 
 
 def readme_table(results, mesh):
-    """The README's: a question a row, a number a cell, near the surface unless the row says otherwise."""
+    """The README's: a question a row, a number a cell, near the surface unless the row says otherwise; the
+    numbers of a row in one notation."""
     colliders = {"exact map": "exact map", "distance map": "distance map", "dense grid 0.63 MB 16 bit": "dense grid 16 bit",
                  "Embree": "Embree's tree"}
 
     def row(question, task, column, call="whole set", set="S", unit="", scale=1.0):
-        found = {r["system"]: number(r[column], scale) for r in results.where(mesh=mesh, task=task, call=call, set=set)}
-        return [question] + [f"{found[s]}{unit}" if found.get(s) else "" for s in colliders]
+        found = {r["system"]: r[column] for r in results.where(mesh=mesh, task=task, call=call, set=set)}
+        texts = [found.get(s, "") for s in colliders]
+        cells = [percent(t) if t else "" for t in texts] if unit == " %" else in_one_notation(texts, scale)
+        return [question] + [f"{cell}{unit}" if cell else "" for cell in cells]
 
     cloth = {r["system"]: r for r in results.where(mesh=mesh, task="cloth")}
 
@@ -170,7 +189,7 @@ def readme_table(results, mesh):
         ["", "exact map", "distance map", "dense grid, 16 bits", "Embree"],
         row("memory", "contains", "bytes", unit=" MB", scale=1e-6),
         row("build", "contains", "build_ms", unit=" ms"),
-        row("on the wrong side", "contains", "wrong_share", unit=" %", scale=100),
+        row("on the wrong side", "contains", "wrong_share", unit=" %"),
         row("the farthest of them from the surface", "contains", "farthest_wrong", unit=" R"),
         row("error of the depth, mean", "contacts", "depth_mean", unit=" R"),
         row(f"inside or outside, calls of {many}", "contains", "ns", unit=" ns"),
@@ -178,7 +197,7 @@ def readme_table(results, mesh):
         row(f"contacts, calls of {many}", "contacts", "ns", unit=" ns"),
         row("contacts, calls of 10 000", "contacts", "ns", "10000", unit=" ns"),
         row("contacts, calls of 1000", "contacts", "ns", "1000", unit=" ns"),
-        row("contacts, a call for each particle", "contacts", "ns", "1", unit=" ns"),
+        row("contacts, one call per particle", "contacts", "ns", "1", unit=" ns"),
         ["cloth of 10 000 particles, a frame"] + [f"{number(cloth[s]['frame_ms'])} ms" for s in colliders.values()],
         ["particles of it inside at rest"] + [cloth[s]["inside_at_end"] for s in colliders.values()],
     ])
