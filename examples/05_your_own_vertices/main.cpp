@@ -21,7 +21,7 @@ int main() {
     using namespace echinus;
     Collider box{.map = ExactMap::build(make_box({1, 1, 1}))};
     box.pose = {Rotation::about({0, 0, 1}, std::numbers::pi / 4), {100, 0, 0}};
-    box.scale = {2, 2, 2}; // now a cube of edge length 2 that stands on x = 100, turned by 45 degrees
+    box.scale = {2, 2, 2}; // now a cube of edge length 2 that is centred at x = 100, turned by 45 degrees
 
     std::vector<Vertex> vertices;
     for (int i = 0; i <= 8; ++i) {
