@@ -37,7 +37,8 @@ std::span<const std::byte> map_bytes([[maybe_unused]] std::FILE* file) {
     return {};
 }
 
-std::vector<std::byte> read_bytes(std::FILE* file, const std::filesystem::path& path, std::size_t most) {
+std::vector<std::byte> read_bytes(std::FILE* file, const std::filesystem::path& path,
+                                  const MappedFile::CheckBeginning& check_beginning, std::size_t most) {
     constexpr std::size_t kBlock = std::size_t{1} << 16;
     std::vector<std::byte> bytes;
     for (;;) {
@@ -50,6 +51,7 @@ std::vector<std::byte> read_bytes(std::FILE* file, const std::filesystem::path& 
                         path.string() + ": has more than " + std::to_string(most) +
                             " bytes, the most that are read from a pipe or a device; write them to a file "
                             "first, if they have an end");
+        if (bytes.size() == kBlock && check_beginning) check_beginning(bytes);
         if (read_count == kBlock) continue;
         if (std::ferror(file) != 0) fail(path, "read");
         return bytes;
@@ -58,12 +60,13 @@ std::vector<std::byte> read_bytes(std::FILE* file, const std::filesystem::path& 
 
 } // namespace
 
-MappedFile::MappedFile(const std::filesystem::path& path, std::size_t most_read_bytes) {
+MappedFile::MappedFile(const std::filesystem::path& path, const CheckBeginning& check_beginning,
+                       std::size_t most_read_bytes) {
     const FileHandle file(std::fopen(path.c_str(), "rb"), &std::fclose);
     if (file == nullptr) fail(path, "open");
     bytes_ = map_bytes(file.get());
     if (!bytes_.empty()) return;
-    copy_ = read_bytes(file.get(), path, most_read_bytes);
+    copy_ = read_bytes(file.get(), path, check_beginning, most_read_bytes);
     bytes_ = copy_;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -21,9 +22,14 @@ class MappedFile {
     /// The most bytes that are read from what cannot be mapped: a pipe or a device may have no end.
     static constexpr std::size_t kMostReadBytes = std::size_t{1} << 30;
 
+    /// Looks at the first 64 KiB of a pipe or a device, before the rest is read. Throws an Error when the
+    /// bytes are of no use, whatever follows them.
+    using CheckBeginning = std::function<void(std::span<const std::byte> beginning)>;
+
     /// @throws Error Unreadable, also when a pipe or a device has more than `most_read_bytes`; the sentence
-    /// begins with the path
-    explicit MappedFile(const std::filesystem::path& path, std::size_t most_read_bytes = kMostReadBytes);
+    /// begins with the path. What the check throws passes through.
+    explicit MappedFile(const std::filesystem::path& path, const CheckBeginning& check_beginning = nullptr,
+                        std::size_t most_read_bytes = kMostReadBytes);
     MappedFile(const MappedFile&) = delete;
     MappedFile& operator=(const MappedFile&) = delete;
     ~MappedFile();

@@ -61,6 +61,11 @@ const schema::MapFile& verified_root(std::span<const std::byte> bytes, const std
     return *schema::GetMapFile(bytes.data());
 }
 
+MappedFile::CheckBeginning check_beginning_of(const std::filesystem::path& path) {
+    return
+        [name = path.string()](std::span<const std::byte> beginning) { require_map_file(beginning, name); };
+}
+
 /// The command line's name of a kind of map.
 constexpr const char* name_of(const DistanceMap*) {
     return "distance";
@@ -96,7 +101,7 @@ AnyMap load_map(std::span<const std::byte> bytes, std::shared_ptr<const void> st
 }
 
 AnyMap load_map(const std::filesystem::path& path) {
-    const auto file = std::make_shared<const MappedFile>(path);
+    const auto file = std::make_shared<const MappedFile>(path, check_beginning_of(path));
     return load_map(file->bytes(), file, path.string());
 }
 
@@ -109,7 +114,7 @@ ExactMap load_exact_map(const std::filesystem::path& path) {
 }
 
 MapFileNotes load_map_file_notes(const std::filesystem::path& path) {
-    const MappedFile file(path);
+    const MappedFile file(path, check_beginning_of(path));
     MapFileNotes notes;
     const schema::Notes* stored = verified_root(file.bytes(), path.string()).notes();
     if (stored == nullptr || !stored->build_milliseconds()) return notes;

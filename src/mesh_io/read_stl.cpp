@@ -26,10 +26,13 @@ std::uint64_t promised_face_count(const MeshSource& source) {
     return ByteReader(source, kHeadSize, ByteOrder::LittleEndian).next<std::uint32_t>();
 }
 
+std::uint64_t promised_size(const MeshSource& source) {
+    return kBytesBeforeFaces + kBytesPerFace * promised_face_count(source);
+}
+
 /// Many programs also begin binary files with the word solid; only the size distinguishes them.
 bool has_size_of_binary(const MeshSource& source) {
-    return source.bytes.size() >= kBytesBeforeFaces &&
-           source.bytes.size() == kBytesBeforeFaces + kBytesPerFace * promised_face_count(source);
+    return source.bytes.size() >= kBytesBeforeFaces && source.bytes.size() == promised_size(source);
 }
 
 PolygonMesh read_binary(const MeshSource& source) {
@@ -92,16 +95,20 @@ PolygonMesh read_text(const MeshSource& source) {
     return mesh;
 }
 
+/// @param found  the size of the file in words
+[[noreturn]] void refuse_size(const MeshSource& source, const std::string& found) {
+    source.fail(ErrorCode::Damaged, "the head of a binary STL promises " +
+                                        std::to_string(promised_face_count(source)) + " faces in " +
+                                        std::to_string(promised_size(source)) + " bytes, but the file has " +
+                                        found);
+}
+
 [[noreturn]] void refuse(const MeshSource& source) {
     if (source.bytes.size() < kBytesBeforeFaces)
         source.fail(ErrorCode::WrongFormat, "neither 'solid', with which a text STL begins, nor the " +
                                                 std::to_string(kBytesBeforeFaces) +
                                                 " bytes with which a binary one does were found");
-    const std::uint64_t count = promised_face_count(source);
-    source.fail(ErrorCode::Damaged, "the head of a binary STL promises " + std::to_string(count) +
-                                        " faces in " +
-                                        std::to_string(kBytesBeforeFaces + kBytesPerFace * count) +
-                                        " bytes, but the file has " + std::to_string(source.bytes.size()));
+    refuse_size(source, std::to_string(source.bytes.size()));
 }
 
 bool begins_as_text(std::string_view bytes) {
@@ -110,6 +117,11 @@ bool begins_as_text(std::string_view bytes) {
 }
 
 } // namespace
+
+void require_beginning_of_stl(const MeshSource& beginning) {
+    if (!begins_as_text(beginning.bytes) && beginning.bytes.size() > promised_size(beginning))
+        refuse_size(beginning, "more");
+}
 
 PolygonMesh read_stl(const MeshSource& source) {
     if (has_size_of_binary(source)) return read_binary(source);

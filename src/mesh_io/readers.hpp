@@ -15,10 +15,19 @@ PolygonMesh read_off(const MeshSource& source);
 PolygonMesh read_ply(const MeshSource& source);
 PolygonMesh read_stl(const MeshSource& source);
 
+/// A part of require_beginning(), below. The head of a binary STL file states its size.
+void require_beginning_of_stl(const MeshSource& beginning);
+
 /// glTF, GLB and 3DS, through Assimp. A glTF file's buffers are looked for beside it.
 PolygonMesh read_scene(const MeshSource& source);
 
 /// read_mesh() for the bytes of a file; the extension of the source's name determines the format.
 TriangleMesh read_mesh(const MeshSource& source);
+
+/// Refuses the first bytes of a stream when read_mesh() would refuse it whatever followed them, so that a
+/// stream without an end is not read up to a limit.
+/// @pre beginning.bytes.size() >= 84, the head of a binary STL file
+/// @throws Error WrongFormat or Damaged
+void require_beginning(const MeshSource& beginning);
 
 } // namespace echinus

@@ -147,18 +147,33 @@ std::string_view binary_chunk(const MeshSource& source, std::size_t begin) {
 
 } // namespace
 
+void require_beginning_of_gltf(const MeshSource& beginning) {
+    const std::size_t first = beginning.bytes.find_first_not_of(" \t\r\n");
+    // After nothing but white space the brace may still follow.
+    if (first != std::string_view::npos && beginning.bytes[first] != '{')
+        beginning.fail(ErrorCode::WrongFormat, "the brace with which a glTF file begins was not found");
+}
+
+void require_beginning_of_glb(const MeshSource& beginning) {
+    if (!beginning.bytes.starts_with("glTF"))
+        beginning.fail(ErrorCode::WrongFormat, "the word glTF with which a GLB file begins was not found");
+}
+
+void require_beginning_of_3ds(const MeshSource& beginning) {
+    if (beginning.bytes.size() < kChunkHeadSize ||
+        ByteReader(beginning, 0, ByteOrder::LittleEndian).next<std::uint16_t>() != kMainChunk)
+        beginning.fail(ErrorCode::WrongFormat, "the bytes 4D 4D with which a 3DS file begins were not found");
+}
+
 void require_readable_gltf(const MeshSource& source) {
-    const std::size_t first = source.bytes.find_first_not_of(" \t\r\n");
-    if (first == std::string_view::npos || source.bytes[first] != '{')
-        source.fail(ErrorCode::WrongFormat, "the brace with which a glTF file begins was not found");
+    require_beginning_of_gltf(source);
     require_readable_json(source.bytes, source);
     require_gltf_vertices(source, source.bytes, {});
 }
 
 void require_readable_glb(const MeshSource& source) {
     constexpr std::size_t kJsonBegin = 20; // after magic, version, length, and the chunk's length and type
-    if (!source.bytes.starts_with("glTF"))
-        source.fail(ErrorCode::WrongFormat, "the word glTF with which a GLB file begins was not found");
+    require_beginning_of_glb(source);
     ByteReader head(source, 8, ByteOrder::LittleEndian);
     const std::size_t length = head.next<std::uint32_t>();
     if (length != source.bytes.size())
@@ -173,9 +188,8 @@ void require_readable_glb(const MeshSource& source) {
 }
 
 void require_readable_3ds(const MeshSource& source) {
-    ByteReader head(source, 0, ByteOrder::LittleEndian);
-    if (source.bytes.size() < kChunkHeadSize || head.next<std::uint16_t>() != kMainChunk)
-        source.fail(ErrorCode::WrongFormat, "the bytes 4D 4D with which a 3DS file begins were not found");
+    require_beginning_of_3ds(source);
+    ByteReader head(source, sizeof(kMainChunk), ByteOrder::LittleEndian);
     const std::size_t length = head.next<std::uint32_t>();
     if (length > source.bytes.size())
         source.fail(ErrorCode::Damaged, "the file says that it has " + std::to_string(length) +

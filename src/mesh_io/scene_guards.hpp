@@ -14,6 +14,12 @@ namespace echinus {
 inline constexpr std::size_t kMaxParentNodes = 4096;
 inline constexpr std::size_t kMaxJsonDepth = 256;
 
+/// @param beginning  the first bytes of a file, or all of it
+/// @throws Error WrongFormat when no file of the kind begins like this
+void require_beginning_of_gltf(const MeshSource& beginning);
+void require_beginning_of_glb(const MeshSource& beginning);
+void require_beginning_of_3ds(const MeshSource& beginning);
+
 /// @throws Error WrongFormat when the file does not begin like one of its kind or has compressed positions;
 /// Damaged when it is shorter than its head says, or is nested too deeply to be read; InvalidMesh when a face
 /// refers to a vertex that is not there

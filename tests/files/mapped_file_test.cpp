@@ -3,8 +3,11 @@
 #include "support/expect_error.hpp"
 #include "support/temporary_folder.hpp"
 
+#include <echinus/error.hpp>
+
 #include <gtest/gtest.h>
 
+#include <span>
 #include <string>
 
 using namespace echinus;
@@ -43,7 +46,19 @@ TEST_F(MappedFileTest, ReadsWhatCannotBeMapped) {
 TEST_F(MappedFileTest, ReadsNoMoreOfAnEndlessDeviceThanTheLimit) {
     if (!fs::exists("/dev/zero")) GTEST_SKIP() << "this system has no /dev/zero";
     test::expect_error(ErrorCode::Unreadable, "/dev/zero: has more than 1000000 bytes",
-                       [] { MappedFile file("/dev/zero", 1'000'000); });
+                       [] { MappedFile file("/dev/zero", nullptr, 1'000'000); });
+}
+
+TEST_F(MappedFileTest, ReadsNoMoreOfAnEndlessDeviceThanTheCheckNeedsToRefuseIt) {
+    if (!fs::exists("/dev/zero")) GTEST_SKIP() << "this system has no /dev/zero";
+    std::size_t seen = 0;
+    test::expect_error(ErrorCode::WrongFormat, "zeros", [&] {
+        MappedFile file("/dev/zero", [&](std::span<const std::byte> beginning) {
+            seen = beginning.size();
+            throw Error(ErrorCode::WrongFormat, "zeros");
+        });
+    });
+    EXPECT_EQ(seen, 65'536U);
 }
 
 TEST_F(MappedFileTest, RefusesAMissingFileAndADirectoryByName) {

@@ -89,6 +89,49 @@ TEST_F(Attack, FilesThatStateTheirSizeAreNotTakenWhenCut) {
     }
 }
 
+TEST_F(Attack, NoBeginningOfAFileThatIsReadIsRefused) {
+    for (const SmallFile& file : small_files()) {
+        SCOPED_TRACE(file.name);
+        for (std::size_t length = 84; length <= file.content.size(); ++length) {
+            const MeshSource beginning{file.name, std::string_view(file.content).substr(0, length)};
+            EXPECT_NO_THROW(require_beginning(beginning)) << "cut at " << length;
+        }
+    }
+}
+
+TEST_F(Attack, AFileIsNotTakenWhenItsBeginningIsRefused) {
+    std::mt19937 random(3);
+    for (const SmallFile& file : small_files()) {
+        SCOPED_TRACE(file.name);
+        std::size_t refused_count = 0;
+        for (int round = 0; round < 400; ++round) {
+            std::string spoilt = file.content;
+            spoilt[random() % 5] = static_cast<char>(random());
+            if (spoilt.size() > 84) // the number of faces, where it is a binary STL
+                spoilt.replace(80, 4, {static_cast<char>(random() % 5), '\0', '\0', '\0'});
+            try {
+                require_beginning({file.name, spoilt});
+            } catch (const Error&) {
+                ++refused_count;
+                ASSERT_FALSE(attack(file.name, spoilt));
+            }
+        }
+        EXPECT_GT(refused_count, 0U);
+    }
+}
+
+TEST_F(Attack, ZerosAndNoiseAreRefusedByTheirBeginning) {
+    std::mt19937 random(4);
+    std::string noise(65'536, '\0');
+    for (char& byte : noise) byte = static_cast<char>(random());
+    for (const std::string ending : {".obj", ".off", ".ply", ".stl", ".gltf", ".glb", ".3ds", ".txt"}) {
+        SCOPED_TRACE(ending);
+        EXPECT_THROW(require_beginning({ending, std::string(65'536, '\0')}), Error);
+        if (ending == ".stl") continue; // noise promises a huge number of faces
+        EXPECT_THROW(require_beginning({ending, noise}), Error);
+    }
+}
+
 TEST_F(Attack, FilesWithSpoiltBytesAreRefusedOrGiveAValidMesh) {
     std::mt19937 random(1);
     for (const SmallFile& file : small_files()) {

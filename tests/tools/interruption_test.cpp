@@ -129,14 +129,15 @@ TEST_F(Interruption, RemovesTheCopyOfStandardInput) {
 
 TEST_F(Interruption, IsNotNeededForInputWithoutEnd) {
     if (!fs::exists("/dev/zero")) GTEST_SKIP() << "this system has no /dev/zero";
-    for (const char* name : {"zero.obj", "zero.ply", "zero.csv", "zero.json"})
+    for (const char* name : {"zero.obj", "zero.ply", "zero.stl", "zero.csv", "zero.json"})
         fs::create_symlink("/dev/zero", path(name));
-    expect_failure(1, "has more than 1073741824 bytes", {"info", "zero.obj"});
-    expect_failure(1, "has more than 1073741824 bytes", {"build", "zero.ply", "-o", "map.ech"});
+    expect_failure(1, "line 1: the line has control characters", {"info", "zero.obj"});
+    expect_failure(1, "line 1: the line has control characters", {"build", "zero.ply", "-o", "map.ech"});
+    expect_failure(1, "promises 0 faces in 84 bytes, but the file has more", {"info", "zero.stl"});
     expect_failure(1, "larger than 1 MB", {"simulate", "zero.json", "-o", "out"});
     write("box.obj", echinus::test::box_text());
     expect_success({"build", "box.obj", "-o", "box.ech"});
-    expect_failure(1, "has more than 1073741824 bytes", {"query", "/dev/zero", "zero.csv", "-o", "a.npy"});
+    expect_failure(1, "not a map file", {"query", "/dev/zero", "zero.csv", "-o", "a.npy"});
     expect_failure(1, "a line has more than 1048576 characters",
                    {"query", "box.ech", "zero.csv", "-o", "a.npy"});
 }
