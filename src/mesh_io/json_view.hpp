@@ -14,6 +14,9 @@ std::size_t end_of_json_string(std::string_view json, std::size_t begin);
 /// A value in the text of a JSON document, for reading a few numbers of a file that another reader validates:
 /// malformed values and ones of another kind count as missing. Keys are compared as spelt. Nothing is
 /// recursive.
+///
+/// Not nlohmann-json, because the check must see what Assimp sees: of equal keys the first, where
+/// nlohmann-json keeps the last, and text that is not UTF-8, which nlohmann-json does not parse.
 class JsonView {
   public:
     JsonView() = default; ///< a value that is not there

@@ -244,6 +244,16 @@ TEST_F(ReadScene, RefusesAGltfFileWithAFaceThatRefersToAMissingVertex) {
     }
 }
 
+TEST_F(ReadScene, FindsAMissingVertexAlsoInJsonThatOnlyAssimpAccepts) {
+    const std::string words = "a face of mesh 0 refers to vertex 4";
+    const std::string json = small_gltf<std::uint32_t>("5125", 4).embedded();
+    expect_refused(ErrorCode::InvalidMesh, words, "latin1.gltf",
+                   replaced(json, R"({"mesh":0})", "{\"name\":\"\xE9\",\"mesh\":0}"));
+    for (const std::string key : {"meshes", "accessors", "bufferViews", "buffers"})
+        expect_refused(ErrorCode::InvalidMesh, words, "twice.gltf",
+                       json.substr(0, json.size() - 1) + ",\"" + key + "\":[]}");
+}
+
 TEST_F(ReadScene, RefusesCompressedPositions) {
     for (const std::string extension :
          {"KHR_mesh_quantization", "KHR_draco_mesh_compression", "EXT_meshopt_compression"})
