@@ -1,3 +1,4 @@
+#include "support/crowded_meshes.hpp"
 #include "support/expect_error.hpp"
 #include "support/map_file_attack.hpp"
 #include "support/sample_exact_map.hpp"
@@ -88,6 +89,16 @@ class ExactMapFileAttack : public testing::TestWithParam<std::size_t> {
 };
 
 } // namespace
+
+TEST(ExactMapFile, IsReadBackAtEveryResolutionOfCrowdedMeshes) {
+    for (const TriangleMesh& mesh : {make_fins(60), make_comb(100)})
+        for (std::uint32_t divisions = 1; divisions <= 24; ++divisions) {
+            const ExactMap map = ExactMap::build(mesh, {.divisions = divisions});
+            EXPECT_NO_THROW(load_bytes(serialise(map))) << divisions << " divisions";
+        }
+    for (const TriangleMesh& mesh : {make_fins(600), make_comb(1500)})
+        EXPECT_NO_THROW(load_bytes(serialise(ExactMap::build(mesh))));
+}
 
 TEST(ExactMapFile, ReadsBackEveryBit) {
     for (ExactMapParts parts : samples()) {

@@ -1,6 +1,7 @@
 #include "commands/commands.hpp"
 #include "commands/map_description.hpp"
 #include "commands/mesh_description.hpp"
+#include "directions/lattice.hpp"
 #include "input.hpp"
 #include "output.hpp"
 
@@ -87,11 +88,24 @@ void require_solid(const MeshReport& report, const TriangleMesh& mesh, const Bui
                 name + ": the mesh is not closed: " + describe_openness(report) + "; " + remedy);
 }
 
-/// Around a closed surface the winding number is 0 everywhere; it may have a volume all the same, with two
-/// signs.
+/// Of a closed surface, in cubic lattice steps.
+double signed_volume(const ExactMapView& map) {
+    const auto corner = [&](std::size_t i) { return LatticePoint(map.vertices[map.corners[i]]); };
+    double sum = 0;
+    for (std::size_t i = 0; i < map.corners.size(); i += 3)
+        sum += static_cast<double>(dot(corner(i), cross(corner(i + 1), corner(i + 2))));
+    return sum / 6;
+}
+
+/// Is the winding number 0 in every gap, and the volume no more than rounding makes? Either alone is possible
+/// of a solid: a coarse map can hold all of its inside within bands, and parts that are turned oppositely
+/// cancel.
 bool encloses_nothing(const ExactMapView& map) {
+    constexpr double kRounding =
+        4.0 * kLatticeExtent * kLatticeExtent; // the largest section, a few steps thick
     return map.border.empty() &&
-           std::ranges::all_of(map.winding_below, [](std::int16_t w) { return w == 0; });
+           std::ranges::all_of(map.winding_below, [](std::int16_t w) { return w == 0; }) &&
+           std::fabs(signed_volume(map)) <= kRounding;
 }
 
 AnyMap build_kind(const TriangleMesh& mesh, const BuildArguments& arguments) {

@@ -11,13 +11,14 @@ namespace echinus {
 
 namespace {
 
-/// In band units, widened to whole ones.
+/// In band units, widened to whole ones, and never empty: where the cover took in parts of the cell that the
+/// face does not enter, its nearest place can lie beyond its farthest, and any range will do.
 std::uint64_t range_of(const CellCover& cover) {
     constexpr double kRounding = 0.01; // lattice steps, far above what the cover rounds
     const auto lower = static_cast<std::int32_t>(std::max(0.0, cover.nearest - kRounding));
     const auto upper = static_cast<std::int32_t>(cover.farthest + kRounding) + 1;
     const auto first = static_cast<std::uint64_t>(band_unit_of(lower));
-    const auto last = static_cast<std::uint64_t>(band_unit_of(upper) + 1);
+    const auto last = std::max(first, static_cast<std::uint64_t>(band_unit_of(upper))) + 1;
     return first << 16 | last;
 }
 
