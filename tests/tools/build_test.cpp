@@ -1,7 +1,9 @@
+#include "support/crowded_meshes.hpp"
 #include "tools/command_line.hpp"
 #include "tools/sample_files.hpp"
 
 #include <echinus/map_file.hpp>
+#include <echinus/mesh_io.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -99,6 +101,14 @@ TEST_F(BuildCommand, TakesABudgetOfGigabytes) {
     EXPECT_EQ(built("1GB"), built("1000MB"));
     EXPECT_EQ(built("0.00002GB"), built("20KB"));
     EXPECT_EQ(built("0.00002GiB"), built("21.5KB"));
+}
+
+TEST_F(BuildCommand, BuildsASolidThatLiesWithinTheBandsOfACoarseMap) {
+    write_mesh(path("fins.off"), make_fins(60));
+    const json map = json::parse(
+        expect_success({"build", "fins.off", "--cells-per-octant", "1", "-o", "fins.ech", "--json"}));
+    EXPECT_EQ(map["divisions"], 1);
+    expect_success({"info", "fins.ech"});
 }
 
 TEST_F(BuildCommand, ObeysTheOptionsOfAnExactMap) {
