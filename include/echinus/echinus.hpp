@@ -14,6 +14,7 @@
 #include <echinus/exact_map_view.hpp>
 #include <echinus/geometry.hpp>
 #include <echinus/instruction_set.hpp>
+#include <echinus/intersections.hpp>
 #include <echinus/map_file.hpp>
 #include <echinus/mesh.hpp>
 #include <echinus/simulation.hpp>

@@ -1,0 +1,78 @@
+#include "geometry/orientation.hpp"
+
+#include "geometry/exact_sum.hpp"
+
+#include <array>
+#include <limits>
+#include <optional>
+
+namespace echinus {
+
+namespace {
+
+/// p - q, where floats can hold it.
+std::optional<double> difference_in_float(float p, float q) {
+    const auto [value, error] = exact_sum_of(p, -double{q});
+    if (error != 0 || std::abs(value) > double{std::numeric_limits<float>::max()} ||
+        static_cast<double>(static_cast<float>(value)) != value)
+        return std::nullopt;
+    return value;
+}
+
+std::optional<Vec3d> difference_in_floats(const Vec3f& p, const Vec3f& q) {
+    const auto x = difference_in_float(p.x, q.x);
+    const auto y = difference_in_float(p.y, q.y);
+    const auto z = difference_in_float(p.z, q.z);
+    if (!x || !y || !z) return std::nullopt;
+    return Vec3d(*x, *y, *z);
+}
+
+/// Adds x y z with a sign. The product of the first two floats is exact.
+template <std::size_t capacity>
+void add_product(ExactSum<capacity>& sum, double x, double y, double z) {
+    const double xy = x * y;
+    if (xy == 0 || z == 0) return;
+    const auto [value, error] = exact_product_of(xy, z);
+    sum.add(error);
+    sum.add(value);
+}
+
+/// Adds p . (q x r).
+template <std::size_t capacity>
+void add_triple_product(ExactSum<capacity>& sum, const Vec3d& p, const Vec3d& q, const Vec3d& r) {
+    add_product(sum, q.y, r.z, p.x);
+    add_product(sum, -q.z, r.y, p.x);
+    add_product(sum, q.z, r.x, p.y);
+    add_product(sum, -q.x, r.z, p.y);
+    add_product(sum, q.x, r.y, p.z);
+    add_product(sum, -q.y, r.x, p.z);
+}
+
+} // namespace
+
+int exact_orientation(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d) noexcept {
+    const auto u = difference_in_floats(a, d);
+    const auto v = difference_in_floats(b, d);
+    const auto w = difference_in_floats(c, d);
+    if (u && v && w) { // the usual case where points are coplanar on purpose
+        ExactSum<12> sum;
+        add_triple_product(sum, *u, *v, *w);
+        return sum.sign();
+    }
+    const Vec3d p(a), q(b), r(c), origin(d);
+    ExactSum<48> sum; // the determinant of four points with a column of ones
+    add_triple_product(sum, p, q, r);
+    add_triple_product(sum, -q, r, origin);
+    add_triple_product(sum, p, r, origin);
+    add_triple_product(sum, -p, q, origin);
+    return sum.sign();
+}
+
+int exact_orientation(const Point2& a, const Point2& b, const Point2& c) noexcept {
+    ExactSum<6> sum;
+    for (const double product : {a.x * b.y, -a.y * b.x, b.x * c.y, -b.y * c.x, c.x * a.y, -c.y * a.x})
+        sum.add(product);
+    return sum.sign();
+}
+
+} // namespace echinus

@@ -1,0 +1,117 @@
+#include "mesh/box_tree.hpp"
+#include "mesh/simplices_meet.hpp"
+
+#include <echinus/intersections.hpp>
+
+#include <algorithm>
+
+namespace echinus {
+
+namespace {
+
+bool has(const Triangle& face, std::uint32_t vertex) {
+    return face[0] == vertex || face[1] == vertex || face[2] == vertex;
+}
+
+/// Two faces with common vertices, sorted: common ones first. Equal vertices of one face stay.
+struct Neighbours {
+    const TriangleMesh& mesh;
+    Triangle a, b;
+    int a_shared = 0, b_shared = 0; ///< so many of the corners are common
+
+    Neighbours(const TriangleMesh& of, const Triangle& first, const Triangle& second)
+        : mesh(of), a(first), b(second) {
+        for (int i = 0; i < 3; ++i)
+            if (has(second, a[i])) std::swap(a[i], a[a_shared++]);
+        for (int i = 0; i < 3; ++i)
+            if (has(first, b[i])) std::swap(b[i], b[b_shared++]);
+    }
+
+    const Vec3f& at_a(int corner) const { return mesh.vertices[a[corner]]; }
+    const Vec3f& at_b(int corner) const { return mesh.vertices[b[corner]]; }
+
+    /// Both lie off the edge's line to different sides, or in different planes.
+    bool only_share_an_edge() const {
+        const Vec3f &u = at_a(0), &v = at_a(1), &p = at_a(2), &q = at_b(2);
+        if (orientation(u, v, p, q) != 0) return true;
+        const auto axis = axis_that_shows(u, v, p);
+        if (!axis) return false;
+        const auto side = [&](const Vec3f& point) {
+            return orientation(seen_along(*axis, u), seen_along(*axis, v), seen_along(*axis, point));
+        };
+        return side(p) * side(q) < 0;
+    }
+
+    /// One lies on one side of the other's plane, but for the common corner.
+    bool only_share_a_corner() const {
+        const auto on_one_side = [](const Vec3f& u, const Vec3f& v, const Vec3f& w, const Vec3f& p,
+                                    const Vec3f& q) {
+            return orientation(u, v, w, p) * orientation(u, v, w, q) > 0;
+        };
+        return on_one_side(at_b(0), at_b(1), at_b(2), at_a(1), at_a(2)) ||
+               on_one_side(at_a(0), at_a(1), at_a(2), at_b(1), at_b(2));
+    }
+
+    /// The largest parts without a common vertex: each common one goes to one face's part or to the other's.
+    bool parts_meet() const {
+        for (unsigned choice = 0; choice < 1U << a_shared; ++choice) {
+            Simplex a_part, b_part;
+            for (int i = 0; i < 3; ++i)
+                if (i >= a_shared || goes_to_a(i, choice)) a_part.push_back(at_a(i));
+            for (int j = 0; j < 3; ++j)
+                if (j >= b_shared || !goes_to_a(shared_index(b[j]), choice)) b_part.push_back(at_b(j));
+            if (a_part.count != 0 && b_part.count != 0 && simplices_meet(a_part, b_part)) return true;
+        }
+        return false;
+    }
+
+  private:
+    int shared_index(std::uint32_t vertex) const {
+        return static_cast<int>(std::find(a.begin(), a.end(), vertex) - a.begin());
+    }
+    bool goes_to_a(int i, unsigned choice) const { return (choice >> shared_index(a[i]) & 1) != 0; }
+};
+
+bool intersect_beyond_shared(const TriangleMesh& mesh, const Triangle& a, const Triangle& b) {
+    const Neighbours pair(mesh, a, b);
+    if (pair.a_shared == 3 && pair.b_shared == 3) return true;
+    if (pair.a_shared == 2 && pair.b_shared == 2 && pair.only_share_an_edge()) return false;
+    if (pair.a_shared == 1 && pair.b_shared == 1 && pair.only_share_a_corner()) return false;
+    return pair.parts_meet();
+}
+
+Simplex simplex_of(const TriangleMesh& mesh, std::uint32_t face) {
+    const auto [a, b, c] = mesh.faces[face];
+    return {{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}, 3};
+}
+
+} // namespace
+
+bool triangles_intersect(const std::array<Vec3f, 3>& a, const std::array<Vec3f, 3>& b) noexcept {
+    return std::all_of(a.begin(), a.end(), is_finite<float>) &&
+           std::all_of(b.begin(), b.end(), is_finite<float>) && simplices_meet({a, 3}, {b, 3});
+}
+
+std::vector<FacePair> intersecting_pairs(const TriangleMesh& a, const TriangleMesh& b) {
+    require_valid(a);
+    require_valid(b);
+    std::vector<FacePair> pairs;
+    for_each_overlap(BoxTree(a), 0, BoxTree(b), 0, [&](std::uint32_t p, std::uint32_t q) {
+        if (simplices_meet(simplex_of(a, p), simplex_of(b, q))) pairs.push_back({p, q});
+    });
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+std::vector<FacePair> self_intersecting_pairs(const TriangleMesh& mesh) {
+    require_valid(mesh);
+    std::vector<FacePair> pairs;
+    for_each_overlap(BoxTree(mesh), 0, [&](std::uint32_t p, std::uint32_t q) {
+        if (intersect_beyond_shared(mesh, mesh.faces[p], mesh.faces[q]))
+            pairs.push_back({std::min(p, q), std::max(p, q)});
+    });
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+} // namespace echinus

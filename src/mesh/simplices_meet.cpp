@@ -1,0 +1,133 @@
+#include "mesh/simplices_meet.hpp"
+
+#include <algorithm>
+
+// Two simplices meet where an edge of one meets the other. Where each lies in the other's plane, all happens
+// in that plane, seen along an axis that leaves it an area.
+
+namespace echinus {
+
+namespace {
+
+bool both_signs(int i, int j, int k) {
+    return std::min({i, j, k}) < 0 && std::max({i, j, k}) > 0;
+}
+
+/// Do the closed intervals [a, b] and [c, d], given in any order, overlap?
+template <typename T>
+bool overlap(T a, T b, T c, T d) {
+    return std::max(std::min(a, b), std::min(c, d)) <= std::min(std::max(a, b), std::max(c, d));
+}
+
+// ---- On which side of a plane ----
+
+/// As orientation() gives them; of corners that there are not: 0.
+using Sides = std::array<int, 3>;
+
+/// On which sides of the plane of `b` do the corners of `a` lie? All zero where `b` spans no plane.
+Sides sides_of(const Simplex& a, const Simplex& b) {
+    Sides sides{};
+    if (b.count == 3)
+        for (int i = 0; i < a.count; ++i)
+            sides[i] = orientation(b.corners[0], b.corners[1], b.corners[2], a.corners[i]);
+    return sides;
+}
+
+bool on_one_side(const Sides& sides, int count) {
+    return sides[0] != 0 &&
+           std::all_of(sides.begin() + 1, sides.begin() + count, [&](int side) { return side == sides[0]; });
+}
+
+// ---- In a plane ----
+
+bool segments_meet(const Point2& p, const Point2& q, const Point2& r, const Point2& s) {
+    const int r_side = orientation(p, q, r), s_side = orientation(p, q, s);
+    if (r_side * s_side > 0) return false;
+    const int p_side = orientation(r, s, p), q_side = orientation(r, s, q);
+    if (p_side * q_side > 0) return false;
+    const bool on_one_line = r_side == 0 && s_side == 0 && p_side == 0 && q_side == 0;
+    return !on_one_line || (overlap(p.x, q.x, r.x, s.x) && overlap(p.y, q.y, r.y, s.y));
+}
+
+/// False for a simplex without area, which has no interior.
+bool contains(const Simplex& triangle, const Vec3f& point, int axis) {
+    if (triangle.count < 3) return false;
+    const Point2 a = seen_along(axis, triangle.corners[0]), b = seen_along(axis, triangle.corners[1]),
+                 c = seen_along(axis, triangle.corners[2]), p = seen_along(axis, point);
+    return !both_signs(orientation(a, b, p), orientation(b, c, p), orientation(c, a, p)) &&
+           orientation(a, b, c) != 0;
+}
+
+template <typename Meet>
+bool any_edges(const Simplex& a, const Simplex& b, Meet&& meet) {
+    for (int i = 0; i < a.edge_count(); ++i)
+        for (int j = 0; j < b.edge_count(); ++j)
+            if (meet(a.corners[i], a.next(i), b.corners[j], b.next(j))) return true;
+    return false;
+}
+
+bool meet_in_plane(const Simplex& a, const Simplex& b, int axis) {
+    const auto edges_meet = [axis](const Vec3f& p, const Vec3f& q, const Vec3f& r, const Vec3f& s) {
+        return segments_meet(seen_along(axis, p), seen_along(axis, q), seen_along(axis, r),
+                             seen_along(axis, s));
+    };
+    return any_edges(a, b, edges_meet) || contains(a, b.corners[0], axis) || contains(b, a.corners[0], axis);
+}
+
+// ---- In space ----
+
+bool segments_meet_in_space(const Vec3f& p, const Vec3f& q, const Vec3f& r, const Vec3f& s) {
+    if (orientation(p, q, r, s) != 0) return false;
+    std::optional<int> axis = axis_that_shows(p, q, r);
+    if (!axis) axis = axis_that_shows(p, q, s);
+    if (!axis) axis = axis_that_shows(r, s, p);
+    if (!axis) // all on one line
+        return overlap(p.x, q.x, r.x, s.x) && overlap(p.y, q.y, r.y, s.y) && overlap(p.z, q.z, r.z, s.z);
+    return segments_meet(seen_along(*axis, p), seen_along(*axis, q), seen_along(*axis, r),
+                         seen_along(*axis, s));
+}
+
+std::optional<int> axis_that_shows(const Simplex& s) {
+    if (s.count < 3) return std::nullopt;
+    return axis_that_shows(s.corners[0], s.corners[1], s.corners[2]);
+}
+
+/// @pre each lies in the other's plane, or the other spans none
+bool meet_flat(const Simplex& a, const Simplex& b) {
+    std::optional<int> axis = axis_that_shows(a);
+    if (!axis) axis = axis_that_shows(b);
+    return axis ? meet_in_plane(a, b, *axis) : any_edges(a, b, segments_meet_in_space);
+}
+
+/// Does an edge of `a` that does not lie in the plane of `b` meet `b`?
+bool edge_passes_through(const Simplex& a, const Sides& sides, const Simplex& b) {
+    const auto& [r, s, t] = b.corners;
+    for (int i = 0; i < a.edge_count(); ++i) {
+        const int j = i + 1 < a.count ? i + 1 : 0;
+        if (sides[i] * sides[j] > 0 || (sides[i] == 0 && sides[j] == 0)) continue;
+        const Vec3f &p = a.corners[i], &q = a.corners[j];
+        const int first = orientation(p, q, r, s), second = orientation(p, q, s, t);
+        if (first * second < 0) continue;
+        if (!both_signs(first, second, orientation(p, q, t, r))) return true;
+    }
+    return false;
+}
+
+} // namespace
+
+std::optional<int> axis_that_shows(const Vec3f& a, const Vec3f& b, const Vec3f& c) noexcept {
+    for (int axis : {2, 0, 1})
+        if (orientation(seen_along(axis, a), seen_along(axis, b), seen_along(axis, c)) != 0) return axis;
+    return std::nullopt;
+}
+
+bool simplices_meet(const Simplex& a, const Simplex& b) noexcept {
+    const Sides a_sides = sides_of(a, b);
+    if (on_one_side(a_sides, a.count)) return false;
+    const Sides b_sides = sides_of(b, a);
+    if (on_one_side(b_sides, b.count)) return false;
+    if (a_sides == Sides{} && b_sides == Sides{}) return meet_flat(a, b);
+    return edge_passes_through(a, a_sides, b) || edge_passes_through(b, b_sides, a);
+}
+
+} // namespace echinus
