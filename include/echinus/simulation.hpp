@@ -25,7 +25,8 @@ namespace echinus {
 enum class StickKind : std::uint8_t {
     Structural, ///< between neighbours of a row or column: keeps the cloth from stretching
     Shear,      ///< between neighbours along a diagonal: keeps its squares square
-    Bending,    ///< between every second particle of a row or column: keeps it from folding sharply
+    Bending,    ///< between every second particle of a row or column: keeps it from folding sharply. Folds
+                ///< are of this kind, too
 };
 inline constexpr std::size_t kStickKindCount = 3;
 
@@ -36,20 +37,47 @@ struct Stick {
     StickKind kind;
 };
 
-/// Particles and the sticks between them, all in world units and axes.
+/// Keeps two faces (a, b, c) and (b, a, d) with the common edge a b at the angle `rest_angle`. A face of no
+/// area has no angle, and then the fold leaves its particles as they are. Stiffness and compliance are those
+/// of StickKind::Bending.
+///
+/// The angle is 0 where the faces lie flat, positive where they are turned towards each other's fronts, and
+/// pi or -pi where they lie on each other. It is not taken modulo 2 pi: faces turn back through the flat
+/// state, never through each other.
+struct Fold {
+    std::uint32_t a, b; ///< the common edge
+    std::uint32_t c, d; ///< the corners opposite it
+    float rest_angle;   ///< radians, -pi to pi
+    /// Xpbd: error * lever is the way that the compliance takes for the extension of a spring; for instance
+    /// the mean height of c and d over the edge. Units, positive.
+    float lever;
+};
+
+/// Fixes a particle to a collider: it moves rigidly with the collider, from where it is at the start.
+struct Attachment {
+    std::uint32_t particle;
+    std::uint32_t collider = 0; ///< index in the simulation's colliders
+};
+
+/// Particles and what holds them together, all in world units and axes.
 struct Deformable {
     std::vector<Vec3f> positions; ///< [particle_count]
     /// [particle_count] one substep ago: positions - previous_positions = velocity * time_step /
     /// substep_count.
     std::vector<Vec3f> previous_positions;
     /// [particle_count] 1 / mass, in any unit where only ratios count, which they do unless sticks have a
-    /// compliance; 0 for a pinned particle: it stays in place, and no collider moves it.
+    /// compliance; 0 for a pinned particle: it stays in place, or where it is attached, and no collider
+    /// pushes it.
     std::vector<float> inverse_masses;
-    std::vector<Stick> sticks;   ///< in the order in which they are relaxed
-    std::vector<Triangle> faces; ///< for pictures and wind; they do not collide
+    std::vector<Stick> sticks;             ///< in the order in which they are relaxed
+    std::vector<Triangle> faces;           ///< for pictures and wind; they do not collide
+    std::vector<Fold> folds{};             ///< in the order in which they are relaxed, before the sticks
+    std::vector<Attachment> attachments{}; ///< of pinned particles, at most one of each
 
     std::size_t particle_count() const { return positions.size(); }
 };
+
+// ---- Cloth ----
 
 /// A rectangular sheet of cloth at rest. Its local frame has the sheet's middle at the origin, the columns
 /// along x, the rows along y, and z across it.
@@ -68,6 +96,47 @@ struct ClothOptions {
 /// the processor can work on several at once.
 /// @throws Error InvalidOptions
 Deformable make_cloth(const ClothOptions& options);
+
+/// What keeps a cloth of a mesh from folding sharply.
+enum class BendingKind : std::uint8_t {
+    Angles, ///< a fold at each edge between two faces
+    Sticks, ///< a stick between the two corners opposite such an edge, as in the paper: it resists large
+            ///< angles more than small ones, does not tell a fold to the front from one to the back, and
+            ///< takes a third of the time
+};
+
+/// How a mesh becomes a cloth, and where it starts.
+struct MeshClothOptions {
+    RigidTransform pose{}; ///< its rotation of unit length, to 1e-4
+    double scale = 1;      ///< a vertex starts at pose.to_world(scale * vertex); positive
+    /// [vertex_count] The shape of the cloth at rest, where it differs from the mesh that it starts as;
+    /// scaled as well. If empty, the mesh is at rest.
+    std::vector<Vec3f> rest_vertices{};
+    /// Edges without faces: threads and needles. Where just two of them meet in a vertex, a bending stick
+    /// across it keeps them straight.
+    std::vector<std::array<std::uint32_t, 2>> threads{};
+    BendingKind bending = BendingKind::Angles;
+    std::vector<std::uint32_t> pins{};     ///< vertices that never move
+    std::vector<Attachment> attachments{}; ///< vertices that move with a collider
+};
+
+/// A cloth of any shape: a garment, a sheet with holes, a closed bag, several pieces at once. Its particles
+/// are the mesh's vertices, and its faces the mesh's, of which those that run along a common edge the same
+/// way as an earlier one are turned round. On a one-sided surface that is not possible everywhere; only
+/// pictures show it.
+///
+/// There is a structural stick along each edge and each thread. Two triangles that make up a quadrilateral
+/// with about right angles (within 20 degrees) have shear sticks along both diagonals instead, like the
+/// squares of a sheet. Sticks and folds are ordered in groups without a common particle, so that the
+/// processor can work on several at once.
+///
+/// Masses are those of the areas around the particles in the rest shape; a thread weighs as much as a strip
+/// of cloth that is as wide as the mean edge is long. Their mean is 1, as in a sheet. Time O(n log n).
+/// @throws Error InvalidMesh, naming a face, edge or vertex at fault, when inspect() would throw, an edge has
+/// more than two faces, two faces have the same corners, a face has no area or a thread no length in the
+/// rest shape, or a vertex belongs to no face or thread (weld() drops such vertices); InvalidOptions for
+/// options out of range, and for vertices that the mesh does not have
+Deformable make_cloth(const TriangleMesh& mesh, const MeshClothOptions& options);
 
 /// When a deformable counts as at rest: for `frame_count` frames in a row every particle has stayed
 /// within `distance` of one place and has been no faster than `speed`. Neither suffices alone: a particle

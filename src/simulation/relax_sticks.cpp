@@ -8,6 +8,7 @@
 // After foreach_target.h, which includes this file once for each instruction set.
 #include "simd/dispatch.hpp"
 #include "simd/lanes-inl.hpp"
+#include "simulation/gathered_points-inl.hpp"
 #include "simulation/sticks.hpp"
 
 #include <algorithm>
@@ -18,12 +19,15 @@ HWY_BEFORE_NAMESPACE();
 namespace echinus {
 namespace HWY_NAMESPACE {
 
-/// Common to all sticks of a run.
+/// How sticks of a run share their corrections.
 class LaneStick {
   public:
     explicit LaneStick(const StickRun& run)
         : share_a_(hn::Set(Floats(), run.share_a)), share_b_(hn::Set(Floats(), run.share_b)),
           yield_(hn::Set(Floats(), run.yield)), gives_way_(run.yield != 0) {}
+    LaneStick(FloatLanes share_a, FloatLanes share_b, FloatLanes yield)
+        : share_a_(share_a), share_b_(share_b), yield_(yield),
+          gives_way_(!hn::AllTrue(Floats(), yield == hn::Zero(Floats()))) {}
 
     /// The same operations as relax_one(). @param left  sticks from the first lane on
     void operator()(PointLanes& a, PointLanes& b, float* goal_lengths, std::size_t left) const {
@@ -137,6 +141,24 @@ void relax_alternating(const StickRun& run, float* goal_lengths, PointArrays& p)
     }
 }
 
+/// Relaxes as many sticks as fill whole vectors. @return how many
+std::size_t relax_disjoint(const StickRun& run, StickArrays& sticks, PointArrays& p) {
+    const Floats d;
+    const std::size_t lanes = hn::Lanes(d);
+    std::size_t done = 0;
+    for (; done + lanes <= run.count; done += lanes) {
+        const std::size_t i = run.first + done;
+        const IntLanes at_a = load_indices(&sticks.a[i]), at_b = load_indices(&sticks.b[i]);
+        PointLanes a = gather(p, at_a), b = gather(p, at_b);
+        const LaneStick stick(hn::LoadU(d, &sticks.share_a[i]), hn::LoadU(d, &sticks.share_b[i]),
+                              hn::LoadU(d, &sticks.yield[i]));
+        stick(a, b, &sticks.goal_lengths[i], lanes);
+        scatter(a, p, at_a);
+        scatter(b, p, at_b);
+    }
+    return done;
+}
+
 void relax_run(const StickRun& run, StickArrays& sticks, PointArrays& positions) {
     float* goal_lengths = &sticks.goal_lengths[run.first];
     switch (run.shape) {
@@ -148,6 +170,7 @@ void relax_run(const StickRun& run, StickArrays& sticks, PointArrays& positions)
 #if HWY_TARGET != HWY_SCALAR // compiled by Highway, never chosen by dispatch.hpp, and too narrow for a pair
         return relax_alternating<double>(run, goal_lengths, positions);
 #endif
+    case RunShape::Disjoint:
     case RunShape::Scattered:
         break;
     }
@@ -163,6 +186,7 @@ namespace echinus {
 namespace {
 
 HWY_EXPORT(relax_run);
+HWY_EXPORT(relax_disjoint);
 
 void relax_one(StickArrays& sticks, std::size_t i, PointArrays& positions) {
     const Vec3f a = positions[sticks.a[i]];
@@ -186,10 +210,14 @@ void relax_one_by_one(StickArrays& sticks, std::size_t first, std::size_t count,
 void relax(StickArrays& sticks, PointArrays& positions) noexcept {
     if (!use_kernels()) return relax_one_by_one(sticks, 0, sticks.count(), positions);
     for (const StickRun& run : sticks.runs) {
-        if (run.shape == RunShape::Scattered)
-            relax_one_by_one(sticks, run.first, run.count, positions);
-        else
+        if (run.shape == RunShape::Disjoint || run.shape == RunShape::Scattered) {
+            const std::size_t done = run.shape == RunShape::Disjoint
+                                         ? ECHINUS_DISPATCH(relax_disjoint)(run, sticks, positions)
+                                         : 0;
+            relax_one_by_one(sticks, run.first + done, run.count - done, positions);
+        } else {
             ECHINUS_DISPATCH(relax_run)(run, sticks, positions);
+        }
     }
 }
 

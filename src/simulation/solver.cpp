@@ -71,10 +71,12 @@ void integrate_coordinate(float* __restrict positions, float* __restrict previou
 Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colliders_in,
                            const SimulationOptions& options_in)
     : deformable((require_valid(options_in), require_valid(deformable_in),
-                  require_valid(colliders_in, options_in), std::move(deformable_in))),
+                  require_valid(colliders_in, options_in),
+                  require_valid_attachments(deformable_in, colliders_in.size()), std::move(deformable_in))),
       colliders(with_unit_rotations(std::move(colliders_in))),
       options(with_thickness(options_in, deformable)), largest_speed(std::numeric_limits<double>::infinity()),
       particles_(deformable), sticks_(weighted_sticks(deformable, options)),
+      folds_(weighted_folds(deformable, options)), attachments_(deformable, colliders),
       collisions_(colliders, particles_, options), rest_(options.rest, deformable.positions),
       goals_give_way_(sticks_.gives_way()), substep_seconds_(options.time_step / options.substep_count) {
     const Sphere start = box_sphere(deformable.positions);
@@ -88,9 +90,9 @@ void Simulation::Solver::step() {
     for (std::uint32_t substep = 0; substep < options.substep_count; ++substep) {
         integrate(substep == 0 ? 1 - options.drag : 1);
         move_colliders();
-        restore_goal_lengths();
+        restore_goals();
         for (std::uint32_t iteration = 0; iteration < options.iteration_count; ++iteration) {
-            relax_sticks();
+            relax_constraints();
             collide();
         }
     }
@@ -122,17 +124,20 @@ void Simulation::Solver::integrate(double share_kept) {
 void Simulation::Solver::move_colliders() {
     const Stopwatch stopwatch(profile.collision_seconds);
     collisions_.begin_substep(colliders, substep_seconds_);
+    attachments_.follow(colliders, particles_.positions);
 }
 
 /// Multipliers begin at 0 in each substep (Macklin et al. 2016, algorithm 1).
-void Simulation::Solver::restore_goal_lengths() {
+void Simulation::Solver::restore_goals() {
     const Stopwatch stopwatch(profile.constraint_seconds);
     if (goals_give_way_)
         std::copy(sticks_.rest_lengths.begin(), sticks_.rest_lengths.end(), sticks_.goal_lengths.begin());
+    folds_.restore_goals();
 }
 
-void Simulation::Solver::relax_sticks() {
+void Simulation::Solver::relax_constraints() {
     const Stopwatch stopwatch(profile.constraint_seconds);
+    relax(folds_, particles_.positions);
     relax(sticks_, particles_.positions);
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include "simulation/attachments.hpp"
 #include "simulation/collisions.hpp"
+#include "simulation/folds.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/rest.hpp"
 #include "simulation/sticks.hpp"
@@ -35,8 +37,8 @@ class Simulation::Solver {
     void begin_frame();
     void integrate(double share_kept);
     void move_colliders();
-    void restore_goal_lengths();
-    void relax_sticks();
+    void restore_goals();
+    void relax_constraints();
     void collide();
     void keep_free();
     void publish();
@@ -44,6 +46,8 @@ class Simulation::Solver {
 
     Particles particles_;
     StickArrays sticks_;
+    FoldArrays folds_;
+    Attachments attachments_;
     Collisions collisions_;
     RestWatch rest_;
     Wind wind_;

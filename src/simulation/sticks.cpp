@@ -1,5 +1,7 @@
 #include "simulation/sticks.hpp"
 
+#include "simulation/disjoint.hpp"
+
 #include <algorithm>
 #include <utility>
 
@@ -9,6 +11,7 @@ namespace {
 
 /// Shorter runs are not worth a kernel's start.
 constexpr std::size_t kShortestRun = 4;
+constexpr std::size_t kShortestDisjointRun = 16;
 
 std::pair<std::uint32_t, std::uint32_t> nth_stick(RunShape shape, std::uint32_t a, std::uint32_t b,
                                                   std::uint32_t n) {
@@ -19,6 +22,7 @@ std::pair<std::uint32_t, std::uint32_t> nth_stick(RunShape shape, std::uint32_t 
         return {a + 2 * n, b + 2 * n};
     case RunShape::EverySecond:
         return {a + 4 * (n / 2) + n % 2, b + 4 * (n / 2) + n % 2};
+    case RunShape::Disjoint:
     case RunShape::Scattered:
         break;
     }
@@ -35,6 +39,7 @@ std::size_t longest_run(RunShape shape, std::uint32_t a, std::uint32_t b) {
         return b == a + 1 ? kNoLimit : 1;
     case RunShape::EverySecond:
         return b == a + 2 ? kNoLimit : 1;
+    case RunShape::Disjoint:
     case RunShape::Scattered:
         break;
     }
@@ -72,19 +77,52 @@ StickRun longest_run_from(const StickArrays& sticks, std::size_t first) {
     return run;
 }
 
-std::vector<StickRun> runs_of(const StickArrays& sticks) {
+/// Adds a run, or makes the last one longer where both are scattered.
+void add(std::vector<StickRun>& runs, const StickRun& run) {
+    const bool continues =
+        !runs.empty() && run.shape == RunShape::Scattered && runs.back().shape == RunShape::Scattered;
+    if (continues)
+        runs.back().count += run.count;
+    else
+        runs.push_back(run);
+}
+
+/// Cuts a scattered run where a stick shares a particle with an earlier one, and adds the pieces.
+void add_cut(std::vector<StickRun>& runs, const StickRun& scattered, const StickArrays& sticks,
+             DisjointRun& particles) {
+    for (std::size_t first = scattered.first, end = first; first < scattered.first + scattered.count;
+         first = end) {
+        particles.begin();
+        while (end < scattered.first + scattered.count &&
+               particles.add(std::array{sticks.a[end], sticks.b[end]}))
+            ++end;
+        const std::size_t count = end - first;
+        add(runs, {.shape = count < kShortestDisjointRun ? RunShape::Scattered : RunShape::Disjoint,
+                   .first = first,
+                   .count = count});
+    }
+}
+
+std::vector<StickRun> runs_of(const StickArrays& sticks, std::size_t particle_count) {
     std::vector<StickRun> runs;
-    for (std::size_t first = 0; first < sticks.count(); first += runs.back().count) {
+    DisjointRun particles(particle_count);
+    StickRun scattered;
+    const auto add_scattered = [&] {
+        add_cut(runs, scattered, sticks, particles);
+        scattered.count = 0;
+    };
+    for (std::size_t first = 0, count = 0; first < sticks.count(); first += count) {
         const StickRun run = longest_run_from(sticks, first);
-        const bool continues =
-            !runs.empty() && run.shape == RunShape::Scattered && runs.back().shape == RunShape::Scattered;
-        if (!continues) {
-            runs.push_back(run);
+        count = run.count;
+        if (run.shape == RunShape::Scattered) {
+            if (scattered.count == 0) scattered.first = first;
+            ++scattered.count;
             continue;
         }
-        first = runs.back().first;
-        ++runs.back().count;
+        add_scattered();
+        runs.push_back(run);
     }
+    add_scattered();
     return runs;
 }
 
@@ -131,7 +169,7 @@ StickArrays weighted_sticks(const Deformable& deformable, const SimulationOption
         sticks.yield.push_back(asked_again ? static_cast<float>(shares.yield) : 0.0F);
         sticks.rest_lengths.push_back(stick.rest_length);
     }
-    sticks.runs = runs_of(sticks);
+    sticks.runs = runs_of(sticks, deformable.particle_count());
     sticks.rest_lengths.resize(sticks.count() + PointArrays::kPadding);
     sticks.goal_lengths = sticks.rest_lengths;
     return sticks;

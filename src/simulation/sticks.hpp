@@ -15,11 +15,13 @@ namespace echinus {
 ///     SideBySide   a, a+1, a+2 ... and b, b+1, b+2 ...            two rows of a cloth
 ///     Neighbours   (a, a+1), (a+2, a+3) ...                       every second stick along a row
 ///     EverySecond  (a, a+2), (a+1, a+3), (a+4, a+6), (a+5, a+7)   every second bending stick along a row
+///     Disjoint     in any order, but no two sticks share a particle
 ///     Scattered    in any order
-enum class RunShape : std::uint8_t { SideBySide, Neighbours, EverySecond, Scattered };
+enum class RunShape : std::uint8_t { SideBySide, Neighbours, EverySecond, Disjoint, Scattered };
 
 /// Consecutive sticks of one shape. Except in a scattered run no two share a particle, so that relaxing many
-/// at once gives the same bits as one after the other; and all share their corrections alike.
+/// at once gives the same bits as one after the other. In runs of the first three shapes all sticks share
+/// their corrections alike.
 struct StickRun {
     RunShape shape = RunShape::Scattered;
     std::uint32_t a = 0, b = 0; ///< particles of the first stick

@@ -2,6 +2,8 @@
 
 #include <echinus/error.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -64,6 +66,22 @@ void require_valid(const SimulationOptions& options) {
     if (!is_finite(options.gravity)) fail("simulation option gravity is not finite");
 }
 
+namespace {
+
+void require_valid(const Fold& fold, std::size_t particle_count, const std::string& name) {
+    std::array corners{fold.a, fold.b, fold.c, fold.d};
+    std::sort(corners.begin(), corners.end());
+    if (corners.back() >= particle_count ||
+        std::adjacent_find(corners.begin(), corners.end()) != corners.end())
+        fail(name + " lies between particles " + std::to_string(fold.a) + ", " + std::to_string(fold.b) +
+             ", " + std::to_string(fold.c) + " and " + std::to_string(fold.d) +
+             "; it needs four different ones of " + std::to_string(particle_count));
+    if (!(std::fabs(fold.rest_angle) <= 3.1416F) || !(fold.lever > 0) || !std::isfinite(fold.lever))
+        fail(name + " has a rest angle that is not between -pi and pi, or a lever that is not positive");
+}
+
+} // namespace
+
 void require_valid(const Deformable& deformable) {
     const std::size_t count = deformable.particle_count();
     if (count == 0) fail("the deformable has no particles");
@@ -87,11 +105,31 @@ void require_valid(const Deformable& deformable) {
             static_cast<std::size_t>(stick.kind) >= kStickKindCount)
             fail("stick " + std::to_string(i) + " has a rest length or a kind out of range");
     }
+    for (std::size_t i = 0; i < deformable.folds.size(); ++i)
+        require_valid(deformable.folds[i], count, "fold " + std::to_string(i));
     for (std::size_t i = 0; i < deformable.faces.size(); ++i)
         for (const std::uint32_t particle : deformable.faces[i])
             if (particle >= count)
                 fail("face " + std::to_string(i) + " names particle " + std::to_string(particle) +
                      "; the last one is " + std::to_string(count - 1));
+}
+
+void require_valid_attachments(const Deformable& deformable, std::size_t collider_count) {
+    std::vector<bool> is_attached(deformable.particle_count(), false);
+    for (std::size_t i = 0; i < deformable.attachments.size(); ++i) {
+        const auto& [particle, collider] = deformable.attachments[i];
+        const std::string name =
+            "attachment " + std::to_string(i) + " of particle " + std::to_string(particle);
+        if (particle >= deformable.particle_count())
+            fail(name + ": the last particle is " + std::to_string(deformable.particle_count() - 1));
+        if (collider >= collider_count)
+            fail(name + " names collider " + std::to_string(collider) + " of " +
+                 std::to_string(collider_count) + ", numbered from 0");
+        if (deformable.inverse_masses[particle] != 0)
+            fail(name + ": an attached particle must be pinned, with the inverse mass 0");
+        if (is_attached[particle]) fail(name + " is not its first; a particle has at most one");
+        is_attached[particle] = true;
+    }
 }
 
 void require_valid(const std::vector<Collider>& colliders, const SimulationOptions& options) {

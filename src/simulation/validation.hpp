@@ -2,6 +2,7 @@
 
 #include <echinus/simulation.hpp>
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@ namespace echinus {
 void require_valid(const SimulationOptions& options);
 void require_valid(const Deformable& deformable);
 void require_valid(const std::vector<Collider>& colliders, const SimulationOptions& options);
+/// @pre the deformable is valid
+void require_valid_attachments(const Deformable& deformable, std::size_t collider_count);
 /// @param owner  of the pose, as the sentence begins: "collider 0"
 void require_valid(const RigidTransform& pose, const std::string& owner);
 

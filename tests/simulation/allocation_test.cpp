@@ -16,6 +16,9 @@ TEST(Step, AllocatesNothingBesideAnyKindOfMap) {
     const Vec3d down{0, 0, -0.1};
     Deformable sheet = make_cloth({.column_count = 20, .row_count = 20, .pose = {Rotation{}, {0, 0, 0.5}}});
     for (Vec3f& previous : sheet.previous_positions) previous -= Vec3f(down);
+    sheet.folds = {{0, 1, 20, 21, 0, 1}, {1, 2, 21, 22, 0, 1}};
+    sheet.inverse_masses[0] = 0;
+    sheet.attachments = {{0, 0}};
     Simulation simulation(
         sheet,
         {{.map = ExactMap::build(plate), .linear_velocity = {0.5, 0, 5}, .angular_velocity = {4, 18, 2}},

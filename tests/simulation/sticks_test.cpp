@@ -1,4 +1,5 @@
 #include "simulation/sticks.hpp"
+#include "support/cloth_meshes.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/random_points.hpp"
 
@@ -66,6 +67,17 @@ TEST(Sticks, RelaxToTheSameBitsUnderEachInstructionSetInAnyOrder) {
     expect_same_bits_under_each_instruction_set(cloth);
 }
 
+TEST(Sticks, OfAMeshRelaxToTheSameBitsUnderEachInstructionSet) {
+    const SimulationOptions springs{.solver = SolverKind::Xpbd, .compliance = {0, 1e-5, 1e-4}};
+    for (std::uint32_t columns = 2; columns < 20; ++columns) {
+        const TriangleMesh flat = test::sheet_mesh(columns, 9);
+        const Deformable cloth =
+            make_cloth(test::rumpled(flat, 0.1F), {.rest_vertices = flat.vertices, .pins = {3}});
+        expect_same_bits_under_each_instruction_set(cloth);
+        expect_same_bits_under_each_instruction_set(cloth, springs);
+    }
+}
+
 TEST(Sticks, ThatGiveWayRelaxToTheSameBitsUnderEachInstructionSet) {
     const SimulationOptions springs{.solver = SolverKind::Xpbd, .compliance = {1e-6, 1e-5, 1e-4}};
     for (std::uint32_t columns = 2; columns < 40; ++columns)
@@ -74,7 +86,9 @@ TEST(Sticks, ThatGiveWayRelaxToTheSameBitsUnderEachInstructionSet) {
 }
 
 TEST(Sticks, StandInRunsThatFollowEachOtherAndShareNoParticle) {
-    for (const Deformable& cloth : {rumpled_cloth(2, 2), rumpled_cloth(33, 7), rumpled_cloth(24, 24, {30})}) {
+    for (const Deformable& cloth :
+         {rumpled_cloth(2, 2), rumpled_cloth(33, 7), rumpled_cloth(24, 24, {30}),
+          make_cloth(make_torus(1, 0.4, 30, 20), {}), make_cloth(make_sphere(1, 100, 20), {})}) {
         const StickArrays sticks = weighted_sticks(cloth, {});
         std::size_t next = 0;
         for (const StickRun& run : sticks.runs) {
@@ -85,6 +99,7 @@ TEST(Sticks, StandInRunsThatFollowEachOtherAndShareNoParticle) {
             for (std::size_t i = run.first; i < next; ++i) {
                 EXPECT_TRUE(particles.insert(sticks.a[i]).second);
                 EXPECT_TRUE(particles.insert(sticks.b[i]).second);
+                if (run.shape == RunShape::Disjoint) continue;
                 EXPECT_EQ(sticks.share_a[i], run.share_a);
                 EXPECT_EQ(sticks.share_b[i], run.share_b);
             }
@@ -95,6 +110,14 @@ TEST(Sticks, StandInRunsThatFollowEachOtherAndShareNoParticle) {
 
 TEST(Sticks, OfAClothStandInLongRuns) {
     EXPECT_EQ(scattered_count(weighted_sticks(rumpled_cloth(100, 20), {})), 0u);
+}
+
+TEST(Sticks, OfAMeshStandInRunsThatShareNoParticle) {
+    const StickArrays torus = weighted_sticks(make_cloth(make_torus(1, 0.4, 60, 24), {}), {});
+    EXPECT_LT(scattered_count(torus), torus.count() / 100);
+    // At its poles a sphere has more sticks than there are groups.
+    const StickArrays sphere = weighted_sticks(make_cloth(make_sphere(1, 100, 20), {}), {});
+    EXPECT_LT(scattered_count(sphere), sphere.count() / 20);
 }
 
 TEST(Sticks, BetweenPinnedParticlesAreLeftOut) {

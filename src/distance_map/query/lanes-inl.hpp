@@ -2,7 +2,6 @@
 // set. Each step has the bits of its scalar counterpart: the same operations in the same order, no fused
 // multiply-add.
 
-#include "directions/angles.hpp"
 #include "directions/axis_order.hpp"
 
 #include <array>
@@ -16,6 +15,7 @@
 #define ECHINUS_DISTANCE_MAP_LANES_INL_HPP
 #endif
 
+#include "directions/angles-inl.hpp"
 #include "simd/rows-inl.hpp"
 
 #if HWY_TARGET != HWY_SCALAR // whose vectors have one lane
@@ -37,24 +37,6 @@ HWY_INLINE PointLanes turned_last(PoleAxis axis, const PointLanes& v) {
 HWY_INLINE PointLanes turned_back(PoleAxis axis, const PointLanes& v) {
     if (axis == PoleAxis::Z) return v;
     return turned_last(axis == PoleAxis::X ? PoleAxis::Y : PoleAxis::X, v);
-}
-
-/// atan2_polynomial() of directions/angles.hpp.
-HWY_INLINE FloatLanes angle_of(FloatLanes y, FloatLanes x) {
-    const FloatLanes ax = hn::Abs(x);
-    const FloatLanes ay = hn::Abs(y);
-    const FloatMask flat = hn::Gt(ax, ay);
-    const FloatLanes larger = choose(flat, ax, ay);
-    const FloatLanes smaller = choose(flat, ay, ax);
-    const FloatLanes ratio = hn::IfThenElseZero(hn::Gt(larger, hn::Zero(kFloat)), hn::Div(smaller, larger));
-    const FloatLanes s = hn::Mul(ratio, ratio);
-    FloatLanes p = splat(kAtanCoefficients[0]);
-    for (std::size_t i = 1; i < kAtanCoefficients.size(); ++i)
-        p = hn::Add(hn::Mul(p, s), splat(kAtanCoefficients[i]));
-    FloatLanes angle = hn::Mul(p, ratio);
-    angle = choose(hn::Gt(ay, ax), hn::Sub(splat(kPi / 2), angle), angle);
-    angle = choose(hn::Lt(x, hn::Zero(kFloat)), hn::Sub(splat(kPi), angle), angle);
-    return hn::CopySign(angle, y);
 }
 
 HWY_INLINE IntLanes floor_to_int(FloatLanes value) {

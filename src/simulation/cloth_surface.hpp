@@ -1,0 +1,30 @@
+#pragma once
+
+#include <echinus/mesh.hpp>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace echinus {
+
+/// The common edge a b of two faces (a, b, c) and (b, a, d).
+struct Hinge {
+    std::uint32_t a, b, c, d;
+};
+
+/// The faces of a cloth and how they hang together.
+struct ClothSurface {
+    std::vector<Triangle> faces;                     ///< turned alike
+    std::vector<std::array<std::uint32_t, 2>> edges; ///< each once, its smaller vertex first, ascending
+    std::vector<Hinge> hinges;                       ///< by edge, ascending
+};
+
+/// Turns faces round where they run along a common edge the same way as a face that was reached before, from
+/// the first face of each piece on.
+/// @throws Error InvalidMesh, naming faces and edge, where an edge has more than two faces, a face has two
+/// equal corners, or two faces have the same three
+/// @pre indices are in range
+ClothSurface surface_of(const TriangleMesh& mesh);
+
+} // namespace echinus

@@ -1,0 +1,165 @@
+// The relaxation of folds: the plain loop, which is the specification, and a kernel that takes as many folds
+// of a run at once as the instruction set has lanes.
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simulation/relax_folds.cpp"
+#include <hwy/foreach_target.h>
+
+// After foreach_target.h, which includes this file once for each instruction set.
+#include "directions/angles-inl.hpp"
+#include "simd/dispatch.hpp"
+#include "simd/lanes-inl.hpp"
+#include "simulation/folds.hpp"
+#include "simulation/gathered_points-inl.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#ifndef ECHINUS_SIMULATION_RELAX_FOLDS_RULES
+#define ECHINUS_SIMULATION_RELAX_FOLDS_RULES
+namespace echinus {
+namespace {
+
+/// No relaxation turns a fold by more than this, in radians: its particles move along straight lines, which
+/// stretches the faces of a sharp fold.
+constexpr float kLargestTurn = 1;
+
+/// Outside of these limits of the turn per step a face has no area, or next to none.
+constexpr float kLeastRate = std::numeric_limits<float>::min();
+constexpr float kMostRate = std::numeric_limits<float>::max();
+
+} // namespace
+} // namespace echinus
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace echinus {
+namespace HWY_NAMESPACE {
+
+/// relax_one() of the folds from i on.
+HWY_INLINE void relax_lanes(FoldArrays& folds, std::size_t i, PointArrays& positions) {
+    const FloatLanes one = splat(1), zero = splat(0);
+    const IntLanes at_a = load_indices(&folds.a[i]), at_b = load_indices(&folds.b[i]),
+                   at_c = load_indices(&folds.c[i]), at_d = load_indices(&folds.d[i]);
+    const PointLanes a = gather(positions, at_a), b = gather(positions, at_b), c = gather(positions, at_c),
+                     d = gather(positions, at_d);
+    const FloatLanes mass_a = hn::LoadU(kFloat, &folds.inverse_mass_a[i]),
+                     mass_b = hn::LoadU(kFloat, &folds.inverse_mass_b[i]),
+                     mass_c = hn::LoadU(kFloat, &folds.inverse_mass_c[i]),
+                     mass_d = hn::LoadU(kFloat, &folds.inverse_mass_d[i]);
+    const PointLanes edge = b - a, to_c = c - a, to_d = d - a;
+    const PointLanes area_c = cross(edge, to_c), area_d = cross(to_d, edge);
+    const FloatLanes edge_length = length(edge);
+    const FloatLanes size_c = length(area_c), size_d = length(area_d);
+    const PointLanes normal_c = area_c * (one / size_c), normal_d = area_d * (one / size_d);
+    const FloatLanes rate_c = edge_length / size_c, rate_d = edge_length / size_d;
+
+    const FloatLanes per_length_sq = one / dot(edge, edge);
+    const FloatLanes foot_c = dot(to_c, edge) * per_length_sq, foot_d = dot(to_d, edge) * per_length_sq;
+    const PointLanes gradient_c = normal_c * rate_c, gradient_d = normal_d * rate_d;
+    const PointLanes gradient_a = -(gradient_c * (one - foot_c) + gradient_d * (one - foot_d));
+    const PointLanes gradient_b = -(gradient_c * foot_c + gradient_d * foot_d);
+
+    const FloatLanes rate = dot(gradient_a, gradient_a) * mass_a + dot(gradient_b, gradient_b) * mass_b +
+                            dot(gradient_c, gradient_c) * mass_c + dot(gradient_d, gradient_d) * mass_d;
+    const FloatMask has_angle = hn::And(rate >= splat(kLeastRate), rate <= splat(kMostRate));
+    const FloatLanes goal = hn::LoadU(kFloat, &folds.goal_angles[i]);
+    const FloatLanes compliance = hn::LoadU(kFloat, &folds.compliances[i]);
+    const FloatLanes angle = angle_of(dot(normal_c, to_d) * rate_d, dot(normal_c, normal_d));
+    const FloatLanes wanted = (goal - angle) * splat(folds.stiffness) / (rate + compliance);
+    const FloatLanes most = splat(kLargestTurn) / rate, least = zero - most;
+    const FloatLanes bounded = choose(wanted < least, least, choose(most < wanted, most, wanted));
+    const auto put = [&](const PointLanes& before, const PointLanes& gradient, const FloatLanes& mass,
+                         const IntLanes& at) HWY_ATTR {
+        scatter(choose(has_angle, before + gradient * (bounded * mass), before), positions, at);
+    };
+    put(a, gradient_a, mass_a, at_a);
+    put(b, gradient_b, mass_b, at_b);
+    put(c, gradient_c, mass_c, at_c);
+    put(d, gradient_d, mass_d, at_d);
+    hn::StoreU(choose(has_angle, goal - bounded * compliance, goal), kFloat, &folds.goal_angles[i]);
+}
+
+/// Relaxes as many folds of the run as fill whole vectors. @return how many
+std::size_t relax_fold_run(const FoldRun& run, FoldArrays& folds, PointArrays& positions) {
+    const std::size_t lanes = hn::Lanes(kFloat);
+    std::size_t i = 0;
+    for (; i + lanes <= run.count; i += lanes) relax_lanes(folds, run.first + i, positions);
+    return i;
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace echinus
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace echinus {
+
+namespace {
+
+HWY_EXPORT(relax_fold_run);
+
+/// A fold as its particles lie now.
+struct FoldNow {
+    Vec3f edge, to_c, to_d; ///< from a
+    Vec3f normal_c, normal_d;
+    float rate_c, rate_d; ///< 1 / height over the edge
+
+    FoldNow(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d)
+        : edge(b - a), to_c(c - a), to_d(d - a) {
+        const Vec3f area_c = cross(edge, to_c), area_d = cross(to_d, edge);
+        const float edge_length = length(edge);
+        const float size_c = length(area_c), size_d = length(area_d);
+        normal_c = area_c * (1 / size_c);
+        normal_d = area_d * (1 / size_d);
+        rate_c = edge_length / size_c;
+        rate_d = edge_length / size_d;
+    }
+    float angle() const { return atan2_polynomial(dot(normal_c, to_d) * rate_d, dot(normal_c, normal_d)); }
+};
+
+void relax_one(FoldArrays& folds, std::size_t i, PointArrays& positions) {
+    const Vec3f a = positions[folds.a[i]], b = positions[folds.b[i]], c = positions[folds.c[i]],
+                d = positions[folds.d[i]];
+    const float mass_a = folds.inverse_mass_a[i], mass_b = folds.inverse_mass_b[i],
+                mass_c = folds.inverse_mass_c[i], mass_d = folds.inverse_mass_d[i];
+    const FoldNow fold(a, b, c, d);
+    const float per_length_sq = 1 / dot(fold.edge, fold.edge);
+    const float foot_c = dot(fold.to_c, fold.edge) * per_length_sq;
+    const float foot_d = dot(fold.to_d, fold.edge) * per_length_sq;
+    const Vec3f gradient_c = fold.normal_c * fold.rate_c, gradient_d = fold.normal_d * fold.rate_d;
+    const Vec3f gradient_a = -(gradient_c * (1 - foot_c) + gradient_d * (1 - foot_d));
+    const Vec3f gradient_b = -(gradient_c * foot_c + gradient_d * foot_d);
+
+    // By how much a step along the gradient turns the fold. NaN where an edge has no length.
+    const float rate = dot(gradient_a, gradient_a) * mass_a + dot(gradient_b, gradient_b) * mass_b +
+                       dot(gradient_c, gradient_c) * mass_c + dot(gradient_d, gradient_d) * mass_d;
+    if (!(rate >= kLeastRate && rate <= kMostRate)) return;
+    float& goal = folds.goal_angles[i];
+    const float wanted = (goal - fold.angle()) * folds.stiffness / (rate + folds.compliances[i]);
+    const float most = kLargestTurn / rate;
+    const float step = std::clamp(wanted, -most, most);
+    positions.set(folds.a[i], a + gradient_a * (step * mass_a));
+    positions.set(folds.b[i], b + gradient_b * (step * mass_b));
+    positions.set(folds.c[i], c + gradient_c * (step * mass_c));
+    positions.set(folds.d[i], d + gradient_d * (step * mass_d));
+    goal = goal - step * folds.compliances[i];
+}
+
+} // namespace
+
+float fold_angle(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d) {
+    const FoldNow fold(a, b, c, d);
+    const bool has_angle = fold.rate_c <= kMostRate && fold.rate_d <= kMostRate;
+    return has_angle ? fold.angle() : 0;
+}
+
+void relax(FoldArrays& folds, PointArrays& positions) noexcept {
+    for (const FoldRun& run : folds.runs) {
+        const std::size_t done = use_kernels() ? ECHINUS_DISPATCH(relax_fold_run)(run, folds, positions) : 0;
+        for (std::size_t i = done; i < run.count; ++i) relax_one(folds, run.first + i, positions);
+    }
+}
+
+} // namespace echinus
+#endif // HWY_ONCE
