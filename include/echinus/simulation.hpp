@@ -192,6 +192,9 @@ struct SimulationOptions {
     /// is inside, so particles get in there, some are pushed out through the surface, and lost_count tells
     /// how often. Prefer a closed mesh (see repair()) or a distance map.
     bool allow_open_colliders = false;
+    /// Edges and faces collide too, not only particles: no face of the deformable ever meets a collider
+    /// (docs/surfaces.md). Every collider needs an exact map; open meshes are welcome.
+    bool surface_collision = false;
     /// A particle farther than this from the middle of where the deformable began ends the simulation as
     /// diverged, units. 0: 10 000 times the deformable's extent at the start.
     double bound = 0;
@@ -214,6 +217,15 @@ struct SimulationProfile {
     /// counts once for each such map, and again in each frame that it ends so. A particle that began inside
     /// and was never outside yet does not count.
     std::uint64_t lost_count = 0;
+    /// With surface_collision: times that a particle ended a frame short of where it was going, because its
+    /// edges or faces could have met something on the way.
+    std::uint64_t truncated_count = 0;
+    /// Faces whose neighbourhood was searched, and pairs of a vertex and a face or of two edges that were
+    /// measured: the work of surface_collision, which keeps what it knows as long as that holds.
+    std::uint64_t searched_face_count = 0, measured_pair_count = 0;
+    /// Times that no place for a particle was proven: a pinned particle was led through something, or
+    /// colliders left no room between them. Only then faces may intersect.
+    std::uint64_t squeezed_count = 0;
 };
 
 /// A deformable among colliders. The same input gives the same positions bit for bit, on every run and with

@@ -4,6 +4,7 @@
 
 #include <echinus/simulation.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -25,6 +26,11 @@ class Collision {
     virtual void begin_substep(const Collider& collider, const RigidTransform& previous_pose) = 0;
     /// One relaxation of all particles.
     virtual void relax(Particles& particles, SimulationProfile& profile) = 0;
+
+    /// Lower bounds of the particles' distances from the surface, as far as they are known without a query.
+    virtual void known_clearances(const Particles&, std::span<float> clearances) const {
+        std::fill(clearances.begin(), clearances.end(), 0.0F);
+    }
 
     /// Lists the particles that are not proven free where they are; pinned ones are never among them.
     virtual std::span<const std::uint32_t> find_unproven(const Particles&) { return {}; }

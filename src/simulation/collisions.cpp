@@ -55,6 +55,10 @@ void Collisions::keep_free(Particles& particles, SimulationProfile& profile) {
         else if (was_lost)
             ++profile.rescued_count;
     }
+    end_frame(particles);
+}
+
+void Collisions::end_frame(const Particles& particles) {
     for (const auto& collision : collisions_) collision->end_frame(particles);
 }
 

@@ -3,6 +3,7 @@
 #include "simulation/collision.hpp"
 
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace echinus {
@@ -19,9 +20,15 @@ class Collisions {
     /// Moves the colliders on.
     void begin_substep(std::vector<Collider>& colliders, double seconds);
     void relax(Particles& particles, SimulationProfile& profile);
+    /// Of the particles from one collider: Collision::known_clearances().
+    void known_clearances(std::size_t collider, const Particles& particles, std::span<float> clearances) const {
+        collisions_[collider]->known_clearances(particles, clearances);
+    }
     /// The proof at the end of a frame: rescues the particles that are not proven free, and counts those that
     /// are lost nevertheless.
     void keep_free(Particles& particles, SimulationProfile& profile);
+    /// Instead of keep_free(), where no particle has passed through anything.
+    void end_frame(const Particles& particles);
 
   private:
     void rescue(std::uint32_t particle, Particles& particles) const;

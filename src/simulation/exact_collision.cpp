@@ -124,6 +124,14 @@ bool ExactCollision::meet_on_the_way(std::size_t i, const Particles& particles, 
     return true;
 }
 
+void ExactCollision::known_clearances(const Particles& particles, std::span<float> clearances) const {
+    for (std::size_t i = 0; i < particles.count(); ++i) {
+        const float used = length(particles.positions[i] - known_.asked_at[i]) + now_.guard;
+        // Nothing is known of a pinned particle, whose map is never asked.
+        clearances[i] = particles.pinned(i) ? 0 : std::max(known_.clearance[i] - used, 0.0F);
+    }
+}
+
 std::span<const std::uint32_t> ExactCollision::find_unproven(const Particles& particles) {
     if (moves_) {
         const FrameChange before(frame_start_pose_, {1, 1, 1});

@@ -30,6 +30,7 @@ class ExactCollision final : public Collision {
     /// To the thickness over the nearest point, with friction.
     void relax(Particles& particles, SimulationProfile& profile) override;
 
+    void known_clearances(const Particles& particles, std::span<float> clearances) const override;
     std::span<const std::uint32_t> find_unproven(const Particles& particles) override;
     bool is_unproven(std::size_t i, const Particles& particles) const override;
     bool is_lost(std::size_t i, const Particles& particles) const override;

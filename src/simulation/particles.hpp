@@ -3,6 +3,7 @@
 #include <echinus/geometry.hpp>
 #include <echinus/simulation.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -18,6 +19,9 @@ struct PointArrays {
 
     void resize(std::size_t count) {
         for (std::vector<float>* c : {&x, &y, &z}) c->resize(count + kPadding);
+    }
+    void fill(float value) {
+        for (std::vector<float>* c : {&x, &y, &z}) std::fill(c->begin(), c->end(), value);
     }
     Vec3f operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
     void set(std::size_t i, const Vec3f& p) {

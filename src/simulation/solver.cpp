@@ -79,6 +79,7 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
       folds_(weighted_folds(deformable, options)), attachments_(deformable, colliders),
       collisions_(colliders, particles_, options), rest_(options.rest, deformable.positions),
       goals_give_way_(sticks_.gives_way()), substep_seconds_(options.time_step / options.substep_count) {
+    if (options.surface_collision) surfaces_.emplace(deformable, colliders, particles_, options);
     const Sphere start = box_sphere(deformable.positions);
     start_centre_ = start.centre;
     // A single particle has no extent; its bound is then in the caller's unit.
@@ -87,8 +88,10 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
 
 void Simulation::Solver::step() {
     begin_frame();
+    begin_surfaces();
     for (std::uint32_t substep = 0; substep < options.substep_count; ++substep) {
         integrate(substep == 0 ? 1 - options.drag : 1);
+        if (substep == 0) look_ahead();
         move_colliders();
         restore_goals();
         for (std::uint32_t iteration = 0; iteration < options.iteration_count; ++iteration) {
@@ -108,6 +111,16 @@ void Simulation::Solver::begin_frame() {
     collisions_.begin_frame(colliders);
 }
 
+void Simulation::Solver::begin_surfaces() {
+    const Stopwatch stopwatch(profile.collision_seconds);
+    if (surfaces_) surfaces_->begin_frame(colliders, collisions_, particles_);
+}
+
+void Simulation::Solver::look_ahead() {
+    const Stopwatch stopwatch(profile.collision_seconds);
+    if (surfaces_) surfaces_->look_ahead(colliders, particles_);
+}
+
 /// @param share_kept  of the velocity
 void Simulation::Solver::integrate(double share_kept) {
     const Stopwatch stopwatch(profile.integration_seconds);
@@ -125,6 +138,7 @@ void Simulation::Solver::move_colliders() {
     const Stopwatch stopwatch(profile.collision_seconds);
     collisions_.begin_substep(colliders, substep_seconds_);
     attachments_.follow(colliders, particles_.positions);
+    if (surfaces_) surfaces_->begin_substep(colliders);
 }
 
 /// Multipliers begin at 0 in each substep (Macklin et al. 2016, algorithm 1).
@@ -144,11 +158,17 @@ void Simulation::Solver::relax_constraints() {
 void Simulation::Solver::collide() {
     const Stopwatch stopwatch(profile.collision_seconds);
     collisions_.relax(particles_, profile);
+    if (surfaces_) surfaces_->relax(particles_, profile);
 }
 
 void Simulation::Solver::keep_free() {
     const Stopwatch stopwatch(profile.collision_seconds);
-    collisions_.keep_free(particles_, profile);
+    if (surfaces_) {
+        surfaces_->end_frame(particles_, profile);
+        collisions_.end_frame(particles_);
+    } else {
+        collisions_.keep_free(particles_, profile);
+    }
 }
 
 void Simulation::Solver::publish() {

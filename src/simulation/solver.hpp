@@ -6,12 +6,14 @@
 #include "simulation/particles.hpp"
 #include "simulation/rest.hpp"
 #include "simulation/sticks.hpp"
+#include "simulation/surfaces/surface_collision.hpp"
 #include "simulation/wind.hpp"
 
 #include <echinus/simulation.hpp>
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace echinus {
@@ -36,6 +38,8 @@ class Simulation::Solver {
   private:
     void begin_frame();
     void integrate(double share_kept);
+    void begin_surfaces();
+    void look_ahead();
     void move_colliders();
     void restore_goals();
     void relax_constraints();
@@ -49,6 +53,7 @@ class Simulation::Solver {
     FoldArrays folds_;
     Attachments attachments_;
     Collisions collisions_;
+    std::optional<SurfaceCollision> surfaces_;
     RestWatch rest_;
     Wind wind_;
     bool goals_give_way_;

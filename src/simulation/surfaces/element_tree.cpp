@@ -1,0 +1,148 @@
+#include "simulation/surfaces/element_tree.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace echinus {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+Vec3f middle_of(const Element& element, const PointArrays& positions) {
+    const Box box = box_of(element, positions);
+    return {box.low[0] + box.high[0], box.low[1] + box.high[1], box.low[2] + box.high[2]};
+}
+
+float component(const Vec3f& v, std::size_t axis) {
+    return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
+
+std::size_t longest_axis(std::span<const std::uint32_t> elements, const std::vector<Vec3f>& middles) {
+    std::array<float, 3> extent{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        float low = kInfinity, high = -kInfinity;
+        for (const std::uint32_t e : elements) {
+            low = std::min(low, component(middles[e], axis));
+            high = std::max(high, component(middles[e], axis));
+        }
+        extent[axis] = high - low;
+    }
+    return static_cast<std::size_t>(std::max_element(extent.begin(), extent.end()) - extent.begin());
+}
+
+/// Halves along the longest axis, so that the first half fills whole groups of the largest possible size.
+void sort_into_groups(std::span<std::uint32_t> elements, const std::vector<Vec3f>& middles) {
+    if (elements.size() <= ElementTree::kWidth) return;
+    std::size_t group = ElementTree::kWidth;
+    while (group * ElementTree::kWidth < elements.size()) group *= ElementTree::kWidth;
+    const std::size_t group_count = (elements.size() + group - 1) / group;
+    const std::size_t half = group_count > 1 ? group_count / 2 * group : elements.size();
+    if (half == elements.size()) return;
+    const std::size_t axis = longest_axis(elements, middles);
+    const auto before = [&](std::uint32_t a, std::uint32_t b) {
+        const float at_a = component(middles[a], axis), at_b = component(middles[b], axis);
+        return at_a != at_b ? at_a < at_b : a < b;
+    };
+    std::nth_element(elements.begin(), elements.begin() + static_cast<std::ptrdiff_t>(half), elements.end(),
+                     before);
+    sort_into_groups(elements.first(half), middles);
+    sort_into_groups(elements.subspan(half), middles);
+}
+
+} // namespace
+
+Box box_of(const Element& element, const PointArrays& positions) {
+    const Vec3f first = positions[element.vertices[0]];
+    Box box{{first.x, first.y, first.z}, {first.x, first.y, first.z}};
+    for (std::size_t k = 1; k < element.vertex_count; ++k) {
+        const Vec3f p = positions[element.vertices[k]];
+        box.low = {std::min(box.low[0], p.x), std::min(box.low[1], p.y), std::min(box.low[2], p.z)};
+        box.high = {std::max(box.high[0], p.x), std::max(box.high[1], p.y), std::max(box.high[2], p.z)};
+    }
+    return box;
+}
+
+void ElementTree::Level::resize(std::size_t count) {
+    const std::size_t padded = (count + kWidth - 1) / kWidth * kWidth;
+    for (std::vector<float>& bound : low) bound.assign(padded, kInfinity);
+    for (std::vector<float>& bound : high) bound.assign(padded, -kInfinity);
+}
+
+void ElementTree::Level::set(std::size_t i, const Box& box) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis][i] = box.low[axis];
+        high[axis][i] = box.high[axis];
+    }
+}
+
+Box ElementTree::Level::box_of_group(std::size_t first) const {
+    Box box{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        float least = kInfinity, most = -kInfinity;
+        for (std::size_t k = 0; k < kWidth; ++k) {
+            least = std::min(least, low[axis][first + k]);
+            most = std::max(most, high[axis][first + k]);
+        }
+        box.low[axis] = least;
+        box.high[axis] = most;
+    }
+    return box;
+}
+
+ElementTree::ElementTree(const Elements& elements, const PointArrays& positions) : order_(elements.all.size()) {
+    std::vector<Vec3f> middles;
+    middles.reserve(order_.size());
+    for (const Element& element : elements.all) middles.push_back(middle_of(element, positions));
+    std::iota(order_.begin(), order_.end(), 0U);
+    sort_into_groups(order_, middles);
+    std::size_t count = order_.size();
+    do {
+        levels_.emplace_back().resize(count);
+        count = (count + kWidth - 1) / kWidth;
+    } while (count > 1);
+    refit(elements, positions);
+}
+
+void ElementTree::refit(const Elements& elements, const PointArrays& positions) {
+    for (std::size_t i = 0; i < order_.size(); ++i)
+        levels_[0].set(i, box_of(elements.all[order_[i]], positions));
+    std::size_t count = order_.size();
+    for (std::size_t level = 1; level < levels_.size(); ++level) {
+        count = (count + kWidth - 1) / kWidth;
+        for (std::size_t i = 0; i < count; ++i)
+            levels_[level].set(i, levels_[level - 1].box_of_group(i * kWidth));
+    }
+}
+
+float ElementTree::distance(const Box& box, float most) const {
+    float distance_sq = most * most;
+    shorten(levels_.size() - 1, 0, box, distance_sq);
+    // Less than the rounding of a square root and of the squares.
+    return std::sqrt(distance_sq) * (1 - 1.0F / (1 << 20));
+}
+
+void ElementTree::shorten(std::size_t level, std::size_t group, const Box& box, float& distance_sq) const {
+    const Level& boxes = levels_[level];
+    const std::size_t first = group * kWidth;
+    std::array<float, kWidth> distances_sq{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (std::size_t k = 0; k < kWidth; ++k) {
+            const float apart = std::max({boxes.low[axis][first + k] - box.high[axis],
+                                          box.low[axis] - boxes.high[axis][first + k], 0.0F});
+            distances_sq[k] += apart * apart;
+        }
+    if (level == 0) {
+        for (const float d : distances_sq) distance_sq = std::min(distance_sq, d);
+        return;
+    }
+    for (std::size_t step = 0; step < kWidth; ++step) {
+        const auto nearest = std::min_element(distances_sq.begin(), distances_sq.end());
+        if (!(*nearest < distance_sq)) return;
+        *nearest = kInfinity;
+        shorten(level - 1, first + static_cast<std::size_t>(nearest - distances_sq.begin()), box, distance_sq);
+    }
+}
+
+} // namespace echinus

@@ -1,0 +1,87 @@
+#pragma once
+
+#include "simulation/particles.hpp"
+#include "simulation/surfaces/elements.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace echinus {
+
+/// A box along the axes.
+struct Box {
+    std::array<float, 3> low, high;
+
+    void grow(float by) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            low[axis] -= by;
+            high[axis] += by;
+        }
+    }
+};
+
+Box box_of(const Element& element, const PointArrays& positions);
+
+/// Boxes around the elements of a surface, around groups of eight, around groups of eight groups, and so on.
+/// The groups are fixed from the start; the boxes follow the surface.
+class ElementTree {
+  public:
+    static constexpr std::size_t kWidth = 8;
+
+    ElementTree() = default;
+    /// Groups elements that are near each other in these positions.
+    ElementTree(const Elements& elements, const PointArrays& positions);
+
+    void refit(const Elements& elements, const PointArrays& positions);
+
+    /// Calls visit(element) for each element whose box touches this one.
+    template <typename Visit>
+    void visit_touching(const Box& box, const Visit& visit) const {
+        visit_group(levels_.size() - 1, 0, box, visit);
+    }
+    /// A lower bound of the distance from the box to all elements, or `most` where it is larger.
+    float distance(const Box& box, float most) const;
+
+  private:
+    struct Level {
+        /// [a multiple of kWidth] Of what is not there, low is infinite and high minus infinite.
+        std::array<std::vector<float>, 3> low, high;
+
+        void resize(std::size_t count);
+        void set(std::size_t i, const Box& box);
+        Box box_of_group(std::size_t first) const;
+        unsigned touching(std::size_t first, const Box& box) const {
+            std::array<std::uint8_t, kWidth> touch;
+            for (std::size_t k = 0; k < kWidth; ++k)
+                touch[k] = static_cast<std::uint8_t>(
+                    (low[0][first + k] <= box.high[0]) & (high[0][first + k] >= box.low[0]) &
+                    (low[1][first + k] <= box.high[1]) & (high[1][first + k] >= box.low[1]) &
+                    (low[2][first + k] <= box.high[2]) & (high[2][first + k] >= box.low[2]));
+            unsigned mask = 0;
+            for (std::size_t k = 0; k < kWidth; ++k) mask |= static_cast<unsigned>(touch[k]) << k;
+            return mask;
+        }
+    };
+
+    template <typename Visit>
+    void visit_group(std::size_t level, std::size_t group, const Box& box, const Visit& visit) const {
+        const std::size_t first = group * kWidth;
+        for (unsigned mask = levels_[level].touching(first, box), k = 0; mask != 0; mask >>= 1U, ++k) {
+            if ((mask & 1U) == 0) continue;
+            if (level == 0)
+                visit(order_[first + k]);
+            else
+                visit_group(level - 1, first + k, box, visit);
+        }
+    }
+    void shorten(std::size_t level, std::size_t group, const Box& box, float& distance_sq) const;
+
+    std::vector<std::uint32_t> order_; ///< the elements, group by group
+    std::vector<Level> levels_;        ///< of elements, of groups of them and so on, to a single group
+};
+
+} // namespace echinus

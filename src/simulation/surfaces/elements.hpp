@@ -1,0 +1,55 @@
+#pragma once
+
+#include <echinus/mesh.hpp>
+#include <echinus/simulation.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace echinus {
+
+/// A face, an edge without faces or a vertex without edges. Two surfaces that do not intersect can begin to
+/// only where a vertex meets a face or an edge meets an edge. So that each such pair is looked for once, every
+/// vertex and every edge belongs to one of its elements.
+struct Element {
+    std::array<std::uint32_t, 3> vertices{}; ///< the last one repeated where there are fewer than three
+    std::array<std::uint32_t, 3> edges{};    ///< from vertex k to vertex (k + 1) % 3; one for an edge
+    std::uint8_t vertex_count = 3;
+    std::uint8_t owned_vertices = 0; ///< one bit each
+    std::uint8_t owned_edges = 0;    ///< the same
+
+    bool is_face() const { return vertex_count == 3; }
+    bool owns_vertex(std::size_t k) const { return ((owned_vertices >> k) & 1U) != 0; }
+    bool owns_edge(std::size_t k) const { return ((owned_edges >> k) & 1U) != 0; }
+    bool has(std::uint32_t vertex) const {
+        return vertices[0] == vertex || vertices[1] == vertex || vertices[2] == vertex;
+    }
+};
+
+using Edge = std::array<std::uint32_t, 2>;
+
+/// The elements of a surface.
+struct Elements {
+    std::vector<Element> all; ///< the faces in their order, then edges, then vertices
+    std::vector<Edge> edges;
+    std::vector<std::uint32_t> around_offsets; ///< [vertex_count + 1]
+    std::vector<std::uint32_t> around;         ///< the elements at each vertex
+
+    Elements() = default;
+    /// @param loose_edges  those that are edges of faces do not count twice
+    Elements(std::size_t vertex_count, std::span<const Triangle> faces, std::span<const Edge> loose_edges);
+
+    std::size_t vertex_count() const { return around_offsets.size() - 1; }
+    std::span<const std::uint32_t> at(std::size_t vertex) const {
+        return std::span(around).subspan(around_offsets[vertex],
+                                         around_offsets[vertex + 1] - around_offsets[vertex]);
+    }
+};
+
+/// Its faces, and the structural sticks that are no edges of faces: threads.
+Elements elements_of(const Deformable& deformable);
+
+} // namespace echinus

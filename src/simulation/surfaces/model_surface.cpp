@@ -1,0 +1,169 @@
+#include "simulation/surfaces/model_surface.hpp"
+
+#include "directions/lattice.hpp"
+#include "exact_map/layout.hpp"
+
+#include <echinus/exact_map.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <variant>
+
+namespace echinus {
+
+namespace {
+
+/// Beside what a pair may close on its way: contacts that begin to push within this share of the thickness are
+/// kept ready.
+constexpr float kReadiness = 1.0F / 8;
+/// The same beside a vertex that was pushed lately.
+constexpr float kAlertReadiness = 1.0F / 2;
+/// A contact's plane is used until one of its vertices has moved by this share of the thickness.
+constexpr float kPlaneReuse = 1.0F / 8;
+
+bool is_identity(const RigidTransform& pose) {
+    const Rotation& r = pose.rotation;
+    return pose.translation == Vec3d{} && r.x == 0 && r.y == 0 && r.z == 0;
+}
+
+std::vector<Triangle> faces_of(const ExactMapView& map) {
+    std::vector<Triangle> faces;
+    for (std::size_t f = 0; f < map.face_count(); ++f)
+        faces.push_back({map.corners[3 * f], map.corners[3 * f + 1], map.corners[3 * f + 2]});
+    return faces;
+}
+
+PointArrays scaled_vertices(const ExactMapView& map, const Vec3d& scale) {
+    const LatticeFrame frame = frame_of(map);
+    PointArrays positions;
+    positions.resize(map.vertices.size());
+    for (std::size_t v = 0; v < map.vertices.size(); ++v)
+        positions.set(v, Vec3f(times(frame.to_local(Vec3d(map.vertices[v])), scale)));
+    return positions;
+}
+
+} // namespace
+
+ModelSurface::ModelSurface(const Collider& collider, std::shared_ptr<const Elements> own,
+                           const PairReach& reach, float thickness, float friction)
+    : own_(std::move(own)), pairs_(*own_, reach), now_(collider.pose, {1, 1, 1}), thickness_(thickness),
+      friction_(friction) {
+    const ExactMapView& map = std::get<ExactMap>(collider.map.kind).view();
+    const auto shape = std::make_shared<Shape>();
+    shape->positions = scaled_vertices(map, collider.scale);
+    shape->elements = Elements(map.vertices.size(), faces_of(map), {});
+    shape->tree = ElementTree(shape->elements, shape->positions);
+    shape_ = shape;
+    is_forgotten_.resize(own_->all.size());
+    is_alert_.resize(own_->vertex_count());
+    starts_.resize(own_->vertex_count());
+    goals_.resize(own_->vertex_count());
+}
+
+void ModelSurface::to_body(const PointArrays& places, PointArrays& result) const {
+    if (at_origin_) {
+        result = places;
+        return;
+    }
+    for (std::size_t i = 0; i < own_->vertex_count(); ++i) result.set(i, now_.point_to_local(places[i]));
+}
+
+void ModelSurface::begin_frame(const Collider& collider, const Particles& particles,
+                               std::span<const float> clearances) {
+    now_ = FrameChange(collider.pose, {1, 1, 1});
+    at_origin_ = is_identity(collider.pose);
+    begin_pass(particles.positions, clearances);
+}
+
+void ModelSurface::begin_pass(const PointArrays& starts, std::span<const float> clearances) {
+    to_body(starts, starts_);
+    pairs_.begin({&shape_->elements, &shape_->tree, &shape_->positions, false}, starts_, clearances);
+}
+
+void ModelSurface::look_ahead(const Collider& collider_at_end, const PointArrays& goals) {
+    now_ = FrameChange(collider_at_end.pose, {1, 1, 1});
+    at_origin_ = is_identity(collider_at_end.pose);
+    set_goals(goals);
+    pairs_.look_ahead(
+        goals_, [&](std::span<const std::uint32_t> elements) { forget_contacts(elements); },
+        [&](std::uint32_t element, const Pair& pair, const Separation& apart) {
+            return consider(element, pair, apart);
+        });
+}
+
+void ModelSurface::forget_contacts(std::span<const std::uint32_t> elements) {
+    is_alert_.assign(is_alert_.size(), 0);
+    for (const std::uint32_t element : elements) is_forgotten_[element] = 1;
+    std::erase_if(contacts_, [&](const Contact& contact) {
+        if (is_forgotten_[contact.element] == 0) return false;
+        if (contact.has_pushed)
+            for (const std::uint32_t v : contact.in_world.particles) is_alert_[v] = 1;
+        return true;
+    });
+    for (const std::uint32_t element : elements) is_forgotten_[element] = 0;
+}
+
+float ModelSurface::consider(std::uint32_t element, const Pair& pair, const Separation& apart) {
+    // Vertices keep the thickness from the nearest face anyway.
+    if (pair.kind == PairKind::VertexFace) return std::numeric_limits<float>::infinity();
+    float way = 0;
+    float readiness = kReadiness;
+    for (std::size_t k = 0; k < own_count(pair.kind); ++k) {
+        way = std::max(way, length(goals_[pair.points[k]] - starts_[pair.points[k]]));
+        if (is_alert_[pair.points[k]] != 0) readiness = kAlertReadiness;
+    }
+    if (!(apart.gap < thickness_ * (1 + readiness) + way)) return apart.gap - thickness_;
+    add_contact(element, pair, apart);
+    return kPlaneReuse * thickness_;
+}
+
+void ModelSurface::add_contact(std::uint32_t element, const Pair& pair, const Separation& apart) {
+    Contact& contact = contacts_.emplace_back();
+    const std::size_t own = own_count(pair.kind);
+    for (std::size_t k = 0; k < 4; ++k) {
+        contact.in_world.particles[k] = pair.points[k < own ? k : 0];
+        contact.in_world.weights[k] = k < own ? apart.weights[k] : 0;
+    }
+    float level = -std::numeric_limits<float>::infinity();
+    for (std::size_t k = own; k < 4; ++k)
+        level = std::max(level, dot(apart.normal, shape_->positions[pair.points[k]]));
+    contact.element = element;
+    contact.normal_body = apart.normal;
+    contact.offset_body = level + thickness_;
+    place(contact);
+}
+
+void ModelSurface::place(Contact& contact) const {
+    contact.in_world.normal = now_.normal_to_world(contact.normal_body);
+    const Vec3f on_plane = now_.point_to_world(contact.normal_body * contact.offset_body);
+    contact.in_world.offset = dot(contact.in_world.normal, on_plane);
+}
+
+void ModelSurface::begin_substep(const Collider& collider, const RigidTransform& previous_pose) {
+    material_ = MaterialMotion(previous_pose, collider.pose);
+    if (!collider.moves()) return;
+    now_ = FrameChange(collider.pose, {1, 1, 1});
+    at_origin_ = is_identity(collider.pose);
+    for (Contact& contact : contacts_) place(contact);
+}
+
+void ModelSurface::relax(Particles& particles, std::span<const float> inverse_masses,
+                         SimulationProfile& profile) {
+    for (Contact& contact : contacts_) {
+        Vec3f point;
+        for (std::size_t k = 0; k < 3; ++k)
+            point += particles.positions[contact.in_world.particles[k]] * contact.in_world.weights[k];
+        if (!echinus::relax(contact.in_world, inverse_masses, material_.at(point), friction_, particles))
+            continue;
+        contact.has_pushed = true;
+        ++profile.contact_count;
+    }
+}
+
+void ModelSurface::set_goals(const PointArrays& goals) {
+    to_body(goals, goals_);
+}
+
+} // namespace echinus

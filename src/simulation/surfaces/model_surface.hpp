@@ -1,0 +1,85 @@
+#pragma once
+
+#include "collider/frame_change.hpp"
+#include "simulation/material_motion.hpp"
+#include "simulation/surfaces/surface_contact.hpp"
+#include "simulation/surfaces/surface_pairs.hpp"
+
+#include <echinus/collider.hpp>
+#include <echinus/simulation.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace echinus {
+
+/// A rigid model's surface, which a deformable must not meet. Lengths are those of the world in the *body
+/// frame*: the collider's frame with its scale applied.
+class ModelSurface {
+  public:
+    /// @pre the collider has an exact map
+    ModelSurface(const Collider& collider, std::shared_ptr<const Elements> own, const PairReach& reach,
+                 float thickness, float friction);
+
+    /// @param clearances  [vertex_count] lower bounds of the vertices' distances from the model
+    void begin_frame(const Collider& collider, const Particles& particles, std::span<const float> clearances);
+    /// Looks for contacts on the way to where the frame would lead the particles.
+    void look_ahead(const Collider& collider_at_end, const PointArrays& goals);
+    void begin_substep(const Collider& collider, const RigidTransform& previous_pose);
+    void relax(Particles& particles, std::span<const float> inverse_masses, SimulationProfile& profile);
+
+    /// The collider is where it ends the frame, and so are the particles' goals.
+    void set_goals(const PointArrays& goals);
+    /// Begins another pass from here, with the collider at rest.
+    void begin_pass(const PointArrays& starts, std::span<const float> clearances = {});
+    std::span<const std::uint32_t> find_leaving() { return pairs_.find_leaving(goals_); }
+    bool renew(std::uint32_t vertex) { return pairs_.renew(vertex); }
+    /// @param from  in the world, at the end of the frame; none for one that is carried along
+    Shares allowed(std::uint32_t vertex, const Vec3f* from) const {
+        return pairs_.allowed(vertex, from != nullptr ? now_.point_to_local(*from) : starts_[vertex],
+                              goals_[vertex]);
+    }
+    const SurfacePairs& pairs() const { return pairs_; }
+    /// Where a vertex would be that is carried along from where the frame began.
+    Vec3f carried(std::uint32_t vertex) const { return now_.point_to_world(starts_[vertex]); }
+    /// On the straight way within the body frame.
+    Vec3f place_at(float share, std::uint32_t vertex) const {
+        const Vec3f start = starts_[vertex];
+        return now_.point_to_world(start + (goals_[vertex] - start) * share);
+    }
+
+  private:
+    struct Shape {
+        Elements elements;
+        PointArrays positions;
+        ElementTree tree;
+    };
+    struct Contact {
+        SurfaceContact in_world;
+        Vec3f normal_body;
+        float offset_body;
+        std::uint32_t element;
+        bool has_pushed = false;
+    };
+
+    void to_body(const PointArrays& places, PointArrays& result) const;
+    void forget_contacts(std::span<const std::uint32_t> elements);
+    float consider(std::uint32_t element, const Pair& pair, const Separation& apart);
+    void add_contact(std::uint32_t element, const Pair& pair, const Separation& apart);
+    void place(Contact& contact) const;
+
+    std::shared_ptr<const Elements> own_;
+    std::shared_ptr<const Shape> shape_;
+    SurfacePairs pairs_;
+    FrameChange now_;
+    bool at_origin_ = false; ///< the body frame is the world
+    MaterialMotion material_;
+    float thickness_, friction_;
+    PointArrays starts_, goals_;
+    std::vector<Contact> contacts_;
+    std::vector<std::uint8_t> is_forgotten_; ///< by element, while contacts are forgotten
+    std::vector<std::uint8_t> is_alert_;     ///< by vertex: a contact that is being replaced had pushed it
+};
+
+} // namespace echinus

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "simulation/surfaces/separation.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace echinus {
+
+/// A vertex and a face or two edges that share no vertex.
+struct Pair {
+    std::array<std::uint32_t, 4> points; ///< the vertices of the deformable's part, then the opponent's
+    std::uint32_t opponent;              ///< the element that the opponent's part belongs to
+    PairKind kind;
+};
+
+/// For each element of a deformable the pairs that it is in. The lists lie in one array; a list that has
+/// grown out of its place moves to the end, and when half of the array is abandoned, all move together.
+class PairLists {
+  public:
+    explicit PairLists(std::size_t element_count) : lists_(element_count) {}
+
+    std::span<const Pair> of(std::size_t element) const {
+        return {pairs_.data() + lists_[element].first, lists_[element].count};
+    }
+    void add(std::size_t element, const Pair& pair);
+    void clear(std::size_t element) { lists_[element].count = 0; }
+    /// Takes the pairs with an element of the opponent out of an element's list.
+    void remove(std::size_t element, std::uint32_t opponent);
+
+  private:
+    struct List {
+        std::size_t first = 0;
+        std::uint32_t count = 0, capacity = 0;
+    };
+
+    void make_room(List& list);
+    void move_together();
+
+    std::vector<List> lists_;
+    std::vector<Pair> pairs_, moved_;
+    std::size_t abandoned_ = 0;
+};
+
+} // namespace echinus

@@ -1,0 +1,179 @@
+#include "simulation/surfaces/surface_collision.hpp"
+
+#include "directions/lattice.hpp"
+#include "simulation/collider_now.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace echinus {
+
+namespace {
+
+/// Edges and faces lie between vertices: over a model that bulges they are nearer to it than the thickness
+/// that the vertices keep, and need not be pushed before they are much nearer.
+constexpr float kSurfaceShare = 0.75F;
+
+/// A vertex that is too fast for what is listed goes its way in several passes.
+constexpr int kMostPasses = 8;
+
+/// In lattice steps: mesh and map differ by one.
+constexpr float kLeastGapSteps = 4;
+
+double mean_edge_length(const Elements& elements, const PointArrays& positions) {
+    double sum = 0;
+    for (const auto& [a, b] : elements.edges) sum += static_cast<double>(length(positions[a] - positions[b]));
+    return elements.edges.empty() ? 0 : sum / static_cast<double>(elements.edges.size());
+}
+
+PairReach reach_of(float thickness, float edge_length, float least_gap) {
+    const float slack = std::max(edge_length / 8, thickness / 4);
+    return {.listed = thickness + edge_length / 4 + 2 * slack, .slack = slack, .least_gap = least_gap};
+}
+
+} // namespace
+
+SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vector<Collider>& colliders,
+                                   const Particles& particles, const SimulationOptions& options)
+    : options_(options), elements_(std::make_shared<Elements>(elements_of(deformable))),
+      inverse_masses_(deformable.inverse_masses), expected_(particles.positions), goals_(particles.positions),
+      is_leaving_(particles.count()), is_truncated_(particles.count()) {
+    const auto edge_length = static_cast<float>(mean_edge_length(*elements_, particles.positions));
+    for (const Collider& collider : colliders) {
+        const ColliderNow now(collider, collider.pose, options);
+        const float thickness = kSurfaceShare * now.thickness;
+        const float extent = now.coordinate_sum + static_cast<float>(kLatticeExtent) * now.step;
+        const float least_gap = kLeastGapSteps * now.step + extent * (1.0F / (1 << 21));
+        models_.emplace_back(collider, elements_, reach_of(thickness, edge_length, least_gap), thickness,
+                             now.friction);
+    }
+    leaving_.reserve(particles.count());
+    poses_.resize(models_.size());
+    clearances_.resize(particles.count());
+}
+
+void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders, const Collisions& collisions,
+                                   const Particles& particles) {
+    carrier_ = static_cast<std::size_t>(std::find_if(colliders.begin(), colliders.end(),
+                                                     [](const Collider& c) { return c.moves(); }) -
+                                        colliders.begin());
+    for (std::size_t c = 0; c < models_.size(); ++c) {
+        poses_[c] = colliders[c].pose;
+        collisions.known_clearances(c, particles, clearances_);
+        models_[c].begin_frame(colliders[c], particles, clearances_);
+    }
+}
+
+void SurfaceCollision::look_ahead(const std::vector<Collider>& colliders, const Particles& particles) {
+    const auto substeps = static_cast<float>(options_.substep_count);
+    for (std::size_t i = 0; i < particles.count(); ++i) {
+        const Vec3f start = particles.frame_start[i];
+        expected_.set(i, start + (particles.positions[i] - start) * substeps);
+    }
+    for (std::size_t c = 0; c < models_.size(); ++c) {
+        Collider at_end = colliders[c];
+        at_end.pose = pose_after(at_end, options_.time_step);
+        models_[c].look_ahead(at_end, expected_);
+    }
+}
+
+void SurfaceCollision::begin_substep(const std::vector<Collider>& colliders) {
+    for (std::size_t c = 0; c < models_.size(); ++c)
+        models_[c].begin_substep(colliders[c], std::exchange(poses_[c], colliders[c].pose));
+}
+
+void SurfaceCollision::relax(Particles& particles, SimulationProfile& profile) {
+    for (ModelSurface& model : models_) model.relax(particles, inverse_masses_, profile);
+}
+
+void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profile) {
+    goals_ = particles.positions;
+    for (int number = 0; number < kMostPasses; ++number) {
+        if (number > 0)
+            for (ModelSurface& model : models_) model.begin_pass(particles.positions);
+        if (!pass(particles, number == 0)) break;
+    }
+    for (std::uint32_t v = 0; v < particles.count(); ++v) {
+        if (std::exchange(is_truncated_[v], 0) == 0) continue;
+        ++profile.truncated_count;
+        // The velocity is shortened as the way was.
+        const Vec3f way = goals_[v] - particles.frame_start[v];
+        const Vec3f left = particles.positions[v] - particles.frame_start[v];
+        const float way_sq = dot(way, way);
+        const float share = way_sq > 0 ? std::clamp(dot(left, way) / way_sq, 0.0F, 1.0F) : 0;
+        const Vec3f velocity = goals_[v] - particles.previous[v];
+        particles.previous.set(v, particles.positions[v] - velocity * share);
+    }
+    profile.squeezed_count += std::exchange(squeezed_, 0);
+    profile.searched_face_count = profile.measured_pair_count = 0;
+    for (const ModelSurface& model : models_) {
+        profile.searched_face_count += model.pairs().listed_count;
+        profile.measured_pair_count += model.pairs().measured_count;
+    }
+}
+
+/// @return whether another pass may take a vertex farther
+bool SurfaceCollision::pass(Particles& particles, bool is_first) {
+    for (ModelSurface& model : models_) model.set_goals(goals_);
+    if (!find_leaving()) {
+        if (!is_first) particles.positions = goals_;
+        is_truncated_.assign(is_truncated_.size(), 0);
+        return false;
+    }
+    for (std::uint32_t v = 0; v < particles.count(); ++v) {
+        if (is_leaving_[v] != 0) continue;
+        is_truncated_[v] = 0;
+        if (!is_first) particles.positions.set(v, goals_[v]);
+    }
+    bool may_go_on = false;
+    for (const std::uint32_t v : leaving_) {
+        truncate(v, is_first, particles);
+        is_leaving_[v] = 0;
+        const Vec3f left = goals_[v] - particles.positions[v];
+        is_truncated_[v] = dot(left, left) > 0 ? 1 : 0;
+        may_go_on = may_go_on || is_truncated_[v] != 0;
+    }
+    return may_go_on;
+}
+
+/// A vertex that leaves its room beside one model is looked at beside all of them.
+bool SurfaceCollision::find_leaving() {
+    leaving_.clear();
+    for (bool found = true; found;) {
+        found = false;
+        for (ModelSurface& model : models_)
+            for (const std::uint32_t v : model.find_leaving()) {
+                if (std::exchange(is_leaving_[v], 1) != 0) continue;
+                leaving_.push_back(v);
+                found = true;
+            }
+        if (!found || models_.size() == 1) break;
+        for (const std::uint32_t v : leaving_)
+            for (ModelSurface& model : models_) model.renew(v);
+    }
+    return !leaving_.empty();
+}
+
+void SurfaceCollision::truncate(std::uint32_t vertex, bool is_first, Particles& particles) {
+    if (particles.pinned(vertex)) {
+        ++squeezed_;
+        return;
+    }
+    const ModelSurface* frame = is_first ? carrier() : nullptr;
+    const Vec3f start = is_first ? particles.frame_start[vertex] : particles.positions[vertex];
+    const Vec3f from = frame != nullptr ? frame->carried(vertex) : start;
+    Shares shares;
+    for (const ModelSurface& model : models_) {
+        const Shares by_model = model.allowed(vertex, &model == frame ? nullptr : &from);
+        shares = {std::max(shares.least, by_model.least), std::min(shares.most, by_model.most)};
+    }
+    if (shares.least > shares.most) ++squeezed_;
+    const float share = std::max(shares.least > shares.most ? 0.0F : shares.most, 0.0F);
+    const Vec3f goal = goals_[vertex];
+    particles.positions.set(vertex, share == 1          ? goal
+                                    : frame != nullptr ? frame->place_at(share, vertex)
+                                                       : start + (goal - start) * share);
+}
+
+} // namespace echinus

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "simulation/collisions.hpp"
+#include "simulation/particles.hpp"
+#include "simulation/surfaces/model_surface.hpp"
+
+#include <echinus/simulation.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace echinus {
+
+/// Keeps the surface of a deformable, its faces and edges, from meeting models (docs/surfaces.md). In the
+/// relaxations, as contacts; at the end of a frame by truncation: a vertex that could meet something on its
+/// way goes only as far as is proven.
+class SurfaceCollision {
+  public:
+    SurfaceCollision(const Deformable& deformable, const std::vector<Collider>& colliders,
+                     const Particles& particles, const SimulationOptions& options);
+
+    /// @param collisions  of the particles with the same colliders, which know some distances already
+    void begin_frame(const std::vector<Collider>& colliders, const Collisions& collisions,
+                     const Particles& particles);
+    /// After the first integration of a frame, before its colliders have moved.
+    void look_ahead(const std::vector<Collider>& colliders, const Particles& particles);
+    void begin_substep(const std::vector<Collider>& colliders);
+    void relax(Particles& particles, SimulationProfile& profile);
+    void end_frame(Particles& particles, SimulationProfile& profile);
+
+  private:
+    bool pass(Particles& particles, bool is_first);
+    bool find_leaving();
+    void truncate(std::uint32_t vertex, bool is_first, Particles& particles);
+
+    SimulationOptions options_;
+    std::shared_ptr<const Elements> elements_;
+    std::vector<ModelSurface> models_;
+    std::vector<RigidTransform> poses_; ///< of the colliders, one substep ago
+    std::vector<float> inverse_masses_;
+    const ModelSurface* carrier() const { return carrier_ < models_.size() ? &models_[carrier_] : nullptr; }
+    std::size_t carrier_ = 0; ///< the first collider that moves; beyond the last where none does
+    PointArrays expected_, goals_;
+    std::vector<float> clearances_;
+    std::vector<std::uint32_t> leaving_;
+    std::vector<std::uint8_t> is_leaving_, is_truncated_;
+    std::uint64_t squeezed_ = 0;
+};
+
+} // namespace echinus

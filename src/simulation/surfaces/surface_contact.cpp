@@ -1,0 +1,34 @@
+#include "simulation/surfaces/surface_contact.hpp"
+
+#include "simulation/contact_response.hpp"
+
+namespace echinus {
+
+bool relax(const SurfaceContact& contact, std::span<const float> inverse_masses, const Vec3f& material,
+           float friction, Particles& particles) {
+    float height = 0;
+    for (std::size_t k = 0; k < 4; ++k)
+        height += contact.weights[k] * dot(contact.normal, particles.positions[contact.particles[k]]);
+    const float missing = contact.offset - height;
+    if (!(missing > 0)) return false;
+    Vec3f motion = -material;
+    float mobility = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::uint32_t i = contact.particles[k];
+        motion += (particles.positions[i] - particles.previous[i]) * contact.weights[k];
+        mobility += contact.weights[k] * contact.weights[k] * inverse_masses[i];
+    }
+    if (!(mobility > 0)) return false;
+    const PushedOut pushed = push_out(motion, contact.normal, missing, friction);
+    const Vec3f change = pushed.motion - motion;
+    const Vec3f excess = contact.normal * pushed.excess;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::uint32_t i = contact.particles[k];
+        const float share = contact.weights[k] * inverse_masses[i] / mobility;
+        particles.positions.set(i, particles.positions[i] + change * share);
+        particles.previous.set(i, particles.previous[i] + excess * share);
+    }
+    return true;
+}
+
+} // namespace echinus

@@ -1,0 +1,339 @@
+#include "simulation/surfaces/surface_pairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace echinus {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Of a gap, a way keeps at least this share, so that rounding has no say.
+constexpr float kKeptShare = 1.0F / 16;
+
+/// Where nothing is near, the tree is asked for a clearance up to so many times the reach of the lists.
+constexpr float kFarReach = 4;
+
+constexpr float kRounding = 1.0F / (1 << 20);
+
+/// No way leads quite to where its share ends.
+constexpr float kAlmost = 1 - 1.0F / (1 << 12);
+
+bool is_near(const Box& a, const Box& b) {
+    return (a.low[0] <= b.high[0]) & (a.high[0] >= b.low[0]) & (a.low[1] <= b.high[1]) &
+           (a.high[1] >= b.low[1]) & (a.low[2] <= b.high[2]) & (a.high[2] >= b.low[2]);
+}
+
+Box box_of_points(std::span<const Vec3f> points) {
+    Box box{{points[0].x, points[0].y, points[0].z}, {points[0].x, points[0].y, points[0].z}};
+    for (const Vec3f& p : points) {
+        box.low = {std::min(box.low[0], p.x), std::min(box.low[1], p.y), std::min(box.low[2], p.z)};
+        box.high = {std::max(box.high[0], p.x), std::max(box.high[1], p.y), std::max(box.high[2], p.z)};
+    }
+    return box;
+}
+
+} // namespace
+
+void Shares::keep_not_negative(float at_start, float at_goal) {
+    if (at_start >= 0 && at_goal >= 0) return;
+    if (at_start < 0 && at_goal < 0) {
+        least = 1;
+        most = 0;
+    } else if (at_start >= 0) {
+        most = std::min(most, at_start / (at_start - at_goal) * kAlmost);
+    } else {
+        least = std::max(least, 1 - at_goal / (at_goal - at_start) * kAlmost);
+    }
+}
+
+SurfacePairs::SurfacePairs(const Elements& own, const PairReach& reach)
+    : own_(&own), reach_(reach), lists_(own.all.size()), renewed_in_(own.vertex_count()),
+      measured_in_(own.all.size()), is_listing_(own.all.size()) {
+    const std::size_t vertex_count = own.vertex_count();
+    listed_at_.resize(vertex_count);
+    anchors_.resize(vertex_count);
+    element_listed_at_.resize(own.all.size());
+    for (auto* list : {&woken_, &moved_, &leaving_}) list->reserve(vertex_count);
+    for (auto* list : {&listing_, &measuring_}) list->reserve(own.all.size());
+    reset();
+}
+
+void SurfacePairs::reset() {
+    listed_at_.fill(std::numeric_limits<float>::quiet_NaN());
+    rooms_.assign(own_->vertex_count(), -1);
+    quiet_.assign(own_->vertex_count(), -1);
+    list_reaches_.assign(own_->all.size(), -kInfinity);
+    for (std::size_t e = 0; e < own_->all.size(); ++e) lists_.clear(e);
+}
+
+float SurfacePairs::kept(float gap) const {
+    return std::max(reach_.least_gap, gap * kKeptShare);
+}
+
+// ---- Lists
+
+void SurfacePairs::begin(const Opponent& opponent, const PointArrays& starts,
+                         std::span<const float> clearances) {
+    opponent_ = opponent;
+    starts_ = &starts;
+    clearances_ = clearances;
+    ++frame_;
+    if (opponent.is_self) list_around_moved();
+}
+
+/// The lists of the deformable's pairs with itself stay complete from both sides.
+void SurfacePairs::list_around_moved() {
+    moved_.clear();
+    for (std::uint32_t v = 0; v < own_->vertex_count(); ++v) {
+        const Vec3f way = (*starts_)[v] - listed_at_[v];
+        if (dot(way, way) <= reach_.slack * reach_.slack) continue; // not so before the first
+        moved_.push_back(v);
+        listed_at_.set(v, (*starts_)[v]);
+    }
+    listing_.clear();
+    for (const std::uint32_t v : moved_)
+        for (const std::uint32_t element : own_->at(v))
+            if (std::exchange(is_listing_[element], 1) == 0) listing_.push_back(element);
+    for (const std::uint32_t element : listing_)
+        for (const Pair& pair : lists_.of(element))
+            if (is_listing_[pair.opponent] == 0) lists_.remove(pair.opponent, element);
+    for (const std::uint32_t element : listing_) lists_.clear(element);
+    for (const std::uint32_t element : listing_) list(element);
+    for (const std::uint32_t element : listing_) is_listing_[element] = 0;
+}
+
+/// How far the vertices of an element have moved since its list was made.
+float SurfacePairs::moved_since_listed(std::uint32_t element) const {
+    float moved_sq = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3f way = (*starts_)[own_->all[element].vertices[k]] - element_listed_at_[element][k];
+        moved_sq = std::max(moved_sq, dot(way, way));
+    }
+    return std::sqrt(moved_sq) * (1 + kRounding);
+}
+
+/// The list of an element beside a model is made anew when it is needed and no longer reaches far enough.
+void SurfacePairs::keep_list(std::uint32_t element) {
+    if (opponent_.is_self) return;
+    if (list_reaches_[element] - moved_since_listed(element) >= reach_.listed - reach_.slack) return;
+    for (std::size_t k = 0; k < 3; ++k)
+        element_listed_at_[element][k] = (*starts_)[own_->all[element].vertices[k]];
+    lists_.clear(element);
+    list(element);
+}
+
+/// Every point of an element lies within its longest edge of each of its vertices.
+float SurfacePairs::clearance_of(const Element& element) const {
+    if (clearances_.empty()) return 0;
+    std::array<Vec3f, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) p[k] = (*starts_)[element.vertices[k]];
+    const float longest = std::max({length(p[0] - p[1]), length(p[1] - p[2]), length(p[2] - p[0])});
+    float best = 0;
+    for (std::size_t k = 0; k < element.vertex_count; ++k)
+        best = std::max(best, clearances_[element.vertices[k]] - longest);
+    return best * (1 - kRounding);
+}
+
+void SurfacePairs::list(std::uint32_t element) {
+    ++listed_count;
+    const float clearance = clearance_of(own_->all[element]);
+    if (clearance > reach_.listed) {
+        list_reaches_[element] = clearance;
+        return;
+    }
+    Box box = box_of(own_->all[element], *starts_);
+    box.grow(reach_.listed);
+    bool found = false;
+    opponent_.tree->visit_touching(box, [&](std::uint32_t other) {
+        if (opponent_.is_self) {
+            if (other == element) return;
+            // A pair of elements that are both listed anew is looked for once.
+            if (is_listing_[other] != 0 && other < element) return;
+        }
+        found = true;
+        list_pairs(element, other);
+    });
+    list_reaches_[element] = reach_.listed;
+    if (!found && !opponent_.is_self) {
+        box.grow(-reach_.listed);
+        list_reaches_[element] = std::max(reach_.listed, opponent_.tree->distance(box, kFarReach * reach_.listed));
+    }
+}
+
+void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_number) {
+    const Element& own = own_->all[own_number];
+    const Element& other = opponent_.elements->all[other_number];
+    const bool is_self = opponent_.is_self;
+    std::array<Vec3f, 3> a, b;
+    for (std::size_t k = 0; k < 3; ++k) {
+        a[k] = (*starts_)[own.vertices[k]];
+        b[k] = (*opponent_.positions)[other.vertices[k]];
+    }
+    Box own_box = box_of_points(a), other_box = box_of_points(b);
+    own_box.grow(reach_.listed);
+    if (!is_near(own_box, other_box)) return;
+    const auto is_near_box = [](const Vec3f& p, const Box& box) {
+        const std::array<Vec3f, 1> point{p};
+        return is_near(box_of_points(point), box);
+    };
+    if (other.is_face()) {
+        Box reached = other_box;
+        reached.grow(reach_.listed);
+        for (std::size_t k = 0; k < own.vertex_count; ++k)
+            if (own.owns_vertex(k) && !(is_self && other.has(own.vertices[k])) && is_near_box(a[k], reached))
+                list_pair(own_number, other_number,
+                          {{own.vertices[k], other.vertices[0], other.vertices[1], other.vertices[2]},
+                           other_number,
+                           PairKind::VertexFace});
+    }
+    if (own.is_face())
+        for (std::size_t k = 0; k < other.vertex_count; ++k)
+            if (other.owns_vertex(k) && !(is_self && own.has(other.vertices[k])) && is_near_box(b[k], own_box))
+                list_pair(own_number, other_number,
+                          {{own.vertices[0], own.vertices[1], own.vertices[2], other.vertices[k]},
+                           other_number,
+                           PairKind::FaceVertex});
+    const auto edge_count = [](const Element& e) { return e.vertex_count == 3 ? 3U : e.vertex_count - 1U; };
+    for (std::size_t i = 0; i < edge_count(own); ++i) {
+        if (!own.owns_edge(i)) continue;
+        const std::size_t i_next = (i + 1) % 3;
+        Box edge_box = box_of_points(std::array{a[i], a[i_next]});
+        edge_box.grow(reach_.listed);
+        for (std::size_t j = 0; j < edge_count(other); ++j) {
+            if (!other.owns_edge(j)) continue;
+            const std::size_t j_next = (j + 1) % 3;
+            const std::array<std::uint32_t, 4> points{own.vertices[i], own.vertices[i_next], other.vertices[j],
+                                                      other.vertices[j_next]};
+            if (is_self && (points[0] == points[2] || points[0] == points[3] || points[1] == points[2] ||
+                            points[1] == points[3]))
+                continue;
+            if (is_near(edge_box, box_of_points(std::array{b[j], b[j_next]})))
+                list_pair(own_number, other_number, {points, other_number, PairKind::EdgeEdge});
+        }
+    }
+}
+
+void SurfacePairs::list_pair(std::uint32_t own, std::uint32_t other, const Pair& pair) {
+    if (separation(pair.kind, points_of(pair)).gap > reach_.listed) return;
+    lists_.add(own, pair);
+    if (!opponent_.is_self) return;
+    const auto& p = pair.points;
+    if (pair.kind == PairKind::VertexFace)
+        lists_.add(other, {{p[1], p[2], p[3], p[0]}, own, PairKind::FaceVertex});
+    else if (pair.kind == PairKind::FaceVertex)
+        lists_.add(other, {{p[3], p[0], p[1], p[2]}, own, PairKind::VertexFace});
+    else
+        lists_.add(other, {{p[2], p[3], p[0], p[1]}, own, PairKind::EdgeEdge});
+}
+
+// ---- Rooms
+
+std::array<Vec3f, 4> SurfacePairs::points_of(const Pair& pair) const {
+    std::array<Vec3f, 4> points;
+    const std::size_t own = own_count(pair.kind);
+    for (std::size_t k = 0; k < 4; ++k)
+        points[k] = k < own ? (*starts_)[pair.points[k]] : (*opponent_.positions)[pair.points[k]];
+    return points;
+}
+
+/// How far the vertices of an element may go by what is not listed. Of the deformable's pairs with itself both
+/// sides move: by two slacks each at the most since a list was made, and by two rooms before both are measured.
+float SurfacePairs::bound_of(std::uint32_t element) const {
+    if (opponent_.is_self) return (reach_.listed - 4 * reach_.slack) / 4;
+    return list_reaches_[element] - moved_since_listed(element) - reach_.least_gap;
+}
+
+bool SurfacePairs::is_beyond(std::uint32_t vertex, const Vec3f& goal, float radius) const {
+    const Vec3f way = goal - anchors_[vertex];
+    return !(dot(way, way) <= radius * std::fabs(radius));
+}
+
+void SurfacePairs::wake(std::uint32_t vertex) {
+    anchors_.set(vertex, (*starts_)[vertex]);
+    rooms_[vertex] = quiet_[vertex] = kInfinity;
+    renewed_in_[vertex] = frame_;
+    woken_.push_back(vertex);
+}
+
+void SurfacePairs::collect_measured() {
+    ++wake_;
+    measuring_.clear();
+    for (const std::uint32_t v : woken_)
+        for (const std::uint32_t element : own_->at(v))
+            if (std::exchange(measured_in_[element], wake_) != wake_) measuring_.push_back(element);
+    woken_.clear();
+}
+
+/// Not to look for contacts: it is too late for them in this frame, so the next one does.
+void SurfacePairs::measure_woken() {
+    collect_measured();
+    measure_collected([](std::uint32_t, const Pair&, const Separation&) { return -kInfinity; });
+}
+
+void SurfacePairs::shrink(std::uint32_t vertex, float room, float quiet) {
+    if (!(room < rooms_[vertex] || quiet < quiet_[vertex])) return;
+    const float used = length((*starts_)[vertex] - anchors_[vertex]);
+    rooms_[vertex] = std::min(rooms_[vertex], room - used);
+    quiet_[vertex] = std::min(quiet_[vertex], quiet - used);
+}
+
+std::span<const std::uint32_t> SurfacePairs::find_leaving(const PointArrays& goals) {
+    for (;;) {
+        leaving_.clear();
+        for (std::uint32_t v = 0; v < own_->vertex_count(); ++v) {
+            if (!is_beyond(v, goals[v], rooms_[v])) continue;
+            if (renewed_in_[v] == frame_)
+                leaving_.push_back(v);
+            else
+                wake(v);
+        }
+        if (woken_.empty()) return leaving_;
+        measure_woken();
+    }
+}
+
+bool SurfacePairs::renew(std::uint32_t vertex) {
+    if (renewed_in_[vertex] == frame_) return false;
+    wake(vertex);
+    measure_woken();
+    return true;
+}
+
+Shares SurfacePairs::allowed(std::uint32_t vertex, const Vec3f& from, const Vec3f& to) const {
+    const Vec3f start = (*starts_)[vertex];
+    Shares shares;
+    float bound = kInfinity;
+    for (const std::uint32_t element : own_->at(vertex)) {
+        bound = std::min(bound, bound_of(element));
+        for (const Pair& pair : lists_.of(element)) {
+            const auto own = pair.points.begin() + static_cast<std::ptrdiff_t>(own_count(pair.kind));
+            if (std::find(pair.points.begin(), own, vertex) == own) continue;
+            const auto points = points_of(pair);
+            const Separation apart = separation(pair.kind, points);
+            // How far above the plane at the end of the pair's own part the vertex begins.
+            float above = kInfinity;
+            for (std::size_t k = 0; k < own_count(pair.kind); ++k)
+                above = std::min(above, dot(apart.normal, points[k] - start));
+            const float way = opponent_.is_self ? usable(apart.gap) / 2 : usable(apart.gap);
+            const float allowed_way = std::max(way, 0.0F) - above;
+            shares.keep_not_negative(dot(apart.normal, from - start) + allowed_way,
+                                     dot(apart.normal, to - start) + allowed_way);
+        }
+    }
+    // The ball |from + s (to - from) - start| <= bound: its ends by the roots of a quadratic.
+    const Vec3f offset = from - start, way = to - from;
+    const float a = dot(way, way), b = dot(way, offset), c = dot(offset, offset) - bound * std::fabs(bound);
+    const float discriminant = b * b - a * c;
+    if (std::isinf(bound)) return shares;
+    if (!(discriminant >= 0) || a == 0) return c <= 0 ? shares : Shares{1, 0};
+    const float root = std::sqrt(discriminant);
+    shares.least = std::max(shares.least, (-b - root) / a);
+    shares.most = std::min(shares.most, (-b + root) / a * kAlmost);
+    return shares;
+}
+
+} // namespace echinus

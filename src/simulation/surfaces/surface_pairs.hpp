@@ -1,0 +1,162 @@
+#pragma once
+
+#include "simulation/particles.hpp"
+#include "simulation/surfaces/element_tree.hpp"
+#include "simulation/surfaces/elements.hpp"
+#include "simulation/surfaces/pair_lists.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace echinus {
+
+/// A surface that the deformable must not meet, in one rigid frame: a model, which rests in it, or the
+/// deformable itself.
+struct Opponent {
+    const Elements* elements;
+    const ElementTree* tree;
+    const PointArrays* positions;
+    bool is_self;
+};
+
+/// Lengths, in units of the world.
+struct PairReach {
+    float listed; ///< pairs this near are listed
+    float slack;  ///< lists hold until a vertex has moved this far
+    float least_gap; ///< no motion takes a pair nearer than this
+};
+
+/// Shares 0 (where the frame began) to 1 (the goal) of a vertex's way, half open nowhere. Empty: least > most.
+struct Shares {
+    float least = 0, most = 1;
+
+    /// Keeps those where a function that is linear on the way is not negative.
+    void keep_not_negative(float at_start, float at_goal);
+};
+
+/// How far the vertices of a deformable may move without its surface meeting an opponent
+/// (docs/surfaces.md).
+///
+/// Around each vertex lies a ball, its *room*: whatever way vertices take within their rooms, nothing meets.
+/// Only a vertex that is about to leave its room is looked at: its pairs are measured anew where they are when
+/// the frame begins, and it gets a new room there. One that would leave even that one has to stay in the
+/// convex set that its pairs' separating planes leave it.
+///
+/// The pairs come from lists of what is near each element, which hold until one of its vertices has moved by
+/// a slack.
+class SurfacePairs {
+  public:
+    /// @param own  must outlive this
+    SurfacePairs(const Elements& own, const PairReach& reach);
+
+    /// Forgets everything: the frame has changed, or the deformable was moved.
+    void reset();
+
+    /// Lists anew around vertices that have moved.
+    /// @param starts  of all vertices, when the frame begins
+    /// @param clearances  lower bounds of their distances from the opponent, or none
+    void begin(const Opponent& opponent, const PointArrays& starts, std::span<const float> clearances);
+
+    /// Gives new rooms to the vertices that leave the smaller ball around them in which nothing new is to be
+    /// expected, on their way to the goals. First calls forget(elements) with those whose pairs are measured
+    /// anew, and then, for each of these pairs, visit(element, pair, separation), which returns how far the
+    /// pair's vertices may go before it has to be measured again. A pair within the deformable comes once, or
+    /// once from each side.
+    template <typename Forget, typename Visit>
+    void look_ahead(const PointArrays& goals, const Forget& forget, const Visit& visit) {
+        for (std::uint32_t v = 0; v < own_->vertex_count(); ++v)
+            if (is_beyond(v, goals[v], quiet_[v])) wake(v);
+        collect_measured();
+        forget(std::span<const std::uint32_t>(measuring_));
+        measure_collected(visit);
+    }
+
+    /// The vertices that leave their rooms for the goals though their rooms are new.
+    std::span<const std::uint32_t> find_leaving(const PointArrays& goals);
+    /// Gives a vertex a new room in this frame. @return whether it had none
+    bool renew(std::uint32_t vertex);
+
+    /// The shares of the way of one of them that nothing forbids.
+    /// @param from, to  the way's ends, in this frame
+    Shares allowed(std::uint32_t vertex, const Vec3f& from, const Vec3f& to) const;
+
+    /// How far a pair that lies `gap` apart may close.
+    float usable(float gap) const { return gap - kept(gap); }
+    float list_reach() const { return reach_.listed; }
+    std::uint64_t measured_count = 0, listed_count = 0;
+
+  private:
+    float kept(float gap) const;
+    float bound_of(std::uint32_t element) const;
+    bool is_beyond(std::uint32_t vertex, const Vec3f& goal, float radius) const;
+    void wake(std::uint32_t vertex);
+    void measure_woken();
+    void collect_measured();
+    template <typename Visit>
+    void measure_collected(const Visit& visit);
+    template <typename Visit>
+    void measure(std::uint32_t element, const Visit& visit);
+    void shrink(std::uint32_t vertex, float room, float quiet);
+    std::array<Vec3f, 4> points_of(const Pair& pair) const;
+
+    void list_around_moved();
+    void keep_list(std::uint32_t element);
+    float moved_since_listed(std::uint32_t element) const;
+    void list(std::uint32_t element);
+    float clearance_of(const Element& element) const;
+    void list_pairs(std::uint32_t own, std::uint32_t other);
+    void list_pair(std::uint32_t own, std::uint32_t other, const Pair& pair);
+
+    const Elements* own_;
+    PairReach reach_;
+    PairLists lists_;
+    // Lists
+    std::vector<float> list_reaches_; ///< by element: pairs that are not listed were farther apart
+    /// By element: where its vertices were when its list was made. Beside a model.
+    std::vector<std::array<Vec3f, 3>> element_listed_at_;
+    /// Where each vertex was when its elements' lists were made. Of the deformable with itself.
+    PointArrays listed_at_;
+    // Rooms
+    PointArrays anchors_;
+    std::vector<float> rooms_;
+    std::vector<float> quiet_; ///< the radii of the smaller balls
+    // The frame
+    Opponent opponent_{};
+    const PointArrays* starts_ = nullptr;
+    std::span<const float> clearances_;
+    std::uint32_t frame_ = 0;
+    std::vector<std::uint32_t> renewed_in_;  ///< by vertex: the frame of its room
+    std::vector<std::uint32_t> measured_in_; ///< by element, in wakes: so that none is measured twice
+    std::uint32_t wake_ = 0;
+    std::vector<std::uint32_t> woken_, measuring_, moved_, leaving_, listing_;
+    std::vector<std::uint8_t> is_listing_;
+};
+
+template <typename Visit>
+void SurfacePairs::measure_collected(const Visit& visit) {
+    for (const std::uint32_t element : measuring_) {
+        keep_list(element);
+        measure(element, visit);
+    }
+}
+
+/// @param visit  returns how far the pair's vertices may go quietly
+template <typename Visit>
+void SurfacePairs::measure(std::uint32_t element, const Visit& visit) {
+    const Element& own = own_->all[element];
+    const float bound = bound_of(element);
+    for (std::size_t k = 0; k < own.vertex_count; ++k) shrink(own.vertices[k], bound, bound);
+    for (const Pair& pair : lists_.of(element)) {
+        const Separation apart = separation(pair.kind, points_of(pair));
+        const float quiet = visit(element, pair, apart);
+        const float sides = opponent_.is_self ? 2 : 1;
+        for (std::size_t k = 0; k < (opponent_.is_self ? 4 : own_count(pair.kind)); ++k)
+            shrink(pair.points[k], usable(apart.gap) / sides, quiet / sides);
+        ++measured_count;
+    }
+}
+
+} // namespace echinus
