@@ -4,6 +4,7 @@
 #include <echinus/intersections.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace echinus {
 
@@ -11,6 +12,25 @@ namespace {
 
 bool has(const Triangle& face, std::uint32_t vertex) {
     return face[0] == vertex || face[1] == vertex || face[2] == vertex;
+}
+
+int longest_component(const Vec3d& v) {
+    const double x = std::abs(v.x), y = std::abs(v.y), z = std::abs(v.z);
+    if (x > y && x > z) return 0;
+    return y > z ? 1 : 2;
+}
+
+/// Does the line through v and e, with `own` beside it, part triangle v e own from triangle v p q but for v?
+bool edge_parts(const Point2& v, const Point2& e, const Point2& own, const Point2& p, const Point2& q) {
+    const int side = orientation(v, e, own);
+    const auto beyond = [&](const Point2& point) {
+        const int point_side = orientation(v, e, point);
+        if (point_side != 0) return point_side != side;
+        // On the line: away from e?
+        return (e.x < v.x && v.x < point.x) || (e.x > v.x && v.x > point.x) || (e.y < v.y && v.y < point.y) ||
+               (e.y > v.y && v.y > point.y);
+    };
+    return side != 0 && beyond(p) && beyond(q);
 }
 
 /// Two faces with common vertices, sorted: common ones first. Equal vertices of one face stay.
@@ -42,14 +62,15 @@ struct Neighbours {
         return side(p) * side(q) < 0;
     }
 
-    /// One lies on one side of the other's plane, but for the common corner.
+    /// Seen along an axis, a line through the common corner and along an edge parts them.
     bool only_share_a_corner() const {
-        const auto on_one_side = [](const Vec3f& u, const Vec3f& v, const Vec3f& w, const Vec3f& p,
-                                    const Vec3f& q) {
-            return orientation(u, v, w, p) * orientation(u, v, w, q) > 0;
-        };
-        return on_one_side(at_b(0), at_b(1), at_b(2), at_a(1), at_a(2)) ||
-               on_one_side(at_a(0), at_a(1), at_a(2), at_b(1), at_b(2));
+        const Vec3d corner(at_a(0));
+        const int axis = longest_component(cross(Vec3d(at_a(1)) - corner, Vec3d(at_a(2)) - corner));
+        const auto seen = [axis](const Vec3f& p) { return seen_along(axis, p); };
+        const Point2 v = seen(at_a(0)), a_1 = seen(at_a(1)), a_2 = seen(at_a(2)), b_1 = seen(at_b(1)),
+                     b_2 = seen(at_b(2));
+        return edge_parts(v, a_1, a_2, b_1, b_2) || edge_parts(v, a_2, a_1, b_1, b_2) ||
+               edge_parts(v, b_1, b_2, a_1, a_2) || edge_parts(v, b_2, b_1, a_1, a_2);
     }
 
     /// The largest parts without a common vertex: each common one goes to one face's part or to the other's.

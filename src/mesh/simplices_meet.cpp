@@ -49,29 +49,23 @@ bool segments_meet(const Point2& p, const Point2& q, const Point2& r, const Poin
     return !on_one_line || (overlap(p.x, q.x, r.x, s.x) && overlap(p.y, q.y, r.y, s.y));
 }
 
-/// False for a simplex without area, which has no interior.
-bool contains(const Simplex& triangle, const Vec3f& point, int axis) {
-    if (triangle.count < 3) return false;
-    const Point2 a = seen_along(axis, triangle.corners[0]), b = seen_along(axis, triangle.corners[1]),
-                 c = seen_along(axis, triangle.corners[2]), p = seen_along(axis, point);
-    return !both_signs(orientation(a, b, p), orientation(b, c, p), orientation(c, a, p)) &&
-           orientation(a, b, c) != 0;
-}
-
-template <typename Meet>
-bool any_edges(const Simplex& a, const Simplex& b, Meet&& meet) {
-    for (int i = 0; i < a.edge_count(); ++i)
-        for (int j = 0; j < b.edge_count(); ++j)
-            if (meet(a.corners[i], a.next(i), b.corners[j], b.next(j))) return true;
+/// Do all corners of `b` lie off the line of an edge of `a`, on the side where `a` has none?
+bool edge_parts(const Simplex& a, const Simplex& b, int axis) {
+    const auto seen = [axis](const Vec3f& p) { return seen_along(axis, p); };
+    for (int i = 0; i < a.edge_count(); ++i) {
+        const Point2 p = seen(a.corners[i]), q = seen(a.next(i));
+        Sides sides{};
+        for (int j = 0; j < b.count; ++j) sides[j] = orientation(p, q, seen(b.corners[j]));
+        if (!on_one_side(sides, b.count)) continue;
+        if (a.count < 3 || orientation(p, q, seen(a.corners[(i + 2) % 3])) != sides[0]) return true;
+    }
     return false;
 }
 
+/// Convex figures are apart where an edge of one parts them, unless both have no area.
+/// @pre one has an area
 bool meet_in_plane(const Simplex& a, const Simplex& b, int axis) {
-    const auto edges_meet = [axis](const Vec3f& p, const Vec3f& q, const Vec3f& r, const Vec3f& s) {
-        return segments_meet(seen_along(axis, p), seen_along(axis, q), seen_along(axis, r),
-                             seen_along(axis, s));
-    };
-    return any_edges(a, b, edges_meet) || contains(a, b.corners[0], axis) || contains(b, a.corners[0], axis);
+    return !edge_parts(a, b, axis) && !edge_parts(b, a, axis);
 }
 
 // ---- In space ----
@@ -92,11 +86,19 @@ std::optional<int> axis_that_shows(const Simplex& s) {
     return axis_that_shows(s.corners[0], s.corners[1], s.corners[2]);
 }
 
+/// @pre neither has an area
+bool lines_meet(const Simplex& a, const Simplex& b) {
+    for (int i = 0; i < a.edge_count(); ++i)
+        for (int j = 0; j < b.edge_count(); ++j)
+            if (segments_meet_in_space(a.corners[i], a.next(i), b.corners[j], b.next(j))) return true;
+    return false;
+}
+
 /// @pre each lies in the other's plane, or the other spans none
 bool meet_flat(const Simplex& a, const Simplex& b) {
     std::optional<int> axis = axis_that_shows(a);
     if (!axis) axis = axis_that_shows(b);
-    return axis ? meet_in_plane(a, b, *axis) : any_edges(a, b, segments_meet_in_space);
+    return axis ? meet_in_plane(a, b, *axis) : lines_meet(a, b);
 }
 
 /// Does an edge of `a` that does not lie in the plane of `b` meet `b`?
