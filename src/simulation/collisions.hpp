@@ -21,7 +21,8 @@ class Collisions {
     void begin_substep(std::vector<Collider>& colliders, double seconds);
     void relax(Particles& particles, SimulationProfile& profile);
     /// Of the particles from one collider: Collision::known_clearances().
-    void known_clearances(std::size_t collider, const Particles& particles, std::span<float> clearances) const {
+    void known_clearances(std::size_t collider, const Particles& particles,
+                          std::span<float> clearances) const {
         collisions_[collider]->known_clearances(particles, clearances);
     }
     /// The proof at the end of a frame: rescues the particles that are not proven free, and counts those that

@@ -1,7 +1,8 @@
-// The program echinus-check: is a map of this mesh right at millions of points? Not installed, because its
-// judge uses parts of CGAL that are under the GPL.
+// The program echinus-check: is a map of this mesh right at millions of points, and does a recorded cloth
+// meet anything? Not installed, because its judge uses parts of CGAL that are under the GPL.
 
 #include "options.hpp"
+#include "oracle/check_cloth.hpp"
 #include "oracle/check_mesh.hpp"
 #include "oracle/check_report.hpp"
 #include "oracle/nasty_meshes.hpp"
@@ -25,11 +26,12 @@ constexpr int kWrongUse = 2;
 enum class Rules : std::uint8_t { Nonzero, Parity, Both };
 
 struct Arguments {
-    std::filesystem::path mesh;
+    std::filesystem::path mesh, cloth;
     std::string generate;
     bool json = false, list = false, search_centre = false;
     Rules rules = Rules::Both;
     test::CheckOptions options;
+    test::ClothCheckOptions cloth_options;
 };
 
 std::vector<InsideRule> chosen_rules(Rules rules) {
@@ -43,6 +45,17 @@ void add_options(Command command, Arguments& arguments) {
     command.add("--generate", &arguments.generate, "Check a generated mesh instead; --list names them")
         .excludes("MESH");
     command.add_flag("--list", arguments.list, "Print the names of the generated meshes");
+    command
+        .add("--cloth", &arguments.cloth,
+             "Check the recording that echinus simulate wrote to this folder instead: which faces of the "
+             "cloth "
+             "intersect the model or each other")
+        .excludes("MESH")
+        .excludes("--generate")
+        .type_name("DIR");
+    command.add("--every", &arguments.cloth_options.stride, "Of a recording, judge every so many frames")
+        .range(1, 1'000'000'000)
+        .show_default();
     command.add("--points", &arguments.options.points, "How many points, a quarter of each kind")
         .range(16, std::uint64_t{1} << 32U)
         .show_default();
@@ -56,8 +69,9 @@ void add_options(Command command, Arguments& arguments) {
     command.add("--seed", &arguments.options.seed, "Of the random points").show_default();
     command.add("--threads", &arguments.options.thread_count, "0: all cores").show_default();
     command.add_flag("--json", arguments.json, "Print one JSON object");
-    command.footer("Exit status: 0 all answers hold, 1 some do not or an error, 2 wrong use.\n"
-                   "Example: echinus-check horse.obj --points 1000000");
+    command.footer("Exit status: 0 all holds, 1 something does not or an error, 2 wrong use.\n"
+                   "Examples:\n  echinus-check horse.obj --points 1000000\n"
+                   "  echinus-check --cloth out/horse --every 10");
 }
 
 /// The mesh and its name.
@@ -76,8 +90,20 @@ test::CheckResult check(Arguments& arguments) {
     return check_mesh(name, mesh, arguments.options);
 }
 
+test::ClothCheckResult check_recording(Arguments& arguments) {
+    ProgressBar bar(arguments.cloth.filename().string());
+    arguments.cloth_options.report_progress = [&](double fraction) { bar(fraction); };
+    return check_cloth(arguments.cloth, arguments.cloth_options);
+}
+
+template <typename Result>
+int report(const Result& result, bool json) {
+    fmt::print("{}", json ? to_json(result) : to_text(result));
+    return result.holds() ? 0 : kFailed;
+}
+
 int run(int argc, char** argv) {
-    Program program("echinus-check", "Judges an exact map by CGAL's exact predicates, particle by particle.");
+    Program program("echinus-check", "Judges exact maps and recorded cloth by CGAL's exact predicates.");
     Arguments arguments;
     add_options(program.command(), arguments);
     if (const std::optional<std::string> help = program.run(argc, argv)) {
@@ -88,9 +114,8 @@ int run(int argc, char** argv) {
         for (const std::string& name : test::nasty_mesh_names()) fmt::print("{}\n", name);
         return 0;
     }
-    const test::CheckResult result = check(arguments);
-    fmt::print("{}", arguments.json ? to_json(result) : to_text(result));
-    return result.holds() ? 0 : kFailed;
+    return arguments.cloth.empty() ? report(check(arguments), arguments.json)
+                                   : report(check_recording(arguments), arguments.json);
 }
 
 int fail(const char* sentence, int status) {

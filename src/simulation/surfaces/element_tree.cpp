@@ -91,7 +91,8 @@ Box ElementTree::Level::box_of_group(std::size_t first) const {
     return box;
 }
 
-ElementTree::ElementTree(const Elements& elements, const PointArrays& positions) : order_(elements.all.size()) {
+ElementTree::ElementTree(const Elements& elements, const PointArrays& positions)
+    : order_(elements.all.size()) {
     std::vector<Vec3f> middles;
     middles.reserve(order_.size());
     for (const Element& element : elements.all) middles.push_back(middle_of(element, positions));
@@ -141,7 +142,8 @@ void ElementTree::shorten(std::size_t level, std::size_t group, const Box& box, 
         const auto nearest = std::min_element(distances_sq.begin(), distances_sq.end());
         if (!(*nearest < distance_sq)) return;
         *nearest = kInfinity;
-        shorten(level - 1, first + static_cast<std::size_t>(nearest - distances_sq.begin()), box, distance_sq);
+        shorten(level - 1, first + static_cast<std::size_t>(nearest - distances_sq.begin()), box,
+                distance_sq);
     }
 }
 

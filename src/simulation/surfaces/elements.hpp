@@ -12,8 +12,8 @@
 namespace echinus {
 
 /// A face, an edge without faces or a vertex without edges. Two surfaces that do not intersect can begin to
-/// only where a vertex meets a face or an edge meets an edge. So that each such pair is looked for once, every
-/// vertex and every edge belongs to one of its elements.
+/// only where a vertex meets a face or an edge meets an edge. So that each such pair is looked for once,
+/// every vertex and every edge belongs to one of its elements.
 struct Element {
     std::array<std::uint32_t, 3> vertices{}; ///< the last one repeated where there are fewer than three
     std::array<std::uint32_t, 3> edges{};    ///< from vertex k to vertex (k + 1) % 3; one for an edge

@@ -15,8 +15,8 @@ namespace echinus {
 
 namespace {
 
-/// Beside what a pair may close on its way: contacts that begin to push within this share of the thickness are
-/// kept ready.
+/// Beside what a pair may close on its way: contacts that begin to push within this share of the thickness
+/// are kept ready.
 constexpr float kReadiness = 1.0F / 8;
 /// The same beside a vertex that was pushed lately.
 constexpr float kAlertReadiness = 1.0F / 2;

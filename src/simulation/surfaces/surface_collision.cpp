@@ -55,9 +55,9 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
 
 void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders, const Collisions& collisions,
                                    const Particles& particles) {
-    carrier_ = static_cast<std::size_t>(std::find_if(colliders.begin(), colliders.end(),
-                                                     [](const Collider& c) { return c.moves(); }) -
-                                        colliders.begin());
+    carrier_ = static_cast<std::size_t>(
+        std::find_if(colliders.begin(), colliders.end(), [](const Collider& c) { return c.moves(); }) -
+        colliders.begin());
     for (std::size_t c = 0; c < models_.size(); ++c) {
         poses_[c] = colliders[c].pose;
         collisions.known_clearances(c, particles, clearances_);
@@ -171,7 +171,7 @@ void SurfaceCollision::truncate(std::uint32_t vertex, bool is_first, Particles& 
     if (shares.least > shares.most) ++squeezed_;
     const float share = std::max(shares.least > shares.most ? 0.0F : shares.most, 0.0F);
     const Vec3f goal = goals_[vertex];
-    particles.positions.set(vertex, share == 1          ? goal
+    particles.positions.set(vertex, share == 1         ? goal
                                     : frame != nullptr ? frame->place_at(share, vertex)
                                                        : start + (goal - start) * share);
 }

@@ -160,7 +160,8 @@ void SurfacePairs::list(std::uint32_t element) {
     list_reaches_[element] = reach_.listed;
     if (!found && !opponent_.is_self) {
         box.grow(-reach_.listed);
-        list_reaches_[element] = std::max(reach_.listed, opponent_.tree->distance(box, kFarReach * reach_.listed));
+        list_reaches_[element] =
+            std::max(reach_.listed, opponent_.tree->distance(box, kFarReach * reach_.listed));
     }
 }
 
@@ -192,7 +193,8 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
     }
     if (own.is_face())
         for (std::size_t k = 0; k < other.vertex_count; ++k)
-            if (other.owns_vertex(k) && !(is_self && own.has(other.vertices[k])) && is_near_box(b[k], own_box))
+            if (other.owns_vertex(k) && !(is_self && own.has(other.vertices[k])) &&
+                is_near_box(b[k], own_box))
                 list_pair(own_number, other_number,
                           {{own.vertices[0], own.vertices[1], own.vertices[2], other.vertices[k]},
                            other_number,
@@ -206,8 +208,8 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
         for (std::size_t j = 0; j < edge_count(other); ++j) {
             if (!other.owns_edge(j)) continue;
             const std::size_t j_next = (j + 1) % 3;
-            const std::array<std::uint32_t, 4> points{own.vertices[i], own.vertices[i_next], other.vertices[j],
-                                                      other.vertices[j_next]};
+            const std::array<std::uint32_t, 4> points{own.vertices[i], own.vertices[i_next],
+                                                      other.vertices[j], other.vertices[j_next]};
             if (is_self && (points[0] == points[2] || points[0] == points[3] || points[1] == points[2] ||
                             points[1] == points[3]))
                 continue;
@@ -240,8 +242,9 @@ std::array<Vec3f, 4> SurfacePairs::points_of(const Pair& pair) const {
     return points;
 }
 
-/// How far the vertices of an element may go by what is not listed. Of the deformable's pairs with itself both
-/// sides move: by two slacks each at the most since a list was made, and by two rooms before both are measured.
+/// How far the vertices of an element may go by what is not listed. Of the deformable's pairs with itself
+/// both sides move: by two slacks each at the most since a list was made, and by two rooms before both are
+/// measured.
 float SurfacePairs::bound_of(std::uint32_t element) const {
     if (opponent_.is_self) return (reach_.listed - 4 * reach_.slack) / 4;
     return list_reaches_[element] - moved_since_listed(element) - reach_.least_gap;

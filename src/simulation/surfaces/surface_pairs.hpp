@@ -24,12 +24,13 @@ struct Opponent {
 
 /// Lengths, in units of the world.
 struct PairReach {
-    float listed; ///< pairs this near are listed
-    float slack;  ///< lists hold until a vertex has moved this far
+    float listed;    ///< pairs this near are listed
+    float slack;     ///< lists hold until a vertex has moved this far
     float least_gap; ///< no motion takes a pair nearer than this
 };
 
-/// Shares 0 (where the frame began) to 1 (the goal) of a vertex's way, half open nowhere. Empty: least > most.
+/// Shares 0 (where the frame began) to 1 (the goal) of a vertex's way, half open nowhere. Empty: least >
+/// most.
 struct Shares {
     float least = 0, most = 1;
 
@@ -41,8 +42,8 @@ struct Shares {
 /// (docs/surfaces.md).
 ///
 /// Around each vertex lies a ball, its *room*: whatever way vertices take within their rooms, nothing meets.
-/// Only a vertex that is about to leave its room is looked at: its pairs are measured anew where they are when
-/// the frame begins, and it gets a new room there. One that would leave even that one has to stay in the
+/// Only a vertex that is about to leave its room is looked at: its pairs are measured anew where they are
+/// when the frame begins, and it gets a new room there. One that would leave even that one has to stay in the
 /// convex set that its pairs' separating planes leave it.
 ///
 /// The pairs come from lists of what is near each element, which hold until one of its vertices has moved by
