@@ -8,16 +8,18 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 ECHINUS_EXPORT_BEGIN
 
 /// The set-up of a simulation as JSON (docs/scenes.md has every key). Library echinus::scene (needs
 /// nlohmann-json). It reads no meshes: the caller reads the model, with echinus::io or otherwise, and passes
-/// its map.
+/// its map, and likewise a cloth's mesh.
 namespace echinus {
 
 struct ModelFile {
@@ -40,6 +42,30 @@ using MapOptions = std::variant<ExactMapOptions, DistanceMapOptions>;
 
 using SceneModel = std::variant<ModelFile, TorusModel, SphereModel, BoxModel>;
 
+/// All vertices in a box along the mesh's axes, its sides included; in the mesh's own coordinates.
+struct VertexBox {
+    Vec3d from, to;
+};
+/// Vertices of a mesh, by their numbers or by where they are.
+using VertexChoice = std::variant<std::vector<std::uint32_t>, VertexBox>;
+
+/// A cloth of any shape: what make_cloth() of a mesh takes, by name.
+struct MeshCloth {
+    SceneModel mesh;                     ///< where it starts
+    std::optional<SceneModel> rest_mesh; ///< the same faces; if not given, it starts at rest
+    RigidTransform pose;
+    double scale = 1;
+    BendingKind bending = BendingKind::Angles;
+    VertexChoice pins;
+    VertexChoice attachments; ///< move with the collider
+};
+
+/// The meshes of a scene's cloth that come from files, as the caller has read them; the others are left
+/// empty.
+struct ClothMeshes {
+    TriangleMesh mesh, rest_mesh;
+};
+
 /// The complete initial state of a simulation. A scene that was read is complete, with each number in its
 /// range; the generators check whether a shape is possible.
 struct Scene {
@@ -51,7 +77,8 @@ struct Scene {
     Vec3d linear_velocity;
     Vec3d angular_velocity; ///< radians per second
     ClothOptions cloth;
-    Vec3d cloth_velocity; ///< of all particles at the start that are not pinned
+    std::optional<MeshCloth> mesh_cloth; ///< in place of `cloth`
+    Vec3d cloth_velocity;                ///< of all particles at the start that are not pinned
     SimulationOptions simulation;
     std::uint32_t frame_limit = 3000; ///< the simulation ends here at the latest
 };
@@ -86,9 +113,16 @@ AnyMap build_map(const TriangleMesh& mesh, const MapOptions& options, unsigned t
 /// The scene's collider, with a map of the scene's model.
 Collider make_collider(const Scene& scene, const ColliderMap& map);
 
+/// The scene's cloth where it starts, at rest.
+/// @param meshes  of a cloth that is made of files
+/// @throws Error as the two make_cloth() do; for a mesh the sentence begins with its name. InvalidOptions
+/// where a mesh from a file is not given, or there is no vertex in a box; InvalidMesh where the rest mesh has
+/// other faces
+Deformable make_cloth(const Scene& scene, const ClothMeshes& meshes = {});
+
 /// The scene's cloth and collider, ready to step.
-/// @throws Error InvalidOptions
-Simulation make_simulation(const Scene& scene, const ColliderMap& map);
+/// @throws Error InvalidOptions, and as make_cloth()
+Simulation make_simulation(const Scene& scene, const ColliderMap& map, const ClothMeshes& meshes = {});
 
 } // namespace echinus
 

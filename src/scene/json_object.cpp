@@ -190,6 +190,18 @@ void JsonObject::read(const char* key, std::vector<std::array<std::uint32_t, 2>>
         if (!read_array((*found)[i], value[i], range)) refuse(key, expected);
 }
 
+void JsonObject::read(const char* key, std::vector<std::uint32_t>& value, Range range) {
+    const json* found = find(key);
+    if (found == nullptr) return;
+    const std::string expected = "an array, each " + expected_number("a whole number", range);
+    if (!found->is_array()) refuse(key, expected);
+    value.resize(found->size());
+    for (std::size_t i = 0; i < value.size(); ++i) {
+        if (!holds((*found)[i], std::uint32_t{}, range)) refuse(key, expected);
+        value[i] = (*found)[i].get<std::uint32_t>();
+    }
+}
+
 std::optional<std::string> JsonObject::read_string(const char* key) {
     const json* found = find(key);
     if (found == nullptr) return std::nullopt;

@@ -42,6 +42,7 @@ class JsonObject {
     /// Whole numbers have to be written as such: 10, not 1e1.
     void read(const char* key, std::array<std::uint32_t, 2>& value, Range range);
     void read(const char* key, std::vector<std::array<std::uint32_t, 2>>& value, Range range);
+    void read(const char* key, std::vector<std::uint32_t>& value, Range range);
     std::optional<std::string> read_string(const char* key);
     /// A string that has to be one of `words`; returns its number.
     std::optional<std::size_t> read_word(const char* key, const std::vector<std::string_view>& words);

@@ -54,17 +54,17 @@ SceneModel read_box(JsonObject box) {
 }
 
 /// A file's name, or an object with the one key that names a generated shape.
-SceneModel read_model(JsonObject& scene) {
-    scene.require("model");
-    if (scene.is_string("model")) return ModelFile{*scene.read_string("model")};
-    std::optional<JsonObject> model = scene.object("model");
+/// @pre the key is there
+SceneModel read_model(JsonObject& parent, const char* key) {
+    if (parent.is_string(key)) return ModelFile{*parent.read_string(key)};
+    std::optional<JsonObject> model = parent.object(key);
     std::vector<SceneModel> found;
     if (auto torus = model->object("torus")) found.push_back(read_torus(*torus));
     if (auto sphere = model->object("sphere")) found.push_back(read_sphere(*sphere));
     if (auto box = model->object("box")) found.push_back(read_box(*box));
     model->finish();
     if (found.size() != 1)
-        scene.refuse("model", "a file's name or an object with one of the keys torus, sphere and box");
+        parent.refuse(key, "a file's name or an object with one of the keys torus, sphere and box");
     return found.front();
 }
 
@@ -202,23 +202,60 @@ void read_pins(JsonObject& cloth, ClothOptions& options) {
     }
 }
 
-void read_cloth(JsonObject& root, Scene& scene) {
-    root.require("cloth");
-    auto cloth = root.object("cloth");
+void read_sheet(JsonObject& cloth, Scene& scene) {
+    for (const char* key : {"rest_mesh", "scale", "bending", "attachments"})
+        if (cloth.has(key)) cloth.refuse(key, "left out, or the cloth must have the key \"mesh\"");
     ClothOptions& options = scene.cloth;
     Counts particles{options.column_count, options.row_count};
     std::array<double, 2> size{};
-    cloth->require("size");
-    cloth->read("particles", particles, {2, 4096});
-    cloth->read("size", size, kLength);
-    cloth->read("velocity", scene.cloth_velocity, kCoordinate);
-    cloth->read("thickness", scene.simulation.thickness, {0, 1e9});
+    cloth.require("size");
+    cloth.read("particles", particles, {2, 4096});
+    cloth.read("size", size, kLength);
     options.column_count = particles[0];
     options.row_count = particles[1];
     options.width = size[0];
     options.height = size[1];
-    options.pose = read_pose(*cloth);
-    read_pins(*cloth, options);
+    options.pose = read_pose(cloth);
+    read_pins(cloth, options);
+}
+
+/// An array of numbers, or a box.
+VertexChoice read_vertices(JsonObject& cloth, const char* key) {
+    if (!cloth.has(key) || cloth.is_array(key)) {
+        std::vector<std::uint32_t> numbers;
+        cloth.read(key, numbers, {0, 4e9});
+        return numbers;
+    }
+    VertexBox box;
+    auto object = cloth.object(key);
+    object->require("from");
+    object->require("to");
+    object->read("from", box.from, kCoordinate);
+    object->read("to", box.to, kCoordinate);
+    object->finish();
+    return box;
+}
+
+void read_mesh_cloth(JsonObject& cloth, Scene& scene) {
+    for (const char* key : {"size", "particles"})
+        if (cloth.has(key)) cloth.refuse(key, "left out where the cloth has the key \"mesh\"");
+    MeshCloth& made = scene.mesh_cloth.emplace();
+    made.mesh = read_model(cloth, "mesh");
+    if (cloth.has("rest_mesh")) made.rest_mesh = read_model(cloth, "rest_mesh");
+    made.pose = read_pose(cloth);
+    cloth.read("scale", made.scale, kLength);
+    if (auto word = cloth.read_word("bending", {"angles", "sticks"}))
+        made.bending = static_cast<BendingKind>(*word);
+    made.pins = read_vertices(cloth, "pins");
+    made.attachments = read_vertices(cloth, "attachments");
+}
+
+void read_cloth(JsonObject& root, Scene& scene) {
+    root.require("cloth");
+    auto cloth = root.object("cloth");
+    cloth->read("velocity", scene.cloth_velocity, kCoordinate);
+    cloth->read("thickness", scene.simulation.thickness, {0, 1e9});
+    cloth->has("mesh") ? read_mesh_cloth(*cloth, scene) : read_sheet(*cloth, scene);
     cloth->finish();
 }
 
@@ -300,7 +337,8 @@ Scene parse_scene(std::string_view json, const std::string& name) {
     const nlohmann::json document = parse_json(json, name);
     JsonObject root(document, name, "");
     Scene scene;
-    scene.model = read_model(root);
+    root.require("model");
+    scene.model = read_model(root, "model");
     scene.repair = read_repair(root);
     if (auto map = root.object("map")) scene.map = read_map(*std::move(map));
     read_collider(root, scene);

@@ -50,8 +50,8 @@ Collider make_collider(const Scene& scene, const ColliderMap& map) {
             .angular_velocity = scene.angular_velocity};
 }
 
-Simulation make_simulation(const Scene& scene, const ColliderMap& map) {
-    Deformable cloth = make_cloth(scene.cloth);
+Simulation make_simulation(const Scene& scene, const ColliderMap& map, const ClothMeshes& meshes) {
+    Deformable cloth = make_cloth(scene, meshes);
     const Vec3d way = scene.cloth_velocity * (scene.simulation.time_step / scene.simulation.substep_count);
     for (std::size_t i = 0; i < cloth.particle_count(); ++i)
         if (cloth.inverse_masses[i] != 0)

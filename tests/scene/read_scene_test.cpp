@@ -27,6 +27,14 @@ const char* const kFullScene = R"({
     "frame_limit": 500, "at_rest": {"distance": 0.02, "speed": 0.3, "frames": 25}
 })";
 
+/// One whose cloth is a mesh, likewise.
+const char* const kMeshScene = R"({
+    "model": {"torus": {"major": 2, "minor": 0.5, "segments": [12, 8]}},
+    "cloth": {"mesh": "shirt.obj", "rest_mesh": "shirt_flat.obj", "bending": "sticks", "scale": 0.5,
+              "position": [4, 5, 6], "rotation": {"axis": [1, 0, 0], "degrees": -90}, "velocity": [1, 2, -3],
+              "thickness": 0.02, "pins": [3, 5], "attachments": {"from": [-1, -2, -3], "to": [1, 2, 3]}}
+})";
+
 std::string refusal(const std::string& text) {
     try {
         parse_scene(text, "a.json");
@@ -97,6 +105,23 @@ TEST(Scene, IsReadKeyByKey) {
     EXPECT_EQ(scene.simulation.rest.distance, 0.02);
     EXPECT_EQ(scene.simulation.rest.speed, 0.3);
     EXPECT_EQ(scene.simulation.rest.frame_count, 25u);
+}
+
+TEST(Scene, OfAMeshIsReadKeyByKey) {
+    const Scene scene = parse_scene(kMeshScene, "a.json");
+    ASSERT_TRUE(scene.mesh_cloth);
+    const MeshCloth& cloth = *scene.mesh_cloth;
+    EXPECT_EQ(std::get<ModelFile>(cloth.mesh).name, "shirt.obj");
+    EXPECT_EQ(std::get<ModelFile>(cloth.rest_mesh.value()).name, "shirt_flat.obj");
+    EXPECT_EQ(cloth.bending, BendingKind::Sticks);
+    EXPECT_EQ(cloth.scale, 0.5);
+    EXPECT_EQ(cloth.pose.translation, (Vec3d{4, 5, 6}));
+    EXPECT_NEAR(length(cloth.pose.rotation.apply({0, 0, 1}) - Vec3d{0, 1, 0}), 0, 1e-12);
+    EXPECT_EQ(scene.cloth_velocity, (Vec3d{1, 2, -3}));
+    EXPECT_EQ(scene.simulation.thickness, 0.02);
+    EXPECT_EQ(std::get<std::vector<std::uint32_t>>(cloth.pins), (std::vector<std::uint32_t>{3, 5}));
+    EXPECT_EQ(std::get<VertexBox>(cloth.attachments).from, (Vec3d{-1, -2, -3}));
+    EXPECT_EQ(std::get<VertexBox>(cloth.attachments).to, (Vec3d{1, 2, 3}));
 }
 
 TEST(Scene, KeepsHalfTheSpacingAwayUnlessItHasAThickness) {
@@ -285,34 +310,40 @@ TEST(Scene, RefusesAModelThatIsNoneOrTwo) {
 }
 
 TEST(Scene, RefusesAMisspeltKeyInEveryObjectAndNamesTheRightOne) {
-    const json full = json::parse(kFullScene);
-    std::vector<json::json_pointer> objects;
-    collect_objects(full, json::json_pointer(), objects);
-    ASSERT_EQ(objects.size(), 8u);
-    for (const auto& at : objects) {
-        for (const auto& item : full[at].items()) {
-            json spoilt = full;
-            spoilt[at][item.key() + "x"] = item.value();
-            const std::string path = dotted(at / item.key());
-            EXPECT_EQ(refusal(spoilt.dump()),
-                      "a.json: there is no key \"" + path + "x\"; the nearest is \"" + path + "\"");
+    std::size_t object_count = 0;
+    for (const char* scene : {kFullScene, kMeshScene}) {
+        const json full = json::parse(scene);
+        std::vector<json::json_pointer> objects;
+        collect_objects(full, json::json_pointer(), objects);
+        object_count += objects.size();
+        for (const auto& at : objects) {
+            for (const auto& item : full[at].items()) {
+                json spoilt = full;
+                spoilt[at][item.key() + "x"] = item.value();
+                const std::string path = dotted(at / item.key());
+                EXPECT_EQ(refusal(spoilt.dump()),
+                          "a.json: there is no key \"" + path + "x\"; the nearest is \"" + path + "\"");
+            }
         }
     }
+    EXPECT_EQ(object_count, 8u + 6u);
 }
 
 TEST(Scene, RefusesEveryValueOfAWrongTypeByItsPath) {
-    const json full = json::parse(kFullScene);
-    std::vector<json::json_pointer> places;
-    collect_values(full, json::json_pointer(), places);
-    collect_objects(full, json::json_pointer(), places);
-    ASSERT_GT(places.size(), 30u);
-    for (const auto& at : places) {
-        if (at.empty()) continue;
-        for (const json& wrong : {json(nullptr), json(true), json::parse("[[]]")}) {
-            json spoilt = full;
-            spoilt[at] = wrong;
-            const std::string sentence = refusal(spoilt.dump());
-            EXPECT_EQ(sentence.rfind("a.json: " + dotted(at) + " is ", 0), 0u) << sentence;
+    for (const char* scene : {kFullScene, kMeshScene}) {
+        const json full = json::parse(scene);
+        std::vector<json::json_pointer> places;
+        collect_values(full, json::json_pointer(), places);
+        collect_objects(full, json::json_pointer(), places);
+        ASSERT_GT(places.size(), 15u);
+        for (const auto& at : places) {
+            if (at.empty()) continue;
+            for (const json& wrong : {json(nullptr), json(true), json::parse("[[]]")}) {
+                json spoilt = full;
+                spoilt[at] = wrong;
+                const std::string sentence = refusal(spoilt.dump());
+                EXPECT_EQ(sentence.rfind("a.json: " + dotted(at) + " is ", 0), 0u) << sentence;
+            }
         }
     }
     EXPECT_NE(refusal("[]"), "");

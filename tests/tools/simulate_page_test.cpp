@@ -66,9 +66,16 @@ TEST_F(SimulatePage, HoldsThePlayerAndTheRecordingInItsPlace) {
     EXPECT_EQ(page.model_vertices.size(), 3 * 8u);
     EXPECT_EQ(page.model_faces.size(), 3 * 12u);
     EXPECT_EQ(page.cloth_faces.size(), 3 * 24u);
-    EXPECT_EQ(description["cloth_columns"], 5);
     EXPECT_EQ(description["figures"]["particles"], 20);
     EXPECT_GT(description["figures"]["ms_per_frame"]["total"], 0);
+}
+
+TEST_F(SimulatePage, HoldsTheFacesOfAClothOfAnyShape) {
+    write("bag.json", R"({"model": {"box": {}}, "frame_limit": 8,
+        "cloth": {"mesh": {"sphere": {"radius": 0.5, "segments": [6, 4]}}, "position": [0, 0, 1.2]}})");
+    const PlayerPage page = play("bag.json");
+    EXPECT_EQ(page.description["figures"]["particles"], 6 * 3 + 2);
+    EXPECT_EQ(page.cloth_faces.size(), 3 * 6 * 6u);
 }
 
 TEST_F(SimulatePage, EndsAtTheFrameLimitHoweverFewOfTheFramesItHas) {

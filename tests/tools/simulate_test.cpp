@@ -96,6 +96,33 @@ TEST_F(SimulateCommand, WritesOneObjPerMomentWhereAskedTo) {
     EXPECT_FALSE(fs::exists(path("run/cloth.pc2")));
 }
 
+TEST_F(SimulateCommand, LetsAMeshFromAFileFallAsCloth) {
+    expect_success({"mesh", "sphere", "--radius", "0.5", "--segments", "12x8", "-o", "bag.obj"});
+    expect_success({"mesh", "sphere", "--radius", "0.7", "--segments", "12x8", "-o", "wide.obj"});
+    write("scene.json", R"({"model": {"box": {}}, "frame_limit": 20,
+        "cloth": {"mesh": "bag.obj", "rest_mesh": "wide.obj", "position": [0, 0, 1.2]}})");
+    const nlohmann::json report = simulate("scene.json");
+    EXPECT_EQ(report.at("particles"), 86);
+    EXPECT_GT(report.at("strain").at("mean"), 0.0);
+    EXPECT_EQ(content("run/cloth.pc2").size(), 32 + 21 * 86 * 12u);
+    expect_success(
+        {"render", "moment", "run", "--samples", "1", "--width", "60", "--height", "40", "-o", "p.png"});
+}
+
+TEST_F(SimulateCommand, NamesTheMeshOfAClothAndTheFaceAtFault) {
+    const std::string sheet = "v 0 0 2\nv 1 0 2\nv 1 1 2\nv 0 1 2\nv 0 0 3\nf 1 2 3\nf 1 3 4\nf 1 3 5\n";
+    write("three.obj", sheet);
+    write("scene.json", R"({"model": {"box": {}}, "cloth": {"mesh": "three.obj"}})");
+    expect_failure(1, "three.obj: the edge between vertices 0 and 2 has the faces 0, 1, 2",
+                   {"simulate", "scene.json", "-o", "run"});
+    write("scene.json", R"({"model": {"box": {}}, "cloth": {"mesh": "nowhere.obj"}})");
+    expect_failure(1, "scene.json: the model nowhere.obj is in none",
+                   {"simulate", "scene.json", "-o", "run"});
+    write("scene.json", R"({"model": {"box": {}}, "cloth": {"mesh": {"box": {}}, "pins": [8]}})");
+    expect_failure(1, "scene.json: \"cloth\": cloth.mesh: a pin names vertex 8",
+                   {"simulate", "scene.json", "-o", "run"});
+}
+
 TEST_F(SimulateCommand, NamesTheSceneAndTheKeyAtFault) {
     write("misspelt.json", R"({"model": {"box": {}}, "cloth": {"particels": [4, 4], "size": [1, 1]}})");
     expect_failure(1, "misspelt.json: ", {"simulate", "misspelt.json", "-o", "run"});

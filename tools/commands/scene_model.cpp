@@ -60,9 +60,9 @@ std::string notice_beside(const fs::path& model_file) {
     return {reinterpret_cast<const char*>(notice.bytes().data()), notice.bytes().size()};
 }
 
-std::optional<fs::path> model_file(const Scene& scene, const fs::path& scene_path,
+std::optional<fs::path> model_file(const SceneModel& model, const fs::path& scene_path,
                                    std::vector<fs::path> folders) {
-    const auto* file = std::get_if<ModelFile>(&scene.model);
+    const auto* file = std::get_if<ModelFile>(&model);
     if (file == nullptr) return std::nullopt;
     folders.push_back(scene_path.parent_path().empty() ? "." : scene_path.parent_path());
     folders.push_back(scene_path.parent_path() / ".." / "models");
@@ -75,4 +75,13 @@ RepairedMesh load_model(const Scene& scene, const fs::path& scene_path, const st
     RepairedMesh model = repair(std::visit(MeshOfModel{scene_path, file}, scene.model), scene.repair);
     require_closed(model.mesh, scene_path);
     return model;
+}
+
+ClothMeshes load_cloth(const Scene& scene, const fs::path& scene_path, const std::vector<fs::path>& folders) {
+    const auto read = [&](const std::optional<SceneModel>& model) {
+        const std::optional<fs::path> file = model ? model_file(*model, scene_path, folders) : std::nullopt;
+        return file ? read_mesh(*file) : TriangleMesh{};
+    };
+    if (!scene.mesh_cloth) return {};
+    return {.mesh = read(scene.mesh_cloth->mesh), .rest_mesh = read(scene.mesh_cloth->rest_mesh)};
 }

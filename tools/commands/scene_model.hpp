@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-/// Where a scene's model comes from: the path of its file, or nothing for one that is generated. The file is
-/// looked up in `folders`, beside the scene, in ../models beside it, then in models in the working folder.
+/// Where a mesh of a scene comes from: the path of its file, or nothing for one that is generated. The file
+/// is looked up in `folders`, beside the scene, in ../models beside it, then in models in the working folder.
 /// @throws echinus::Error Unreadable
-std::optional<std::filesystem::path> model_file(const echinus::Scene& scene,
+std::optional<std::filesystem::path> model_file(const echinus::SceneModel& model,
                                                 const std::filesystem::path& scene_path,
                                                 std::vector<std::filesystem::path> folders);
 
@@ -20,6 +20,11 @@ std::optional<std::filesystem::path> model_file(const echinus::Scene& scene,
 /// @throws echinus::Error as read_scene's parts do, and InvalidMesh when the mesh is not closed in the end
 echinus::RepairedMesh load_model(const echinus::Scene& scene, const std::filesystem::path& scene_path,
                                  const std::optional<std::filesystem::path>& file);
+
+/// Reads the meshes of a scene's cloth that come from files.
+/// @throws echinus::Error as read_mesh() does
+echinus::ClothMeshes load_cloth(const echinus::Scene& scene, const std::filesystem::path& scene_path,
+                                const std::vector<std::filesystem::path>& folders);
 
 /// The name of the model's file without folders, or of the generated shape.
 std::string model_name(const echinus::Scene& scene);

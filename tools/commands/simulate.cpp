@@ -109,13 +109,14 @@ std::vector<SavedPose> run(Simulation& simulation, Results& results, std::uint32
     return poses;
 }
 
-/// Reports errors in the options of a scene's map as errors of the scene.
-AnyMap map_of_scene(const Scene& scene, const TriangleMesh& mesh, const SimulateArguments& arguments) {
+/// Reports errors in the options that a key of the scene gives as errors of the scene.
+template <typename Make>
+auto made_as_scene_says(const SimulateArguments& arguments, const char* key, const Make& make) {
     try {
-        return build_map(mesh, scene.map, arguments.thread_count);
+        return make();
     } catch (const Error& error) {
         if (error.code() != ErrorCode::InvalidOptions) throw;
-        throw Error(ErrorCode::InvalidScene, arguments.scene.string() + ": \"map\": " + error.what());
+        throw Error(ErrorCode::InvalidScene, arguments.scene.string() + ": \"" + key + "\": " + error.what());
     }
 }
 
@@ -140,10 +141,12 @@ std::uint32_t page_stride(const SimulateArguments& arguments, const Scene& scene
 }
 
 /// Before the simulation, so that output that cannot be written is refused at once.
-void open(Results& results, const SimulateArguments& arguments, const Scene& scene) {
+void open(Results& results, const SimulateArguments& arguments, const Scene& scene,
+          const ClothMeshes& cloth) {
     if (!arguments.target.empty()) results.folder.emplace(arguments.target, arguments.obj);
     if (!arguments.page.empty()) {
-        require_playable(std::size_t{scene.cloth.column_count} * scene.cloth.row_count, scene.frame_limit,
+        const auto make = [&] { return make_cloth(scene, cloth); };
+        require_playable(made_as_scene_says(arguments, "cloth", make).particle_count(), scene.frame_limit,
                          page_stride(arguments, scene));
         results.page.emplace(arguments.page, arguments.player);
     }
@@ -156,14 +159,17 @@ void simulate(const SimulateArguments& arguments) {
     // A page takes its frames from all, and so its last is the end; a folder's last must be one that is
     // saved.
     const std::uint32_t stride = arguments.target.empty() ? 1 : arguments.stride.value_or(1);
+    const ClothMeshes cloth = load_cloth(scene, arguments.scene, arguments.model_folders);
     Results results;
-    open(results, arguments, scene);
+    open(results, arguments, scene, cloth);
 
-    const std::optional<fs::path> file = model_file(scene, arguments.scene, arguments.model_folders);
+    const std::optional<fs::path> file = model_file(scene.model, arguments.scene, arguments.model_folders);
     if (file) require_another_file(*file, arguments.page);
     const TriangleMesh mesh = load_model(scene, arguments.scene, file).mesh;
-    const AnyMap map = map_of_scene(scene, mesh, arguments);
-    Simulation simulation = make_simulation(scene, map);
+    const AnyMap map = made_as_scene_says(arguments, "map",
+                                          [&] { return build_map(mesh, scene.map, arguments.thread_count); });
+    Simulation simulation =
+        made_as_scene_says(arguments, "cloth", [&] { return make_simulation(scene, map, cloth); });
     const TriangleMesh collider_mesh = scaled(mesh, scene.scale);
     if (results.folder) results.folder->begin(simulation.deformable(), collider_mesh, stride);
     if (results.page)
@@ -190,7 +196,6 @@ void simulate(const SimulateArguments& arguments) {
                            .scene_name = arguments.scene.filename().string(),
                            .model_name = model_name(scene),
                            .notice = file ? notice_beside(*file) : "",
-                           .cloth_columns = scene.cloth.column_count,
                            .collider = collider_mesh});
     if (results.folder) results.folder->commit(report);
     if (arguments.json)

@@ -89,7 +89,6 @@ Json description_of(const PlayedSimulation& played, const Lattice& lattice) {
           {"centre", to_json(sphere.centre)},
           {"radius", sphere.radius}}},
         {"cloth_faces", simulation.deformable().faces.size()},
-        {"cloth_columns", played.cloth_columns},
         {"lattice_step", lattice.step},
         {"figures", figures_of(played.result)},
         {"frames", frames_of(played.recording, lattice, simulation.colliders().front().moves())},

@@ -33,7 +33,6 @@ struct PlayedSimulation {
     std::string scene_name; ///< without folders, since pages are shared
     std::string model_name;
     std::string notice;                    ///< of the model's source; may be empty
-    std::uint32_t cloth_columns;           ///< particles in each row of the sheet
     const echinus::TriangleMesh& collider; ///< scaled, not moved
 };
 

@@ -9,7 +9,6 @@ export interface Description {
     scene: string;
     model: { name: string; notice: string; vertices: number; faces: number; centre: Triple; radius: number };
     cloth_faces: number;
-    cloth_columns: number;
     lattice_step: number;
     figures: Figures;
     frames: RecordedFrame[];

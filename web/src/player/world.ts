@@ -4,8 +4,8 @@ import type { FrameArrays } from '../protocol';
 import { ClothView } from '../view/cloth_view';
 import { ModelView } from '../view/model_view';
 import type { Stage } from '../view/stage';
-import { sheetNormals } from '../worker/normals';
 import type { Description } from './description';
+import { surfaceNormals } from './normals';
 import type { Recording } from './recording';
 
 /** Model and cloth of a recording on a stage. */
@@ -38,10 +38,10 @@ export class World {
     }
 
     show(frame: number): void {
-        const { frames, figures, cloth_columns } = this.#recording.description;
+        const { frames, figures } = this.#recording.description;
         const arrays = this.#spare;
         this.#recording.positionsOf(frame, arrays.positions);
-        sheetNormals(arrays.positions, cloth_columns, arrays.normals);
+        surfaceNormals(arrays.positions, this.#recording.clothFaces, arrays.normals);
         this.#spare = this.#cloth.show(arrays) ?? arraysFor(figures.particles);
         const { pose } = frames[frame];
         if (pose) this.#model.follow(pose);

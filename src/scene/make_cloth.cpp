@@ -1,0 +1,90 @@
+#include <echinus/error.hpp>
+#include <echinus/scene.hpp>
+
+#include <string>
+#include <utility>
+
+namespace echinus {
+
+namespace {
+
+/// How sentences call a mesh, and how it is made: a file's as it was read.
+struct NamedMesh {
+    std::string name;
+    TriangleMesh mesh;
+
+    NamedMesh(const SceneModel& model, const TriangleMesh& read, const std::string& key) {
+        if (const auto* file = std::get_if<ModelFile>(&model)) {
+            name = file->name;
+            mesh = read;
+            if (mesh.vertices.empty())
+                throw Error(ErrorCode::InvalidOptions,
+                            "the scene's " + key + " is the file " + name + ": read it and pass its mesh");
+            return;
+        }
+        name = key;
+        mesh = std::visit([](const auto& shape) { return shape_of(shape); }, model);
+    }
+
+  private:
+    static TriangleMesh shape_of(const ModelFile&) { return {}; }
+    static TriangleMesh shape_of(const auto& shape) { return make_mesh(shape); }
+};
+
+std::vector<std::uint32_t> vertices_in(const VertexBox& box, const std::vector<Vec3f>& vertices) {
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t i = 0; i < vertices.size(); ++i) {
+        const Vec3d v(vertices[i]);
+        if (v.x >= box.from.x && v.x <= box.to.x && v.y >= box.from.y && v.y <= box.to.y &&
+            v.z >= box.from.z && v.z <= box.to.z)
+            found.push_back(i);
+    }
+    return found;
+}
+
+/// @param key  of the choice, for sentences
+std::vector<std::uint32_t> chosen(const VertexChoice& choice, const NamedMesh& cloth,
+                                  const std::string& key) {
+    const auto* box = std::get_if<VertexBox>(&choice);
+    if (box == nullptr) return std::get<std::vector<std::uint32_t>>(choice);
+    std::vector<std::uint32_t> found = vertices_in(*box, cloth.mesh.vertices);
+    if (found.empty()) throw Error(ErrorCode::InvalidOptions, "none of its vertices is in the box of " + key);
+    return found;
+}
+
+void require_same_faces(const NamedMesh& cloth, const NamedMesh& rest) {
+    if (cloth.mesh.faces != rest.mesh.faces || cloth.mesh.vertices.size() != rest.mesh.vertices.size())
+        throw Error(ErrorCode::InvalidMesh, "its rest mesh " + rest.name + " has other vertices or faces: " +
+                                                std::to_string(rest.mesh.vertices.size()) + " and " +
+                                                std::to_string(rest.mesh.faces.size()) + " where it has " +
+                                                std::to_string(cloth.mesh.vertices.size()) + " and " +
+                                                std::to_string(cloth.mesh.faces.size()) +
+                                                "; both must name the same vertices in the same order");
+}
+
+Deformable make_cloth(const MeshCloth& cloth, const NamedMesh& start, const ClothMeshes& meshes) {
+    MeshClothOptions options{.pose = cloth.pose, .scale = cloth.scale, .bending = cloth.bending};
+    if (cloth.rest_mesh) {
+        NamedMesh rest(*cloth.rest_mesh, meshes.rest_mesh, "cloth.rest_mesh");
+        require_same_faces(start, rest);
+        options.rest_vertices = std::move(rest.mesh.vertices);
+    }
+    options.pins = chosen(cloth.pins, start, "cloth.pins");
+    for (const std::uint32_t vertex : chosen(cloth.attachments, start, "cloth.attachments"))
+        options.attachments.push_back({.particle = vertex});
+    return make_cloth(start.mesh, options);
+}
+
+} // namespace
+
+Deformable make_cloth(const Scene& scene, const ClothMeshes& meshes) {
+    if (!scene.mesh_cloth) return make_cloth(scene.cloth);
+    const NamedMesh start(scene.mesh_cloth->mesh, meshes.mesh, "cloth.mesh");
+    try {
+        return make_cloth(*scene.mesh_cloth, start, meshes);
+    } catch (const Error& error) {
+        throw Error(error.code(), start.name + ": " + error.what());
+    }
+}
+
+} // namespace echinus
