@@ -42,6 +42,7 @@ namespace palette {
 inline constexpr Colour kClay = Colour::from_hex(0xBDB5AA);      ///< the model: warm grey
 inline constexpr Colour kCloth = Colour::from_hex(0xB4584E);     ///< the front of a cloth
 inline constexpr Colour kClothBack = Colour::from_hex(0xD39A7C); ///< and its back
+inline constexpr Colour kMark = Colour::from_hex(0xFF1030);      ///< faces that something is wrong with
 inline constexpr Colour kPage = Colour::from_hex(0xF9F8F6);      ///< the backdrop of every picture
 inline constexpr Colour kLayerBack = Colour::from_hex(0xE4DED4); ///< the inside of any layer: bone
 inline constexpr Colour kInk = Colour::from_hex(0x3A3936);       ///< text and wires
@@ -63,6 +64,7 @@ struct RenderedObject {
     Colour colour = palette::kClay;
     std::vector<Colour> face_colours;  ///< [face_count] in place of `colour`, or empty
     std::optional<Colour> back_colour; ///< of the side on which faces turn clockwise; absent: as the front
+    std::vector<std::uint32_t> marked_faces; ///< drawn in palette::kMark on both sides
     /// Edges that bend less than this look smooth, the others sharp. 0 shows every face flat.
     double crease_angle_deg = 40;
     double wire_width_px = 0; ///< width of the lines drawn along all edges; 0 draws none
@@ -127,8 +129,8 @@ struct RenderOptions {
 /// Draws objects in soft light on a pale, endless floor. The same bytes on every run and for every thread
 /// count on one machine; another processor may round differently, since Embree picks other instructions.
 /// Cost: three rays per sample and non-empty pixel.
-/// @throws Error InvalidOptions for options out of range or face_colours of a wrong size, InvalidMesh as
-/// inspect() does, or when an object has no face with an area
+/// @throws Error InvalidOptions for options out of range, face_colours of a wrong size or marked faces that
+/// do not exist, InvalidMesh as inspect() does, or when an object has no face with an area
 Image render(std::span<const RenderedObject> objects, const Camera& camera,
              const RenderOptions& options = {});
 

@@ -4,7 +4,9 @@
 
 #include <echinus/error.hpp>
 
+#include <algorithm>
 #include <string>
+#include <utility>
 
 namespace echinus {
 
@@ -38,6 +40,11 @@ void require_options(const RenderedObject& object, const std::string& name) {
                     name + ": " + std::to_string(object.face_colours.size()) + " face colours for " +
                         std::to_string(object.mesh.faces.size()) + " faces; give one each, or none");
     }
+    for (const std::uint32_t face : object.marked_faces)
+        if (face >= object.mesh.faces.size())
+            throw Error(ErrorCode::InvalidOptions, name + ": face " + std::to_string(face) +
+                                                       " is to be marked, but there are only " +
+                                                       std::to_string(object.mesh.faces.size()));
     if (!(object.crease_angle_deg >= 0 && object.crease_angle_deg <= 180)) {
         throw Error(ErrorCode::InvalidOptions, name + ": the crease angle must lie in [0, 180] degrees");
     }
@@ -46,15 +53,19 @@ void require_options(const RenderedObject& object, const std::string& name) {
     }
 }
 
-PaintedSurface::Style style_of(const RenderedObject& object) {
-    return {to_linear(object.colour), to_linear(object.back_colour.value_or(object.colour)),
-            object.back_colour.has_value(), static_cast<float>(object.wire_width_px / 2)};
+/// The colours of an object's faces, of their fronts and backs.
+std::pair<std::vector<Colour>, std::vector<Colour>> colours_of(const RenderedObject& object) {
+    std::vector<Colour> fronts = object.face_colours;
+    fronts.resize(object.mesh.faces.size(), object.colour);
+    std::vector<Colour> backs = fronts;
+    if (object.back_colour) std::fill(backs.begin(), backs.end(), *object.back_colour);
+    for (const std::uint32_t face : object.marked_faces) fronts[face] = backs[face] = palette::kMark;
+    return {std::move(fronts), std::move(backs)};
 }
 
 void append(PaintedSurface& surface, const RenderedObject& object, const UnitMesh& part) {
     const auto first_vertex = static_cast<std::uint32_t>(surface.mesh.vertices.size());
-    const auto style_index = static_cast<std::uint32_t>(surface.styles.size());
-    surface.styles.push_back(style_of(object));
+    const auto [fronts, backs] = colours_of(object);
     surface.mesh.vertices.insert(surface.mesh.vertices.end(), part.mesh.vertices.begin(),
                                  part.mesh.vertices.end());
     const std::vector<CornerNormals> normals = corner_normals(part.mesh, object.crease_angle_deg);
@@ -63,10 +74,9 @@ void append(PaintedSurface& surface, const RenderedObject& object, const UnitMes
         const Triangle& face = part.mesh.faces[f];
         surface.mesh.faces.push_back(
             {face[0] + first_vertex, face[1] + first_vertex, face[2] + first_vertex});
-        surface.fronts.push_back(object.face_colours.empty()
-                                     ? surface.styles.back().front
-                                     : to_linear(object.face_colours[part.source_face[f]]));
-        surface.style_index.push_back(style_index);
+        surface.fronts.push_back(to_linear(fronts[part.source_face[f]]));
+        surface.backs.push_back(to_linear(backs[part.source_face[f]]));
+        surface.wire_half_widths_px.push_back(static_cast<float>(object.wire_width_px / 2));
     }
 }
 

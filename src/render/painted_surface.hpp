@@ -20,17 +20,10 @@ struct UnitFrame {
 
 /// All objects as one triangle soup in the unit frame, with the data that shade it.
 struct PaintedSurface {
-    struct Style {
-        Vec3f front, back;     ///< linear colours, where the object has one for all faces
-        bool has_back = false; ///< the back has colours of its own
-        float wire_half_width_px = 0;
-    };
-
     TriangleMesh mesh;
     std::vector<CornerNormals> normals;     ///< [face_count]
-    std::vector<Vec3f> fronts;              ///< [face_count] linear colour of the front
-    std::vector<std::uint32_t> style_index; ///< [face_count] index into `styles`
-    std::vector<Style> styles;              ///< [object_count]
+    std::vector<Vec3f> fronts, backs;       ///< [face_count] linear colours
+    std::vector<float> wire_half_widths_px; ///< [face_count]
     UnitFrame frame;
 };
 

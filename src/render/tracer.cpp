@@ -192,12 +192,11 @@ Tracer::Place Tracer::object_place(const Ray& ray, const RayHit& hit, const Draw
 
 Vec3f Tracer::albedo(const RayHit& hit, const Vec3f& position, bool from_behind) const {
     if (on_wire(hit, position)) return wire_colour_;
-    const PaintedSurface::Style& style = surface_.styles[surface_.style_index[hit.face]];
-    return from_behind && style.has_back ? style.back : surface_.fronts[hit.face];
+    return from_behind ? surface_.backs[hit.face] : surface_.fronts[hit.face];
 }
 
 bool Tracer::on_wire(const RayHit& hit, const Vec3f& position) const {
-    const float half_width_px = surface_.styles[surface_.style_index[hit.face]].wire_half_width_px;
+    const float half_width_px = surface_.wire_half_widths_px[hit.face];
     if (half_width_px == 0) return false;
     const float half_width = half_width_px * lens_.pixel_size() * hit.distance;
     const Triangle& face = surface_.mesh.faces[hit.face];

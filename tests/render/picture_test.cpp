@@ -170,6 +170,23 @@ TEST(Picture, PaintsTheBackOfAClothDifferently) {
     EXPECT_NEAR(front.green, back.blue, 12);
 }
 
+TEST(Picture, PaintsMarkedFacesRedOnBothSidesAndNoOthers) {
+    auto objects =
+        painted({{{0, -1, -1}, {0, 1, -1}, {0, 1, 1}, {0, -1, 1}}, {{0, 1, 2}, {0, 2, 3}}}, kGreen);
+    objects[0].back_colour = kBlue;
+    objects[0].marked_faces = {0, 0};
+    View view;
+    view.elevation_deg = 0;
+    for (const bool front : {true, false}) {
+        view.azimuth_deg = front ? 0 : 180; // the cloth's normal is +x
+        const Image image = picture(objects, options_of(20, 20, 4), view);
+        const Pixel marked = pixel_at(image, front ? 13 : 6, 12), other = pixel_at(image, front ? 6 : 13, 6);
+        EXPECT_GT(marked.red, marked.green + 60);
+        EXPECT_GT(marked.red, marked.blue + 60);
+        EXPECT_LT(other.red, front ? other.green : other.blue);
+    }
+}
+
 TEST(Picture, DrawsWiresAlongEdges) {
     auto objects =
         painted({{{0, -1, -1}, {0, 1, -1}, {0, 1, 1}, {0, -1, 1}}, {{0, 1, 2}, {0, 2, 3}}}, kGreen);

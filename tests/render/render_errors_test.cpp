@@ -78,6 +78,9 @@ TEST(RenderErrors, PaintThatDoesNotFitTheMesh) {
     object.face_colours.resize(5);
     expect_error(ErrorCode::InvalidOptions, {object}, small_options());
     object = object_with(kBox);
+    object.marked_faces = {12};
+    expect_error(ErrorCode::InvalidOptions, {object}, small_options());
+    object = object_with(kBox);
     object.crease_angle_deg = std::numeric_limits<double>::quiet_NaN();
     expect_error(ErrorCode::InvalidOptions, {object}, small_options());
     object = object_with(kBox);

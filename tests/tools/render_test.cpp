@@ -1,6 +1,8 @@
 #include "tools/command_line.hpp"
 #include "tools/sample_files.hpp"
 
+#include <png.h>
+
 #include <cstdint>
 
 using namespace echinus::test;
@@ -28,6 +30,20 @@ void expect_png(const std::string& bytes, std::uint32_t width, std::uint32_t hei
     ASSERT_TRUE(bytes.starts_with("\x89PNG\r\n\x1A\n"));
     EXPECT_EQ(big_endian_at(bytes, 16), width);
     EXPECT_EQ(big_endian_at(bytes, 20), height);
+}
+
+/// Pixels that are red beyond any cloth or model.
+std::size_t red_pixel_count(const std::filesystem::path& path) {
+    png_image header{};
+    header.version = PNG_IMAGE_VERSION;
+    EXPECT_TRUE(png_image_begin_read_from_file(&header, path.c_str()));
+    header.format = PNG_FORMAT_RGB;
+    std::vector<std::uint8_t> rgb(PNG_IMAGE_SIZE(header));
+    EXPECT_TRUE(png_image_finish_read(&header, nullptr, rgb.data(), 0, nullptr));
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < rgb.size(); i += 3)
+        count += rgb[i] > 3 * rgb[i + 1] && rgb[i] > 2 * rgb[i + 2];
+    return count;
 }
 
 /// A folder as echinus simulate writes it: two moments of one triangle over a box.
@@ -107,6 +123,15 @@ TEST_F(RenderCommand, DrawsMomentsOfASimulation) {
     expect_success(render({"moment", "run", "-o", "first.png", "--frame", "0"}));
     EXPECT_EQ(content("last.png"), content("one.png"));
     EXPECT_NE(content("last.png"), content("first.png"));
+}
+
+TEST_F(RenderCommand, MarksTheFacesThatIntersect) {
+    write_simulation();
+    expect_success(render({"moment", "run", "-o", "apart.png"}));
+    write("run/collider.obj", obj_text(echinus::make_box({1, 1, 8})));
+    expect_success(render({"moment", "run", "-o", "cut.png", "--view", "35,60"}));
+    EXPECT_GT(red_pixel_count(path("cut.png")), 50U);
+    EXPECT_EQ(red_pixel_count(path("apart.png")), 0U);
 }
 
 TEST_F(RenderCommand, DrawsASheetOfAllMomentsWhereThereAreFew) {

@@ -86,6 +86,35 @@ TEST_F(SimulateCommand, WritesTheClothItsMotionTheColliderAndAReport) {
     EXPECT_TRUE(fs::exists(path("run/collider.obj")));
 }
 
+TEST_F(SimulateCommand, CountsTheFacesThatIntersectAtTheEnd) {
+    write("apart.json", kFallingSheet);
+    const nlohmann::json apart = simulate("apart.json");
+    EXPECT_EQ(apart.at("intersecting_pairs"), 0);
+    EXPECT_EQ(apart.at("self_intersecting_pairs"), 0);
+    // Two faces around a box, whose four sides of two faces they cut; no particle is near it.
+    write("cut.json", R"({"model": {"box": {"size": [1, 1, 1]}}, "cloth": {"particles": [2, 2],
+        "size": [4, 4], "position": [0.3, 0, 0.1]}, "frame_limit": 1})");
+    const nlohmann::json cut = simulate("cut.json");
+    EXPECT_GE(cut.at("intersecting_pairs"), 8);
+    EXPECT_LE(cut.at("intersecting_pairs"), 16);
+    EXPECT_EQ(cut.at("self_intersecting_pairs"), 0);
+    EXPECT_EQ(cut.at("inside_at_rest"), 0);
+}
+
+TEST_F(SimulateCommand, MeasuresTheGapOfTheParticlesInContact) {
+    write("apart.json", kFallingSheet);
+    EXPECT_EQ(simulate("apart.json").at("contact_gap"),
+              nlohmann::json::parse(R"({"particles": 0, "mean": null, "least": null})"));
+    // Lies 0.1 above the box, which its middle row reaches over; nothing moves.
+    write("near.json", R"({"model": {"box": {"size": [1, 1, 1]}}, "gravity": [0, 0, 0], "cloth":
+        {"particles": [3, 3], "size": [4, 4], "position": [0, 0, 0.6], "thickness": 0.08}, "frame_limit": 1})");
+    const nlohmann::json near = simulate("near.json");
+    EXPECT_EQ(near.at("contact_gap").at("particles"), 1);
+    EXPECT_NEAR(near.at("contact_gap").at("mean"), 0.1, 1e-5);
+    EXPECT_EQ(near.at("contact_gap").at("mean"), near.at("contact_gap").at("least"));
+    EXPECT_LE(near.at("strain").at("percentile_99"), near.at("strain").at("largest"));
+}
+
 TEST_F(SimulateCommand, WritesOneObjPerMomentWhereAskedTo) {
     write("scene.json", kFallingSheet);
     simulate("scene.json", {"--every", "3", "--obj"});

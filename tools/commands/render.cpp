@@ -4,6 +4,7 @@
 #include "progress.hpp"
 #include "recording/simulation_folder.hpp"
 
+#include <echinus/intersections.hpp>
 #include <echinus/map_file.hpp>
 #include <echinus/render.hpp>
 
@@ -178,6 +179,16 @@ struct SimulationPicture : PictureArguments {
     std::optional<std::int64_t> frame;
 };
 
+/// Marks the faces that intersect others.
+void mark_intersections(RenderedObject& collider, RenderedObject& cloth) {
+    for (const auto& [cloth_face, face] : intersecting_pairs(cloth.mesh, collider.mesh)) {
+        cloth.marked_faces.push_back(cloth_face);
+        collider.marked_faces.push_back(face);
+    }
+    for (const auto& [a, b] : self_intersecting_pairs(cloth.mesh))
+        cloth.marked_faces.insert(cloth.marked_faces.end(), {a, b});
+}
+
 /// The collider and the cloth at one moment.
 std::array<RenderedObject, 2> objects_at(const SimulationFolder& folder, std::size_t sample) {
     std::array<RenderedObject, 2> objects;
@@ -186,6 +197,7 @@ std::array<RenderedObject, 2> objects_at(const SimulationFolder& folder, std::si
     objects[1].colour = palette::kCloth;
     objects[1].back_colour = palette::kClothBack;
     objects[1].crease_angle_deg = 180; // cloth has folds, not edges
+    mark_intersections(objects[0], objects[1]);
     return objects;
 }
 

@@ -120,7 +120,7 @@ auto made_as_scene_says(const SimulateArguments& arguments, const char* key, con
     }
 }
 
-/// The exact map of the model, which judges the frames of a page: that of the scene, or its own.
+/// The exact map of the model, which judges the end and the frames of a page: that of the scene, or its own.
 ExactMap judge_of(const AnyMap& map, const TriangleMesh& mesh, unsigned thread_count) {
     if (const auto* exact = std::get_if<ExactMap>(&map)) return *exact;
     return ExactMap::build(mesh, {.thread_count = thread_count});
@@ -168,13 +168,12 @@ void simulate(const SimulateArguments& arguments) {
     const TriangleMesh mesh = load_model(scene, arguments.scene, file).mesh;
     const AnyMap map = made_as_scene_says(arguments, "map",
                                           [&] { return build_map(mesh, scene.map, arguments.thread_count); });
+    const ExactMap judging_map = judge_of(map, mesh, arguments.thread_count);
     Simulation simulation =
         made_as_scene_says(arguments, "cloth", [&] { return make_simulation(scene, map, cloth); });
     const TriangleMesh collider_mesh = scaled(mesh, scene.scale);
     if (results.folder) results.folder->begin(simulation.deformable(), collider_mesh, stride);
-    if (results.page)
-        results.page->recording.emplace(judge_of(map, mesh, arguments.thread_count),
-                                        page_stride(arguments, scene));
+    if (results.page) results.page->recording.emplace(judging_map, page_stride(arguments, scene));
     std::vector<SavedPose> poses = naming_file(arguments.scene.string(), ErrorCode::Diverged, [&] {
         return run(simulation, results, scene.frame_limit, stride);
     });
@@ -185,8 +184,7 @@ void simulate(const SimulateArguments& arguments) {
                                   .simulation = simulation,
                                   .model = model_report,
                                   .collider_radius = inspect(collider_mesh).bounding_sphere.radius,
-                                  .verdict = judge(simulation.positions(), mesh,
-                                                   simulation.colliders().front(), arguments.thread_count),
+                                  .verdict = judge(simulation, mesh, judging_map, arguments.thread_count),
                                   .poses = std::move(poses)};
     const Json report = to_json(result);
     if (results.page)

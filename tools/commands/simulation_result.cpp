@@ -1,12 +1,10 @@
 #include "commands/simulation_result.hpp"
 
-#include "geometry/parallel.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <numeric>
 #include <variant>
 #include <vector>
 
@@ -17,22 +15,22 @@ namespace {
 /// How far the structural sticks are from their rest length, as a share of it.
 struct Strain {
     double mean = 0;
+    double percentile_99 = 0; ///< of 100 sticks 99 have no more
     double largest = 0;
 };
 
 Strain strain_of(const Deformable& deformable) {
-    Strain strain;
-    std::size_t count = 0;
+    std::vector<double> shares;
     for (const Stick& stick : deformable.sticks) {
         if (stick.kind != StickKind::Structural) continue;
         const double distance = length(deformable.positions[stick.b] - deformable.positions[stick.a]);
-        const double share = std::abs(distance / stick.rest_length - 1);
-        strain.mean += share;
-        strain.largest = std::max(strain.largest, share);
-        ++count;
+        shares.push_back(std::abs(distance / stick.rest_length - 1));
     }
-    if (count != 0) strain.mean /= static_cast<double>(count);
-    return strain;
+    if (shares.empty()) return {};
+    std::sort(shares.begin(), shares.end());
+    return {.mean = std::accumulate(shares.begin(), shares.end(), 0.0) / static_cast<double>(shares.size()),
+            .percentile_99 = shares[(shares.size() - 1) * 99 / 100],
+            .largest = shares.back()};
 }
 
 struct Rates {
@@ -83,38 +81,16 @@ Json to_json(const std::vector<SavedPose>& poses) {
     return list;
 }
 
+Json to_json(const ContactGap& gap) {
+    if (gap.particle_count == 0) return {{"particles", 0}, {"mean", nullptr}, {"least", nullptr}};
+    return {{"particles", gap.particle_count}, {"mean", gap.mean}, {"least", gap.least}};
+}
+
 std::string percent(double share) {
     return fmt::format("{:.2f} %", share * 100);
 }
 
 } // namespace
-
-TriangleMesh scaled(TriangleMesh mesh, const Vec3d& scale) {
-    for (Vec3f& v : mesh.vertices) v = Vec3f(Vec3d(v.x * scale.x, v.y * scale.y, v.z * scale.z));
-    if (scale.x * scale.y * scale.z < 0)
-        for (Triangle& face : mesh.faces) std::swap(face[1], face[2]);
-    return mesh;
-}
-
-Verdict judge(std::span<const Vec3f> positions_world, const TriangleMesh& mesh, const Collider& collider,
-              unsigned thread_count) {
-    const TriangleMesh solid = scaled(mesh, collider.scale);
-    constexpr double kOutside = -1;
-    std::vector<double> depths(positions_world.size(), kOutside);
-    parallel_for(depths.size(), thread_count, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Vec3d point = collider.pose.to_local(Vec3d(positions_world[i]));
-            if (winding_number(solid, point) > 0.5) depths[i] = unsigned_distance(solid, point);
-        }
-    });
-    Verdict verdict;
-    for (const double depth : depths) {
-        if (depth == kOutside) continue;
-        ++verdict.inside_count;
-        verdict.deepest = std::max(verdict.deepest, depth);
-    }
-    return verdict;
-}
 
 Json to_json(const SimulationResult& result) {
     const Simulation& simulation = result.simulation;
@@ -150,7 +126,11 @@ Json to_json(const SimulationResult& result) {
         {"rescued_count", simulation.profile().rescued_count},
         {"inside_at_rest", result.verdict.inside_count},
         {"deepest", {{"absolute", result.verdict.deepest}, {"in_radii", result.verdict.deepest / radius}}},
-        {"strain", {{"mean", strain.mean}, {"largest", strain.largest}}},
+        {"intersecting_pairs", result.verdict.model_pair_count},
+        {"self_intersecting_pairs", result.verdict.own_pair_count},
+        {"contact_gap", to_json(result.verdict.gap)},
+        {"strain",
+         {{"mean", strain.mean}, {"percentile_99", strain.percentile_99}, {"largest", strain.largest}}},
         {"largest_speed", simulation.largest_speed()},
         {"thickness", thickness},
         {"thickness_in_radii", thickness / radius},
@@ -192,7 +172,13 @@ std::string to_text(const SimulationResult& result) {
                                result.verdict.deepest / result.collider_radius));
     const double thickness = simulation.options().thickness.value();
     add("thickness", fmt::format("{:.5f} = {:.5f} R", thickness, thickness / result.collider_radius));
-    add("strain", percent(strain.mean) + " mean, " + percent(strain.largest) + " largest");
+    if (const ContactGap& gap = result.verdict.gap; gap.particle_count != 0)
+        add("contact gap", fmt::format("{:.3f} thicknesses on average, {:.3f} at least; {} particles",
+                                       gap.mean / thickness, gap.least / thickness, gap.particle_count));
+    add("faces that intersect", fmt::format("{} pairs with the model, {} of the cloth's own",
+                                            result.verdict.model_pair_count, result.verdict.own_pair_count));
+    add("strain", percent(strain.mean) + " mean, " + percent(strain.percentile_99) + " 99th percentile, " +
+                      percent(strain.largest) + " largest");
     add("state hash", fmt::format("{:016x}", simulation.state_hash()));
     return text;
 }

@@ -1,0 +1,97 @@
+#include "commands/verdict.hpp"
+
+#include "geometry/parallel.hpp"
+
+#include <echinus/intersections.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <utility>
+#include <vector>
+
+using namespace echinus;
+
+namespace {
+
+/// Depths of the particles inside, by the mesh itself.
+void judge_particles(std::span<const Vec3f> positions, const TriangleMesh& solid, const RigidTransform& pose,
+                     unsigned thread_count, Verdict& verdict) {
+    constexpr double kOutside = -1;
+    std::vector<double> depths(positions.size(), kOutside);
+    parallel_for(depths.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3d point = pose.to_local(Vec3d(positions[i]));
+            if (winding_number(solid, point) > 0.5) depths[i] = unsigned_distance(solid, point);
+        }
+    });
+    for (const double depth : depths) {
+        if (depth == kOutside) continue;
+        ++verdict.inside_count;
+        verdict.deepest = std::max(verdict.deepest, depth);
+    }
+}
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+/// The faces of a cloth, and its edges without faces as faces without area.
+TriangleMesh surface_of(const Deformable& cloth) {
+    TriangleMesh surface{cloth.positions, cloth.faces};
+    std::set<Edge> face_edges;
+    for (const auto& [a, b, c] : cloth.faces)
+        for (const auto& edge : {std::minmax(a, b), std::minmax(b, c), std::minmax(c, a)})
+            face_edges.insert(edge);
+    for (const Stick& stick : cloth.sticks)
+        if (stick.kind == StickKind::Structural && !face_edges.contains(std::minmax(stick.a, stick.b)))
+            surface.faces.push_back({stick.a, stick.b, stick.b});
+    return surface;
+}
+
+/// As a recording has it: rounded to float.
+TriangleMesh placed(TriangleMesh mesh, const RigidTransform& pose) {
+    for (Vec3f& vertex : mesh.vertices) vertex = Vec3f(pose.to_world(Vec3d(vertex)));
+    return mesh;
+}
+
+void judge_faces(const Deformable& cloth, const TriangleMesh& model, Verdict& verdict) {
+    const TriangleMesh surface = surface_of(cloth);
+    if (surface.faces.empty()) return;
+    verdict.model_pair_count = intersecting_pairs(surface, model).size();
+    verdict.own_pair_count = self_intersecting_pairs(surface).size();
+}
+
+ContactGap gap_of(std::span<const Vec3f> positions, const Collider& collider, double thickness) {
+    std::vector<Contact> contacts(positions.size());
+    contacts_batch(collider, positions, static_cast<float>(2 * thickness), contacts);
+    ContactGap gap{.least = std::numeric_limits<double>::infinity()};
+    for (const Contact& contact : contacts) {
+        if (!contact.found() || contact.inside) continue;
+        const double distance = -double{contact.depth};
+        ++gap.particle_count;
+        gap.mean += distance;
+        gap.least = std::min(gap.least, distance);
+    }
+    if (gap.particle_count != 0) gap.mean /= static_cast<double>(gap.particle_count);
+    return gap;
+}
+
+} // namespace
+
+TriangleMesh scaled(TriangleMesh mesh, const Vec3d& scale) {
+    for (Vec3f& v : mesh.vertices) v = Vec3f(Vec3d(v.x * scale.x, v.y * scale.y, v.z * scale.z));
+    if (scale.x * scale.y * scale.z < 0)
+        for (Triangle& face : mesh.faces) std::swap(face[1], face[2]);
+    return mesh;
+}
+
+Verdict judge(const Simulation& simulation, const TriangleMesh& mesh, const ExactMap& exact_map,
+              unsigned thread_count) {
+    const Collider& collider = simulation.colliders().front();
+    const TriangleMesh solid = scaled(mesh, collider.scale);
+    const Collider exact{.map = exact_map, .pose = collider.pose, .scale = collider.scale};
+    Verdict verdict;
+    judge_particles(simulation.positions(), solid, collider.pose, thread_count, verdict);
+    judge_faces(simulation.deformable(), placed(solid, collider.pose), verdict);
+    verdict.gap = gap_of(simulation.positions(), exact, simulation.options().thickness.value());
+    return verdict;
+}

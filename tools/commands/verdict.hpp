@@ -1,0 +1,37 @@
+#pragma once
+
+#include <echinus/collider.hpp>
+#include <echinus/exact_map.hpp>
+#include <echinus/mesh.hpp>
+#include <echinus/simulation.hpp>
+
+#include <cstddef>
+
+/// Distance of the particles in contact from the model's surface: those outside and nearer than two
+/// thicknesses.
+struct ContactGap {
+    std::size_t particle_count = 0;
+    double mean = 0, least = 0; ///< units; meaningless without particles
+};
+
+/// How a cloth lies on a model.
+struct Verdict {
+    std::size_t inside_count = 0;     ///< particles inside the model
+    double deepest = 0;               ///< distance of the deepest of them from the surface, units
+    std::size_t model_pair_count = 0; ///< pairs of a cloth face and a model face that intersect
+    std::size_t own_pair_count = 0;   ///< pairs of cloth faces that intersect beyond what they share
+    ContactGap gap;
+};
+
+/// A mesh stretched along its axes. Where that mirrors it, its faces are turned round, so that what was
+/// inside stays inside.
+echinus::TriangleMesh scaled(echinus::TriangleMesh mesh, const echinus::Vec3d& scale);
+
+/// Judges the cloth as it lies now by the first collider's mesh, whatever map the simulation uses: every
+/// particle by its winding number and its distance from the surface, both brute force over all faces; pairs
+/// of faces exactly, with threads as faces without area; gaps by the exact map.
+/// @param mesh          of the collider, neither scaled nor moved
+/// @param exact_map     of that mesh
+/// @param thread_count  0: all cores
+Verdict judge(const echinus::Simulation& simulation, const echinus::TriangleMesh& mesh,
+              const echinus::ExactMap& exact_map, unsigned thread_count);
