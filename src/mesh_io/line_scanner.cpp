@@ -126,8 +126,7 @@ std::string_view LineScanner::next_word() {
 float LineScanner::next_coordinate() {
     const std::string_view word = next_word();
     float value = 0;
-    if (!parse_float(word, value))
-        fail(ErrorCode::Damaged, "a coordinate was expected, not " + in_quotes(word));
+    if (!parse_float(word, value)) fail_expecting("a coordinate", word);
     if (!std::isfinite(value))
         fail(ErrorCode::InvalidMesh, "the coordinate " + in_quotes(word) + " is not finite as a float");
     return value;
@@ -136,8 +135,7 @@ float LineScanner::next_coordinate() {
 std::int64_t LineScanner::next_integer(const std::string& what) {
     const std::string_view word = next_word();
     std::int64_t value = 0;
-    if (parse_whole(word, value) != std::errc{})
-        fail(ErrorCode::Damaged, what + " was expected, not " + in_quotes(word));
+    if (parse_whole(word, value) != std::errc{}) fail_expecting(what, word);
     return value;
 }
 
@@ -148,6 +146,10 @@ std::uint32_t LineScanner::next_vertex_index(std::size_t vertex_count) {
                                          ", but there are " + std::to_string(vertex_count) +
                                          " vertices, numbered from 0");
     return static_cast<std::uint32_t>(index);
+}
+
+void LineScanner::fail_expecting(const std::string& what, std::string_view word, ErrorCode code) const {
+    fail(code, what + " was expected, not " + (word.empty() ? "the end of the line" : in_quotes(word)));
 }
 
 void LineScanner::fail(ErrorCode code, const std::string& what) const {

@@ -45,6 +45,9 @@ class LineScanner {
     std::size_t offset() const { return next_; }
     std::size_t line_number() const { return line_number_; }
 
+    /// Says that `what` was expected instead of this word, or instead of the line's end where it is empty.
+    [[noreturn]] void fail_expecting(const std::string& what, std::string_view word,
+                                     ErrorCode code = ErrorCode::Damaged) const;
     [[noreturn]] void fail(ErrorCode code, const std::string& what) const;
     [[noreturn]] void fail_at(std::size_t line_number, ErrorCode code, const std::string& what) const;
 

@@ -65,7 +65,7 @@ class ObjReader {
         std::int64_t number = 0;
         const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
         if (error != std::errc{} || end != digits.data() + digits.size())
-            scanner_.fail(ErrorCode::Damaged, "a vertex number was expected, not " + in_quotes(corner));
+            scanner_.fail_expecting("a vertex number", corner);
         const std::int64_t index =
             number < 0 ? static_cast<std::int64_t>(mesh_.vertices.size()) + number : number - 1;
         if (number == 0 || index < 0 || index > std::numeric_limits<std::uint32_t>::max())

@@ -18,8 +18,7 @@ void require_off_keyword(LineScanner& scanner) {
     for (const std::string_view letters : {"ST", "C", "N"})
         if (extras.starts_with(letters)) extras.remove_prefix(letters.size());
     if (extras != "OFF")
-        scanner.fail(ErrorCode::WrongFormat,
-                     "OFF, COFF, NOFF or the like was expected, not " + in_quotes(keyword));
+        scanner.fail_expecting("OFF, COFF, NOFF or the like", keyword, ErrorCode::WrongFormat);
 }
 
 std::size_t next_count(LineScanner& scanner, const char* what) {

@@ -24,8 +24,7 @@ class TextBody {
     void skip(PlyType) {
         float ignored = 0;
         const std::string_view word = scanner_.next_word();
-        if (!parse_float(word, ignored))
-            scanner_.fail(ErrorCode::Damaged, "a number was expected, not " + in_quotes(word));
+        if (!parse_float(word, ignored)) scanner_.fail_expecting("a number", word);
     }
     void end_element() {
         if (!scanner_.at_end_of_line())

@@ -55,8 +55,7 @@ PolygonMesh read_binary(const MeshSource& source) {
 void require_words(LineScanner& scanner, std::initializer_list<std::string_view> words) {
     for (const std::string_view expected : words) {
         const std::string_view word = scanner.next_word();
-        if (word != expected)
-            scanner.fail(ErrorCode::Damaged, in_quotes(expected) + " was expected, not " + in_quotes(word));
+        if (word != expected) scanner.fail_expecting(in_quotes(expected), word);
     }
 }
 
@@ -86,9 +85,7 @@ PolygonMesh read_text(const MeshSource& source) {
             scanner.require_line("'facet' or 'endsolid'");
             const std::string_view keyword = scanner.next_word();
             if (keyword == "endsolid") break;
-            if (keyword != "facet")
-                scanner.fail(ErrorCode::Damaged,
-                             "'facet' or 'endsolid' was expected, not " + in_quotes(keyword));
+            if (keyword != "facet") scanner.fail_expecting("'facet' or 'endsolid'", keyword);
             read_facet(scanner, mesh);
         }
     }

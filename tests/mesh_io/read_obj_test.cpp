@@ -60,7 +60,8 @@ TEST(ReadObj, NamesTheLineOfAnIndexOutOfRange) {
 }
 
 TEST(ReadObj, NamesTheLineOfANumberThatIsNone) {
-    expect_obj_error(ErrorCode::Damaged, "line 1: a coordinate was expected, not ''", "v 0 0\n");
+    expect_obj_error(ErrorCode::Damaged, "line 1: a coordinate was expected, not the end of the line",
+                     "v 0 0\n");
     expect_obj_error(ErrorCode::Damaged, "line 1: a coordinate was expected, not 'zero'", "v 0 0 zero\n");
     expect_obj_error(ErrorCode::InvalidMesh, "line 2: the coordinate 'nan' is not finite",
                      "v 0 0 0\nv nan 0 0\n");

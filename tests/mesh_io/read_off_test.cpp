@@ -48,7 +48,7 @@ TEST(ReadOff, NoticesMissingAndSurplusLines) {
     expect_off_error(ErrorCode::Damaged, "the file ends where the number of vertices was expected", "OFF\n");
     expect_off_error(ErrorCode::Damaged, "line 8: the file goes on after the 1 faces",
                      "OFF\n4 1 0\n" + kVertices + "3 0 1 2\n3 0 2 3\n");
-    expect_off_error(ErrorCode::Damaged, "line 7: a vertex number was expected, not ''",
+    expect_off_error(ErrorCode::Damaged, "line 7: a vertex number was expected, not the end of the line",
                      "OFF\n4 1 0\n" + kVertices + "3 0 1\n");
     expect_off_error(ErrorCode::Damaged, "line 4: a coordinate was expected",
                      "OFF\n4 1 0\n0 0 0\n1 0\n1 1 0\n0 1 0\n3 0 1 2\n");

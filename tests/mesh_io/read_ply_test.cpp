@@ -111,7 +111,7 @@ TEST(ReadPly, NoticesMissingAndSurplusData) {
                      kText + "0 0 0\n1 0 0\n");
     expect_ply_error(ErrorCode::Damaged, "a.ply: the file ends where face 1 of 1 was expected",
                      kText + kThreeVertices);
-    expect_ply_error(ErrorCode::Damaged, "a.ply: line 13: an integer was expected, not ''",
+    expect_ply_error(ErrorCode::Damaged, "a.ply: line 13: an integer was expected, not the end of the line",
                      kText + kThreeVertices + "3 0 1\n");
     expect_ply_error(ErrorCode::Damaged, "a.ply: line 13: the line goes on with '5'",
                      kText + kThreeVertices + "3 0 1 2 5\n");
