@@ -138,8 +138,8 @@ Containment classify(const ExactMapView& map, Vec3f point_local) noexcept;
 ///                NaN counts as 0
 Contact contact(const ExactMapView& map, Vec3f point_local, float margin = 0) noexcept;
 
-/// contains() for many points, by vector instructions (instruction_set.hpp): the same answers, many times
-/// faster, for 8 points or more. Takes 90 KB of the stack; on one thread it does not allocate.
+/// contains() for many points, by vector instructions (instruction_set.hpp): the same answers, up to
+/// four times as fast, for 8 points or more. Takes 90 KB of the stack; on one thread it does not allocate.
 /// @param points_local  [n]
 /// @param inside        [n] out: 1 inside, 0 outside. Does not overlap points_local
 /// @param thread_count  0: all cores. Used for 32 768 points or more; the answers do not depend on it

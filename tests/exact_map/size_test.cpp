@@ -28,7 +28,7 @@ std::size_t least_bytes(const TriangleMesh& mesh) {
         ExactMap::build(mesh, {.byte_budget = 1});
     } catch (const Error& error) {
         const std::string text = error.what();
-        return std::stoul(text.substr(text.rfind(' ')));
+        return std::stoul(text.substr(text.find('(') + 1));
     }
     return 0;
 }

@@ -15,6 +15,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdio>
 #include <limits>
 #include <optional>
 #include <string>
@@ -37,6 +39,20 @@ void require_sound(const ExactMapOptions& options) {
     if (options.divisions != 0 && options.byte_budget != 0)
         throw Error(ErrorCode::InvalidOptions,
                     "divisions and byte_budget are both given; the one leaves no choice to the other");
+}
+
+/// As people write it, with three digits: "48.5 MB". Rounded up, so that a map of these bytes keeps within
+/// it.
+std::string size_text(std::size_t byte_count) {
+    constexpr std::array kUnits{"B", "KB", "MB", "GB"};
+    std::size_t unit = 0;
+    auto size = static_cast<double>(byte_count);
+    for (; size >= 1000 && unit + 1 < kUnits.size(); ++unit) size /= 1000;
+    const int decimals = unit == 0 || size >= 100 ? 0 : size >= 10 ? 1 : 2;
+    const double step = std::pow(10.0, -decimals);
+    char text[32];
+    std::snprintf(text, sizeof text, "%.*f %s", decimals, std::ceil(size / step) * step, kUnits[unit]);
+    return text;
 }
 
 std::uint64_t hash_of(std::span<const Vec3f> vertices, std::span<const Triangle> faces,
@@ -253,9 +269,9 @@ std::uint32_t MapMaker::set_bands_within(const ByteRange& bytes, std::uint32_t m
         });
     if (divisions) return *divisions;
     find_bands(1, kNoLimit);
-    throw Error(ErrorCode::InvalidOptions, "the budget of " + std::to_string(bytes.limit) +
-                                               " bytes is less than the coarsest map needs: " +
-                                               std::to_string(for_surface + byte_count(arrays_->bands)));
+    const std::size_t needed = for_surface + byte_count(arrays_->bands);
+    throw Error(ErrorCode::InvalidOptions, "the coarsest map takes " + size_text(needed) + " (" +
+                                               std::to_string(needed) + " bytes), more than the budget");
 }
 
 ExactMap MapMaker::make(std::span<const Vec3f> vertices) {
