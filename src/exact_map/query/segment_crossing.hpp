@@ -21,7 +21,7 @@ struct SegmentCrossing {
     std::int64_t way;           ///< how far the segment goes against the normal: not 0
 
     bool entering() const { return way > 0; }
-    double parameter() const { return static_cast<double>(from_distance) / static_cast<double>(way); }
+    double fraction() const { return static_cast<double>(from_distance) / static_cast<double>(way); }
 
     /// Which comes first? Where both are at one place, the perturbation decides: it moves crossing k by
     /// normal_k . (e, e^2, e^3) / way_k.

@@ -96,7 +96,7 @@ std::optional<FaceCrossing> first_crossing(const ExactMapView& map, const Lattic
             const auto crossing = crossing_with_face(face_corners(map, face), from, to);
             if (!crossing || (first && !crossing->before(first->crossing))) continue;
             first = FaceCrossing{*crossing, face};
-            bound = static_cast<float>(crossing->parameter()) + 1e-6F;
+            bound = static_cast<float>(crossing->fraction()) + 1e-6F;
         }
     });
     return first;
@@ -133,7 +133,7 @@ SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexce
     if (from == to || stays_in_gap(map, from, to)) return hit;
     const std::optional<FaceCrossing> first = first_crossing(map, from, to);
     if (!first) return hit;
-    const double share = std::clamp(first->crossing.parameter(), 0.0, 1.0);
+    const double share = std::clamp(first->crossing.fraction(), 0.0, 1.0);
     const Vec3d place = start + (end - start) * share;
     const double fraction = std::min(1.0, length(place - from_place) / length(to_place - from_place));
     // Faces may have the opposite orientation: what counts is which side of this one is solid.
