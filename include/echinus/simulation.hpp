@@ -305,7 +305,7 @@ class Simulation {
     void blow(const Vec3d& wind, double rate);
 
   private:
-    class Solver; // src/simulation/solver.hpp
+    class [[gnu::visibility("hidden")]] Solver; // src/simulation/solver.hpp
     std::unique_ptr<Solver> solver_;
 };
 
