@@ -92,9 +92,12 @@ bool is_refusal(const Error& error) {
 std::vector<SystemOnMesh> systems_on(const TriangleMesh& mesh, const CompareOptions& options,
                                      std::vector<Refusal>& refusals) {
     std::vector<const SystemType*> chosen;
-    for (const std::string& name : options.systems)
-        if (const SystemType& system = system_named(name); std::ranges::find(chosen, &system) == chosen.end())
-            chosen.push_back(&system);
+    for (const std::string& name : options.systems) {
+        const SystemType& system = system_named(name);
+        if (std::ranges::find(chosen, &system) != chosen.end())
+            throw Error(ErrorCode::InvalidOptions, "the system '" + name + "' is named twice");
+        chosen.push_back(&system);
+    }
     if (chosen.empty())
         for (const SystemType& system : all_systems())
             if (system.available()) chosen.push_back(&system);

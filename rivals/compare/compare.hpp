@@ -69,8 +69,8 @@ struct Comparison {
 /// Times are processor times, comparable only within one run. Everything else depends on mesh and options
 /// only.
 /// @throws Error InvalidMesh for a mesh that is not closed or has no area; InvalidOptions for a system that
-/// does not exist or is not there, when none fits, for a budget of 0 or above kMaxBytes, or fewer than 100
-/// particles; and what report_progress throws
+/// does not exist, is not there or is named twice, when none fits, for a budget of 0 or above kMaxBytes, or
+/// fewer than 100 particles; and what report_progress throws
 Comparison compare(const TriangleMesh& mesh, const CompareOptions& options = {});
 
 } // namespace echinus::comparison

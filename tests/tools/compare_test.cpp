@@ -117,6 +117,7 @@ TEST_F(CompareCommand, RefusesAnOpenMeshWithTheRemedy) {
 TEST_F(CompareCommand, RefusesWrongUse) {
     expect_failure(2, "there is no system 'octree'", {"compare", "torus.obj", "--systems", "octree"});
     expect_failure(2, "--systems", {"compare", "torus.obj", "--systems", "dense,,exact"});
+    expect_failure(2, "'exact' is named twice", {"compare", "torus.obj", "--systems", "exact,dense,exact"});
     expect_failure(2, "--html", quick({"--html", ""}));
     expect_failure(2, "--bytes", {"compare", "torus.obj", "--bytes", "630"});
     expect_failure(2, "--points", {"compare", "torus.obj", "--points", "5"});
