@@ -15,8 +15,7 @@
 
 namespace echinus::comparison {
 
-/// Called by a long build with its present step and the share of it that is done, 0 to 1.
-using Progress = std::function<void(std::string_view stage, double share)>;
+using rivals::Progress;
 
 using Built = std::unique_ptr<const rivals::System>;
 

@@ -5,12 +5,17 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
 
 /// The systems that answer the same questions as the maps of Echinus do.
 namespace echinus::rivals {
+
+/// Told by a build that takes long what it does and how much of that is done, 0 to 1. From one thread at a
+/// time. What it throws ends the build and reaches the caller.
+using Progress = std::function<void(std::string_view stage, double share)>;
 
 /// A structure around a closed mesh that can be asked about particles: what all systems have in common, so
 /// that a comparison treats them alike. Each is built by its own function with its own options. All points

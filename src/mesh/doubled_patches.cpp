@@ -1,6 +1,5 @@
-#include "mesh/doubled_patches.hpp"
-
 #include "mesh/edges.hpp"
+#include "mesh/repairs.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,7 @@
-#include "mesh/inside_out.hpp"
-
 #include "mesh/components.hpp"
 #include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
+#include "mesh/repairs.hpp"
 #include "mesh/winding_number.hpp"
 
 #include <algorithm>

@@ -1,6 +1,4 @@
-#include "mesh/doubled_patches.hpp"
-#include "mesh/inside_out.hpp"
-#include "mesh/surplus_faces.hpp"
+#include "mesh/repairs.hpp"
 
 #include <echinus/mesh.hpp>
 

@@ -1,7 +1,6 @@
-#include "mesh/surplus_faces.hpp"
-
 #include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
+#include "mesh/repairs.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,6 +2,7 @@
 
 #include <echinus/error.hpp>
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,9 @@ struct MeshSource {
         throw Error(code, name + ": " + what);
     }
 };
+
+/// What a path's name ends in, with the dot, in lower case: ".obj" for "A/Horse.OBJ".
+std::string lower_case_ending(const std::filesystem::path& path);
 
 /// The text with ? for bytes that do not print, so that it can stand in a sentence.
 std::string printable(std::string_view text);

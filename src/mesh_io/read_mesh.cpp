@@ -1,6 +1,6 @@
 #include "files/mapped_file.hpp"
-#include "mesh_io/ending.hpp"
 #include "mesh_io/line_scanner.hpp"
+#include "mesh_io/mesh_source.hpp"
 #include "mesh_io/readers.hpp"
 #include "mesh_io/scene_guards.hpp"
 

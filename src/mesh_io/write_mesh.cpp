@@ -1,6 +1,6 @@
 #include "files/atomic_file.hpp"
 #include "mesh_io/encode.hpp"
-#include "mesh_io/ending.hpp"
+#include "mesh_io/mesh_source.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/mesh_io.hpp>

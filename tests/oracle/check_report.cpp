@@ -1,6 +1,5 @@
-#include "oracle/check_report.hpp"
-
 #include "json.hpp"
+#include "oracle/check_result.hpp"
 
 #include <fmt/format.h>
 

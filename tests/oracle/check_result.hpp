@@ -38,4 +38,8 @@ struct CheckResult {
     bool holds() const;
 };
 
+/// What echinus-check prints (check_report.cpp).
+std::string to_json(const CheckResult& result);
+std::string to_text(const CheckResult& result);
+
 } // namespace echinus::test

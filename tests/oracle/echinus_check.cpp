@@ -4,7 +4,6 @@
 #include "options.hpp"
 #include "oracle/check_cloth.hpp"
 #include "oracle/check_mesh.hpp"
-#include "oracle/check_report.hpp"
 #include "oracle/nasty_meshes.hpp"
 #include "progress.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rivals/systems/superquadric_map/progress.hpp"
+#include "rivals/systems/system.hpp"
 
 #include <echinus/mesh.hpp>
 

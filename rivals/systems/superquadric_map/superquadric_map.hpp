@@ -1,6 +1,5 @@
 #pragma once
 
-#include "rivals/systems/superquadric_map/progress.hpp"
 #include "rivals/systems/superquadric_map/report.hpp"
 #include "rivals/systems/system.hpp"
 

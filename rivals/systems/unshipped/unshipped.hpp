@@ -4,6 +4,8 @@
 
 #include <echinus/mesh.hpp>
 
+#include <malloc.h>
+
 #include <memory>
 
 /// Rivals that only benchmarks link: CGAL's packages are under the GPL, and `echinus compare` gains little by
@@ -30,6 +32,9 @@ std::unique_ptr<const System> nano_field(const TriangleMesh& mesh, double spacin
 
 /// Bytes that the process has taken from the heap of the C library and not given back. Its growth while a
 /// structure is built is what the structure weighs, for libraries that keep no account of their own.
-std::size_t heap_bytes();
+inline std::size_t heap_bytes() {
+    const auto info = mallinfo2();
+    return info.uordblks + info.hblkhd;
+}
 
 } // namespace echinus::rivals
