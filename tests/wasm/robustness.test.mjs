@@ -267,6 +267,19 @@ describe('A simulation', () => {
         assert.equal(simulation.positions.length, 300);
         assertAlive();
     });
+    test('refuses the exact map of an open mesh unless it is asked to take it', () => {
+        const cube = echinus.makeBox([1, 1, 1]);
+        const open = echinus.makeMesh(cube.vertices, cube.faces.slice(3));
+        const map = echinus.buildMap(open);
+        const scene = echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [10, 10], position: [0, 0, 2] } });
+        const error = errorOf(() => scene.makeSimulation(map));
+        assert.equal(error.code, 'InvalidOptions');
+        assert.match(error.message, /open mesh/);
+        const simulation = scene.makeSimulation(map, { allowOpenCollider: true });
+        simulation.step();
+        assert.equal(simulation.frame, 1);
+        assertAlive();
+    });
     test('refuses velocities that are not finite, and particles that it does not have', () => {
         const scene = echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [10, 10] } });
         const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));

@@ -427,7 +427,7 @@ class App {
 
 function mapNote(kind: MapNews['kind'], closed: boolean): string {
     if (kind === 'distance') return 'Out along the ray from the centre, as in the paper: watch the cloth creep along a leg.';
-    if (closed) return 'Out by the shortest way. No particle gets through: every step is proved. Sharp parts may show between particles.';
+    if (closed) return 'Out by the shortest way. No particle gets through; sharp parts may show between particles.';
     return 'Out by the shortest way. The mesh is open: near its gaps sides are estimated, and particles may get in there.';
 }
 
