@@ -1,14 +1,10 @@
 #include "input.hpp"
 
 #include "files/mapped_file.hpp"
-#include "output.hpp"
 
 #include <echinus/mesh_io.hpp>
 
-#include <unistd.h>
-
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <iostream>
 #include <vector>
@@ -18,17 +14,6 @@ using echinus::Error;
 using echinus::ErrorCode;
 
 namespace {
-
-/// A new empty file with this ending in the system's folder for temporary files.
-fs::path make_temporary_file(const std::string& ending) {
-    std::string name = (fs::temp_directory_path() / "echinus-XXXXXX").string() + ending;
-    const int descriptor = mkstemps(name.data(), static_cast<int>(ending.size()));
-    if (descriptor < 0) {
-        throw Error(ErrorCode::Unwritable, name + ": cannot open the file: " + std::strerror(errno));
-    }
-    close(descriptor);
-    return name;
-}
 
 void copy_standard_input(const fs::path& target) {
     Input input{fs::path(kStandardStream)};
@@ -109,26 +94,16 @@ void Input::require_good() const {
 }
 
 InputFile::InputFile(const fs::path& argument, const std::string& format)
-    : path_(argument), name_(name_of_input(argument)), is_copy_(argument == kStandardStream) {
-    if (!is_copy_) return;
-    path_ = make_temporary_file("." + format);
-    removal_.emplace(path_);
-    try {
-        copy_standard_input(path_);
-    } catch (...) {
-        fs::remove(path_);
-        throw;
-    }
-}
-
-InputFile::~InputFile() {
-    std::error_code ignored;
-    if (is_copy_) fs::remove(path_, ignored);
+    : path_(argument), name_(name_of_input(argument)) {
+    if (argument != kStandardStream) return;
+    copy_.emplace(fs::temp_directory_path());
+    path_ = copy_->path() / ("input." + format);
+    copy_standard_input(path_);
 }
 
 std::string InputFile::renamed(std::string sentence) const {
     const std::string copy = path_.string();
-    const std::size_t position = is_copy_ ? sentence.find(copy) : std::string::npos;
+    const std::size_t position = copy_ ? sentence.find(copy) : std::string::npos;
     if (position != std::string::npos) sentence.replace(position, copy.size(), name_);
     return sentence;
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "interruption.hpp"
 #include "options.hpp"
+#include "output.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/mesh.hpp>
@@ -53,9 +53,6 @@ class InputFile {
     /// @param format  the extension for the contents of standard input, such as "obj"; ignored for a file
     /// @throws echinus::Error Unreadable
     InputFile(const std::filesystem::path& argument, const std::string& format);
-    InputFile(const InputFile&) = delete;
-    InputFile& operator=(const InputFile&) = delete;
-    ~InputFile();
 
     /// What the user calls it.
     const std::string& name() const { return name_; }
@@ -75,8 +72,7 @@ class InputFile {
 
     std::filesystem::path path_;
     std::string name_;
-    bool is_copy_;
-    std::optional<RemovedWhenInterrupted> removal_;
+    std::optional<PartFolder> copy_; ///< the folder that holds it
 };
 
 /// Calls `use()`. The sentence of an Error with this code then begins with the file's name, also where the

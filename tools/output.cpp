@@ -6,6 +6,7 @@
 #include <echinus/error.hpp>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -31,6 +32,12 @@ void write_standard_output(const void* data, std::size_t byte_count) {
 fs::path nearest_existing_folder(fs::path path) {
     while (!fs::exists(path) && path.has_relative_path()) path = path.parent_path();
     return path;
+}
+
+/// Makes a folder that others cannot read, if it is not there yet.
+void make_private_folder(const fs::path& path) {
+    if (mkdir(path.c_str(), S_IRWXU) != 0 && errno != EEXIST)
+        throw fs::filesystem_error("mkdir", path, std::error_code(errno, std::generic_category()));
 }
 
 /// Runs `action` and turns the system's error into ours.
@@ -68,42 +75,42 @@ void Output::commit() {
     }
 }
 
+/// Another program that clears the folder at this moment may find the part before it is locked, and remove
+/// it; then the next is tried. On file systems without locks the last is taken as it is.
+PartFolder::PartFolder(const fs::path& parent) {
+    echinus::remove_abandoned_parts(parent);
+    constexpr int kMostTries = 4;
+    for (int tries = 0; tries < kMostTries; ++tries) {
+        if (lock_ >= 0) close(lock_);
+        path_ = echinus::new_part(parent);
+        removal_.emplace(path_);
+        make_private_folder(path_);
+        lock_ = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        if (lock_ >= 0 && echinus::lock_part(lock_) && fs::exists(path_)) return;
+    }
+    make_private_folder(path_);
+}
+
+PartFolder::~PartFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+    if (lock_ >= 0) close(lock_);
+}
+
 OutputFolder::OutputFolder(const fs::path& target) : target_(fs::absolute(target).lexically_normal()) {
     or_unwritable(target_, [&] {
         const fs::path folder = nearest_existing_folder(target_);
         if (!fs::is_directory(folder))
             throw Error(ErrorCode::Unwritable, folder.string() + ": is not a folder; name one with -o");
-        echinus::remove_abandoned_parts(folder);
-        make_part(folder);
+        part_.emplace(folder);
     });
-}
-
-/// Another program that clears the folder at this moment may find the part before it is locked, and remove
-/// it; then the next is tried. On file systems without locks the last is taken as it is.
-void OutputFolder::make_part(const fs::path& folder) {
-    constexpr int kMostTries = 4;
-    for (int tries = 0; tries < kMostTries; ++tries) {
-        if (lock_ >= 0) close(lock_);
-        part_ = echinus::new_part(folder);
-        removal_.emplace(part_);
-        fs::create_directory(part_);
-        lock_ = open(part_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-        if (lock_ >= 0 && echinus::lock_part(lock_) && fs::exists(part_)) return;
-    }
-    fs::create_directory(part_);
-}
-
-OutputFolder::~OutputFolder() {
-    std::error_code ignored;
-    fs::remove_all(part_, ignored);
-    if (lock_ >= 0) close(lock_);
 }
 
 void OutputFolder::commit() {
     or_unwritable(target_, [&] {
         const auto together = hold_interruption();
         fs::create_directories(target_);
-        for (const auto& entry : fs::directory_iterator(part_)) {
+        for (const auto& entry : fs::directory_iterator(part_->path())) {
             const fs::path place = target_ / entry.path().filename();
             if (entry.is_directory() || fs::is_directory(place)) fs::remove_all(place);
             fs::rename(entry.path(), place);

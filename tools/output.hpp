@@ -25,20 +25,34 @@ class Output {
     std::optional<echinus::AtomicFile> file_; // empty: standard output
 };
 
-/// A folder of results that appear all together or not at all: files are written to a part (files/part.hpp),
-/// a folder on the same disk; commit() moves them to their place. Without commit() the destructor removes
-/// them, or the interruption of the program; a part that a killed program left is removed by the next that
-/// writes to the same place. What the target held before stays as it was.
+/// A part (files/part.hpp) that is a folder, which only its owner can read. The destructor removes it, or the
+/// interruption of the program; what a killed program left is removed by the next that makes one beside it.
+class PartFolder {
+  public:
+    /// @throws std::filesystem::filesystem_error when no folder can be made there
+    explicit PartFolder(const std::filesystem::path& parent);
+    PartFolder(const PartFolder&) = delete;
+    PartFolder& operator=(const PartFolder&) = delete;
+    ~PartFolder();
+
+    const std::filesystem::path& path() const { return path_; }
+
+  private:
+    std::filesystem::path path_;
+    int lock_ = -1;
+    std::optional<RemovedWhenInterrupted> removal_;
+};
+
+/// A folder of results that appear all together or not at all: files are written to a part on the same disk;
+/// commit() moves them to their place, and without it they are removed. What the target held before stays as
+/// it was.
 class OutputFolder {
   public:
     /// @throws echinus::Error Unwritable when the target is a file or no folder can be made there
     explicit OutputFolder(const std::filesystem::path& target);
-    OutputFolder(const OutputFolder&) = delete;
-    OutputFolder& operator=(const OutputFolder&) = delete;
-    ~OutputFolder();
 
     /// Where to write the file or folder that will be called `name`.
-    std::filesystem::path path_of(const std::string& name) const { return part_ / name; }
+    std::filesystem::path path_of(const std::string& name) const { return part_->path() / name; }
     /// Moves everything that was written into the target, which is made if need be. Files and folders there
     /// of the same names are replaced, others stay.
     void commit();
@@ -46,12 +60,8 @@ class OutputFolder {
     void remove_old(const std::string& name) const;
 
   private:
-    void make_part(const std::filesystem::path& folder);
-
     std::filesystem::path target_;
-    std::filesystem::path part_;
-    int lock_ = -1;
-    std::optional<RemovedWhenInterrupted> removal_;
+    std::optional<PartFolder> part_; // never empty; made in the constructor's body, where errors are caught
 };
 
 /// Prints on standard output.

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstring>
+#include <sstream>
 
 using namespace echinus;
 using namespace echinus::test;
@@ -90,6 +91,26 @@ TEST_F(BuildCommand, KeepsWithinABudgetInAnyUnit) {
         EXPECT_LE(built["bytes"], bytes);
         EXPECT_GT(built["bytes"], bytes / 2);
     }
+}
+
+TEST_F(BuildCommand, NamesTheMeshAndABudgetThatSuffices) {
+    const std::vector<std::string> within{"build", "box.obj", "-o", "box.ech", "--budget"};
+    const auto with_budget = [&](const std::string& budget) {
+        std::vector<std::string> arguments = within;
+        arguments.push_back(budget);
+        return arguments;
+    };
+    const std::string error = run(with_budget("100B")).error;
+    const std::string beginning = "echinus: box.obj: the coarsest map takes ";
+    ASSERT_TRUE(error.starts_with(beginning)) << error;
+    std::istringstream sizes(error.substr(beginning.size())); // "1.77 KB (1764 bytes)"
+    std::string number, unit;
+    char bracket = 0;
+    std::size_t bytes = 0;
+    sizes >> number >> unit >> bracket >> bytes;
+    expect_success(with_budget(number + unit));
+    expect_success(with_budget(std::to_string(bytes) + "B"));
+    expect_failure(2, "more than the budget", with_budget(std::to_string(bytes - 1) + "B"));
 }
 
 TEST_F(BuildCommand, TakesABudgetOfGigabytes) {

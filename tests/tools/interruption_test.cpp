@@ -115,14 +115,38 @@ TEST_F(Interruption, ByForceIsClearedByTheNextRunWhichSparesThoseThatLive) {
 TEST_F(Interruption, RemovesTheCopyOfStandardInput) {
     int ends[2];
     ASSERT_EQ(pipe(ends), 0);
-    fs::create_directory(path("tmp"));
-    setenv("TMPDIR", path("tmp").c_str(), 1);
+    const fs::path folder = path("tmp");
+    fs::create_directory(folder);
+    setenv("TMPDIR", folder.c_str(), 1);
+    const auto end_by = [&](int signal) {
+        const pid_t child = start({"info", "-", "--format", "obj"}, ends[0]);
+        EXPECT_TRUE(wait_until([&] { return !fs::is_empty(folder); }));
+        kill(child, signal);
+        EXPECT_EQ(WTERMSIG(end_of(child)), signal);
+    };
+    end_by(SIGINT);
+    EXPECT_TRUE(fs::is_empty(folder));
+    end_by(SIGKILL);
+    EXPECT_FALSE(fs::is_empty(folder));
+    expect_success({"info", "-", "--format", "obj"}, echinus::test::box_text());
+    EXPECT_TRUE(fs::is_empty(folder)) << "the next run clears what the killed one left";
+    unsetenv("TMPDIR");
+    close(ends[0]);
+    close(ends[1]);
+}
+
+TEST_F(Interruption, FindsTheCopyOfStandardInputReadableToItsOwnerOnly) {
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
+    const fs::path folder = path("tmp");
+    fs::create_directory(folder);
+    setenv("TMPDIR", folder.c_str(), 1);
     const pid_t child = start({"info", "-", "--format", "obj"}, ends[0]);
     unsetenv("TMPDIR");
-    EXPECT_TRUE(wait_until([&] { return !fs::is_empty(path("tmp")); }));
-    kill(child, SIGINT);
-    EXPECT_EQ(WTERMSIG(end_of(child)), SIGINT);
-    EXPECT_TRUE(fs::is_empty(path("tmp")));
+    EXPECT_TRUE(wait_until([&] { return !fs::is_empty(folder); }));
+    EXPECT_EQ(fs::status(*fs::directory_iterator(folder)).permissions(), fs::perms::owner_all);
+    kill(child, SIGTERM);
+    end_of(child);
     close(ends[0]);
     close(ends[1]);
 }

@@ -1,4 +1,5 @@
 #include "tools/command_line.hpp"
+#include "tools/sample_files.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -161,6 +162,30 @@ TEST_F(SimulateCommand, NamesTheSceneAndTheKeyAtFault) {
     expect_failure(1, "nowhere.json", {"simulate", "nowhere.json", "-o", "run"});
     write("empty.json", "");
     expect_failure(1, "empty.json", {"simulate", "empty.json", "-o", "run"});
+}
+
+TEST_F(SimulateCommand, NamesAnOpenModelAndTheRepairThatWouldCloseIt) {
+    const auto scene_on = [](const std::string& model, const std::string& more = "") {
+        return R"({"model": ")" + model +
+               R"(", "frame_limit": 1, "cloth": {"particles": [2, 2], "size": [1, 1],
+            "position": [0, 0, 9]})" +
+               more + "}";
+    };
+    write("open.obj", echinus::test::open_box_text());
+    write("doubled.obj", echinus::test::doubled_face_text());
+    write("open.json", scene_on("open.obj"));
+    write("doubled.json", scene_on("doubled.obj"));
+    expect_failure(1, "open.obj: the mesh is not closed: 3 border edges (at faces",
+                   {"simulate", "open.json", "-o", "run"});
+    expect_failure(1, "; mend it elsewhere\n", {"simulate", "open.json", "-o", "run"});
+    const std::string remedy = R"("repair": ["duplicate_faces", "doubled_patches"])";
+    expect_failure(1, "; mend it with " + remedy, {"simulate", "doubled.json", "-o", "run"});
+    write("doubled.json", scene_on("doubled.obj", ", " + remedy));
+    simulate("doubled.json");
+}
+
+TEST_F(SimulateCommand, ReadsNoSceneFromStandardInput) {
+    expect_failure(2, "SCENE: cannot be standard input", {"simulate", "-", "-o", "run"}, kFallingSheet);
 }
 
 TEST_F(SimulateCommand, LeavesNoFolderBehindWhenItDiverges) {

@@ -1,6 +1,5 @@
 #include "commands/commands.hpp"
-#include "commands/map_description.hpp"
-#include "commands/mesh_description.hpp"
+#include "commands/descriptions.hpp"
 #include "directions/lattice.hpp"
 #include "input.hpp"
 #include "output.hpp"
@@ -79,13 +78,13 @@ void require_solid(const MeshReport& report, const TriangleMesh& mesh, const Bui
         throw Error(ErrorCode::InvalidMesh, name + ": the mesh is inside out, its faces turn clockwise seen "
                                                    "from outside; mend it with --repair");
     if (report.closed || arguments.allow_open) return;
-    const std::string remedy = foresee_repair(mesh).closed_then ? "mend it with --repair"
-                               : exact ? "mend it elsewhere, or accept answers that are not certain near its "
-                                         "holes with --allow-open"
-                                       : "mend it elsewhere, or accept wrong answers behind its holes with "
-                                         "--allow-open";
-    throw Error(ErrorCode::InvalidMesh,
-                name + ": the mesh is not closed: " + describe_openness(report) + "; " + remedy);
+    throw Error(
+        ErrorCode::InvalidMesh,
+        name + ": " +
+            refusal_of_open_mesh(mesh, report, "--repair",
+                                 exact ? ", or accept answers that are not certain near its holes with "
+                                         "--allow-open"
+                                       : ", or accept wrong answers behind its holes with --allow-open"));
 }
 
 /// Of a closed surface, in cubic lattice steps.
@@ -110,7 +109,9 @@ bool encloses_nothing(const ExactMapView& map) {
 
 AnyMap build_kind(const TriangleMesh& mesh, const BuildArguments& arguments) {
     if (arguments.kind == MapKind::Exact) {
-        ExactMap map = ExactMap::build(mesh, exact_options_of(arguments));
+        ExactMap map = naming_file(arguments.mesh.name(), ErrorCode::InvalidOptions, [&] {
+            return ExactMap::build(mesh, exact_options_of(arguments)); // which refuses too small a budget
+        });
         if (encloses_nothing(map) && !arguments.allow_open)
             throw Error(
                 ErrorCode::InvalidMesh,
@@ -188,10 +189,11 @@ void add_exact_options(Command command, BuildArguments& arguments) {
             .range(1U, kMostCells)
             .type_name("COUNT"),
         command
-            .add_byte_count("--budget", arguments.exact.byte_budget,
-                            "The most bytes of the map, as 300KB (units B, KB, MB, GB, KiB, MiB, GiB): as "
-                            "many cells as keep "
-                            "within")
+            .add_byte_count(
+                "--budget", arguments.exact.byte_budget,
+                "The most bytes of the map, as 300KB (units B, KB, MB, GB, KiB, MiB, GiB): as many "
+                "cells as keep within. Without it and --cells-per-octant at most 512 B a face and "
+                "64 KiB")
             .excludes("--cells-per-octant"),
         add_choice<InsideRule>(command, "--rule", arguments.exact.rule,
                                {{"nonzero", InsideRule::Nonzero}, {"parity", InsideRule::Parity}},

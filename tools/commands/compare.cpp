@@ -2,7 +2,7 @@
 
 #include "commands/commands.hpp"
 #include "commands/comparison_report.hpp"
-#include "commands/mesh_description.hpp"
+#include "commands/descriptions.hpp"
 #include "input.hpp"
 #include "output.hpp"
 #include "progress.hpp"
@@ -40,9 +40,7 @@ TriangleMesh read_closed_mesh(const CompareArguments& arguments) {
         if (arguments.repair) mesh = repair(mesh, RepairOptions::all()).mesh;
         const MeshReport report = inspect(mesh);
         if (report.closed) return mesh;
-        throw Error(ErrorCode::InvalidMesh,
-                    "the mesh is not closed: " + describe_openness(report) + "; " +
-                        (foresee_repair(mesh).closed_then ? "mend it with --repair" : "mend it elsewhere"));
+        throw Error(ErrorCode::InvalidMesh, refusal_of_open_mesh(mesh, report, "--repair"));
     });
 }
 

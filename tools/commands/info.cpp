@@ -1,6 +1,5 @@
 #include "commands/commands.hpp"
-#include "commands/map_description.hpp"
-#include "commands/mesh_description.hpp"
+#include "commands/descriptions.hpp"
 #include "input.hpp"
 #include "output.hpp"
 

@@ -1,5 +1,4 @@
-#include "commands/mesh_description.hpp"
-
+#include "commands/descriptions.hpp"
 #include "table.hpp"
 
 #include <fmt/format.h>
@@ -33,6 +32,17 @@ std::string first_faces(const Fault& fault) {
     const bool one = fault.first_faces.size() == 1;
     return fmt::format("{}at {} {}", all_shown ? "" : "first ", one ? "face" : "faces",
                        fmt::join(fault.first_faces, ", "));
+}
+
+/// The faults that keep a mesh from being closed.
+std::string faults_of_edges(const MeshReport& report) {
+    std::vector<std::string> phrases;
+    for (const auto& [key, label, fault] : faults_of(report)) {
+        const bool of_an_edge = std::string(key).ends_with("_edges");
+        if (!of_an_edge || fault.count == 0) continue;
+        phrases.push_back(fmt::format("{} {} ({})", fault.count, label, first_faces(fault)));
+    }
+    return fmt::format("{}", fmt::join(phrases, ", "));
 }
 
 } // namespace
@@ -74,14 +84,10 @@ std::string to_text(const MeshReport& report, const std::string& title) {
     return table.text();
 }
 
-std::string describe_openness(const MeshReport& report) {
-    std::vector<std::string> phrases;
-    for (const auto& [key, label, fault] : faults_of(report)) {
-        const bool of_an_edge = std::string(key).ends_with("_edges");
-        if (!of_an_edge || fault.count == 0) continue;
-        phrases.push_back(fmt::format("{} {} ({})", fault.count, label, first_faces(fault)));
-    }
-    return fmt::format("{}", fmt::join(phrases, ", "));
+std::string refusal_of_open_mesh(const echinus::TriangleMesh& mesh, const MeshReport& report,
+                                 const std::string& with, const std::string& otherwise) {
+    return "the mesh is not closed: " + faults_of_edges(report) + "; " +
+           (foresee_repair(mesh).closed_then ? "mend it with " + with : "mend it elsewhere" + otherwise);
 }
 
 Json to_json(const RepairReport& report) {

@@ -1,5 +1,6 @@
 #include "commands/scene_model.hpp"
 
+#include "commands/descriptions.hpp"
 #include "files/mapped_file.hpp"
 #include "input.hpp"
 
@@ -34,16 +35,15 @@ struct NameOfModel {
     std::string operator()(const BoxModel&) const { return "box"; }
 };
 
-/// The push-out needs an inside; a hole would let cloth through without the judge noticing.
-void require_closed(const TriangleMesh& mesh, const fs::path& scene_path) {
+/// A hole would let cloth in, and what is inside behind it nobody can tell.
+/// @param as_read  the mesh before the repairs that the scene names
+void require_closed(const TriangleMesh& mesh, const TriangleMesh& as_read, const std::string& name) {
     const MeshReport report = inspect(mesh);
     if (report.closed) return;
     throw Error(ErrorCode::InvalidMesh,
-                scene_path.string() +
-                    ": the model is not closed: " + std::to_string(report.border_edges.count) +
-                    " border edges, " + std::to_string(report.nonmanifold_edges.count) +
-                    " edges with more than two faces, " + std::to_string(report.misoriented_edges.count) +
-                    " edges that faces run along the same way; name what to mend under \"repair\"");
+                name + ": " +
+                    refusal_of_open_mesh(as_read, report,
+                                         R"("repair": ["duplicate_faces", "doubled_patches"] in the scene)"));
 }
 
 } // namespace
@@ -72,8 +72,9 @@ std::optional<fs::path> model_file(const SceneModel& model, const fs::path& scen
 }
 
 RepairedMesh load_model(const Scene& scene, const fs::path& scene_path, const std::optional<fs::path>& file) {
-    RepairedMesh model = repair(std::visit(MeshOfModel{scene_path, file}, scene.model), scene.repair);
-    require_closed(model.mesh, scene_path);
+    const TriangleMesh as_read = std::visit(MeshOfModel{scene_path, file}, scene.model);
+    RepairedMesh model = repair(as_read, scene.repair);
+    require_closed(model.mesh, as_read, scene_path.string() + (file ? ": " + file->string() : ""));
     return model;
 }
 

@@ -127,6 +127,9 @@ ExactMap judge_of(const AnyMap& map, const TriangleMesh& mesh, unsigned thread_c
 }
 
 void require_target(const SimulateArguments& arguments) {
+    if (arguments.scene == kStandardStream)
+        throw WrongUse("SCENE",
+                       "cannot be standard input (-): a model's file is looked for beside the scene");
     if (arguments.target.empty() && arguments.page.empty())
         throw WrongUse("simulate", "needs -o DIR, --html FILE, or both");
     if (arguments.target.empty() && arguments.obj)
@@ -203,7 +206,9 @@ void simulate(const SimulateArguments& arguments) {
 }
 
 void add_options(Command command, SimulateArguments& arguments) {
-    command.add("SCENE", &arguments.scene, "Scene file (docs/scenes.md)").required().type_name("");
+    command.add("SCENE", &arguments.scene, "Scene file (docs/scenes.md), which cannot be -")
+        .required()
+        .type_name("");
     command
         .add("-o,--output", &arguments.target,
              "Folder for cloth.obj, cloth.pc2, collider.obj and report.json")

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "json.hpp"
+
+#include <echinus/any_map.hpp>
+#include <echinus/map_file.hpp>
+#include <echinus/mesh.hpp>
+
+#include <cstdint>
+#include <string>
+
+/// The description of a mesh by `info`, as the object of --json.
+Json to_json(const echinus::MeshReport& report);
+
+/// The same as a table for people, with the first faces at fault.
+std::string to_text(const echinus::MeshReport& report, const std::string& title);
+
+/// Why a mesh that is not closed cannot be used, and what helps: "the mesh is not closed: 24 edges with more
+/// than two faces (first at faces 382, 383); mend it with --repair", or "...; mend it elsewhere" where
+/// repair() would not close it.
+/// @param with       what makes a command repair the mesh, such as "--repair"
+/// @param otherwise  what else helps where repair() does not, or nothing
+std::string refusal_of_open_mesh(const echinus::TriangleMesh& mesh, const echinus::MeshReport& report,
+                                 const std::string& with, const std::string& otherwise = "");
+
+/// The report of repair(), done or planned, as an object.
+Json to_json(const echinus::RepairReport& report);
+
+/// The same as a phrase: "2 duplicate faces dropped, 1 inside-out component turned", or "nothing to mend".
+std::string to_text(const echinus::RepairReport& report);
+
+/// What --repair would do to a mesh, and whether the result is closed.
+struct RepairOutlook {
+    echinus::RepairReport report;
+    bool closed_then = false;
+};
+RepairOutlook foresee_repair(const echinus::TriangleMesh& mesh);
+
+/// The description of a map by `build` and `info`.
+struct MapDescription {
+    const echinus::AnyMap& map;
+    echinus::MapFileNotes notes;
+    std::uint64_t file_bytes = 0;
+};
+
+/// The object of --json.
+Json to_json(const MapDescription& description);
+
+/// A table for people, for a distance map with the histogram of the entries per direction.
+std::string to_text(const MapDescription& description, const std::string& title);
