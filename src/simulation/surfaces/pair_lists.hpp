@@ -2,20 +2,12 @@
 
 #include "simulation/surfaces/separation.hpp"
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace echinus {
-
-/// A vertex and a face or two edges that share no vertex.
-struct Pair {
-    std::array<std::uint32_t, 4> points; ///< the vertices of the deformable's part, then the opponent's
-    std::uint32_t opponent;              ///< the element that the opponent's part belongs to
-    PairKind kind;
-};
 
 /// For each element of a deformable the pairs that it is in. The lists lie in one array; a list that has
 /// grown out of its place moves to the end, and when half of the array is abandoned, all move together.

@@ -1,9 +1,13 @@
 #pragma once
 
+#include "simulation/particles.hpp"
+
 #include <echinus/geometry.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace echinus {
 
@@ -25,7 +29,21 @@ struct Separation {
     std::array<float, 4> weights{};
 };
 
+/// A vertex and a face or two edges that share no vertex.
+struct Pair {
+    std::array<std::uint32_t, 4> points; ///< the vertices of the deformable's part, then the opponent's
+    std::uint32_t opponent;              ///< the element that the opponent's part belongs to
+    PairKind kind;
+};
+
 /// @param points  the deformable's vertices of the pair, then the opponent's
-Separation separation(PairKind kind, const std::array<Vec3f, 4>& points);
+Separation separation(PairKind kind, const std::array<Vec3f, 4>& points) noexcept;
+
+/// The same of many pairs: the same bits under every instruction set.
+/// @param own     the positions of the deformable's vertices
+/// @param other   those of the opponent's
+/// @param result  [pairs.size()] out
+void separations(std::span<const Pair> pairs, const PointArrays& own, const PointArrays& other,
+                 std::span<Separation> result) noexcept;
 
 } // namespace echinus

@@ -147,6 +147,7 @@ void SurfacePairs::list(std::uint32_t element) {
     }
     Box box = box_of(own_->all[element], *starts_);
     box.grow(reach_.listed);
+    near_pairs_.clear();
     bool found = false;
     opponent_.tree->visit_touching(box, [&](std::uint32_t other) {
         if (opponent_.is_self) {
@@ -157,11 +158,11 @@ void SurfacePairs::list(std::uint32_t element) {
         found = true;
         list_pairs(element, other);
     });
+    keep_near(element);
     list_reaches_[element] = reach_.listed;
     if (!found && !opponent_.is_self) {
         box.grow(-reach_.listed);
-        list_reaches_[element] =
-            std::max(reach_.listed, opponent_.tree->distance(box, kFarReach * reach_.listed));
+        list_reaches_[element] = std::max(reach_.listed, opponent_.tree->distance(box, kFarReach * reach_.listed));
     }
 }
 
@@ -186,16 +187,15 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
         reached.grow(reach_.listed);
         for (std::size_t k = 0; k < own.vertex_count; ++k)
             if (own.owns_vertex(k) && !(is_self && other.has(own.vertices[k])) && is_near_box(a[k], reached))
-                list_pair(own_number, other_number,
+                near_pairs_.push_back(
                           {{own.vertices[k], other.vertices[0], other.vertices[1], other.vertices[2]},
                            other_number,
                            PairKind::VertexFace});
     }
     if (own.is_face())
         for (std::size_t k = 0; k < other.vertex_count; ++k)
-            if (other.owns_vertex(k) && !(is_self && own.has(other.vertices[k])) &&
-                is_near_box(b[k], own_box))
-                list_pair(own_number, other_number,
+            if (other.owns_vertex(k) && !(is_self && own.has(other.vertices[k])) && is_near_box(b[k], own_box))
+                near_pairs_.push_back(
                           {{own.vertices[0], own.vertices[1], own.vertices[2], other.vertices[k]},
                            other_number,
                            PairKind::FaceVertex});
@@ -208,28 +208,51 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
         for (std::size_t j = 0; j < edge_count(other); ++j) {
             if (!other.owns_edge(j)) continue;
             const std::size_t j_next = (j + 1) % 3;
-            const std::array<std::uint32_t, 4> points{own.vertices[i], own.vertices[i_next],
-                                                      other.vertices[j], other.vertices[j_next]};
+            const std::array<std::uint32_t, 4> points{own.vertices[i], own.vertices[i_next], other.vertices[j],
+                                                      other.vertices[j_next]};
             if (is_self && (points[0] == points[2] || points[0] == points[3] || points[1] == points[2] ||
                             points[1] == points[3]))
                 continue;
             if (is_near(edge_box, box_of_points(std::array{b[j], b[j_next]})))
-                list_pair(own_number, other_number, {points, other_number, PairKind::EdgeEdge});
+                near_pairs_.push_back({points, other_number, PairKind::EdgeEdge});
         }
     }
 }
 
-void SurfacePairs::list_pair(std::uint32_t own, std::uint32_t other, const Pair& pair) {
-    if (separation(pair.kind, points_of(pair)).gap > reach_.listed) return;
-    lists_.add(own, pair);
-    if (!opponent_.is_self) return;
-    const auto& p = pair.points;
-    if (pair.kind == PairKind::VertexFace)
-        lists_.add(other, {{p[1], p[2], p[3], p[0]}, own, PairKind::FaceVertex});
-    else if (pair.kind == PairKind::FaceVertex)
-        lists_.add(other, {{p[3], p[0], p[1], p[2]}, own, PairKind::VertexFace});
-    else
-        lists_.add(other, {{p[2], p[3], p[0], p[1]}, own, PairKind::EdgeEdge});
+/// Of the pairs whose boxes are near, those that are near.
+void SurfacePairs::keep_near(std::uint32_t element) {
+    separations_.resize(near_pairs_.size());
+    separations(near_pairs_, *starts_, other_positions(), separations_);
+    for (std::size_t i = 0; i < near_pairs_.size(); ++i) {
+        if (separations_[i].gap > reach_.listed) continue;
+        const Pair& pair = near_pairs_[i];
+        lists_.add(element, pair);
+        if (!opponent_.is_self) continue;
+        const auto& p = pair.points;
+        if (pair.kind == PairKind::VertexFace)
+            lists_.add(pair.opponent, {{p[1], p[2], p[3], p[0]}, element, PairKind::FaceVertex});
+        else if (pair.kind == PairKind::FaceVertex)
+            lists_.add(pair.opponent, {{p[3], p[0], p[1], p[2]}, element, PairKind::VertexFace});
+        else
+            lists_.add(pair.opponent, {{p[2], p[3], p[0], p[1]}, element, PairKind::EdgeEdge});
+    }
+}
+
+/// The pairs of the elements to be measured, and how far apart they are now.
+void SurfacePairs::gather_measured() {
+    for (const std::uint32_t element : measuring_) keep_list(element);
+    measured_pairs_.clear();
+    measured_elements_.clear();
+    for (const std::uint32_t element : measuring_) {
+        const Element& own = own_->all[element];
+        const float bound = bound_of(element);
+        for (std::size_t k = 0; k < own.vertex_count; ++k) shrink(own.vertices[k], bound, bound);
+        const std::span<const Pair> pairs = lists_.of(element);
+        measured_pairs_.insert(measured_pairs_.end(), pairs.begin(), pairs.end());
+        measured_elements_.insert(measured_elements_.end(), pairs.size(), element);
+    }
+    separations_.resize(measured_pairs_.size());
+    separations(measured_pairs_, *starts_, other_positions(), separations_);
 }
 
 // ---- Rooms
@@ -242,9 +265,8 @@ std::array<Vec3f, 4> SurfacePairs::points_of(const Pair& pair) const {
     return points;
 }
 
-/// How far the vertices of an element may go by what is not listed. Of the deformable's pairs with itself
-/// both sides move: by two slacks each at the most since a list was made, and by two rooms before both are
-/// measured.
+/// How far the vertices of an element may go by what is not listed. Of the deformable's pairs with itself both
+/// sides move: by two slacks each at the most since a list was made, and by two rooms before both are measured.
 float SurfacePairs::bound_of(std::uint32_t element) const {
     if (opponent_.is_self) return (reach_.listed - 4 * reach_.slack) / 4;
     return list_reaches_[element] - moved_since_listed(element) - reach_.least_gap;

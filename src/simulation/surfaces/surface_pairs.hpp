@@ -98,10 +98,10 @@ class SurfacePairs {
     void collect_measured();
     template <typename Visit>
     void measure_collected(const Visit& visit);
-    template <typename Visit>
-    void measure(std::uint32_t element, const Visit& visit);
+    void gather_measured();
     void shrink(std::uint32_t vertex, float room, float quiet);
     std::array<Vec3f, 4> points_of(const Pair& pair) const;
+    const PointArrays& other_positions() const { return opponent_.is_self ? *starts_ : *opponent_.positions; }
 
     void list_around_moved();
     void keep_list(std::uint32_t element);
@@ -109,7 +109,7 @@ class SurfacePairs {
     void list(std::uint32_t element);
     float clearance_of(const Element& element) const;
     void list_pairs(std::uint32_t own, std::uint32_t other);
-    void list_pair(std::uint32_t own, std::uint32_t other, const Pair& pair);
+    void keep_near(std::uint32_t element);
 
     const Elements* own_;
     PairReach reach_;
@@ -134,30 +134,25 @@ class SurfacePairs {
     std::uint32_t wake_ = 0;
     std::vector<std::uint32_t> woken_, measuring_, moved_, leaving_, listing_;
     std::vector<std::uint8_t> is_listing_;
+    std::vector<Pair> measured_pairs_, near_pairs_;
+    std::vector<std::uint32_t> measured_elements_; ///< by measured pair
+    std::vector<Separation> separations_;          ///< the same
 };
-
-template <typename Visit>
-void SurfacePairs::measure_collected(const Visit& visit) {
-    for (const std::uint32_t element : measuring_) {
-        keep_list(element);
-        measure(element, visit);
-    }
-}
 
 /// @param visit  returns how far the pair's vertices may go quietly
 template <typename Visit>
-void SurfacePairs::measure(std::uint32_t element, const Visit& visit) {
-    const Element& own = own_->all[element];
-    const float bound = bound_of(element);
-    for (std::size_t k = 0; k < own.vertex_count; ++k) shrink(own.vertices[k], bound, bound);
-    for (const Pair& pair : lists_.of(element)) {
-        const Separation apart = separation(pair.kind, points_of(pair));
-        const float quiet = visit(element, pair, apart);
-        const float sides = opponent_.is_self ? 2 : 1;
+void SurfacePairs::measure_collected(const Visit& visit) {
+    gather_measured();
+    const float sides = opponent_.is_self ? 2 : 1;
+    for (std::size_t i = 0; i < measured_pairs_.size(); ++i) {
+        const Pair& pair = measured_pairs_[i];
+        const Separation& apart = separations_[i];
+        const float room = usable(apart.gap) / sides;
+        const float quiet = visit(measured_elements_[i], pair, apart) / sides;
         for (std::size_t k = 0; k < (opponent_.is_self ? 4 : own_count(pair.kind)); ++k)
-            shrink(pair.points[k], usable(apart.gap) / sides, quiet / sides);
-        ++measured_count;
+            shrink(pair.points[k], room, quiet);
     }
+    measured_count += measured_pairs_.size();
 }
 
 } // namespace echinus
