@@ -195,6 +195,11 @@ struct SimulationOptions {
     /// Edges and faces collide too, not only particles: no face of the deformable ever meets a collider
     /// (docs/surfaces.md). Every collider needs an exact map; open meshes are welcome.
     bool surface_collision = false;
+    /// With surface_collision: the faces of the deformable do not meet each other either.
+    bool self_collision = false;
+    /// Distance that layers of the deformable keep from each other, units. If not given, the thickness. Near
+    /// small faces it is less: at most 0.4 of the least height of a face, so that neighbours have room.
+    std::optional<double> self_thickness{};
     /// A particle farther than this from the middle of where the deformable began ends the simulation as
     /// diverged, units. 0: 10 000 times the deformable's extent at the start.
     double bound = 0;

@@ -15,14 +15,6 @@ namespace echinus {
 
 namespace {
 
-/// Beside what a pair may close on its way: contacts that begin to push within this share of the thickness
-/// are kept ready.
-constexpr float kReadiness = 1.0F / 8;
-/// The same beside a vertex that was pushed lately.
-constexpr float kAlertReadiness = 1.0F / 2;
-/// A contact's plane is used until one of its vertices has moved by this share of the thickness.
-constexpr float kPlaneReuse = 1.0F / 8;
-
 bool is_identity(const RigidTransform& pose) {
     const Rotation& r = pose.rotation;
     return pose.translation == Vec3d{} && r.x == 0 && r.y == 0 && r.z == 0;
@@ -94,7 +86,7 @@ void ModelSurface::look_ahead(const Collider& collider_at_end, const PointArrays
 }
 
 void ModelSurface::forget_contacts(std::span<const std::uint32_t> elements) {
-    is_alert_.assign(is_alert_.size(), 0);
+    std::fill(is_alert_.begin(), is_alert_.end(), std::uint8_t{0});
     for (const std::uint32_t element : elements) is_forgotten_[element] = 1;
     std::erase_if(contacts_, [&](const Contact& contact) {
         if (is_forgotten_[contact.element] == 0) return false;

@@ -15,6 +15,10 @@ namespace {
 /// that the vertices keep, and need not be pushed before they are much nearer.
 constexpr float kSurfaceShare = 0.75F;
 
+/// Pairs of the deformable with itself are listed up to this share of the mean edge: in a flat sheet of squares
+/// there are none.
+constexpr float kSelfReach = 0.6F;
+
 /// A vertex that is too fast for what is listed goes its way in several passes.
 constexpr int kMostPasses = 8;
 
@@ -25,6 +29,13 @@ double mean_edge_length(const Elements& elements, const PointArrays& positions) 
     double sum = 0;
     for (const auto& [a, b] : elements.edges) sum += static_cast<double>(length(positions[a] - positions[b]));
     return elements.edges.empty() ? 0 : sum / static_cast<double>(elements.edges.size());
+}
+
+float largest_coordinate(const PointArrays& positions) {
+    float largest = 0;
+    for (const std::vector<float>* c : {&positions.x, &positions.y, &positions.z})
+        for (const float value : *c) largest = std::max(largest, std::fabs(value));
+    return largest;
 }
 
 PairReach reach_of(float thickness, float edge_length, float least_gap) {
@@ -48,6 +59,13 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
         models_.emplace_back(collider, elements_, reach_of(thickness, edge_length, least_gap), thickness,
                              now.friction);
     }
+    if (options.self_collision) {
+        const auto thickness = static_cast<float>(options.self_thickness.value_or(*options.thickness));
+        const float listed = kSelfReach * edge_length;
+        const float least_gap = largest_coordinate(particles.positions) * (1.0F / (1 << 21));
+        self_.emplace(elements_, particles.positions, PairReach{listed, listed / 16, least_gap},
+                      std::min(thickness, listed / 2), static_cast<float>(options.friction));
+    }
     leaving_.reserve(particles.count());
     poses_.resize(models_.size());
     clearances_.resize(particles.count());
@@ -63,6 +81,7 @@ void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders, const
         collisions.known_clearances(c, particles, clearances_);
         models_[c].begin_frame(colliders[c], particles, clearances_);
     }
+    if (self_) self_->begin_pass(carrier_pose(), particles.positions);
 }
 
 void SurfaceCollision::look_ahead(const std::vector<Collider>& colliders, const Particles& particles) {
@@ -75,7 +94,9 @@ void SurfaceCollision::look_ahead(const std::vector<Collider>& colliders, const 
         Collider at_end = colliders[c];
         at_end.pose = pose_after(at_end, options_.time_step);
         models_[c].look_ahead(at_end, expected_);
+        if (self_ && c == carrier_) self_->look_ahead(&at_end.pose, expected_);
     }
+    if (self_ && carrier() == nullptr) self_->look_ahead(nullptr, expected_);
 }
 
 void SurfaceCollision::begin_substep(const std::vector<Collider>& colliders) {
@@ -85,13 +106,16 @@ void SurfaceCollision::begin_substep(const std::vector<Collider>& colliders) {
 
 void SurfaceCollision::relax(Particles& particles, SimulationProfile& profile) {
     for (ModelSurface& model : models_) model.relax(particles, inverse_masses_, profile);
+    if (self_) self_->relax(particles, inverse_masses_, profile);
 }
 
 void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profile) {
     goals_ = particles.positions;
     for (int number = 0; number < kMostPasses; ++number) {
-        if (number > 0)
+        if (number > 0) {
             for (ModelSurface& model : models_) model.begin_pass(particles.positions);
+            if (self_) self_->begin_pass(carrier_pose(), particles.positions);
+        }
         if (!pass(particles, number == 0)) break;
     }
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
@@ -107,6 +131,10 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
     }
     profile.squeezed_count += std::exchange(squeezed_, 0);
     profile.searched_face_count = profile.measured_pair_count = 0;
+    if (self_) {
+        profile.searched_face_count = self_->pairs().listed_count;
+        profile.measured_pair_count = self_->pairs().measured_count;
+    }
     for (const ModelSurface& model : models_) {
         profile.searched_face_count += model.pairs().listed_count;
         profile.measured_pair_count += model.pairs().measured_count;
@@ -116,6 +144,7 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
 /// @return whether another pass may take a vertex farther
 bool SurfaceCollision::pass(Particles& particles, bool is_first) {
     for (ModelSurface& model : models_) model.set_goals(goals_);
+    if (self_) self_->set_goals(carrier_pose(), goals_);
     if (!find_leaving()) {
         if (!is_first) particles.positions = goals_;
         is_truncated_.assign(is_truncated_.size(), 0);
@@ -140,17 +169,21 @@ bool SurfaceCollision::pass(Particles& particles, bool is_first) {
 /// A vertex that leaves its room beside one model is looked at beside all of them.
 bool SurfaceCollision::find_leaving() {
     leaving_.clear();
+    const auto add = [&](std::span<const std::uint32_t> vertices) {
+        const std::size_t before = leaving_.size();
+        for (const std::uint32_t v : vertices)
+            if (std::exchange(is_leaving_[v], 1) == 0) leaving_.push_back(v);
+        return leaving_.size() > before;
+    };
     for (bool found = true; found;) {
         found = false;
-        for (ModelSurface& model : models_)
-            for (const std::uint32_t v : model.find_leaving()) {
-                if (std::exchange(is_leaving_[v], 1) != 0) continue;
-                leaving_.push_back(v);
-                found = true;
-            }
-        if (!found || models_.size() == 1) break;
-        for (const std::uint32_t v : leaving_)
+        for (ModelSurface& model : models_) found = add(model.find_leaving()) || found;
+        if (self_) found = add(self_->find_leaving()) || found;
+        if (!found || models_.size() + (self_ ? 1 : 0) == 1) break;
+        for (const std::uint32_t v : leaving_) {
             for (ModelSurface& model : models_) model.renew(v);
+            if (self_) self_->renew(v);
+        }
     }
     return !leaving_.empty();
 }
@@ -164,10 +197,11 @@ void SurfaceCollision::truncate(std::uint32_t vertex, bool is_first, Particles& 
     const Vec3f start = is_first ? particles.frame_start[vertex] : particles.positions[vertex];
     const Vec3f from = frame != nullptr ? frame->carried(vertex) : start;
     Shares shares;
-    for (const ModelSurface& model : models_) {
-        const Shares by_model = model.allowed(vertex, &model == frame ? nullptr : &from);
-        shares = {std::max(shares.least, by_model.least), std::min(shares.most, by_model.most)};
-    }
+    const auto keep = [&](const Shares& allowed) {
+        shares = {std::max(shares.least, allowed.least), std::min(shares.most, allowed.most)};
+    };
+    for (const ModelSurface& model : models_) keep(model.allowed(vertex, &model == frame ? nullptr : &from));
+    if (self_) keep(self_->allowed(vertex, is_first ? nullptr : &from));
     if (shares.least > shares.most) ++squeezed_;
     const float share = std::max(shares.least > shares.most ? 0.0F : shares.most, 0.0F);
     const Vec3f goal = goals_[vertex];

@@ -3,11 +3,13 @@
 #include "simulation/collisions.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/surfaces/model_surface.hpp"
+#include "simulation/surfaces/self_surface.hpp"
 
 #include <echinus/simulation.hpp>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,9 +40,11 @@ class SurfaceCollision {
     SimulationOptions options_;
     std::shared_ptr<const Elements> elements_;
     std::vector<ModelSurface> models_;
-    std::vector<RigidTransform> poses_; ///< of the colliders, one substep ago
+    std::optional<SelfSurface> self_;
+    std::vector<RigidTransform> poses_; ///< of the colliders, as of the last substep
     std::vector<float> inverse_masses_;
     const ModelSurface* carrier() const { return carrier_ < models_.size() ? &models_[carrier_] : nullptr; }
+    const RigidTransform* carrier_pose() const { return carrier() != nullptr ? &poses_[carrier_] : nullptr; }
     std::size_t carrier_ = 0; ///< the first collider that moves; beyond the last where none does
     PointArrays expected_, goals_;
     std::vector<float> clearances_;

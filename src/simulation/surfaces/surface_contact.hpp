@@ -1,8 +1,6 @@
 #pragma once
 
 #include "simulation/particles.hpp"
-#include "simulation/surfaces/separation.hpp"
-#include "simulation/surfaces/surface_pairs.hpp"
 
 #include <echinus/geometry.hpp>
 
@@ -11,6 +9,14 @@
 #include <span>
 
 namespace echinus {
+
+/// Beside what a pair may close on its way: contacts that begin to push within this share of the thickness are
+/// kept ready.
+inline constexpr float kReadiness = 1.0F / 8;
+/// The same beside a vertex that was pushed lately.
+inline constexpr float kAlertReadiness = 1.0F / 2;
+/// A contact's plane is used until one of its vertices has moved by this share of the thickness.
+inline constexpr float kPlaneReuse = 1.0F / 8;
 
 /// A point of a deformable's surface, a mean of up to three particles, that is to stay `offset` or more along
 /// the normal: from a plane, or, with more particles whose weights are negative, from another such point.

@@ -82,11 +82,9 @@ void SurfacePairs::begin(const Opponent& opponent, const PointArrays& starts,
     starts_ = &starts;
     clearances_ = clearances;
     ++frame_;
-    if (opponent.is_self) list_around_moved();
 }
 
-/// The lists of the deformable's pairs with itself stay complete from both sides.
-void SurfacePairs::list_around_moved() {
+bool SurfacePairs::needs_listing() {
     moved_.clear();
     for (std::uint32_t v = 0; v < own_->vertex_count(); ++v) {
         const Vec3f way = (*starts_)[v] - listed_at_[v];
@@ -94,6 +92,11 @@ void SurfacePairs::list_around_moved() {
         moved_.push_back(v);
         listed_at_.set(v, (*starts_)[v]);
     }
+    return !moved_.empty();
+}
+
+/// The lists of the deformable's pairs with itself stay complete from both sides.
+void SurfacePairs::list_around_moved() {
     listing_.clear();
     for (const std::uint32_t v : moved_)
         for (const std::uint32_t element : own_->at(v))

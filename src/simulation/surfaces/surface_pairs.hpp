@@ -56,10 +56,14 @@ class SurfacePairs {
     /// Forgets everything: the frame has changed, or the deformable was moved.
     void reset();
 
-    /// Lists anew around vertices that have moved.
     /// @param starts  of all vertices, when the frame begins
     /// @param clearances  lower bounds of their distances from the opponent, or none
     void begin(const Opponent& opponent, const PointArrays& starts, std::span<const float> clearances);
+
+    /// Has any vertex of a deformable beside itself moved so far that its pairs have to be listed anew? Then
+    /// list_around_moved() does that, with the tree at the starts.
+    bool needs_listing();
+    void list_around_moved();
 
     /// Gives new rooms to the vertices that leave the smaller ball around them in which nothing new is to be
     /// expected, on their way to the goals. First calls forget(elements) with those whose pairs are measured
@@ -103,7 +107,6 @@ class SurfacePairs {
     std::array<Vec3f, 4> points_of(const Pair& pair) const;
     const PointArrays& other_positions() const { return opponent_.is_self ? *starts_ : *opponent_.positions; }
 
-    void list_around_moved();
     void keep_list(std::uint32_t element);
     float moved_since_listed(std::uint32_t element) const;
     void list(std::uint32_t element);
