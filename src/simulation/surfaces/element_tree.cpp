@@ -91,11 +91,11 @@ Box ElementTree::Level::box_of_group(std::size_t first) const {
     return box;
 }
 
-ElementTree::ElementTree(const Elements& elements, const PointArrays& positions)
-    : order_(elements.all.size()) {
+ElementTree::ElementTree(std::span<const Element> elements, const PointArrays& positions)
+    : order_(elements.size()) {
     std::vector<Vec3f> middles;
     middles.reserve(order_.size());
-    for (const Element& element : elements.all) middles.push_back(middle_of(element, positions));
+    for (const Element& element : elements) middles.push_back(middle_of(element, positions));
     std::iota(order_.begin(), order_.end(), 0U);
     sort_into_groups(order_, middles);
     std::size_t count = order_.size();
@@ -106,9 +106,9 @@ ElementTree::ElementTree(const Elements& elements, const PointArrays& positions)
     refit(elements, positions);
 }
 
-void ElementTree::refit(const Elements& elements, const PointArrays& positions) {
+void ElementTree::refit(std::span<const Element> elements, const PointArrays& positions) {
     for (std::size_t i = 0; i < order_.size(); ++i)
-        levels_[0].set(i, box_of(elements.all[order_[i]], positions));
+        levels_[0].set(i, box_of(elements[order_[i]], positions));
     std::size_t count = order_.size();
     for (std::size_t level = 1; level < levels_.size(); ++level) {
         count = (count + kWidth - 1) / kWidth;
@@ -142,8 +142,7 @@ void ElementTree::shorten(std::size_t level, std::size_t group, const Box& box, 
         const auto nearest = std::min_element(distances_sq.begin(), distances_sq.end());
         if (!(*nearest < distance_sq)) return;
         *nearest = kInfinity;
-        shorten(level - 1, first + static_cast<std::size_t>(nearest - distances_sq.begin()), box,
-                distance_sq);
+        shorten(level - 1, first + static_cast<std::size_t>(nearest - distances_sq.begin()), box, distance_sq);
     }
 }
 

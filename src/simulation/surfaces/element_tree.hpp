@@ -34,9 +34,9 @@ class ElementTree {
 
     ElementTree() = default;
     /// Groups elements that are near each other in these positions.
-    ElementTree(const Elements& elements, const PointArrays& positions);
+    ElementTree(std::span<const Element> elements, const PointArrays& positions);
 
-    void refit(const Elements& elements, const PointArrays& positions);
+    void refit(std::span<const Element> elements, const PointArrays& positions);
 
     /// Calls visit(element) for each element whose box touches this one.
     template <typename Visit>
@@ -46,11 +46,11 @@ class ElementTree {
     /// A lower bound of the distance from the box to all elements, or `most` where it is larger.
     float distance(const Box& box, float most) const;
 
-  private:
     struct Level {
         /// [a multiple of kWidth] Of what is not there, low is infinite and high minus infinite.
         std::array<std::vector<float>, 3> low, high;
 
+        std::size_t group_count() const { return low[0].size() / kWidth; }
         void resize(std::size_t count);
         void set(std::size_t i, const Box& box);
         Box box_of_group(std::size_t first) const;
@@ -67,6 +67,10 @@ class ElementTree {
         }
     };
 
+    std::span<const std::uint32_t> order() const { return order_; }
+    std::span<const Level> levels() const { return levels_; }
+
+  private:
     template <typename Visit>
     void visit_group(std::size_t level, std::size_t group, const Box& box, const Visit& visit) const {
         const std::size_t first = group * kWidth;

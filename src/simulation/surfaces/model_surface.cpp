@@ -46,7 +46,7 @@ ModelSurface::ModelSurface(const Collider& collider, std::shared_ptr<const Eleme
     const auto shape = std::make_shared<Shape>();
     shape->positions = scaled_vertices(map, collider.scale);
     shape->elements = Elements(map.vertices.size(), faces_of(map), {});
-    shape->tree = ElementTree(shape->elements, shape->positions);
+    shape->tree = ElementTree(shape->elements.all, shape->positions);
     shape_ = shape;
     is_forgotten_.resize(own_->all.size());
     is_alert_.resize(own_->vertex_count());
@@ -71,7 +71,7 @@ void ModelSurface::begin_frame(const Collider& collider, const Particles& partic
 
 void ModelSurface::begin_pass(const PointArrays& starts, std::span<const float> clearances) {
     to_body(starts, starts_);
-    pairs_.begin({&shape_->elements, &shape_->tree, &shape_->positions, false}, starts_, clearances);
+    pairs_.begin({&shape_->elements, &shape_->tree, &shape_->positions}, starts_, clearances);
 }
 
 void ModelSurface::look_ahead(const Collider& collider_at_end, const PointArrays& goals) {

@@ -18,14 +18,6 @@ void PairLists::add(std::size_t element, const Pair& pair) {
     pairs_[list.first + list.count++] = pair;
 }
 
-void PairLists::remove(std::size_t element, std::uint32_t opponent) {
-    List& list = lists_[element];
-    const auto begin = pairs_.begin() + static_cast<std::ptrdiff_t>(list.first);
-    const auto end = begin + list.count;
-    list.count = static_cast<std::uint32_t>(
-        std::remove_if(begin, end, [&](const Pair& pair) { return pair.opponent == opponent; }) - begin);
-}
-
 void PairLists::make_room(List& list) {
     abandoned_ += list.capacity;
     list.capacity = std::max(kLeastCapacity, 2 * list.capacity);

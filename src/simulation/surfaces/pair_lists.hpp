@@ -20,8 +20,6 @@ class PairLists {
     }
     void add(std::size_t element, const Pair& pair);
     void clear(std::size_t element) { lists_[element].count = 0; }
-    /// Takes the pairs with an element of the opponent out of an element's list.
-    void remove(std::size_t element, std::uint32_t opponent);
 
   private:
     struct List {

@@ -63,7 +63,7 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
         const auto thickness = static_cast<float>(options.self_thickness.value_or(*options.thickness));
         const float listed = kSelfReach * edge_length;
         const float least_gap = largest_coordinate(particles.positions) * (1.0F / (1 << 21));
-        self_.emplace(elements_, particles.positions, PairReach{listed, listed / 16, least_gap},
+        self_.emplace(elements_, particles, SelfSurface::Reach{listed, listed / 6, least_gap},
                       std::min(thickness, listed / 2), static_cast<float>(options.friction));
     }
     leaving_.reserve(particles.count());
@@ -73,9 +73,9 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
 
 void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders, const Collisions& collisions,
                                    const Particles& particles) {
-    carrier_ = static_cast<std::size_t>(
-        std::find_if(colliders.begin(), colliders.end(), [](const Collider& c) { return c.moves(); }) -
-        colliders.begin());
+    carrier_ = static_cast<std::size_t>(std::find_if(colliders.begin(), colliders.end(),
+                                                     [](const Collider& c) { return c.moves(); }) -
+                                        colliders.begin());
     for (std::size_t c = 0; c < models_.size(); ++c) {
         poses_[c] = colliders[c].pose;
         collisions.known_clearances(c, particles, clearances_);
@@ -116,7 +116,9 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
             for (ModelSurface& model : models_) model.begin_pass(particles.positions);
             if (self_) self_->begin_pass(carrier_pose(), particles.positions);
         }
-        if (!pass(particles, number == 0)) break;
+        const bool may_go_on = pass(particles, number == 0);
+        profile.squeezed_count += std::exchange(squeezed_now_, 0);
+        if (!may_go_on) break;
     }
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
         if (std::exchange(is_truncated_[v], 0) == 0) continue;
@@ -129,11 +131,10 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
         const Vec3f velocity = goals_[v] - particles.previous[v];
         particles.previous.set(v, particles.positions[v] - velocity * share);
     }
-    profile.squeezed_count += std::exchange(squeezed_, 0);
     profile.searched_face_count = profile.measured_pair_count = 0;
     if (self_) {
-        profile.searched_face_count = self_->pairs().listed_count;
-        profile.measured_pair_count = self_->pairs().measured_count;
+        profile.searched_face_count = self_->search_count * elements_->all.size();
+        profile.measured_pair_count = self_->measured_count;
     }
     for (const ModelSurface& model : models_) {
         profile.searched_face_count += model.pairs().listed_count;
@@ -144,11 +145,18 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
 /// @return whether another pass may take a vertex farther
 bool SurfaceCollision::pass(Particles& particles, bool is_first) {
     for (ModelSurface& model : models_) model.set_goals(goals_);
-    if (self_) self_->set_goals(carrier_pose(), goals_);
+    if (self_) self_->set_goals(carrier_pose(), goals_, true);
     if (!find_leaving()) {
         if (!is_first) particles.positions = goals_;
         is_truncated_.assign(is_truncated_.size(), 0);
         return false;
+    }
+    if (!find_places(is_first, particles) && self_) {
+        // Some vertex cannot stay behind while all others drift on: without drift it can.
+        self_->set_goals(carrier_pose(), goals_, false);
+        for (const std::uint32_t v : leaving_) is_leaving_[v] = 0;
+        find_leaving();
+        find_places(is_first, particles);
     }
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
         if (is_leaving_[v] != 0) continue;
@@ -156,14 +164,24 @@ bool SurfaceCollision::pass(Particles& particles, bool is_first) {
         if (!is_first) particles.positions.set(v, goals_[v]);
     }
     bool may_go_on = false;
-    for (const std::uint32_t v : leaving_) {
-        truncate(v, is_first, particles);
+    for (std::size_t i = 0; i < leaving_.size(); ++i) {
+        const std::uint32_t v = leaving_[i];
+        particles.positions.set(v, places_[i]);
         is_leaving_[v] = 0;
-        const Vec3f left = goals_[v] - particles.positions[v];
+        const Vec3f left = goals_[v] - places_[i];
         is_truncated_[v] = dot(left, left) > 0 ? 1 : 0;
         may_go_on = may_go_on || is_truncated_[v] != 0;
     }
     return may_go_on;
+}
+
+/// Where each of the leaving vertices may go. @return whether each of them has such a place
+bool SurfaceCollision::find_places(bool is_first, const Particles& particles) {
+    if (self_) self_->prepare(leaving_);
+    places_.clear();
+    squeezed_now_ = 0;
+    for (const std::uint32_t v : leaving_) places_.push_back(find_place(v, is_first, particles));
+    return squeezed_now_ == 0;
 }
 
 /// A vertex that leaves its room beside one model is looked at beside all of them.
@@ -180,34 +198,30 @@ bool SurfaceCollision::find_leaving() {
         for (ModelSurface& model : models_) found = add(model.find_leaving()) || found;
         if (self_) found = add(self_->find_leaving()) || found;
         if (!found || models_.size() + (self_ ? 1 : 0) == 1) break;
-        for (const std::uint32_t v : leaving_) {
+        for (const std::uint32_t v : leaving_)
             for (ModelSurface& model : models_) model.renew(v);
-            if (self_) self_->renew(v);
-        }
+        if (self_) self_->renew();
     }
     return !leaving_.empty();
 }
 
-void SurfaceCollision::truncate(std::uint32_t vertex, bool is_first, Particles& particles) {
+Vec3f SurfaceCollision::find_place(std::uint32_t vertex, bool is_first, const Particles& particles) {
+    const Vec3f goal = goals_[vertex];
     if (particles.pinned(vertex)) {
-        ++squeezed_;
-        return;
+        ++squeezed_now_;
+        return goal;
     }
     const ModelSurface* frame = is_first ? carrier() : nullptr;
     const Vec3f start = is_first ? particles.frame_start[vertex] : particles.positions[vertex];
     const Vec3f from = frame != nullptr ? frame->carried(vertex) : start;
     Shares shares;
-    const auto keep = [&](const Shares& allowed) {
-        shares = {std::max(shares.least, allowed.least), std::min(shares.most, allowed.most)};
-    };
-    for (const ModelSurface& model : models_) keep(model.allowed(vertex, &model == frame ? nullptr : &from));
-    if (self_) keep(self_->allowed(vertex, is_first ? nullptr : &from));
-    if (shares.least > shares.most) ++squeezed_;
-    const float share = std::max(shares.least > shares.most ? 0.0F : shares.most, 0.0F);
-    const Vec3f goal = goals_[vertex];
-    particles.positions.set(vertex, share == 1         ? goal
-                                    : frame != nullptr ? frame->place_at(share, vertex)
-                                                       : start + (goal - start) * share);
+    for (const ModelSurface& model : models_)
+        shares.keep(model.allowed(vertex, &model == frame ? nullptr : &from));
+    if (self_) shares.keep(self_->allowed(vertex, from));
+    if (shares.none()) ++squeezed_now_;
+    const float share = shares.none() ? 0 : std::max(shares.most, 0.0F);
+    if (share == 1) return goal;
+    return frame != nullptr ? frame->place_at(share, vertex) : start + (goal - start) * share;
 }
 
 } // namespace echinus

@@ -35,7 +35,8 @@ class SurfaceCollision {
   private:
     bool pass(Particles& particles, bool is_first);
     bool find_leaving();
-    void truncate(std::uint32_t vertex, bool is_first, Particles& particles);
+    bool find_places(bool is_first, const Particles& particles);
+    Vec3f find_place(std::uint32_t vertex, bool is_first, const Particles& particles);
 
     SimulationOptions options_;
     std::shared_ptr<const Elements> elements_;
@@ -50,7 +51,8 @@ class SurfaceCollision {
     std::vector<float> clearances_;
     std::vector<std::uint32_t> leaving_;
     std::vector<std::uint8_t> is_leaving_, is_truncated_;
-    std::uint64_t squeezed_ = 0;
+    std::vector<Vec3f> places_;      ///< of the leaving vertices
+    std::uint64_t squeezed_now_ = 0; ///< of them, those without a place
 };
 
 } // namespace echinus

@@ -11,16 +11,10 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Of a gap, a way keeps at least this share, so that rounding has no say.
-constexpr float kKeptShare = 1.0F / 16;
-
 /// Where nothing is near, the tree is asked for a clearance up to so many times the reach of the lists.
 constexpr float kFarReach = 4;
 
 constexpr float kRounding = 1.0F / (1 << 20);
-
-/// No way leads quite to where its share ends.
-constexpr float kAlmost = 1 - 1.0F / (1 << 12);
 
 bool is_near(const Box& a, const Box& b) {
     return (a.low[0] <= b.high[0]) & (a.high[0] >= b.low[0]) & (a.low[1] <= b.high[1]) &
@@ -38,40 +32,22 @@ Box box_of_points(std::span<const Vec3f> points) {
 
 } // namespace
 
-void Shares::keep_not_negative(float at_start, float at_goal) {
-    if (at_start >= 0 && at_goal >= 0) return;
-    if (at_start < 0 && at_goal < 0) {
-        least = 1;
-        most = 0;
-    } else if (at_start >= 0) {
-        most = std::min(most, at_start / (at_start - at_goal) * kAlmost);
-    } else {
-        least = std::max(least, 1 - at_goal / (at_goal - at_start) * kAlmost);
-    }
-}
-
 SurfacePairs::SurfacePairs(const Elements& own, const PairReach& reach)
     : own_(&own), reach_(reach), lists_(own.all.size()), renewed_in_(own.vertex_count()),
-      measured_in_(own.all.size()), is_listing_(own.all.size()) {
+      measured_in_(own.all.size()) {
     const std::size_t vertex_count = own.vertex_count();
-    listed_at_.resize(vertex_count);
     anchors_.resize(vertex_count);
     element_listed_at_.resize(own.all.size());
-    for (auto* list : {&woken_, &moved_, &leaving_}) list->reserve(vertex_count);
-    for (auto* list : {&listing_, &measuring_}) list->reserve(own.all.size());
+    for (auto* list : {&woken_, &leaving_}) list->reserve(vertex_count);
+    measuring_.reserve(own.all.size());
     reset();
 }
 
 void SurfacePairs::reset() {
-    listed_at_.fill(std::numeric_limits<float>::quiet_NaN());
     rooms_.assign(own_->vertex_count(), -1);
     quiet_.assign(own_->vertex_count(), -1);
     list_reaches_.assign(own_->all.size(), -kInfinity);
     for (std::size_t e = 0; e < own_->all.size(); ++e) lists_.clear(e);
-}
-
-float SurfacePairs::kept(float gap) const {
-    return std::max(reach_.least_gap, gap * kKeptShare);
 }
 
 // ---- Lists
@@ -82,31 +58,6 @@ void SurfacePairs::begin(const Opponent& opponent, const PointArrays& starts,
     starts_ = &starts;
     clearances_ = clearances;
     ++frame_;
-}
-
-bool SurfacePairs::needs_listing() {
-    moved_.clear();
-    for (std::uint32_t v = 0; v < own_->vertex_count(); ++v) {
-        const Vec3f way = (*starts_)[v] - listed_at_[v];
-        if (dot(way, way) <= reach_.slack * reach_.slack) continue; // not so before the first
-        moved_.push_back(v);
-        listed_at_.set(v, (*starts_)[v]);
-    }
-    return !moved_.empty();
-}
-
-/// The lists of the deformable's pairs with itself stay complete from both sides.
-void SurfacePairs::list_around_moved() {
-    listing_.clear();
-    for (const std::uint32_t v : moved_)
-        for (const std::uint32_t element : own_->at(v))
-            if (std::exchange(is_listing_[element], 1) == 0) listing_.push_back(element);
-    for (const std::uint32_t element : listing_)
-        for (const Pair& pair : lists_.of(element))
-            if (is_listing_[pair.opponent] == 0) lists_.remove(pair.opponent, element);
-    for (const std::uint32_t element : listing_) lists_.clear(element);
-    for (const std::uint32_t element : listing_) list(element);
-    for (const std::uint32_t element : listing_) is_listing_[element] = 0;
 }
 
 /// How far the vertices of an element have moved since its list was made.
@@ -121,7 +72,6 @@ float SurfacePairs::moved_since_listed(std::uint32_t element) const {
 
 /// The list of an element beside a model is made anew when it is needed and no longer reaches far enough.
 void SurfacePairs::keep_list(std::uint32_t element) {
-    if (opponent_.is_self) return;
     if (list_reaches_[element] - moved_since_listed(element) >= reach_.listed - reach_.slack) return;
     for (std::size_t k = 0; k < 3; ++k)
         element_listed_at_[element][k] = (*starts_)[own_->all[element].vertices[k]];
@@ -153,17 +103,12 @@ void SurfacePairs::list(std::uint32_t element) {
     near_pairs_.clear();
     bool found = false;
     opponent_.tree->visit_touching(box, [&](std::uint32_t other) {
-        if (opponent_.is_self) {
-            if (other == element) return;
-            // A pair of elements that are both listed anew is looked for once.
-            if (is_listing_[other] != 0 && other < element) return;
-        }
         found = true;
         list_pairs(element, other);
     });
     keep_near(element);
     list_reaches_[element] = reach_.listed;
-    if (!found && !opponent_.is_self) {
+    if (!found) {
         box.grow(-reach_.listed);
         list_reaches_[element] = std::max(reach_.listed, opponent_.tree->distance(box, kFarReach * reach_.listed));
     }
@@ -172,7 +117,6 @@ void SurfacePairs::list(std::uint32_t element) {
 void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_number) {
     const Element& own = own_->all[own_number];
     const Element& other = opponent_.elements->all[other_number];
-    const bool is_self = opponent_.is_self;
     std::array<Vec3f, 3> a, b;
     for (std::size_t k = 0; k < 3; ++k) {
         a[k] = (*starts_)[own.vertices[k]];
@@ -189,7 +133,7 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
         Box reached = other_box;
         reached.grow(reach_.listed);
         for (std::size_t k = 0; k < own.vertex_count; ++k)
-            if (own.owns_vertex(k) && !(is_self && other.has(own.vertices[k])) && is_near_box(a[k], reached))
+            if (own.owns_vertex(k) && is_near_box(a[k], reached))
                 near_pairs_.push_back(
                           {{own.vertices[k], other.vertices[0], other.vertices[1], other.vertices[2]},
                            other_number,
@@ -197,7 +141,7 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
     }
     if (own.is_face())
         for (std::size_t k = 0; k < other.vertex_count; ++k)
-            if (other.owns_vertex(k) && !(is_self && own.has(other.vertices[k])) && is_near_box(b[k], own_box))
+            if (other.owns_vertex(k) && is_near_box(b[k], own_box))
                 near_pairs_.push_back(
                           {{own.vertices[0], own.vertices[1], own.vertices[2], other.vertices[k]},
                            other_number,
@@ -213,9 +157,6 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
             const std::size_t j_next = (j + 1) % 3;
             const std::array<std::uint32_t, 4> points{own.vertices[i], own.vertices[i_next], other.vertices[j],
                                                       other.vertices[j_next]};
-            if (is_self && (points[0] == points[2] || points[0] == points[3] || points[1] == points[2] ||
-                            points[1] == points[3]))
-                continue;
             if (is_near(edge_box, box_of_points(std::array{b[j], b[j_next]})))
                 near_pairs_.push_back({points, other_number, PairKind::EdgeEdge});
         }
@@ -225,19 +166,10 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
 /// Of the pairs whose boxes are near, those that are near.
 void SurfacePairs::keep_near(std::uint32_t element) {
     separations_.resize(near_pairs_.size());
-    separations(near_pairs_, *starts_, other_positions(), separations_);
+    separations(near_pairs_, *starts_, *opponent_.positions, separations_);
     for (std::size_t i = 0; i < near_pairs_.size(); ++i) {
         if (separations_[i].gap > reach_.listed) continue;
-        const Pair& pair = near_pairs_[i];
-        lists_.add(element, pair);
-        if (!opponent_.is_self) continue;
-        const auto& p = pair.points;
-        if (pair.kind == PairKind::VertexFace)
-            lists_.add(pair.opponent, {{p[1], p[2], p[3], p[0]}, element, PairKind::FaceVertex});
-        else if (pair.kind == PairKind::FaceVertex)
-            lists_.add(pair.opponent, {{p[3], p[0], p[1], p[2]}, element, PairKind::VertexFace});
-        else
-            lists_.add(pair.opponent, {{p[2], p[3], p[0], p[1]}, element, PairKind::EdgeEdge});
+        lists_.add(element, near_pairs_[i]);
     }
 }
 
@@ -255,7 +187,7 @@ void SurfacePairs::gather_measured() {
         measured_elements_.insert(measured_elements_.end(), pairs.size(), element);
     }
     separations_.resize(measured_pairs_.size());
-    separations(measured_pairs_, *starts_, other_positions(), separations_);
+    separations(measured_pairs_, *starts_, *opponent_.positions, separations_);
 }
 
 // ---- Rooms
@@ -268,10 +200,8 @@ std::array<Vec3f, 4> SurfacePairs::points_of(const Pair& pair) const {
     return points;
 }
 
-/// How far the vertices of an element may go by what is not listed. Of the deformable's pairs with itself both
-/// sides move: by two slacks each at the most since a list was made, and by two rooms before both are measured.
+/// How far the vertices of an element may go by what is not listed.
 float SurfacePairs::bound_of(std::uint32_t element) const {
-    if (opponent_.is_self) return (reach_.listed - 4 * reach_.slack) / 4;
     return list_reaches_[element] - moved_since_listed(element) - reach_.least_gap;
 }
 
@@ -346,21 +276,12 @@ Shares SurfacePairs::allowed(std::uint32_t vertex, const Vec3f& from, const Vec3
             float above = kInfinity;
             for (std::size_t k = 0; k < own_count(pair.kind); ++k)
                 above = std::min(above, dot(apart.normal, points[k] - start));
-            const float way = opponent_.is_self ? usable(apart.gap) / 2 : usable(apart.gap);
-            const float allowed_way = std::max(way, 0.0F) - above;
+            const float allowed_way = std::max(usable(apart.gap), 0.0F) - above;
             shares.keep_not_negative(dot(apart.normal, from - start) + allowed_way,
                                      dot(apart.normal, to - start) + allowed_way);
         }
     }
-    // The ball |from + s (to - from) - start| <= bound: its ends by the roots of a quadratic.
-    const Vec3f offset = from - start, way = to - from;
-    const float a = dot(way, way), b = dot(way, offset), c = dot(offset, offset) - bound * std::fabs(bound);
-    const float discriminant = b * b - a * c;
-    if (std::isinf(bound)) return shares;
-    if (!(discriminant >= 0) || a == 0) return c <= 0 ? shares : Shares{1, 0};
-    const float root = std::sqrt(discriminant);
-    shares.least = std::max(shares.least, (-b - root) / a);
-    shares.most = std::min(shares.most, (-b + root) / a * kAlmost);
+    shares.keep_in_ball(from - start, to - from, bound);
     return shares;
 }
 

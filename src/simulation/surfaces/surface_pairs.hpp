@@ -4,6 +4,7 @@
 #include "simulation/surfaces/element_tree.hpp"
 #include "simulation/surfaces/elements.hpp"
 #include "simulation/surfaces/pair_lists.hpp"
+#include "simulation/surfaces/shares.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -13,13 +14,11 @@
 
 namespace echinus {
 
-/// A surface that the deformable must not meet, in one rigid frame: a model, which rests in it, or the
-/// deformable itself.
+/// A model's surface, at rest in the frame in which everything is said here.
 struct Opponent {
     const Elements* elements;
     const ElementTree* tree;
     const PointArrays* positions;
-    bool is_self;
 };
 
 /// Lengths, in units of the world.
@@ -29,21 +28,12 @@ struct PairReach {
     float least_gap; ///< no motion takes a pair nearer than this
 };
 
-/// Shares 0 (where the frame began) to 1 (the goal) of a vertex's way, half open nowhere. Empty: least >
-/// most.
-struct Shares {
-    float least = 0, most = 1;
-
-    /// Keeps those where a function that is linear on the way is not negative.
-    void keep_not_negative(float at_start, float at_goal);
-};
-
-/// How far the vertices of a deformable may move without its surface meeting an opponent
+/// How far the vertices of a deformable may move without its surface meeting a model
 /// (docs/surfaces.md).
 ///
 /// Around each vertex lies a ball, its *room*: whatever way vertices take within their rooms, nothing meets.
-/// Only a vertex that is about to leave its room is looked at: its pairs are measured anew where they are
-/// when the frame begins, and it gets a new room there. One that would leave even that one has to stay in the
+/// Only a vertex that is about to leave its room is looked at: its pairs are measured anew where they are when
+/// the frame begins, and it gets a new room there. One that would leave even that one has to stay in the
 /// convex set that its pairs' separating planes leave it.
 ///
 /// The pairs come from lists of what is near each element, which hold until one of its vertices has moved by
@@ -60,16 +50,10 @@ class SurfacePairs {
     /// @param clearances  lower bounds of their distances from the opponent, or none
     void begin(const Opponent& opponent, const PointArrays& starts, std::span<const float> clearances);
 
-    /// Has any vertex of a deformable beside itself moved so far that its pairs have to be listed anew? Then
-    /// list_around_moved() does that, with the tree at the starts.
-    bool needs_listing();
-    void list_around_moved();
-
     /// Gives new rooms to the vertices that leave the smaller ball around them in which nothing new is to be
     /// expected, on their way to the goals. First calls forget(elements) with those whose pairs are measured
     /// anew, and then, for each of these pairs, visit(element, pair, separation), which returns how far the
-    /// pair's vertices may go before it has to be measured again. A pair within the deformable comes once, or
-    /// once from each side.
+    /// pair's vertices may go before it has to be measured again.
     template <typename Forget, typename Visit>
     void look_ahead(const PointArrays& goals, const Forget& forget, const Visit& visit) {
         for (std::uint32_t v = 0; v < own_->vertex_count(); ++v)
@@ -88,13 +72,10 @@ class SurfacePairs {
     /// @param from, to  the way's ends, in this frame
     Shares allowed(std::uint32_t vertex, const Vec3f& from, const Vec3f& to) const;
 
-    /// How far a pair that lies `gap` apart may close.
-    float usable(float gap) const { return gap - kept(gap); }
-    float list_reach() const { return reach_.listed; }
     std::uint64_t measured_count = 0, listed_count = 0;
 
   private:
-    float kept(float gap) const;
+    float usable(float gap) const { return usable_gap(gap, reach_.least_gap); }
     float bound_of(std::uint32_t element) const;
     bool is_beyond(std::uint32_t vertex, const Vec3f& goal, float radius) const;
     void wake(std::uint32_t vertex);
@@ -105,7 +86,6 @@ class SurfacePairs {
     void gather_measured();
     void shrink(std::uint32_t vertex, float room, float quiet);
     std::array<Vec3f, 4> points_of(const Pair& pair) const;
-    const PointArrays& other_positions() const { return opponent_.is_self ? *starts_ : *opponent_.positions; }
 
     void keep_list(std::uint32_t element);
     float moved_since_listed(std::uint32_t element) const;
@@ -119,10 +99,8 @@ class SurfacePairs {
     PairLists lists_;
     // Lists
     std::vector<float> list_reaches_; ///< by element: pairs that are not listed were farther apart
-    /// By element: where its vertices were when its list was made. Beside a model.
+    /// By element: where its vertices were when its list was made.
     std::vector<std::array<Vec3f, 3>> element_listed_at_;
-    /// Where each vertex was when its elements' lists were made. Of the deformable with itself.
-    PointArrays listed_at_;
     // Rooms
     PointArrays anchors_;
     std::vector<float> rooms_;
@@ -135,8 +113,7 @@ class SurfacePairs {
     std::vector<std::uint32_t> renewed_in_;  ///< by vertex: the frame of its room
     std::vector<std::uint32_t> measured_in_; ///< by element, in wakes: so that none is measured twice
     std::uint32_t wake_ = 0;
-    std::vector<std::uint32_t> woken_, measuring_, moved_, leaving_, listing_;
-    std::vector<std::uint8_t> is_listing_;
+    std::vector<std::uint32_t> woken_, measuring_, leaving_;
     std::vector<Pair> measured_pairs_, near_pairs_;
     std::vector<std::uint32_t> measured_elements_; ///< by measured pair
     std::vector<Separation> separations_;          ///< the same
@@ -146,14 +123,12 @@ class SurfacePairs {
 template <typename Visit>
 void SurfacePairs::measure_collected(const Visit& visit) {
     gather_measured();
-    const float sides = opponent_.is_self ? 2 : 1;
     for (std::size_t i = 0; i < measured_pairs_.size(); ++i) {
         const Pair& pair = measured_pairs_[i];
         const Separation& apart = separations_[i];
-        const float room = usable(apart.gap) / sides;
-        const float quiet = visit(measured_elements_[i], pair, apart) / sides;
-        for (std::size_t k = 0; k < (opponent_.is_self ? 4 : own_count(pair.kind)); ++k)
-            shrink(pair.points[k], room, quiet);
+        const float room = usable(apart.gap);
+        const float quiet = visit(measured_elements_[i], pair, apart);
+        for (std::size_t k = 0; k < own_count(pair.kind); ++k) shrink(pair.points[k], room, quiet);
     }
     measured_count += measured_pairs_.size();
 }

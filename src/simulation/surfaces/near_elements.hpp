@@ -1,0 +1,16 @@
+#pragma once
+
+#include "simulation/surfaces/element_tree.hpp"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace echinus {
+
+/// Appends the pairs of an element of `a` and one of `b` whose boxes are at most `reach` apart along each
+/// axis. Where `a` and `b` are the same tree, each pair comes once, in either order, and none with itself.
+void find_near(const ElementTree& a, const ElementTree& b, float reach,
+               std::vector<std::array<std::uint32_t, 2>>& near);
+
+} // namespace echinus
