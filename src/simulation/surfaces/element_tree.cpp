@@ -107,8 +107,7 @@ ElementTree::ElementTree(std::span<const Element> elements, const PointArrays& p
 }
 
 void ElementTree::refit(std::span<const Element> elements, const PointArrays& positions) {
-    for (std::size_t i = 0; i < order_.size(); ++i)
-        levels_[0].set(i, box_of(elements[order_[i]], positions));
+    for (std::size_t i = 0; i < order_.size(); ++i) levels_[0].set(i, box_of(elements[order_[i]], positions));
     std::size_t count = order_.size();
     for (std::size_t level = 1; level < levels_.size(); ++level) {
         count = (count + kWidth - 1) / kWidth;
@@ -142,7 +141,8 @@ void ElementTree::shorten(std::size_t level, std::size_t group, const Box& box, 
         const auto nearest = std::min_element(distances_sq.begin(), distances_sq.end());
         if (!(*nearest < distance_sq)) return;
         *nearest = kInfinity;
-        shorten(level - 1, first + static_cast<std::size_t>(nearest - distances_sq.begin()), box, distance_sq);
+        shorten(level - 1, first + static_cast<std::size_t>(nearest - distances_sq.begin()), box,
+                distance_sq);
     }
 }
 

@@ -8,11 +8,11 @@
 #include "simd/dispatch.hpp"
 #include "simulation/surfaces/near_elements.hpp"
 
+#include <hwy/highway.h>
+
 #include <bit>
 #include <cstddef>
 #include <span>
-
-#include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace echinus {
@@ -53,7 +53,7 @@ struct GroupSearch {
     bool is_same;
     float reach;
     std::vector<std::array<std::uint32_t, 2>>& near;
-    std::size_t group = 0;            ///< of `a`
+    std::size_t group = 0;                        ///< of `a`
     std::array<Box, ElementTree::kWidth> boxes{}; ///< of its elements, grown by the reach
     std::size_t box_count = 0;
 

@@ -273,8 +273,8 @@ Shares SelfSurface::allowed(std::uint32_t vertex, const Vec3f& from) const {
         const Pair& pair = pairs_[pairs_at_[n]];
         const Separation& apart = separations_[pairs_at_[n]];
         const std::size_t own = own_count(pair.kind);
-        const auto place =
-            static_cast<std::size_t>(std::find(pair.points.begin(), pair.points.end(), vertex) - pair.points.begin());
+        const auto place = static_cast<std::size_t>(
+            std::find(pair.points.begin(), pair.points.end(), vertex) - pair.points.begin());
         const std::size_t first = place < own ? 0 : own, last = place < own ? own : 4;
         const Vec3f away = place < own ? apart.normal : -apart.normal;
         // How far beyond its side's nearest vertex to the other side the vertex begins.

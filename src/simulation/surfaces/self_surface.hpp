@@ -19,10 +19,10 @@ namespace echinus {
 
 /// The deformable's own surface, which must not meet itself.
 ///
-/// All is said in a frame that moves along with the deformable: the world or a collider's frame, and in it the
-/// mean motion of the particles. In that frame each vertex has a *room*, as beside a model (surface_pairs.hpp),
-/// half as wide, since both sides of a pair move. When a vertex leaves its room all pairs are measured; when
-/// one has moved by a slack they are searched for.
+/// All is said in a frame that moves along with the deformable: the world or a collider's frame, and in it
+/// the mean motion of the particles. In that frame each vertex has a *room*, as beside a model
+/// (surface_pairs.hpp), half as wide, since both sides of a pair move. When a vertex leaves its room all
+/// pairs are measured; when one has moved by a slack they are searched for.
 class SelfSurface {
   public:
     struct Reach {
@@ -81,8 +81,8 @@ class SelfSurface {
     Vec3f drift_goal_; ///< and at the goals
     bool drifts_ = false;
     float thickness_, friction_;
-    std::vector<float> most_;      ///< by vertex: the most thickness that the elements around it allow
-    std::vector<float> mobility_;  ///< by vertex: 1, or 0 for one that is pinned
+    std::vector<float> most_;     ///< by vertex: the most thickness that the elements around it allow
+    std::vector<float> mobility_; ///< by vertex: 1, or 0 for one that is pinned
     PointArrays starts_, goals_;
     // Pairs, each once, with the one side as the deformable's and the other as the opponent's
     std::vector<std::array<std::uint32_t, 2>> near_;
@@ -94,7 +94,7 @@ class SelfSurface {
     PointArrays anchors_;
     std::vector<float> rooms_, quiet_; ///< radii; nothing new is expected within the quiet ones
     float unlisted_room_ = 0;          ///< as far as the pairs that are not listed are concerned
-    bool is_measured_ = false; ///< in this pass
+    bool is_measured_ = false;         ///< in this pass
     std::vector<std::uint32_t> leaving_;
     // prepare()
     std::vector<std::uint8_t> is_wanted_;

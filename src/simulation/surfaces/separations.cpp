@@ -1,5 +1,5 @@
-// How far apart a vertex and a face or two edges are, and a plane between them: the plain functions, which are
-// the specification, and kernels that take as many pairs at once as the instruction set has lanes.
+// How far apart a vertex and a face or two edges are, and a plane between them: the plain functions, which
+// are the specification, and kernels that take as many pairs at once as the instruction set has lanes.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simulation/surfaces/separations.cpp"
@@ -149,11 +149,12 @@ HWY_INLINE void separate_lanes(const PairBatch& batch, std::size_t first, const 
     for (std::size_t k = 1; k < kOwn; ++k) least = at_most(least, dot(normal, p[k]));
     for (std::size_t k = kOwn + 1; k < 4; ++k) most = at_least(most, dot(normal, p[k]));
     const FloatLanes gap = least - most - rounding;
-    const FloatMask trusted = hn::And(distance > rounding * splat(kTrustedDistance),
-                                      gap > distance * splat(kTrustedShare));
+    const FloatMask trusted =
+        hn::And(distance > rounding * splat(kTrustedDistance), gap > distance * splat(kTrustedShare));
     std::array<std::array<float, kLanes>, 8> columns;
-    const std::array<FloatLanes, 8> values{normal.x,  normal.y,  normal.z,  hn::IfThenElse(trusted, gap, splat(-1)),
-                                           shares[0], shares[1], shares[2], shares[3]};
+    const std::array<FloatLanes, 8> values{
+        normal.x,  normal.y,  normal.z,  hn::IfThenElse(trusted, gap, splat(-1)),
+        shares[0], shares[1], shares[2], shares[3]};
     for (std::size_t c = 0; c < 8; ++c) hn::StoreU(values[c], kFloat, columns[c].data());
     for (std::size_t lane = 0; lane < std::min(hn::Lanes(kFloat), batch.count - first); ++lane)
         result[batch.numbers[first + lane]] = {
@@ -162,8 +163,8 @@ HWY_INLINE void separate_lanes(const PairBatch& batch, std::size_t first, const 
             {columns[4][lane], columns[5][lane], columns[6][lane], columns[7][lane]}};
 }
 
-void separate_batches(const std::array<PairBatch, 3>& batches, const PointArrays& own, const PointArrays& other,
-                      std::span<Separation> result) {
+void separate_batches(const std::array<PairBatch, 3>& batches, const PointArrays& own,
+                      const PointArrays& other, std::span<Separation> result) {
     const auto separate_all = [&]<PairKind kKind>(std::integral_constant<PairKind, kKind>) HWY_ATTR {
         const PairBatch& batch = batches[static_cast<std::size_t>(kKind)];
         for (std::size_t i = 0; i < batch.count; i += hn::Lanes(kFloat))

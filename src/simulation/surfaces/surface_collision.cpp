@@ -15,8 +15,8 @@ namespace {
 /// that the vertices keep, and need not be pushed before they are much nearer.
 constexpr float kSurfaceShare = 0.75F;
 
-/// Pairs of the deformable with itself are listed up to this share of the mean edge: in a flat sheet of squares
-/// there are none.
+/// Pairs of the deformable with itself are listed up to this share of the mean edge: in a flat sheet of
+/// squares there are none.
 constexpr float kSelfReach = 0.6F;
 
 /// A vertex that is too fast for what is listed goes its way in several passes.
@@ -73,9 +73,9 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
 
 void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders, const Collisions& collisions,
                                    const Particles& particles) {
-    carrier_ = static_cast<std::size_t>(std::find_if(colliders.begin(), colliders.end(),
-                                                     [](const Collider& c) { return c.moves(); }) -
-                                        colliders.begin());
+    carrier_ = static_cast<std::size_t>(
+        std::find_if(colliders.begin(), colliders.end(), [](const Collider& c) { return c.moves(); }) -
+        colliders.begin());
     for (std::size_t c = 0; c < models_.size(); ++c) {
         poses_[c] = colliders[c].pose;
         collisions.known_clearances(c, particles, clearances_);

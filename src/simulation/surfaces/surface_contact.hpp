@@ -10,8 +10,8 @@
 
 namespace echinus {
 
-/// Beside what a pair may close on its way: contacts that begin to push within this share of the thickness are
-/// kept ready.
+/// Beside what a pair may close on its way: contacts that begin to push within this share of the thickness
+/// are kept ready.
 inline constexpr float kReadiness = 1.0F / 8;
 /// The same beside a vertex that was pushed lately.
 inline constexpr float kAlertReadiness = 1.0F / 2;

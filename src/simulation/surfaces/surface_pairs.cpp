@@ -110,7 +110,8 @@ void SurfacePairs::list(std::uint32_t element) {
     list_reaches_[element] = reach_.listed;
     if (!found) {
         box.grow(-reach_.listed);
-        list_reaches_[element] = std::max(reach_.listed, opponent_.tree->distance(box, kFarReach * reach_.listed));
+        list_reaches_[element] =
+            std::max(reach_.listed, opponent_.tree->distance(box, kFarReach * reach_.listed));
     }
 }
 
@@ -135,17 +136,16 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
         for (std::size_t k = 0; k < own.vertex_count; ++k)
             if (own.owns_vertex(k) && is_near_box(a[k], reached))
                 near_pairs_.push_back(
-                          {{own.vertices[k], other.vertices[0], other.vertices[1], other.vertices[2]},
-                           other_number,
-                           PairKind::VertexFace});
+                    {{own.vertices[k], other.vertices[0], other.vertices[1], other.vertices[2]},
+                     other_number,
+                     PairKind::VertexFace});
     }
     if (own.is_face())
         for (std::size_t k = 0; k < other.vertex_count; ++k)
             if (other.owns_vertex(k) && is_near_box(b[k], own_box))
-                near_pairs_.push_back(
-                          {{own.vertices[0], own.vertices[1], own.vertices[2], other.vertices[k]},
-                           other_number,
-                           PairKind::FaceVertex});
+                near_pairs_.push_back({{own.vertices[0], own.vertices[1], own.vertices[2], other.vertices[k]},
+                                       other_number,
+                                       PairKind::FaceVertex});
     const auto edge_count = [](const Element& e) { return e.vertex_count == 3 ? 3U : e.vertex_count - 1U; };
     for (std::size_t i = 0; i < edge_count(own); ++i) {
         if (!own.owns_edge(i)) continue;
@@ -155,8 +155,8 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
         for (std::size_t j = 0; j < edge_count(other); ++j) {
             if (!other.owns_edge(j)) continue;
             const std::size_t j_next = (j + 1) % 3;
-            const std::array<std::uint32_t, 4> points{own.vertices[i], own.vertices[i_next], other.vertices[j],
-                                                      other.vertices[j_next]};
+            const std::array<std::uint32_t, 4> points{own.vertices[i], own.vertices[i_next],
+                                                      other.vertices[j], other.vertices[j_next]};
             if (is_near(edge_box, box_of_points(std::array{b[j], b[j_next]})))
                 near_pairs_.push_back({points, other_number, PairKind::EdgeEdge});
         }

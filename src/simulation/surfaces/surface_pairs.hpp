@@ -32,8 +32,8 @@ struct PairReach {
 /// (docs/surfaces.md).
 ///
 /// Around each vertex lies a ball, its *room*: whatever way vertices take within their rooms, nothing meets.
-/// Only a vertex that is about to leave its room is looked at: its pairs are measured anew where they are when
-/// the frame begins, and it gets a new room there. One that would leave even that one has to stay in the
+/// Only a vertex that is about to leave its room is looked at: its pairs are measured anew where they are
+/// when the frame begins, and it gets a new room there. One that would leave even that one has to stay in the
 /// convex set that its pairs' separating planes leave it.
 ///
 /// The pairs come from lists of what is near each element, which hold until one of its vertices has moved by
