@@ -56,6 +56,18 @@ TEST_F(SimulateCommand, LeavesNoParticleOfTheSmallClothInsideTheHorse) {
     expect_none_inside("horse_small.json");
 }
 
+TEST_F(SimulateCommand, LeavesNoParticleOfTheBagInsideTheTorus) {
+    expect_none_inside("bag.json");
+}
+
+TEST_F(SimulateCommand, LosesNoParticleOfTheFlagToItsPole) {
+    const nlohmann::json report = simulate((kSource / "scenes" / "flag.json").string(), {"--frames", "300"});
+    EXPECT_EQ(report.at("particles"), 496);
+    EXPECT_EQ(report.at("lost_count"), 0);
+    EXPECT_EQ(report.at("inside_at_rest"), 0);
+    EXPECT_LT(report.at("strain").at("largest"), 0.2);
+}
+
 TEST_F(SimulateCommand, LosesNoParticleToAThinPlateThatMovesAndTurns) {
     const nlohmann::json report = simulate((kSource / "scenes" / "thin_plate_small.json").string());
     EXPECT_EQ(report.at("lost_count"), 0);
