@@ -18,4 +18,5 @@
 #include <echinus/map_file.hpp>
 #include <echinus/mesh.hpp>
 #include <echinus/simulation.hpp>
+#include <echinus/surface_queries.hpp>
 #include <echinus/version.hpp>

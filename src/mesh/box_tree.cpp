@@ -16,7 +16,7 @@ Vec3f upper(const Vec3f& a, const Vec3f& b) {
 
 /// The coordinate along which a box is longest. In double: the difference of two floats may exceed all
 /// floats.
-float Vec3f::*longest_side(const Box& box) {
+float Vec3f::*longest_side(const FaceBox& box) {
     const Vec3d side = Vec3d(box.high) - Vec3d(box.low);
     if (side.x >= side.y && side.x >= side.z) return &Vec3f::x;
     return side.y >= side.z ? &Vec3f::y : &Vec3f::z;
@@ -24,11 +24,11 @@ float Vec3f::*longest_side(const Box& box) {
 
 } // namespace
 
-Box Box::around(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
+FaceBox FaceBox::around(const Vec3f& a, const Vec3f& b, const Vec3f& c) {
     return {lower(lower(a, b), c), upper(upper(a, b), c)};
 }
 
-Box Box::around(const Box& a, const Box& b) {
+FaceBox FaceBox::around(const FaceBox& a, const FaceBox& b) {
     return {lower(a.low, b.low), upper(a.high, b.high)};
 }
 
@@ -36,7 +36,7 @@ BoxTree::BoxTree(const TriangleMesh& mesh) {
     leaves_.reserve(mesh.faces.size());
     for (std::uint32_t face = 0; face < mesh.faces.size(); ++face) {
         const auto [a, b, c] = mesh.faces[face];
-        leaves_.push_back({Box::around(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]), face});
+        leaves_.push_back({FaceBox::around(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]), face});
     }
     nodes_.reserve(leaves_.size());
     build(0, static_cast<std::uint32_t>(leaves_.size()));
@@ -44,8 +44,8 @@ BoxTree::BoxTree(const TriangleMesh& mesh) {
 
 void BoxTree::build(std::uint32_t begin, std::uint32_t end) {
     const auto index = static_cast<std::uint32_t>(nodes_.size());
-    Box box = leaves_[begin].box;
-    for (std::uint32_t i = begin + 1; i < end; ++i) box = Box::around(box, leaves_[i].box);
+    FaceBox box = leaves_[begin].box;
+    for (std::uint32_t i = begin + 1; i < end; ++i) box = FaceBox::around(box, leaves_[i].box);
     nodes_.push_back({box, begin, end, 0});
     if (nodes_[index].is_leaf()) return;
     const std::uint32_t middle = begin + (end - begin) / 2;

@@ -8,15 +8,15 @@
 
 namespace echinus {
 
-/// The smallest closed box around some points, with faces parallel to the axes.
-struct Box {
+/// The smallest closed box around a face or several, parallel to the axes.
+struct FaceBox {
     Vec3f low, high;
 
-    static Box around(const Vec3f& a, const Vec3f& b, const Vec3f& c);
-    static Box around(const Box& a, const Box& b);
+    static FaceBox around(const Vec3f& a, const Vec3f& b, const Vec3f& c);
+    static FaceBox around(const FaceBox& a, const FaceBox& b);
 
     /// Touching counts.
-    bool overlaps(const Box& other) const {
+    bool overlaps(const FaceBox& other) const {
         // Without branches: which comparison fails cannot be predicted.
         return (low.x <= other.high.x) & (low.y <= other.high.y) & (low.z <= other.high.z) &
                (other.low.x <= high.x) & (other.low.y <= high.y) & (other.low.z <= high.z);
@@ -30,7 +30,7 @@ class BoxTree {
 
     /// Faces begin to end of the tree's own order. Has no children where there are at most kLeafSize.
     struct Node {
-        Box box;
+        FaceBox box;
         std::uint32_t begin, end;
         std::uint32_t right; ///< the left child is the next node
 
@@ -39,7 +39,7 @@ class BoxTree {
     };
 
     struct Leaf {
-        Box box;
+        FaceBox box;
         std::uint32_t face;
     };
 

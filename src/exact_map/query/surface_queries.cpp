@@ -1,0 +1,265 @@
+// Triangles against the surface: the face tree's boxes around the triangle's box, then each face.
+
+#include "exact_map/layout.hpp"
+#include "exact_map/query/face_tree_walk.hpp"
+#include "exact_map/query/triangle_distance.hpp"
+#include "geometry/parallel.hpp"
+#include "mesh/simplices_meet.hpp"
+
+#include <echinus/surface_queries.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace echinus {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+bool all_finite(const TrianglePoints& t) {
+    return is_finite(t[0]) && is_finite(t[1]) && is_finite(t[2]);
+}
+
+/// Beyond the range of float: the end of the range.
+float rounded_down(double value) {
+    constexpr double kMost = std::numeric_limits<float>::max();
+    const auto nearest = static_cast<float>(std::clamp(value, -kMost, kMost));
+    return nearest <= value ? nearest : std::nextafter(nearest, -kInfinity);
+}
+
+float rounded_up(double value) {
+    return -rounded_down(-value);
+}
+
+/// A triangle in lattice steps, and the box around it.
+struct PlacedTriangle {
+    TriangleCorners corners;
+    Vec3f low, high; ///< rounded outwards
+    /// More than the coordinates of the triangle and of faces are off, with all that distance_from_below()
+    /// makes of them: 2^-46 of their sum.
+    double rounding;
+
+    PlacedTriangle(const LatticeFrame& frame, const TrianglePoints& points)
+        : PlacedTriangle(TriangleCorners{frame.to_lattice(points[0]), frame.to_lattice(points[1]),
+                                         frame.to_lattice(points[2])},
+                         length_of(frame.centre) * frame.inverse_step) {}
+
+    /// @param centre_distance  of the frame, whose subtraction rounded the corners
+    PlacedTriangle(const TriangleCorners& places, double centre_distance) : corners(places) {
+        const auto& [a, b, c] = places;
+        low = {rounded_down(std::min({a.x, b.x, c.x})), rounded_down(std::min({a.y, b.y, c.y})),
+               rounded_down(std::min({a.z, b.z, c.z}))};
+        high = {rounded_up(std::max({a.x, b.x, c.x})), rounded_up(std::max({a.y, b.y, c.y})),
+                rounded_up(std::max({a.z, b.z, c.z}))};
+        rounding = (length_of(a) + length_of(b) + length_of(c) + centre_distance +
+                    3.0 * static_cast<double>(kLatticeExtent)) *
+                   0x1p-46;
+    }
+
+    static double length_of(const Vec3d& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
+};
+
+/// Lower bounds of the squared distances between the box of a triangle and those of a node's children, in
+/// single precision: boxes are a step larger, and what the sums lose by rounding is taken off.
+class BoxGaps {
+  public:
+    BoxGaps(const Vec3f& low, const Vec3f& high) : low_(low), high_(high) {}
+
+    ChildDistances operator()(const TreeNode& node) const {
+        ChildDistances result;
+        for (std::size_t k = 0; k < TreeNode::kWidth; ++k) {
+            const float x = gap(node.low[0][k], node.high[0][k], low_.x, high_.x);
+            const float y = gap(node.low[1][k], node.high[1][k], low_.y, high_.y);
+            const float z = gap(node.low[2][k], node.high[2][k], low_.z, high_.z);
+            const float sum = (x * x + y * y + z * z) * (1 - 0x1p-20F);
+            result[k] = node.low[0][k] > node.high[0][k] ? kInfinity : sum;
+        }
+        return result;
+    }
+
+  private:
+    static constexpr float kUnit = ExactMapView::kBoxUnit;
+    static constexpr float kSlack = 1;
+
+    static float gap(std::int16_t box_low, std::int16_t box_high, float low, float high) {
+        const float above = static_cast<float>(box_low) * kUnit - high;
+        const float below = low - static_cast<float>(box_high) * kUnit;
+        const float larger = (above > below ? above : below) - kSlack;
+        return larger > 0 ? larger : 0;
+    }
+
+    Vec3f low_, high_;
+};
+
+/// The same between a box and that of one face.
+float box_gap_sq(const std::array<LatticePoint, 3>& face, const Vec3f& low, const Vec3f& high) {
+    const auto& [a, b, c] = face;
+    const auto gap = [](std::int64_t p, std::int64_t q, std::int64_t r, float box_low, float box_high) {
+        const float above = static_cast<float>(std::min({p, q, r})) - box_high;
+        const float below = box_low - static_cast<float>(std::max({p, q, r}));
+        return std::max({above, below, 0.0F});
+    };
+    const float x = gap(a.x, b.x, c.x, low.x, high.x);
+    const float y = gap(a.y, b.y, c.y, low.y, high.y);
+    const float z = gap(a.z, b.z, c.z, low.z, high.z);
+    return (x * x + y * y + z * z) * (1 - 0x1p-20F);
+}
+
+/// Lattice steps: farther away nothing is looked for. Its square is a float.
+constexpr double kFarthest = 1e18;
+
+/// A float above a square, finite so that missing children lie beyond it. @pre distance <= kFarthest
+float bound_of(double distance) {
+    return static_cast<float>(distance * distance) * (1 + 0x1p-20F);
+}
+
+TriangleCorners corners_in_double(const std::array<LatticePoint, 3>& face) {
+    return {Vec3d(face[0]), Vec3d(face[1]), Vec3d(face[2])};
+}
+
+/// Calls visit(face, its corners) for the faces whose boxes are not beyond `bound`, which visit may lower.
+template <typename Visit>
+void visit_near_faces(const ExactMapView& map, const Vec3f& low, const Vec3f& high, const float& bound,
+                      const Visit& visit) {
+    walk_near_leaves(map, bound, BoxGaps(low, high), [&](const LeafFaces& faces) {
+        for (std::uint32_t face = faces.first; face < faces.last; ++face) {
+            const auto corners = face_corners(map, face);
+            if (box_gap_sq(corners, low, high) <= bound) visit(face, corners);
+        }
+    });
+}
+
+/// The nearest face within `farthest`, and its distance from below; lattice steps.
+struct NearestFace {
+    std::uint32_t face;
+    double distance;
+};
+
+std::optional<NearestFace> nearest_face(const ExactMapView& map, const PlacedTriangle& triangle,
+                                        double farthest) {
+    std::optional<NearestFace> nearest;
+    float bound = bound_of(farthest);
+    visit_near_faces(map, triangle.low, triangle.high, bound, [&](std::uint32_t face, const auto& corners) {
+        const double distance =
+            distance_from_below(triangle.corners, corners_in_double(corners), triangle.rounding);
+        const double limit = nearest ? nearest->distance : farthest;
+        if (distance > limit || (nearest && distance == limit && face > nearest->face)) return;
+        nearest = NearestFace{face, distance};
+        bound = bound_of(distance);
+    });
+    return nearest;
+}
+
+std::int32_t number_of(const ExactMapView& map, std::uint32_t face) {
+    return static_cast<std::int32_t>(map.face_numbers[face]);
+}
+
+/// The lattice point nearest to a place, in floats.
+Vec3f snapped(const Vec3d& place) {
+    return Vec3f(Vec3d(std::nearbyint(place.x), std::nearbyint(place.y), std::nearbyint(place.z)));
+}
+
+void append_faces_within(const ExactMapView& map, const PlacedTriangle& triangle, double reach,
+                         std::vector<std::uint32_t>& faces) {
+    const std::size_t first = faces.size();
+    const float bound = bound_of(reach);
+    visit_near_faces(map, triangle.low, triangle.high, bound, [&](std::uint32_t face, const auto& corners) {
+        if (distance_from_below(triangle.corners, corners_in_double(corners), triangle.rounding) <= reach)
+            faces.push_back(map.face_numbers[face]);
+    });
+    std::sort(faces.begin() + static_cast<std::ptrdiff_t>(first), faces.end());
+}
+
+} // namespace
+
+bool intersects(const ExactMapView& map, const TrianglePoints& triangle_local) noexcept {
+    if (!all_finite(triangle_local)) return false;
+    const LatticeFrame frame = frame_of(map);
+    Simplex triangle;
+    for (const Vec3f& corner : triangle_local) triangle.push_back(snapped(frame.to_lattice(corner)));
+    const auto& [a, b, c] = triangle.corners;
+    if (!all_finite(triangle.corners)) return false;
+    const Vec3f low{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})};
+    const Vec3f high{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})};
+    float bound = 0; // less than 0: found
+    visit_near_faces(map, low, high, bound, [&](std::uint32_t, const auto& corners) {
+        const Simplex face{{Vec3f(corners[0]), Vec3f(corners[1]), Vec3f(corners[2])}, 3};
+        if (bound == 0 && simplices_meet(triangle, face)) bound = -1;
+    });
+    return bound < 0;
+}
+
+Clearance clearance(const ExactMapView& map, const TrianglePoints& triangle_local, float farthest) noexcept {
+    if (!all_finite(triangle_local)) return {.distance = farthest};
+    const LatticeFrame frame = frame_of(map);
+    const double limit = std::min(farthest * frame.inverse_step, kFarthest);
+    const auto nearest = nearest_face(map, PlacedTriangle(frame, triangle_local), limit);
+    if (!nearest) return {.distance = std::min(farthest, rounded_down(kFarthest * frame.step))};
+    const double distance = nearest->distance * frame.step * (1 - 0x1p-50);
+    return {.distance = rounded_down(distance), .face = number_of(map, nearest->face)};
+}
+
+TriangleSweepHit sweep(const ExactMapView& map, const TrianglePoints& from_local,
+                       const TrianglePoints& to_local) noexcept {
+    constexpr double kArrived = 4; // lattice steps: R / 2^17
+    constexpr int kMostMoves = 100;
+    if (!all_finite(from_local) || !all_finite(to_local)) return {};
+    const LatticeFrame frame = frame_of(map);
+    const double centre_distance = PlacedTriangle::length_of(frame.centre) * frame.inverse_step;
+    TriangleCorners from, way;
+    double longest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        from[k] = frame.to_lattice(from_local[k]);
+        way[k] = frame.to_lattice(to_local[k]) - from[k];
+        longest = std::max(longest, length(way[k]));
+    }
+    double fraction = 0;
+    for (int move = 0;; ++move) {
+        const TriangleCorners now{from[0] + way[0] * fraction, from[1] + way[1] * fraction,
+                                  from[2] + way[2] * fraction};
+        const double rest = std::min(longest * (1 - fraction), kFarthest);
+        const auto nearest =
+            nearest_face(map, PlacedTriangle(now, centre_distance), std::max(rest, kArrived));
+        if (!nearest) return {};
+        if (nearest->distance <= kArrived || move == kMostMoves)
+            return {.fraction = rounded_down(fraction), .face = number_of(map, nearest->face)};
+        if (nearest->distance >= rest) return {};
+        fraction += nearest->distance / longest * (1 - 0x1p-40);
+    }
+}
+
+void faces_within_batch(const ExactMapView& map, StridedSpan<const Vec3f> vertices_local,
+                        std::span<const Triangle> triangles, float reach, FaceLists& lists,
+                        unsigned thread_count) {
+    // Blocks of a fixed size, so that what they find can be put one after the other.
+    constexpr std::size_t kBlockSize = 256;
+    struct Block {
+        std::vector<std::uint32_t> faces;
+    };
+    const std::size_t block_count = (triangles.size() + kBlockSize - 1) / kBlockSize;
+    const LatticeFrame frame = frame_of(map);
+    const double reach_steps = std::min(reach * frame.inverse_step * (1 + 0x1p-50), kFarthest);
+    lists.offsets.assign(triangles.size() + 1, 0);
+    std::vector<Block> blocks(block_count);
+    parallel_for(block_count, thread_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t block = begin; block < end; ++block) {
+            const std::size_t last = std::min(triangles.size(), (block + 1) * kBlockSize);
+            for (std::size_t i = block * kBlockSize; i < last; ++i) {
+                const auto [a, b, c] = triangles[i];
+                const TrianglePoints points{vertices_local[a], vertices_local[b], vertices_local[c]};
+                const std::size_t before = blocks[block].faces.size();
+                if (all_finite(points))
+                    append_faces_within(map, PlacedTriangle(frame, points), reach_steps, blocks[block].faces);
+                lists.offsets[i + 1] = static_cast<std::uint32_t>(blocks[block].faces.size() - before);
+            }
+        }
+    });
+    for (std::size_t i = 0; i < triangles.size(); ++i) lists.offsets[i + 1] += lists.offsets[i];
+    lists.faces.clear();
+    for (const Block& block : blocks)
+        lists.faces.insert(lists.faces.end(), block.faces.begin(), block.faces.end());
+}
+
+} // namespace echinus

@@ -1,0 +1,107 @@
+#include "exact_map/query/triangle_distance.hpp"
+
+#include <algorithm>
+
+namespace echinus {
+
+namespace {
+
+/// The shortest vector found so far between a point of the one triangle and a point of the other.
+struct Shortest {
+    Vec3d vector; ///< from b to a
+    double length_sq = std::numeric_limits<double>::infinity();
+
+    void offer(const Vec3d& candidate) {
+        const double candidate_sq = dot(candidate, candidate);
+        if (!(candidate_sq < length_sq)) return;
+        vector = candidate;
+        length_sq = candidate_sq;
+    }
+};
+
+/// Between two segments, from p along u and from q along v (Ericson, Real-Time Collision Detection, 2005,
+/// section 5.1.9).
+Vec3d between_segments(const Vec3d& p, const Vec3d& u, const Vec3d& q, const Vec3d& v) {
+    const Vec3d r = p - q;
+    const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), ur = dot(u, r), vr = dot(v, r);
+    const double determinant = uu * vv - uv * uv;
+    double s = determinant > 0 ? clamp01((uv * vr - ur * vv) / determinant) : 0;
+    double t = vv > 0 ? (uv * s + vr) / vv : 0;
+    if (!(t >= 0 && t <= 1)) {
+        t = t > 1 ? 1 : 0;
+        s = uu > 0 ? clamp01((uv * t - ur) / uu) : 0;
+    }
+    return r + u * s - v * t;
+}
+
+/// Offers the vector from the plane of a triangle to a point above its inside; there is none from a triangle
+/// without area. Elsewhere edges are nearer.
+template <typename Offer>
+void offer_height(const TriangleCorners& triangle, const Vec3d& normal, const Vec3d& point,
+                  const Offer& offer) {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (!(dot(cross(triangle[(k + 1) % 3] - triangle[k], point - triangle[k]), normal) > 0)) return;
+    offer(normal * (dot(point - triangle[0], normal) / dot(normal, normal)));
+}
+
+Vec3d normal_of(const TriangleCorners& t) {
+    return cross(t[1] - t[0], t[2] - t[1]);
+}
+
+Vec3d shortest_between(const TriangleCorners& a, const TriangleCorners& b) {
+    Shortest shortest;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+            shortest.offer(between_segments(a[i], a[(i + 1) % 3] - a[i], b[j], b[(j + 1) % 3] - b[j]));
+    const Vec3d a_normal = normal_of(a), b_normal = normal_of(b);
+    for (std::size_t k = 0; k < 3; ++k) {
+        offer_height(b, b_normal, a[k], [&](const Vec3d& v) { shortest.offer(v); });
+        offer_height(a, a_normal, b[k], [&](const Vec3d& v) { shortest.offer(-v); });
+    }
+    return shortest.vector;
+}
+
+/// How far the triangles are apart along a direction, of whatever length, seen from b. Negative: they
+/// overlap.
+double gap_along(const Vec3d& direction, const TriangleCorners& a, const TriangleCorners& b) {
+    const double size = length(direction);
+    if (!(size > 0)) return 0;
+    const double low = std::min({dot(direction, a[0]), dot(direction, a[1]), dot(direction, a[2])});
+    const double high = std::max({dot(direction, b[0]), dot(direction, b[1]), dot(direction, b[2])});
+    return (low - high) / size;
+}
+
+/// Along every direction that can be the right one where nearest points are ill-determined, because edges are
+/// nearly parallel or triangles are slivers.
+double careful_gap(const TriangleCorners& a, const TriangleCorners& b) {
+    double gap = 0;
+    const auto try_both = [&](const Vec3d& direction) {
+        gap = std::max({gap, gap_along(direction, a, b), gap_along(-direction, a, b)});
+    };
+    try_both(normal_of(a));
+    try_both(normal_of(b));
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) {
+            const Vec3d u = a[(i + 1) % 3] - a[i], v = b[(j + 1) % 3] - b[j];
+            try_both(cross(u, v));
+            try_both(cross(cross(u, b[j] - a[i]), u)); // across the edge of a, towards the corner of b
+            try_both(cross(cross(v, a[i] - b[j]), v));
+            try_both(b[j] - a[i]);
+        }
+    return gap;
+}
+
+} // namespace
+
+double distance_from_below(const TriangleCorners& a, const TriangleCorners& b, double rounding) noexcept {
+    const Vec3d& origin = b[0];
+    const TriangleCorners near_a{a[0] - origin, a[1] - origin, a[2] - origin};
+    const TriangleCorners near_b{Vec3d{}, b[1] - origin, b[2] - origin};
+    const Vec3d shortest = shortest_between(near_a, near_b);
+    constexpr double kGood = 1 - 0x1p-20;
+    double gap = gap_along(shortest, near_a, near_b);
+    if (!(gap >= length(shortest) * kGood)) gap = std::max(gap, careful_gap(near_a, near_b));
+    return std::max(gap - rounding, 0.0);
+}
+
+} // namespace echinus
