@@ -173,6 +173,19 @@ describe('A simulation', () => {
         for (let i = 0; i < simulation.particleCount; ++i) touching += contacts.at(i).found;
         assert.ok(touching > 50, `${touching} touch`);
     });
+    test('of a cloth that is a mesh takes the mesh that its caller has read', () => {
+        const description = { model: { box: {} }, cloth: { mesh: 'bag.obj', rest_mesh: 'wide.obj', position: [0, 0, 2], pins: [0] } };
+        const scene = echinus.parseScene(description);
+        assert.deepEqual([scene.clothFile, scene.clothRestFile, scene.particleCount], ['bag.obj', 'wide.obj', null]);
+        const map = scene.buildMap(scene.makeModel());
+        const bag = echinus.makeSphere(0.5, 12, 8);
+        const simulation = scene.makeSimulation(map, { cloth: bag, clothAtRest: echinus.makeSphere(0.7, 12, 8) });
+        assert.equal(simulation.particleCount, bag.vertexCount);
+        assert.deepEqual(simulation.faces, bag.faces);
+        simulation.step(10);
+        assert.throws(() => scene.makeSimulation(map, { cloth: bag }), /cloth\.rest_mesh is the file wide\.obj: read it/);
+        assert.throws(() => scene.makeSimulation(map), /cloth\.mesh is the file bag\.obj: read it/);
+    });
     test('moves its positions in place', () => {
         const scene = echinus.parseScene(readScene('torus_small.json'));
         const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));

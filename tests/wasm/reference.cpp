@@ -130,6 +130,10 @@ const char* const kSimulations[] = {
     R"({"solver": "xpbd", "substeps": 5, "collider": {"angular_velocity": [0, 90, 30], "scale": [1, 1.2, 0.9]}})",
     R"({"collider": {"position": [0.1, 0, -0.2], "rotation": {"axis": [1, 1, 0], "degrees": 30}, "linear_velocity": [0, 0, 1]},
         "material": {"friction": 0.1, "drag": 0.01}})",
+    R"({"collider": {"angular_velocity": [0, 0, 90]}, "cloth": {"size": null, "particles": null, "pins": null,
+        "mesh": {"sphere": {"radius": 0.9, "segments": [40, 20]}}, "position": [0, 0, 1.2], "attachments": [3]}})",
+    R"({"solver": "xpbd", "cloth": {"size": null, "particles": null, "pins": null, "bending": "angles",
+        "mesh": {"torus": {"major": 1, "minor": 0.3}}, "position": [0.2, 0, 0.8]}})",
 };
 const char* const kScene = R"({
     "model": {"torus": {"segments": [40, 16]}},

@@ -114,6 +114,16 @@ test('a page that carries the horse carries its notice, and the licence of three
     await page.context().close();
 });
 
+test('a cloth of any shape is drawn', { skip }, async () => {
+    const page = await browser.open(record('recorded_bag', inProject('scenes/bag.json'), '--frames', '140'), SMALL);
+    await scrubTo(page, await lastOf(page));
+    assert.match(await page.locator('#about').textContent(), /faces of the cloth\s*3.480/);
+    assert.equal(await figure(page, 'inside'), '0');
+    await picture(page, 'player_bag');
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
 test('a turning model is shown turning', { skip }, async () => {
     const scene = inProject('out/web/turning_box.json');
     const outOfSight = { size: [1, 1], particles: [2, 2], position: [0, 0, 50] };

@@ -389,9 +389,12 @@ export interface DistanceMapDescription extends MapDescription {
 
 // ---- Scenes and simulations
 
+/** A mesh that is generated. */
+export type Shape = { torus: object } | { sphere: object } | { box: object };
+
 /** Keys and limits: docs/scenes.md. Angles are degrees. */
 export interface SceneDescription {
-    model: string | { torus: object } | { sphere: object } | { box: object };
+    model: string | Shape;
     repair?: readonly Repair[];
     map?: MapOptions;
     collider?: {
@@ -401,16 +404,12 @@ export interface SceneDescription {
         linear_velocity?: Vec3;
         angular_velocity?: Vec3;
     };
-    cloth: {
-        size: readonly [number, number];
-        particles?: readonly [number, number];
+    cloth: (Sheet | MeshCloth) & {
         position?: Vec3;
         rotation?: { axis: Vec3; degrees: number };
         velocity?: Vec3;
         /** Default: half the distance between neighbouring particles. */
         thickness?: number;
-        /** [column, row] of fixed particles. */
-        pins?: readonly (readonly [number, number])[];
     };
     material?: {
         friction?: number;
@@ -429,6 +428,27 @@ export interface SceneDescription {
     at_rest?: { distance?: number; speed?: number; frames?: number };
 }
 
+/** A rectangular cloth. */
+export interface Sheet {
+    size: readonly [number, number];
+    particles?: readonly [number, number];
+    /** [column, row] of fixed particles. */
+    pins?: readonly (readonly [number, number])[];
+}
+
+/** Vertices by their numbers, or all in a box. */
+export type VertexChoice = readonly number[] | { from: Vec3; to: Vec3 };
+
+/** A cloth of any shape. */
+export interface MeshCloth {
+    mesh: string | Shape;
+    rest_mesh?: string | Shape;
+    scale?: number;
+    bending?: 'angles' | 'sticks';
+    pins?: VertexChoice;
+    attachments?: VertexChoice;
+}
+
 /** A validated scene. */
 export class Scene extends Deletable {
     /** The name of the model's file in the scene; null when the model is a generated shape. */
@@ -437,17 +457,22 @@ export class Scene extends Deletable {
     readonly frameLimit: number;
     /** Seconds. */
     readonly timeStep: number;
-    readonly particleCount: number;
+    /** The names of the files of a cloth that is a mesh; null where it is none, or a generated shape. */
+    readonly clothFile: string | null;
+    readonly clothRestFile: string | null;
+    /** Of a sheet; null where the cloth is a mesh. */
+    readonly particleCount: number | null;
     /** The generated shape, repaired by the scene's options. @throws InvalidScene for a file: read and repair() it instead */
     makeModel(): Mesh;
     /** With the scene's options. */
     buildMap(mesh: Mesh): AnyMap;
     /**
      * The scene's cloth and collider, ready to step. The map may be of another kind than the scene's.
-     * @param options  allowOpenCollider: accept the exact map of an open mesh, near whose gaps particles get in and out
-     * @throws InvalidOptions for the exact map of an open mesh otherwise
+     * @param options  allowOpenCollider: accept the exact map of an open mesh, near whose gaps particles get in and out;
+     *                 cloth, clothAtRest: the meshes of clothFile and clothRestFile, welded
+     * @throws InvalidOptions for the exact map of an open mesh otherwise, and where a cloth's mesh is not given; InvalidMesh for one that is no cloth
      */
-    makeSimulation(map: AnyMap, options?: { allowOpenCollider?: boolean }): Simulation;
+    makeSimulation(map: AnyMap, options?: { allowOpenCollider?: boolean; cloth?: Mesh; clothAtRest?: Mesh }): Simulation;
 }
 
 /** Cloth on one collider. The same scene and map give the same positions, bit for bit, in every browser and in native C++. */

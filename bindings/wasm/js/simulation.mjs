@@ -17,8 +17,10 @@ export class Scene extends Handle {
     buildMap(mesh) {
         return wrapMap(this.core, this.core.try('scene_build_map', this.address, requireOwn(this.core, mesh, Mesh)));
     }
-    makeSimulation(map, { allowOpenCollider = false } = {}) {
-        return new Simulation(this.core, this.core.try('simulation_make', this.address, requireMap(this.core, map), allowOpenCollider ? 1 : 0));
+    makeSimulation(map, { allowOpenCollider = false, cloth = null, clothAtRest = null } = {}) {
+        const mesh = (own) => (own === null ? 0 : requireOwn(this.core, own, Mesh));
+        const values = [requireMap(this.core, map), allowOpenCollider ? 1 : 0, mesh(cloth), mesh(clothAtRest)];
+        return new Simulation(this.core, this.core.try('simulation_make', this.address, ...values));
     }
 }
 

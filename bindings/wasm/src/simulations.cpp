@@ -18,16 +18,33 @@ json to_json(const SceneModel& model) {
     return nullptr;
 }
 
+/// The names of the files that the scene's cloth is made of.
+json cloth_files(const Scene& scene) {
+    json files = {{"clothFile", nullptr}, {"clothRestFile", nullptr}};
+    if (!scene.mesh_cloth) return files;
+    files["clothFile"] = to_json(scene.mesh_cloth->mesh);
+    if (scene.mesh_cloth->rest_mesh) files["clothRestFile"] = to_json(*scene.mesh_cloth->rest_mesh);
+    return files;
+}
+
+/// Null for a mesh, whose vertices may be known to the caller only.
+json particle_count(const Scene& scene) {
+    if (scene.mesh_cloth) return nullptr;
+    return scene.cloth.column_count * scene.cloth.row_count;
+}
+
 json describe(const Scene& scene) {
     json repairs = json::array();
     if (scene.repair.drop_duplicate_faces) repairs.push_back("duplicate_faces");
     if (scene.repair.drop_doubled_patches) repairs.push_back("doubled_patches");
     if (scene.repair.flip_inside_out) repairs.push_back("inside_out");
-    return {{"modelFile", to_json(scene.model)},
-            {"repair", repairs},
-            {"frameLimit", scene.frame_limit},
-            {"timeStep", scene.simulation.time_step},
-            {"particleCount", scene.cloth.column_count * scene.cloth.row_count}};
+    json description = cloth_files(scene);
+    description.update({{"modelFile", to_json(scene.model)},
+                        {"repair", repairs},
+                        {"frameLimit", scene.frame_limit},
+                        {"timeStep", scene.simulation.time_step},
+                        {"particleCount", particle_count(scene)}});
+    return description;
 }
 
 /// The scene's generated mesh, repaired by the scene's options.
@@ -94,12 +111,15 @@ ECHINUS_EXPORT(scene_delete) void scene_delete(Scene* scene) {
     delete scene;
 }
 
+/// @param cloth, rest  meshes of a cloth that is made of files, or null
 ECHINUS_EXPORT(simulation_make)
-Simulation* simulation_make(const Scene* scene, const AnyMap* map, bool allow_open_collider) {
+Simulation* simulation_make(const Scene* scene, const AnyMap* map, bool allow_open_collider,
+                            const TriangleMesh* cloth, const TriangleMesh* rest) {
     return make_handle([&] {
         Scene with_choice = *scene;
         with_choice.simulation.allow_open_colliders = allow_open_collider;
-        return make_simulation(with_choice, *map);
+        const auto or_empty = [](const TriangleMesh* mesh) { return mesh ? *mesh : TriangleMesh{}; };
+        return make_simulation(with_choice, *map, {or_empty(cloth), or_empty(rest)});
     });
 }
 ECHINUS_EXPORT(simulation_continue)
