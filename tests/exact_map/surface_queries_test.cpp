@@ -1,3 +1,4 @@
+#include "support/instruction_sets.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -285,6 +286,41 @@ TEST(FacesWithin, AreTheSameOnAnyNumberOfThreadsAndInAListThatWasUsedBefore) {
     faces_within_batch(map.view(), sphere.vertices, {}, 0.05F, expected);
     EXPECT_EQ(expected.offsets, std::vector<std::uint32_t>{0});
     EXPECT_TRUE(expected.faces.empty());
+}
+
+TEST(FacesWithin, AndClearancesAreTheSameUnderEveryInstructionSet) {
+    Random random(7);
+    const ExactMap map = ExactMap::build(make_torus(1, 0.4, 60, 24));
+    TriangleMesh sheet = make_sphere(1.1, 60, 40);
+    for (Vec3f& vertex : sheet.vertices) vertex += in_cube(random, 0.02F);
+    sheet.faces.push_back({0, 1, 1}); // an edge, a point, a sliver and a triangle larger than the lattice
+    sheet.faces.push_back({0, 0, 0});
+    sheet.vertices.push_back({1, 0, 1e-6F});
+    sheet.vertices.push_back({1e3F, 1e3F, 0});
+    sheet.vertices.push_back({-1e3F, 1e3F, 0});
+    const auto last = static_cast<std::uint32_t>(sheet.vertices.size() - 1);
+    sheet.faces.push_back({0, 1, last - 2});
+    sheet.faces.push_back({last - 2, last - 1, last});
+    FaceLists expected;
+    std::vector<Clearance> clearances;
+    under_each_instruction_set([&](std::string_view name) {
+        FaceLists lists;
+        std::vector<Clearance> found;
+        faces_within_batch(map.view(), sheet.vertices, sheet.faces, 0.05F, lists);
+        for (std::size_t face = 0; face < sheet.faces.size(); ++face)
+            found.push_back(clearance(map.view(), corners_of(sheet, face)));
+        if (clearances.empty()) {
+            expected = lists;
+            clearances = found;
+            EXPECT_GT(expected.faces.size(), 1000U);
+        }
+        EXPECT_EQ(lists.offsets, expected.offsets) << name;
+        EXPECT_EQ(lists.faces, expected.faces) << name;
+        for (std::size_t face = 0; face < found.size(); ++face) {
+            ASSERT_EQ(found[face].distance, clearances[face].distance) << name << ", " << face;
+            ASSERT_EQ(found[face].face, clearances[face].face) << name << ", " << face;
+        }
+    });
 }
 
 TEST(FacesWithin, HoldTheFaceOfTheClearance) {

@@ -2,9 +2,11 @@
 
 #include "exact_map/layout.hpp"
 #include "exact_map/query/face_tree_walk.hpp"
+#include "exact_map/query/leaf_bounds.hpp"
 #include "exact_map/query/triangle_distance.hpp"
 #include "geometry/parallel.hpp"
 #include "mesh/simplices_meet.hpp"
+#include "simd/dispatch.hpp"
 
 #include <echinus/surface_queries.hpp>
 
@@ -33,6 +35,14 @@ float rounded_up(double value) {
     return -rounded_down(-value);
 }
 
+Vec3f rounded_down(const Vec3d& v) {
+    return {rounded_down(v.x), rounded_down(v.y), rounded_down(v.z)};
+}
+
+Vec3f rounded_up(const Vec3d& v) {
+    return {rounded_up(v.x), rounded_up(v.y), rounded_up(v.z)};
+}
+
 /// A triangle in lattice steps, and the box around it.
 struct PlacedTriangle {
     TriangleCorners corners;
@@ -40,6 +50,7 @@ struct PlacedTriangle {
     /// More than the coordinates of the triangle and of faces are off, with all that distance_from_below()
     /// makes of them: 2^-46 of their sum.
     double rounding;
+    std::optional<NearTriangle> near; ///< for kernels; absent when they are off, it is far away or large
 
     PlacedTriangle(const LatticeFrame& frame, const TrianglePoints& points)
         : PlacedTriangle(TriangleCorners{frame.to_lattice(points[0]), frame.to_lattice(points[1]),
@@ -49,13 +60,23 @@ struct PlacedTriangle {
     /// @param centre_distance  of the frame, whose subtraction rounded the corners
     PlacedTriangle(const TriangleCorners& places, double centre_distance) : corners(places) {
         const auto& [a, b, c] = places;
-        low = {rounded_down(std::min({a.x, b.x, c.x})), rounded_down(std::min({a.y, b.y, c.y})),
-               rounded_down(std::min({a.z, b.z, c.z}))};
-        high = {rounded_up(std::max({a.x, b.x, c.x})), rounded_up(std::max({a.y, b.y, c.y})),
-                rounded_up(std::max({a.z, b.z, c.z}))};
+        const Vec3d least{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})};
+        const Vec3d most{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})};
+        low = rounded_down(least);
+        high = rounded_up(most);
         rounding = (length_of(a) + length_of(b) + length_of(c) + centre_distance +
                     3.0 * static_cast<double>(kLatticeExtent)) *
                    0x1p-46;
+        const auto within_range = [](const Vec3d& v) {
+            return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}) < NearTriangle::kRange;
+        };
+        if (!use_kernels() || !within_range(least) || !within_range(most)) return;
+        const Vec3<std::int32_t> origin(rounded(a));
+        const Vec3d from(origin);
+        near = {.origin = origin,
+                .corners = {Vec3f(a - from), Vec3f(b - from), Vec3f(c - from)},
+                .low = rounded_down(least - from),
+                .high = rounded_up(most - from)};
     }
 
     static double length_of(const Vec3d& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
@@ -115,19 +136,26 @@ float bound_of(double distance) {
     return static_cast<float>(distance * distance) * (1 + 0x1p-20F);
 }
 
-TriangleCorners corners_in_double(const std::array<LatticePoint, 3>& face) {
-    return {Vec3d(face[0]), Vec3d(face[1]), Vec3d(face[2])};
+/// A lower bound by vector instructions must be above a distance by this factor to decide as
+/// distance_from_below() does, whose results may be below the distance by rounding.
+constexpr double kClear = 1 - 0x1p-12;
+
+double distance_from_below(const ExactMapView& map, std::uint32_t face, const PlacedTriangle& triangle) {
+    const auto [a, b, c] = face_corners(map, face);
+    return distance_from_below(triangle.corners, {Vec3d(a), Vec3d(b), Vec3d(c)}, triangle.rounding);
 }
 
-/// Calls visit(face, its corners) for the faces whose boxes are not beyond `bound`, which visit may lower.
+/// Calls visit(LeafFaces, LeafBounds) for the leaves with a face whose box is not beyond `bound`, which visit
+/// may lower.
 template <typename Visit>
-void visit_near_faces(const ExactMapView& map, const Vec3f& low, const Vec3f& high, const float& bound,
-                      const Visit& visit) {
-    walk_near_leaves(map, bound, BoxGaps(low, high), [&](const LeafFaces& faces) {
-        for (std::uint32_t face = faces.first; face < faces.last; ++face) {
-            const auto corners = face_corners(map, face);
-            if (box_gap_sq(corners, low, high) <= bound) visit(face, corners);
-        }
+void visit_near_leaves(const ExactMapView& map, const PlacedTriangle& triangle, const float& bound,
+                       const Visit& visit) {
+    LeafBounds bounds;
+    bounds.lower.fill(0);
+    bounds.upper.fill(kInfinity);
+    walk_near_leaves(map, bound, BoxGaps(triangle.low, triangle.high), [&](const LeafFaces& faces) {
+        if (!triangle.near || bound_leaf_distances(map, faces, *triangle.near, bound, bounds))
+            visit(faces, bounds);
     });
 }
 
@@ -140,14 +168,22 @@ struct NearestFace {
 std::optional<NearestFace> nearest_face(const ExactMapView& map, const PlacedTriangle& triangle,
                                         double farthest) {
     std::optional<NearestFace> nearest;
-    float bound = bound_of(farthest);
-    visit_near_faces(map, triangle.low, triangle.high, bound, [&](std::uint32_t face, const auto& corners) {
-        const double distance =
-            distance_from_below(triangle.corners, corners_in_double(corners), triangle.rounding);
-        const double limit = nearest ? nearest->distance : farthest;
-        if (distance > limit || (nearest && distance == limit && face > nearest->face)) return;
-        nearest = NearestFace{face, distance};
-        bound = bound_of(distance);
+    double limit = farthest; // not below the distance of the nearest face, where there is one within farthest
+    float bound = bound_of(limit);
+    visit_near_leaves(map, triangle, bound, [&](const LeafFaces& faces, const LeafBounds& bounds) {
+        for (std::uint32_t lane = 0; lane < faces.last - faces.first; ++lane)
+            limit = std::min(limit, double{bounds.upper[lane]});
+        for (std::uint32_t lane = 0; lane < faces.last - faces.first; ++lane) {
+            if (bounds.lower[lane] * kClear > limit) continue;
+            const std::uint32_t face = faces.first + lane;
+            const double distance = distance_from_below(map, face, triangle);
+            if (distance > limit || (nearest && (distance > nearest->distance ||
+                                                 (distance == nearest->distance && face > nearest->face))))
+                continue;
+            nearest = NearestFace{face, distance};
+            limit = distance;
+        }
+        bound = bound_of(limit);
     });
     return nearest;
 }
@@ -165,9 +201,13 @@ void append_faces_within(const ExactMapView& map, const PlacedTriangle& triangle
                          std::vector<std::uint32_t>& faces) {
     const std::size_t first = faces.size();
     const float bound = bound_of(reach);
-    visit_near_faces(map, triangle.low, triangle.high, bound, [&](std::uint32_t face, const auto& corners) {
-        if (distance_from_below(triangle.corners, corners_in_double(corners), triangle.rounding) <= reach)
-            faces.push_back(map.face_numbers[face]);
+    visit_near_leaves(map, triangle, bound, [&](const LeafFaces& leaf, const LeafBounds& bounds) {
+        for (std::uint32_t lane = 0; lane < leaf.last - leaf.first; ++lane) {
+            if (bounds.lower[lane] * kClear > reach) continue;
+            const std::uint32_t face = leaf.first + lane;
+            if (bounds.upper[lane] <= reach || distance_from_below(map, face, triangle) <= reach)
+                faces.push_back(map.face_numbers[face]);
+        }
     });
     std::sort(faces.begin() + static_cast<std::ptrdiff_t>(first), faces.end());
 }
@@ -184,9 +224,13 @@ bool intersects(const ExactMapView& map, const TrianglePoints& triangle_local) n
     const Vec3f low{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})};
     const Vec3f high{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})};
     float bound = 0; // less than 0: found
-    visit_near_faces(map, low, high, bound, [&](std::uint32_t, const auto& corners) {
-        const Simplex face{{Vec3f(corners[0]), Vec3f(corners[1]), Vec3f(corners[2])}, 3};
-        if (bound == 0 && simplices_meet(triangle, face)) bound = -1;
+    walk_near_leaves(map, bound, BoxGaps(low, high), [&](const LeafFaces& faces) {
+        for (std::uint32_t face = faces.first; face < faces.last && bound == 0; ++face) {
+            const auto corners = face_corners(map, face);
+            if (box_gap_sq(corners, low, high) > 0) continue;
+            if (simplices_meet(triangle, {{Vec3f(corners[0]), Vec3f(corners[1]), Vec3f(corners[2])}, 3}))
+                bound = -1;
+        }
     });
     return bound < 0;
 }
