@@ -68,7 +68,7 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
     }
     leaving_.reserve(particles.count());
     poses_.resize(models_.size());
-    clearances_.resize(particles.count());
+    clearances_.assign(models_.size(), std::vector<float>(particles.count()));
 }
 
 void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders, const Collisions& collisions,
@@ -78,8 +78,8 @@ void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders, const
         colliders.begin());
     for (std::size_t c = 0; c < models_.size(); ++c) {
         poses_[c] = colliders[c].pose;
-        collisions.known_clearances(c, particles, clearances_);
-        models_[c].begin_frame(colliders[c], particles, clearances_);
+        collisions.known_clearances(c, particles, clearances_[c]);
+        models_[c].begin_frame(colliders[c], particles, clearances_[c]);
     }
     if (self_) self_->begin_pass(carrier_pose(), particles.positions);
 }

@@ -48,7 +48,7 @@ class SurfaceCollision {
     const RigidTransform* carrier_pose() const { return carrier() != nullptr ? &poses_[carrier_] : nullptr; }
     std::size_t carrier_ = 0; ///< the first collider that moves; beyond the last where none does
     PointArrays expected_, goals_;
-    std::vector<float> clearances_;
+    std::vector<std::vector<float>> clearances_; ///< by model and vertex
     std::vector<std::uint32_t> leaving_;
     std::vector<std::uint8_t> is_leaving_, is_truncated_;
     std::vector<Vec3f> places_;      ///< of the leaving vertices
