@@ -193,9 +193,11 @@ struct SimulationOptions {
     /// how often. Prefer a closed mesh (see repair()) or a distance map.
     bool allow_open_colliders = false;
     /// Edges and faces collide too, not only particles: no face of the deformable ever meets a collider
-    /// (docs/surfaces.md). Every collider needs an exact map; open meshes are welcome.
+    /// (docs/surfaces.md). Every collider needs an exact map; one of an open mesh needs no
+    /// allow_open_colliders and keeps each particle on its side. Nothing may intersect at the start, no
+    /// particle may begin inside a closed model, and keep_free must be true.
     bool surface_collision = false;
-    /// With surface_collision: the faces of the deformable do not meet each other either.
+    /// Needs surface_collision: the faces of the deformable do not meet each other either.
     bool self_collision = false;
     /// Distance that layers of the deformable keep from each other, units. If not given, the thickness. Near
     /// small faces it is less: at most 0.4 of the least height of a face, so that neighbours have room.
@@ -242,7 +244,9 @@ class Simulation {
     /// @throws Error InvalidOptions, naming what is at fault, when an option is out of range, the arrays of
     /// the deformable do not fit together, a stick or a face names a particle that does not exist, a number
     /// is not finite, or a collider has a scale of 0, a rotation that is not of unit length, a null pointer
-    /// for a map, or the exact map of an open mesh without options.allow_open_colliders
+    /// for a map, or the exact map of an open mesh without options.allow_open_colliders; with
+    /// options.surface_collision also when a collider has no exact map, or the deformable begins intersecting
+    /// a collider or, with options.self_collision, itself: the sentence names the first pairs
     Simulation(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
     ~Simulation();
     Simulation(const Simulation& other);

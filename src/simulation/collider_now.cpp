@@ -26,6 +26,7 @@ ColliderNow::ColliderNow(const Collider& collider, const RigidTransform& previou
       step(map.radius / static_cast<float>(kLatticeExtent) * largest(collider.scale)), guard(kGuard * step),
       thickness(std::max(static_cast<float>(options.thickness.value()), 2 * guard)),
       friction(static_cast<float>(options.friction)),
+      two_sided(options.surface_collision && !map.border.empty()),
       coordinate_sum(static_cast<float>(std::fabs(collider.pose.translation.x) +
                                         std::fabs(collider.pose.translation.y) +
                                         std::fabs(collider.pose.translation.z))) {}

@@ -22,6 +22,8 @@ struct ColliderNow {
     float guard;     ///< no particle is left nearer to the surface than this
     float thickness; ///< at least two guards
     float friction;
+    /// An open surface that lets nothing through: each particle stays on its side, and none is inside.
+    bool two_sided;
     float coordinate_sum; ///< of where the collider stands; bounds what is lost in rounding
 
     /// @pre the options have a thickness
@@ -30,7 +32,9 @@ struct ColliderNow {
 
     Vec3f to_body(const Vec3f& point_local) const { return Vec3f(times(Vec3d(point_local), scale)); }
     /// Is the place outside, whichever way the particle came?
-    bool outside(const Vec3f& position) const { return !contains(map, local.point_to_local(position)); }
+    bool outside(const Vec3f& position) const {
+        return two_sided || !contains(map, local.point_to_local(position));
+    }
 };
 
 } // namespace echinus

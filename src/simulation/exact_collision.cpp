@@ -96,17 +96,32 @@ void ExactCollision::ask_for_nearest(std::span<const std::uint32_t> asked,
     stretched_contacts_batch(now_.map, places_local, reach, std::span(contacts).first(asked.size()),
                              now_.scale);
     for (std::size_t n = 0; n < asked.size(); ++n) {
-        remember(asked[n], particles.positions[asked[n]], contacts[n], reach);
+        remember(asked[n], particles, contacts[n], reach);
         if (contacts[n].found()) profile.contact_count += push_one(known_, now_, asked[n], particles) ? 1 : 0;
     }
     profile.map_query_count += asked.size();
 }
 
-void ExactCollision::remember(std::size_t i, const Vec3f& position, const Contact& nearest, float reach) {
+void ExactCollision::remember(std::size_t i, const Particles& particles, const Contact& nearest,
+                              float reach) {
+    const Vec3f position = particles.positions[i];
     if (!nearest.found()) return known_.remember(i, now_, position, reach);
-    known_.remember(i, now_, position, nearest.inside ? 0 : -nearest.depth);
+    const bool is_inside = nearest.inside && !now_.two_sided;
+    known_.remember(i, now_, position, is_inside ? 0 : std::fabs(nearest.depth));
+    const Vec3f normal = now_.two_sided ? normal_to_own_side(i, particles, nearest) : nearest.normal;
     const Vec3f over_plane = known_.asked_at_body[i] - now_.to_body(nearest.point);
-    known_.remember_plane(i, now_, nearest.normal, dot(over_plane, nearest.normal));
+    known_.remember_plane(i, now_, normal, dot(over_plane, normal));
+}
+
+/// The particle has crossed nothing since it was free last, so its side is the one where it is; on the
+/// surface itself, within rounding, the one where it was.
+Vec3f ExactCollision::normal_to_own_side(std::size_t i, const Particles& particles,
+                                         const Contact& nearest) const {
+    const bool is_certain = std::fabs(nearest.depth) > now_.guard;
+    const Vec3f seen_from =
+        is_certain ? known_.asked_at_body[i] : now_.to_body(free_places_.local(i, particles));
+    const Vec3f way = seen_from - now_.to_body(nearest.point);
+    return dot(way, nearest.normal) < 0 ? -nearest.normal : nearest.normal;
 }
 
 bool ExactCollision::meet_on_the_way(std::size_t i, const Particles& particles, SimulationProfile& profile) {

@@ -19,9 +19,12 @@ namespace echinus {
 ///
 /// After the relaxations comes the proof (SweptParticle). Most particles are proven free by what is known
 /// already; the others are swept.
+///
+/// With surface_collision no particle passes through anything, so an open mesh needs no inside: particles
+/// are pushed to the side from which they came.
 class ExactCollision final : public Collision {
   public:
-    /// Particles that are outside now are free.
+    /// Particles that are outside now are free, all of them beside a surface with two sides.
     ExactCollision(const Collider& collider, const Particles& particles, const SimulationOptions& options);
     std::unique_ptr<Collision> clone() const override { return std::make_unique<ExactCollision>(*this); }
 
@@ -43,7 +46,8 @@ class ExactCollision final : public Collision {
     void ask(Particles& particles, SimulationProfile& profile);
     bool meet_on_the_way(std::size_t i, const Particles& particles, SimulationProfile& profile);
     float reach_of(std::size_t i, const Particles& particles) const;
-    void remember(std::size_t i, const Vec3f& position, const Contact& nearest, float reach);
+    void remember(std::size_t i, const Particles& particles, const Contact& nearest, float reach);
+    Vec3f normal_to_own_side(std::size_t i, const Particles& particles, const Contact& nearest) const;
     void ask_for_nearest(std::span<const std::uint32_t> asked, std::span<const Vec3f> places_local,
                          float reach, Particles& particles, SimulationProfile& profile);
     SweptParticle swept(std::size_t i, const Particles& particles) const {

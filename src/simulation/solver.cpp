@@ -1,5 +1,6 @@
 #include "simulation/solver.hpp"
 
+#include "simulation/start_state.hpp"
 #include "simulation/stopwatch.hpp"
 #include "simulation/validation.hpp"
 
@@ -79,7 +80,10 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
       folds_(weighted_folds(deformable, options)), attachments_(deformable, colliders),
       collisions_(colliders, particles_, options), rest_(options.rest, deformable.positions),
       goals_give_way_(sticks_.gives_way()), substep_seconds_(options.time_step / options.substep_count) {
-    if (options.surface_collision) surfaces_.emplace(deformable, colliders, particles_, options);
+    if (options.surface_collision) {
+        require_apart(deformable, colliders, options);
+        surfaces_.emplace(deformable, colliders, particles_, options);
+    }
     const Sphere start = box_sphere(deformable.positions);
     start_centre_ = start.centre;
     // A single particle has no extent; its bound is then in the caller's unit.

@@ -56,6 +56,7 @@ void require_valid(const SimulationOptions& options) {
              "; it must be 1 with the Verlet solver, whose sticks would become stiffer");
     require_within("drag", options.drag, 0, 1);
     require_within("thickness", options.thickness.value_or(0), 0, kLargest);
+    require_within("self_thickness", options.self_thickness.value_or(0), 0, kLargest);
     require_within("friction", options.friction, 0, kLargest);
     require_within("bound", options.bound, 0, 1e30);
     require_within("rest.distance", options.rest.distance, 0, 1e9);
@@ -64,6 +65,12 @@ void require_valid(const SimulationOptions& options) {
     for (const double stiffness : options.stiffness) require_within("stiffness", stiffness, 0, 1.99);
     for (const double compliance : options.compliance) require_within("compliance", compliance, 0, kLargest);
     if (!is_finite(options.gravity)) fail("simulation option gravity is not finite");
+    if (options.self_collision && !options.surface_collision)
+        fail("simulation option self_collision needs surface_collision, which keeps faces off colliders too; "
+             "set both");
+    if (options.surface_collision && !options.keep_free)
+        fail("simulation option keep_free is false; it must be true with surface_collision, which lets no "
+             "particle through");
 }
 
 namespace {
@@ -132,26 +139,37 @@ void require_valid_attachments(const Deformable& deformable, std::size_t collide
     }
 }
 
-void require_valid(const std::vector<Collider>& colliders, const SimulationOptions& options) {
-    for (std::size_t i = 0; i < colliders.size(); ++i) {
-        const Collider& collider = colliders[i];
-        const std::string name = "collider " + std::to_string(i);
-        for (const double scale : {collider.scale.x, collider.scale.y, collider.scale.z})
-            if (scale == 0 || !std::isfinite(scale))
-                fail(name + " has a scale of " + std::to_string(scale) + "; it must be finite and not 0");
-        require_valid(collider.pose, name);
-        if (!is_finite(collider.linear_velocity) || !is_finite(collider.angular_velocity))
-            fail(name + " has a velocity that is not finite");
-        const auto* custom = std::get_if<std::shared_ptr<const CustomMap>>(&collider.map.kind);
-        if (custom != nullptr && *custom == nullptr) fail(name + " has a custom map that is a null pointer");
-        const auto* exact = std::get_if<ExactMap>(&collider.map.kind);
-        if (exact != nullptr && !exact->view().border.empty() && !options.allow_open_colliders)
-            fail(name + " has the exact map of an open mesh, with " +
-                 std::to_string(exact->view().border.size()) +
-                 " edges at gaps, where particles get in; close the mesh (repair() mends some), use a "
-                 "distance "
-                 "map, or set allow_open_colliders and lose particles");
+namespace {
+
+void require_valid(const Collider& collider, const SimulationOptions& options, const std::string& name) {
+    for (const double scale : {collider.scale.x, collider.scale.y, collider.scale.z})
+        if (scale == 0 || !std::isfinite(scale))
+            fail(name + " has a scale of " + std::to_string(scale) + "; it must be finite and not 0");
+    require_valid(collider.pose, name);
+    if (!is_finite(collider.linear_velocity) || !is_finite(collider.angular_velocity))
+        fail(name + " has a velocity that is not finite");
+    const auto* custom = std::get_if<std::shared_ptr<const CustomMap>>(&collider.map.kind);
+    if (custom != nullptr && *custom == nullptr) fail(name + " has a custom map that is a null pointer");
+    const auto* exact = std::get_if<ExactMap>(&collider.map.kind);
+    if (options.surface_collision) {
+        if (exact == nullptr)
+            fail(name + " has a " + (custom != nullptr ? "custom" : "distance") +
+                 " map, which does not have the faces that surface_collision needs; give it an exact map, or "
+                 "leave out surface_collision, and only particles collide");
+    } else if (exact != nullptr && !exact->view().border.empty() && !options.allow_open_colliders) {
+        fail(name + " has the exact map of an open mesh, with " +
+             std::to_string(exact->view().border.size()) +
+             " edges at gaps, where particles get in; close the mesh (repair() mends some), use a distance "
+             "map, set surface_collision, which needs no inside, or set allow_open_colliders and lose "
+             "particles");
     }
+}
+
+} // namespace
+
+void require_valid(const std::vector<Collider>& colliders, const SimulationOptions& options) {
+    for (std::size_t i = 0; i < colliders.size(); ++i)
+        require_valid(colliders[i], options, "collider " + std::to_string(i));
 }
 
 } // namespace echinus

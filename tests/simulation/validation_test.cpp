@@ -1,15 +1,20 @@
+#include "support/custom_maps.hpp"
+#include "support/draping.hpp"
 #include "support/expect_error.hpp"
 
 #include <echinus/error.hpp>
+#include <echinus/intersections.hpp>
 #include <echinus/simulation.hpp>
 
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
 
 using namespace echinus;
+using test::sheet_at;
 
 namespace {
 
@@ -135,4 +140,73 @@ TEST(SimulationSetUp, NamesTheParticleStickOrFaceAtFault) {
     expect_names(refusal([](Deformable& d, auto&) { d.faces[5][2] = 9; }), "face 5 names particle 9");
     expect_names(refusal([](Deformable& d, auto&) { d.inverse_masses.pop_back(); }), "8 inverse masses");
     expect_names(refusal([](Deformable& d, auto&) { d = {}; }), "no particles");
+}
+
+TEST(SimulationSetUp, RefusesSurfaceCollisionWithAnythingButExactMaps) {
+    const TriangleMesh box = make_box({1, 1, 1});
+    const SimulationOptions surfaces{.surface_collision = true};
+    test::expect_error(ErrorCode::InvalidOptions, "collider 1 has a distance map, which does not have", [&] {
+        Simulation(sheet_at(1, 1, 5), {{.map = ExactMap::build(box)}, {.map = DistanceMap::build(box)}},
+                   surfaces);
+    });
+    test::expect_error(ErrorCode::InvalidOptions, "collider 0 has a custom map, which does not have", [&] {
+        Simulation(sheet_at(1, 1, 5), {{.map = std::make_shared<test::AnalyticBall>(0.3F)}}, surfaces);
+    });
+}
+
+TEST(SimulationSetUp, RefusesSurfaceOptionsThatContradictEachOther) {
+    const auto refuses = [](const SimulationOptions& options, const std::string& words) {
+        test::expect_error(ErrorCode::InvalidOptions, words,
+                           [&] { Simulation(sheet_at(1, 1, 5), {}, options); });
+    };
+    refuses({.self_collision = true}, "self_collision needs surface_collision");
+    refuses({.keep_free = false, .surface_collision = true}, "keep_free is false");
+    refuses({.surface_collision = true, .self_thickness = -1}, "self_thickness");
+    refuses({.surface_collision = true, .self_thickness = kNaN}, "self_thickness");
+}
+
+TEST(SimulationSetUp, NamesTheFacesWithWhichADeformableBeginsIntersecting) {
+    const std::vector<Collider> box{{.map = ExactMap::build(make_box({1, 1, 1})), .pose = {{}, {0, 0, 2}}}};
+    const SimulationOptions surfaces{.surface_collision = true};
+    const Deformable wide = sheet_at(2.2, 2, 4);
+    TriangleMesh raised = make_box({1, 1, 1});
+    for (Vec3f& v : raised.vertices) v.z += 2;
+    const std::vector<FacePair> pairs = intersecting_pairs({wide.positions, wide.faces}, raised);
+    test::expect_error(ErrorCode::InvalidOptions,
+                       "begins intersecting collider 0 in " + std::to_string(pairs.size()) + " pairs: face " +
+                           std::to_string(pairs[0].a) + " and its face " + std::to_string(pairs[0].b) +
+                           ", face ",
+                       [&] { Simulation(wide, box, surfaces); });
+    test::expect_error(ErrorCode::InvalidOptions,
+                       "25 particles begin inside collider 0, the first of them particle 0",
+                       [&] { Simulation(sheet_at(2.2, 0.5, 5), box, surfaces); });
+    Deformable thread;
+    thread.positions = thread.previous_positions = {{0, 0, 2.2F}, {0, 0, 3}};
+    thread.inverse_masses = {1, 1};
+    thread.sticks = {{0, 1, 0.8F, StickKind::Structural}};
+    test::expect_error(ErrorCode::InvalidOptions, "the edge from particle 0 to 1 and its face ",
+                       [&] { Simulation(thread, box, surfaces); });
+    // Particles alone may begin anywhere.
+    EXPECT_NO_THROW(Simulation(wide, box, {}));
+}
+
+TEST(SimulationSetUp, NamesTheFacesOfADeformableThatBeginIntersecting) {
+    Deformable sheet = sheet_at(0, 1, 5);
+    const Deformable upright =
+        make_cloth({.column_count = 2, .row_count = 2, .pose = {Rotation::about({1, 0.1, 0}, 1.5), {}}});
+    const auto offset = static_cast<std::uint32_t>(sheet.particle_count());
+    for (const Vec3f& p : upright.positions) sheet.positions.push_back(p);
+    sheet.previous_positions = sheet.positions;
+    sheet.inverse_masses.resize(sheet.particle_count(), 1);
+    for (const auto& [a, b, c] : upright.faces) sheet.faces.push_back({a + offset, b + offset, c + offset});
+    test::expect_error(ErrorCode::InvalidOptions, "begins intersecting itself in ",
+                       [&] { Simulation(sheet, {}, {.surface_collision = true, .self_collision = true}); });
+    EXPECT_NO_THROW(Simulation(sheet, {}, {.surface_collision = true}));
+}
+
+TEST(SimulationSetUp, AcceptsOpenMeshesWithSurfaceCollisionAndNoInsideOfThem) {
+    TriangleMesh open = make_box({1, 1, 1});
+    open.faces.pop_back();
+    const std::vector<Collider> colliders{{.map = ExactMap::build(open)}};
+    EXPECT_NO_THROW(Simulation(sheet_at(0, 0.5, 5), colliders, {.surface_collision = true}));
 }

@@ -29,7 +29,8 @@ inline void run_to_rest(Simulation& simulation, std::uint32_t frame_limit) {
 /// How far the middle of a small cloth slides in half a second on a slope of this angle with a friction of
 /// 0.5.
 /// @param box  the map of make_box({2, 2, 1})
-inline float slid_down_slope(const ColliderMap& box, double angle_rad) {
+/// @param options  of which thickness and friction are replaced
+inline float slid_down_slope(const ColliderMap& box, double angle_rad, SimulationOptions options = {}) {
     constexpr double kThickness = 0.01;
     constexpr std::uint32_t kSide = 7;
     const Rotation tilt = Rotation::about({1, 0, 0}, angle_rad);
@@ -38,8 +39,9 @@ inline float slid_down_slope(const ColliderMap& box, double angle_rad) {
                                          .width = 0.3,
                                          .height = 0.3,
                                          .pose = {tilt, tilt.apply({0, 0, 0.5 + kThickness})}});
-    Simulation simulation(sheet, {{.map = box, .pose = {tilt, {}}}},
-                          {.thickness = kThickness, .friction = 0.5});
+    options.thickness = kThickness;
+    options.friction = 0.5;
+    Simulation simulation(sheet, {{.map = box, .pose = {tilt, {}}}}, options);
     const std::size_t middle = kSide * kSide / 2;
     const Vec3f before = simulation.positions()[middle];
     for (int i = 0; i < 120; ++i) simulation.step();

@@ -1,7 +1,6 @@
 #include "simulation/surfaces/model_surface.hpp"
 
-#include "directions/lattice.hpp"
-#include "exact_map/layout.hpp"
+#include "simulation/surfaces/model_mesh.hpp"
 
 #include <echinus/exact_map.hpp>
 
@@ -20,20 +19,11 @@ bool is_identity(const RigidTransform& pose) {
     return pose.translation == Vec3d{} && r.x == 0 && r.y == 0 && r.z == 0;
 }
 
-std::vector<Triangle> faces_of(const ExactMapView& map) {
-    std::vector<Triangle> faces;
-    for (std::size_t f = 0; f < map.face_count(); ++f)
-        faces.push_back({map.corners[3 * f], map.corners[3 * f + 1], map.corners[3 * f + 2]});
-    return faces;
-}
-
-PointArrays scaled_vertices(const ExactMapView& map, const Vec3d& scale) {
-    const LatticeFrame frame = frame_of(map);
-    PointArrays positions;
-    positions.resize(map.vertices.size());
-    for (std::size_t v = 0; v < map.vertices.size(); ++v)
-        positions.set(v, Vec3f(times(frame.to_local(Vec3d(map.vertices[v])), scale)));
-    return positions;
+PointArrays arrays_of(std::span<const Vec3f> points) {
+    PointArrays arrays;
+    arrays.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) arrays.set(i, points[i]);
+    return arrays;
 }
 
 } // namespace
@@ -42,10 +32,10 @@ ModelSurface::ModelSurface(const Collider& collider, std::shared_ptr<const Eleme
                            const PairReach& reach, float thickness, float friction)
     : own_(std::move(own)), pairs_(*own_, reach), now_(collider.pose, {1, 1, 1}), thickness_(thickness),
       friction_(friction) {
-    const ExactMapView& map = std::get<ExactMap>(collider.map.kind).view();
+    const TriangleMesh mesh = model_mesh(std::get<ExactMap>(collider.map.kind).view(), collider.scale);
     const auto shape = std::make_shared<Shape>();
-    shape->positions = scaled_vertices(map, collider.scale);
-    shape->elements = Elements(map.vertices.size(), faces_of(map), {});
+    shape->positions = arrays_of(mesh.vertices);
+    shape->elements = Elements(mesh.vertices.size(), mesh.faces, {});
     shape->tree = ElementTree(shape->elements.all, shape->positions);
     shape_ = shape;
     is_forgotten_.resize(own_->all.size());

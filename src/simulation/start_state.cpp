@@ -1,0 +1,91 @@
+#include "simulation/start_state.hpp"
+
+#include "collider/frame_change.hpp"
+#include "simulation/surfaces/elements.hpp"
+#include "simulation/surfaces/model_mesh.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/exact_map.hpp>
+#include <echinus/intersections.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace echinus {
+
+namespace {
+
+constexpr std::size_t kNamedPairs = 3;
+constexpr const char* kRemedy = "; move the start until they are apart, or leave out ";
+
+/// With edges and vertices as faces without area, after the faces.
+TriangleMesh surface_of(const Deformable& deformable, const Elements& elements) {
+    TriangleMesh surface{deformable.positions, {}};
+    for (const Element& element : elements.all) surface.faces.push_back(element.vertices);
+    return surface;
+}
+
+std::string name_of(const Elements& elements, std::uint32_t number) {
+    const auto& [a, b, c] = elements.all[number].vertices;
+    if (elements.all[number].is_face()) return "face " + std::to_string(number);
+    if (a == b) return "particle " + std::to_string(a);
+    return "the edge from particle " + std::to_string(a) + " to " + std::to_string(b);
+}
+
+/// @param describe  a pair
+template <typename Describe>
+[[noreturn]] void refuse(const std::vector<FacePair>& pairs, const std::string& whom, const char* option,
+                         const Describe& describe) {
+    std::string sentence = "the deformable begins intersecting " + whom + " in " +
+                           std::to_string(pairs.size()) + (pairs.size() == 1 ? " pair: " : " pairs: ");
+    for (std::size_t i = 0; i < std::min(pairs.size(), kNamedPairs); ++i)
+        sentence += (i == 0 ? "" : ", ") + describe(pairs[i]);
+    if (pairs.size() > kNamedPairs) sentence += ", ...";
+    throw Error(ErrorCode::InvalidOptions, sentence + kRemedy + option);
+}
+
+void require_apart(const TriangleMesh& surface, const Elements& elements, const Collider& collider,
+                   const std::string& name) {
+    const ExactMapView& map = std::get<ExactMap>(collider.map.kind).view();
+    const FrameChange body(collider.pose, {1, 1, 1});
+    TriangleMesh in_body = surface;
+    for (Vec3f& p : in_body.vertices) p = body.point_to_local(p);
+    const std::vector<FacePair> pairs = intersecting_pairs(in_body, model_mesh(map, collider.scale));
+    if (!pairs.empty())
+        refuse(pairs, name, "surface_collision", [&](const FacePair& pair) {
+            return name_of(elements, pair.a) + " and its face " + std::to_string(pair.b);
+        });
+    // Where nothing intersects, a piece is inside as a whole. An open surface has no inside.
+    if (!map.border.empty()) return;
+    std::vector<std::uint8_t> inside(surface.vertices.size());
+    contains_batch(collider, std::span(surface.vertices), inside);
+    const auto first = std::find(inside.begin(), inside.end(), std::uint8_t{1});
+    if (first == inside.end()) return;
+    throw Error(ErrorCode::InvalidOptions,
+                std::to_string(std::count(inside.begin(), inside.end(), std::uint8_t{1})) +
+                    " particles begin inside " + name + ", the first of them particle " +
+                    std::to_string(first - inside.begin()) + kRemedy + "surface_collision");
+}
+
+} // namespace
+
+void require_apart(const Deformable& deformable, const std::vector<Collider>& colliders,
+                   const SimulationOptions& options) {
+    const Elements elements = elements_of(deformable);
+    const TriangleMesh surface = surface_of(deformable, elements);
+    for (std::size_t i = 0; i < colliders.size(); ++i)
+        require_apart(surface, elements, colliders[i], "collider " + std::to_string(i));
+    if (!options.self_collision) return;
+    const std::vector<FacePair> pairs = self_intersecting_pairs(surface);
+    if (!pairs.empty())
+        refuse(pairs, "itself", "self_collision", [&](const FacePair& pair) {
+            return name_of(elements, pair.a) + " and " + name_of(elements, pair.b);
+        });
+}
+
+} // namespace echinus

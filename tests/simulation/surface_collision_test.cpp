@@ -1,0 +1,253 @@
+// Contact of surfaces: no face of the deformable ever meets a model. Every frame is judged exactly.
+
+#include "support/cloth_meshes.hpp"
+#include "support/crowded_meshes.hpp"
+#include "support/draping.hpp"
+#include "support/instruction_sets.hpp"
+#include "support/surface_judge.hpp"
+
+#include <echinus/simulation.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <string>
+#include <vector>
+
+using namespace echinus;
+using namespace echinus::test;
+
+namespace {
+
+constexpr double kThickness = 0.01;
+const SimulationOptions kSurfaces{.thickness = kThickness, .surface_collision = true};
+
+/// A tetrahedron two units high and a hundredth wide, its tip in the origin.
+TriangleMesh needle() {
+    return {{{0, 0, 0}, {0.01F, 0, -2}, {-0.005F, 0.008F, -2}, {-0.005F, -0.008F, -2}},
+            {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
+}
+
+/// Without the faces whose middle does not satisfy a condition.
+template <typename Keeps>
+TriangleMesh part_of(TriangleMesh mesh, const Keeps& keeps) {
+    std::erase_if(mesh.faces, [&](const Triangle& face) {
+        return !keeps((mesh.vertices[face[0]] + mesh.vertices[face[1]] + mesh.vertices[face[2]]) *
+                      (1.0F / 3));
+    });
+    return weld(mesh);
+}
+
+TriangleMesh half_ball(bool upper) {
+    return part_of(make_sphere(0.5, 20, 10), [=](const Vec3f& p) { return (p.z > 0) == upper; });
+}
+
+struct Placement {
+    RigidTransform pose{};
+    Vec3d scale{1, 1, 1};
+    Vec3d linear_velocity{}, angular_velocity{};
+};
+
+/// A sheet falls on a model.
+void expect_falls_without_meeting(const TriangleMesh& model, const Placement& placement,
+                                  const Deformable& sheet, std::uint32_t frame_count) {
+    const auto& [pose, scale, linear, angular] = placement;
+    Simulation simulation(sheet, {{ExactMap::build(model), pose, scale, linear, angular}}, kSurfaces);
+    expect_nothing_meets(simulation, {model}, frame_count);
+}
+
+} // namespace
+
+TEST(SurfaceCollision, KeepsASheetOffABall) {
+    expect_falls_without_meeting(make_sphere(0.4, 24, 12), {}, sheet_at(0.42, 1.2, 25, {0, 0, -0.01}), 150);
+}
+
+TEST(SurfaceCollision, KeepsASheetOffTheEdgeOfAThinPlate) {
+    expect_falls_without_meeting(make_box({0.003, 1, 1}), {}, sheet_at(0.52, 1, 20, {0, 0, -0.01}), 120);
+}
+
+TEST(SurfaceCollision, KeepsASheetOffThePointOfANeedle) {
+    Deformable sheet = sheet_at(0.03, 1, 20, {0, 0, -0.01});
+    for (const float shift : {0.0F, 0.011F}) {
+        for (Vec3f& p : sheet.positions) p += Vec3f{shift, shift / 3, 0};
+        for (Vec3f& p : sheet.previous_positions) p += Vec3f{shift, shift / 3, 0};
+        expect_falls_without_meeting(needle(), {}, sheet, 120);
+    }
+}
+
+TEST(SurfaceCollision, KeepsASheetOffTheTeethOfAComb) {
+    const Rotation upright = Rotation::about({1, 0, 0}, std::numbers::pi / 2);
+    expect_falls_without_meeting(make_comb(8), {.pose = {upright, {-0.5, 0, -0.5}}},
+                                 sheet_at(0.03, 1.1, 20, {0, 0, -0.01}), 150);
+}
+
+TEST(SurfaceCollision, KeepsASheetOffABoxThatTurns) {
+    const double turn_per_second = 2 * std::numbers::pi;
+    for (const Vec3d& axis : {Vec3d{0, 0, 1}, Vec3d{1, 0.3, 0}})
+        expect_falls_without_meeting(make_box({0.6, 0.4, 0.3}), {.angular_velocity = axis * turn_per_second},
+                                     sheet_at(0.4, 1, 20), 200);
+}
+
+TEST(SurfaceCollision, KeepsASheetOffScaledAndMirroredModels) {
+    const Rotation tilt = Rotation::about({1, 1, 0}, 0.4);
+    for (const Vec3d& scale : {Vec3d{0.4, 0.6, 0.2}, Vec3d{-0.5, 0.3, 0.4}, Vec3d{0.1, -0.6, -0.4}})
+        expect_falls_without_meeting(make_torus(1, 0.4, 24, 10),
+                                     {.pose = {tilt, {0, 0, -0.4}}, .scale = scale},
+                                     sheet_at(0.35, 1, 20, {0, 0, -0.01}), 150);
+}
+
+TEST(SurfaceCollision, KeepsASheetOffTwoModelsOfWhichOneMoves) {
+    const std::vector<TriangleMesh> models{make_sphere(0.3, 20, 10), make_box({0.2, 0.2, 0.2})};
+    for (const std::size_t moving : {0u, 1u}) {
+        std::vector<Collider> colliders = colliders_of(models);
+        colliders[1].pose.translation = {0.65, 0, 0};
+        colliders[moving].linear_velocity = {0, 0, 0.5};
+        colliders[moving].angular_velocity = {0, 1, 2};
+        Simulation simulation(sheet_at(0.4, 1.6, 25), colliders, kSurfaces);
+        expect_nothing_meets(simulation, models, 150);
+    }
+}
+
+TEST(SurfaceCollision, KeepsAFastSheetOffAModel) {
+    for (const double speed : {20.0, 50.0})
+        expect_falls_without_meeting(make_torus(0.4, 0.15, 24, 10), {},
+                                     sheet_at(0.3, 1.2, 25, {0, 0, -speed / 240}), 80);
+}
+
+TEST(SurfaceCollision, KeepsACoarseSheetOffAModelThatIsSmallerThanItsFaces) {
+    for (const TriangleMesh& model : {make_sphere(0.1, 12, 6), make_box({0.05, 0.05, 0.4})})
+        expect_falls_without_meeting(model, {}, sheet_at(0.3, 2, 6, {0.003, 0.002, -0.02}), 120);
+}
+
+TEST(SurfaceCollision, KeepsAPinnedSheetOffAModelThatIsPushedIntoIt) {
+    Deformable sheet = sheet_at(0.3, 1, 20);
+    for (const std::size_t corner : {0u, 19u, 380u, 399u}) sheet.inverse_masses[corner] = 0;
+    expect_falls_without_meeting(make_sphere(0.2, 20, 10), {.linear_velocity = {0, 0, 1}}, sheet, 80);
+}
+
+TEST(SurfaceCollision, KeepsAThreadOverTheEdgeOfABox) {
+    Deformable thread;
+    for (int i = 0; i <= 20; ++i) thread.positions.push_back({0.1F * float(i) - 1, 0.013F * float(i), 0.3F});
+    for (std::uint32_t i = 0; i < 20; ++i)
+        thread.sticks.push_back(
+            {i, i + 1, length(thread.positions[1] - thread.positions[0]), StickKind::Structural});
+    thread.previous_positions = thread.positions;
+    thread.inverse_masses.assign(thread.particle_count(), 1);
+    expect_falls_without_meeting(make_box({0.5, 0.5, 0.5}), {}, thread, 300);
+}
+
+TEST(SurfaceCollision, KeepsASheetOnEitherSideOfAnOpenSurface) {
+    // Above a dome, and in a bowl, whose inside is where the sheet is.
+    expect_falls_without_meeting(half_ball(true), {}, sheet_at(0.55, 1.2, 25, {0, 0, -0.01}), 200);
+    expect_falls_without_meeting(half_ball(false), {}, sheet_at(0.05, 0.7, 20, {0, 0, -0.01}), 200);
+}
+
+TEST(SurfaceCollision, KeepsASheetOffASurfaceWithHoles) {
+    TriangleMesh torus = make_torus(0.4, 0.2, 20, 10);
+    std::vector<Triangle> faces;
+    for (std::size_t f = 0; f < torus.faces.size(); ++f)
+        if (f % 5 != 0) faces.push_back(torus.faces[f]);
+    torus.faces = faces;
+    expect_falls_without_meeting(torus, {}, sheet_at(0.25, 1.2, 25, {0, 0, -0.02}), 200);
+    expect_falls_without_meeting(torus, {.angular_velocity = {3, 0, 2}}, sheet_at(0.75, 1.2, 25), 200);
+}
+
+TEST(SurfaceCollision, LeavesFreeFallAsItIs) {
+    const std::vector<Collider> ball = colliders_of({make_sphere(0.4, 24, 12)});
+    Simulation surfaces(sheet_at(0.6, 1, 20), ball, kSurfaces);
+    Simulation particles(sheet_at(0.6, 1, 20), ball, {.thickness = kThickness});
+    for (int i = 0; i < 40; ++i) {
+        surfaces.step();
+        particles.step();
+        ASSERT_EQ(surfaces.state_hash(), particles.state_hash());
+    }
+    ASSERT_EQ(surfaces.profile().contact_count, 0u);
+}
+
+TEST(SurfaceCollision, ComesToRestWithHardlyAVertexTruncatedAndAtItsThickness) {
+    const std::vector<Collider> ball = colliders_of({make_sphere(1, 48, 24)});
+    Simulation simulation(sheet_at(1.05, 2, 30), ball, kSurfaces);
+    run_to_rest(simulation, 2000);
+    const std::uint64_t before = simulation.profile().truncated_count;
+    for (int i = 0; i < 60; ++i) simulation.step();
+    EXPECT_LE(double(simulation.profile().truncated_count - before) / 60, 0.001 * 900);
+    double sum = 0;
+    int count = 0;
+    for (const Vec3f& p : simulation.positions()) {
+        const Contact near = contact(ball[0], p, float(2 * kThickness));
+        if (!near.found()) continue;
+        sum += double{-near.depth};
+        ++count;
+    }
+    ASSERT_GT(count, 100);
+    EXPECT_LE(sum / count, 1.2 * kThickness);
+    EXPECT_GE(sum / count, 0.9 * kThickness);
+}
+
+TEST(SurfaceCollision, SlidesDownASlopeLikeParticles) {
+    const ColliderMap box = ExactMap::build(make_box({2, 2, 1}));
+    for (const double degrees : {35.0, 45.0}) {
+        const double angle = degrees * std::numbers::pi / 180;
+        const float particles = slid_down_slope(box, angle);
+        EXPECT_NEAR(slid_down_slope(box, angle, {.surface_collision = true}), particles, 0.02 * particles);
+    }
+}
+
+TEST(SurfaceCollision, GivesTheSameBitsOnEveryRunAndEveryInstructionSet) {
+    const std::vector<Collider> colliders = colliders_of({make_torus(0.4, 0.15, 24, 10)});
+    SimulationOptions options = kSurfaces;
+    options.self_collision = true;
+    std::vector<std::uint64_t> hashes;
+    const auto run = [&](std::string_view) {
+        Simulation simulation(sheet_at(0.2, 1.2, 25, {0, 0, -0.02}), colliders, options);
+        for (int i = 0; i < 100; ++i) simulation.step();
+        hashes.push_back(simulation.state_hash());
+    };
+    run("");
+    under_each_instruction_set(run);
+    for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes[0]);
+}
+
+TEST(SurfaceCollision, IsIndependentInACopy) {
+    SimulationOptions options = kSurfaces;
+    options.self_collision = true;
+    auto original = std::make_unique<Simulation>(sheet_at(0.2, 1.2, 20, {0, 0, -0.02}),
+                                                 colliders_of({make_torus(0.4, 0.15, 24, 10)}), options);
+    for (int i = 0; i < 30; ++i) original->step();
+    Simulation copy = *original;
+    Simulation changed = *original;
+    changed.set_particle_velocity(0, {0, 0, 5});
+    for (int i = 0; i < 30; ++i) {
+        original->step();
+        changed.step();
+    }
+    const std::uint64_t expected = original->state_hash();
+    EXPECT_NE(changed.state_hash(), expected);
+    original.reset();
+    for (int i = 0; i < 30; ++i) copy.step();
+    EXPECT_EQ(copy.state_hash(), expected);
+}
+
+TEST(SurfaceCollision, CountsWhatItCannotKeepApart) {
+    // A corner of the sheet is led through a box by another collider, far away.
+    const std::vector<TriangleMesh> models{make_box({0.2, 1, 1}), make_box({0.1, 0.1, 0.1})};
+    std::vector<Collider> colliders = colliders_of(models);
+    colliders[1].pose.translation = {0, 0, 5};
+    colliders[1].linear_velocity = {-2, 0, 0};
+    Deformable sheet = sheet_at(0, 0.3, 8);
+    for (Vec3f& p : sheet.positions) p += Vec3f{0.4F, 0, 0};
+    sheet.previous_positions = sheet.positions;
+    sheet.inverse_masses[0] = 0;
+    sheet.attachments = {{0, 1}};
+    Simulation simulation(sheet, colliders, kSurfaces);
+    std::uint64_t frames_with_pairs = 0;
+    for (int i = 0; i < 60; ++i) {
+        simulation.step();
+        frames_with_pairs += meeting_faces(simulation, models).empty() ? 0 : 1;
+        if (frames_with_pairs > 0) ASSERT_GT(simulation.profile().squeezed_count, 0u);
+    }
+    EXPECT_GT(frames_with_pairs, 0u);
+}
