@@ -19,13 +19,6 @@ bool is_identity(const RigidTransform& pose) {
     return pose.translation == Vec3d{} && r.x == 0 && r.y == 0 && r.z == 0;
 }
 
-PointArrays arrays_of(std::span<const Vec3f> points) {
-    PointArrays arrays;
-    arrays.resize(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) arrays.set(i, points[i]);
-    return arrays;
-}
-
 } // namespace
 
 ModelSurface::ModelSurface(const Collider& collider, std::shared_ptr<const Elements> own,
@@ -34,7 +27,7 @@ ModelSurface::ModelSurface(const Collider& collider, std::shared_ptr<const Eleme
       friction_(friction) {
     const TriangleMesh mesh = model_mesh(std::get<ExactMap>(collider.map.kind).view(), collider.scale);
     const auto shape = std::make_shared<Shape>();
-    shape->positions = arrays_of(mesh.vertices);
+    shape->positions.load(mesh.vertices);
     shape->elements = Elements(mesh.vertices.size(), mesh.faces, {});
     shape->tree = ElementTree(shape->elements.all, shape->positions);
     shape_ = shape;

@@ -1,0 +1,149 @@
+// Contact of a deformable with itself: no two of its faces ever meet. Every frame is judged exactly.
+
+#include "support/cloth_meshes.hpp"
+#include "support/draping.hpp"
+#include "support/surface_judge.hpp"
+
+#include <echinus/simulation.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+using namespace echinus;
+using namespace echinus::test;
+
+namespace {
+
+const SimulationOptions kSelf{.thickness = 0.01, .surface_collision = true, .self_collision = true};
+
+/// Cloth that hardly resists being folded.
+SimulationOptions limp() {
+    SimulationOptions options = kSelf;
+    options.stiffness[std::size_t(StickKind::Bending)] = 0.002;
+    return options;
+}
+
+/// A layer along x at the height z, folded upwards about an edge at x = 0 in a half circle.
+/// @param radius  of the inner side; the layer lies up to `thickest` above z = 0
+Vec3f folded(float x, float y, float z, float radius, float thickest) {
+    const float axis = radius + thickest, arc = std::numbers::pi_v<float> / 2 * radius;
+    if (x <= -arc) return {x + arc, y, z};
+    if (x >= arc) return {arc - x, y, 2 * axis - z};
+    const float angle = (x + arc) / (2 * arc) * std::numbers::pi_v<float>;
+    return {(axis - z) * std::sin(angle), y, axis - (axis - z) * std::cos(angle)};
+}
+
+/// A square sheet of four layers, at rest when it lies flat.
+Deformable folded_in_four(std::uint32_t count, float height) {
+    TriangleMesh mesh = sheet_mesh(count, count);
+    const std::vector<Vec3f> flat = mesh.vertices;
+    for (Vec3f& v : mesh.vertices) {
+        const Vec3f once = folded(v.x, v.y, 0, 0.04F, 0);
+        const Vec3f twice = folded(once.y, once.x, once.z, 0.04F, 0.08F);
+        v = {twice.x, twice.y, twice.z + height};
+    }
+    return make_cloth(mesh, {.rest_vertices = flat});
+}
+
+/// Does it intersect itself where only contact with the model is looked for?
+bool meets_itself_otherwise(const Deformable& deformable, const TriangleMesh& model, int frame_count) {
+    SimulationOptions options = limp();
+    options.self_collision = false;
+    Simulation simulation(deformable, colliders_of({model}), options);
+    for (int i = 0; i < frame_count; ++i) {
+        simulation.step();
+        if (!self_intersecting_pairs(surface_of(simulation.deformable())).empty()) return true;
+    }
+    return false;
+}
+
+} // namespace
+
+TEST(SelfCollision, KeepsASheetThatFallsOverABallOffItself) {
+    const TriangleMesh ball = make_sphere(0.2, 20, 10);
+    Simulation simulation(sheet_at(0.25, 1.4, 25, {0, 0, -0.01}), colliders_of({ball}), kSelf);
+    expect_nothing_meets(simulation, {ball}, 200);
+}
+
+TEST(SelfCollision, KeepsTheLayersOfAFoldedSheetApart) {
+    const TriangleMesh table = make_box({2, 2, 0.1});
+    Simulation simulation(folded_in_four(17, 0.1F), colliders_of({table}), limp());
+    expect_nothing_meets(simulation, {table}, 250);
+    EXPECT_TRUE(meets_itself_otherwise(folded_in_four(17, 0.1F), table, 250));
+}
+
+TEST(SelfCollision, KeepsABagThatIsThrownFlatOffItself) {
+    const TriangleMesh table = make_box({2, 2, 0.1});
+    TriangleMesh mesh = make_sphere(0.3, 20, 10);
+    for (Vec3f& v : mesh.vertices) v += Vec3f{0, 0, 0.4F};
+    Deformable bag = make_cloth(mesh, {});
+    for (Vec3f& previous : bag.previous_positions) previous += Vec3f{0, 0, 0.1F};
+    Simulation simulation(bag, colliders_of({table}), limp());
+    expect_nothing_meets(simulation, {table}, 160);
+    EXPECT_TRUE(meets_itself_otherwise(bag, table, 160));
+}
+
+TEST(SelfCollision, KeepsLooseSheetsThatFallOnEachOtherApart) {
+    const TriangleMesh ball = make_sphere(0.3, 20, 10);
+    Deformable sheets;
+    for (int layer = 0; layer < 3; ++layer) {
+        const Deformable sheet = sheet_at(0.35 + 0.05 * layer, 1, 14, {0, 0, -0.02 * layer});
+        const auto offset = static_cast<std::uint32_t>(sheets.particle_count());
+        for (const Vec3f& p : sheet.positions) sheets.positions.push_back(p);
+        for (const Vec3f& p : sheet.previous_positions) sheets.previous_positions.push_back(p);
+        for (const auto& [a, b, c] : sheet.faces)
+            sheets.faces.push_back({a + offset, b + offset, c + offset});
+        for (const auto& [a, b, rest, kind] : sheet.sticks)
+            sheets.sticks.push_back({a + offset, b + offset, rest, kind});
+    }
+    sheets.inverse_masses.assign(sheets.particle_count(), 1);
+    Simulation simulation(sheets, colliders_of({ball}), kSelf);
+    expect_nothing_meets(simulation, {ball}, 200);
+}
+
+TEST(SelfCollision, KeepsACrumpledSheetOnATurningModelOffItself) {
+    const TriangleMesh box = make_box({0.5, 0.2, 0.2});
+    std::vector<Collider> colliders = colliders_of({box});
+    colliders[0].angular_velocity = {0, 2 * std::numbers::pi, 0};
+    Simulation simulation(sheet_at(0.3, 1, 20), colliders, kSelf);
+    expect_nothing_meets(simulation, {box}, 250);
+}
+
+TEST(SelfCollision, KeepsAFastSheetOffItself) {
+    const TriangleMesh torus = make_torus(0.4, 0.15, 24, 10);
+    for (const double speed : {20.0, 50.0}) {
+        Simulation simulation(sheet_at(0.3, 1.2, 20, {0, 0, -speed / 240}), colliders_of({torus}), kSelf);
+        expect_nothing_meets(simulation, {torus}, 100);
+    }
+}
+
+TEST(SelfCollision, KeepsAThreadOffItselfAndASheet) {
+    // A thread falls end first, and coils up on a pinned sheet.
+    Deformable both = sheet_at(0, 0.6, 9);
+    for (float& inverse_mass : both.inverse_masses) inverse_mass = 0;
+    const auto offset = static_cast<std::uint32_t>(both.particle_count());
+    for (std::uint32_t i = 0; i < 20; ++i) {
+        const float way = 0.05F * float(i);
+        both.positions.push_back({0.013F + 0.1F * way, 0.02F + 0.03F * std::sin(3 * way), 0.1F + way});
+        both.inverse_masses.push_back(1);
+        if (i > 0) both.sticks.push_back({offset + i - 1, offset + i, 0.05F, StickKind::Structural});
+    }
+    both.previous_positions = both.positions;
+    Simulation simulation(both, {}, kSelf);
+    expect_nothing_meets(simulation, {}, 250);
+}
+
+TEST(SelfCollision, LeavesTheFreeFallOfASheetAsItIs) {
+    Simulation surfaces(sheet_at(0, 1, 20), {}, kSelf);
+    Simulation particles(sheet_at(0, 1, 20), {}, {.thickness = 0.01});
+    for (int i = 0; i < 60; ++i) {
+        surfaces.step();
+        particles.step();
+        ASSERT_EQ(surfaces.state_hash(), particles.state_hash());
+    }
+}
