@@ -264,6 +264,12 @@ Vec3<T> between(const std::array<Vec3<T>, 4>& p, const std::array<T, 4>& shares,
     return result;
 }
 
+/// A call of its own, because GCC 12 leaves out the rounding where it vectorises a conversion to float and
+/// back: the gap was then that of another normal.
+[[gnu::noinline]] Vec3f rounded(const Vec3d& v) {
+    return Vec3f(v);
+}
+
 /// Where the direction between computed nearest points is poor, because edges are nearly parallel, a face is
 /// nearly a segment or the gap is tiny: in double, along every direction that can be the right one.
 Separation careful_separation(PairKind kind, const std::array<Vec3f, 4>& points) {
@@ -278,7 +284,7 @@ Separation careful_separation(PairKind kind, const std::array<Vec3f, 4>& points)
         const double size = length(direction);
         if (!(size > 0)) return;
         if (gap_along(direction, p, own) < gap_along(-direction, p, own)) direction = -direction;
-        const Vec3f normal(direction * (1 / size));
+        const Vec3f normal = rounded(direction * (1 / size));
         const double gap = gap_along(Vec3d(normal), p, own);
         if (!(gap > best_gap)) return;
         best_gap = gap;
