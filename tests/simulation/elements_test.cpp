@@ -1,0 +1,222 @@
+// The faces, edges and vertices of surfaces: who owns what, what is near what, and lists of pairs.
+
+#include "simulation/surfaces/element_tree.hpp"
+#include "simulation/surfaces/elements.hpp"
+#include "simulation/surfaces/near_elements.hpp"
+#include "simulation/surfaces/pair_lists.hpp"
+#include "support/cloth_meshes.hpp"
+#include "support/instruction_sets.hpp"
+#include "support/random_points.hpp"
+
+#include <echinus/simulation.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <set>
+#include <utility>
+#include <vector>
+
+using namespace echinus;
+using namespace echinus::test;
+
+namespace {
+
+std::size_t edge_count_of(const Element& element) {
+    return element.vertex_count == 3 ? 3 : element.vertex_count - 1u;
+}
+
+/// Every vertex and every edge belongs to one element, and each element knows its edges.
+void expect_each_owned_once(const Elements& elements) {
+    std::vector<int> vertex_owners(elements.vertex_count()), edge_owners(elements.edges.size());
+    for (const Element& element : elements.all) {
+        for (std::size_t k = 0; k < element.vertex_count; ++k)
+            vertex_owners[element.vertices[k]] += element.owns_vertex(k) ? 1 : 0;
+        for (std::size_t k = 0; k < edge_count_of(element); ++k) {
+            edge_owners[element.edges[k]] += element.owns_edge(k) ? 1 : 0;
+            Edge edge{element.vertices[k], element.vertices[(k + 1) % 3]};
+            std::sort(edge.begin(), edge.end());
+            EXPECT_EQ(elements.edges[element.edges[k]], edge);
+        }
+    }
+    for (const int owners : vertex_owners) EXPECT_EQ(owners, 1);
+    for (const int owners : edge_owners) EXPECT_EQ(owners, 1);
+    EXPECT_EQ(std::set(elements.edges.begin(), elements.edges.end()).size(), elements.edges.size());
+}
+
+PointArrays arrays_of(const std::vector<Vec3f>& points) {
+    PointArrays arrays;
+    arrays.load(points);
+    return arrays;
+}
+
+/// Faces, threads and single points, spread over a cube.
+struct Scattered {
+    std::vector<Element> elements;
+    PointArrays positions;
+
+    Scattered(std::size_t count, std::uint32_t seed) {
+        Random random(seed);
+        std::vector<Vec3f> points;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const Vec3f middle = in_cube(random, 1);
+            for (int k = 0; k < 3; ++k) points.push_back(middle + in_cube(random, 0.1F));
+            const std::uint32_t v = 3 * i;
+            const std::array shapes{Element{{v, v + 1, v + 2}},
+                                    Element{.vertices = {v, v + 1, v + 1}, .vertex_count = 2},
+                                    Element{.vertices = {v, v, v}, .vertex_count = 1}};
+            elements.push_back(shapes[i % 3]);
+        }
+        positions.load(points);
+    }
+    void move(float most) {
+        Random random(9);
+        for (std::size_t i = 0; i < 3 * elements.size(); ++i)
+            positions.set(i, positions[i] + in_cube(random, most));
+    }
+};
+
+float apart(const Box& a, const Box& b, std::size_t axis) {
+    return std::max({a.low[axis] - b.high[axis], b.low[axis] - a.high[axis], 0.0F});
+}
+
+bool touch(const Box& a, const Box& b) {
+    return apart(a, b, 0) == 0 && apart(a, b, 1) == 0 && apart(a, b, 2) == 0;
+}
+
+/// Box after box.
+float nearest_box(const Scattered& scattered, const Box& box) {
+    float best = std::numeric_limits<float>::infinity();
+    for (const Element& element : scattered.elements) {
+        const Box other = box_of(element, scattered.positions);
+        best = std::min(best, std::hypot(apart(box, other, 0), apart(box, other, 1), apart(box, other, 2)));
+    }
+    return best;
+}
+
+} // namespace
+
+TEST(Elements, OwnEachVertexAndEdgeOnce) {
+    const TriangleMesh sheet = sheet_mesh(9, 7), sphere = make_sphere(1, 12, 6), band = band_mesh(9, 1);
+    for (const TriangleMesh& mesh : {sheet, sphere, band})
+        expect_each_owned_once({mesh.vertices.size(), mesh.faces, {}});
+}
+
+TEST(Elements, OwnEachVertexAndEdgeOnceWhereManyFacesShareAnEdgeAndWithThreads) {
+    const std::vector<Triangle> fan{{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 1, 5}};
+    // A thread from the fan, one beside it, one that is an edge of the fan, one given twice; vertex 9 is
+    // alone.
+    const std::vector<Edge> threads{{5, 6}, {7, 8}, {1, 0}, {2, 1}, {6, 5}};
+    const Elements elements(10, fan, threads);
+    expect_each_owned_once(elements);
+    EXPECT_EQ(elements.edges.size(), 1 + 2 * 4 + 2u);
+    EXPECT_TRUE(std::any_of(elements.all.begin(), elements.all.end(), [](const Element& element) {
+        return element.vertex_count == 1 && element.vertices[0] == 9;
+    }));
+    EXPECT_EQ(elements.at(0).size(), 4u);
+}
+
+TEST(Elements, AreListedAroundTheirVertices) {
+    const TriangleMesh sphere = make_sphere(1, 12, 6);
+    const Elements elements(sphere.vertices.size(), sphere.faces, {});
+    std::size_t count = 0;
+    for (std::size_t v = 0; v < elements.vertex_count(); ++v)
+        for (const std::uint32_t e : elements.at(v)) {
+            EXPECT_TRUE(elements.all[e].has(std::uint32_t(v)));
+            ++count;
+        }
+    EXPECT_EQ(count, 3 * sphere.faces.size());
+}
+
+TEST(ElementTree, VisitsWhatABoxTouchesOnceAlsoAfterItsElementsMoved) {
+    for (const std::size_t count : {1, 8, 9, 64, 65, 700}) {
+        Scattered scattered(count, 1);
+        ElementTree tree(scattered.elements, scattered.positions);
+        scattered.move(0.5F);
+        tree.refit(scattered.elements, scattered.positions);
+        Random random(2);
+        for (int i = 0; i < 100; ++i) {
+            Box box = box_of({}, arrays_of({in_cube(random, 1)}));
+            box.grow(uniform(random, 0, 0.5F));
+            std::vector<std::uint32_t> found, expected;
+            tree.visit_touching(box, [&](std::uint32_t e) { found.push_back(e); });
+            for (std::uint32_t e = 0; e < count; ++e)
+                if (touch(box, box_of(scattered.elements[e], scattered.positions))) expected.push_back(e);
+            std::sort(found.begin(), found.end());
+            ASSERT_EQ(found, expected);
+        }
+    }
+}
+
+TEST(ElementTree, BoundsTheDistanceOfABoxFromBelow) {
+    const Scattered scattered(500, 3);
+    const ElementTree tree(scattered.elements, scattered.positions);
+    Random random(4);
+    for (int i = 0; i < 500; ++i) {
+        Box box = box_of({}, arrays_of({in_cube(random, 2)}));
+        box.grow(uniform(random, 0, 0.05F));
+        const float most = uniform(random, 0, 2), exact = std::min(nearest_box(scattered, box), most);
+        EXPECT_LE(tree.distance(box, most), exact);
+        EXPECT_GE(tree.distance(box, most), exact * (1 - 1e-5F));
+    }
+}
+
+TEST(NearElements, AreThoseWhoseBoxesAreNearUnderEveryInstructionSet) {
+    using Found = std::vector<std::array<std::uint32_t, 2>>;
+    for (const std::size_t count : {1, 8, 20, 300}) {
+        const Scattered a(count, 5), b(2 * count, 6);
+        const ElementTree tree_a(a.elements, a.positions), tree_b(b.elements, b.positions);
+        const float reach = 0.07F;
+        const auto is_near = [&](const Scattered& one, std::uint32_t i, const Scattered& other,
+                                 std::uint32_t j) {
+            Box box = box_of(one.elements[i], one.positions);
+            box.grow(reach);
+            return touch(box, box_of(other.elements[j], other.positions));
+        };
+        Found expected, expected_own;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            for (std::uint32_t j = 0; j < 2 * count; ++j)
+                if (is_near(a, i, b, j)) expected.push_back({i, j});
+            for (std::uint32_t j = i + 1; j < count; ++j)
+                if (is_near(a, i, a, j) || is_near(a, j, a, i)) expected_own.push_back({i, j});
+        }
+        Found first;
+        under_each_instruction_set([&](std::string_view) {
+            Found found, found_own;
+            find_near(tree_a, tree_b, reach, found);
+            find_near(tree_a, tree_a, reach, found_own);
+            if (first.empty()) first = found;
+            EXPECT_EQ(found, first) << "in another order";
+            std::sort(found.begin(), found.end());
+            EXPECT_EQ(found, expected);
+            for (auto& pair : found_own) std::sort(pair.begin(), pair.end());
+            std::sort(found_own.begin(), found_own.end());
+            EXPECT_EQ(found_own, expected_own);
+        });
+    }
+}
+
+TEST(PairLists, KeepWhatIsAddedThroughEveryMove) {
+    constexpr std::size_t kElements = 200;
+    PairLists lists(kElements);
+    std::vector<std::vector<std::uint32_t>> expected(kElements);
+    Random random(7);
+    for (std::uint32_t i = 0; i < 100'000; ++i) {
+        const std::size_t element = random() % kElements;
+        if (random() % 100 == 0) {
+            lists.clear(element);
+            expected[element].clear();
+        } else {
+            lists.add(element, {{i, 0, 0, 0}, 0, PairKind::EdgeEdge});
+            expected[element].push_back(i);
+        }
+    }
+    for (std::size_t element = 0; element < kElements; ++element) {
+        std::vector<std::uint32_t> found;
+        for (const Pair& pair : lists.of(element)) found.push_back(pair.points[0]);
+        EXPECT_EQ(found, expected[element]);
+    }
+}
