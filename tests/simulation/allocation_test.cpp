@@ -32,3 +32,20 @@ TEST(Step, AllocatesNothingBesideAnyKindOfMap) {
     EXPECT_EQ(test::allocation_count(), before);
     EXPECT_GT(simulation.profile().rescued_count, 0u);
 }
+
+TEST(Step, AllocatesNothingMoreForSurfacesOnceTheirListsHaveGrown) {
+    Deformable sheet = make_cloth({.column_count = 20, .row_count = 20, .pose = {Rotation{}, {0, 0, 0.4}}});
+    Simulation simulation(sheet,
+                          {{.map = ExactMap::build(make_sphere(0.3, 20, 10))},
+                           {.map = ExactMap::build(make_box({0.2, 0.2, 0.2})),
+                            .pose = {Rotation{}, {0.45, 0, -0.3}},
+                            .angular_velocity = {0, 0, 2}}},
+                          {.thickness = 0.01, .surface_collision = true, .self_collision = true});
+    const std::size_t at_start = test::allocation_count();
+    for (int i = 0; i < 300; ++i) simulation.step();
+    const std::size_t warm = test::allocation_count();
+    for (int i = 0; i < 300; ++i) simulation.step();
+    // Capacities grow geometrically: few times while the cloth falls, and not again.
+    EXPECT_LT(warm - at_start, 300u);
+    EXPECT_EQ(test::allocation_count(), warm);
+}
