@@ -25,6 +25,8 @@ struct Box {
 };
 
 Box box_of(const Element& element, const PointArrays& positions);
+/// Around an element whose vertices move from the one to the other places.
+Box box_of(const Element& element, const PointArrays& from, const PointArrays& to);
 
 /// Boxes around the elements of a surface, around groups of eight, around groups of eight groups, and so on.
 /// The groups are fixed from the start; the boxes follow the surface.
@@ -36,7 +38,8 @@ class ElementTree {
     /// Groups elements that are near each other in these positions.
     ElementTree(std::span<const Element> elements, const PointArrays& positions);
 
-    void refit(std::span<const Element> elements, const PointArrays& positions);
+    /// To elements whose vertices move from the one to the other places.
+    void refit(std::span<const Element> elements, const PointArrays& from, const PointArrays& to);
 
     /// Calls visit(element) for each element whose box touches this one.
     template <typename Visit>

@@ -107,6 +107,26 @@ void find_near_lanes(const ElementTree& a, const ElementTree& b, float reach,
     }
 }
 
+void find_near_box(const ElementTree& tree, std::size_t level, std::size_t first, const Box& box,
+                   std::uint32_t number, std::vector<std::array<std::uint32_t, 2>>& near) {
+    for (unsigned mask = touching(tree.levels()[level], first, box); mask != 0; mask &= mask - 1) {
+        const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(mask));
+        if (level == 0)
+            near.push_back({number, tree.order()[i]});
+        else
+            find_near_box(tree, level - 1, i * ElementTree::kWidth, box, number, near);
+    }
+}
+
+void find_near_boxes(std::span<const Box> boxes, const ElementTree& tree, float reach,
+                     std::vector<std::array<std::uint32_t, 2>>& near) {
+    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+        Box box = boxes[i];
+        box.grow(reach);
+        find_near_box(tree, tree.levels().size() - 1, 0, box, i, near);
+    }
+}
+
 } // namespace HWY_NAMESPACE
 } // namespace echinus
 HWY_AFTER_NAMESPACE();
@@ -116,12 +136,19 @@ namespace echinus {
 
 namespace {
 HWY_EXPORT(find_near_lanes);
+HWY_EXPORT(find_near_boxes);
 } // namespace
 
 void find_near(const ElementTree& a, const ElementTree& b, float reach,
                std::vector<std::array<std::uint32_t, 2>>& near) {
     if (a.order().empty() || b.order().empty()) return;
     ECHINUS_DISPATCH(find_near_lanes)(a, b, reach, near);
+}
+
+void find_near(std::span<const Box> boxes, const ElementTree& tree, float reach,
+               std::vector<std::array<std::uint32_t, 2>>& near) {
+    if (tree.order().empty()) return;
+    ECHINUS_DISPATCH(find_near_boxes)(boxes, tree, reach, near);
 }
 
 } // namespace echinus

@@ -1,6 +1,7 @@
 #include "simulation/surfaces/self_surface.hpp"
 
 #include "simulation/surfaces/near_elements.hpp"
+#include "simulation/surfaces/shares.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,15 @@ namespace echinus {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// After so many rounds a way that is still too long is given up.
+constexpr int kRounds = 12;
+
+/// No way is shortened to quite the length that is left.
+constexpr float kAlmost = 1 - 1.0F / (1 << 10);
+
+/// Where fewer vertices than one in so many have left their ways, only what is near them is searched for.
+constexpr std::size_t kFewMoved = 8;
 
 /// A share of an element's least height: neighbours of neighbours lie no nearer than a height, and have to
 /// move a little.
@@ -57,14 +67,15 @@ SelfSurface::SelfSurface(std::shared_ptr<const Elements> own, const Particles& p
         const float most = kMostOfHeight * least_height(element, particles.positions);
         for (const std::uint32_t v : element.vertices) most_[v] = std::min(most_[v], most);
     }
-    for (PointArrays* points : {&starts_, &goals_, &anchors_, &searched_at_}) points->resize(count);
+    for (PointArrays* points : {&starts_, &goals_, &anchors_, &searched_from_, &searched_to_})
+        points->resize(count);
     rooms_.assign(count, -1);
     quiet_.assign(count, -1);
     is_alert_.assign(count, 0);
-    leaving_.reserve(count);
+    has_moved_.assign(count, 0);
     if (!faces_.empty()) face_tree_ = ElementTree(faces_, particles.positions);
     if (!edges_.empty()) edge_tree_ = ElementTree(edges_, particles.positions);
-    if (!vertices_.empty()) vertex_tree_ = ElementTree(vertices_, particles.positions);
+    vertex_tree_ = ElementTree(vertices_, particles.positions);
 }
 
 // ---- The frame
@@ -76,115 +87,184 @@ void SelfSurface::to_frame(const RigidTransform* frame, const PointArrays& place
         std::fill(rooms_.begin(), rooms_.end(), -1.0F);
         std::fill(quiet_.begin(), quiet_.end(), -1.0F);
     }
-    if (in_world_) {
-        result = places;
-        return;
-    }
-    now_ = FrameChange(*frame, {1, 1, 1});
-    for (std::size_t i = 0; i < own_->vertex_count(); ++i) result.set(i, now_.point_to_local(places[i]));
-}
-
-void SelfSurface::take_off(const Vec3f& drift, PointArrays& places) const {
-    for (std::size_t i = 0; i < own_->vertex_count(); ++i) places.set(i, places[i] - drift);
+    if (!in_world_) now_ = FrameChange(*frame, {1, 1, 1});
+    for (std::size_t i = 0; i < own_->vertex_count(); ++i)
+        result.set(i, (in_world_ ? places[i] : now_.point_to_local(places[i])) - drift_);
 }
 
 void SelfSurface::begin_pass(const RigidTransform* frame, const PointArrays& starts) {
-    drift_ = drift_goal_;
+    drift_ = drift_ + drifting_;
+    drifting_ = {};
     to_frame(frame, starts, starts_);
-    take_off(drift_, starts_);
     is_measured_ = false;
+    searched_from_ = searched_to_;
 }
 
-void SelfSurface::set_goals(const RigidTransform* frame, const PointArrays& goals, bool drifts) {
-    drifts_ = drifts;
+void SelfSurface::set_goals(const RigidTransform* frame, const PointArrays& goals) {
     to_frame(frame, goals, goals_);
     Vec3d sum;
     double count = 0;
-    if (drifts)
-        for (std::size_t i = 0; i < own_->vertex_count(); ++i) {
-            if (mobility_[i] == 0) continue;
-            sum += Vec3d(goals_[i] - drift_ - starts_[i]);
-            ++count;
-        }
-    drift_goal_ = drift_ + (count > 0 ? Vec3f(sum * (1 / count)) : Vec3f{});
-    take_off(drift_goal_, goals_);
+    for (std::size_t i = 0; i < own_->vertex_count(); ++i) {
+        sum += Vec3d(goals_[i] - starts_[i]) * static_cast<double>(mobility_[i]);
+        count += static_cast<double>(mobility_[i]);
+    }
+    drifting_ = count > 0 ? Vec3f(sum * (1 / count)) : Vec3f{};
+}
+
+/// A way that was proven otherwise may have led out of a room, and the next one may lead back into it.
+bool SelfSurface::all_within(std::span<const float> radii) const {
+    const auto is_within = [&](const Vec3f& place, std::size_t v) {
+        const Vec3f way = place - anchors_[v];
+        return dot(way, way) <= radii[v] * std::fabs(radii[v]);
+    };
+    for (std::size_t v = 0; v < own_->vertex_count(); ++v)
+        if (!is_within(starts_[v], v) || !is_within(goals_[v] - drifting_, v)) return false;
+    return true;
 }
 
 // ---- Pairs
 
-void SelfSurface::search() {
-    ++search_count;
+/// Pairs were dropped since a plane separates them widely both at the beginning and at the end of the ways
+/// for which they were searched. So it does while their vertices stay near such a way in time, in the pass in
+/// which it begins, and later while they stay near its end.
+bool SelfSurface::is_off_its_way(std::uint32_t v) const {
+    if (!has_searched_) return true;
+    const auto is_near = [&](const Vec3f& place) {
+        const Vec3f away = place - searched_to_[v];
+        return dot(away, away) <= reach_.slack * reach_.slack;
+    };
+    return !(is_near(goals_[v] - drifting_) && (searched_from_[v] == starts_[v] || is_near(starts_[v])));
+}
+
+/// Which pairs are listed depends on the way of each vertex for which they were searched last.
+void SelfSurface::list_pairs() {
+    std::size_t moved_count = 0;
+    for (std::uint32_t v = 0; v < own_->vertex_count(); ++v) {
+        has_moved_[v] = is_off_its_way(v) ? 1 : 0;
+        if (has_moved_[v] == 0) continue;
+        ++moved_count;
+        searched_from_.set(v, starts_[v]);
+        searched_to_.set(v, goals_[v] - drifting_);
+    }
+    if (moved_count == 0) return;
+    is_measured_ = false;
     has_searched_ = true;
-    searched_at_ = starts_;
-    face_tree_.refit(faces_, starts_);
-    edge_tree_.refit(edges_, starts_);
-    vertex_tree_.refit(vertices_, starts_);
+    face_tree_.refit(faces_, searched_from_, searched_to_);
+    edge_tree_.refit(edges_, searched_from_, searched_to_);
+    vertex_tree_.refit(vertices_, searched_from_, searched_to_);
     candidates_.clear();
-    near_.clear();
-    find_near(vertex_tree_, face_tree_, reach_.listed, near_);
-    for (const auto& [vertex, face] : near_) {
-        const auto& corners = faces_[face].vertices;
-        if (!faces_[face].has(vertex))
-            candidates_.push_back({{vertex, corners[0], corners[1], corners[2]}, face, PairKind::VertexFace});
-    }
-    near_.clear();
-    find_near(edge_tree_, edge_tree_, reach_.listed, near_);
-    for (const auto& [a, b] : near_) {
-        const auto& p = edges_[a].vertices;
-        const auto& q = edges_[b].vertices;
-        if (p[0] != q[0] && p[0] != q[1] && p[1] != q[0] && p[1] != q[1])
-            candidates_.push_back({{p[0], p[1], q[0], q[1]}, b, PairKind::EdgeEdge});
-    }
-    separations_.resize(candidates_.size());
-    separations(candidates_, starts_, starts_, separations_);
+    if (moved_count > own_->vertex_count() / kFewMoved)
+        search_everywhere();
+    else
+        search_around_moved();
+    keep_near();
+}
+
+void SelfSurface::search_everywhere() {
+    searched_count += faces_.size();
     pairs_.clear();
-    for (std::size_t i = 0; i < candidates_.size(); ++i)
-        if (separations_[i].gap <= reach_.listed) pairs_.push_back(candidates_[i]);
+    const float reach = reach_.near + 2 * reach_.slack;
+    near_.clear();
+    find_near(vertex_tree_, face_tree_, reach, near_);
+    for (const auto& [vertex, face] : near_) add_vertex_face(vertex, face);
+    near_.clear();
+    find_near(edge_tree_, edge_tree_, reach, near_);
+    for (const auto& [a, b] : near_) add_edge_edge(a, b);
+}
+
+void SelfSurface::search_around_moved() {
+    const auto is_moved = [&](const Element& element) {
+        return (has_moved_[element.vertices[0]] | has_moved_[element.vertices[1]] |
+                has_moved_[element.vertices[2]]) != 0;
+    };
+    std::erase_if(pairs_, [&](const Pair& pair) {
+        return std::any_of(pair.points.begin(), pair.points.end(),
+                           [&](std::uint32_t v) { return has_moved_[v] != 0; });
+    });
+    const auto find_around = [&](std::span<const Element> elements, const ElementTree& others) {
+        wanted_.clear();
+        boxes_.clear();
+        for (std::uint32_t e = 0; e < elements.size(); ++e) {
+            if (!is_moved(elements[e])) continue;
+            wanted_.push_back(e);
+            boxes_.push_back(box_of(elements[e], searched_from_, searched_to_));
+        }
+        near_.clear();
+        find_near(boxes_, others, reach_.near + 2 * reach_.slack, near_);
+    };
+    find_around(vertices_, face_tree_);
+    for (const auto& [i, face] : near_) add_vertex_face(wanted_[i], face);
+    find_around(faces_, vertex_tree_);
+    searched_count += wanted_.size();
+    for (const auto& [i, vertex] : near_)
+        if (has_moved_[vertex] == 0) add_vertex_face(vertex, wanted_[i]);
+    find_around(edges_, edge_tree_);
+    for (const auto& [i, b] : near_) // two that moved are found from both sides
+        if (wanted_[i] < b || !is_moved(edges_[b])) add_edge_edge(wanted_[i], b);
+}
+
+void SelfSurface::add_vertex_face(std::uint32_t vertex, std::uint32_t face) {
+    const auto& corners = faces_[face].vertices;
+    if (!faces_[face].has(vertex))
+        candidates_.push_back({{vertex, corners[0], corners[1], corners[2]}, face, PairKind::VertexFace});
+}
+
+void SelfSurface::add_edge_edge(std::uint32_t a, std::uint32_t b) {
+    const auto& p = edges_[a].vertices;
+    const auto& q = edges_[b].vertices;
+    if (p[0] != q[0] && p[0] != q[1] && p[1] != q[0] && p[1] != q[1])
+        candidates_.push_back({{p[0], p[1], q[0], q[1]}, b, PairKind::EdgeEdge});
+}
+
+/// Of the candidates, those that may come near on their ways, which they go together.
+void SelfSurface::keep_near() {
+    separations_.resize(candidates_.size());
+    separations(candidates_, searched_from_, searched_from_, separations_);
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+        const Pair& pair = candidates_[i];
+        const Vec3f normal = separations_[i].normal;
+        const std::size_t own = own_count(pair.kind);
+        float least = kInfinity, most = -kInfinity;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const float height = dot(normal, searched_to_[pair.points[k]] - searched_from_[pair.points[0]]);
+            least = k < own ? std::min(least, height) : least;
+            most = k < own ? most : std::max(most, height);
+        }
+        const float gap = std::min(separations_[i].gap, least - most);
+        if (gap <= reach_.near + 2 * reach_.slack) pairs_.push_back(pair);
+    }
 }
 
 /// Gives every vertex a new room where it is.
 void SelfSurface::measure() {
-    float moved_sq = 0;
-    for (std::size_t i = 0; i < own_->vertex_count() && has_searched_; ++i) {
-        const Vec3f moved = starts_[i] - searched_at_[i];
-        moved_sq = std::max(moved_sq, dot(moved, moved));
-    }
-    if (!has_searched_ || !(moved_sq <= reach_.slack * reach_.slack)) {
-        search();
-        moved_sq = 0;
-    }
+    if (is_measured_) return;
+    is_measured_ = true;
     separations_.resize(pairs_.size());
     separations(pairs_, starts_, starts_, separations_);
     measured_count += pairs_.size();
     anchors_ = starts_;
-    unlisted_room_ = usable(reach_.listed - 2 * std::sqrt(moved_sq)) / 2;
-    std::fill(rooms_.begin(), rooms_.end(), unlisted_room_);
-    std::fill(quiet_.begin(), quiet_.end(), unlisted_room_);
+    const float unlisted = usable_gap(reach_.near, reach_.least_gap) / 2;
+    std::fill(rooms_.begin(), rooms_.end(), unlisted);
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
-        const float by_gap = usable(separations_[i].gap) / 2;
+        const float by_gap = usable_gap(separations_[i].gap, reach_.least_gap) / 2;
         for (const std::uint32_t v : pairs_[i].points) rooms_[v] = std::min(rooms_[v], by_gap);
     }
-    is_measured_ = true;
-}
-
-bool SelfSurface::is_beyond(std::uint32_t vertex, float radius) const {
-    const Vec3f way = goals_[vertex] - anchors_[vertex];
-    return !(dot(way, way) <= radius * std::fabs(radius));
+    std::fill(quiet_.begin(), quiet_.end(), -1.0F); // the next frame looks for contacts
 }
 
 // ---- Contacts
 
 void SelfSurface::look_ahead(const RigidTransform* frame, const PointArrays& goals) {
-    set_goals(frame, goals, true);
-    bool is_quiet = true;
-    for (std::uint32_t v = 0; v < own_->vertex_count() && is_quiet; ++v) is_quiet = !is_beyond(v, quiet_[v]);
-    if (is_quiet) return;
+    set_goals(frame, goals);
+    if (all_within(quiet_)) return;
     std::fill(is_alert_.begin(), is_alert_.end(), std::uint8_t{0});
     for (const Contact& contact : contacts_)
         if (contact.has_pushed)
             for (const std::uint32_t v : contact.pair.particles) is_alert_[v] = 1;
     contacts_.clear();
+    list_pairs();
     measure();
+    std::fill(quiet_.begin(), quiet_.end(), reach_.near / 2);
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
         const float quiet = consider(pairs_[i], separations_[i]);
         for (const std::uint32_t v : pairs_[i].points) quiet_[v] = std::min(quiet_[v], quiet);
@@ -197,19 +277,24 @@ float SelfSurface::thickness_of(const Pair& pair) const {
     return thickness;
 }
 
+/// By how much the gap of a pair shrinks along its normal on the way to the goals.
+float SelfSurface::closing(const Pair& pair, const Separation& apart) const {
+    const auto along = [&](std::uint32_t v) { return dot(apart.normal, goals_[v] - starts_[v]); };
+    const std::size_t own = own_count(pair.kind);
+    float least = along(pair.points[0]), most = along(pair.points[own]);
+    for (std::size_t k = 1; k < own; ++k) least = std::min(least, along(pair.points[k]));
+    for (std::size_t k = own + 1; k < 4; ++k) most = std::max(most, along(pair.points[k]));
+    return std::max(most - least, 0.0F);
+}
+
 /// @return how far each of the pair's vertices may go before it has to be measured again
 float SelfSurface::consider(const Pair& pair, const Separation& apart) {
     const float thickness = thickness_of(pair);
-    const auto way_of = [&](std::uint32_t v) { return goals_[v] - starts_[v]; };
-    const std::size_t own = own_count(pair.kind);
-    float closing = 0;
-    for (std::size_t i = 0; i < own; ++i)
-        for (std::size_t j = own; j < 4; ++j)
-            closing = std::max(closing, -dot(apart.normal, way_of(pair.points[i]) - way_of(pair.points[j])));
     const bool is_alert = std::any_of(pair.points.begin(), pair.points.end(),
                                       [&](std::uint32_t v) { return is_alert_[v] != 0; });
-    const float ready = thickness * (1 + (is_alert ? kAlertReadiness : kReadiness)) + closing;
-    if (!(apart.gap < ready)) return (apart.gap - thickness) / 2;
+    const float ready = thickness * (1 + (is_alert ? kAlertReadiness : kReadiness));
+    if (!(apart.gap < ready + closing(pair, apart))) return (apart.gap - thickness) / 2;
+    const std::size_t own = own_count(pair.kind);
     Contact& contact = contacts_.emplace_back();
     contact.pair.particles = pair.points;
     for (std::size_t k = 0; k < 4; ++k)
@@ -230,61 +315,53 @@ void SelfSurface::relax(Particles& particles, std::span<const float> inverse_mas
 
 // ---- Truncation
 
-bool SelfSurface::renew() {
-    if (is_measured_) return false;
+/// A vertex that ends early does not drift on with the others: it leaves the way for which its pairs were
+/// listed, and the next round finds what is near its new one.
+std::span<const float> SelfSurface::allowed_shares(const RigidTransform* frame, const PointArrays& goals) {
+    set_goals(frame, goals);
+    if (all_within(rooms_)) return {};
+    list_pairs();
     measure();
-    std::fill(quiet_.begin(), quiet_.end(), -1.0F); // too late for contacts: the next frame looks
-    return true;
-}
-
-std::span<const std::uint32_t> SelfSurface::find_leaving() {
-    do {
-        leaving_.clear();
+    shares_.assign(own_->vertex_count(), 1);
+    whole_goals_ = goals_;
+    for (int round = 0; shorten_ways(round); ++round) {
         for (std::uint32_t v = 0; v < own_->vertex_count(); ++v)
-            if (is_beyond(v, rooms_[v])) leaving_.push_back(v);
-    } while (!leaving_.empty() && renew());
-    return leaving_;
-}
-
-void SelfSurface::prepare(std::span<const std::uint32_t> vertices) {
-    const auto for_each_wanted = [&](const auto& visit) {
-        for (std::uint32_t i = 0; i < pairs_.size(); ++i)
-            for (const std::uint32_t v : pairs_[i].points)
-                if (is_wanted_[v] != 0) visit(v, i);
-    };
-    is_wanted_.assign(own_->vertex_count(), 0);
-    for (const std::uint32_t v : vertices) is_wanted_[v] = 1;
-    pair_offsets_.assign(own_->vertex_count() + 1, 0);
-    for_each_wanted([&](std::uint32_t v, std::uint32_t) { ++pair_offsets_[v + 1]; });
-    for (std::size_t v = 0; v < own_->vertex_count(); ++v) pair_offsets_[v + 1] += pair_offsets_[v];
-    pairs_at_.resize(pair_offsets_.back());
-    next_ = pair_offsets_;
-    for_each_wanted([&](std::uint32_t v, std::uint32_t i) { pairs_at_[next_[v]++] = i; });
-}
-
-Shares SelfSurface::allowed(std::uint32_t vertex, const Vec3f& from) const {
-    const Vec3f start = starts_[vertex];
-    // Without drift the way begins where the vertex is, but for rounding.
-    const Vec3f offset = drifts_ ? into_frame(from) - drift_goal_ - start : Vec3f{};
-    const Vec3f way = goals_[vertex] - start;
-    Shares shares;
-    shares.keep_in_ball(offset, way - offset, unlisted_room_);
-    for (std::uint32_t n = pair_offsets_[vertex]; n < pair_offsets_[vertex + 1]; ++n) {
-        const Pair& pair = pairs_[pairs_at_[n]];
-        const Separation& apart = separations_[pairs_at_[n]];
-        const std::size_t own = own_count(pair.kind);
-        const auto place = static_cast<std::size_t>(
-            std::find(pair.points.begin(), pair.points.end(), vertex) - pair.points.begin());
-        const std::size_t first = place < own ? 0 : own, last = place < own ? own : 4;
-        const Vec3f away = place < own ? apart.normal : -apart.normal;
-        // How far beyond its side's nearest vertex to the other side the vertex begins.
-        float behind = kInfinity;
-        for (std::size_t k = first; k < last; ++k)
-            behind = std::min(behind, dot(away, starts_[pair.points[k]] - start));
-        const float allowed_way = std::max(usable(apart.gap) / 2, 0.0F) - behind;
-        shares.keep_not_negative(dot(away, offset) + allowed_way, dot(away, way) + allowed_way);
+            if (shares_[v] != 1) goals_.set(v, starts_[v] + (whole_goals_[v] - starts_[v]) * shares_[v]);
+        list_pairs();
+        measure();
     }
-    return shares;
+    return shares_;
+}
+
+/// Shortens the ways of pairs that could meet. @return whether there were any
+bool SelfSurface::shorten_ways(int round) {
+    bool found = false;
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+        const Pair& pair = pairs_[i];
+        const Separation& apart = separations_[i];
+        const std::size_t own = own_count(pair.kind);
+        const Vec3f origin = starts_[pair.points[0]];
+        float least = kInfinity, most = -kInfinity;
+        for (std::size_t k = 0; k < 4; ++k) {
+            const std::uint32_t v = pair.points[k];
+            const Vec3f end = starts_[v] + (whole_goals_[v] - starts_[v]) * shares_[v];
+            const float height = dot(apart.normal, end - origin);
+            least = k < own ? std::min(least, height) : least;
+            most = k < own ? most : std::max(most, height);
+        }
+        const float kept = apart.gap - std::max(usable_gap(apart.gap, reach_.least_gap), 0.0F);
+        const float at_end = least - most;
+        if (apart.gap > 0 && at_end >= kept) continue;
+        const float share = round < kRounds && apart.gap > kept
+                                ? std::clamp((apart.gap - kept) / (apart.gap - at_end), 0.0F, 1.0F) * kAlmost
+                                : 0.0F;
+        for (const std::uint32_t v : pair.points) {
+            if (shares_[v] == 0 || mobility_[v] == 0) continue;
+            shares_[v] *= share;
+            found = true;
+        }
+    }
+    return found;
 }
 
 } // namespace echinus

@@ -15,9 +15,11 @@ namespace {
 /// that the vertices keep, and need not be pushed before they are much nearer.
 constexpr float kSurfaceShare = 0.75F;
 
-/// Pairs of the deformable with itself are listed up to this share of the mean edge: in a flat sheet of
-/// squares there are none.
-constexpr float kSelfReach = 0.6F;
+/// As far as neighbours of neighbours leave room: shares of the mean edge.
+constexpr float kMostSelfThickness = 0.25F;
+constexpr float kLeastSelfReach = 0.2F;
+/// In thicknesses: pairs this near are listed, since a contact is kept ready before it pushes.
+constexpr float kSelfReach = 1.3F;
 
 /// A vertex that is too fast for what is listed goes its way in several passes.
 constexpr int kMostPasses = 8;
@@ -60,11 +62,13 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
                              now.friction);
     }
     if (options.self_collision) {
-        const auto thickness = static_cast<float>(options.self_thickness.value_or(*options.thickness));
-        const float listed = kSelfReach * edge_length;
-        const float least_gap = largest_coordinate(particles.positions) * (1.0F / (1 << 21));
-        self_.emplace(elements_, particles, SelfSurface::Reach{listed, listed / 6, least_gap},
-                      std::min(thickness, listed / 2), static_cast<float>(options.friction));
+        const float thickness =
+            std::min(static_cast<float>(options.self_thickness.value_or(*options.thickness)),
+                     kMostSelfThickness * edge_length);
+        const float near = std::max(kSelfReach * thickness, kLeastSelfReach * edge_length);
+        const float least_gap = largest_coordinate(particles.positions) * (1.0F / (1 << 17));
+        self_.emplace(elements_, particles, SelfSurface::Reach{near, near / 4, least_gap}, thickness,
+                      static_cast<float>(options.friction));
     }
     leaving_.reserve(particles.count());
     poses_.resize(models_.size());
@@ -133,7 +137,7 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
     }
     profile.searched_face_count = profile.measured_pair_count = 0;
     if (self_) {
-        profile.searched_face_count = self_->search_count * elements_->all.size();
+        profile.searched_face_count = self_->searched_count;
         profile.measured_pair_count = self_->measured_count;
     }
     for (const ModelSurface& model : models_) {
@@ -145,47 +149,39 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
 /// @return whether another pass may take a vertex farther
 bool SurfaceCollision::pass(Particles& particles, bool is_first) {
     for (ModelSurface& model : models_) model.set_goals(goals_);
-    if (self_) self_->set_goals(carrier_pose(), goals_, true);
-    if (!find_leaving()) {
-        if (!is_first) particles.positions = goals_;
-        is_truncated_.assign(is_truncated_.size(), 0);
-        return false;
-    }
-    if (!find_places(is_first, particles) && self_) {
-        // Some vertex cannot stay behind while all others drift on: without drift it can.
-        self_->set_goals(carrier_pose(), goals_, false);
-        for (const std::uint32_t v : leaving_) is_leaving_[v] = 0;
-        find_leaving();
-        find_places(is_first, particles);
-    }
-    for (std::uint32_t v = 0; v < particles.count(); ++v) {
-        if (is_leaving_[v] != 0) continue;
-        is_truncated_[v] = 0;
-        if (!is_first) particles.positions.set(v, goals_[v]);
-    }
-    bool may_go_on = false;
-    for (std::size_t i = 0; i < leaving_.size(); ++i) {
-        const std::uint32_t v = leaving_[i];
-        particles.positions.set(v, places_[i]);
+    find_leaving();
+    ends_ = goals_;
+    for (const std::uint32_t v : leaving_) {
+        ends_.set(v, find_place(v, is_first, particles));
         is_leaving_[v] = 0;
-        const Vec3f left = goals_[v] - places_[i];
-        is_truncated_[v] = dot(left, left) > 0 ? 1 : 0;
+    }
+    if (self_) shorten_ways(is_first, particles);
+    bool may_go_on = false;
+    for (std::uint32_t v = 0; v < particles.count(); ++v) {
+        is_truncated_[v] = ends_[v] == goals_[v] ? 0 : 1;
         may_go_on = may_go_on || is_truncated_[v] != 0;
     }
+    particles.positions = ends_;
     return may_go_on;
 }
 
-/// Where each of the leaving vertices may go. @return whether each of them has such a place
-bool SurfaceCollision::find_places(bool is_first, const Particles& particles) {
-    if (self_) self_->prepare(leaving_);
-    places_.clear();
-    squeezed_now_ = 0;
-    for (const std::uint32_t v : leaving_) places_.push_back(find_place(v, is_first, particles));
-    return squeezed_now_ == 0;
+/// So that the deformable does not meet itself. What models allow of a way, they allow of a part of it.
+void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles) {
+    const RigidTransform* pose = is_first ? carrier_pose() : nullptr;
+    const std::span<const float> shares = self_->allowed_shares(carrier_pose(), ends_);
+    if (shares.empty()) return;
+    for (std::uint32_t v = 0; v < particles.count(); ++v) {
+        if (shares[v] == 1) continue;
+        const Vec3f end = ends_[v];
+        const Vec3f from = pose != nullptr ? carrier()->carried(v)
+                           : is_first      ? particles.frame_start[v]
+                                           : particles.positions[v];
+        ends_.set(v, from + (end - from) * shares[v]);
+    }
 }
 
 /// A vertex that leaves its room beside one model is looked at beside all of them.
-bool SurfaceCollision::find_leaving() {
+void SurfaceCollision::find_leaving() {
     leaving_.clear();
     const auto add = [&](std::span<const std::uint32_t> vertices) {
         const std::size_t before = leaving_.size();
@@ -196,13 +192,10 @@ bool SurfaceCollision::find_leaving() {
     for (bool found = true; found;) {
         found = false;
         for (ModelSurface& model : models_) found = add(model.find_leaving()) || found;
-        if (self_) found = add(self_->find_leaving()) || found;
-        if (!found || models_.size() + (self_ ? 1 : 0) == 1) break;
+        if (!found || models_.size() == 1) break;
         for (const std::uint32_t v : leaving_)
             for (ModelSurface& model : models_) model.renew(v);
-        if (self_) self_->renew();
     }
-    return !leaving_.empty();
 }
 
 Vec3f SurfaceCollision::find_place(std::uint32_t vertex, bool is_first, const Particles& particles) {
@@ -217,7 +210,6 @@ Vec3f SurfaceCollision::find_place(std::uint32_t vertex, bool is_first, const Pa
     Shares shares;
     for (const ModelSurface& model : models_)
         shares.keep(model.allowed(vertex, &model == frame ? nullptr : &from));
-    if (self_) shares.keep(self_->allowed(vertex, from));
     if (shares.none()) ++squeezed_now_;
     const float share = shares.none() ? 0 : std::max(shares.most, 0.0F);
     if (share == 1) return goal;

@@ -34,8 +34,8 @@ class SurfaceCollision {
 
   private:
     bool pass(Particles& particles, bool is_first);
-    bool find_leaving();
-    bool find_places(bool is_first, const Particles& particles);
+    void find_leaving();
+    void shorten_ways(bool is_first, const Particles& particles);
     Vec3f find_place(std::uint32_t vertex, bool is_first, const Particles& particles);
 
     SimulationOptions options_;
@@ -47,12 +47,11 @@ class SurfaceCollision {
     const ModelSurface* carrier() const { return carrier_ < models_.size() ? &models_[carrier_] : nullptr; }
     const RigidTransform* carrier_pose() const { return carrier() != nullptr ? &poses_[carrier_] : nullptr; }
     std::size_t carrier_ = 0; ///< the first collider that moves; beyond the last where none does
-    PointArrays expected_, goals_;
+    PointArrays expected_, goals_, ends_;
     std::vector<std::vector<float>> clearances_; ///< by model and vertex
     std::vector<std::uint32_t> leaving_;
     std::vector<std::uint8_t> is_leaving_, is_truncated_;
-    std::vector<Vec3f> places_;      ///< of the leaving vertices
-    std::uint64_t squeezed_now_ = 0; ///< of them, those without a place
+    std::uint64_t squeezed_now_ = 0; ///< vertices without a place
 };
 
 } // namespace echinus

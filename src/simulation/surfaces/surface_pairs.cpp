@@ -249,9 +249,12 @@ std::span<const std::uint32_t> SurfacePairs::find_leaving(const PointArrays& goa
             else
                 wake(v);
         }
-        if (woken_.empty()) return leaving_;
+        if (woken_.empty()) break;
         measure_woken();
     }
+    // Their next way may lead back in from outside.
+    for (const std::uint32_t v : leaving_) rooms_[v] = quiet_[v] = -1;
+    return leaving_;
 }
 
 bool SurfacePairs::renew(std::uint32_t vertex) {
@@ -272,6 +275,7 @@ Shares SurfacePairs::allowed(std::uint32_t vertex, const Vec3f& from, const Vec3
             if (std::find(pair.points.begin(), own, vertex) == own) continue;
             const auto points = points_of(pair);
             const Separation apart = separation(pair.kind, points);
+            if (!(apart.gap > 0)) return {0, 0};
             // How far above the plane at the end of the pair's own part the vertex begins.
             float above = kInfinity;
             for (std::size_t k = 0; k < own_count(pair.kind); ++k)
