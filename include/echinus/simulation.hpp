@@ -70,7 +70,7 @@ struct Deformable {
     /// pushes it.
     std::vector<float> inverse_masses;
     std::vector<Stick> sticks;             ///< in the order in which they are relaxed
-    std::vector<Triangle> faces;           ///< for pictures and wind; they do not collide
+    std::vector<Triangle> faces;           ///< for pictures, wind and contact of surfaces
     std::vector<Fold> folds{};             ///< in the order in which they are relaxed, before the sticks
     std::vector<Attachment> attachments{}; ///< of pinned particles, at most one of each
 
@@ -277,6 +277,11 @@ class Simulation {
     ///   of the first of them, or else of the next, and counts as lost to the others.
     /// - Far from the origin, floats may be too coarse for the room around the last free place. A particle
     ///   that cannot be placed there counts as lost.
+    ///
+    /// With options.surface_collision edges and faces collide in each relaxation, and the proof at the end is
+    /// about them: no face meets a collider, or another face with options.self_collision, in any frame;
+    /// docs/surfaces.md has the limits, and squeezed_count counts where they were met. The arrays of pairs
+    /// that are near grow as far as needed, geometrically; a step that does not need more allocates nothing.
     /// @throws Error Diverged, naming the frame; afterwards only reading is allowed
     void step();
 
