@@ -91,7 +91,7 @@ float ModelSurface::consider(std::uint32_t element, const Pair& pair, const Sepa
     }
     if (!(apart.gap < thickness_ * (1 + readiness) + way)) return apart.gap - thickness_;
     add_contact(element, pair, apart);
-    return kPlaneReuse * thickness_;
+    return kContactReuse * thickness_;
 }
 
 void ModelSurface::add_contact(std::uint32_t element, const Pair& pair, const Separation& apart) {

@@ -301,7 +301,7 @@ float SelfSurface::consider(const Pair& pair, const Separation& apart) {
         contact.pair.weights[k] = k < own ? apart.weights[k] : -apart.weights[k];
     contact.pair.normal = in_world_ ? apart.normal : now_.normal_to_world(apart.normal);
     contact.pair.offset = thickness;
-    return kPlaneReuse * thickness;
+    return kContactReuse * thickness;
 }
 
 void SelfSurface::relax(Particles& particles, std::span<const float> inverse_masses,

@@ -16,7 +16,7 @@ inline constexpr float kReadiness = 1.0F / 8;
 /// The same beside a vertex that was pushed lately.
 inline constexpr float kAlertReadiness = 1.0F / 2;
 /// A contact's plane is used until one of its vertices has moved by this share of the thickness.
-inline constexpr float kPlaneReuse = 1.0F / 8;
+inline constexpr float kContactReuse = 1.0F / 8;
 
 /// A point of a deformable's surface, a mean of up to three particles, that is to stay `offset` or more along
 /// the normal: from a plane, or, with more particles whose weights are negative, from another such point.
