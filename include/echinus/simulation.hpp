@@ -102,7 +102,7 @@ enum class BendingKind : std::uint8_t {
     Angles, ///< a fold at each edge between two faces
     Sticks, ///< a stick between the two corners opposite such an edge, as in the paper: it resists large
             ///< angles more than small ones, does not tell a fold to the front from one to the back, and
-            ///< takes a third of the time
+            ///< takes less time
 };
 
 /// How a mesh becomes a cloth, and where it starts.
@@ -163,15 +163,16 @@ enum class SolverKind : std::uint8_t {
 struct SimulationOptions {
     SolverKind solver = SolverKind::Verlet;
     double time_step = 1.0 / 240; ///< seconds per frame. Half of it: twice the time, a quarter of the stretch
-    /// Relaxations per substep, of all sticks and then of all contacts: more take longer and stretch less.
+    /// Relaxations per substep, of all folds and sticks and then of all contacts: more take longer and
+    /// stretch less.
     std::uint32_t iteration_count = 10;
     /// Xpbd: steps of time_step / substep_count that a frame is made of. For the same number of relaxations
     /// in all, substeps of one each stretch least (Macklin et al. 2019). Verlet: 1.
     std::uint32_t substep_count = 1;
     Vec3d gravity{0, 0, -9.81}; ///< units per second squared
     double drag = 0.005;        ///< share of the velocity that is lost per frame, 0 to 1
-    /// Verlet: share of a stick's error that one relaxation removes, by StickKind. 1 removes all; from 1 to 2
-    /// (not included) it overshoots, which carries tension further per relaxation.
+    /// Verlet: share of a stick's or fold's error that one relaxation removes, by StickKind. 1 removes all;
+    /// from 1 to 2 (not included) it overshoots, which carries tension further per relaxation.
     std::array<double, kStickKindCount> stiffness{1, 1, 0.3};
     /// Xpbd: how far a stick gives per unit of force, by StickKind: length / (mass * length / s^2), with the
     /// masses of the particles. 0 does not give.
@@ -210,7 +211,7 @@ struct SimulationOptions {
 /// Times and counts of step() since the simulation began. Times are not part of the result.
 struct SimulationProfile {
     double integration_seconds = 0;  ///< Verlet, moving the colliders, and the check for divergence and rest
-    double constraint_seconds = 0;   ///< sticks
+    double constraint_seconds = 0;   ///< sticks and folds
     double collision_seconds = 0;    ///< queries, push-out and friction
     std::uint64_t query_count = 0;   ///< particle queries, counted per iteration and collider
     std::uint64_t contact_count = 0; ///< of them, those that were pushed
@@ -255,8 +256,8 @@ class Simulation {
     Simulation& operator=(Simulation&& other) noexcept;
 
     /// One frame: substep_count times Verlet integration, drag with the first, colliders that move on along
-    /// their velocities, then iteration_count times all sticks and then collision of all particles with all
-    /// colliders; at last the proof that no particle passed through an exact map. Allocates nothing.
+    /// their velocities, then iteration_count times all folds, all sticks and then collision of all particles
+    /// with all colliders; at last the proof that no particle passed through an exact map. Allocates nothing.
     ///
     /// A distance map pushes along its rays (docs/paper.md), and a custom map to the points that it names,
     /// both gently: a particle that is not inside is pushed no farther than it came. An exact map pushes to
@@ -270,7 +271,7 @@ class Simulation {
     /// - It is about particles. An edge of the model may stick out between them.
     /// - Distance maps and custom maps are not swept. Nothing is promised for them, nor for the exact map of
     ///   an open mesh.
-    /// - Pinned particles are left where they are.
+    /// - Pinned and attached particles are left where they are held.
     /// - A particle that begins inside is pushed to the nearest surface point, and kept outside once it is
     ///   outside.
     /// - A particle that several exact maps squeeze until it cannot be placed goes to where it was last free
