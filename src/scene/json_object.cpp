@@ -140,6 +140,13 @@ void JsonObject::require(const char* key) {
     if (!has(key)) fail("the key " + path_of(key) + " is missing");
 }
 
+void JsonObject::read(const char* key, bool& value) {
+    const json* found = find(key);
+    if (found == nullptr) return;
+    if (!found->is_boolean()) refuse(key, "true or false");
+    value = found->get<bool>();
+}
+
 void JsonObject::read(const char* key, double& value, Range range) {
     const json* found = find(key);
     if (found == nullptr) return;

@@ -34,6 +34,7 @@ class JsonObject {
     bool has(const char* key) const { return value_.contains(key); }
     void require(const char* key);
 
+    void read(const char* key, bool& value);
     void read(const char* key, double& value, Range range);
     void read(const char* key, std::optional<double>& value, Range range);
     void read(const char* key, std::uint32_t& value, Range range);

@@ -20,6 +20,10 @@ constexpr Range kLength{1e-9, 1e9};
 constexpr Range kSegmentCount{1, 4096};
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
+/// The defaults beside an exact map. Beside a distance map surfaces cannot collide.
+constexpr bool kSurfaceCollision = false;
+constexpr bool kSelfCollision = false; ///< where surfaces collide
+
 using Counts = std::array<std::uint32_t, 2>;
 
 SceneModel read_torus(JsonObject torus) {
@@ -255,6 +259,7 @@ void read_cloth(JsonObject& root, Scene& scene) {
     auto cloth = root.object("cloth");
     cloth->read("velocity", scene.cloth_velocity, kCoordinate);
     cloth->read("thickness", scene.simulation.thickness, {0, 1e9});
+    cloth->read("self_thickness", scene.simulation.self_thickness, {0, 1e9});
     cloth->has("mesh") ? read_mesh_cloth(*cloth, scene) : read_sheet(*cloth, scene);
     cloth->finish();
 }
@@ -287,6 +292,21 @@ void read_material(JsonObject& root, SimulationOptions& options) {
     material->read("friction", options.friction, {0, 1e9});
     material->read("drag", options.drag, {0, 1});
     material->finish();
+}
+
+/// @pre the map was read
+void read_surfaces(JsonObject& root, Scene& scene) {
+    const bool is_exact = std::holds_alternative<ExactMapOptions>(scene.map);
+    bool& surfaces = scene.simulation.surface_collision;
+    bool& self = scene.simulation.self_collision;
+    surfaces = is_exact && kSurfaceCollision;
+    root.read("surface_collision", surfaces);
+    if (surfaces && !is_exact)
+        root.refuse("surface_collision",
+                    "false, or \"map.kind\" must be \"exact\", which has the model's faces");
+    self = surfaces && kSelfCollision;
+    root.read("self_collision", self);
+    if (self && !surfaces) root.refuse("self_collision", "false, or \"surface_collision\" must be true");
 }
 
 void read_solver(JsonObject& root, SimulationOptions& options) {
@@ -343,6 +363,7 @@ Scene parse_scene(std::string_view json, const std::string& name) {
     if (auto map = root.object("map")) scene.map = read_map(*std::move(map));
     read_collider(root, scene);
     read_cloth(root, scene);
+    read_surfaces(root, scene);
     read_solver(root, scene.simulation);
     read_material(root, scene.simulation);
     read_end(root, scene);

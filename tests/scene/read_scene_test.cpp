@@ -32,7 +32,9 @@ const char* const kMeshScene = R"({
     "model": {"torus": {"major": 2, "minor": 0.5, "segments": [12, 8]}},
     "cloth": {"mesh": "shirt.obj", "rest_mesh": "shirt_flat.obj", "bending": "sticks", "scale": 0.5,
               "position": [4, 5, 6], "rotation": {"axis": [1, 0, 0], "degrees": -90}, "velocity": [1, 2, -3],
-              "thickness": 0.02, "pins": [3, 5], "attachments": {"from": [-1, -2, -3], "to": [1, 2, 3]}}
+              "thickness": 0.02, "self_thickness": 0.03, "pins": [3, 5],
+              "attachments": {"from": [-1, -2, -3], "to": [1, 2, 3]}},
+    "surface_collision": true, "self_collision": true
 })";
 
 std::string refusal(const std::string& text) {
@@ -119,6 +121,9 @@ TEST(Scene, OfAMeshIsReadKeyByKey) {
     EXPECT_NEAR(length(cloth.pose.rotation.apply({0, 0, 1}) - Vec3d{0, 1, 0}), 0, 1e-12);
     EXPECT_EQ(scene.cloth_velocity, (Vec3d{1, 2, -3}));
     EXPECT_EQ(scene.simulation.thickness, 0.02);
+    EXPECT_EQ(scene.simulation.self_thickness, 0.03);
+    EXPECT_TRUE(scene.simulation.surface_collision);
+    EXPECT_TRUE(scene.simulation.self_collision);
     EXPECT_EQ(std::get<std::vector<std::uint32_t>>(cloth.pins), (std::vector<std::uint32_t>{3, 5}));
     EXPECT_EQ(std::get<VertexBox>(cloth.attachments).from, (Vec3d{-1, -2, -3}));
     EXPECT_EQ(std::get<VertexBox>(cloth.attachments).to, (Vec3d{1, 2, 3}));
@@ -166,6 +171,30 @@ TEST(Scene, UsesAnExactMapUnlessItSaysOtherwise) {
     const TriangleMesh box = make_box({1, 1, 1});
     EXPECT_TRUE(std::holds_alternative<ExactMap>(build_map(box, given)));
     EXPECT_TRUE(std::holds_alternative<DistanceMap>(build_map(box, DistanceMapOptions{})));
+}
+
+TEST(Scene, LetsSurfacesCollideBesideExactMapsOnly) {
+    const auto with = [](const std::string& keys) {
+        return R"({"model": {"box": {}}, "cloth": {"size": [2, 2]})" + keys + "}";
+    };
+    const SimulationOptions surfaces =
+        parse_scene(with(R"(, "surface_collision": true)"), "a.json").simulation;
+    EXPECT_TRUE(surfaces.surface_collision);
+    const SimulationOptions none =
+        parse_scene(with(R"(, "surface_collision": false, "self_collision": false)"), "a.json").simulation;
+    EXPECT_FALSE(none.surface_collision);
+    EXPECT_FALSE(none.self_collision);
+    const SimulationOptions distance =
+        parse_scene(with(R"(, "map": {"kind": "distance"})"), "a.json").simulation;
+    EXPECT_FALSE(distance.surface_collision);
+    EXPECT_FALSE(distance.self_collision);
+    EXPECT_EQ(refusal(with(R"(, "map": {"kind": "distance"}, "surface_collision": true)")),
+              R"(a.json: surface_collision is true; it must be false, or "map.kind" must be "exact", )"
+              "which has the model's faces");
+    EXPECT_EQ(refusal(with(R"(, "surface_collision": false, "self_collision": true)")),
+              R"(a.json: self_collision is true; it must be false, or "surface_collision" must be true)");
+    EXPECT_EQ(refusal(with(R"(, "surface_collision": 1)")),
+              "a.json: surface_collision is 1; it must be true or false");
 }
 
 TEST(Scene, DividesTheDirectionsOfADistanceMapAsItSays) {
@@ -339,6 +368,7 @@ TEST(Scene, RefusesEveryValueOfAWrongTypeByItsPath) {
         for (const auto& at : places) {
             if (at.empty()) continue;
             for (const json& wrong : {json(nullptr), json(true), json::parse("[[]]")}) {
+                if (wrong.is_boolean() && full[at].is_boolean()) continue;
                 json spoilt = full;
                 spoilt[at] = wrong;
                 const std::string sentence = refusal(spoilt.dump());
