@@ -205,3 +205,41 @@ TEST_F(SimulateCommand, LeavesNoFolderBehindWhenItDiverges) {
         "cloth": {"particles": [4, 4], "size": [1, 1], "position": [9, 0, 2]}})");
     expect_failure(1, "wild.json: the simulation diverged in frame", {"simulate", "wild.json", "-o", "run"});
 }
+
+TEST_F(SimulateCommand, LetsSurfacesCollideWhereTheSceneOrAnOptionSaysSo) {
+    // The middle of a sheet of four particles falls on a small ball.
+    const std::string scene = R"({"model": {"sphere": {"radius": 0.2, "segments": [12, 6]}},
+        "cloth": {"particles": [2, 2], "size": [2, 2], "position": [0.1, 0, 0.25], "thickness": 0.01},
+        "frame_limit": 50)";
+    write("particles.json", scene + "}");
+    write("surfaces.json", scene + R"(, "surface_collision": true, "self_collision": true})");
+    const nlohmann::json particles = simulate("particles.json");
+    EXPECT_EQ(particles.at("surface_collision"), false);
+    EXPECT_GT(particles.at("intersecting_pairs"), 0);
+    const nlohmann::json surfaces = simulate("surfaces.json");
+    EXPECT_EQ(surfaces.at("surface_collision"), true);
+    EXPECT_EQ(surfaces.at("self_collision"), true);
+    EXPECT_EQ(surfaces.at("intersecting_pairs"), 0);
+    EXPECT_EQ(surfaces.at("squeezed"), 0);
+    EXPECT_GE(surfaces.at("truncated").at("most"), surfaces.at("truncated").at("mean"));
+    const auto hash_with = [&](const std::string& name, const std::vector<std::string>& options) {
+        return simulate(name, options).at("state_hash");
+    };
+    EXPECT_EQ(hash_with("particles.json", {"--surfaces", "on", "--self", "on"}), surfaces.at("state_hash"));
+    EXPECT_EQ(hash_with("surfaces.json", {"--surfaces", "off"}), particles.at("state_hash"));
+    expect_failure(2, "--self", {"simulate", "particles.json", "-o", "run", "--self", "on"});
+    expect_failure(2, "--surfaces", {"simulate", "particles.json", "-o", "run", "--surfaces", "maybe"});
+}
+
+TEST_F(SimulateCommand, TakesAnOpenModelWhereSurfacesCollide) {
+    write("roof.obj", "v -1 0 0\nv 1 0 0\nv 0 1 0.2\nv 0 -1 0.2\nf 1 2 3\nf 1 4 2\n");
+    const std::string scene = R"({"model": "roof.obj", "cloth": {"particles": [6, 6], "size": [1, 1],
+        "position": [0, 0, 0.3], "thickness": 0.01}, "frame_limit": 120, "surface_collision": )";
+    write("surfaces.json", scene + "true}");
+    const nlohmann::json report = simulate("surfaces.json");
+    EXPECT_EQ(report.at("intersecting_pairs"), 0);
+    EXPECT_EQ(report.at("inside_at_rest"), 0);
+    EXPECT_GT(report.at("contact_gap").at("particles"), 0);
+    write("particles.json", scene + "false}");
+    expect_failure(1, "roof.obj", {"simulate", "particles.json", "-o", "run"});
+}

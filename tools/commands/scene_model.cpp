@@ -35,7 +35,7 @@ struct NameOfModel {
     std::string operator()(const BoxModel&) const { return "box"; }
 };
 
-/// A hole would let cloth in, and what is inside behind it nobody can tell.
+/// A hole would let particles in, and what is inside behind it nobody can tell.
 /// @param as_read  the mesh before the repairs that the scene names
 void require_closed(const TriangleMesh& mesh, const TriangleMesh& as_read, const std::string& name) {
     const MeshReport report = inspect(mesh);
@@ -74,7 +74,9 @@ std::optional<fs::path> model_file(const SceneModel& model, const fs::path& scen
 RepairedMesh load_model(const Scene& scene, const fs::path& scene_path, const std::optional<fs::path>& file) {
     const TriangleMesh as_read = std::visit(MeshOfModel{scene_path, file}, scene.model);
     RepairedMesh model = repair(as_read, scene.repair);
-    require_closed(model.mesh, as_read, scene_path.string() + (file ? ": " + file->string() : ""));
+    // Surfaces are kept apart whether they have an inside or not.
+    if (!scene.simulation.surface_collision)
+        require_closed(model.mesh, as_read, scene_path.string() + (file ? ": " + file->string() : ""));
     return model;
 }
 

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -31,6 +32,7 @@ struct SimulateArguments {
     std::optional<std::uint32_t> frame_limit;
     std::optional<std::uint32_t> stride;
     unsigned thread_count = 0;
+    std::optional<bool> surfaces, self; ///< in place of the scene's keys
     bool obj = false;
     bool json = false;
 };
@@ -89,24 +91,31 @@ struct Results {
     }
 };
 
+struct Course {
+    std::vector<SavedPose> poses;
+    std::uint64_t most_truncated = 0; ///< vertices in one frame
+};
+
 /// Steps until the cloth rests or the frame limit is reached; stops only after a frame that was saved, so
 /// that the last sample is the end.
-std::vector<SavedPose> run(Simulation& simulation, Results& results, std::uint32_t frame_limit,
-                           std::uint32_t stride) {
+Course run(Simulation& simulation, Results& results, std::uint32_t frame_limit, std::uint32_t stride) {
     ProgressBar progress("simulating");
     const Collider& collider = simulation.colliders().front();
-    std::vector<SavedPose> poses{{0, collider.pose}};
+    Course course{.poses = {{0, collider.pose}}};
     results.watch(simulation, stride);
     while (simulation.frame() < frame_limit && !simulation.at_rest()) {
         for (std::uint32_t i = 0; i < stride; ++i) {
+            const std::uint64_t truncated_before = simulation.profile().truncated_count;
             simulation.step();
+            course.most_truncated =
+                std::max(course.most_truncated, simulation.profile().truncated_count - truncated_before);
             results.watch(simulation, stride);
         }
-        if (collider.moves()) poses.push_back({simulation.frame(), collider.pose});
+        if (collider.moves()) course.poses.push_back({simulation.frame(), collider.pose});
         progress(static_cast<double>(simulation.frame()) / frame_limit);
     }
     if (results.page) results.page->recording->finish(simulation);
-    return poses;
+    return course;
 }
 
 /// Reports errors in the options that a key of the scene gives as errors of the scene.
@@ -155,10 +164,22 @@ void open(Results& results, const SimulateArguments& arguments, const Scene& sce
     }
 }
 
+/// Without contact of surfaces there is none of the cloth with itself, unless it is asked for.
+void choose_collision(const SimulateArguments& arguments, Scene& scene) {
+    SimulationOptions& options = scene.simulation;
+    options.surface_collision = arguments.surfaces.value_or(options.surface_collision);
+    options.self_collision = arguments.self.value_or(options.self_collision && options.surface_collision);
+    if (options.surface_collision && !std::holds_alternative<ExactMapOptions>(scene.map))
+        throw WrongUse("--surfaces", "needs a scene with an exact map, which has the model's faces");
+    if (options.self_collision && !options.surface_collision)
+        throw WrongUse("--self", "needs contact of surfaces with the model: --surfaces on");
+}
+
 void simulate(const SimulateArguments& arguments) {
     require_target(arguments);
     Scene scene = read_scene(arguments.scene);
     if (arguments.frame_limit) scene.frame_limit = *arguments.frame_limit;
+    choose_collision(arguments, scene);
     // A page takes its frames from all, and so its last is the end; a folder's last must be one that is
     // saved.
     const std::uint32_t stride = arguments.target.empty() ? 1 : arguments.stride.value_or(1);
@@ -177,9 +198,8 @@ void simulate(const SimulateArguments& arguments) {
     const TriangleMesh collider_mesh = scaled(mesh, scene.scale);
     if (results.folder) results.folder->begin(simulation.deformable(), collider_mesh, stride);
     if (results.page) results.page->recording.emplace(judging_map, page_stride(arguments, scene));
-    std::vector<SavedPose> poses = naming_file(arguments.scene.string(), ErrorCode::Diverged, [&] {
-        return run(simulation, results, scene.frame_limit, stride);
-    });
+    Course course = naming_file(arguments.scene.string(), ErrorCode::Diverged,
+                                [&] { return run(simulation, results, scene.frame_limit, stride); });
 
     const std::string scene_name = arguments.scene.string();
     const MeshReport model_report = inspect(mesh);
@@ -188,7 +208,8 @@ void simulate(const SimulateArguments& arguments) {
                                   .model = model_report,
                                   .collider_radius = inspect(collider_mesh).bounding_sphere.radius,
                                   .verdict = judge(simulation, mesh, judging_map, arguments.thread_count),
-                                  .poses = std::move(poses)};
+                                  .poses = std::move(course.poses),
+                                  .most_truncated = course.most_truncated};
     const Json report = to_json(result);
     if (results.page)
         write_player_page(results.page->output, results.page->player,
@@ -235,6 +256,11 @@ void add_options(Command command, SimulateArguments& arguments) {
              "Save every so many frames; without it all in a folder, and 60 per second in a page")
         .range(1, 1'000'000)
         .type_name("COUNT");
+    const std::vector<std::pair<std::string, std::optional<bool>>> on_or_off{{"on", true}, {"off", false}};
+    add_choice(command, "--surfaces", arguments.surfaces, on_or_off,
+               "Whether faces and edges collide, in place of the scene's surface_collision");
+    add_choice(command, "--self", arguments.self, on_or_off,
+               "Whether the cloth collides with itself, in place of the scene's self_collision");
     command
         .add("--threads", &arguments.thread_count,
              "Threads to build the map and judge the end on; 0: all cores. The simulation runs on one")

@@ -36,6 +36,7 @@ Strain strain_of(const Deformable& deformable) {
 struct Rates {
     double integration_ms, constraints_ms, collision_ms, total_ms;
     double queries_per_frame, map_queries_per_frame, ns_per_query, frames_per_second;
+    double truncated_per_frame;
 };
 
 Rates rates_of(const Simulation& simulation) {
@@ -51,7 +52,8 @@ Rates rates_of(const Simulation& simulation) {
             .queries_per_frame = queries / frames,
             .map_queries_per_frame = static_cast<double>(profile.map_query_count) / frames,
             .ns_per_query = queries > 0 ? profile.collision_seconds * 1e9 / queries : 0,
-            .frames_per_second = seconds > 0 ? frames / seconds : 0};
+            .frames_per_second = seconds > 0 ? frames / seconds : 0,
+            .truncated_per_frame = static_cast<double>(profile.truncated_count) / frames};
 }
 
 bool is_exact(const Simulation& simulation) {
@@ -124,6 +126,10 @@ Json to_json(const SimulationResult& result) {
         {"map_kind", kind_of(simulation)},
         {"lost_count", simulation.profile().lost_count},
         {"rescued_count", simulation.profile().rescued_count},
+        {"surface_collision", options.surface_collision},
+        {"self_collision", options.self_collision},
+        {"truncated", {{"mean", rates.truncated_per_frame}, {"most", result.most_truncated}}},
+        {"squeezed", simulation.profile().squeezed_count},
         {"inside_at_rest", result.verdict.inside_count},
         {"deepest", {{"absolute", result.verdict.deepest}, {"in_radii", result.verdict.deepest / radius}}},
         {"intersecting_pairs", result.verdict.model_pair_count},
@@ -165,6 +171,10 @@ std::string to_text(const SimulationResult& result) {
     if (is_exact(simulation))
         add("particles lost", fmt::format("{}; rescued {} times", simulation.profile().lost_count,
                                           simulation.profile().rescued_count));
+    if (simulation.options().surface_collision)
+        add("vertices truncated",
+            fmt::format("{:.2f} per frame, {} at most; squeezed {} times", rates.truncated_per_frame,
+                        result.most_truncated, simulation.profile().squeezed_count));
     add("particles inside", fmt::format("{} ({}), by winding number", result.verdict.inside_count,
                                         percent(static_cast<double>(result.verdict.inside_count) /
                                                 static_cast<double>(particle_count))));

@@ -23,7 +23,8 @@ struct SimulationResult {
     const echinus::MeshReport& model;
     double collider_radius; ///< R of the collider in the world
     Verdict verdict;
-    std::vector<SavedPose> poses; ///< one when the collider stands still
+    std::vector<SavedPose> poses;     ///< one when the collider stands still
+    std::uint64_t most_truncated = 0; ///< vertices in one frame
 };
 
 /// The object of report.json.

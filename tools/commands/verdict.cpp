@@ -90,7 +90,9 @@ Verdict judge(const Simulation& simulation, const TriangleMesh& mesh, const Exac
     const TriangleMesh solid = scaled(mesh, collider.scale);
     const Collider exact{.map = exact_map, .pose = collider.pose, .scale = collider.scale};
     Verdict verdict;
-    judge_particles(simulation.positions(), solid, collider.pose, thread_count, verdict);
+    // An open mesh has no inside.
+    if (exact_map.view().border.empty())
+        judge_particles(simulation.positions(), solid, collider.pose, thread_count, verdict);
     judge_faces(simulation.deformable(), placed(solid, collider.pose), verdict);
     verdict.gap = gap_of(simulation.positions(), exact, simulation.options().thickness.value());
     return verdict;

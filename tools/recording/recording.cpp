@@ -16,7 +16,9 @@ namespace {
 /// characters, the longest that Chromium has: 8 characters where nothing compresses.
 constexpr std::uint64_t kMostPositions = 64'000'000;
 
+/// An open model has no inside.
 std::size_t count_inside(const ExactMap& model, const Collider& collider, std::span<const Vec3f> positions) {
+    if (!model.view().border.empty()) return 0;
     const Collider judge{.map = model, .pose = collider.pose, .scale = collider.scale};
     std::vector<std::uint8_t> inside(positions.size());
     contains_batch(judge, positions, inside);
