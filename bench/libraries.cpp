@@ -36,3 +36,13 @@ std::vector<BenchSystem> libraries_on(const Subject& subject) {
 #endif
     return list;
 }
+
+std::vector<NamedTriangleRival> triangle_rivals(const TriangleMesh& model) {
+    std::vector<NamedTriangleRival> list;
+    list.push_back({"Embree", std::make_unique<const EmbreeTriangles>(model)});
+    list.push_back({"CGAL", cgal_triangles(model)});
+#ifdef ECHINUS_BENCH_FCL
+    list.push_back({"FCL", fcl_triangles(model)});
+#endif
+    return list;
+}

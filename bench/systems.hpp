@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rivals/compare/systems.hpp"
+#include "rivals/systems/unshipped/triangle_rivals.hpp"
 #include "subjects.hpp"
 
 #include <string>
@@ -19,6 +20,15 @@ std::vector<BenchSystem> systems_on(const Subject& subject);
 
 /// Those of them that are other people's libraries, compiled for this very machine as their users would.
 [[gnu::visibility("default")]] std::vector<BenchSystem> libraries_on(const Subject& subject);
+
+/// A library that is asked about triangles.
+struct NamedTriangleRival {
+    std::string name;
+    std::unique_ptr<const echinus::rivals::TriangleRival> system;
+};
+
+[[gnu::visibility("default")]] std::vector<NamedTriangleRival>
+triangle_rivals(const echinus::TriangleMesh& model);
 
 /// A function that builds and returns its system by value, or as a pointer.
 template <typename Build>

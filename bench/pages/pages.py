@@ -135,6 +135,14 @@ def cloth(folder):
     return {"cloth": table(rows), "cloth machine": results.machine, "cloth commit": results.commit}
 
 
+def triangles(folder):
+    results = Results(folder, "triangles")
+    rows = [["question", "system", "ms for all faces", "found"]]
+    rows += [[r["question"], r["system"], number(r["ms"]), r["found"]] for r in results.records]
+    return {"triangles": table(rows), "triangles machine": results.machine, "triangles commit": results.commit,
+            "triangles faces": f"{results.records[0]['faces']} faces on a model of {results.records[0]['model_faces']}"}
+
+
 def figures(folder):
     results = Results(folder, "figures")
     values = {"figures machine": results.machine, "figures commit": results.commit}
@@ -238,6 +246,7 @@ TASKS = {
     "contacts": (["performance.md", "performance_tables.md"], lambda folder: queries(folder, "contacts")),
     "build": (["performance_tables.md"], build),
     "cloth": (["cloth_on_each.md"], cloth),
+    "triangles": (["performance_tables.md"], triangles),
     "figures": (["figures.md", "../README.md"], figures),
     "reproduction": (["reproduction.md"], reproduction),
 }
