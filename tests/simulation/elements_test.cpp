@@ -136,7 +136,7 @@ TEST(ElementTree, VisitsWhatABoxTouchesOnceAlsoAfterItsElementsMoved) {
         Scattered scattered(count, 1);
         ElementTree tree(scattered.elements, scattered.positions);
         scattered.move(0.5F);
-        tree.refit(scattered.elements, scattered.positions);
+        tree.refit(scattered.elements, scattered.positions, scattered.positions);
         Random random(2);
         for (int i = 0; i < 100; ++i) {
             Box box = box_of({}, arrays_of({in_cube(random, 1)}));
