@@ -143,6 +143,22 @@ def triangles(folder):
             "triangles faces": f"{results.records[0]['faces']} faces on a model of {results.records[0]['model_faces']}"}
 
 
+def surfaces(folder):
+    results = Results(folder, "surfaces")
+    rows = [["scene, contact of", "pairs with the model", "own pairs", "frames to rest", "strain, %", "99 %", "ever", "truncated a frame",
+             "most", "gap, mean", "least"]]
+    times = [["scene, contact of", "particles", "ms a frame, mean", "99 %", "worst", "ratio"]]
+    for r in results.records:
+        name = f"{r['scene']}: {r['method']}"
+        rest = r["frames"] if r["rested"] == "yes" else f"not in {r['frames']}"
+        rows.append([name, r["model_pairs"], r["own_pairs"], rest]
+                    + [number(r[c], 100) for c in ("strain", "strain_99", "strain_ever")]
+                    + [number(r["truncated_mean"]), r["truncated_most"], number(r["gap_mean"]), number(r["gap_least"])])
+        times.append([name, r["particles"]] + [number(r[c]) for c in ("frame_ms", "frame_ms_99", "frame_ms_worst", "ratio")])
+    return {"surfaces": table(rows), "surfaces times": table(times), "surfaces machine": results.machine,
+            "surfaces commit": results.commit}
+
+
 def figures(folder):
     results = Results(folder, "figures")
     values = {"figures machine": results.machine, "figures commit": results.commit}
@@ -247,6 +263,7 @@ TASKS = {
     "build": (["performance_tables.md"], build),
     "cloth": (["cloth_on_each.md"], cloth),
     "triangles": (["performance_tables.md"], triangles),
+    "surfaces": (["surfaces_measured.md"], surfaces),
     "figures": (["figures.md", "../README.md"], figures),
     "reproduction": (["reproduction.md"], reproduction),
 }

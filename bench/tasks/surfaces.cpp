@@ -1,0 +1,308 @@
+// The task surfaces: the same cloth with contact of its particles only, of its faces with the model, and of
+// its faces with each other too. Judged exactly, on published positions.
+
+#include "cloth_run.hpp"
+#include "rivals/compare/clock.hpp"
+#include "task.hpp"
+
+#include <echinus/intersections.hpp>
+#include <echinus/mesh_io.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+using namespace echinus;
+
+namespace {
+
+constexpr std::uint32_t kTurn = 10; // frames
+
+/// A cloth and its model, ready to be simulated with one contact or another.
+struct Fall {
+    std::string name;
+    TriangleMesh model;
+    Collider collider;
+    Deformable cloth;
+    SimulationOptions options;
+    std::uint32_t frame_limit;
+};
+
+struct Method {
+    const char* name;
+    bool with_model, with_itself;
+};
+constexpr std::array kMethods{Method{"particles only", false, false}, Method{"with the model", true, false},
+                              Method{"with itself too", true, true}};
+
+// ---- The cloths ----
+
+/// A scene of the repository, with the changes that a fall makes to it.
+struct SceneRun {
+    std::string name;
+    const char* file;
+    double speed = 0;          ///< of the cloth at the start, along gravity; units per second
+    double thickness = 0;      ///< share of the model's radius; 0: as the scene has it
+    double turn = 0;           ///< of the model about the axis that is up, degrees per second
+    std::uint32_t side = 0;    ///< particles of each side; 0: as the scene has it
+    std::uint32_t frame_limit; ///< of a model that turns, nothing comes to rest
+};
+
+constexpr std::uint32_t kLimit = 3000, kTurningLimit = 720;
+
+std::vector<SceneRun> scene_runs() {
+    std::vector<SceneRun> runs{
+        {.name = "horse", .file = "horse.json", .frame_limit = kLimit},
+        {.name = "torus", .file = "torus.json", .frame_limit = kLimit},
+        {.name = "horse, XPBD", .file = "horse_xpbd.json", .frame_limit = kLimit},
+    };
+    for (const int speed : {5, 10, 20, 50})
+        runs.push_back({.name = fmt::format("horse at {} units/s", speed),
+                        .file = "horse.json",
+                        .speed = double(speed),
+                        .frame_limit = kLimit});
+    for (const double percent : {0.3, 0.05})
+        runs.push_back({.name = fmt::format("horse and thickness {} % R", percent),
+                        .file = "horse.json",
+                        .thickness = percent / 100,
+                        .frame_limit = kLimit});
+    runs.push_back(
+        {.name = "horse and 30 x 30 particles", .file = "horse.json", .side = 30, .frame_limit = kLimit});
+    for (const int turn : {360, 720})
+        runs.push_back({.name = fmt::format("horse that turns by {} degrees/s", turn),
+                        .file = "horse.json",
+                        .turn = double(turn),
+                        .frame_limit = kTurningLimit});
+    return runs;
+}
+
+/// A short run is about the code: few particles, and a fall that has just arrived.
+constexpr std::uint32_t kShortSide = 30, kShortLimit = 160;
+constexpr double kShortSpeed = 3;
+
+Fall fall_of(const SceneRun& run, const Setting& setting) {
+    Scene scene = read_scene(setting.scenes / run.file);
+    TriangleMesh model;
+    if (const auto* torus = std::get_if<TorusModel>(&scene.model))
+        model = make_mesh(*torus);
+    else
+        model = repair(read_mesh(setting.debian_horse), scene.repair).mesh;
+    const ExactMap map = ExactMap::build(model);
+    if (run.side != 0) scene.cloth.column_count = scene.cloth.row_count = run.side;
+    if (run.thickness != 0) scene.simulation.thickness = run.thickness * double{map.view().radius};
+    double speed = run.speed;
+    if (setting.is_short) {
+        scene.cloth.column_count = scene.cloth.row_count = kShortSide;
+        speed = std::max(speed, kShortSpeed);
+    }
+    const Vec3d down = scene.simulation.gravity * (1 / length(scene.simulation.gravity));
+    scene.cloth_velocity = down * speed;
+    scene.angular_velocity = down * (-run.turn * std::numbers::pi / 180);
+    const Simulation start = make_simulation(scene, map);
+    return {run.name,           std::move(model), start.colliders()[0],
+            start.deformable(), scene.simulation, setting.is_short ? kShortLimit : run.frame_limit};
+}
+
+/// Bends what lies in the plane of u and v, u > 0 over u < 0: about an axis at u = 0 and this height over v =
+/// 0. Lengths at v = 0 are kept where `height` is the radius of the bend, and v must be less than it.
+void fold_over(float& u, float& v, float height, float radius) {
+    if (u <= 0) return;
+    const float offset = height - v; // from the axis
+    const float half_circle = std::numbers::pi_v<float> * radius;
+    const float angle = std::min(u, half_circle) / radius;
+    const float beyond = std::max(0.0F, u - half_circle);
+    u = offset * std::sin(angle) - beyond;
+    v = height - offset * std::cos(angle);
+}
+
+/// A sheet, folded in four, falls onto a box, tilted a little.
+Fall folded_fall(const Setting& setting) {
+    ClothOptions cloth{.width = 1.6, .height = 1.6};
+    if (setting.is_short) cloth.column_count = cloth.row_count = kShortSide;
+    const auto spacing = static_cast<float>(cloth.width / (cloth.column_count - 1));
+    const float gap = 1.25F * spacing; // of the layers
+    Deformable folded = make_cloth(cloth);
+    const Rotation tilt = Rotation::about({1, 1, 0}, 0.1);
+    const double speed = setting.is_short ? kShortSpeed : 0;
+    const SimulationOptions options;
+    for (Vec3f& p : folded.positions) {
+        fold_over(p.x, p.z, 0.5F * gap, 0.5F * gap);
+        fold_over(p.y, p.z, 1.5F * gap, gap);
+        p = Vec3f(tilt.apply(Vec3d(p)) + Vec3d{0.45, 0.4, 0.4});
+    }
+    for (std::size_t i = 0; i < folded.particle_count(); ++i)
+        folded.previous_positions[i] = folded.positions[i] + Vec3f{0, 0, float(speed * options.time_step)};
+    TriangleMesh box = make_box({1, 1, 0.3});
+    return {"sheet folded in four", box,     {.map = ExactMap::build(box)},
+            std::move(folded),      options, setting.is_short ? kShortLimit : kLimit};
+}
+
+// ---- The judge ----
+
+TriangleMesh placed(TriangleMesh mesh, const Collider& collider) {
+    const Vec3d& scale = collider.scale;
+    for (Vec3f& v : mesh.vertices)
+        v = Vec3f(collider.pose.to_world(Vec3d(v.x * scale.x, v.y * scale.y, v.z * scale.z)));
+    return mesh;
+}
+
+/// How far the structural sticks are from their rest length, as shares of it; ascending.
+std::vector<double> strains_of(const Deformable& cloth) {
+    std::vector<double> strains;
+    for (const Stick& stick : cloth.sticks) {
+        if (stick.kind != StickKind::Structural) continue;
+        const double now = length(cloth.positions[stick.b] - cloth.positions[stick.a]);
+        strains.push_back(std::fabs(now / stick.rest_length - 1));
+    }
+    std::ranges::sort(strains);
+    return strains;
+}
+
+/// @param values  ascending, not empty
+double percentile_99(const std::vector<double>& values) {
+    return values[(values.size() - 1) * 99 / 100];
+}
+
+struct Gap {
+    double mean = 0, least = 0; ///< thicknesses; NaN where nothing is in contact
+};
+
+/// Of the particles outside and nearer to the model than two thicknesses.
+Gap gap_of(const Simulation& simulation) {
+    const double thickness = simulation.options().thickness.value();
+    std::vector<Contact> contacts(simulation.positions().size());
+    contacts_batch(simulation.colliders()[0], simulation.positions(), static_cast<float>(2 * thickness),
+                   contacts);
+    std::vector<double> gaps;
+    for (const Contact& contact : contacts)
+        if (contact.found() && !contact.inside) gaps.push_back(-double{contact.depth} / thickness);
+    if (gaps.empty()) return {std::nan(""), std::nan("")};
+    return {std::accumulate(gaps.begin(), gaps.end(), 0.0) / static_cast<double>(gaps.size()),
+            std::ranges::min(gaps)};
+}
+
+// ---- The runs ----
+
+/// One cloth on its way.
+class Runner {
+  public:
+    Runner(const Fall& fall, const Method& method, std::uint32_t judged_stride)
+        : fall_(fall), judged_stride_(judged_stride),
+          simulation_(fall.cloth, {fall.collider}, options_of(fall, method)) {}
+
+    bool is_done() const { return simulation_.at_rest() || simulation_.frame() >= fall_.frame_limit; }
+
+    void run_turn() {
+        for (std::uint32_t i = 0; i < kTurn && !is_done(); ++i) run_frame();
+    }
+
+    double progress() const {
+        return is_done() ? 1 : static_cast<double>(simulation_.frame()) / fall_.frame_limit;
+    }
+
+    double mean_ms() const {
+        return std::accumulate(frame_ms_.begin(), frame_ms_.end(), 0.0) /
+               static_cast<double>(frame_ms_.size());
+    }
+
+    Records::Record record() const {
+        const std::vector<double> strains = strains_of(simulation_.deformable());
+        const Gap gap = gap_of(simulation_);
+        std::vector<double> times = frame_ms_;
+        std::ranges::sort(times);
+        const SimulationProfile& profile = simulation_.profile();
+        return {
+            {"scene", fall_.name},
+            {"particles", fmt::format("{}", fall_.cloth.particle_count())},
+            {"model_pairs", fmt::format("{}", model_pairs_)},
+            {"own_pairs", fmt::format("{}", own_pairs_)},
+            {"judged_frames", fmt::format("{}", judged_frames_)},
+            {"frames", fmt::format("{}", simulation_.frame())},
+            {"rested", simulation_.at_rest() ? "yes" : "no"},
+            {"strain", fmt::format("{:.4g}", strains.back())},
+            {"strain_99", fmt::format("{:.4g}", percentile_99(strains))},
+            {"strain_ever", fmt::format("{:.4g}", strain_ever_)},
+            {"truncated_mean", fmt::format("{:.4g}", double(profile.truncated_count) / simulation_.frame())},
+            {"truncated_most", fmt::format("{}", truncated_most_)},
+            {"squeezed", fmt::format("{}", profile.squeezed_count)},
+            {"lost", fmt::format("{}", profile.lost_count)},
+            {"gap_mean", fmt::format("{:.4g}", gap.mean)},
+            {"gap_least", fmt::format("{:.4g}", gap.least)},
+            {"frame_ms", fmt::format("{:.4g}", mean_ms())},
+            {"frame_ms_99", fmt::format("{:.4g}", percentile_99(times))},
+            {"frame_ms_worst", fmt::format("{:.4g}", times.back())}};
+    }
+
+  private:
+    static SimulationOptions options_of(const Fall& fall, const Method& method) {
+        SimulationOptions options = fall.options;
+        options.surface_collision = method.with_model;
+        options.self_collision = method.with_itself;
+        return options;
+    }
+
+    void run_frame() {
+        const std::uint64_t truncated_before = simulation_.profile().truncated_count;
+        const double start = comparison::thread_seconds();
+        simulation_.step();
+        frame_ms_.push_back(1e3 * (comparison::thread_seconds() - start));
+        truncated_most_ = std::max(truncated_most_, simulation_.profile().truncated_count - truncated_before);
+        if (simulation_.frame() % judged_stride_ == 0 || is_done()) judge();
+    }
+
+    void judge() {
+        const Deformable& cloth = simulation_.deformable();
+        const TriangleMesh surface{cloth.positions, cloth.faces};
+        const TriangleMesh model = placed(fall_.model, simulation_.colliders()[0]);
+        model_pairs_ = std::max(model_pairs_, intersecting_pairs(surface, model).size());
+        own_pairs_ = std::max(own_pairs_, self_intersecting_pairs(surface).size());
+        strain_ever_ = std::max(strain_ever_, strains_of(cloth).back());
+        ++judged_frames_;
+    }
+
+    const Fall& fall_;
+    std::uint32_t judged_stride_;
+    Simulation simulation_;
+    std::vector<double> frame_ms_;
+    std::size_t model_pairs_ = 0, own_pairs_ = 0; ///< of the worst frame
+    std::uint32_t judged_frames_ = 0;
+    std::uint64_t truncated_most_ = 0;
+    double strain_ever_ = 0;
+};
+
+/// The methods take turns of a few frames, so that other load on the machine slows all alike.
+void add_fall(const Fall& fall, const Setting& setting, Records& records) {
+    std::vector<Runner> runners;
+    for (const Method& method : kMethods) runners.emplace_back(fall, method, setting.is_short ? 1 : 10);
+    while (!std::ranges::all_of(runners, &Runner::is_done)) {
+        double progress = 1;
+        for (Runner& runner : runners) {
+            runner.run_turn();
+            progress = std::min(progress, runner.progress());
+        }
+        setting.report_progress(fall.name, progress);
+    }
+    for (std::size_t k = 0; k < kMethods.size(); ++k) {
+        Records::Record record = runners[k].record();
+        record["method"] = kMethods[k].name;
+        record["ratio"] = fmt::format("{:.4g}", runners[k].mean_ms() / runners[0].mean_ms());
+        records.add(std::move(record));
+    }
+}
+
+} // namespace
+
+Records measure_surfaces(const Setting& setting) {
+    Records records(
+        {"scene",  "particles", "method",    "model_pairs", "own_pairs",      "judged_frames",  "frames",
+         "rested", "strain",    "strain_99", "strain_ever", "truncated_mean", "truncated_most", "squeezed",
+         "lost",   "gap_mean",  "gap_least", "frame_ms",    "frame_ms_99",    "frame_ms_worst", "ratio"});
+    for (const SceneRun& run : scene_runs()) add_fall(fall_of(run, setting), setting, records);
+    add_fall(folded_fall(setting), setting, records);
+    return records;
+}
