@@ -134,6 +134,16 @@ TEST_F(RenderCommand, MarksTheFacesThatIntersect) {
     EXPECT_EQ(red_pixel_count(path("apart.png")), 0U);
 }
 
+TEST_F(RenderCommand, ShowsACloseUp) {
+    write_simulation();
+    write("run/collider.obj", obj_text(echinus::make_box({1, 1, 8})));
+    expect_success(render({"moment", "run", "-o", "all.png"}));
+    expect_success(render({"moment", "run", "-o", "all_too.png", "--close-up", "0,0,2.5,0"}));
+    expect_success(render({"moment", "run", "-o", "close.png", "--close-up", "0,0,2.5,0.5"}));
+    EXPECT_EQ(content("all.png"), content("all_too.png"));
+    EXPECT_GT(red_pixel_count(path("close.png")), 4 * red_pixel_count(path("all.png")));
+}
+
 TEST_F(RenderCommand, DrawsASheetOfAllMomentsWhereThereAreFew) {
     write_simulation();
     expect_success(render({"sheet", "run", "-o", "sheet.png"}));
@@ -177,5 +187,7 @@ TEST_F(RenderCommand, RefusesOptionsThatMakeNoSense) {
     refuses("wire", {"--wire", "-1"});
     expect_failure(2, "MESH", {"render", "mesh", "-o", "p.png"});
     expect_failure(2, "subcommand", {"render"});
+    for (const char* wrong : {"0,0,0", "0,0,0,-1", "nan,0,0,1", "0,0,0,inf"})
+        expect_failure(2, "--close-up", render({"moment", "run", "-o", "p.png", "--close-up", wrong}));
     expect_failure(2, "frame 7", render({"moment", "run", "-o", "p.png", "--frame", "7"}));
 }

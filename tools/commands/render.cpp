@@ -177,6 +177,8 @@ void add_map_picture(Command program) {
 struct SimulationPicture : PictureArguments {
     fs::path folder;
     std::optional<std::int64_t> frame;
+    Vec3d close_up;
+    double close_up_reach = 0; ///< along each axis; 0: no close-up
 };
 
 /// Marks the faces that intersect others.
@@ -201,6 +203,25 @@ std::array<RenderedObject, 2> objects_at(const SimulationFolder& folder, std::si
     return objects;
 }
 
+/// The camera that sees the cube around a point as large as possible, on the floor of the whole scene.
+Camera close_up_camera(const SimulationPicture& arguments, const View& view, const Camera& whole) {
+    const double reach = arguments.close_up_reach;
+    std::vector<Vec3f> corners;
+    for (const double x : {-reach, reach})
+        for (const double y : {-reach, reach})
+            for (const double z : {-reach, reach}) corners.emplace_back(arguments.close_up + Vec3d{x, y, z});
+    Camera camera = camera_for(corners, view, aspect_of(arguments.options));
+    camera.floor_height = whole.floor_height;
+    return camera;
+}
+
+void require_close_up(const SimulationPicture& arguments) {
+    const Vec3d& at = arguments.close_up;
+    const double reach = arguments.close_up_reach;
+    if (!(reach >= 0) || !std::isfinite(at.x + at.y + at.z + reach))
+        throw WrongUse("--close-up", "needs finite numbers, the last of them positive");
+}
+
 void render_moment(const SimulationPicture& arguments) {
     const SimulationFolder folder(arguments.folder);
     const std::size_t sample =
@@ -210,8 +231,9 @@ void render_moment(const SimulationPicture& arguments) {
     view.up = folder.up();
     ProgressBar bar("drawing");
     const Image image = naming_mesh(arguments.folder.string(), [&] {
-        return render(objects, camera_for(objects, view, aspect_of(arguments.options)),
-                      with_progress(arguments.options, bar));
+        Camera camera = camera_for(objects, view, aspect_of(arguments.options));
+        if (arguments.close_up_reach > 0) camera = close_up_camera(arguments, view, camera);
+        return render(objects, camera, with_progress(arguments.options, bar));
     });
     write_picture(arguments, image);
 }
@@ -270,9 +292,18 @@ void add_moment_picture(Command program) {
     Command command = program.add_command("moment", "One moment of a simulation");
     command.add("DIR", &arguments->folder, "Folder that echinus simulate wrote").required().type_name("");
     command.add("--frame", &arguments->frame, "The frame to draw; the last if not given").type_name("NUMBER");
+    command
+        .add_numbers("--close-up", ',',
+                     {&arguments->close_up.x, &arguments->close_up.y, &arguments->close_up.z,
+                      &arguments->close_up_reach},
+                     "Show only what is around a point: no farther than REACH along each axis")
+        .type_name("X,Y,Z,REACH");
     arguments->add_options(command, 1000, 750);
     command.footer("Example:\n  echinus render moment out/horse --frame 120 -o moment.png");
-    command.action([arguments] { render_moment(*arguments); });
+    command.action([arguments] {
+        require_close_up(*arguments);
+        render_moment(*arguments);
+    });
 }
 
 void add_sheet_picture(Command program) {
