@@ -319,6 +319,7 @@ void SelfSurface::relax(Particles& particles, std::span<const float> inverse_mas
 /// listed, and the next round finds what is near its new one.
 std::span<const float> SelfSurface::allowed_shares(const RigidTransform* frame, const PointArrays& goals) {
     set_goals(frame, goals);
+    stuck_count_ = 0;
     if (all_within(rooms_)) return {};
     list_pairs();
     measure();
@@ -336,6 +337,7 @@ std::span<const float> SelfSurface::allowed_shares(const RigidTransform* frame, 
 /// Shortens the ways of pairs that could meet. @return whether there were any
 bool SelfSurface::shorten_ways(int round) {
     bool found = false;
+    stuck_count_ = 0;
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
         const Pair& pair = pairs_[i];
         const Separation& apart = separations_[i];
@@ -355,11 +357,15 @@ bool SelfSurface::shorten_ways(int round) {
         const float share = round < kRounds && apart.gap > kept
                                 ? std::clamp((apart.gap - kept) / (apart.gap - at_end), 0.0F, 1.0F) * kAlmost
                                 : 0.0F;
+        bool can_be_shortened = false, moves = false;
         for (const std::uint32_t v : pair.points) {
+            moves = moves || (mobility_[v] == 0 && whole_goals_[v] != starts_[v]);
             if (shares_[v] == 0 || mobility_[v] == 0) continue;
             shares_[v] *= share;
-            found = true;
+            can_be_shortened = true;
         }
+        found = found || can_be_shortened;
+        if (!can_be_shortened && moves) ++stuck_count_;
     }
     return found;
 }

@@ -47,6 +47,8 @@ class SelfSurface {
 
     /// The shares of the ways to the goals that vertices may go, or none where all may go the whole way.
     std::span<const float> allowed_shares(const RigidTransform* frame, const PointArrays& goals);
+    /// Pairs that could meet nevertheless, since a pinned vertex is led on while the others stay behind.
+    std::uint64_t stuck_count() const { return stuck_count_; }
 
     std::uint64_t searched_count = 0, measured_count = 0;
 
@@ -102,6 +104,7 @@ class SelfSurface {
     bool is_measured_ = false;         ///< in this pass
     std::vector<float> shares_;
     PointArrays whole_goals_; ///< before any way was shortened
+    std::uint64_t stuck_count_ = 0;
     // Contacts
     std::vector<Contact> contacts_;
     std::vector<std::uint8_t> is_alert_; ///< by vertex: a contact has pushed it lately

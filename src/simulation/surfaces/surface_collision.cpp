@@ -169,9 +169,14 @@ bool SurfaceCollision::pass(Particles& particles, bool is_first) {
 void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles) {
     const RigidTransform* pose = is_first ? carrier_pose() : nullptr;
     const std::span<const float> shares = self_->allowed_shares(carrier_pose(), ends_);
+    squeezed_now_ += self_->stuck_count();
     if (shares.empty()) return;
+    // Beside a model that moves otherwise than the one that carries along, nothing is known of a part of a
+    // way.
+    const bool is_proven = pose == nullptr || models_.size() == 1;
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
         if (shares[v] == 1) continue;
+        if (!is_proven) ++squeezed_now_;
         const Vec3f end = ends_[v];
         const Vec3f from = pose != nullptr ? carrier()->carried(v)
                            : is_first      ? particles.frame_start[v]
