@@ -201,7 +201,8 @@ struct SimulationOptions {
     /// Needs surface_collision: the faces of the deformable do not meet each other either.
     bool self_collision = false;
     /// Distance that layers of the deformable keep from each other, units. If not given, the thickness. Near
-    /// small faces it is less: at most 0.4 of the least height of a face, so that neighbours have room.
+    /// small faces it is less: at most 0.4 of the least height of a face, and a quarter of the mean
+    /// edge, so that neighbours have room.
     std::optional<double> self_thickness{};
     /// A particle farther than this from the middle of where the deformable began ends the simulation as
     /// diverged, units. 0: 10 000 times the deformable's extent at the start.
@@ -232,7 +233,7 @@ struct SimulationProfile {
     /// measured: the work of surface_collision, which keeps what it knows as long as that holds.
     std::uint64_t searched_face_count = 0, measured_pair_count = 0;
     /// Times that no place for a particle was proven: a pinned particle was led through something, or
-    /// colliders left no room between them. Only then faces may intersect.
+    /// colliders left no room between them. Only then faces may intersect at the end of a frame.
     std::uint64_t squeezed_count = 0;
 };
 

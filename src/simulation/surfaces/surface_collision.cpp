@@ -24,7 +24,7 @@ constexpr float kSelfReach = 1.3F;
 /// A vertex that is too fast for what is listed goes its way in several passes.
 constexpr int kMostPasses = 8;
 
-/// In lattice steps: mesh and map differ by one.
+/// In lattice steps: a vertex of the mesh and of the map differ by less than one.
 constexpr float kLeastGapSteps = 4;
 
 double mean_edge_length(const Elements& elements, const PointArrays& positions) {
