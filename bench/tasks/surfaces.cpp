@@ -108,8 +108,8 @@ Fall fall_of(const SceneRun& run, const Setting& setting) {
             start.deformable(), scene.simulation, setting.is_short ? kShortLimit : run.frame_limit};
 }
 
-/// Bends what lies in the plane of u and v, u > 0 over u < 0: about an axis at u = 0 and this height over v =
-/// 0. Lengths at v = 0 are kept where `height` is the radius of the bend, and v must be less than it.
+/// Folds what lies at u > 0 over what lies at u < 0: half a circle about the axis at u = 0 and v = height,
+/// and back. Lengths are kept at the distance `radius` from the axis. @pre v < height
 void fold_over(float& u, float& v, float height, float radius) {
     if (u <= 0) return;
     const float offset = height - v; // from the axis
