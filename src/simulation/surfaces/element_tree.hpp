@@ -58,14 +58,14 @@ class ElementTree {
         void set(std::size_t i, const Box& box);
         Box box_of_group(std::size_t first) const;
         unsigned touching(std::size_t first, const Box& box) const {
-            std::array<std::uint8_t, kWidth> touch;
-            for (std::size_t k = 0; k < kWidth; ++k)
-                touch[k] = static_cast<std::uint8_t>(
-                    (low[0][first + k] <= box.high[0]) & (high[0][first + k] >= box.low[0]) &
-                    (low[1][first + k] <= box.high[1]) & (high[1][first + k] >= box.low[1]) &
-                    (low[2][first + k] <= box.high[2]) & (high[2][first + k] >= box.low[2]));
+            std::array<unsigned, kWidth> touch;
+            touch.fill(1);
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                for (std::size_t k = 0; k < kWidth; ++k)
+                    touch[k] &= static_cast<unsigned>(low[axis][first + k] <= box.high[axis]) &
+                                static_cast<unsigned>(high[axis][first + k] >= box.low[axis]);
             unsigned mask = 0;
-            for (std::size_t k = 0; k < kWidth; ++k) mask |= static_cast<unsigned>(touch[k]) << k;
+            for (std::size_t k = 0; k < kWidth; ++k) mask |= touch[k] << k;
             return mask;
         }
     };

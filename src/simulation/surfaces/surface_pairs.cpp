@@ -17,8 +17,8 @@ constexpr float kFarReach = 4;
 constexpr float kRounding = 1.0F / (1 << 20);
 
 bool is_near(const Box& a, const Box& b) {
-    return (a.low[0] <= b.high[0]) & (a.high[0] >= b.low[0]) & (a.low[1] <= b.high[1]) &
-           (a.high[1] >= b.low[1]) & (a.low[2] <= b.high[2]) & (a.high[2] >= b.low[2]);
+    return a.low[0] <= b.high[0] && a.high[0] >= b.low[0] && a.low[1] <= b.high[1] && a.high[1] >= b.low[1] &&
+           a.low[2] <= b.high[2] && a.high[2] >= b.low[2];
 }
 
 Box box_of_points(std::span<const Vec3f> points) {
