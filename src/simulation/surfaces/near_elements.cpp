@@ -51,7 +51,6 @@ struct GroupSearch {
     const ElementTree& a;
     const ElementTree& b;
     bool is_same;
-    float reach;
     std::vector<std::array<std::uint32_t, 2>>& near;
     std::size_t group = 0;                        ///< of `a`
     std::array<Box, ElementTree::kWidth> boxes{}; ///< of its elements, grown by the reach
@@ -83,7 +82,7 @@ struct GroupSearch {
 
 void find_near_lanes(const ElementTree& a, const ElementTree& b, float reach,
                      std::vector<std::array<std::uint32_t, 2>>& near) {
-    GroupSearch search{.a = a, .b = b, .is_same = &a == &b, .reach = reach, .near = near};
+    GroupSearch search{.a = a, .b = b, .is_same = &a == &b, .near = near};
     const std::size_t group_count = a.levels()[0].group_count();
     for (std::size_t group = 0; group < group_count; ++group) {
         search.group = group;
