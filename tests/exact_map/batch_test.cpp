@@ -78,6 +78,9 @@ std::vector<Vec3f> telling_points(const ExactMapView& map, const TriangleMesh& m
     for (int n = 0; n < 3000; ++n) points.push_back(map.centre + test::in_cube(random, 1.3F * map.radius));
     for (int n = 0; n < 300; ++n) points.push_back(map.centre + test::in_cube(random, 1e-5F * map.radius));
     for (int n = 0; n < 300; ++n) points.push_back(map.centre + test::in_cube(random, 5 * map.radius));
+    for (float far = 4; far < 1e15F; far *= 8)
+        for (int n = 0; n < 20; ++n)
+            points.push_back(map.centre + test::unit_vector(random) * (far * map.radius));
     for (std::size_t i = 0; i < mesh.vertices.size(); i += 7)
         points.push_back(mesh.vertices[i] + test::in_cube(random, 0.01F * map.radius));
     for (const Vec3f& vertex : mesh.vertices) points.push_back(vertex);
@@ -93,9 +96,15 @@ std::vector<Vec3f> telling_points(const ExactMapView& map, const TriangleMesh& m
     return points;
 }
 
+/// NaN is itself, and 0 is not -0.
+bool same_bits(float a, float b) {
+    return std::memcmp(&a, &b, sizeof a) == 0;
+}
+bool same_bits(const Vec3f& a, const Vec3f& b) {
+    return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
+}
 bool same_bits(const Contact& a, const Contact& b) {
-    return std::memcmp(&a.point, &b.point, sizeof a.point) == 0 &&
-           std::memcmp(&a.normal, &b.normal, sizeof a.normal) == 0 && a.depth == b.depth &&
+    return same_bits(a.point, b.point) && same_bits(a.normal, b.normal) && a.depth == b.depth &&
            a.face == b.face && a.inside == b.inside && a.certain == b.certain && a.feature == b.feature;
 }
 
@@ -138,6 +147,35 @@ void expect_same_contacts(const ExactMapView& map, StridedSpan<const Vec3f> poin
                          thread_count);
 }
 
+struct SignedDistances {
+    std::vector<float> distances;
+    std::vector<Vec3f> gradients;
+};
+
+SignedDistances signed_distances_one_by_one(const ExactMapView& map, StridedSpan<const Vec3f> points) {
+    SignedDistances result{std::vector<float>(points.size()), std::vector<Vec3f>(points.size())};
+    for (std::size_t i = 0; i < points.size(); ++i)
+        result.distances[i] = signed_distance(map, points[i], &result.gradients[i]);
+    return result;
+}
+
+void expect_same_signed_distances(const SignedDistances& expected, const ExactMapView& map,
+                                  StridedSpan<const Vec3f> points, unsigned thread_count) {
+    std::vector<float> distances(points.size(), 7), alone(points.size(), 7);
+    std::vector<Vec3f> gradients(points.size(), {7, 7, 7});
+    signed_distance_batch(map, points, distances, gradients, thread_count);
+    signed_distance_batch(map, points, alone, {}, thread_count);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if ((!same_bits(distances[i], expected.distances[i]) || !same_bits(alone[i], distances[i]) ||
+             !same_bits(gradients[i], expected.gradients[i])) &&
+            ++wrong <= 3)
+            ADD_FAILURE() << "point " << i << ": " << points[i].x << " " << points[i].y << " " << points[i].z
+                          << ", distance " << distances[i] << ", " << alone[i] << " alone, and not "
+                          << expected.distances[i];
+    EXPECT_EQ(wrong, 0U);
+}
+
 } // namespace
 
 TEST(ExactMapBatch, AgreesWithContainsUnderEveryInstructionSet) {
@@ -172,6 +210,19 @@ TEST(ExactMapBatch, AgreesWithContactUnderEveryInstructionSet) {
     }
 }
 
+TEST(ExactMapBatch, AgreesWithSignedDistanceUnderEveryInstructionSet) {
+    for (const Case& c : cases()) {
+        SCOPED_TRACE(c.name);
+        const ExactMap map = ExactMap::build(c.mesh, c.options);
+        const std::vector<Vec3f> points = telling_points(map, c.mesh);
+        const SignedDistances expected = signed_distances_one_by_one(map, points);
+        test::under_each_instruction_set([&](std::string_view name) {
+            SCOPED_TRACE(std::string(name));
+            expect_same_signed_distances(expected, map, points, 1);
+        });
+    }
+}
+
 TEST(ExactMapBatch, TakesAnyNumberOfPointsAtAnyStride) {
     const TriangleMesh mesh = make_torus(1, 0.4, 40, 16);
     const ExactMap map = ExactMap::build(mesh);
@@ -190,6 +241,7 @@ TEST(ExactMapBatch, TakesAnyNumberOfPointsAtAnyStride) {
             const StridedSpan<const Vec3f> strided(&particles[0].position, count, sizeof(Particle));
             expect_same_sides(map, strided, 1);
             expect_same_contacts(map, strided, 0.01F, {1, 1, 1}, 1);
+            expect_same_signed_distances(signed_distances_one_by_one(map, strided), map, strided, 1);
         }
     });
 }
@@ -198,9 +250,11 @@ TEST(ExactMapBatch, GivesTheSameAnswersOnAnyNumberOfThreads) {
     const TriangleMesh mesh = make_torus(1, 0.4, 40, 16);
     const ExactMap map = ExactMap::build(mesh);
     const std::vector<Vec3f> points = comparison::surface_points(mesh, 100'000);
+    const SignedDistances expected = signed_distances_one_by_one(map, points);
     for (unsigned thread_count : {0U, 2U, 3U}) {
         expect_same_sides(map, points, thread_count);
         expect_same_contacts(map, points, 0, {1, 1, 1}, thread_count);
+        expect_same_signed_distances(expected, map, points, thread_count);
     }
 }
 
@@ -220,10 +274,12 @@ TEST(ExactMapBatch, AnswersWithIndicesOf32BitsToo) {
         ASSERT_FALSE(map.view().references.wide.empty());
         const std::vector<Vec3f> points = comparison::surface_points(mesh, 3000);
         const std::vector<Contact> expected = one_by_one(map, points, 0, {1, 1, 1});
+        const SignedDistances expected_distances = signed_distances_one_by_one(map, points);
         test::under_each_instruction_set([&](std::string_view name) {
             SCOPED_TRACE(std::string(name));
             expect_same_sides(map, points, 1);
             expect_same_contacts(expected, map, points, 0, {1, 1, 1}, 1);
+            expect_same_signed_distances(expected_distances, map, points, 1);
         });
     }
 }

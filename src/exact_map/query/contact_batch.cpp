@@ -95,6 +95,8 @@ class ContactLanes {
     }
 
   private:
+    static constexpr double kFarthestInLanes = 0x1p40;
+
     using Row = std::array<double, kMaxLanes>;
     struct Rows {
         alignas(64) Row x, y, z;
@@ -180,14 +182,15 @@ class ContactLanes {
         const DoubleLanes depth = hn::Mul(hn::Mul(distance, hn::Set(d, search_.unit())), step_);
         hn::Store(hn::Mul(depth, sign), d, depths_.data());
         const PlaceLanes offset = point - place;
-        const DoubleMask is_near = hn::Le(length(offset), hn::Set(d, kSnapping));
-        hn::Store(hn::IfThenElseZero(is_near, one), d, is_near_.data());
+        const DoubleMask by_reference = hn::Or(hn::Le(length(offset), hn::Set(d, kSnapping)),
+                                               hn::Gt(distance, hn::Set(d, kFarthestInLanes)));
+        hn::Store(hn::IfThenElseZero(by_reference, one), d, by_reference_.data());
         normals_.set(times(offset, stretch_) * hn::Div(sign, distance));
     }
 
     void store(ContactBlock& block, std::size_t i, std::size_t lane) const {
         if (block.faces[i] == kNoFace) return;
-        if (is_near_[lane] != 0) [[unlikely]] { // the normal is a sum over faces
+        if (by_reference_[lane] != 0) [[unlikely]] {
             block.set_contact(search_, i);
             return;
         }
@@ -209,7 +212,8 @@ class ContactLanes {
     // The particles at hand.
     std::array<Rows, 3> corners_{};
     Rows places_{}, points_{}, normals_{};
-    alignas(64) Row signs_{}, depths_{}, features_{}, is_near_{};
+    alignas(64) Row signs_{}, depths_{}, features_{};
+    alignas(64) Row by_reference_{}; ///< near the normal is a sum over faces, and far away double does not do
 };
 
 } // namespace
@@ -237,17 +241,51 @@ namespace {
 
 HWY_EXPORT(measure_contacts);
 
-/// @param contacts  of the batch
-void answer(const ContactSearch& search, ContactBlock& block, std::span<Contact> contacts) {
+/// Where the answers of contacts_batch() go.
+struct ContactOutput {
+    std::span<Contact> contacts;
+
+    std::size_t size() const { return contacts.size(); }
+    void prefetch(std::uint32_t particle) const {
+        hwy::Prefetch(&contacts[particle]);
+        hwy::Prefetch(&contacts[particle].feature); // perhaps on another line
+    }
+    void set(std::uint32_t particle, const Contact& contact) const { contacts[particle] = contact; }
+    void set_none(std::uint32_t particle, const Vec3f& point_local, Side side) const {
+        ContactSearch::set_no_contact(contacts[particle], point_local, side);
+    }
+};
+
+/// Where those of signed_distance_batch() go.
+struct SignedDistanceOutput {
+    std::span<float> distances;
+    std::span<Vec3f> gradients; ///< or empty
+
+    std::size_t size() const { return distances.size(); }
+    void prefetch(std::uint32_t particle) const {
+        hwy::Prefetch(&distances[particle]);
+        if (!gradients.empty()) hwy::Prefetch(&gradients[particle]);
+    }
+    void set(std::uint32_t particle, const Contact& contact) const {
+        distances[particle] = -contact.depth;
+        if (!gradients.empty()) gradients[particle] = contact.normal;
+    }
+    void set_none(std::uint32_t particle, const Vec3f& point_local, Side) const {
+        distances[particle] = signed_distance_without_contact(point_local);
+        if (!gradients.empty()) gradients[particle] = {};
+    }
+};
+
+template <typename Output>
+void answer(const ContactSearch& search, ContactBlock& block, const Output& output) {
     const std::span<const NearestSearch> searches(block.searches.data(), block.size);
     find_nearest_faces(search.map(), search.stretch(), searches, {block.faces.data(), block.size});
     ECHINUS_DISPATCH(measure_contacts)(search, block);
     for (std::size_t i = 0; i < block.size; ++i) {
-        Contact& contact = contacts[block.particles[i]];
         if (block.faces[i] != kNoFace)
-            contact = block.contacts[i];
+            output.set(block.particles[i], block.contacts[i]);
         else
-            ContactSearch::set_no_contact(contact, block.points_local[i], block.sides[i]);
+            output.set_none(block.particles[i], block.points_local[i], block.sides[i]);
     }
     block.size = 0;
 }
@@ -258,12 +296,13 @@ struct ContactMemory {
     std::span<KeyedParticle> queue, spare; ///< equally long: this many particles are sorted at a time
 };
 
-void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
-                   std::span<Contact> contacts, const ContactMemory& memory) {
+template <typename Output>
+void find_with(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
+               const Output& output, const ContactMemory& memory) {
     const std::span<Side> sides = memory.sides;
     find_sides(search.map(), points_local, sides);
     const MortonCurve curve(search.map().centre, search.map().radius);
-    ContactBlock block;
+    std::array<ContactBlock, 2> blocks; // near the lattice and afar, which are searched in different ways
     std::size_t queued = 0;
     const auto answer_queue = [&] {
         const std::span<KeyedParticle> queue = memory.queue.first(queued);
@@ -275,45 +314,58 @@ void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& 
             hwy::Prefetch(&points_local[later]);
             hwy::Prefetch(&sides[later]);
             const std::uint32_t particle = queue[k].particle;
-            hwy::Prefetch(&contacts[particle]);
-            hwy::Prefetch(&contacts[particle].feature); // perhaps on another line
-            block.add(search, particle, points_local[particle], sides[particle]);
-            if (block.size == ContactBlock::kCapacity) answer(search, block, contacts);
+            output.prefetch(particle);
+            const Vec3f& point_local = points_local[particle];
+            ContactBlock& block = blocks[is_afar(search.place_of(point_local)) ? 1 : 0];
+            block.add(search, particle, point_local, sides[particle]);
+            if (block.size == ContactBlock::kCapacity) answer(search, block, output);
         }
-        answer(search, block, contacts);
+        for (ContactBlock& block : blocks) answer(search, block, output);
         queued = 0;
     };
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const auto count = static_cast<std::uint32_t>(output.size());
+    for (std::uint32_t i = 0; i < count; ++i) {
         if (!search.is_wanted(points_local[i], sides[i])) {
-            ContactSearch::set_no_contact(contacts[i], points_local[i], sides[i]);
+            output.set_none(i, points_local[i], sides[i]);
             continue;
         }
-        memory.queue[queued++] = {curve.key(points_local[i]), static_cast<std::uint32_t>(i)};
+        memory.queue[queued++] = {curve.key(points_local[i]), i};
         if (queued == memory.queue.size()) answer_queue();
     }
     answer_queue();
+}
+
+template <typename Output>
+void find_with(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
+               const Output& output) {
+    // A solver queries few particles many times: they use the stack only.
+    constexpr std::size_t kStackCapacity = 256;
+    if (output.size() <= kStackCapacity) {
+        std::array<Side, kStackCapacity> sides;
+        std::array<KeyedParticle, kStackCapacity> queue, spare;
+        find_with(search, points_local, output, {{sides.data(), output.size()}, queue, spare});
+        return;
+    }
+    // Few enough for what is written to stay in a cache, enough for neighbours to be close to each other.
+    constexpr std::size_t kQueueCapacity = 1 << 16;
+    const std::size_t count = std::min(kQueueCapacity, output.size());
+    // Not std::make_unique, which would fill them.
+    const std::unique_ptr<Side[]> sides(new Side[output.size()]);
+    const std::unique_ptr<KeyedParticle[]> queue(new KeyedParticle[2 * count]);
+    find_with(search, points_local, output,
+              {{sides.get(), output.size()}, {queue.get(), count}, {queue.get() + count, count}});
 }
 
 } // namespace
 
 void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
                    std::span<Contact> contacts) {
-    // A solver queries few particles many times: they use the stack only.
-    constexpr std::size_t kStackCapacity = 256;
-    if (contacts.size() <= kStackCapacity) {
-        std::array<Side, kStackCapacity> sides;
-        std::array<KeyedParticle, kStackCapacity> queue, spare;
-        find_contacts(search, points_local, contacts, {{sides.data(), contacts.size()}, queue, spare});
-        return;
-    }
-    // Few enough for what is written to stay in a cache, enough for neighbours to be close to each other.
-    constexpr std::size_t kQueueCapacity = 1 << 16;
-    const std::size_t count = std::min(kQueueCapacity, contacts.size());
-    // Not std::make_unique, which would fill them.
-    const std::unique_ptr<Side[]> sides(new Side[contacts.size()]);
-    const std::unique_ptr<KeyedParticle[]> queue(new KeyedParticle[2 * count]);
-    find_contacts(search, points_local, contacts,
-                  {{sides.get(), contacts.size()}, {queue.get(), count}, {queue.get() + count, count}});
+    find_with(search, points_local, ContactOutput{contacts});
+}
+
+void find_signed_distances(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
+                           std::span<float> distances, std::span<Vec3f> gradients) {
+    find_with(search, points_local, SignedDistanceOutput{distances, gradients});
 }
 
 } // namespace echinus

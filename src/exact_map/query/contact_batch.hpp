@@ -12,4 +12,10 @@ namespace echinus {
 void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
                    std::span<Contact> contacts);
 
+/// The signed distances, and the gradients if asked for, in the same way.
+/// @param search     finds everything, however far
+/// @param gradients  empty, or as long as `distances`
+void find_signed_distances(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
+                           std::span<float> distances, std::span<Vec3f> gradients);
+
 } // namespace echinus

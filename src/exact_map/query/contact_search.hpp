@@ -7,11 +7,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace echinus {
 
 /// Two snapped positions differ from the true ones by at most sqrt(3) lattice steps together.
 inline constexpr double kSnapping = 2;
+
+/// The signed distance of a point that is not finite.
+inline float signed_distance_without_contact(const Vec3f& point_local) {
+    const bool is_nan = std::isnan(point_local.x) || std::isnan(point_local.y) || std::isnan(point_local.z);
+    return is_nan ? std::numeric_limits<float>::quiet_NaN() : std::numeric_limits<float>::infinity();
+}
 
 /// Contacts in a stretched world. The stretch is factored into one number, the unit of lengths, and the
 /// remaining factors of the axes, at most 1.
@@ -25,8 +32,10 @@ class ContactSearch {
     Contact operator()(const Vec3f& point_local) const {
         const Side side = side_at(map_, frame_, point_local);
         if (!is_wanted(point_local, side)) return no_contact(point_local, side);
-        const auto nearest = nearest_point(map_, place_of(point_local), stretch_, farthest(side));
-        return nearest ? contact_at(point_local, side, *nearest) : no_contact(point_local, side);
+        const Vec3d place = place_of(point_local);
+        const auto face = nearest_face(map_, place, stretch_, farthest(side));
+        return face ? contact_at(point_local, side, nearest_point_on_face(map_, *face, place, stretch_))
+                    : no_contact(point_local, side);
     }
 
     const ExactMapView& map() const { return map_; }
@@ -40,7 +49,9 @@ class ContactSearch {
         return ((side & kInsideBit) != 0 || margin_ > 0) && is_finite(point_local);
     }
     /// How far, in lattice steps.
-    double farthest(Side side) const { return (side & kInsideBit) != 0 ? kEverywhere : margin_; }
+    double farthest(Side side) const {
+        return (side & kInsideBit) != 0 ? std::numeric_limits<double>::infinity() : margin_;
+    }
 
     static Contact no_contact(const Vec3f& point_local, Side side) {
         Contact result;

@@ -12,6 +12,7 @@ namespace echinus {
 namespace {
 
 constexpr std::size_t kLanes = TreeNode::kWidth;
+constexpr Vec3d kUnstretched{1, 1, 1};
 
 Vec3d stretched(const Vec3d& v, const Vec3d& stretch) {
     return {v.x * stretch.x, v.y * stretch.y, v.z * stretch.z};
@@ -112,6 +113,46 @@ class BoxDistances {
     Vec3f place_, stretch_;
 };
 
+/// How much farther from a place afar than the centre a point q of the lattice is: with the place at the
+/// distance d in the direction u,
+///
+///     (|place - q|^2 - d^2) / 2 d = q^2 / 2 d - u q,
+///
+/// which grows with the distance, and of which little is lost in single precision. The sum has a term for
+/// each axis, a parabola with its minimum at the place's coordinate.
+class BoxExcesses {
+  public:
+    explicit BoxExcesses(const Vec3d& place)
+        : place_(place), direction_(place * (1 / length(place))),
+          curvature_(static_cast<float>(0.5 / length(place))) {}
+
+    ChildDistances operator()(const TreeNode& node) const {
+        ChildDistances result;
+        for (std::size_t k = 0; k < kLanes; ++k) {
+            const float sum = least(node.low[0][k], node.high[0][k], place_.x, direction_.x) +
+                              least(node.low[1][k], node.high[1][k], place_.y, direction_.y) +
+                              least(node.low[2][k], node.high[2][k], place_.z, direction_.z);
+            result[k] = node.low[0][k] > node.high[0][k] ? kNoChild : sum - kSlack;
+        }
+        return result;
+    }
+
+    static constexpr float kSlack = 1; ///< lattice steps, more than the rounding of terms below 2^20
+    static constexpr float kNoChild = std::numeric_limits<float>::infinity();
+
+  private:
+    float least(std::int16_t low, std::int16_t high, float place, float direction) const {
+        const float from = low * kUnit, to = high * kUnit;
+        const float q = place < from ? from : place > to ? to : place;
+        return q * (q * curvature_ - direction);
+    }
+
+    static constexpr float kUnit = ExactMapView::kBoxUnit;
+
+    Vec3f place_, direction_;
+    float curvature_;
+};
+
 /// A float a little above a double: by more than box distances are rounded. Infinity is excluded, since
 /// missing children are at infinity.
 float rounded_up(double value) {
@@ -127,34 +168,76 @@ Vec3d unit_normal(const ExactMapView& map, std::uint32_t face, const Vec3d& plac
     return area > 0 ? normal * (mirror / area) : Vec3d{};
 }
 
-} // namespace
+/// The face nearest to a place, of those in the leaves that it is shown.
+class NearestSoFar {
+  public:
+    NearestSoFar(const ExactMapView& map, const Vec3d& place, const Vec3d& stretch, double farthest)
+        : map_(map), place_(place), stretch_(stretch), distance_sq_(farthest * farthest) {}
 
-std::optional<NearestPoint> nearest_point(const ExactMapView& map, const Vec3d& place, const Vec3d& stretch,
-                                          double farthest) noexcept {
-    double nearest_sq = farthest * farthest;
-    float bound = rounded_up(nearest_sq);
-    std::optional<std::uint32_t> face;
-    walk_near_leaves(map, bound, BoxDistances(place, stretch), [&](const LeafFaces& faces) {
-        const LeafDistances distances(map, faces, place, stretch);
+    /// Returns whether one of the faces is nearer than those before.
+    bool improve(const LeafFaces& faces) {
+        const LeafDistances distances(map_, faces, place_, stretch_);
+        const double before = distance_sq_;
         for (std::uint32_t lane = 0; lane < faces.last - faces.first; ++lane) {
             const double distance_sq = distances.distance_sq(lane);
             const std::uint32_t found = faces.first + lane;
-            if (!(distance_sq <= nearest_sq) || (face && distance_sq == nearest_sq && found > *face))
+            if (!(distance_sq <= distance_sq_) || (face_ && distance_sq == distance_sq_ && found > *face_))
                 continue;
-            nearest_sq = distance_sq;
-            bound = rounded_up(nearest_sq);
-            face = found;
+            distance_sq_ = distance_sq;
+            face_ = found;
         }
+        return distance_sq_ < before;
+    }
+
+    double distance_sq() const { return distance_sq_; }
+    const std::optional<std::uint32_t>& face() const { return face_; }
+
+  private:
+    const ExactMapView& map_;
+    const Vec3d &place_, &stretch_;
+    double distance_sq_;
+    std::optional<std::uint32_t> face_;
+};
+
+std::optional<std::uint32_t> nearest_face_from_afar(const ExactMapView& map, const Vec3d& place) {
+    constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+    const Vec3d from = brought_within_reach(place);
+    const double centre_sq = dot(from, from), centre = std::sqrt(centre_sq);
+    NearestSoFar nearest(map, from, kUnstretched, kUnbounded);
+    float bound = std::numeric_limits<float>::max();
+    walk_near_leaves(map, bound, BoxExcesses(from), [&](const LeafFaces& faces) {
+        if (nearest.improve(faces))
+            bound =
+                static_cast<float>((nearest.distance_sq() - centre_sq) / (2 * centre)) + BoxExcesses::kSlack;
     });
-    if (!face) return std::nullopt;
-    return nearest_point_on_face(map, *face, place, stretch);
+    return nearest.face();
+}
+
+} // namespace
+
+std::optional<std::uint32_t> nearest_face(const ExactMapView& map, const Vec3d& place, const Vec3d& stretch,
+                                          double farthest) noexcept {
+    if (is_afar(place) && stretch == kUnstretched) {
+        // No corner is farther from the centre than its coordinates can be, snapped and rounded.
+        if (farthest < length(place) - 2 * static_cast<double>(kLatticeExtent)) return std::nullopt;
+        const auto face = nearest_face_from_afar(map, place);
+        return face && nearest_point_on_face(map, *face, place, stretch).distance <= farthest ? face
+                                                                                              : std::nullopt;
+    }
+    NearestSoFar nearest(map, place, stretch, farthest);
+    float bound = rounded_up(nearest.distance_sq());
+    walk_near_leaves(map, bound, BoxDistances(place, stretch), [&](const LeafFaces& faces) {
+        if (nearest.improve(faces)) bound = rounded_up(nearest.distance_sq());
+    });
+    return nearest.face();
 }
 
 NearestPoint nearest_point_on_face(const ExactMapView& map, std::uint32_t face, const Vec3d& place,
                                    const Vec3d& stretch) noexcept {
-    const auto [offset, distance, feature] = nearest_on_triangle(corners_around(map, face, place, stretch));
-    return {place + Vec3d{offset.x / stretch.x, offset.y / stretch.y, offset.z / stretch.z}, distance, face,
-            feature};
+    const Vec3d from = brought_within_reach(place);
+    const auto [offset, distance, feature] = nearest_on_triangle(corners_around(map, face, from, stretch));
+    const Vec3d point = from + Vec3d{offset.x / stretch.x, offset.y / stretch.y, offset.z / stretch.z};
+    return {point, from == place ? distance : length(stretched(point - place, stretch)), face, feature};
 }
 
 double distance_sq_to_face(const ExactMapView& map, std::uint32_t face, const Vec3d& place,
@@ -165,7 +248,6 @@ double distance_sq_to_face(const ExactMapView& map, std::uint32_t face, const Ve
 
 Vec3f pseudonormal(const ExactMapView& map, const NearestPoint& nearest, const Vec3d& stretch,
                    double reach) noexcept {
-    constexpr Vec3d kUnstretched{1, 1, 1};
     const Vec3d& point = nearest.point;
     const float bound = rounded_up(reach * reach);
     Vec3d sum;

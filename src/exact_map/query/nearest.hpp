@@ -5,6 +5,8 @@
 #include <echinus/contact.hpp>
 #include <echinus/exact_map_view.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -19,20 +21,32 @@ struct NearestPoint {
     Feature feature = Feature::Unknown;
 };
 
-/// In lattice steps: farther than any surface is from any place whose coordinates are within half of it,
-/// where no axis is stretched by more than 1.
-inline constexpr double kEverywhere = 8 * static_cast<double>(kLatticeExtent);
+/// Is a place far from the lattice? Squared distances to different faces then hardly differ, and the search
+/// compares them in another form.
+inline constexpr double kAfar = 4 * static_cast<double>(kLatticeExtent);
+inline bool is_afar(const Vec3d& place) {
+    return std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)}) >= kAfar;
+}
 
-/// The nearest point of the whole surface, if it is at most `farthest` away: a branch and bound search of the
+/// Where a place is so far that the distances to the faces, rounded to double, no longer differ, the place
+/// from which the nearest face and its nearest point are found instead: on its ray from the centre, and so
+/// far that both are the same but for a sixteenth of a lattice step.
+inline Vec3d brought_within_reach(const Vec3d& place) {
+    constexpr double kReach = 0x1p44;
+    const double largest = std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)});
+    return largest > kReach ? place * (kReach / largest) : place;
+}
+
+/// The nearest face of the whole surface, if it is at most `farthest` away: a branch and bound search of the
 /// face tree, so that the minimum is global. Of faces that are equally near, the first.
-std::optional<NearestPoint> nearest_point(const ExactMapView& map, const Vec3d& place, const Vec3d& stretch,
+std::optional<std::uint32_t> nearest_face(const ExactMapView& map, const Vec3d& place, const Vec3d& stretch,
                                           double farthest) noexcept;
 
 /// The nearest point of one face.
 NearestPoint nearest_point_on_face(const ExactMapView& map, std::uint32_t face, const Vec3d& place,
                                    const Vec3d& stretch) noexcept;
 
-/// The squared distance by which nearest_point() compares faces.
+/// The squared distance by which nearest_face() compares faces.
 double distance_sq_to_face(const ExactMapView& map, std::uint32_t face, const Vec3d& place,
                            const Vec3d& stretch) noexcept;
 

@@ -15,6 +15,8 @@
 #include <hwy/foreach_target.h>
 
 // After foreach_target.h, which includes this file once for each instruction set.
+#include "exact_map/query/afar_lanes-inl.hpp"
+#include "exact_map/query/face_candidates-inl.hpp"
 #include "exact_map/query/leaf_lanes-inl.hpp"
 #include "simd/dispatch.hpp"
 
@@ -25,8 +27,7 @@ namespace {
 
 std::uint32_t nearest_by_reference(const ExactMapView& map, const Vec3d& stretch,
                                    const NearestSearch& search) {
-    const auto nearest = nearest_point(map, search.place, stretch, search.farthest);
-    return nearest ? nearest->face : kNoFace;
+    return nearest_face(map, search.place, stretch, search.farthest).value_or(kNoFace);
 }
 
 } // namespace
@@ -34,52 +35,6 @@ std::uint32_t nearest_by_reference(const ExactMapView& map, const Vec3d& stretch
 #if HWY_TARGET != HWY_SCALAR
 
 namespace {
-
-constexpr std::size_t kMaxLanes = 16;
-
-/// The faces that may be the nearest to some of the current places.
-class Candidates {
-  public:
-    void clear() { size_ = 0; }
-    std::size_t size() const { return size_; }
-    bool full() const { return size_ == kCapacity; }
-
-    void add(std::uint32_t face, FloatLanes lower) {
-        faces_[size_] = face;
-        hn::Store(lower, Floats(), lowers_[size_].data());
-        ++size_;
-    }
-
-    /// Drops those that are too far for every place.
-    void keep_within(FloatLanes upper) {
-        constexpr Floats f;
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < size_; ++i) {
-            const FloatLanes lower = hn::Load(f, lowers_[i].data());
-            if (hn::AllFalse(f, hn::Le(lower, upper))) continue;
-            faces_[kept] = faces_[i];
-            hn::Store(lower, f, lowers_[kept].data());
-            ++kept;
-        }
-        size_ = kept;
-    }
-
-    std::uint32_t face(std::size_t i) const { return faces_[i]; }
-    /// A bit for each place that the face may be the nearest to.
-    std::uint32_t places_within(std::size_t i, FloatLanes upper) const {
-        constexpr Floats f;
-        std::array<std::uint8_t, 8> bits{};
-        hn::StoreMaskBits(f, hn::Le(hn::Load(f, lowers_[i].data()), upper), bits.data());
-        return bits[0] | std::uint32_t{bits[1]} << 8;
-    }
-
-  private:
-    static constexpr std::size_t kCapacity = 64;
-
-    std::size_t size_ = 0;
-    std::array<std::uint32_t, kCapacity> faces_;
-    alignas(64) std::array<std::array<float, kMaxLanes>, kCapacity> lowers_;
-};
 
 /// As many searches as there are lanes, in one walk through the tree. Visited leaves are kept for the
 /// searches that follow.
@@ -106,23 +61,19 @@ class NearestFaceFinder {
                 faces[i] = nearest_by_reference(map_, stretch_, searches[i]);
             return;
         }
-        choose(searches, faces);
+        candidates_.choose(map_, stretch_, searches, upper_, faces);
     }
 
   private:
     static constexpr double kMaxDistanceSq = 1e30;
+    static constexpr std::size_t kMaxLanes = 16;
 
-    /// Places farther off are left to the scalar query.
-    static constexpr double kRange = kEverywhere / 2;
-
-    static bool is_within_range(const NearestSearch& search) {
-        const Vec3d& p = search.place;
-        return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) < kRange;
-    }
+    /// Places afar are left to the scalar query.
+    static bool is_within_range(const NearestSearch& search) { return !is_afar(search.place); }
 
     static Vec3<std::int32_t> rounded_origin(const Vec3d& place) {
         const auto within = [](double coordinate) {
-            return static_cast<std::int32_t>(std::clamp(coordinate, -kRange, kRange));
+            return static_cast<std::int32_t>(std::clamp(coordinate, -kAfar, kAfar));
         };
         return {within(place.x), within(place.y), within(place.z)};
     }
@@ -276,41 +227,6 @@ class NearestFaceFinder {
         return true;
     }
 
-    /// For each place, the candidate that the scalar query takes.
-    void choose(std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) const {
-        std::array<double, kMaxLanes> distances_sq;
-        std::uint32_t measured = 0; // places whose face's distance is known
-        std::fill(faces.begin(), faces.end(), kNoFace);
-        const std::uint32_t asked = (1U << searches.size()) - 1;
-        for (std::size_t i = 0; i < candidates_.size(); ++i) {
-            const std::uint32_t face = candidates_.face(i);
-            for (std::uint32_t rest = candidates_.places_within(i, upper_) & asked; rest != 0;
-                 rest &= rest - 1) {
-                const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
-                const NearestSearch& search = searches[lane];
-                const bool bounded = search.farthest < kEverywhere;
-                if (faces[lane] == kNoFace && !bounded) { // there must be one, and this may be it
-                    faces[lane] = face;
-                    continue;
-                }
-                const auto distance_to = [&](std::uint32_t other) {
-                    return distance_sq_to_face(map_, other, search.place, stretch_);
-                };
-                if (faces[lane] != kNoFace && (measured >> lane & 1) == 0)
-                    distances_sq[lane] = distance_to(faces[lane]);
-                measured |= 1U << lane;
-                const double distance_sq = distance_to(face);
-                const bool nearer = faces[lane] == kNoFace
-                                        ? distance_sq <= search.farthest * search.farthest
-                                        : distance_sq < distances_sq[lane] ||
-                                              (distance_sq == distances_sq[lane] && face < faces[lane]);
-                if (!nearer) continue;
-                faces[lane] = face;
-                distances_sq[lane] = distance_sq;
-            }
-        }
-    }
-
     static constexpr float kBoxSlack = 1; ///< lattice steps, more than is rounded
 
     const ExactMapView& map_;
@@ -332,7 +248,7 @@ class NearestFaceFinder {
     std::array<std::uint32_t, kKeptLeaves> leaf_of_slot_; ///< first face, or kNoFace
     std::array<LeafLanes, kKeptLeaves> leaves_;
 
-    Candidates candidates_;
+    FaceCandidates candidates_;
     static constexpr std::size_t kMaxDepth = 12; // as in walk_near_leaves()
     std::array<Waiting, kMaxDepth * TreeNode::kWidth> waiting_;
 };
@@ -349,11 +265,20 @@ void find_nearest_faces(const ExactMapView& map, const Vec3d& stretch,
             faces[i] = nearest_by_reference(map, stretch, searches[i]);
         return;
     }
-    NearestFaceFinder finder(map, stretch, searches);
     const std::size_t lanes = hn::Lanes(Floats());
-    for (std::size_t begin = 0; begin < searches.size(); begin += lanes) {
-        const std::size_t count = std::min(lanes, searches.size() - begin);
-        finder.find(searches.subspan(begin, count), faces.subspan(begin, count));
+    const auto find_with = [&](auto& finder) {
+        for (std::size_t begin = 0; begin < searches.size(); begin += lanes) {
+            const std::size_t count = std::min(lanes, searches.size() - begin);
+            finder.find(searches.subspan(begin, count), faces.subspan(begin, count));
+        }
+    };
+    const bool unstretched = stretch == Vec3d{1, 1, 1};
+    if (unstretched && std::all_of(searches.begin(), searches.end(), FacesFromAfar::is_for)) {
+        FacesFromAfar finder(map);
+        find_with(finder);
+    } else {
+        NearestFaceFinder finder(map, stretch, searches);
+        find_with(finder);
     }
 }
 

@@ -5,18 +5,18 @@
 #include <cstdint>
 #include <span>
 
-/// The search of nearest_point() for many places.
+/// nearest_face() for many places.
 namespace echinus {
 
 struct NearestSearch {
     Vec3d place;     ///< in lattice steps
-    double farthest; ///< as nearest_point() takes it
+    double farthest; ///< as nearest_face() takes it
 };
 
 inline constexpr std::uint32_t kNoFace = UINT32_MAX;
 
-/// The face on which the nearest point of each place lies, or kNoFace; the same as that of nearest_point(),
-/// whatever the instruction set.
+/// The nearest face of each place, or kNoFace; the same as that of nearest_face(), whatever the instruction
+/// set.
 ///
 /// As many places as there are lanes go down the tree together. A filter in single precision leaves each of
 /// them few faces, mostly one; among several the distances of the reference decide.

@@ -10,6 +10,7 @@
 #include <echinus/exact_map.hpp>
 
 #include <cassert>
+#include <limits>
 #include <new>
 
 namespace echinus {
@@ -63,6 +64,44 @@ void stretched_contacts_batch(const ExactMapView& map, const StridedSpan<const V
             }
         }
         for (std::size_t i = begin; i < end; ++i) contacts[i] = search(points_local[i]);
+    });
+}
+
+namespace {
+
+ContactSearch search_everywhere(const ExactMapView& map) {
+    return {map, {1, 1, 1}, std::numeric_limits<float>::infinity()};
+}
+
+} // namespace
+
+float signed_distance(const ExactMapView& map, Vec3f point_local, Vec3f* gradient) noexcept {
+    const Contact contact = search_everywhere(map)(point_local);
+    if (gradient != nullptr) *gradient = contact.normal;
+    return contact.face == Contact::kUnknownFace ? signed_distance_without_contact(point_local)
+                                                 : -contact.depth;
+}
+
+void signed_distance_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
+                           std::span<float> distances, std::span<Vec3f> gradients,
+                           unsigned thread_count) noexcept {
+    assert(points_local.size() == distances.size());
+    assert(gradients.empty() || gradients.size() == distances.size());
+    const ContactSearch search = search_everywhere(map);
+    for_each_piece(distances.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        const StridedSpan<const Vec3f> points = points_local.subspan(begin, end - begin);
+        const std::span<Vec3f> wanted_gradients =
+            gradients.empty() ? gradients : gradients.subspan(begin, end - begin);
+        if (use_kernels()) {
+            try {
+                find_signed_distances(search, points, distances.subspan(begin, end - begin),
+                                      wanted_gradients);
+                return;
+            } catch (const std::bad_alloc&) { // the reference needs no memory
+            }
+        }
+        for (std::size_t i = begin; i < end; ++i)
+            distances[i] = signed_distance(map, points_local[i], gradients.empty() ? nullptr : &gradients[i]);
     });
 }
 

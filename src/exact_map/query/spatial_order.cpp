@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace echinus {
 
@@ -17,15 +18,17 @@ std::uint32_t spread(std::uint32_t bits) {
 } // namespace
 
 MortonCurve::MortonCurve(const Vec3f& centre, float radius)
-    : low_(centre - Vec3f{radius, radius, radius}), cells_per_unit_((kLast + 1) / (2 * radius)) {}
+    : centre_(centre), radius_(radius), cells_per_unit_((kLast + 1) / (2 * radius)) {}
 
 std::uint32_t MortonCurve::key(const Vec3f& point_local) const noexcept {
-    const auto cell = [&](float coordinate, float low) {
-        const float place = (coordinate - low) * cells_per_unit_;
+    const Vec3f offset = point_local - centre_;
+    const float largest = std::max({std::fabs(offset.x), std::fabs(offset.y), std::fabs(offset.z)});
+    const float scale = largest > radius_ ? radius_ / largest * cells_per_unit_ : cells_per_unit_;
+    const auto cell = [&](float coordinate) {
+        const float place = coordinate * scale + 0.5F * (kLast + 1);
         return static_cast<std::uint32_t>(std::min(std::max(0.0F, place), static_cast<float>(kLast)));
     };
-    return spread(cell(point_local.x, low_.x)) | spread(cell(point_local.y, low_.y)) << 1 |
-           spread(cell(point_local.z, low_.z)) << 2;
+    return spread(cell(offset.x)) | spread(cell(offset.y)) << 1 | spread(cell(offset.z)) << 2;
 }
 
 void sort_by_key(std::span<KeyedParticle> particles, std::span<KeyedParticle> spare) noexcept {

@@ -23,14 +23,15 @@ class MortonCurve {
     /// @param centre, radius  of the ball in the cube
     MortonCurve(const Vec3f& centre, float radius);
 
-    /// The number of a place's cell. Places beyond the cube count as on its border, and NaN as 0.
+    /// The number of a place's cell. A place beyond the cube counts as where its ray from the centre leaves
+    /// the cube, and NaN as 0.
     std::uint32_t key(const Vec3f& point_local) const noexcept;
 
   private:
     static constexpr std::uint32_t kLast = (1U << kBitsPerAxis) - 1; ///< cell of a row
 
-    Vec3f low_;
-    float cells_per_unit_;
+    Vec3f centre_;
+    float radius_, cells_per_unit_;
 };
 
 /// Sorts by key, stably. @param spare  as long as `particles`
