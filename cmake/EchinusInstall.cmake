@@ -58,7 +58,7 @@ foreach(pair IN ITEMS io:mesh_io scene:scene render:render)
   endif()
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/echinus DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-  FILES_MATCHING PATTERN *.hpp ${absent_headers})
+  FILES_MATCHING PATTERN *.hpp PATTERN *.h ${absent_headers})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/echinusConfig.cmake.in ${PROJECT_BINARY_DIR}/echinusConfig.cmake

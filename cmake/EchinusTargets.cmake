@@ -36,9 +36,9 @@ if(ECHINUS_SANITIZE)
   target_link_options(echinus_options INTERFACE -fsanitize=${ECHINUS_SANITIZE})
 endif()
 
-# echinus_add_library(NAME): the library target echinus_NAME with the alias echinus::NAME.
+# echinus_add_library(NAME [SHARED]): the library target echinus_NAME with the alias echinus::NAME.
 function(echinus_add_library name)
-  add_library(echinus_${name})
+  add_library(echinus_${name} ${ARGN})
   add_library(echinus::${name} ALIAS echinus_${name})
   # Before 1.0 a minor version may change declarations, so it has its own soname.
   set_target_properties(echinus_${name} PROPERTIES EXPORT_NAME ${name}

@@ -1,12 +1,7 @@
 #pragma once
 
 #include <echinus/export.hpp>
-
-/// The version of these headers. CMake reads it here, so it stands in no other place.
-#define ECHINUS_VERSION_MAJOR 0
-#define ECHINUS_VERSION_MINOR 2
-#define ECHINUS_VERSION_PATCH 0
-#define ECHINUS_VERSION_STRING "0.2.0"
+#include <echinus/version.h> // the numbers
 
 ECHINUS_EXPORT_BEGIN
 

@@ -1,0 +1,879 @@
+#ifndef ECHINUS_ECHINUS_H
+#define ECHINUS_ECHINUS_H
+
+#include <echinus/version.h>
+
+#include <stddef.h>
+#include <stdint.h>
+
+/// Echinus for C99 and for whatever calls C. Library libechinus-c; docs/c.md begins with a whole program.
+///
+/// Errors. What can fail returns a status, and echinus_last_error() has a sentence about it. No exception and
+/// no signal crosses this border. A function that fails sets the handle that it would have made to NULL, and
+/// changes nothing else unless its declaration says so.
+///
+/// Null pointers. An argument that is NULL is ECHINUS_INVALID_ARGUMENT, unless its declaration says "or
+/// NULL". An array of 0 elements may be NULL. The functions that end in _destroy take NULL and do nothing.
+/// Functions that return a value and no status return 0 or NULL for a handle that is NULL.
+///
+/// Ownership. A handle that a function gives through an echinus_..._ ** belongs to the caller, who destroys
+/// it once by the _destroy of its type. What a function takes as const it reads during the call and does not
+/// keep, unless its declaration says so. What it returns as a pointer belongs to the handle that was asked.
+///
+/// Threads. Meshes, maps, deformables, scenes and arrays never change: any number of threads may use one at
+/// once. A builder and a simulation are for one thread at a time. thread_count is how many threads a call may
+/// use; 0 stands for all cores. No answer depends on it.
+///
+/// Strides. Points are x, y, z as float. A batch of them is the address of the first x, a count, and the
+/// bytes from one x to the next: a multiple of 4 and at least 12; 0 stands for 12. Answers lie one after the
+/// other and do not overlap the points.
+///
+/// Structs that may grow begin with their size. Options are filled by their _init function, which writes the
+/// defaults and the size; of results the caller sets .size before the call. New members will be added at the
+/// end, and zero will be their default. So a program and a library of different versions understand each
+/// other, and a program that sets a member which the library does not have gets ECHINUS_INVALID_ARGUMENT.
+/// Flags are 0 or 1.
+///
+/// Frames, units and words are those of docs/conventions.md: right-handed, lengths in the caller's unit,
+/// angles in radians, faces counter-clockwise seen from outside, rotations as unit quaternions w, x, y, z.
+/// "Local" is the frame of the mesh that a map was built from, "world" is where a collider stands.
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#ifndef ECHINUS_API
+#if defined(__GNUC__)
+#define ECHINUS_API __attribute__((visibility("default")))
+#else
+#define ECHINUS_API
+#endif
+#endif
+
+// ---- Errors and the library ----
+
+/// What went wrong. Values are only ever added.
+typedef enum echinus_status {
+    ECHINUS_OK = 0,
+    ECHINUS_UNREADABLE = 1,          ///< a file does not exist, is a directory, or cannot be read
+    ECHINUS_UNWRITABLE = 2,          ///< a file cannot be written: permission, missing folder, full disk
+    ECHINUS_WRONG_FORMAT = 3,        ///< the bytes are not of the format that the name or the reader expects
+    ECHINUS_DAMAGED = 4,             ///< the right format, but truncated or self-contradictory
+    ECHINUS_UNSUPPORTED_VERSION = 5, ///< a map file of a version that this library does not read
+    ECHINUS_INVALID_MESH = 6,        ///< no faces, a coordinate that is not finite, an index out of range
+    ECHINUS_INVALID_OPTIONS = 7,     ///< an option outside the range that its declaration states
+    ECHINUS_INVALID_SCENE = 8,       ///< a scene with an unknown key, a missing one or a value out of range
+    ECHINUS_DIVERGED = 9,            ///< a simulation whose positions are not finite or have left all bounds
+    ECHINUS_INVALID_ARGUMENT =
+        100, ///< NULL, a wrong size or stride, an index out of range, a map of another kind
+    ECHINUS_OUT_OF_MEMORY = 101, ///< memory did not suffice
+    ECHINUS_INTERNAL = 102       ///< a fault of the library: please report it
+} echinus_status;
+
+/// The name of a status as it stands above, "ECHINUS_OK" for instance; "unknown status" for any other number.
+ECHINUS_API const char* echinus_status_name(echinus_status status);
+
+/// One sentence about the last call of this thread that failed: which file, face, byte or argument, what was
+/// found and what was expected. Empty when none has failed. Stays until the next failure on this thread.
+ECHINUS_API const char* echinus_last_error(void);
+
+/// The version of the library that the program runs with, such as "0.2.0". ECHINUS_VERSION_STRING is that of
+/// the header.
+ECHINUS_API const char* echinus_version(void);
+
+/// The vector instructions that batches use: "avx512", "avx2", "sse4", "neon" or "scalar". They affect speed
+/// only.
+ECHINUS_API const char* echinus_instruction_set(void);
+
+/// The sets that this machine has, the widest first: the one of this number, or NULL beyond the last.
+ECHINUS_API const char* echinus_available_instruction_set(size_t number);
+
+/// Selects another set for the whole process, from the next query on. Any thread.
+ECHINUS_API echinus_status echinus_use_instruction_set(const char* name);
+
+// ---- Arrays ----
+
+/// An array whose length only the library knows beforehand. The function that gives it names the type of its
+/// elements.
+typedef struct echinus_array echinus_array;
+
+ECHINUS_API const void* echinus_array_data(const echinus_array* array);
+/// The number of elements, not of bytes.
+ECHINUS_API size_t echinus_array_count(const echinus_array* array);
+ECHINUS_API void echinus_array_destroy(echinus_array* array);
+
+// ---- Meshes ----
+
+/// Triangles with common vertices, all indices in range and all coordinates that faces use finite.
+typedef struct echinus_mesh echinus_mesh;
+
+/// Copies vertices and faces. Nothing is repaired: echinus_mesh_inspect() reports faults.
+/// @param faces  [3 face_count] vertex indices, counter-clockwise seen from outside
+/// @return ECHINUS_INVALID_MESH without faces, or for an index out of range or a used vertex that is not
+/// finite
+ECHINUS_API echinus_status echinus_mesh_create(const float* vertices, size_t vertex_count,
+                                               size_t vertex_stride, const uint32_t* faces, size_t face_count,
+                                               echinus_mesh** mesh);
+
+/// Reads OBJ, PLY, STL, OFF, glTF, GLB or 3DS, by the extension of the name. All meshes of the file are
+/// joined, polygons are triangulated and equal positions are welded.
+/// @return ECHINUS_UNREADABLE, ECHINUS_WRONG_FORMAT, ECHINUS_DAMAGED or ECHINUS_INVALID_MESH
+ECHINUS_API echinus_status echinus_mesh_read(const char* path, echinus_mesh** mesh);
+
+/// Writes OBJ, PLY (binary), STL (binary) or OFF, by the extension of the name. The file appears whole or not
+/// at all.
+/// @return ECHINUS_UNWRITABLE or ECHINUS_WRONG_FORMAT
+ECHINUS_API echinus_status echinus_mesh_write(const echinus_mesh* mesh, const char* path);
+
+/// A torus about the z axis, centred at the origin like the other two shapes.
+/// @return ECHINUS_INVALID_OPTIONS unless 0 < minor_radius < major_radius and both counts are at least 3
+ECHINUS_API echinus_status echinus_mesh_torus(double major_radius, double minor_radius,
+                                              uint32_t major_segments, uint32_t minor_segments,
+                                              echinus_mesh** mesh);
+/// A sphere of meridians and parallels with its poles on the z axis.
+/// @return ECHINUS_INVALID_OPTIONS unless radius > 0, meridian_count >= 3 and parallel_count >= 2
+ECHINUS_API echinus_status echinus_mesh_sphere(double radius, uint32_t meridian_count,
+                                               uint32_t parallel_count, echinus_mesh** mesh);
+/// A box, each side cut into segments x segments squares of two faces.
+/// @param size  [3] lengths of the edges
+/// @return ECHINUS_INVALID_OPTIONS unless all lengths are positive and segments >= 1
+ECHINUS_API echinus_status echinus_mesh_box(const double* size, uint32_t segments, echinus_mesh** mesh);
+
+ECHINUS_API void echinus_mesh_destroy(echinus_mesh* mesh);
+
+ECHINUS_API size_t echinus_mesh_vertex_count(const echinus_mesh* mesh);
+/// [3 vertex_count] x, y, z
+ECHINUS_API const float* echinus_mesh_vertices(const echinus_mesh* mesh);
+ECHINUS_API size_t echinus_mesh_face_count(const echinus_mesh* mesh);
+/// [3 face_count]
+ECHINUS_API const uint32_t* echinus_mesh_faces(const echinus_mesh* mesh);
+
+#define ECHINUS_FIRST_FACE_COUNT 8
+
+/// How often a fault occurs, and the first faces at which it does.
+typedef struct echinus_fault {
+    uint64_t count;
+    uint32_t first_face_count; ///< how many of the following are set
+    uint32_t first_faces[ECHINUS_FIRST_FACE_COUNT];
+    uint32_t reserved; ///< 0
+} echinus_fault;
+
+/// Vertices are distinguished by index: echinus_mesh_weld() first where equal positions mean the same vertex.
+typedef struct echinus_mesh_report {
+    size_t size;
+    uint64_t face_count;
+    uint64_t vertex_count;
+    uint64_t component_count; ///< sets of faces joined by common vertices
+    int32_t closed;           ///< every edge is balanced: equally many faces run along it in each direction
+    int32_t manifold;         ///< at most two faces at each edge, and one fan of faces at each vertex
+    echinus_fault border_edges;
+    echinus_fault nonmanifold_edges;
+    echinus_fault misoriented_edges;
+    echinus_fault duplicate_faces;
+    echinus_fault degenerate_faces;
+    double signed_volume; ///< positive where faces turn outwards; of limited meaning when not closed
+    double centre[3];     ///< of the smallest sphere that encloses all vertices used by faces
+    double radius;
+} echinus_mesh_report;
+
+/// @param report  out; its size is set
+ECHINUS_API echinus_status echinus_mesh_inspect(const echinus_mesh* mesh, echinus_mesh_report* report);
+
+/// What a repair may do. All off by default.
+typedef struct echinus_repair_options {
+    size_t size;
+    int32_t drop_duplicate_faces;
+    int32_t drop_doubled_patches; ///< of two pairs of faces that fill one quadrilateral, drops one
+    int32_t flip_inside_out;      ///< turns closed components that are inside out
+    int32_t reserved;             ///< 0
+} echinus_repair_options;
+
+ECHINUS_API void echinus_repair_options_init(echinus_repair_options* options, size_t size);
+
+typedef struct echinus_repair_report {
+    size_t size;
+    uint64_t duplicate_faces_dropped;
+    uint64_t doubled_patch_faces_dropped;
+    uint64_t components_flipped;
+} echinus_repair_report;
+
+/// A repaired copy of a mesh; vertices stay as they are.
+/// @param report         out, its size is set; or NULL
+/// @param dropped_faces  out, uint32_t: numbers of the dropped faces in the given mesh, ascending; or NULL
+ECHINUS_API echinus_status echinus_mesh_repair(const echinus_mesh* mesh,
+                                               const echinus_repair_options* options, echinus_mesh** repaired,
+                                               echinus_repair_report* report, echinus_array** dropped_faces);
+
+/// A copy in which vertices at equal positions are joined and those that no face uses are dropped.
+ECHINUS_API echinus_status echinus_mesh_weld(const echinus_mesh* mesh, echinus_mesh** welded);
+
+/// Generalised winding number of a point, by brute force over all faces: for tests.
+/// @param point  [3]
+ECHINUS_API echinus_status echinus_mesh_winding_number(const echinus_mesh* mesh, const double* point,
+                                                       double* winding_number);
+/// Distance from a point to the nearest point of the surface, by brute force over all faces: for tests.
+/// @param point  [3]
+ECHINUS_API echinus_status echinus_mesh_unsigned_distance(const echinus_mesh* mesh, const double* point,
+                                                          double* distance);
+
+/// Which faces of two meshes intersect; touching counts. Decided exactly.
+/// @param pairs  out, uint32_t[2]: a face of a and a face of b, ascending
+ECHINUS_API echinus_status echinus_mesh_intersecting_pairs(const echinus_mesh* a, const echinus_mesh* b,
+                                                           echinus_array** pairs);
+/// Which faces of one mesh intersect beyond the vertices and edges that they share. Decided exactly.
+/// @param pairs  out, uint32_t[2]: two faces, ascending
+ECHINUS_API echinus_status echinus_mesh_self_intersecting_pairs(const echinus_mesh* mesh,
+                                                                echinus_array** pairs);
+
+// ---- Maps: build, look at ----
+
+/// An exact map, a distance map, or a structure of the caller's own behind two functions.
+typedef struct echinus_map echinus_map;
+
+typedef enum echinus_map_kind {
+    ECHINUS_MAP_EXACT = 1,
+    ECHINUS_MAP_DISTANCE = 2,
+    ECHINUS_MAP_CUSTOM = 3
+} echinus_map_kind;
+
+/// Which places are inside, by the winding number of the surface around them.
+typedef enum echinus_inside_rule {
+    ECHINUS_INSIDE_NONZERO = 0, ///< every winding number but 0
+    ECHINUS_INSIDE_PARITY = 1   ///< an odd winding number: a part within a part is a hole
+} echinus_inside_rule;
+
+/// Where the rays of a map start.
+typedef enum echinus_centre_choice {
+    ECHINUS_CENTRE_BOUNDING_SPHERE = 0, ///< the centre of the smallest enclosing sphere
+    ECHINUS_CENTRE_SEARCH = 1           ///< the place that promises the better map; some twenty coarse builds
+} echinus_centre_choice;
+
+typedef struct echinus_exact_map_options {
+    size_t size;
+    uint32_t
+        divisions; ///< each octant of directions has divisions^2 cells, at most 512^2; 0: chosen by the mesh
+    uint32_t thread_count;
+    uint64_t byte_budget; ///< with divisions 0: as many cells as fit; 0: no budget
+    echinus_inside_rule rule;
+    echinus_centre_choice centre;
+} echinus_exact_map_options;
+
+ECHINUS_API void echinus_exact_map_options_init(echinus_exact_map_options* options, size_t size);
+
+/// Builds an exact map: inside or outside in integer arithmetic, and the true nearest point of the surface.
+/// The same bytes for any number of threads.
+/// @param options  or NULL for the defaults
+/// @return ECHINUS_INVALID_MESH also when the bounding radius lies outside [1e-15, 1e15];
+/// ECHINUS_INVALID_OPTIONS
+ECHINUS_API echinus_status echinus_map_build_exact(const echinus_mesh* mesh,
+                                                   const echinus_exact_map_options* options,
+                                                   echinus_map** map);
+
+/// How a distance map divides the directions around its centre.
+typedef enum echinus_direction_grid {
+    ECHINUS_GRID_SPHERICAL = 0,
+    ECHINUS_GRID_OCTAHEDRAL = 1,
+    ECHINUS_GRID_CUBE = 2,
+    ECHINUS_GRID_ELLIPSOIDAL = 3
+} echinus_direction_grid;
+
+/// What is done about vertices that linear interpolation between samples misses.
+typedef enum echinus_vertex_correction {
+    ECHINUS_CORRECTION_NONE = 0,
+    ECHINUS_CORRECTION_PAPER = 1,
+    ECHINUS_CORRECTION_SIGNED = 2
+} echinus_vertex_correction;
+
+/// How one distance is stored.
+typedef enum echinus_entry_format {
+    ECHINUS_ENTRY_FLOAT32 = 0,
+    ECHINUS_ENTRY_UNORM16 = 1
+} echinus_entry_format;
+
+/// The axis of the mesh that the poles of a grid lie on.
+typedef enum echinus_pole_axis {
+    ECHINUS_POLE_X = 0,
+    ECHINUS_POLE_Y = 1,
+    ECHINUS_POLE_Z = 2
+} echinus_pole_axis;
+
+typedef struct echinus_distance_map_options {
+    size_t size;
+    echinus_direction_grid grid;
+    uint32_t longitude_count;  ///< spherical and ellipsoidal grids; 4 to 8192
+    uint32_t colatitude_count; ///< the same
+    uint32_t divisions;        ///< octahedral and cube grids; 4 to 4096
+    echinus_vertex_correction correction;
+    echinus_entry_format entry_format;
+    echinus_pole_axis pole_axis;
+    echinus_centre_choice centre;
+    uint32_t thread_count;
+    uint32_t reserved; ///< 0
+} echinus_distance_map_options;
+
+ECHINUS_API void echinus_distance_map_options_init(echinus_distance_map_options* options, size_t size);
+
+/// Builds a distance map: sorted distances along a grid of rays, interpolated; fast, and wrong in places.
+/// @param options  or NULL for the defaults
+ECHINUS_API echinus_status echinus_map_build_distance(const echinus_mesh* mesh,
+                                                      const echinus_distance_map_options* options,
+                                                      echinus_map** map);
+
+ECHINUS_API void echinus_map_destroy(echinus_map* map);
+
+typedef struct echinus_map_info {
+    size_t size;
+    echinus_map_kind kind;
+    float centre[3];      ///< where the rays start, local; 0 for a custom map, like all that follows
+    float radius;         ///< every vertex of the mesh lies within it
+    uint32_t face_count;  ///< of the mesh
+    uint64_t byte_count;  ///< of all that queries read
+    uint64_t source_hash; ///< identifies the mesh and the options that the map was built from
+} echinus_map_info;
+
+/// @param info  out; its size is set
+ECHINUS_API echinus_status echinus_map_describe(const echinus_map* map, echinus_map_info* info);
+
+typedef struct echinus_exact_map_statistics {
+    size_t size;
+    uint32_t face_count;
+    uint32_t dropped_faces; ///< without area on the lattice: they count for distances only
+    uint32_t longest_list;  ///< most faces of one band
+    float mean_list;
+    float expected_tests;       ///< faces that a query near the surface looks at
+    float certain_share;        ///< of the volume of the bounding sphere; 1 when the mesh is closed
+    float uncertain_directions; ///< share of directions along which the answer is uncertain somewhere
+    uint32_t reserved;          ///< 0
+} echinus_exact_map_statistics;
+
+/// What the build of an exact map found.
+ECHINUS_API echinus_status echinus_map_exact_statistics(const echinus_map* map,
+                                                        echinus_exact_map_statistics* statistics);
+
+typedef struct echinus_distance_map_statistics {
+    size_t size;
+    uint32_t face_count;
+    uint32_t dropped_faces;
+    uint32_t max_entries;       ///< of one direction
+    uint32_t corrected_entries; ///< moved by the vertex correction
+    uint32_t clamped_entries;   ///< corrections that were cut short
+    float wrong_parity_share;   ///< of directions that see a hole; 0 when the mesh is closed
+} echinus_distance_map_statistics;
+
+/// What the build of a distance map found.
+ECHINUS_API echinus_status echinus_map_distance_statistics(const echinus_map* map,
+                                                           echinus_distance_map_statistics* statistics);
+
+/// The surface of a map as a mesh, in the local frame: the mesh on the lattice of an exact map, or the layers
+/// that a distance map interpolates.
+/// @param classes  out, uint32_t [face_count]: the longest list that contains the face (exact map), or its
+/// layer
+///                 (distance map); or NULL
+/// @return ECHINUS_INVALID_ARGUMENT for a custom map
+ECHINUS_API echinus_status echinus_map_surface(const echinus_map* map, echinus_mesh** mesh,
+                                               echinus_array** classes);
+
+/// Builds exact maps of a surface whose vertices move while its faces stay the same.
+typedef struct echinus_map_builder echinus_map_builder;
+
+/// @param faces    [3 face_count]; copied
+/// @param options  or NULL for the defaults
+ECHINUS_API echinus_status echinus_map_builder_create(const uint32_t* faces, size_t face_count,
+                                                      const echinus_exact_map_options* options,
+                                                      echinus_map_builder** builder);
+/// The map that echinus_map_build_exact() would build of these vertices. Memory of the map before is used
+/// again if that map was destroyed.
+ECHINUS_API echinus_status echinus_map_builder_rebuild(echinus_map_builder* builder, const float* vertices,
+                                                       size_t vertex_count, size_t vertex_stride,
+                                                       echinus_map** map);
+ECHINUS_API void echinus_map_builder_destroy(echinus_map_builder* builder);
+
+// ---- Map files ----
+
+/// Writes a map file. It appears whole or not at all.
+/// @return ECHINUS_UNWRITABLE; ECHINUS_INVALID_ARGUMENT for a custom map
+ECHINUS_API echinus_status echinus_map_save(const echinus_map* map, const char* path);
+
+/// The bytes of a map file.
+/// @param bytes  out, unsigned char
+ECHINUS_API echinus_status echinus_map_serialise(const echinus_map* map, echinus_array** bytes);
+
+/// Maps a file into memory, verifies it and reads it in place. The file may be replaced or removed meanwhile,
+/// but must not be overwritten in place.
+/// @return ECHINUS_UNREADABLE, ECHINUS_WRONG_FORMAT, ECHINUS_UNSUPPORTED_VERSION or ECHINUS_DAMAGED
+ECHINUS_API echinus_status echinus_map_load(const char* path, echinus_map** map);
+
+/// A map that reads bytes of the caller in place, after it verified them.
+/// @param bytes    at an address that is a multiple of 8; unchanged until release is called
+/// @param release  called with `context` once the map and all simulations that use it are gone, from the
+///                 thread that destroys the last of them; or NULL. Not called if this call fails
+/// @param name     stands for the path in errors
+ECHINUS_API echinus_status echinus_map_view(const void* bytes, size_t byte_count,
+                                            void (*release)(void* context), void* context, const char* name,
+                                            echinus_map** map);
+
+// ---- Custom maps ----
+
+struct echinus_contact;
+
+/// A structure of the caller's own that colliders ask in place of a map. Points are x, y, z, one after the
+/// other, in its own frame. Any number of threads may call at once. The functions must not leave by an
+/// exception or longjmp.
+typedef struct echinus_custom_map {
+    size_t size;
+    void* context; ///< is passed to the functions
+    /// @param inside  [count] out: 1 inside, 0 outside
+    void (*contains)(void* context, const float* points, size_t count, uint8_t* inside);
+    /// A contact for each particle that is inside, or outside and no farther from the surface than the
+    /// margin.
+    /// @param contacts  [count] out: every element must be written
+    void (*contacts)(void* context, const float* points, size_t count, float margin,
+                     struct echinus_contact* contacts);
+    /// Called once the map and all simulations that use it are gone; or NULL. Not called where the map was
+    /// not made.
+    void (*release)(void* context);
+} echinus_custom_map;
+
+/// @param custom  its size is set; copied
+ECHINUS_API echinus_status echinus_map_from_custom(const echinus_custom_map* custom, echinus_map** map);
+
+// ---- Queries of maps, in the local frame ----
+//
+// NaN or infinity in a point: outside, no contact, nothing met. A call takes up to 120 KB of the stack.
+// Batches are several times as fast as calls for single points, and give the same bits. Custom maps are asked
+// through colliders: here they are ECHINUS_INVALID_ARGUMENT.
+
+/// The part of a triangle that the nearest point lies on.
+typedef enum echinus_feature {
+    ECHINUS_FEATURE_UNKNOWN = 0,
+    ECHINUS_FEATURE_FACE = 1,
+    ECHINUS_FEATURE_EDGE = 2,
+    ECHINUS_FEATURE_VERTEX = 3
+} echinus_feature;
+
+/// The answer for one particle. Without a contact: point is the particle, depth and normal are 0, face is -1.
+typedef struct echinus_contact {
+    float point[3];  ///< where the push-out leads
+    float normal[3]; ///< unit, out of the solid
+    float depth;     ///< distance to point: positive inside, negative outside
+    int32_t face;    ///< of the mesh; -1 where it is not known
+    uint8_t inside;
+    uint8_t certain; ///< 0 where the mesh is open and the generalised winding number decided
+    uint8_t feature; ///< an echinus_feature
+} echinus_contact;
+
+/// Which points are inside.
+/// @param inside  [count] out: 1 inside, 0 outside
+ECHINUS_API echinus_status echinus_map_contains(const echinus_map* map, const float* points, size_t count,
+                                                size_t stride, uint32_t thread_count, uint8_t* inside);
+
+/// Which points are inside, and whether that is certain. One point after the other, on one thread.
+/// @param inside   [count] out
+/// @param certain  [count] out: 0 where the mesh is open and the generalised winding number decided
+ECHINUS_API echinus_status echinus_map_classify(const echinus_map* map, const float* points, size_t count,
+                                                size_t stride, uint8_t* inside, uint8_t* certain);
+
+/// Inside or not, how deep, and which way out.
+/// @param margin    points outside get a contact too when the surface is at most this far; not negative
+/// @param contacts  [count] out
+ECHINUS_API echinus_status echinus_map_contacts(const echinus_map* map, const float* points, size_t count,
+                                                size_t stride, float margin, uint32_t thread_count,
+                                                echinus_contact* contacts);
+
+/// How far each point is from the surface, however far that is: negative inside, positive outside, the
+/// opposite of depth. Where it is 0, the sign bit tells the side. Only exact maps can tell. NaN in a point
+/// gives NaN, infinity gives infinity, and a gradient of 0.
+/// @param distances  [count] out
+/// @param gradients  [3 count] out: unit vectors along which the distance grows fastest; or NULL
+ECHINUS_API echinus_status echinus_map_signed_distance(const echinus_map* map, const float* points,
+                                                       size_t count, size_t stride, uint32_t thread_count,
+                                                       float* distances, float* gradients);
+
+/// Where a particle that moves along a segment first meets the surface.
+typedef struct echinus_sweep_hit {
+    float fraction;   ///< of the segment; 1 without a crossing
+    float point[3];   ///< where it meets the surface; the end of the segment without a crossing
+    float normal[3];  ///< of the face, out of the solid; 0 without a crossing
+    int32_t face;     ///< -1 without a crossing
+    uint8_t entering; ///< the crossing leads from outside to inside
+} echinus_sweep_hit;
+
+/// The first crossing of each segment. Only exact maps can tell.
+/// @param hits  [count] out
+ECHINUS_API echinus_status echinus_map_sweep(const echinus_map* map, const float* from, size_t from_stride,
+                                             const float* to, size_t to_stride, size_t count,
+                                             echinus_sweep_hit* hits);
+
+// ---- Triangles against the surface of an exact map, in the local frame ----
+//
+// Triangles are nine floats, corner after corner; their stride is a multiple of 4 and at least 36; 0 stands
+// for 36. A triangle with two equal corners is an edge, one with three a point. One with a corner that is not
+// finite is nowhere.
+
+/// Which triangles have a point in common with the surface.
+/// @param intersecting  [count] out: 0 or 1
+ECHINUS_API echinus_status echinus_map_intersects(const echinus_map* map, const float* triangles,
+                                                  size_t count, size_t stride, uint8_t* intersecting);
+
+typedef struct echinus_clearance {
+    float distance; ///< never more than the true one
+    int32_t face;   ///< that is so far; -1 where none is within the farthest distance
+} echinus_clearance;
+
+/// How far each triangle is from the surface.
+/// @param farthest    beyond it nothing is looked for; not negative, may be infinite
+/// @param clearances  [count] out
+ECHINUS_API echinus_status echinus_map_clearance(const echinus_map* map, const float* triangles, size_t count,
+                                                 size_t stride, float farthest,
+                                                 echinus_clearance* clearances);
+
+typedef struct echinus_triangle_sweep_hit {
+    float fraction; ///< of the way; until there the triangle does not meet the surface
+    int32_t face;   ///< that it comes to; -1 where it meets none
+} echinus_triangle_sweep_hit;
+
+/// Where triangles whose corners move along straight lines first come to the surface.
+/// @param hits  [count] out
+ECHINUS_API echinus_status echinus_map_sweep_triangles(const echinus_map* map, const float* from,
+                                                       size_t from_stride, const float* to, size_t to_stride,
+                                                       size_t count, echinus_triangle_sweep_hit* hits);
+
+/// The faces that come within reach of each triangle of a mesh.
+/// @param triangles  [3 triangle_count] vertex indices
+/// @param reach      not negative; 0: faces that touch
+/// @param offsets    out, uint32_t [triangle_count + 1]: where the list of each triangle begins
+/// @param faces      out, uint32_t: list after list, each ascending
+ECHINUS_API echinus_status echinus_map_faces_within(const echinus_map* map, const float* vertices,
+                                                    size_t vertex_count, size_t vertex_stride,
+                                                    const uint32_t* triangles, size_t triangle_count,
+                                                    float reach, uint32_t thread_count,
+                                                    echinus_array** offsets, echinus_array** faces);
+
+// ---- Colliders ----
+
+/// Rotate, then translate.
+typedef struct echinus_pose {
+    double rotation[4]; ///< unit quaternion w, x, y, z, to 1e-4
+    double translation[3];
+} echinus_pose;
+
+/// The rotation by an angle about an axis, counter-clockwise seen against the axis.
+/// @param axis      [3] of any length but zero; finite
+/// @param rotation  [4] out: w, x, y, z
+ECHINUS_API echinus_status echinus_rotation_about(const double* axis, double angle_rad, double* rotation);
+
+/// A map in the world: a plain value of the caller's. Its map must outlive its use, except in a simulation,
+/// which keeps what it needs. In a row of colliders all have the size of the first.
+typedef struct echinus_collider {
+    size_t size;
+    const echinus_map* map;
+    echinus_pose pose;
+    double scale[3];            ///< along the axes of the map, before the pose; not 0, finite
+    double linear_velocity[3];  ///< of the pose's translation, units per second
+    double angular_velocity[3]; ///< about the pose's translation, world axes, radians per second
+} echinus_collider;
+
+/// A collider at rest in the map's own frame.
+ECHINUS_API void echinus_collider_init(echinus_collider* collider, size_t size, const echinus_map* map);
+
+/// As echinus_map_contains(), in the world, on one thread, for maps of every kind.
+ECHINUS_API echinus_status echinus_collider_contains(const echinus_collider* collider, const float* points,
+                                                     size_t count, size_t stride, uint8_t* inside);
+
+/// As echinus_map_contacts(), in the world, on one thread, for maps of every kind.
+ECHINUS_API echinus_status echinus_collider_contacts(const echinus_collider* collider, const float* points,
+                                                     size_t count, size_t stride, float margin,
+                                                     echinus_contact* contacts);
+
+/// Where particles first meet a collider that moves while they move, from the previous pose to its present
+/// one. `point` is where the point of the surface that was met lies now. Distance maps and custom maps meet
+/// nothing.
+ECHINUS_API echinus_status echinus_collider_sweep(const echinus_collider* collider,
+                                                  const echinus_pose* previous, const float* from,
+                                                  size_t from_stride, const float* to, size_t to_stride,
+                                                  size_t count, echinus_sweep_hit* hits);
+
+/// The velocity of the collider's material at a point, units per second.
+/// @param point     [3]
+/// @param velocity  [3] out
+ECHINUS_API echinus_status echinus_collider_velocity_at(const echinus_collider* collider, const double* point,
+                                                        double* velocity);
+
+/// The pose of a collider a time later.
+ECHINUS_API echinus_status echinus_collider_pose_after(const echinus_collider* collider, double seconds,
+                                                       echinus_pose* pose);
+
+// ---- Deformables ----
+
+typedef enum echinus_stick_kind {
+    ECHINUS_STICK_STRUCTURAL = 0,
+    ECHINUS_STICK_SHEAR = 1,
+    ECHINUS_STICK_BENDING = 2
+} echinus_stick_kind;
+#define ECHINUS_STICK_KIND_COUNT 3
+
+/// Pulls or pushes two particles to a distance.
+typedef struct echinus_stick {
+    uint32_t a, b;
+    float rest_length; ///< not negative
+    uint8_t kind;      ///< an echinus_stick_kind
+    uint8_t reserved[3];
+} echinus_stick;
+
+/// Keeps two faces (a, b, c) and (b, a, d) at an angle: 0 where they lie flat, positive where they are turned
+/// towards each other's fronts.
+typedef struct echinus_fold {
+    uint32_t a, b; ///< the common edge
+    uint32_t c, d; ///< the corners opposite it
+    float rest_angle;
+    float lever; ///< mean height of c and d over the edge, or another length by which errors are weighed
+} echinus_fold;
+
+/// Fixes a particle to a collider of a simulation.
+typedef struct echinus_attachment {
+    uint32_t particle;
+    uint32_t collider; ///< index in the simulation's colliders
+} echinus_attachment;
+
+/// Particles and what holds them together, in world units.
+typedef struct echinus_deformable echinus_deformable;
+
+/// What a deformable is made of, as arrays.
+typedef struct echinus_deformable_arrays {
+    size_t size;
+    size_t particle_count;
+    const float* positions;          ///< [3 particle_count]
+    const float* previous_positions; ///< [3 particle_count] one substep ago; NULL: at rest
+    const float* inverse_masses;     ///< [particle_count] 0 for a pinned particle; NULL: 1 for all
+    const echinus_stick* sticks;     ///< in the order in which they are relaxed
+    size_t stick_count;
+    const uint32_t* faces; ///< [3 face_count]
+    size_t face_count;
+    const echinus_fold* folds;
+    size_t fold_count;
+    const echinus_attachment* attachments; ///< of pinned particles, at most one of each
+    size_t attachment_count;
+} echinus_deformable_arrays;
+
+/// Copies the arrays. Whether they fit together is checked when a simulation is made of them.
+/// @param arrays  zero but for its size and what it has
+ECHINUS_API echinus_status echinus_deformable_create(const echinus_deformable_arrays* arrays,
+                                                     echinus_deformable** deformable);
+
+/// A rectangular sheet: columns along x, rows along y, particle row * column_count + column.
+typedef struct echinus_cloth_options {
+    size_t size;
+    uint32_t column_count;
+    uint32_t row_count;
+    double width;
+    double height;
+    echinus_pose pose;    ///< where the sheet starts
+    const uint32_t* pins; ///< [pin_count] particles that never move
+    size_t pin_count;
+} echinus_cloth_options;
+
+ECHINUS_API void echinus_cloth_options_init(echinus_cloth_options* options, size_t size);
+
+/// A rectangular sheet of cloth.
+/// @param options  or NULL for the defaults
+ECHINUS_API echinus_status echinus_deformable_cloth(const echinus_cloth_options* options,
+                                                    echinus_deformable** deformable);
+
+/// What keeps a cloth of a mesh from folding sharply.
+typedef enum echinus_bending_kind {
+    ECHINUS_BENDING_ANGLES = 0, ///< a fold at each edge between two faces
+    ECHINUS_BENDING_STICKS = 1  ///< a stick between the two corners opposite such an edge
+} echinus_bending_kind;
+
+typedef struct echinus_mesh_cloth_options {
+    size_t size;
+    echinus_pose pose;
+    double scale; ///< before the pose; positive
+    /// [3 rest_vertex_count] the shape at rest, where it is not that of the mesh; as many as the mesh has, or
+    /// none
+    const float* rest_vertices;
+    size_t rest_vertex_count;
+    const uint32_t* thread_edges; ///< [2 thread_edge_count] edges without faces: threads and needles
+    size_t thread_edge_count;
+    const uint32_t* pins; ///< [pin_count] vertices that never move
+    size_t pin_count;
+    const echinus_attachment* attachments; ///< vertices that move with a collider
+    size_t attachment_count;
+    echinus_bending_kind bending;
+    uint32_t reserved; ///< 0
+} echinus_mesh_cloth_options;
+
+ECHINUS_API void echinus_mesh_cloth_options_init(echinus_mesh_cloth_options* options, size_t size);
+
+/// A cloth whose particles are the vertices of a mesh.
+/// @param options  or NULL for the defaults
+/// @return ECHINUS_INVALID_MESH, naming a face, edge or vertex at fault; ECHINUS_INVALID_OPTIONS
+ECHINUS_API echinus_status echinus_deformable_cloth_of_mesh(const echinus_mesh* mesh,
+                                                            const echinus_mesh_cloth_options* options,
+                                                            echinus_deformable** deformable);
+
+/// @param arrays  out, its size is set; its pointers are valid as long as the deformable
+ECHINUS_API echinus_status echinus_deformable_read(const echinus_deformable* deformable,
+                                                   echinus_deformable_arrays* arrays);
+
+ECHINUS_API void echinus_deformable_destroy(echinus_deformable* deformable);
+
+// ---- Simulations ----
+
+/// How sticks hold their particles.
+typedef enum echinus_solver {
+    ECHINUS_SOLVER_VERLET = 0, ///< each relaxation removes a share of the error
+    ECHINUS_SOLVER_XPBD = 1    ///< as springs
+} echinus_solver;
+
+/// In place of a thickness: it is chosen by the library.
+#define ECHINUS_THICKNESS_CHOSEN (-1.0)
+
+/// What each member does, what it costs and its range: SimulationOptions in simulation.hpp, under the same
+/// names.
+typedef struct echinus_simulation_options {
+    size_t size;
+    double time_step; ///< seconds per frame
+    echinus_solver solver;
+    uint32_t iteration_count; ///< relaxations per substep
+    uint32_t substep_count;   ///< XPBD; Verlet: 1
+    uint32_t rest_frame_count;
+    double
+        rest_distance; ///< at rest: no particle farther than this from one place for rest_frame_count frames
+    double rest_speed; ///< and none faster than this
+    double gravity[3];
+    double drag;                                 ///< share of the velocity that is lost per frame
+    double stiffness[ECHINUS_STICK_KIND_COUNT];  ///< Verlet
+    double compliance[ECHINUS_STICK_KIND_COUNT]; ///< XPBD
+    double thickness;      ///< that particles keep from colliders, or ECHINUS_THICKNESS_CHOSEN
+    double self_thickness; ///< that layers keep from each other, or ECHINUS_THICKNESS_CHOSEN: as thickness
+    double friction;       ///< Coulomb's coefficient
+    double bound;          ///< beyond it the simulation has diverged; 0: 10 000 times the extent at the start
+    int32_t keep_free;
+    int32_t allow_open_colliders;
+    int32_t surface_collision; ///< edges and faces collide too
+    int32_t self_collision;    ///< faces of the deformable do not meet each other either
+} echinus_simulation_options;
+
+ECHINUS_API void echinus_simulation_options_init(echinus_simulation_options* options, size_t size);
+
+/// A deformable among colliders. The same input gives the same positions bit for bit.
+typedef struct echinus_simulation echinus_simulation;
+
+/// Copies the deformable and keeps what it needs of the maps: all arguments may go afterwards.
+/// @param colliders  [collider_count]
+/// @param options    or NULL for the defaults
+/// @return ECHINUS_INVALID_OPTIONS, naming what is at fault
+ECHINUS_API echinus_status echinus_simulation_create(const echinus_deformable* deformable,
+                                                     const echinus_collider* colliders, size_t collider_count,
+                                                     const echinus_simulation_options* options,
+                                                     echinus_simulation** simulation);
+
+/// An independent copy in the present state.
+ECHINUS_API echinus_status echinus_simulation_copy(const echinus_simulation* simulation,
+                                                   echinus_simulation** copy);
+
+ECHINUS_API void echinus_simulation_destroy(echinus_simulation* simulation);
+
+/// Computes one frame.
+/// @return ECHINUS_DIVERGED, naming the frame; from then on the simulation can only be read
+ECHINUS_API echinus_status echinus_simulation_step(echinus_simulation* simulation);
+
+ECHINUS_API size_t echinus_simulation_particle_count(const echinus_simulation* simulation);
+/// [3 particle_count] x, y, z of all particles now: the address stays the same as long as the simulation
+/// lives, and each step writes there.
+ECHINUS_API const float* echinus_simulation_positions(const echinus_simulation* simulation);
+/// All arrays of the deformable in its present state.
+/// @param arrays  out, its size is set; its pointers are valid as long as the simulation
+ECHINUS_API echinus_status echinus_simulation_read(const echinus_simulation* simulation,
+                                                   echinus_deformable_arrays* arrays);
+
+/// Frames computed so far.
+ECHINUS_API uint32_t echinus_simulation_frame(const echinus_simulation* simulation);
+/// Has the rest condition held for the required number of frames?
+ECHINUS_API int32_t echinus_simulation_at_rest(const echinus_simulation* simulation);
+/// Speed of the fastest particle in the last substep, units per second; infinite before the first.
+ECHINUS_API double echinus_simulation_largest_speed(const echinus_simulation* simulation);
+/// XXH64 of the bits of all positions and previous positions.
+ECHINUS_API uint64_t echinus_simulation_state_hash(const echinus_simulation* simulation);
+
+/// Times and counts since the simulation began. Times are not part of the result.
+typedef struct echinus_simulation_profile {
+    size_t size;
+    double integration_seconds;
+    double constraint_seconds;
+    double collision_seconds;
+    uint64_t query_count;
+    uint64_t contact_count;
+    uint64_t map_query_count;
+    uint64_t rescued_count;
+    uint64_t lost_count;
+    uint64_t truncated_count;
+    uint64_t searched_face_count;
+    uint64_t measured_pair_count;
+    uint64_t squeezed_count;
+} echinus_simulation_profile;
+
+/// @param profile  out; its size is set
+ECHINUS_API echinus_status echinus_simulation_read_profile(const echinus_simulation* simulation,
+                                                           echinus_simulation_profile* profile);
+
+/// The options as given, with the thickness in force.
+/// @param options  out; its size is set
+ECHINUS_API echinus_status echinus_simulation_read_options(const echinus_simulation* simulation,
+                                                           echinus_simulation_options* options);
+
+ECHINUS_API size_t echinus_simulation_collider_count(const echinus_simulation* simulation);
+/// A collider in its present pose.
+/// @param collider  out, its size is set; its map is valid as long as the simulation
+ECHINUS_API echinus_status echinus_simulation_read_collider(const echinus_simulation* simulation,
+                                                            size_t index, echinus_collider* collider);
+
+/// Steers a collider: it keeps these velocities until they are set again.
+/// @param linear, angular  [3] finite
+ECHINUS_API echinus_status echinus_simulation_set_collider_velocity(echinus_simulation* simulation,
+                                                                    size_t index, const double* linear,
+                                                                    const double* angular);
+
+/// Gives a particle a velocity, from which the next frame goes on. A pinned particle stays.
+/// @param velocity  [3] finite, units per second
+ECHINUS_API echinus_status echinus_simulation_set_particle_velocity(echinus_simulation* simulation,
+                                                                    size_t particle, const double* velocity);
+
+/// Wind for the time of one frame.
+/// @param wind  [3] of the air, finite, units per second
+/// @param rate  per second: the higher, the lighter the cloth; finite, not negative
+ECHINUS_API echinus_status echinus_simulation_blow(echinus_simulation* simulation, const double* wind,
+                                                   double rate);
+
+// ---- Scenes: simulations as JSON (docs/scenes.md) ----
+
+typedef struct echinus_scene echinus_scene;
+
+/// @return ECHINUS_UNREADABLE or ECHINUS_INVALID_SCENE, naming the key at fault
+ECHINUS_API echinus_status echinus_scene_read(const char* path, echinus_scene** scene);
+
+/// The same from text.
+/// @param name  stands for the path in errors; files of the scene are looked for in its folder, if it has one
+ECHINUS_API echinus_status echinus_scene_parse(const char* json, const char* name, echinus_scene** scene);
+
+ECHINUS_API void echinus_scene_destroy(echinus_scene* scene);
+
+/// The frame at which the simulation is to end at the latest.
+ECHINUS_API uint32_t echinus_scene_frame_limit(const echinus_scene* scene);
+
+/// Reads or generates the meshes of a scene, repairs the model as the scene says, builds its map and makes
+/// the simulation. Files are looked for in the folders, then in the scene's folder and in ../models beside
+/// it.
+/// @param folders  [folder_count] paths
+/// @return as echinus_mesh_read(), the builds and echinus_simulation_create()
+ECHINUS_API echinus_status echinus_simulation_from_scene(const echinus_scene* scene,
+                                                         const char* const* folders, size_t folder_count,
+                                                         uint32_t thread_count,
+                                                         echinus_simulation** simulation);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,104 @@
+#include "border.hpp"
+#include "collider.hpp"
+#include "map.hpp"
+
+#include <cmath>
+
+namespace echinus::c {
+
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_pose, translation);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_collider, angular_velocity);
+
+RigidTransform pose_from(const echinus_pose& pose) {
+    const double(&r)[4] = pose.rotation;
+    return {{r[0], r[1], r[2], r[3]}, vector_of(pose.translation)};
+}
+
+echinus_pose pose_to_c(const RigidTransform& pose) {
+    const Rotation& r = pose.rotation;
+    echinus_pose result{{r.w, r.x, r.y, r.z}, {}};
+    put_vector(pose.translation, result.translation);
+    return result;
+}
+
+RigidTransform checked_pose(const echinus_pose& pose, const char* name) {
+    RigidTransform result = pose_from(pose);
+    const Rotation& r = result.rotation;
+    // As a simulation does. Written so that NaN fails it.
+    constexpr double kTolerance = 1e-4;
+    if (!(std::fabs(std::sqrt(r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z) - 1) <= kTolerance))
+        throw WrongArgument(std::string(name) + ": the rotation is not of unit length");
+    if (!is_finite(result.translation))
+        throw WrongArgument(std::string(name) + ": the translation is not finite");
+    return result;
+}
+
+namespace {
+
+echinus_collider at_rest(const echinus_map* map) {
+    echinus_collider result{};
+    result.map = map;
+    result.pose = pose_to_c(RigidTransform{});
+    for (double& s : result.scale) s = 1;
+    return result;
+}
+
+bool is_finite_and_not_0(const double (&scale)[3]) {
+    for (const double s : scale)
+        if (!std::isfinite(s) || s == 0) return false;
+    return true;
+}
+
+} // namespace
+
+Collider collider_from(const echinus_collider& collider) {
+    return {.map = at(collider.map, "the map of the collider").value,
+            .pose = pose_from(collider.pose),
+            .scale = vector_of(collider.scale),
+            .linear_velocity = vector_of(collider.linear_velocity),
+            .angular_velocity = vector_of(collider.angular_velocity)};
+}
+
+Collider collider_at(const echinus_collider* collider) {
+    const echinus_collider given = read_struct(collider, at_rest(nullptr), "collider");
+    checked_pose(given.pose, "collider");
+    require(is_finite_and_not_0(given.scale), "collider: the scale is 0 or not finite");
+    return collider_from(given);
+}
+
+} // namespace echinus::c
+
+using namespace echinus;
+using namespace echinus::c;
+
+void echinus_collider_init(echinus_collider* collider, size_t size, const echinus_map* map) {
+    init_struct(collider, size, at_rest(map));
+}
+
+echinus_status echinus_rotation_about(const double* axis, double angle_rad, double* rotation) {
+    return guarded(__func__, [&] {
+        const Vec3d about = finite_vector_at(axis, "axis");
+        require(about != Vec3d{}, "axis is zero");
+        require(std::isfinite(angle_rad), "angle_rad is not finite");
+        at(rotation, "rotation");
+        const Rotation result = Rotation::about(about, angle_rad);
+        rotation[0] = result.w;
+        rotation[1] = result.x;
+        rotation[2] = result.y;
+        rotation[3] = result.z;
+    });
+}
+
+echinus_status echinus_collider_velocity_at(const echinus_collider* collider, const double* point,
+                                            double* velocity) {
+    return guarded(__func__, [&] {
+        at(velocity, "velocity");
+        put_vector(velocity_at(collider_at(collider), finite_vector_at(point, "point")), velocity);
+    });
+}
+
+echinus_status echinus_collider_pose_after(const echinus_collider* collider, double seconds,
+                                           echinus_pose* pose) {
+    return guarded(__func__,
+                   [&] { at(pose, "pose") = pose_to_c(pose_after(collider_at(collider), seconds)); });
+}

@@ -1,0 +1,187 @@
+#include "border.hpp"
+#include "collider.hpp"
+#include "deformable.hpp"
+#include "mesh.hpp"
+
+#include <array>
+
+namespace echinus::c {
+
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_deformable_arrays, attachment_count);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_cloth_options, pin_count);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_mesh_cloth_options, reserved);
+
+static_assert(ECHINUS_STICK_SHEAR == static_cast<int>(StickKind::Shear) &&
+              ECHINUS_STICK_BENDING == static_cast<int>(StickKind::Bending) &&
+              ECHINUS_STICK_KIND_COUNT == kStickKindCount &&
+              ECHINUS_BENDING_STICKS == static_cast<int>(BendingKind::Sticks));
+static_assert(sizeof(echinus_stick) == sizeof(Stick) && offsetof(echinus_stick, b) == offsetof(Stick, b) &&
+              offsetof(echinus_stick, rest_length) == offsetof(Stick, rest_length) &&
+              offsetof(echinus_stick, kind) == offsetof(Stick, kind));
+static_assert(sizeof(echinus_fold) == sizeof(Fold) && offsetof(echinus_fold, d) == offsetof(Fold, d) &&
+              offsetof(echinus_fold, rest_angle) == offsetof(Fold, rest_angle) &&
+              offsetof(echinus_fold, lever) == offsetof(Fold, lever));
+static_assert(sizeof(echinus_attachment) == sizeof(Attachment) &&
+              offsetof(echinus_attachment, collider) == offsetof(Attachment, collider));
+
+echinus_deformable_arrays arrays_of(const Deformable& deformable) {
+    echinus_deformable_arrays arrays{};
+    arrays.particle_count = deformable.particle_count();
+    arrays.positions = reinterpret_cast<const float*>(deformable.positions.data());
+    arrays.previous_positions = reinterpret_cast<const float*>(deformable.previous_positions.data());
+    arrays.inverse_masses = deformable.inverse_masses.data();
+    arrays.sticks = reinterpret_cast<const echinus_stick*>(deformable.sticks.data());
+    arrays.stick_count = deformable.sticks.size();
+    arrays.faces = reinterpret_cast<const std::uint32_t*>(deformable.faces.data());
+    arrays.face_count = deformable.faces.size();
+    arrays.folds = reinterpret_cast<const echinus_fold*>(deformable.folds.data());
+    arrays.fold_count = deformable.folds.size();
+    arrays.attachments = reinterpret_cast<const echinus_attachment*>(deformable.attachments.data());
+    arrays.attachment_count = deformable.attachments.size();
+    return arrays;
+}
+
+namespace {
+
+template <typename T>
+std::vector<T> copy_of(const T* first, std::size_t count, const char* name) {
+    const std::span<const T> values = values_at(first, count, name);
+    return {values.begin(), values.end()};
+}
+
+std::vector<Stick> sticks_from(std::span<const echinus_stick> sticks) {
+    std::vector<Stick> result;
+    for (const echinus_stick& stick : sticks) {
+        if (stick.kind >= kStickKindCount)
+            throw WrongArgument("stick " + std::to_string(result.size()) + " is of kind " +
+                                std::to_string(stick.kind) + "; expected 0 to 2");
+        result.push_back({stick.a, stick.b, stick.rest_length, static_cast<StickKind>(stick.kind)});
+    }
+    return result;
+}
+
+std::vector<Fold> folds_from(std::span<const echinus_fold> folds) {
+    std::vector<Fold> result;
+    for (const echinus_fold& f : folds) result.push_back({f.a, f.b, f.c, f.d, f.rest_angle, f.lever});
+    return result;
+}
+
+std::vector<Attachment> attachments_from(std::span<const echinus_attachment> attachments) {
+    std::vector<Attachment> result;
+    for (const echinus_attachment& a : attachments) result.push_back({a.particle, a.collider});
+    return result;
+}
+
+Deformable deformable_from(const echinus_deformable_arrays& arrays) {
+    const std::size_t count = arrays.particle_count;
+    const std::vector<Vec3f> positions = points_from(arrays.positions, count, 0, "positions");
+    return {
+        .positions = positions,
+        .previous_positions = arrays.previous_positions == nullptr
+                                  ? positions
+                                  : points_from(arrays.previous_positions, count, 0, "previous_positions"),
+        .inverse_masses = arrays.inverse_masses == nullptr
+                              ? std::vector<float>(count, 1.0F)
+                              : copy_of(arrays.inverse_masses, count, "inverse_masses"),
+        .sticks = sticks_from(values_at(arrays.sticks, arrays.stick_count, "sticks")),
+        .faces = faces_from(arrays.faces, arrays.face_count, "faces"),
+        .folds = folds_from(values_at(arrays.folds, arrays.fold_count, "folds")),
+        .attachments =
+            attachments_from(values_at(arrays.attachments, arrays.attachment_count, "attachments")),
+    };
+}
+
+echinus_cloth_options as_c(const ClothOptions& options) {
+    return {.size = 0,
+            .column_count = options.column_count,
+            .row_count = options.row_count,
+            .width = options.width,
+            .height = options.height,
+            .pose = pose_to_c(options.pose),
+            .pins = nullptr,
+            .pin_count = 0};
+}
+
+ClothOptions options_from(const echinus_cloth_options* options) {
+    if (options == nullptr) return {};
+    const auto given = read_struct(options, as_c(ClothOptions{}), "options");
+    return {.column_count = given.column_count,
+            .row_count = given.row_count,
+            .width = given.width,
+            .height = given.height,
+            .pose = pose_from(given.pose),
+            .pins = copy_of(given.pins, given.pin_count, "options.pins")};
+}
+
+echinus_mesh_cloth_options as_c(const MeshClothOptions& options) {
+    echinus_mesh_cloth_options result{};
+    result.pose = pose_to_c(options.pose);
+    result.scale = options.scale;
+    result.bending = static_cast<echinus_bending_kind>(options.bending);
+    return result;
+}
+
+std::vector<std::array<std::uint32_t, 2>> edges_from(const std::uint32_t* edges, std::size_t count) {
+    const std::span<const std::uint32_t> ends =
+        values_at(edges, times(count, 2, "options.thread_edges"), "options.thread_edges");
+    std::vector<std::array<std::uint32_t, 2>> result(count);
+    for (std::size_t i = 0; i < count; ++i) result[i] = {ends[2 * i], ends[2 * i + 1]};
+    return result;
+}
+
+MeshClothOptions options_from(const echinus_mesh_cloth_options* options) {
+    if (options == nullptr) return {};
+    const auto given = read_struct(options, as_c(MeshClothOptions{}), "options");
+    return {
+        .pose = pose_from(given.pose),
+        .scale = given.scale,
+        .rest_vertices =
+            points_from(given.rest_vertices, given.rest_vertex_count, 0, "options.rest_vertices"),
+        .threads = edges_from(given.thread_edges, given.thread_edge_count),
+        .bending = enumerator(given.bending, BendingKind::Sticks, "options.bending"),
+        .pins = copy_of(given.pins, given.pin_count, "options.pins"),
+        .attachments =
+            attachments_from(values_at(given.attachments, given.attachment_count, "options.attachments")),
+    };
+}
+
+} // namespace
+
+} // namespace echinus::c
+
+using namespace echinus;
+using namespace echinus::c;
+
+echinus_status echinus_deformable_create(const echinus_deformable_arrays* arrays,
+                                         echinus_deformable** deformable) {
+    return make(__func__, deformable,
+                [&] { return deformable_from(read_struct(arrays, echinus_deformable_arrays{}, "arrays")); });
+}
+
+void echinus_cloth_options_init(echinus_cloth_options* options, size_t size) {
+    init_struct(options, size, as_c(ClothOptions{}));
+}
+echinus_status echinus_deformable_cloth(const echinus_cloth_options* options,
+                                        echinus_deformable** deformable) {
+    return make(__func__, deformable, [&] { return make_cloth(options_from(options)); });
+}
+
+void echinus_mesh_cloth_options_init(echinus_mesh_cloth_options* options, size_t size) {
+    init_struct(options, size, as_c(MeshClothOptions{}));
+}
+echinus_status echinus_deformable_cloth_of_mesh(const echinus_mesh* mesh,
+                                                const echinus_mesh_cloth_options* options,
+                                                echinus_deformable** deformable) {
+    return make(__func__, deformable,
+                [&] { return make_cloth(at(mesh, "mesh").value, options_from(options)); });
+}
+
+echinus_status echinus_deformable_read(const echinus_deformable* deformable,
+                                       echinus_deformable_arrays* arrays) {
+    return guarded(__func__,
+                   [&] { write_struct(arrays, arrays_of(at(deformable, "deformable").value), "arrays"); });
+}
+
+void echinus_deformable_destroy(echinus_deformable* deformable) {
+    delete deformable;
+}

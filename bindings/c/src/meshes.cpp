@@ -1,0 +1,195 @@
+#include "border.hpp"
+#include "mesh.hpp"
+
+#include <echinus/intersections.hpp>
+#include <echinus/mesh_io.hpp>
+
+#include <algorithm>
+#include <iterator>
+
+namespace echinus::c {
+
+static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Triangle) == 3 * sizeof(std::uint32_t) &&
+              sizeof(FacePair) == 2 * sizeof(std::uint32_t));
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_mesh_report, radius);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_options, reserved);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_report, components_flipped);
+static_assert(ECHINUS_FIRST_FACE_COUNT == Fault::kFirstFaceCount);
+
+std::vector<Vec3f> points_from(const float* points, std::size_t count, std::size_t stride, const char* name) {
+    const StridedSpan<const Vec3f> batch = batch_at<Vec3f>(points, count, stride, name);
+    std::vector<Vec3f> result(count);
+    for (std::size_t i = 0; i < count; ++i) result[i] = batch[i];
+    return result;
+}
+
+std::vector<Triangle> faces_from(const std::uint32_t* faces, std::size_t count, const char* name) {
+    const std::span<const std::uint32_t> corners = values_at(faces, times(count, 3, name), name);
+    std::vector<Triangle> result(count);
+    for (std::size_t i = 0; i < count; ++i)
+        result[i] = {corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
+    return result;
+}
+
+namespace {
+
+const TriangleMesh& mesh_at(const echinus_mesh* mesh) {
+    return at(mesh, "mesh").value;
+}
+
+echinus_fault describe(const Fault& fault) {
+    echinus_fault result{};
+    result.count = fault.count;
+    result.first_face_count = static_cast<std::uint32_t>(fault.first_faces.size());
+    std::ranges::copy(fault.first_faces, result.first_faces);
+    return result;
+}
+
+echinus_mesh_report describe(const MeshReport& report) {
+    echinus_mesh_report result{};
+    result.face_count = report.face_count;
+    result.vertex_count = report.vertex_count;
+    result.component_count = report.component_count;
+    result.closed = report.closed ? 1 : 0;
+    result.manifold = report.manifold ? 1 : 0;
+    result.border_edges = describe(report.border_edges);
+    result.nonmanifold_edges = describe(report.nonmanifold_edges);
+    result.misoriented_edges = describe(report.misoriented_edges);
+    result.duplicate_faces = describe(report.duplicate_faces);
+    result.degenerate_faces = describe(report.degenerate_faces);
+    result.signed_volume = report.signed_volume;
+    put_vector(report.bounding_sphere.centre, result.centre);
+    result.radius = report.bounding_sphere.radius;
+    return result;
+}
+
+RepairOptions repair_options_from(const echinus_repair_options* options) {
+    const auto given = read_struct(options, echinus_repair_options{}, "options");
+    return {.drop_duplicate_faces = given.drop_duplicate_faces != 0,
+            .drop_doubled_patches = given.drop_doubled_patches != 0,
+            .flip_inside_out = given.flip_inside_out != 0};
+}
+
+echinus_repair_report describe(const RepairReport& report) {
+    return {.size = 0,
+            .duplicate_faces_dropped = report.duplicate_faces_dropped.size(),
+            .doubled_patch_faces_dropped = report.doubled_patch_faces_dropped.size(),
+            .components_flipped = report.components_flipped};
+}
+
+std::vector<std::uint32_t> dropped_faces(const RepairReport& report) {
+    std::vector<std::uint32_t> result;
+    std::ranges::merge(report.duplicate_faces_dropped, report.doubled_patch_faces_dropped,
+                       std::back_inserter(result));
+    return result;
+}
+
+} // namespace
+
+} // namespace echinus::c
+
+using namespace echinus;
+using namespace echinus::c;
+
+echinus_status echinus_mesh_create(const float* vertices, size_t vertex_count, size_t vertex_stride,
+                                   const uint32_t* faces, size_t face_count, echinus_mesh** mesh) {
+    return make(__func__, mesh, [&] {
+        TriangleMesh result{points_from(vertices, vertex_count, vertex_stride, "vertices"),
+                            faces_from(faces, face_count, "faces")};
+        require_valid(result);
+        return result;
+    });
+}
+
+echinus_status echinus_mesh_read(const char* path, echinus_mesh** mesh) {
+    return make(__func__, mesh, [&] { return read_mesh(&at(path, "path")); });
+}
+
+echinus_status echinus_mesh_write(const echinus_mesh* mesh, const char* path) {
+    return guarded(__func__, [&] { write_mesh(&at(path, "path"), mesh_at(mesh)); });
+}
+
+echinus_status echinus_mesh_torus(double major_radius, double minor_radius, uint32_t major_segments,
+                                  uint32_t minor_segments, echinus_mesh** mesh) {
+    return make(__func__, mesh,
+                [&] { return make_torus(major_radius, minor_radius, major_segments, minor_segments); });
+}
+echinus_status echinus_mesh_sphere(double radius, uint32_t meridian_count, uint32_t parallel_count,
+                                   echinus_mesh** mesh) {
+    return make(__func__, mesh, [&] { return make_sphere(radius, meridian_count, parallel_count); });
+}
+echinus_status echinus_mesh_box(const double* size, uint32_t segments, echinus_mesh** mesh) {
+    return make(__func__, mesh, [&] {
+        at(size, "size");
+        return make_box({size[0], size[1], size[2]}, segments);
+    });
+}
+
+void echinus_mesh_destroy(echinus_mesh* mesh) {
+    delete mesh;
+}
+
+size_t echinus_mesh_vertex_count(const echinus_mesh* mesh) {
+    return mesh == nullptr ? 0 : mesh->value.vertices.size();
+}
+const float* echinus_mesh_vertices(const echinus_mesh* mesh) {
+    return mesh == nullptr ? nullptr : reinterpret_cast<const float*>(mesh->value.vertices.data());
+}
+size_t echinus_mesh_face_count(const echinus_mesh* mesh) {
+    return mesh == nullptr ? 0 : mesh->value.faces.size();
+}
+const uint32_t* echinus_mesh_faces(const echinus_mesh* mesh) {
+    return mesh == nullptr ? nullptr : reinterpret_cast<const uint32_t*>(mesh->value.faces.data());
+}
+
+echinus_status echinus_mesh_inspect(const echinus_mesh* mesh, echinus_mesh_report* report) {
+    return guarded(__func__, [&] { write_struct(report, describe(inspect(mesh_at(mesh))), "report"); });
+}
+
+void echinus_repair_options_init(echinus_repair_options* options, size_t size) {
+    init_struct(options, size, {});
+}
+
+echinus_status echinus_mesh_repair(const echinus_mesh* mesh, const echinus_repair_options* options,
+                                   echinus_mesh** repaired, echinus_repair_report* report,
+                                   echinus_array** dropped) {
+    if (repaired != nullptr) *repaired = nullptr;
+    if (dropped != nullptr) *dropped = nullptr;
+    return guarded(__func__, [&] {
+        at(repaired, "repaired");
+        RepairedMesh result = repair(mesh_at(mesh), repair_options_from(options));
+        auto handle = std::unique_ptr<echinus_mesh>(new echinus_mesh{std::move(result.mesh)});
+        if (report != nullptr) write_struct(report, describe(result.report), "report");
+        if (dropped != nullptr) *dropped = new echinus_array(array_of(dropped_faces(result.report)));
+        *repaired = handle.release();
+    });
+}
+
+echinus_status echinus_mesh_weld(const echinus_mesh* mesh, echinus_mesh** welded) {
+    return make(__func__, welded, [&] { return weld(mesh_at(mesh)); });
+}
+
+echinus_status echinus_mesh_winding_number(const echinus_mesh* mesh, const double* point,
+                                           double* winding_number_of_point) {
+    return guarded(__func__, [&] {
+        at(point, "point");
+        at(winding_number_of_point, "winding_number") =
+            winding_number(mesh_at(mesh), {point[0], point[1], point[2]});
+    });
+}
+echinus_status echinus_mesh_unsigned_distance(const echinus_mesh* mesh, const double* point,
+                                              double* distance) {
+    return guarded(__func__, [&] {
+        at(point, "point");
+        at(distance, "distance") = unsigned_distance(mesh_at(mesh), {point[0], point[1], point[2]});
+    });
+}
+
+echinus_status echinus_mesh_intersecting_pairs(const echinus_mesh* a, const echinus_mesh* b,
+                                               echinus_array** pairs) {
+    return make(__func__, pairs,
+                [&] { return array_of(intersecting_pairs(at(a, "a").value, at(b, "b").value)); });
+}
+echinus_status echinus_mesh_self_intersecting_pairs(const echinus_mesh* mesh, echinus_array** pairs) {
+    return make(__func__, pairs, [&] { return array_of(self_intersecting_pairs(mesh_at(mesh))); });
+}

@@ -1,0 +1,96 @@
+// Simulations as JSON.
+
+#include "border.hpp"
+#include "scene.hpp"
+#include "simulation.hpp"
+
+#include <echinus/mesh_io.hpp>
+
+#include <filesystem>
+
+namespace echinus::c {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where the meshes of a scene come from.
+class Meshes {
+  public:
+    explicit Meshes(std::vector<fs::path> folders) : folders_(std::move(folders)) {}
+
+    TriangleMesh operator()(const ModelFile& file) const { return read_mesh(find_model(file, folders_)); }
+    TriangleMesh operator()(const auto& shape) const { return make_mesh(shape); }
+
+    TriangleMesh model(const Scene& scene) const {
+        return repair(std::visit(*this, scene.model), scene.repair).mesh;
+    }
+    ClothMeshes cloth(const Scene& scene) const {
+        if (!scene.mesh_cloth) return {};
+        return {.mesh = from_file(scene.mesh_cloth->mesh),
+                .rest_mesh = from_file(scene.mesh_cloth->rest_mesh)};
+    }
+
+  private:
+    TriangleMesh from_file(const std::optional<SceneModel>& model) const {
+        return model && std::holds_alternative<ModelFile>(*model) ? std::visit(*this, *model)
+                                                                  : TriangleMesh{};
+    }
+
+    std::vector<fs::path> folders_;
+};
+
+std::vector<fs::path> folders_from(const char* const* folders, std::size_t count, const fs::path& of_scene) {
+    std::vector<fs::path> result;
+    for (const char* const& folder : values_at(folders, count, "folders"))
+        result.emplace_back(&at(folder, "a folder"));
+    result.push_back(of_scene);
+    result.push_back(of_scene / ".." / "models");
+    return result;
+}
+
+fs::path folder_of(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : ".";
+}
+
+} // namespace
+
+} // namespace echinus::c
+
+using namespace echinus;
+using namespace echinus::c;
+
+echinus_status echinus_scene_read(const char* path, echinus_scene** scene) {
+    if (scene != nullptr) *scene = nullptr;
+    return guarded(__func__, [&] {
+        at(scene, "scene");
+        const std::filesystem::path file(&at(path, "path"));
+        *scene = new echinus_scene{read_scene(file), folder_of(file)};
+    });
+}
+echinus_status echinus_scene_parse(const char* json, const char* name, echinus_scene** scene) {
+    if (scene != nullptr) *scene = nullptr;
+    return guarded(__func__, [&] {
+        at(scene, "scene");
+        *scene = new echinus_scene{parse_scene(&at(json, "json"), &at(name, "name")), folder_of(name)};
+    });
+}
+
+void echinus_scene_destroy(echinus_scene* scene) {
+    delete scene;
+}
+
+uint32_t echinus_scene_frame_limit(const echinus_scene* scene) {
+    return scene == nullptr ? 0 : scene->value.frame_limit;
+}
+
+echinus_status echinus_simulation_from_scene(const echinus_scene* scene, const char* const* folders,
+                                             size_t folder_count, uint32_t thread_count,
+                                             echinus_simulation** simulation) {
+    return make(__func__, simulation, [&] {
+        const Scene& description = at(scene, "scene").value;
+        const Meshes meshes(folders_from(folders, folder_count, scene->folder));
+        const AnyMap map = build_map(meshes.model(description), description.map, thread_count);
+        return make_simulation(description, map, meshes.cloth(description));
+    });
+}

@@ -1,0 +1,241 @@
+#include "border.hpp"
+#include "collider.hpp"
+#include "deformable.hpp"
+#include "simulation.hpp"
+
+#include <echinus/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace echinus::c {
+
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_options, self_collision);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_profile, squeezed_count);
+static_assert(ECHINUS_SOLVER_XPBD == static_cast<int>(SolverKind::Xpbd));
+
+namespace {
+
+/// A thickness that may be left to the library.
+double as_c(const std::optional<double>& thickness) {
+    return thickness.value_or(ECHINUS_THICKNESS_CHOSEN);
+}
+std::optional<double> thickness_from(double thickness) {
+    return thickness == ECHINUS_THICKNESS_CHOSEN ? std::nullopt : std::optional(thickness);
+}
+
+echinus_simulation_options as_c(const SimulationOptions& options) {
+    echinus_simulation_options result{};
+    result.time_step = options.time_step;
+    result.solver = static_cast<echinus_solver>(options.solver);
+    result.iteration_count = options.iteration_count;
+    result.substep_count = options.substep_count;
+    result.rest_frame_count = options.rest.frame_count;
+    result.rest_distance = options.rest.distance;
+    result.rest_speed = options.rest.speed;
+    put_vector(options.gravity, result.gravity);
+    result.drag = options.drag;
+    std::ranges::copy(options.stiffness, result.stiffness);
+    std::ranges::copy(options.compliance, result.compliance);
+    result.thickness = as_c(options.thickness);
+    result.self_thickness = as_c(options.self_thickness);
+    result.friction = options.friction;
+    result.bound = options.bound;
+    result.keep_free = options.keep_free ? 1 : 0;
+    result.allow_open_colliders = options.allow_open_colliders ? 1 : 0;
+    result.surface_collision = options.surface_collision ? 1 : 0;
+    result.self_collision = options.self_collision ? 1 : 0;
+    return result;
+}
+
+SimulationOptions options_from(const echinus_simulation_options* options) {
+    if (options == nullptr) return {};
+    const auto given = read_struct(options, as_c(SimulationOptions{}), "options");
+    return {.solver = enumerator(given.solver, SolverKind::Xpbd, "options.solver"),
+            .time_step = given.time_step,
+            .iteration_count = given.iteration_count,
+            .substep_count = given.substep_count,
+            .gravity = vector_of(given.gravity),
+            .drag = given.drag,
+            .stiffness = std::to_array(given.stiffness),
+            .compliance = std::to_array(given.compliance),
+            .thickness = thickness_from(given.thickness),
+            .friction = given.friction,
+            .rest = {.distance = given.rest_distance,
+                     .speed = given.rest_speed,
+                     .frame_count = given.rest_frame_count},
+            .keep_free = given.keep_free != 0,
+            .allow_open_colliders = given.allow_open_colliders != 0,
+            .surface_collision = given.surface_collision != 0,
+            .self_collision = given.self_collision != 0,
+            .self_thickness = thickness_from(given.self_thickness),
+            .bound = given.bound};
+}
+
+/// A row of the caller's structs, which may be larger than ours.
+std::vector<Collider> colliders_from(const echinus_collider* first, std::size_t count) {
+    std::vector<Collider> result;
+    if (count == 0) return result;
+    const std::size_t size = at(first, "colliders").size;
+    require_size(size, sizeof *first, "colliders");
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto* place = reinterpret_cast<const std::byte*>(first) + i * size;
+        const auto& given = *reinterpret_cast<const echinus_collider*>(place);
+        require(given.size == size, "the colliders have different sizes");
+        result.push_back(collider_from(read_struct(&given, echinus_collider{}, "colliders")));
+    }
+    return result;
+}
+
+echinus_simulation_profile as_c(const SimulationProfile& profile) {
+    return {.size = 0,
+            .integration_seconds = profile.integration_seconds,
+            .constraint_seconds = profile.constraint_seconds,
+            .collision_seconds = profile.collision_seconds,
+            .query_count = profile.query_count,
+            .contact_count = profile.contact_count,
+            .map_query_count = profile.map_query_count,
+            .rescued_count = profile.rescued_count,
+            .lost_count = profile.lost_count,
+            .truncated_count = profile.truncated_count,
+            .searched_face_count = profile.searched_face_count,
+            .measured_pair_count = profile.measured_pair_count,
+            .squeezed_count = profile.squeezed_count};
+}
+
+/// @throws WrongArgument for null
+const Simulation& simulation_at(const echinus_simulation* simulation) {
+    return at(simulation, "simulation").value;
+}
+
+/// A simulation to change.
+/// @throws WrongArgument for null, Error Diverged for one that can only be read
+Simulation& running_at(echinus_simulation* simulation) {
+    if (at(simulation, "simulation").failed)
+        throw Error(ErrorCode::Diverged, "a step of the simulation failed before; it can only be read");
+    return simulation->value;
+}
+
+/// @throws WrongArgument beyond the last
+void require_index(std::size_t index, std::size_t count, const char* name) {
+    if (index >= count)
+        throw WrongArgument("there is no " + std::string(name) + " " + std::to_string(index) +
+                            "; there are " + std::to_string(count));
+}
+
+} // namespace
+
+} // namespace echinus::c
+
+using namespace echinus;
+using namespace echinus::c;
+
+void echinus_simulation_options_init(echinus_simulation_options* options, size_t size) {
+    init_struct(options, size, as_c(SimulationOptions{}));
+}
+
+echinus_status echinus_simulation_create(const echinus_deformable* deformable,
+                                         const echinus_collider* colliders, size_t collider_count,
+                                         const echinus_simulation_options* options,
+                                         echinus_simulation** simulation) {
+    return make(__func__, simulation, [&] {
+        return Simulation(at(deformable, "deformable").value, colliders_from(colliders, collider_count),
+                          options_from(options));
+    });
+}
+
+echinus_status echinus_simulation_copy(const echinus_simulation* simulation, echinus_simulation** copy) {
+    return make(__func__, copy, [&] { return at(simulation, "simulation"); });
+}
+
+void echinus_simulation_destroy(echinus_simulation* simulation) {
+    delete simulation;
+}
+
+echinus_status echinus_simulation_step(echinus_simulation* simulation) {
+    const echinus_status status = guarded(__func__, [&] { running_at(simulation).step(); });
+    if (status != ECHINUS_OK && simulation != nullptr) simulation->failed = true;
+    return status;
+}
+
+size_t echinus_simulation_particle_count(const echinus_simulation* simulation) {
+    return simulation == nullptr ? 0 : simulation->value.positions().size();
+}
+const float* echinus_simulation_positions(const echinus_simulation* simulation) {
+    return simulation == nullptr ? nullptr
+                                 : reinterpret_cast<const float*>(simulation->value.positions().data());
+}
+echinus_status echinus_simulation_read(const echinus_simulation* simulation,
+                                       echinus_deformable_arrays* arrays) {
+    return guarded(
+        __func__, [&] { write_struct(arrays, arrays_of(simulation_at(simulation).deformable()), "arrays"); });
+}
+
+uint32_t echinus_simulation_frame(const echinus_simulation* simulation) {
+    return simulation == nullptr ? 0 : simulation->value.frame();
+}
+int32_t echinus_simulation_at_rest(const echinus_simulation* simulation) {
+    return simulation != nullptr && simulation->value.at_rest() ? 1 : 0;
+}
+double echinus_simulation_largest_speed(const echinus_simulation* simulation) {
+    return simulation == nullptr ? 0 : simulation->value.largest_speed();
+}
+uint64_t echinus_simulation_state_hash(const echinus_simulation* simulation) {
+    return simulation == nullptr ? 0 : simulation->value.state_hash();
+}
+
+echinus_status echinus_simulation_read_profile(const echinus_simulation* simulation,
+                                               echinus_simulation_profile* profile) {
+    return guarded(__func__,
+                   [&] { write_struct(profile, as_c(simulation_at(simulation).profile()), "profile"); });
+}
+echinus_status echinus_simulation_read_options(const echinus_simulation* simulation,
+                                               echinus_simulation_options* options) {
+    return guarded(__func__,
+                   [&] { write_struct(options, as_c(simulation_at(simulation).options()), "options"); });
+}
+
+size_t echinus_simulation_collider_count(const echinus_simulation* simulation) {
+    return simulation == nullptr ? 0 : simulation->value.colliders().size();
+}
+echinus_status echinus_simulation_read_collider(const echinus_simulation* simulation, size_t index,
+                                                echinus_collider* collider) {
+    return guarded(__func__, [&] {
+        const std::vector<Collider>& colliders = simulation_at(simulation).colliders();
+        require_index(index, colliders.size(), "collider");
+        echinus_collider result{};
+        result.map = &simulation->maps[index];
+        result.pose = pose_to_c(colliders[index].pose);
+        put_vector(colliders[index].scale, result.scale);
+        put_vector(colliders[index].linear_velocity, result.linear_velocity);
+        put_vector(colliders[index].angular_velocity, result.angular_velocity);
+        write_struct(collider, result, "collider");
+    });
+}
+
+echinus_status echinus_simulation_set_collider_velocity(echinus_simulation* simulation, size_t index,
+                                                        const double* linear, const double* angular) {
+    return guarded(__func__, [&] {
+        Simulation& running = running_at(simulation);
+        require_index(index, running.colliders().size(), "collider");
+        running.set_collider_velocity(index, finite_vector_at(linear, "linear"),
+                                      finite_vector_at(angular, "angular"));
+    });
+}
+
+echinus_status echinus_simulation_set_particle_velocity(echinus_simulation* simulation, size_t particle,
+                                                        const double* velocity) {
+    return guarded(__func__, [&] {
+        Simulation& running = running_at(simulation);
+        require_index(particle, running.positions().size(), "particle");
+        running.set_particle_velocity(particle, finite_vector_at(velocity, "velocity"));
+    });
+}
+
+echinus_status echinus_simulation_blow(echinus_simulation* simulation, const double* wind, double rate) {
+    return guarded(__func__, [&] {
+        require(std::isfinite(rate) && rate >= 0, "rate is negative or not finite");
+        running_at(simulation).blow(finite_vector_at(wind, "wind"), rate);
+    });
+}
