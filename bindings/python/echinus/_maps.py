@@ -1,0 +1,472 @@
+"""Maps and their answers."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import Any, Generic, Literal, TypeVar, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from echinus import _core
+from echinus._meshes import MeshLike, Path, arrays_of
+
+Scalar = TypeVar("Scalar", bound=np.generic)
+CoreMap = TypeVar("CoreMap", _core.ExactMap, _core.DistanceMap)
+Centre = Literal["sphere", "search"]
+
+
+class _Answers:
+    """One answer to each point, in a structured array. The properties are views of its fields."""
+
+    def __init__(self, array: NDArray[np.void]) -> None:
+        self.array = array
+
+    def __len__(self) -> int:
+        return len(self.array)
+
+    def __repr__(self) -> str:
+        return f"<echinus.{type(self).__name__}: {self.array.size} answers of shape {self.array.shape}>"
+
+    def _field(self, name: str, kind: type[Scalar]) -> NDArray[Scalar]:
+        field: NDArray[Scalar] = self.array[name]
+        return field
+
+
+class Contacts(_Answers):
+    """One contact for each point.
+
+    A point that is outside and farther than the margin, or not finite, has no contact: depth 0, normal 0,
+    face -1, and its own place as ``point``.
+
+    Attributes
+    ----------
+    array : ndarray (...)
+        All of them, as a structured array.
+    """
+
+    @property
+    def inside(self) -> NDArray[np.bool_]:
+        """(...) Is the point inside?"""
+        return self._field("inside", np.bool_)
+
+    @property
+    def depth(self) -> NDArray[np.float32]:
+        """(...) Distance to ``point``: positive inside, negative outside, 0 without a contact."""
+        return self._field("depth", np.float32)
+
+    @property
+    def normal(self) -> NDArray[np.float32]:
+        """(..., 3) Unit normal of the surface at ``point``, out of the solid; 0 without a contact."""
+        return self._field("normal", np.float32)
+
+    @property
+    def point(self) -> NDArray[np.float32]:
+        """(..., 3) Where the way out leads: the nearest point of the surface, or on a distance map the point
+        on the ray from its centre."""
+        return self._field("point", np.float32)
+
+    @property
+    def face(self) -> NDArray[np.int32]:
+        """(...) The face of the mesh that has ``point``; -1 without a contact, and on a distance map."""
+        return self._field("face", np.int32)
+
+    @property
+    def certain(self) -> NDArray[np.bool_]:
+        """(...) False where the mesh is open and the generalised winding number decided ``inside``."""
+        return self._field("certain", np.bool_)
+
+    @property
+    def feature(self) -> NDArray[np.uint8]:
+        """(...) The part of the face that is nearest: 1 its interior, 2 an edge, 3 a vertex; 0 unknown."""
+        return self._field("feature", np.uint8)
+
+    @property
+    def found(self) -> NDArray[np.bool_]:
+        """(...) Is there a contact? Inside, or outside within the margin."""
+        found: NDArray[np.bool_] = self.inside | (self.normal != 0).any(axis=-1)
+        return found
+
+
+class SweepHits(_Answers):
+    """For each segment its first crossing with the surface.
+
+    A segment that meets nothing has fraction 1, normal 0, face -1, and its end as ``point``.
+
+    Attributes
+    ----------
+    array : ndarray (...)
+        All of them, as a structured array.
+    """
+
+    @property
+    def fraction(self) -> NDArray[np.float32]:
+        """(...) The share of the way: 0 at the start, 1 at the end."""
+        return self._field("fraction", np.float32)
+
+    @property
+    def point(self) -> NDArray[np.float32]:
+        """(..., 3) start + fraction (end - start)"""
+        return self._field("point", np.float32)
+
+    @property
+    def normal(self) -> NDArray[np.float32]:
+        """(..., 3) Unit normal of the face, out of the solid."""
+        return self._field("normal", np.float32)
+
+    @property
+    def face(self) -> NDArray[np.int32]:
+        """(...) The face of the mesh."""
+        return self._field("face", np.int32)
+
+    @property
+    def entering(self) -> NDArray[np.bool_]:
+        """(...) Does the crossing lead from outside to inside?"""
+        return self._field("entering", np.bool_)
+
+    @property
+    def found(self) -> NDArray[np.bool_]:
+        """(...) Is anything met?"""
+        found: NDArray[np.bool_] = self.face >= 0
+        return found
+
+
+@dataclass(frozen=True)
+class ExactMapStatistics:
+    """What the build of an exact map found.
+
+    Attributes
+    ----------
+    dropped_faces
+        Faces without area on the map's lattice; they count for distances only.
+    longest_list, mean_list
+        Faces of a band: the most, and the mean.
+    expected_tests
+        Faces that ``contains`` looks at for a point on the surface; about 10 for most meshes.
+    certain_share
+        Share of the bounding sphere's volume where answers are certain; 1 for a closed mesh.
+    uncertain_directions
+        Share of the directions from the centre along which an answer is uncertain somewhere.
+    """
+
+    face_count: int
+    dropped_faces: int
+    longest_list: int
+    mean_list: float
+    expected_tests: float
+    certain_share: float
+    uncertain_directions: float
+
+
+@dataclass(frozen=True)
+class DistanceMapStatistics:
+    """What the build of a distance map found.
+
+    Attributes
+    ----------
+    max_entries
+        The most crossings of one direction.
+    corrected_entries, clamped_entries
+        Entries that the correction moved, and those of them that it could not move as far as it should.
+    wrong_parity_share
+        Share of directions that see a hole; 0 for a closed mesh.
+    """
+
+    face_count: int
+    dropped_faces: int
+    max_entries: int
+    corrected_entries: int
+    clamped_entries: int
+    wrong_parity_share: float
+
+
+class _Map(Generic[CoreMap]):
+    """What both kinds of map can do. A map never changes; any number of threads may query it."""
+
+    _built: CoreMap
+
+    def contains(
+        self, points: ArrayLike, *, threads: int = 1, out: NDArray[np.bool_] | None = None
+    ) -> NDArray[np.bool_]:
+        """Which points are inside?
+
+        Parameters
+        ----------
+        points : array_like (..., 3)
+            NaN and infinity are outside.
+        threads
+            0: all cores. The answers do not depend on it.
+        out : ndarray (...) of bool, optional
+            Takes the answers.
+
+        Returns
+        -------
+        ndarray (...) of bool
+        """
+        return self._built.contains(points, out, threads)
+
+    def contacts(self, points: ArrayLike, margin: float = 0, *, threads: int = 1) -> Contacts:
+        """How deep is each point, and where is the way out?
+
+        Parameters
+        ----------
+        points : array_like (..., 3)
+            NaN and infinity have no contact.
+        margin
+            Points outside get a contact too where the surface is at most this far; ``inf`` for all of them.
+        threads
+            0: all cores. The answers do not depend on it.
+        """
+        return Contacts(self._built.contacts(points, margin, threads))
+
+    def save(self, path: Path) -> None:
+        """Writes a map file, whole or not at all; :func:`load` reads it in place.
+
+        Raises
+        ------
+        Error
+            ``unwritable``.
+        """
+        self._built.save(path)
+
+    @property
+    def centre(self) -> tuple[float, float, float]:
+        """Where the map's rays start."""
+        return self._built.centre
+
+    @property
+    def radius(self) -> float:
+        """Every vertex lies within it of the centre."""
+        return self._built.radius
+
+    @property
+    def byte_count(self) -> int:
+        """All that a query reads."""
+        return self._built.byte_count
+
+    @property
+    def source_hash(self) -> int:
+        """Identifies the mesh and the options that the map was built from."""
+        return self._built.source_hash
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _map_from_bytes, (self._built.to_bytes(),)
+
+    def __copy__(self) -> _Map[CoreMap]:
+        return self
+
+    def __deepcopy__(self, memo: Any) -> _Map[CoreMap]:
+        return self
+
+    def __repr__(self) -> str:
+        faces = self._built.statistics["face_count"]
+        return f"<echinus.{type(self).__name__}: {faces} faces, {self.byte_count} bytes>"
+
+
+class ExactMap(_Map[_core.ExactMap]):
+    """The map whose answers are exact on its lattice, 1.9e-6 of the bounding radius wide.
+
+    Parameters
+    ----------
+    mesh
+        Anything with ``vertices`` and ``faces``. It may be open: see :attr:`Contacts.certain`.
+    cells_per_octant
+        More cells take memory and save time; they never change an answer. By default chosen by the mesh.
+    budget
+        The finest map that takes no more than so many bytes; not together with ``cells_per_octant``.
+    rule
+        What is inside where parts overlap: their union (``"nonzero"``), or where an odd number of them is
+        (``"parity"``).
+    centre
+        Where rays start: the centre of the bounding sphere, or a place that is searched for short lists.
+    threads
+        0: all cores. The map does not depend on it.
+
+    Raises
+    ------
+    Error
+        ``invalid_mesh`` as :func:`inspect`, ``invalid_scene`` for an option out of range, ``invalid_options``
+        for a budget that is too small.
+    """
+
+    def __init__(
+        self,
+        mesh: MeshLike,
+        *,
+        cells_per_octant: int | None = None,
+        budget: int | None = None,
+        rule: Literal["nonzero", "parity"] | None = None,
+        centre: Centre | None = None,
+        threads: int = 0,
+    ) -> None:
+        options = _options(kind="exact", cells_per_octant=cells_per_octant, budget=budget, rule=rule, centre=centre)
+        built = _core.build_map(*arrays_of(mesh), options, threads)
+        assert isinstance(built, _core.ExactMap)
+        self._built = built
+
+    @overload
+    def signed_distance(
+        self,
+        points: ArrayLike,
+        *,
+        gradient: Literal[False] = False,
+        threads: int = 1,
+        out: NDArray[np.float32] | None = None,
+    ) -> NDArray[np.float32]: ...
+    @overload
+    def signed_distance(
+        self,
+        points: ArrayLike,
+        *,
+        gradient: Literal[True],
+        threads: int = 1,
+        out: NDArray[np.float32] | None = None,
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32]]: ...
+    def signed_distance(
+        self,
+        points: ArrayLike,
+        *,
+        gradient: bool = False,
+        threads: int = 1,
+        out: NDArray[np.float32] | None = None,
+    ) -> Any:
+        """How far is each point from the surface? **Negative inside, positive outside**, however far.
+
+        The sign is that of :meth:`contains`, also of a distance of 0: it is then -0 inside. For an open mesh
+        :attr:`Contacts.certain` tells where it is certain. Where parts overlap, the nearest face may lie
+        inside the solid.
+
+        Parameters
+        ----------
+        points : array_like (..., 3)
+            NaN has the distance NaN, and infinity is infinitely far.
+        gradient
+            Also give the unit vectors along which the distances grow fastest; 0 for points that are not
+            finite.
+        threads
+            0: all cores. The answers do not depend on it.
+        out : ndarray (...) of float32, optional
+            Takes the distances.
+
+        Returns
+        -------
+        distances : ndarray (...) of float32
+        gradients : ndarray (..., 3) of float32
+            Only with ``gradient=True``.
+        """
+        return self._built.signed_distance(points, gradient, out, threads)
+
+    def sweep(self, start: ArrayLike, end: ArrayLike, *, threads: int = 1) -> SweepHits:
+        """Where do segments first cross the surface?
+
+        Parameters
+        ----------
+        start, end : array_like (..., 3)
+            Shapes are broadcast. NaN and infinity meet nothing.
+        threads
+            0: all cores. The answers do not depend on it.
+        """
+        start, end = np.asanyarray(start), np.asanyarray(end)
+        if start.shape != end.shape:
+            start, end = np.broadcast_arrays(start, end)
+        return SweepHits(self._built.sweep(start, end, threads))
+
+    @property
+    def statistics(self) -> ExactMapStatistics:
+        """What the build found."""
+        return ExactMapStatistics(**self._built.statistics)
+
+
+class DistanceMap(_Map[_core.DistanceMap]):
+    """The paper's map: distances along rays from a centre, interpolated. Small and fast, and not exact.
+
+    Parameters
+    ----------
+    mesh
+        Anything with ``vertices`` and ``faces``, closed and counter-clockwise seen from outside.
+    directions
+        Samples of longitude and of colatitude; (200, 200) by default. Grids ``"spherical"`` and
+        ``"ellipsoidal"`` only.
+    grid, divisions
+        How directions are divided; ``divisions`` is for the grids ``"octahedral"`` and ``"cube"``.
+    correction
+        What is done about vertices between the samples.
+    entries
+        How a distance is stored; ``"unorm16"`` takes half the bytes.
+    pole_axis
+        The axis of the mesh through the poles of the directions, where samples crowd.
+    centre
+        Where rays start: the centre of the bounding sphere, or a place searched for few wrong answers.
+    threads
+        0: all cores. The map does not depend on it.
+
+    Raises
+    ------
+    Error
+        ``invalid_mesh`` as :func:`inspect`, ``invalid_scene`` for an option out of range or of another grid.
+    """
+
+    def __init__(
+        self,
+        mesh: MeshLike,
+        directions: tuple[int, int] | None = None,
+        *,
+        grid: Literal["spherical", "octahedral", "cube", "ellipsoidal"] | None = None,
+        divisions: int | None = None,
+        correction: Literal["none", "paper", "signed"] | None = None,
+        entries: Literal["float32", "unorm16"] | None = None,
+        pole_axis: Literal["x", "y", "z"] | None = None,
+        centre: Centre | None = None,
+        threads: int = 0,
+    ) -> None:
+        options = _options(
+            kind="distance",
+            directions=None if directions is None else list(directions),
+            grid=grid,
+            divisions=divisions,
+            correction=correction,
+            entries=entries,
+            pole_axis=pole_axis,
+            centre=centre,
+        )
+        built = _core.build_map(*arrays_of(mesh), options, threads)
+        assert isinstance(built, _core.DistanceMap)
+        self._built = built
+
+    @property
+    def statistics(self) -> DistanceMapStatistics:
+        """What the build found."""
+        return DistanceMapStatistics(**self._built.statistics)
+
+
+AnyMap = ExactMap | DistanceMap
+
+
+def load(path: Path) -> AnyMap:
+    """A map from its file, which is checked and then read in place: processes that load it share its memory.
+
+    Raises
+    ------
+    Error
+        ``unreadable``, ``wrong_format``, ``unsupported_version`` or ``damaged``; the sentence begins with the
+        path.
+    """
+    return wrap(_core.load_map(path))
+
+
+def wrap(built: _core.ExactMap | _core.DistanceMap) -> AnyMap:
+    """The map around what the library made."""
+    kind: type[AnyMap] = ExactMap if isinstance(built, _core.ExactMap) else DistanceMap
+    result: Any = kind.__new__(kind)
+    result._built = built
+    return result  # type: ignore[no-any-return]
+
+
+def _map_from_bytes(data: bytes) -> AnyMap:
+    return wrap(_core.map_from_bytes(data))
+
+
+def _options(**given: Any) -> str:
+    """As under the key ``map`` of a scene; what is None keeps its default."""
+    return json.dumps({key: value for key, value in given.items() if value is not None})

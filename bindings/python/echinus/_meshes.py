@@ -1,0 +1,275 @@
+"""Meshes: files, reports, repair, generators, and the judges by brute force."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from echinus import _core
+
+Path = str | os.PathLike[str]
+
+
+@runtime_checkable
+class MeshLike(Protocol):
+    """Anything with ``vertices`` and ``faces``, for instance a mesh of trimesh or of Open3D's tensor API."""
+
+    @property
+    def vertices(self) -> Any: ...
+
+    @property
+    def faces(self) -> Any: ...
+
+
+class Mesh:
+    """Triangles with shared vertices.
+
+    Parameters
+    ----------
+    vertices : array_like (n, 3)
+        Positions, rounded to float32.
+    faces : array_like (m, 3)
+        Whole numbers: the vertices of each triangle, counter-clockwise seen from outside.
+
+    Attributes
+    ----------
+    vertices : ndarray (n, 3) of float32, read-only
+    faces : ndarray (m, 3) of uint32, read-only
+
+    Notes
+    -----
+    Contiguous arrays of these types are shared, not copied: do not change them while the mesh is in use. A
+    mesh may have any fault; :func:`inspect` reports them.
+    """
+
+    vertices: NDArray[np.float32]
+    faces: NDArray[np.uint32]
+
+    def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None:
+        self.vertices = _read_only(_core.vertex_array(vertices))
+        self.faces = _read_only(_core.face_array(faces))
+
+    def __repr__(self) -> str:
+        return f"<echinus.Mesh: {len(self.vertices)} vertices, {len(self.faces)} faces>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Mesh, (self.vertices, self.faces)
+
+
+def _read_only(array: NDArray[Any]) -> NDArray[Any]:
+    view = array.view(np.ndarray)
+    view.flags.writeable = False
+    return view
+
+
+def as_mesh(mesh: MeshLike) -> Mesh:
+    """The mesh itself, or a :class:`Mesh` of its ``vertices`` and ``faces``.
+
+    Raises
+    ------
+    TypeError
+        The object has no such attributes.
+    """
+    if isinstance(mesh, Mesh):
+        return mesh
+    if not isinstance(mesh, MeshLike):
+        raise TypeError(f"a mesh has .vertices and .faces; {type(mesh).__name__} does not: use echinus.Mesh(vertices, faces)")
+    return Mesh(mesh.vertices, mesh.faces)
+
+
+def arrays_of(mesh: MeshLike) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
+    mesh = as_mesh(mesh)
+    return mesh.vertices, mesh.faces
+
+
+def read_mesh(path: Path) -> Mesh:
+    """Reads OBJ, PLY, STL, OFF, glTF, GLB or 3DS, by the file name's extension.
+
+    All meshes of the file are joined, polygons are cut into triangles, equal positions become one vertex and
+    vertices that no face uses are dropped. Nothing is repaired.
+
+    Raises
+    ------
+    Error
+        ``unreadable``, ``wrong_format``, ``damaged`` or ``invalid_mesh``; the sentence begins with the path.
+    """
+    return Mesh(*_core.read_mesh(path))
+
+
+def write_mesh(path: Path, mesh: MeshLike) -> None:
+    """Writes OBJ, PLY, STL or OFF, by the file name's extension. The file appears whole or not at all.
+
+    Raises
+    ------
+    Error
+        ``unwritable``, ``wrong_format`` for another extension, or ``invalid_mesh``.
+    """
+    _core.write_mesh(path, *arrays_of(mesh))
+
+
+@dataclass(frozen=True)
+class Fault:
+    """How often a fault occurs, and the first few faces at which it does."""
+
+    count: int
+    first_faces: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class MeshReport:
+    """The properties of a mesh.
+
+    Attributes
+    ----------
+    closed
+        Along every edge as many faces run one way as the other.
+    manifold
+        Every edge has at most two faces, and the faces at each vertex form one fan.
+    signed_volume
+        Positive where faces look outwards.
+    centre, radius
+        The smallest sphere that encloses all vertices used by faces.
+    """
+
+    face_count: int
+    vertex_count: int
+    component_count: int
+    closed: bool
+    manifold: bool
+    border_edges: Fault
+    nonmanifold_edges: Fault
+    misoriented_edges: Fault
+    duplicate_faces: Fault
+    degenerate_faces: Fault
+    signed_volume: float
+    centre: tuple[float, float, float]
+    radius: float
+
+
+def inspect(mesh: MeshLike) -> MeshReport:
+    """Examines a mesh.
+
+    Raises
+    ------
+    Error
+        ``invalid_mesh`` when there is no face, an index is out of range, or a used vertex is not finite.
+    """
+    report = _core.inspect(*arrays_of(mesh))
+    return MeshReport(**{key: Fault(**value) if isinstance(value, dict) else value for key, value in report.items()})
+
+
+def weld(mesh: MeshLike) -> Mesh:
+    """Joins vertices at equal positions and drops those that no face uses. Faces keep their order."""
+    return Mesh(*_core.weld(*arrays_of(mesh)))
+
+
+@dataclass(frozen=True)
+class RepairReport:
+    """What :func:`repair` did; faces by their numbers before it."""
+
+    duplicate_faces_dropped: tuple[int, ...]
+    doubled_patch_faces_dropped: tuple[int, ...]
+    components_flipped: int
+
+    @property
+    def changed_anything(self) -> bool:
+        return bool(self.duplicate_faces_dropped or self.doubled_patch_faces_dropped or self.components_flipped)
+
+
+def repair(
+    mesh: MeshLike,
+    *,
+    drop_duplicate_faces: bool = True,
+    drop_doubled_patches: bool = True,
+    flip_inside_out: bool = True,
+) -> tuple[Mesh, RepairReport]:
+    """A copy without the faults that can be mended without a guess, and what was done.
+
+    Parameters
+    ----------
+    mesh
+        Vertices are distinguished by index: :func:`weld` first where equal positions mean the same vertex.
+    drop_duplicate_faces
+        Of faces with the same three vertices, opposite ones cancel and one of the others stays.
+    drop_doubled_patches
+        Where two pairs of faces fill the same quadrilateral, each along its own diagonal, one pair is dropped.
+    flip_inside_out
+        Closed parts whose faces look inwards are turned round; cavities stay cavities.
+
+    Raises
+    ------
+    Error
+        ``invalid_mesh`` as :func:`inspect`.
+    """
+    arrays, report = _core.repair(*arrays_of(mesh), drop_duplicate_faces, drop_doubled_patches, flip_inside_out)
+    return Mesh(*arrays), RepairReport(**report)
+
+
+def winding_number(mesh: MeshLike, points: ArrayLike, *, threads: int = 1) -> NDArray[np.float64]:
+    """Generalised winding numbers: 1 inside a closed mesh that looks outwards, 0 outside.
+
+    By brute force over all faces, in double precision: a judge for maps, not a query. NaN for a point that is
+    not finite.
+
+    Parameters
+    ----------
+    points : array_like (..., 3)
+    threads
+        0: all cores.
+
+    Returns
+    -------
+    ndarray (...) of float64
+    """
+    return _core.winding_number(*arrays_of(mesh), points, threads)
+
+
+def unsigned_distance(mesh: MeshLike, points: ArrayLike, *, threads: int = 1) -> NDArray[np.float64]:
+    """Distances to the nearest point of the surface, by brute force in double precision: a judge for maps.
+
+    Infinite for a point that is not finite. Parameters and shapes as for :func:`winding_number`.
+    """
+    return _core.unsigned_distance(*arrays_of(mesh), points, threads)
+
+
+def intersecting_pairs(a: MeshLike, b: MeshLike) -> NDArray[np.uint32]:
+    """Which faces of ``a`` intersect which of ``b``; touching counts. Decided exactly.
+
+    Returns
+    -------
+    ndarray (n, 2) of uint32
+        A face of ``a`` and one of ``b``, ascending.
+    """
+    return _core.intersecting_pairs(*arrays_of(a), *arrays_of(b))
+
+
+def self_intersecting_pairs(mesh: MeshLike) -> NDArray[np.uint32]:
+    """Which faces of a mesh intersect beyond the corners and edges that they share. Decided exactly.
+
+    Returns
+    -------
+    ndarray (n, 2) of uint32
+        Two faces, ascending.
+    """
+    return _core.self_intersecting_pairs(*arrays_of(mesh))
+
+
+def make_torus(
+    major_radius: float = 1, minor_radius: float = 0.4, major_segments: int = 60, minor_segments: int = 24
+) -> Mesh:
+    """A torus about the z axis."""
+    return Mesh(*_core.make_torus(major_radius, minor_radius, major_segments, minor_segments))
+
+
+def make_sphere(radius: float = 1, meridian_count: int = 60, parallel_count: int = 30) -> Mesh:
+    """A sphere of meridians and rows of faces, with its poles on the z axis."""
+    return Mesh(*_core.make_sphere(radius, meridian_count, parallel_count))
+
+
+def make_box(size: tuple[float, float, float] = (1, 1, 1), segments: int = 1) -> Mesh:
+    """A box around the origin; each side is cut into ``segments`` x ``segments`` squares."""
+    return Mesh(*_core.make_box(size, segments))

@@ -1,0 +1,154 @@
+#include "arrays.hpp"
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace echinus::python {
+
+namespace {
+
+std::string text_of(const py::handle& object) {
+    return py::str(object);
+}
+
+/// @param kinds  NumPy's letters for the types of numbers that will do
+py::array array_of(const py::object& object, const char* name, std::string_view kinds, const char* wanted) {
+    py::array array = py::array::ensure(object);
+    if (!array)
+        throw py::type_error(std::string(name) + " must be an array of " + wanted + ", not " +
+                             text_of(py::type::of(object).attr("__name__")));
+    if (kinds.find(array.dtype().kind()) == std::string_view::npos)
+        throw py::type_error(std::string(name) + " must be an array of " + wanted + ", not of type " +
+                             text_of(array.dtype()));
+    return array;
+}
+
+std::string shape_text(const py::array& array) {
+    return text_of(array.attr("shape"));
+}
+
+bool is_aligned(const py::array& array) {
+    return py::detail::check_flags(array.ptr(), py::detail::npy_api::NPY_ARRAY_ALIGNED_);
+}
+
+template <typename T, typename Row>
+py::array read_only(std::span<const Row> rows, const py::object& owner) {
+    py::array_t<T> array({static_cast<py::ssize_t>(rows.size()), py::ssize_t{3}},
+                         reinterpret_cast<const T*>(rows.data()), owner);
+    array.attr("setflags")(false);
+    return array;
+}
+
+std::uint32_t vertex_number(std::int64_t value, std::size_t face) {
+    if (value < 0 || value > std::numeric_limits<std::uint32_t>::max())
+        throw py::value_error("face " + std::to_string(face) + " names the vertex " + std::to_string(value));
+    return static_cast<std::uint32_t>(value);
+}
+
+void require_rows_of_three(const py::array& array, const char* name, const char* remedy) {
+    if (array.ndim() != 2 || array.shape(1) != 3)
+        throw py::value_error(std::string(name) + " must have the shape (n, 3), not " + shape_text(array) +
+                              remedy);
+}
+
+} // namespace
+
+py::array number_array(const py::object& object, const char* name) {
+    return array_of(object, name, "fiu", "real numbers");
+}
+
+Points::Points(const py::object& points, const char* name) {
+    const py::array array = number_array(points, name);
+    if (array.ndim() == 0 || array.shape(array.ndim() - 1) != 3)
+        throw py::value_error(std::string(name) + " must have the shape (..., 3), not " + shape_text(array));
+    shape_.assign(array.shape(), array.shape() + array.ndim() - 1);
+    if (!read_in_place(array)) convert(array);
+}
+
+bool Points::read_in_place(const py::array& points) {
+    const auto last = points.ndim() - 1;
+    if (!py::array_t<float, 0>::check_(points) || !is_aligned(points) ||
+        points.strides(last) != sizeof(float))
+        return false;
+    std::size_t size = 1;
+    py::ssize_t stride = sizeof(Vec3f);
+    for (auto axis = last - 1; axis >= 0; --axis) { // do all dimensions but the last step through one row?
+        if (axis == last - 1)
+            stride = points.strides(axis);
+        else if (points.strides(axis) != points.strides(axis + 1) * points.shape(axis + 1))
+            return false;
+        size *= static_cast<std::size_t>(points.shape(axis));
+    }
+    if (stride < 0) return false;
+    owner_ = points;
+    span_ = {static_cast<const Vec3f*>(points.data()), size, static_cast<std::size_t>(stride)};
+    return true;
+}
+
+void Points::convert(const py::array& points) {
+    // By our own loop from double: NumPy would warn of numbers beyond the range of float, which become
+    // infinite and are outside.
+    const py::array_t<double, py::array::c_style | py::array::forcecast> numbers(points);
+    py::array_t<float> floats(numbers.size());
+    const double* from = numbers.data();
+    float* to = floats.mutable_data();
+    for (py::ssize_t i = 0; i < numbers.size(); ++i) to[i] = static_cast<float>(from[i]);
+    span_ = {reinterpret_cast<const Vec3f*>(to), static_cast<std::size_t>(numbers.size()) / 3};
+    owner_ = std::move(floats);
+}
+
+py::array view_of(std::span<const Vec3f> points, const py::object& owner) {
+    return read_only<float>(points, owner);
+}
+py::array view_of(std::span<const Triangle> faces, const py::object& owner) {
+    return read_only<std::uint32_t>(faces, owner);
+}
+
+py::array_t<float> vertex_array(const py::object& vertices) {
+    const py::array array = number_array(vertices, "vertices");
+    require_rows_of_three(array, "vertices", "");
+    if (py::array_t<float, py::array::c_style>::check_(array) && is_aligned(array)) return array;
+    const Points points(array, "vertices");
+    py::array_t<float> floats({static_cast<py::ssize_t>(points.size()), py::ssize_t{3}});
+    auto* to = reinterpret_cast<Vec3f*>(floats.mutable_data());
+    for (std::size_t i = 0; i < points.size(); ++i) to[i] = points.span()[i];
+    return floats;
+}
+
+py::array_t<std::uint32_t> face_array(const py::object& faces) {
+    const py::array array = array_of(faces, "faces", "iu", "whole numbers");
+    require_rows_of_three(array, "faces", "; cut polygons into triangles first");
+    if (py::array_t<std::uint32_t, py::array::c_style>::check_(array) && is_aligned(array)) return array;
+    const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> numbers(array);
+    py::array_t<std::uint32_t> indices({numbers.shape(0), py::ssize_t{3}});
+    const std::int64_t* from = numbers.data();
+    std::uint32_t* to = indices.mutable_data();
+    for (py::ssize_t i = 0; i < numbers.size(); ++i)
+        to[i] = vertex_number(from[i], static_cast<std::size_t>(i) / 3);
+    return indices;
+}
+
+TriangleMesh mesh_of(const py::array_t<float>& vertices, const py::array_t<std::uint32_t>& faces) {
+    const auto* first_vertex = reinterpret_cast<const Vec3f*>(vertices.data());
+    const auto* first_face = reinterpret_cast<const Triangle*>(faces.data());
+    return {{first_vertex, first_vertex + vertices.shape(0)}, {first_face, first_face + faces.shape(0)}};
+}
+
+py::tuple arrays_of(TriangleMesh mesh) {
+    auto kept = std::make_unique<TriangleMesh>(std::move(mesh));
+    const TriangleMesh& m = *kept;
+    const py::capsule owner(kept.get(), [](void* p) { delete static_cast<TriangleMesh*>(p); });
+    kept.release();
+    return py::make_tuple(view_of(m.vertices, owner), view_of(m.faces, owner));
+}
+
+unsigned thread_count(int threads) {
+    if (threads < 0)
+        throw py::value_error("threads is " + std::to_string(threads) + "; it must be 0 (all cores) or more");
+    return static_cast<unsigned>(threads);
+}
+
+} // namespace echinus::python

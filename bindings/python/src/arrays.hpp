@@ -1,0 +1,87 @@
+#pragma once
+
+#include <echinus/geometry.hpp>
+#include <echinus/mesh.hpp>
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+/// NumPy's arrays as the library takes them. Wrong shapes are ValueErrors and wrong types TypeErrors, whose
+/// sentences name the argument.
+namespace echinus::python {
+
+namespace py = pybind11;
+
+/// The object as an array of real numbers of whatever type.
+py::array number_array(const py::object& object, const char* name);
+
+/// Points [..., 3], read in place where they are float32, aligned, and the three coordinates of each lie side
+/// by side, with any distance from one point to the next. All else is converted to float32 once.
+class Points {
+  public:
+    Points(const py::object& points, const char* name);
+
+    StridedSpan<const Vec3f> span() const { return span_; }
+    std::size_t size() const { return span_.size(); }
+    /// The shape without the last dimension.
+    const std::vector<py::ssize_t>& shape() const { return shape_; }
+
+  private:
+    bool read_in_place(const py::array& points);
+    void convert(const py::array& points);
+
+    py::object owner_;
+    std::vector<py::ssize_t> shape_;
+    StridedSpan<const Vec3f> span_;
+};
+
+/// A new array for one answer to each point, or `out` where that is not None and fits.
+template <typename T>
+py::array answers(const std::vector<py::ssize_t>& shape, const py::object& out = py::none()) {
+    if (out.is_none()) return py::array_t<T>(shape);
+    py::array array = py::array_t<T, 0>::check_(out) ? py::array(out) : py::array();
+    if (!array || !array.writeable() || !(array.flags() & py::array::c_style) ||
+        std::vector<py::ssize_t>(array.shape(), array.shape() + array.ndim()) != shape)
+        throw py::value_error("out must be a writeable, contiguous array of type " +
+                              std::string(py::str(static_cast<py::object>(py::dtype::of<T>()))) +
+                              " with one element for each point");
+    return array;
+}
+
+/// A read-only array in memory that belongs to `owner`.
+py::array view_of(std::span<const Vec3f> points, const py::object& owner);
+py::array view_of(std::span<const Triangle> faces, const py::object& owner);
+
+/// [n, 3] float32, contiguous; the same array where it is one already.
+py::array_t<float> vertex_array(const py::object& vertices);
+/// [n, 3] uint32, contiguous; the same array where it is one already.
+py::array_t<std::uint32_t> face_array(const py::object& faces);
+
+/// Of arrays from the two functions above.
+TriangleMesh mesh_of(const py::array_t<float>& vertices, const py::array_t<std::uint32_t>& faces);
+/// (vertices, faces), which share the mesh's memory.
+py::tuple arrays_of(TriangleMesh mesh);
+
+/// As the library takes it: 0 for all cores.
+unsigned thread_count(int threads);
+
+/// Calls body(first, count) for consecutive pieces of a batch, without Python's lock. Ctrl-C ends the batch
+/// between two of them, so they are large: neighbours in a batch share the work of contacts.
+template <typename Body>
+void in_pieces(std::size_t count, const Body& body) {
+    constexpr std::size_t kPiece = 1U << 20U;
+    for (std::size_t first = 0; first < count; first += kPiece) {
+        if (first != 0 && PyErr_CheckSignals() != 0) throw py::error_already_set();
+        const py::gil_scoped_release unlocked;
+        body(first, std::min(kPiece, count - first));
+    }
+}
+
+} // namespace echinus::python

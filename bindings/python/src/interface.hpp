@@ -1,0 +1,16 @@
+#pragma once
+
+#include "arrays.hpp"
+
+#include <pybind11/pybind11.h>
+
+/// The parts of echinus._core: what the Python files of the package need of the library, in the plainest
+/// form. Defaults, documentation and checks that are easily said in Python are there.
+namespace echinus::python {
+
+void bind_errors(py::module_& module);
+void bind_meshes(py::module_& module);
+void bind_maps(py::module_& module);
+void bind_simulations(py::module_& module);
+
+} // namespace echinus::python

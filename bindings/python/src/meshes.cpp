@@ -1,0 +1,157 @@
+#include "geometry/parallel.hpp"
+#include "interface.hpp"
+
+#include <echinus/intersections.hpp>
+#include <echinus/mesh_io.hpp>
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+
+namespace echinus::python {
+
+namespace {
+
+using Vertices = py::array_t<float>;
+using Faces = py::array_t<std::uint32_t>;
+
+/// Without Python's lock.
+template <typename Work>
+auto unlocked(const Work& work) {
+    const py::gil_scoped_release released;
+    return work();
+}
+
+py::dict to_python(const Fault& fault) {
+    py::dict result;
+    result["count"] = fault.count;
+    result["first_faces"] = py::tuple(py::cast(fault.first_faces));
+    return result;
+}
+
+py::dict inspect_mesh(const Vertices& vertices, const Faces& faces) {
+    const TriangleMesh mesh = mesh_of(vertices, faces);
+    const MeshReport report = unlocked([&] { return inspect(mesh); });
+    const Vec3d& centre = report.bounding_sphere.centre;
+    py::dict result;
+    result["face_count"] = report.face_count;
+    result["vertex_count"] = report.vertex_count;
+    result["component_count"] = report.component_count;
+    result["closed"] = report.closed;
+    result["manifold"] = report.manifold;
+    result["border_edges"] = to_python(report.border_edges);
+    result["nonmanifold_edges"] = to_python(report.nonmanifold_edges);
+    result["misoriented_edges"] = to_python(report.misoriented_edges);
+    result["duplicate_faces"] = to_python(report.duplicate_faces);
+    result["degenerate_faces"] = to_python(report.degenerate_faces);
+    result["signed_volume"] = report.signed_volume;
+    result["centre"] = py::make_tuple(centre.x, centre.y, centre.z);
+    result["radius"] = report.bounding_sphere.radius;
+    return result;
+}
+
+/// ((vertices, faces), report)
+py::tuple repair_mesh(const Vertices& vertices, const Faces& faces, bool drop_duplicate_faces,
+                      bool drop_doubled_patches, bool flip_inside_out) {
+    const RepairOptions options{.drop_duplicate_faces = drop_duplicate_faces,
+                                .drop_doubled_patches = drop_doubled_patches,
+                                .flip_inside_out = flip_inside_out};
+    const TriangleMesh mesh = mesh_of(vertices, faces);
+    RepairedMesh repaired = unlocked([&] { return repair(mesh, options); });
+    py::dict report;
+    report["duplicate_faces_dropped"] = py::tuple(py::cast(repaired.report.duplicate_faces_dropped));
+    report["doubled_patch_faces_dropped"] = py::tuple(py::cast(repaired.report.doubled_patch_faces_dropped));
+    report["components_flipped"] = repaired.report.components_flipped;
+    return py::make_tuple(arrays_of(std::move(repaired.mesh)), report);
+}
+
+/// Calls measure(point) for each point, in double. An array of points costs time in proportion to the mesh,
+/// so the pieces between which Ctrl-C is heard are small.
+template <typename Measure>
+py::array measured(const py::object& points, int threads, const Measure& measure) {
+    constexpr std::size_t kPiece = 1024;
+    const unsigned workers = thread_count(threads);
+    const py::array_t<double, py::array::c_style | py::array::forcecast> numbers(
+        number_array(points, "points"));
+    if (numbers.ndim() == 0 || numbers.shape(numbers.ndim() - 1) != 3)
+        throw py::value_error("points must have the shape (..., 3)");
+    py::array_t<double> results(
+        std::vector<py::ssize_t>(numbers.shape(), numbers.shape() + numbers.ndim() - 1));
+    const double* from = numbers.data();
+    double* to = results.mutable_data();
+    const auto count = static_cast<std::size_t>(results.size());
+    for (std::size_t first = 0; first < count; first += kPiece) {
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+        const py::gil_scoped_release released;
+        parallel_for(std::min(kPiece, count - first), workers, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = first + begin; i < first + end; ++i)
+                to[i] = measure(Vec3d(from[3 * i], from[3 * i + 1], from[3 * i + 2]));
+        });
+    }
+    return results;
+}
+
+py::array pair_array(const std::vector<FacePair>& pairs) {
+    py::array_t<std::uint32_t> result({static_cast<py::ssize_t>(pairs.size()), py::ssize_t{2}});
+    auto* to = result.mutable_data();
+    for (const FacePair& pair : pairs) {
+        *to++ = pair.a;
+        *to++ = pair.b;
+    }
+    return result;
+}
+
+} // namespace
+
+void bind_meshes(py::module_& module) {
+    module.def("vertex_array", vertex_array);
+    module.def("face_array", face_array);
+    module.def("read_mesh", [](const std::filesystem::path& path) {
+        return arrays_of(unlocked([&] { return read_mesh(path); }));
+    });
+    module.def("write_mesh",
+               [](const std::filesystem::path& path, const Vertices& vertices, const Faces& faces) {
+                   const TriangleMesh mesh = mesh_of(vertices, faces);
+                   unlocked([&] { write_mesh(path, mesh); });
+               });
+    module.def("inspect", inspect_mesh);
+    module.def("repair", repair_mesh);
+    module.def("weld", [](const Vertices& vertices, const Faces& faces) {
+        const TriangleMesh mesh = mesh_of(vertices, faces);
+        return arrays_of(unlocked([&] { return weld(mesh); }));
+    });
+    module.def("winding_number",
+               [](const Vertices& vertices, const Faces& faces, const py::object& points, int threads) {
+                   const TriangleMesh mesh = mesh_of(vertices, faces);
+                   require_valid(mesh);
+                   return measured(points, threads, [&](const Vec3d& p) { return winding_number(mesh, p); });
+               });
+    module.def("unsigned_distance", [](const Vertices& vertices, const Faces& faces, const py::object& points,
+                                       int threads) {
+        const TriangleMesh mesh = mesh_of(vertices, faces);
+        require_valid(mesh);
+        return measured(points, threads, [&](const Vec3d& p) { return unsigned_distance(mesh, p); });
+    });
+    module.def("intersecting_pairs", [](const Vertices& vertices_a, const Faces& faces_a,
+                                        const Vertices& vertices_b, const Faces& faces_b) {
+        const TriangleMesh a = mesh_of(vertices_a, faces_a), b = mesh_of(vertices_b, faces_b);
+        return pair_array(unlocked([&] { return intersecting_pairs(a, b); }));
+    });
+    module.def("self_intersecting_pairs", [](const Vertices& vertices, const Faces& faces) {
+        const TriangleMesh mesh = mesh_of(vertices, faces);
+        return pair_array(unlocked([&] { return self_intersecting_pairs(mesh); }));
+    });
+    module.def("make_torus",
+               [](double major, double minor, std::uint32_t major_segments, std::uint32_t minor_segments) {
+                   return arrays_of(make_torus(major, minor, major_segments, minor_segments));
+               });
+    module.def("make_sphere", [](double radius, std::uint32_t meridians, std::uint32_t parallels) {
+        return arrays_of(make_sphere(radius, meridians, parallels));
+    });
+    module.def("make_box", [](const std::array<double, 3>& size, std::uint32_t segments) {
+        return arrays_of(make_box({size[0], size[1], size[2]}, segments));
+    });
+}
+
+} // namespace echinus::python

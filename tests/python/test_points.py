@@ -1,0 +1,174 @@
+"""Arrays of points: every layout and type gives the answers of a plain float32 array, or a clear error."""
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies
+from hypothesis.extra import numpy as arrays
+
+import echinus as ech
+from support import points_around, same_answers, torus
+
+MAP = ech.ExactMap(torus())
+POINTS = points_around(torus(), 3000)
+INSIDE = MAP.contains(POINTS)
+
+
+def as_field_of_structs(points):
+    structs = np.zeros(len(points), [("id", "i4"), ("position", "f4", 3), ("weight", "f8")])
+    structs["position"] = points
+    return structs["position"]
+
+
+def misaligned(points):
+    packed = np.zeros(len(points), np.dtype([("flag", "u1"), ("position", "f4", 3)], align=False))
+    packed["position"] = points
+    return packed["position"]
+
+
+LAYOUTS = {
+    "plain": lambda p: p,
+    "every second of twice as many": lambda p: np.repeat(p, 2, axis=0)[::2],
+    "first three of four columns": lambda p: np.hstack([p, p[:, :1]])[:, :3],
+    "column by column": np.asfortranarray,
+    "backwards": lambda p: p[::-1].copy()[::-1],
+    "coordinates backwards": lambda p: p[:, ::-1].copy()[:, ::-1],
+    "field of structs": as_field_of_structs,
+    "misaligned": misaligned,
+    "other byte order": lambda p: p.astype(">f4"),
+    "float64": lambda p: p.astype(np.float64),
+    "long double": lambda p: p.astype(np.longdouble),
+    "list": lambda p: p.tolist(),
+    "read-only": lambda p: np.frombuffer(p.tobytes(), np.float32).reshape(-1, 3),
+}
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_the_layout_of_the_points_does_not_change_an_answer(layout):
+    points = LAYOUTS[layout](POINTS)
+    assert (MAP.contains(points) == INSIDE).all()
+    assert (MAP.contacts(points, 0.1).array == MAP.contacts(POINTS, 0.1).array).all()
+    assert np.array_equal(MAP.signed_distance(points), MAP.signed_distance(POINTS))
+
+
+@pytest.mark.parametrize("shape", [(3000,), (30, 100), (2, 3, 500), (3000, 1), (1, 3000)])
+def test_leading_dimensions_are_kept(shape):
+    points = POINTS.reshape(*shape, 3)
+    assert np.array_equal(MAP.contains(points), INSIDE.reshape(shape))
+    contacts = MAP.contacts(points)
+    assert contacts.depth.shape == shape and contacts.normal.shape == (*shape, 3)
+
+
+def test_leading_dimensions_may_be_strided():
+    blocks = POINTS.reshape(30, 100, 3)
+    assert np.array_equal(MAP.contains(blocks[::2, ::3]), INSIDE.reshape(30, 100)[::2, ::3])
+    assert np.array_equal(MAP.contains(blocks.transpose(1, 0, 2)), INSIDE.reshape(30, 100).T)
+
+
+def test_a_single_point_has_a_single_answer():
+    assert MAP.contains([1, 0, 0]).shape == ()
+    assert MAP.contains([1, 0, 0]) and not MAP.contains([0, 0, 0])
+    assert MAP.contacts([1, 0, 0]).normal.shape == (3,)
+
+
+def test_one_point_repeated_without_memory_is_read_in_place():
+    assert MAP.contains(np.broadcast_to(np.float32([1, 0, 0]), (1000, 3))).all()
+
+
+@pytest.mark.parametrize("shape", [(0, 3), (5, 0, 3)])
+def test_no_points_have_no_answers(shape):
+    points = np.zeros(shape, np.float32)
+    assert MAP.contains(points).shape == shape[:-1]
+    assert MAP.contacts(points).depth.shape == shape[:-1]
+    assert MAP.sweep(points, points).fraction.shape == shape[:-1]
+    distances, gradients = MAP.signed_distance(points, gradient=True)
+    assert distances.shape == shape[:-1] and gradients.shape == shape
+
+
+def test_half_precision_and_whole_numbers_are_real_numbers():
+    assert np.array_equal(MAP.contains(POINTS.astype(np.float16)), MAP.contains(POINTS.astype(np.float16).astype(np.float32)))
+    assert MAP.contains(np.array([[1, 0, 0], [0, 0, 0]], np.int64)).tolist() == [True, False]
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_points_that_are_not_finite_are_outside_and_have_no_contact(value, dtype):
+    points = np.array([[value, 0, 0], [1, value, 0], [1, 0, value], [1, 0, 0]], dtype)
+    assert MAP.contains(points).tolist() == [False, False, False, True]
+    contacts = MAP.contacts(points, 10)
+    assert contacts.found.tolist() == [False, False, False, True]
+    assert (contacts.face[:3] == -1).all() and (contacts.depth[:3] == 0).all()
+
+
+def test_numbers_beyond_float32_are_outside_without_a_warning():
+    assert not MAP.contains([[1e300, 0, 0]]).any()
+
+
+@pytest.mark.parametrize("points", [[], [1, 2], [[1, 2]], np.zeros((3, 4)), np.float32(1), np.zeros((3, 0))])
+def test_a_wrong_shape_is_an_error_that_names_the_argument(points):
+    with pytest.raises(ValueError, match=r"points must have the shape \(\.\.\., 3\), not \("):
+        MAP.contains(points)
+
+
+@pytest.mark.parametrize("points", ["text", [["a", "b", "c"]], np.zeros((2, 3), complex), np.zeros((2, 3), bool), [None] * 3, object()])
+def test_a_wrong_type_is_an_error_that_names_the_argument(points):
+    with pytest.raises(TypeError, match="points must be an array of real numbers"):
+        MAP.contains(points)
+
+
+def test_ragged_points_are_an_error():
+    with pytest.raises(TypeError, match="points must be an array of real numbers"):
+        MAP.contains([[1, 2, 3], [4, 5]])
+
+
+def test_threads_must_not_be_negative():
+    with pytest.raises(ValueError, match="threads is -1"):
+        MAP.contains(POINTS, threads=-1)
+
+
+@pytest.mark.parametrize("margin", [-1, np.nan])
+def test_a_margin_must_not_be_negative(margin):
+    with pytest.raises(ValueError, match="margin must be 0 or more"):
+        MAP.contacts(POINTS, margin)
+
+
+def test_answers_go_where_out_says():
+    out = np.ones(len(POINTS), bool)
+    assert MAP.contains(POINTS, out=out) is out
+    assert np.array_equal(out, INSIDE)
+
+
+@pytest.mark.parametrize(
+    "out", [np.ones(2999, bool), np.ones(3000, np.uint8), np.ones(6000, bool)[::2], np.ones((3000, 1), bool), [True] * 3000]
+)
+def test_an_out_that_does_not_fit_is_refused(out):
+    with pytest.raises(ValueError, match="out must be a writeable, contiguous array of type bool"):
+        MAP.contains(POINTS, out=out)
+
+
+def test_an_out_that_is_read_only_is_refused():
+    out = np.ones(len(POINTS), bool)
+    out.flags.writeable = False
+    with pytest.raises(ValueError, match="out must be a writeable"):
+        MAP.contains(POINTS, out=out)
+
+
+@given(
+    arrays.arrays(
+        strategies.sampled_from([np.float32, np.float64, np.float16]),
+        arrays.array_shapes(min_dims=1, max_dims=3, max_side=5).map(lambda shape: (*shape, 3)),
+        elements=strategies.floats(width=16),
+    ),
+    strategies.floats(0, 2),
+)
+def test_points_of_any_values_and_shape_are_answered_as_one_by_one(points, margin):
+    inside, contacts = MAP.contains(points), MAP.contacts(points, margin)
+    assert inside.shape == contacts.array.shape == points.shape[:-1]
+    for index in np.ndindex(inside.shape):
+        assert inside[index] == MAP.contains(points[index])
+        assert same_answers(contacts.array[index], MAP.contacts(points[index], margin).array[()])
+
+
+@given(arrays.basic_indices((20, 30), allow_ellipsis=False))
+def test_any_slice_of_points_is_answered_like_its_copy(index):
+    points = POINTS[:600].reshape(20, 30, 3)[index]
+    assert np.array_equal(MAP.contains(points), MAP.contains(points.copy()))

@@ -1,0 +1,200 @@
+"""Simulations: those of C++, bit for bit; and views that live."""
+
+import _thread
+import copy
+import json
+import pickle
+import threading
+
+import numpy as np
+import pytest
+
+import echinus as ech
+from support import ROOT, open_torus, run_program, torus
+
+SCENE = ROOT / "scenes" / "torus_small.json"
+HIGH = {"model": {"torus": {}}, "cloth": {"size": [3, 3], "particles": [12, 12], "position": [0, 0, 2]}}
+SHEET = {"model": {"torus": {}}, "cloth": {"size": [3, 3], "particles": [12, 12], "position": [0, 0, 0.5]}}
+
+
+def test_a_simulation_gives_the_positions_of_the_c_plus_plus_program(tmp_path):
+    run_program("simulate", SCENE, "--frames", "60", "--obj", "-o", tmp_path / "run")
+    simulation = ech.Simulation.from_scene(SCENE)
+    simulation.step(60)
+    theirs = (tmp_path / "run" / "frames" / "cloth_000060.obj").read_text().splitlines()
+    vertices = np.array([line.split()[1:4] for line in theirs if line.startswith("v ")], np.float32)
+    assert np.array_equal(simulation.positions, vertices)
+
+
+def test_positions_are_a_view_that_lives_and_cannot_be_written():
+    simulation = ech.Simulation.from_scene(HIGH)
+    positions, before = simulation.positions, simulation.positions.copy()
+    simulation.step(10)
+    assert np.shares_memory(positions, simulation.positions)
+    assert (positions[:, 2] < before[:, 2]).all()
+    with pytest.raises(ValueError):
+        positions[0] = 0
+    assert positions.shape == (144, 3) and simulation.faces.shape == (242, 3)
+
+
+def test_a_view_keeps_the_simulation_alive():
+    positions = ech.Simulation.from_scene(SHEET).positions
+    assert np.array_equal(positions, ech.Simulation.from_scene(SHEET).positions)
+
+
+def test_velocities_are_those_of_falling():
+    simulation = ech.Simulation.from_scene({**HIGH, "material": {"drag": 0}})
+    simulation.step(12)
+    assert simulation.velocities[:, 2].mean() == pytest.approx(-9.81 * 12 / 240, rel=0.02)
+
+
+def test_it_runs_until_the_cloth_rests():
+    simulation = ech.Simulation.from_scene(SHEET)
+    assert simulation.run() and simulation.at_rest
+    assert simulation.frame < simulation.frame_limit == 3000
+    assert simulation.profile.contact_count > 0 and simulation.profile.lost_count == 0
+    assert not ech.ExactMap(ech.make_torus()).contains(simulation.positions).any()
+    assert not ech.Simulation.from_scene(SHEET).run(5)
+
+
+def test_the_same_scene_gives_the_same_bits():
+    a, b = (ech.Simulation.from_scene(SHEET) for _ in range(2))
+    a.step(50)
+    b.step(50)
+    assert a.state_hash == b.state_hash
+
+
+def test_copies_are_independent():
+    a = ech.Simulation.from_scene(SHEET)
+    b = copy.copy(a)
+    a.step()
+    assert b.frame == 0 and a.frame == 1
+    b.step()
+    assert a.state_hash == b.state_hash and not np.shares_memory(a.positions, b.positions)
+
+
+def test_a_simulation_cannot_be_pickled():
+    with pytest.raises(TypeError):
+        pickle.dumps(ech.Simulation.from_scene(SHEET))
+
+
+def test_a_mesh_or_a_map_may_replace_the_model():
+    expected = ech.Simulation.from_scene(SHEET)
+    expected.step(100)
+    for model in (ech.make_torus(), ech.ExactMap(ech.make_torus())):
+        simulation = ech.Simulation.from_scene(SHEET, model=model)
+        simulation.step(100)
+        assert simulation.state_hash == expected.state_hash
+
+
+def test_a_mesh_may_replace_the_file_of_the_cloth():
+    scene = {"model": {"torus": {}}, "cloth": {"mesh": "sheet.obj", "position": [0, 0, 1]}}
+    sheet = ech.make_sphere(0.3, 12, 6)
+    simulation = ech.Simulation.from_scene(scene, cloth=sheet)
+    assert np.allclose(simulation.positions, sheet.vertices + [0, 0, 1], atol=1e-6)
+
+
+def test_surfaces_collide_where_it_is_said():
+    simulation = ech.Simulation.from_scene(SHEET, surface_collision=True, self_collision=True)
+    assert simulation.options.surface_collision and simulation.options.self_collision
+    simulation.step(200)
+    assert len(ech.intersecting_pairs(simulation.mesh, ech.make_torus())) == 0
+    assert simulation.profile.measured_pair_count > 0
+    particles_only = ech.Simulation.from_scene({**SHEET, "surface_collision": True}, surface_collision=False)
+    assert not particles_only.options.surface_collision
+
+
+def test_an_open_model_is_refused_unless_it_is_said():
+    with pytest.raises(ech.Error, match="not closed") as raised:
+        ech.Simulation.from_scene(SHEET, model=open_torus())
+    assert raised.value.code == "invalid_mesh"
+    ech.Simulation.from_scene(SHEET, model=open_torus(), allow_open_colliders=True).step()
+    ech.Simulation.from_scene(SHEET, model=open_torus(), surface_collision=True).step()
+
+
+def test_the_scene_may_repair_a_model():
+    doubled = ech.Mesh(torus().vertices, np.concatenate([torus().faces, torus().faces[:5]]))
+    with pytest.raises(ech.Error, match="not closed"):
+        ech.Simulation.from_scene(SHEET, model=doubled)
+    ech.Simulation.from_scene({**SHEET, "repair": ["duplicate_faces"]}, model=doubled)
+
+
+def test_models_are_looked_for_in_the_folders_that_are_named(tmp_path):
+    ech.write_mesh(tmp_path / "mine.obj", ech.make_torus())
+    scene = {**SHEET, "model": "mine.obj"}
+    with pytest.raises(ech.Error, match="mine.obj") as raised:
+        ech.Simulation.from_scene(scene)
+    assert raised.value.code == "unreadable"
+    ech.Simulation.from_scene(scene, model_folders=[tmp_path])
+    (tmp_path / "scene.json").write_text(json.dumps(scene))
+    ech.Simulation.from_scene(tmp_path / "scene.json")
+
+
+def test_an_error_in_a_scene_names_the_key():
+    with pytest.raises(ech.Error, match='there is no key "cloth.thicknes"') as raised:
+        ech.Simulation.from_scene({**SHEET, "cloth": {"size": [1, 1], "thicknes": 1}})
+    assert raised.value.code == "invalid_scene"
+    with pytest.raises(TypeError, match="from_scene"):
+        ech.Simulation()
+
+
+def test_models_hands_and_wind_move_what_they_should():
+    simulation = ech.Simulation.from_scene({**SHEET, "gravity": [0, 0, 0]})
+    simulation.set_collider_velocity(0, [0, 0, -1], [0, 0, 1])
+    simulation.set_particle_velocity(0, [0, 0, 5])
+    simulation.step()
+    assert simulation.colliders[0].position == pytest.approx((0, 0, -1 / 240))
+    assert simulation.positions[0, 2] > simulation.positions[100, 2]
+    before = simulation.positions[:, 2].mean()
+    simulation.blow([0, 0, 10], 5)
+    simulation.step()
+    assert simulation.positions[:, 2].mean() > before
+
+
+def test_what_moves_nothing_is_refused():
+    simulation = ech.Simulation.from_scene(SHEET)
+    with pytest.raises(IndexError, match="there is no particle 144; there are 144"):
+        simulation.set_particle_velocity(144, [0, 0, 0])
+    with pytest.raises(IndexError, match="there is no collider 1"):
+        simulation.set_collider_velocity(1, [0, 0, 0], [0, 0, 0])
+    with pytest.raises(ValueError, match="velocity must be finite"):
+        simulation.set_particle_velocity(0, [np.nan, 0, 0])
+    with pytest.raises(ValueError, match="rate"):
+        simulation.blow([0, 0, 0], -1)
+    with pytest.raises(ValueError):
+        simulation.blow([0, 0], 1)
+
+
+def test_a_simulation_that_diverged_can_only_be_read():
+    simulation = ech.Simulation.from_scene(SHEET)
+    simulation.set_particle_velocity(0, [1e30, 0, 0])
+    with pytest.raises(ech.Error, match="frame") as raised:
+        simulation.step(10)
+    assert raised.value.code == "diverged"
+    for call in (simulation.step, lambda: simulation.blow([0, 0, 0], 0)):
+        with pytest.raises(ech.Error, match="can only be read"):
+            call()
+    assert simulation.positions.shape == (144, 3)
+
+
+def test_ctrl_c_ends_long_work():
+    simulation = ech.Simulation.from_scene(SHEET)
+    timer = threading.Timer(0.2, _thread.interrupt_main)
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        simulation.step(2**31)
+    timer.join()
+    frame = simulation.frame
+    simulation.step()
+    assert simulation.frame == frame + 1
+
+
+def test_threads_may_share_a_simulation():
+    shared, alone = (ech.Simulation.from_scene(SHEET) for _ in range(2))
+    threads = [threading.Thread(target=shared.step, args=(50,)) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    while any(thread.is_alive() for thread in threads):
+        assert shared.profile.query_count >= 0
+    alone.step(200)
+    assert shared.frame == 200 and shared.state_hash == alone.state_hash
