@@ -148,7 +148,7 @@ void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
                     std::span<std::uint8_t> inside, unsigned thread_count = 1) noexcept;
 
 /// contact() for many points, in the same way. A point that is about equally near to very many faces costs as
-/// much as in contact(). Takes 120 KB of the stack. For more than 256 points it allocates for the time of the
+/// much as in contact(). Takes 150 KB of the stack. For more than 256 points it allocates for the time of the
 /// call up to 1.1 MB a thread and 1 byte a point; where that fails, it answers one by one, as slowly as
 /// contact().
 /// @param points_local  [n]
@@ -175,8 +175,10 @@ void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 ///                  medial axis), it is that of the first of their faces in the map's order
 float signed_distance(const ExactMapView& map, Vec3f point_local, Vec3f* gradient = nullptr) noexcept;
 
-/// signed_distance() for many points, by vector instructions: the same answers, bit for bit. Memory as in
-/// contacts_batch().
+/// signed_distance() for many points, by vector instructions: the same answers, bit for bit. Several times as
+/// fast in calls of thousands of points, and faster still in larger ones, whose points lie closer together.
+/// Takes 150 KB of the stack. For more than 256 points it allocates for the time of the call up to 4.2 MB a
+/// thread and 1 byte a point; where that fails, it answers one by one.
 /// @param points_local  [n]
 /// @param distances     [n] out. Does not overlap points_local
 /// @param gradients     [n] out, or empty: not wanted. Does not overlap points_local

@@ -243,6 +243,10 @@ HWY_EXPORT(measure_contacts);
 
 /// Where the answers of contacts_batch() go.
 struct ContactOutput {
+    /// Of particles that are sorted at a time: few enough for what is written to stay in a cache, enough for
+    /// neighbours to be close to each other.
+    static constexpr std::size_t kQueueCapacity = 1 << 16;
+
     std::span<Contact> contacts;
 
     std::size_t size() const { return contacts.size(); }
@@ -258,6 +262,8 @@ struct ContactOutput {
 
 /// Where those of signed_distance_batch() go.
 struct SignedDistanceOutput {
+    static constexpr std::size_t kQueueCapacity = 1 << 18; // a number takes less of the cache
+
     std::span<float> distances;
     std::span<Vec3f> gradients; ///< or empty
 
@@ -346,9 +352,7 @@ void find_with(const ContactSearch& search, const StridedSpan<const Vec3f>& poin
         find_with(search, points_local, output, {{sides.data(), output.size()}, queue, spare});
         return;
     }
-    // Few enough for what is written to stay in a cache, enough for neighbours to be close to each other.
-    constexpr std::size_t kQueueCapacity = 1 << 16;
-    const std::size_t count = std::min(kQueueCapacity, output.size());
+    const std::size_t count = std::min(Output::kQueueCapacity, output.size());
     // Not std::make_unique, which would fill them.
     const std::unique_ptr<Side[]> sides(new Side[output.size()]);
     const std::unique_ptr<KeyedParticle[]> queue(new KeyedParticle[2 * count]);

@@ -28,8 +28,8 @@ struct DistanceLanes {
 /// Rounding. Let S be the sum of all that is measured, coordinates of corners and places. Corners and places
 /// are off by less than 2^-22 S, hence the distance to an edge by less than 2^-19 S. The distance to the
 /// plane, and where its sides are, is off by that times q = |u| |v| / |u x v| for the sharpest corner,
-/// between sides u and v. What is allowed for is twice that, e = 2^-18 S q: distances d lie within d (1 -
-/// 2^-9) - 2^9 e^2 and the like, squared, since 2 d e is less than 2^-10 d^2 + 2^10 e^2. Where q is large,
+/// between sides u and v. What is allowed for is twice that, e = 2^-18 S q: squared distances lie within
+/// d^2 (1 - 2^-12) - 2^13 e^2 and the like, since 2 d e is at most 2^-13 d^2 + 2^13 e^2. Where q is large,
 /// only the edges are measured: no point of the face is farther from them than its width w, and (d - w)^2 is
 /// at least d^2 / 2 - w^2.
 class LeafLanes {
@@ -109,7 +109,7 @@ class LeafLanes {
   private:
     static constexpr std::size_t kWidth = TreeNode::kWidth;
     static constexpr float kFar = 1e30F;
-    static constexpr float kLowerFactor = 1 - 0x1p-9F, kUpperFactor = 1 + 0x1p-9F;
+    static constexpr float kLowerFactor = 1 - 0x1p-12F, kUpperFactor = 1 + 0x1p-12F;
 
     using Faces = hn::CappedTag<float, kWidth>;
     using FaceLanes = hn::Vec<Faces>;
@@ -144,7 +144,7 @@ class LeafLanes {
 
         const FaceLanes scale =
             hn::Add(hn::Add(l1_norm(a), l1_norm(b)), hn::Add(l1_norm(c), hn::Set(d, reach)));
-        const FaceLanes error_sq = hn::Mul(hn::Mul(scale, scale), hn::Set(d, 0x1p-26F));
+        const FaceLanes error_sq = hn::Mul(hn::Mul(scale, scale), hn::Set(d, 0x1p-23F));
         constexpr float kThin = 1024; // q^2 beyond which the plane is not used
         const FaceLanes sides_sq =    // of the two longest, which meet in the sharpest corner
             hn::Max(hn::Max(hn::Mul(ab_sq, bc_sq), hn::Mul(bc_sq, ca_sq)), hn::Mul(ca_sq, ab_sq));

@@ -221,8 +221,8 @@ std::optional<std::uint32_t> nearest_face(const ExactMapView& map, const Vec3d& 
         // No corner is farther from the centre than its coordinates can be, snapped and rounded.
         if (farthest < length(place) - 2 * static_cast<double>(kLatticeExtent)) return std::nullopt;
         const auto face = nearest_face_from_afar(map, place);
-        return face && nearest_point_on_face(map, *face, place, stretch).distance <= farthest ? face
-                                                                                              : std::nullopt;
+        const bool is_within = face && distance_sq_to_face(map, *face, place, stretch) <= farthest * farthest;
+        return is_within ? face : std::nullopt;
     }
     NearestSoFar nearest(map, place, stretch, farthest);
     float bound = rounded_up(nearest.distance_sq());

@@ -21,9 +21,9 @@ struct NearestPoint {
     Feature feature = Feature::Unknown;
 };
 
-/// Is a place far from the lattice? Squared distances to different faces then hardly differ, and the search
-/// compares them in another form.
-inline constexpr double kAfar = 4 * static_cast<double>(kLatticeExtent);
+/// Is a place clear of the lattice? The farther it is, the less squared distances to different faces differ,
+/// and the search compares them in another form.
+inline constexpr double kAfar = 1.25 * static_cast<double>(kLatticeExtent);
 inline bool is_afar(const Vec3d& place) {
     return std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)}) >= kAfar;
 }

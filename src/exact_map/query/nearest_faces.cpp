@@ -68,12 +68,17 @@ class NearestFaceFinder {
     static constexpr double kMaxDistanceSq = 1e30;
     static constexpr std::size_t kMaxLanes = 16;
 
-    /// Places afar are left to the scalar query.
-    static bool is_within_range(const NearestSearch& search) { return !is_afar(search.place); }
+    /// Places farther off are left to the scalar query.
+    static constexpr double kRange = 4 * static_cast<double>(kLatticeExtent);
+
+    static bool is_within_range(const NearestSearch& search) {
+        const Vec3d& p = search.place;
+        return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)}) < kRange;
+    }
 
     static Vec3<std::int32_t> rounded_origin(const Vec3d& place) {
         const auto within = [](double coordinate) {
-            return static_cast<std::int32_t>(std::clamp(coordinate, -kAfar, kAfar));
+            return static_cast<std::int32_t>(std::clamp(coordinate, -kRange, kRange));
         };
         return {within(place.x), within(place.y), within(place.z)};
     }
