@@ -1,6 +1,6 @@
 #include "support/expect_error.hpp"
 #include "support/mesh_assembly.hpp"
-#include "support/random_points.hpp"
+#include "support/triangle_soup.hpp"
 
 #include <echinus/intersections.hpp>
 
@@ -98,12 +98,6 @@ bool meet_by_elimination(const Corners& a, const Corners& b) {
 
 // ---- Triangles with many coincidences ----
 
-Vec3f whole_point(Random& random, int half_width) {
-    std::uniform_int_distribution<int> coordinate(-half_width, half_width);
-    const int x = coordinate(random), y = coordinate(random);
-    return Vec3f(Vec3<int>(x, y, coordinate(random)));
-}
-
 Corners whole_triangle(Random& random, int half_width) {
     const Vec3f a = whole_point(random, half_width), b = whole_point(random, half_width);
     return {a, b, whole_point(random, half_width)};
@@ -139,18 +133,6 @@ TriangleMesh grid(std::uint32_t side, float size, const Vec3f& origin) {
             mesh.faces.push_back({k, k + 1, k + side});
             mesh.faces.push_back({k + 1, k + side + 1, k + side});
         }
-    return mesh;
-}
-
-TriangleMesh random_soup(Random& random, std::uint32_t vertex_count, std::uint32_t face_count,
-                         int half_width) {
-    TriangleMesh mesh;
-    for (std::uint32_t i = 0; i < vertex_count; ++i) mesh.vertices.push_back(whole_point(random, half_width));
-    std::uniform_int_distribution<std::uint32_t> vertex(0, vertex_count - 1);
-    for (std::uint32_t i = 0; i < face_count; ++i) {
-        const std::uint32_t a = vertex(random), b = vertex(random);
-        mesh.faces.push_back({a, b, vertex(random)});
-    }
     return mesh;
 }
 

@@ -2,7 +2,7 @@
 
 #include "oracle/intersection_judge.hpp"
 #include "oracle/test_meshes.hpp"
-#include "support/random_points.hpp"
+#include "support/triangle_soup.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,12 +14,6 @@ using namespace echinus::test;
 namespace {
 
 using Corners = std::array<Vec3f, 3>;
-
-Vec3f whole_point(Random& random, int half_width) {
-    std::uniform_int_distribution<int> coordinate(-half_width, half_width);
-    const int x = coordinate(random), y = coordinate(random);
-    return Vec3f(Vec3<int>(x, y, coordinate(random)));
-}
 
 /// A point of a triangle or near it: where floats can hold it on an edge or in the plane, else rounded.
 Vec3f point_of(Random& random, const Corners& t) {
@@ -37,17 +31,6 @@ Vec3f nudged(Random& random, const Vec3f& p) {
     };
     const float x = nudge(p.x), y = nudge(p.y);
     return {x, y, nudge(p.z)};
-}
-
-TriangleMesh soup(Random& random, std::uint32_t vertex_count, std::uint32_t face_count, int half_width) {
-    TriangleMesh mesh;
-    for (std::uint32_t i = 0; i < vertex_count; ++i) mesh.vertices.push_back(whole_point(random, half_width));
-    std::uniform_int_distribution<std::uint32_t> vertex(0, vertex_count - 1);
-    for (std::uint32_t i = 0; i < face_count; ++i) {
-        const std::uint32_t a = vertex(random), b = vertex(random);
-        mesh.faces.push_back({a, b, vertex(random)});
-    }
-    return mesh;
 }
 
 /// A mesh whose vertices all moved by up to `size` in every direction.
@@ -111,7 +94,7 @@ TEST(IntersectionsOracle, PairsOfAMeshWithItselfAreThoseOfCgal) {
         }
     EXPECT_GT(found, 1000U);
     for (int i = 0; i < 200; ++i) {
-        const TriangleMesh mesh = soup(random, 10, 20, i % 4 + 1);
+        const TriangleMesh mesh = random_soup(random, 10, 20, i % 4 + 1);
         ASSERT_EQ(self_intersecting_pairs(mesh), self_intersecting_pairs_by_cgal(mesh)) << i;
     }
 }
