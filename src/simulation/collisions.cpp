@@ -19,7 +19,7 @@ Collisions::Collisions(const std::vector<Collider>& colliders, const Particles& 
     unproven_.reserve(collisions_.size() * particles.count());
 }
 
-Collisions::Collisions(const Collisions& other) : rescues_(other.rescues_) {
+Collisions::Collisions(const Collisions& other) : rescues_(other.rescues_), has_lost_(other.has_lost_) {
     for (const auto& collision : other.collisions_) collisions_.push_back(collision->clone());
     unproven_.reserve(other.unproven_.capacity());
 }
@@ -42,6 +42,19 @@ void Collisions::relax(Particles& particles, SimulationProfile& profile) {
 }
 
 void Collisions::keep_free(Particles& particles, SimulationProfile& profile) {
+    prove(particles, rescues_, profile);
+    for (const auto& collision : collisions_) collision->end_frame(particles);
+}
+
+void Collisions::end_frame(Particles& particles, bool was_squeezed, SimulationProfile& profile) {
+    // A particle that was lost may be free again. None is rescued: a place that is free for a particle may be
+    // none for its faces.
+    if (was_squeezed || has_lost_) prove(particles, false, profile);
+    for (const auto& collision : collisions_) collision->end_frame(particles);
+}
+
+void Collisions::prove(Particles& particles, bool rescues, SimulationProfile& profile) {
+    has_lost_ = false;
     unproven_.clear();
     for (const auto& collision : collisions_) {
         const auto found = collision->find_unproven(particles);
@@ -49,17 +62,14 @@ void Collisions::keep_free(Particles& particles, SimulationProfile& profile) {
     }
     for (const std::uint32_t particle : unproven_) {
         const bool was_lost = is_lost(particle, particles);
-        if (rescues_) rescue(particle, particles);
-        if (is_lost(particle, particles))
+        if (rescues) rescue(particle, particles);
+        if (is_lost(particle, particles)) {
+            has_lost_ = true;
             profile.lost_count += mark_lost(particle, particles);
-        else if (was_lost)
+        } else if (was_lost) {
             ++profile.rescued_count;
+        }
     }
-    end_frame(particles);
-}
-
-void Collisions::end_frame(const Particles& particles) {
-    for (const auto& collision : collisions_) collision->end_frame(particles);
 }
 
 void Collisions::rescue(std::uint32_t particle, Particles& particles) const {

@@ -28,10 +28,13 @@ class Collisions {
     /// The proof at the end of a frame: rescues the particles that are not proven free, and counts those that
     /// are lost nevertheless.
     void keep_free(Particles& particles, SimulationProfile& profile);
-    /// Instead of keep_free(), where no particle has passed through anything.
-    void end_frame(const Particles& particles);
+    /// Instead of keep_free() where surfaces collide: no particle passes through anything, unless surfaces
+    /// left one no place. Counts the particles that are lost.
+    /// @param was_squeezed  that happened in this frame
+    void end_frame(Particles& particles, bool was_squeezed, SimulationProfile& profile);
 
   private:
+    void prove(Particles& particles, bool rescues, SimulationProfile& profile);
     void rescue(std::uint32_t particle, Particles& particles) const;
     bool is_lost(std::uint32_t particle, const Particles& particles) const;
     std::size_t mark_lost(std::uint32_t particle, const Particles& particles);
@@ -39,6 +42,7 @@ class Collisions {
     std::vector<std::unique_ptr<Collision>> collisions_; ///< one for each collider
     std::vector<std::uint32_t> unproven_;                ///< in keep_free(), with room for all
     bool rescues_;
+    bool has_lost_ = false; ///< a particle ended the last frame lost
 };
 
 } // namespace echinus

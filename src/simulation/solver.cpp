@@ -167,12 +167,10 @@ void Simulation::Solver::collide() {
 
 void Simulation::Solver::keep_free() {
     const Stopwatch stopwatch(profile.collision_seconds);
-    if (surfaces_) {
-        surfaces_->end_frame(particles_, profile);
-        collisions_.end_frame(particles_);
-    } else {
-        collisions_.keep_free(particles_, profile);
-    }
+    if (!surfaces_) return collisions_.keep_free(particles_, profile);
+    const std::uint64_t squeezed_before = profile.squeezed_count;
+    surfaces_->end_frame(particles_, profile);
+    collisions_.end_frame(particles_, profile.squeezed_count > squeezed_before, profile);
 }
 
 void Simulation::Solver::publish() {

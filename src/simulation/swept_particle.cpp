@@ -16,8 +16,8 @@ SweptParticle::SweptParticle(const ColliderNow& collider, const FreePlaces& free
 /// Of a particle that was free.
 bool SweptParticle::is_free_at(const Vec3f& place_local) const {
     if (sweep(now_.map, free_local_, place_local).found()) return false;
-    // For a closed surface, a sweep without a crossing implies this too.
-    return now_.map.border.empty() || !contains(now_.map, place_local);
+    // For a closed surface, a sweep without a crossing implies this too; with two sides there is no inside.
+    return now_.map.border.empty() || now_.two_sided || !contains(now_.map, place_local);
 }
 
 bool SweptParticle::is_unproven() const {

@@ -251,3 +251,32 @@ TEST(SurfaceCollision, CountsWhatItCannotKeepApart) {
     }
     EXPECT_GT(frames_with_pairs, 0u);
 }
+
+TEST(SurfaceCollision, CountsAsLostWhatTwoModelsHaveSqueezedInside) {
+    const std::vector<TriangleMesh> models{make_box({1, 1, 0.6}), make_box({1, 1, 0.6})};
+    std::vector<Collider> colliders = colliders_of(models);
+    for (const std::size_t i : {0u, 1u}) {
+        const double side = i == 0 ? 1 : -1;
+        colliders[i].pose.translation = {0, 0, side * 0.35};
+        colliders[i].linear_velocity = {0, 0, side * -0.5};
+    }
+    SimulationOptions options = kSurfaces;
+    options.gravity = {};
+    Simulation simulation(sheet_at(0, 0.5, 8), colliders, options);
+    std::uint64_t most_inside = 0;
+    for (int i = 0; i < 120; ++i) {
+        const std::uint64_t lost_before = simulation.profile().lost_count;
+        simulation.step();
+        std::uint64_t inside = 0;
+        for (const Collider& collider : simulation.colliders())
+            for (const Vec3f& p : simulation.positions()) inside += contains(collider, p) ? 1 : 0;
+        ASSERT_EQ(simulation.profile().lost_count - lost_before, inside) << "in frame " << i;
+        if (inside > 0) ASSERT_GT(simulation.profile().squeezed_count, 0u);
+        most_inside = std::max(most_inside, inside);
+        // They overlap by a fifth of a box, and part again.
+        if (i == 60)
+            for (const std::size_t c : {0u, 1u})
+                simulation.set_collider_velocity(c, {0, 0, c == 0 ? 0.5 : -0.5}, {});
+    }
+    EXPECT_GT(most_inside, 30u);
+}
