@@ -196,7 +196,7 @@ struct SimulationOptions {
     /// Edges and faces collide too, not only particles: no face of the deformable ever meets a collider
     /// (docs/surfaces.md). Every collider needs an exact map; one of an open mesh needs no
     /// allow_open_colliders and keeps each particle on its side. Nothing may intersect at the start, no
-    /// particle may begin inside a closed model, and keep_free must be true.
+    /// particle may begin inside a closed model (but see untangle), and keep_free must be true.
     bool surface_collision = false;
     /// Needs surface_collision: the faces of the deformable do not meet each other either.
     bool self_collision = false;
@@ -204,6 +204,11 @@ struct SimulationOptions {
     /// small faces it is less: at most 0.4 of the least height of a face, and a quarter of the mean
     /// edge, so that neighbours have room.
     std::optional<double> self_thickness{};
+    /// Needs surface_collision: what begins intersecting, or inside a closed model, is parted before the
+    /// first frame instead of refused, by moving particles that are not pinned; what cannot be parted is
+    /// refused. Time: up to some hundred times that of looking for the pairs that intersect
+    /// (intersections.hpp).
+    bool untangle = false;
     /// A particle farther than this from the middle of where the deformable began ends the simulation as
     /// diverged, units. 0: 10 000 times the deformable's extent at the start.
     double bound = 0;
@@ -222,7 +227,8 @@ struct SimulationProfile {
     /// Times that a particle was rescued: not free of all exact maps after the constraints of a frame, though
     /// it was once, and put back to a free place. docs/conventions.md defines free, rescued and lost.
     std::uint64_t rescued_count = 0;
-    /// Times that a particle was lost: it ended a frame not free of an exact map, though it was once. It
+    /// Times that a particle was lost: it ended a frame not free of an exact map, though it was once; with
+    /// surface_collision only where it was squeezed (squeezed_count). It
     /// counts once for each such map, and again in each frame that it ends so. A particle that began inside
     /// and was never outside yet does not count.
     std::uint64_t lost_count = 0;
@@ -248,7 +254,8 @@ class Simulation {
     /// is not finite, or a collider has a scale of 0, a rotation that is not of unit length, a null pointer
     /// for a map, or the exact map of an open mesh without options.allow_open_colliders; with
     /// options.surface_collision also when a collider has no exact map, or the deformable begins intersecting
-    /// a collider or, with options.self_collision, itself: the sentence names the first pairs
+    /// a collider or, with options.self_collision, itself, or inside, and options.untangle is not set or
+    /// could not part them: the sentence names the first pairs
     Simulation(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
     ~Simulation();
     Simulation(const Simulation& other);

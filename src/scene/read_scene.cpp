@@ -307,6 +307,9 @@ void read_surfaces(JsonObject& root, Scene& scene) {
     self = surfaces && kSelfCollision;
     root.read("self_collision", self);
     if (self && !surfaces) root.refuse("self_collision", "false, or \"surface_collision\" must be true");
+    bool& untangle = scene.simulation.untangle;
+    root.read("untangle", untangle);
+    if (untangle && !surfaces) root.refuse("untangle", "false, or \"surface_collision\" must be true");
 }
 
 void read_solver(JsonObject& root, SimulationOptions& options) {

@@ -2,6 +2,7 @@
 
 #include "simulation/start_state.hpp"
 #include "simulation/stopwatch.hpp"
+#include "simulation/untangle.hpp"
 #include "simulation/validation.hpp"
 
 #include <echinus/error.hpp>
@@ -54,6 +55,19 @@ std::vector<Collider> with_unit_rotations(std::vector<Collider> colliders) {
     return colliders;
 }
 
+/// The deformable as it begins.
+/// @throws Error InvalidOptions
+Deformable valid_start(Deformable deformable, const std::vector<Collider>& colliders,
+                       const SimulationOptions& options) {
+    require_valid(options);
+    require_valid(deformable);
+    require_valid(colliders, options);
+    require_valid_attachments(deformable, colliders.size());
+    if (options.untangle)
+        untangle(deformable, with_unit_rotations(colliders), with_thickness(options, deformable));
+    return deformable;
+}
+
 /// x' = x + (1 - drag) (x - x_previous) + a dt^2 (Jakobsen 2001, section 2), of one coordinate. Plain arrays
 /// that do not overlap and no branch, for the compiler's vectors.
 /// @param mobility  1, or 0 of a particle that is pinned
@@ -71,9 +85,7 @@ void integrate_coordinate(float* __restrict positions, float* __restrict previou
 
 Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colliders_in,
                            const SimulationOptions& options_in)
-    : deformable((require_valid(options_in), require_valid(deformable_in),
-                  require_valid(colliders_in, options_in),
-                  require_valid_attachments(deformable_in, colliders_in.size()), std::move(deformable_in))),
+    : deformable(valid_start(std::move(deformable_in), colliders_in, options_in)),
       colliders(with_unit_rotations(std::move(colliders_in))),
       options(with_thickness(options_in, deformable)), largest_speed(std::numeric_limits<double>::infinity()),
       particles_(deformable), sticks_(weighted_sticks(deformable, options)),

@@ -21,7 +21,12 @@ namespace echinus {
 namespace {
 
 constexpr std::size_t kNamedPairs = 3;
-constexpr const char* kRemedy = "; move the start until they are apart, or leave out ";
+
+/// @param option  that asks for this
+std::string remedy(const SimulationOptions& options, const char* option) {
+    return std::string("; move the start until they are apart, ") +
+           (options.untangle ? "" : "set untangle, which does that, ") + "or leave out " + option;
+}
 
 /// With edges and vertices as faces without area, after the faces.
 TriangleMesh surface_of(const Deformable& deformable, const Elements& elements) {
@@ -39,25 +44,26 @@ std::string name_of(const Elements& elements, std::uint32_t number) {
 
 /// @param describe  a pair
 template <typename Describe>
-[[noreturn]] void refuse(const std::vector<FacePair>& pairs, const std::string& whom, const char* option,
-                         const Describe& describe) {
+[[noreturn]] void refuse(const std::vector<FacePair>& pairs, const std::string& whom,
+                         const SimulationOptions& options, const char* option, const Describe& describe) {
     std::string sentence = "the deformable begins intersecting " + whom + " in " +
-                           std::to_string(pairs.size()) + (pairs.size() == 1 ? " pair: " : " pairs: ");
+                           std::to_string(pairs.size()) + (pairs.size() == 1 ? " pair" : " pairs") +
+                           (options.untangle ? " that untangle could not part: " : ": ");
     for (std::size_t i = 0; i < std::min(pairs.size(), kNamedPairs); ++i)
         sentence += (i == 0 ? "" : ", ") + describe(pairs[i]);
     if (pairs.size() > kNamedPairs) sentence += ", ...";
-    throw Error(ErrorCode::InvalidOptions, sentence + kRemedy + option);
+    throw Error(ErrorCode::InvalidOptions, sentence + remedy(options, option));
 }
 
 void require_apart(const TriangleMesh& surface, const Elements& elements, const Collider& collider,
-                   const std::string& name) {
+                   const SimulationOptions& options, const std::string& name) {
     const ExactMapView& map = std::get<ExactMap>(collider.map.kind).view();
     const FrameChange body(collider.pose, {1, 1, 1});
     TriangleMesh in_body = surface;
     for (Vec3f& p : in_body.vertices) p = body.point_to_local(p);
     const std::vector<FacePair> pairs = intersecting_pairs(in_body, model_mesh(map, collider.scale));
     if (!pairs.empty())
-        refuse(pairs, name, "surface_collision", [&](const FacePair& pair) {
+        refuse(pairs, name, options, "surface_collision", [&](const FacePair& pair) {
             return name_of(elements, pair.a) + " and its face " + std::to_string(pair.b);
         });
     // Where nothing intersects, a piece is inside as a whole. An open surface has no inside.
@@ -68,8 +74,10 @@ void require_apart(const TriangleMesh& surface, const Elements& elements, const 
     if (first == inside.end()) return;
     throw Error(ErrorCode::InvalidOptions,
                 std::to_string(std::count(inside.begin(), inside.end(), std::uint8_t{1})) +
-                    " particles begin inside " + name + ", the first of them particle " +
-                    std::to_string(first - inside.begin()) + kRemedy + "surface_collision");
+                    " particles begin inside " + name +
+                    (options.untangle ? " and could not be moved out by untangle" : "") +
+                    ", the first of them particle " + std::to_string(first - inside.begin()) +
+                    remedy(options, "surface_collision"));
 }
 
 } // namespace
@@ -79,11 +87,11 @@ void require_apart(const Deformable& deformable, const std::vector<Collider>& co
     const Elements elements = elements_of(deformable);
     const TriangleMesh surface = surface_of(deformable, elements);
     for (std::size_t i = 0; i < colliders.size(); ++i)
-        require_apart(surface, elements, colliders[i], "collider " + std::to_string(i));
+        require_apart(surface, elements, colliders[i], options, "collider " + std::to_string(i));
     if (!options.self_collision) return;
     const std::vector<FacePair> pairs = self_intersecting_pairs(surface);
     if (!pairs.empty())
-        refuse(pairs, "itself", "self_collision", [&](const FacePair& pair) {
+        refuse(pairs, "itself", options, "self_collision", [&](const FacePair& pair) {
             return name_of(elements, pair.a) + " and " + name_of(elements, pair.b);
         });
 }

@@ -68,6 +68,9 @@ void require_valid(const SimulationOptions& options) {
     if (options.self_collision && !options.surface_collision)
         fail("simulation option self_collision needs surface_collision, which keeps faces off colliders too; "
              "set both");
+    if (options.untangle && !options.surface_collision)
+        fail("simulation option untangle needs surface_collision, which is what a start has to be free of "
+             "intersections for; set both");
     if (options.surface_collision && !options.keep_free)
         fail("simulation option keep_free is false; it must be true with surface_collision, which lets no "
              "particle through");

@@ -34,7 +34,7 @@ const char* const kMeshScene = R"({
               "position": [4, 5, 6], "rotation": {"axis": [1, 0, 0], "degrees": -90}, "velocity": [1, 2, -3],
               "thickness": 0.02, "self_thickness": 0.03, "pins": [3, 5],
               "attachments": {"from": [-1, -2, -3], "to": [1, 2, 3]}},
-    "surface_collision": true, "self_collision": true
+    "surface_collision": true, "self_collision": true, "untangle": true
 })";
 
 std::string refusal(const std::string& text) {
@@ -124,6 +124,7 @@ TEST(Scene, OfAMeshIsReadKeyByKey) {
     EXPECT_EQ(scene.simulation.self_thickness, 0.03);
     EXPECT_TRUE(scene.simulation.surface_collision);
     EXPECT_TRUE(scene.simulation.self_collision);
+    EXPECT_TRUE(scene.simulation.untangle);
     EXPECT_EQ(std::get<std::vector<std::uint32_t>>(cloth.pins), (std::vector<std::uint32_t>{3, 5}));
     EXPECT_EQ(std::get<VertexBox>(cloth.attachments).from, (Vec3d{-1, -2, -3}));
     EXPECT_EQ(std::get<VertexBox>(cloth.attachments).to, (Vec3d{1, 2, 3}));
@@ -193,6 +194,9 @@ TEST(Scene, LetsSurfacesCollideBesideExactMapsOnly) {
               "which has the model's faces");
     EXPECT_EQ(refusal(with(R"(, "surface_collision": false, "self_collision": true)")),
               R"(a.json: self_collision is true; it must be false, or "surface_collision" must be true)");
+    EXPECT_FALSE(none.untangle);
+    EXPECT_EQ(refusal(with(R"(, "surface_collision": false, "untangle": true)")),
+              R"(a.json: untangle is true; it must be false, or "surface_collision" must be true)");
     EXPECT_EQ(refusal(with(R"(, "surface_collision": 1)")),
               "a.json: surface_collision is 1; it must be true or false");
 }

@@ -2,6 +2,7 @@
 
 #include "directions/lattice.hpp"
 #include "simulation/collider_now.hpp"
+#include "simulation/surfaces/edge_lengths.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,12 +28,6 @@ constexpr int kMostPasses = 8;
 /// In lattice steps: a vertex of the mesh and of the map differ by less than one.
 constexpr float kLeastGapSteps = 4;
 
-double mean_edge_length(const Elements& elements, const PointArrays& positions) {
-    double sum = 0;
-    for (const auto& [a, b] : elements.edges) sum += static_cast<double>(length(positions[a] - positions[b]));
-    return elements.edges.empty() ? 0 : sum / static_cast<double>(elements.edges.size());
-}
-
 float largest_coordinate(const PointArrays& positions) {
     float largest = 0;
     for (const std::vector<float>* c : {&positions.x, &positions.y, &positions.z})
@@ -52,7 +47,7 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
     : options_(options), elements_(std::make_shared<Elements>(elements_of(deformable))),
       inverse_masses_(deformable.inverse_masses), expected_(particles.positions), goals_(particles.positions),
       is_leaving_(particles.count()), is_truncated_(particles.count()) {
-    const auto edge_length = static_cast<float>(mean_edge_length(*elements_, particles.positions));
+    const float edge_length = mean_edge_length(*elements_, particles.positions);
     for (const Collider& collider : colliders) {
         const ColliderNow now(collider, collider.pose, options);
         const float thickness = kSurfaceShare * now.thickness;

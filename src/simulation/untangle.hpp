@@ -1,0 +1,17 @@
+#pragma once
+
+#include <echinus/collider.hpp>
+#include <echinus/simulation.hpp>
+
+#include <vector>
+
+namespace echinus {
+
+/// Moves the particles of a deformable that begins intersecting models or, with self_collision, itself, or
+/// inside models, until that is over or no way is found; require_apart() then names what is left. Pinned
+/// particles stay. Velocities do not change, and nothing does where nothing intersects.
+/// @pre deformable, colliders and options are valid, with surface_collision and a thickness
+void untangle(Deformable& deformable, const std::vector<Collider>& colliders,
+              const SimulationOptions& options);
+
+} // namespace echinus

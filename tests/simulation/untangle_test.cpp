@@ -1,0 +1,259 @@
+// Starts that intersect are parted, or refused by name.
+
+#include "support/cloth_meshes.hpp"
+#include "support/draping.hpp"
+#include "support/expect_error.hpp"
+#include "support/mesh_assembly.hpp"
+#include "support/surface_judge.hpp"
+
+#include <echinus/simulation.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+using namespace echinus;
+using namespace echinus::test;
+
+namespace {
+
+const SimulationOptions kUntangled{
+    .thickness = 0.01, .surface_collision = true, .self_collision = true, .untangle = true};
+
+float largest_stretch(const Deformable& before, const Deformable& after) {
+    float largest = 0;
+    for (const auto& [a, b, c] : before.faces)
+        for (const auto& [p, q] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}})
+            largest = std::max(largest, length(after.positions[p] - after.positions[q]) /
+                                            length(before.positions[p] - before.positions[q]));
+    return largest;
+}
+
+/// The start is refused without untangle, and with it nothing intersects at the start and in 60 frames.
+/// @return how far edges are stretched at most when it begins
+float expect_parted(const Deformable& deformable, const std::vector<TriangleMesh>& models,
+                    const std::vector<Collider>& colliders) {
+    SimulationOptions tangled = kUntangled;
+    tangled.untangle = false;
+    expect_error(ErrorCode::InvalidOptions, "set untangle",
+                 [&] { Simulation(deformable, colliders, tangled); });
+    Simulation simulation(deformable, colliders, kUntangled);
+    const float stretch = largest_stretch(deformable, simulation.deformable());
+    for (int i = 0; i <= 60; ++i) {
+        EXPECT_TRUE(meeting_faces(simulation, models).empty()) << "in frame " << i;
+        for (const Collider& collider : simulation.colliders())
+            for (const Vec3f& p : simulation.positions()) EXPECT_FALSE(contains(collider, p));
+        if (::testing::Test::HasFailure()) break;
+        simulation.step();
+    }
+    EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+    return stretch;
+}
+
+/// A mesh whose vertices all go through a function.
+TriangleMesh bent(TriangleMesh mesh, const std::function<Vec3f(const Vec3f&)>& to) {
+    for (Vec3f& v : mesh.vertices) v = to(v);
+    return mesh;
+}
+
+Vec3f turned(const Vec3f& p, const Vec3d& axis, double angle) {
+    return Vec3f(Rotation::about(axis, angle).apply(Vec3d(p)));
+}
+
+Deformable cloth_of(const TriangleMesh& mesh) {
+    return make_cloth(mesh, {});
+}
+
+} // namespace
+
+TEST(Untangle, PartsASheetThatBeginsThroughABallAtWhateverHeight) {
+    const std::vector<TriangleMesh> ball{make_sphere(0.4, 24, 12)};
+    for (const double height : {0.0, 0.01, 0.1, -0.1, 0.3, 0.39})
+        EXPECT_LT(expect_parted(sheet_at(height, 1.2, 25), ball, colliders_of(ball)), 5) << height;
+}
+
+TEST(Untangle, PartsASheetThatBeginsInsideABall) {
+    const std::vector<TriangleMesh> ball{make_sphere(0.4, 24, 12)};
+    for (const double height : {0.0, 0.1, -0.25})
+        EXPECT_LT(expect_parted(sheet_at(height, 0.4, 15), ball, colliders_of(ball)), 5) << height;
+}
+
+TEST(Untangle, PartsABagThatBeginsInsideABallAndOneThatBeginsHalfInside) {
+    const std::vector<TriangleMesh> ball{make_sphere(0.4, 24, 12)};
+    const TriangleMesh bag = make_sphere(0.2, 16, 8);
+    for (const float shift : {0.0F, 0.1F, 0.4F})
+        expect_parted(cloth_of(translated(bag, {shift, 0, 0.01F})), ball, colliders_of(ball));
+}
+
+TEST(Untangle, LiftsASheetOffATipThatPiercesAFace) {
+    const TriangleMesh needle{{{0, 0, 0.3F}, {0.01F, 0, -2}, {-0.005F, 0.008F, -2}, {-0.005F, -0.008F, -2}},
+                              {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}};
+    for (const Vec3f& at : {Vec3f{0.01F, 0.02F, 0}, Vec3f{0.37F, 0.31F, 0.05F}}) {
+        const TriangleMesh model = translated(needle, at);
+        expect_parted(sheet_at(0, 1, 12), {model}, colliders_of({model}));
+    }
+}
+
+TEST(Untangle, PartsASheetFromModelsThatAreTurnedScaledAndMirrored) {
+    const std::vector<TriangleMesh> models{make_torus(1, 0.4, 24, 10), make_box({1, 1, 1})};
+    std::vector<Collider> colliders = colliders_of(models);
+    colliders[0].pose = {Rotation::about({1, 1, 0}, 0.4), {0, 0, 0.05}};
+    colliders[0].scale = {-0.5, 0.3, 0.4};
+    colliders[1].pose = {Rotation::about({1, 2, 3}, 1), {0.6, 0.5, -0.05}};
+    colliders[1].scale = {0.2, 0.3, 0.1};
+    expect_parted(sheet_at(0, 1.6, 30), models, colliders);
+}
+
+TEST(Untangle, PartsASheetFromAnOpenSurface) {
+    TriangleMesh dome = make_sphere(0.4, 20, 10);
+    std::erase_if(dome.faces, [&](const Triangle& f) {
+        return dome.vertices[f[0]].z + dome.vertices[f[1]].z + dome.vertices[f[2]].z < 0;
+    });
+    expect_parted(sheet_at(0.3, 1, 20), {weld(dome)}, colliders_of({weld(dome)}));
+}
+
+TEST(Untangle, PartsWhatAParticleSimulationHasLeftCutting) {
+    const std::vector<TriangleMesh> model{make_box({0.5, 0.5, 0.5})};
+    Simulation particles(sheet_at(0.3, 1.2, 14), colliders_of(model), {.thickness = 0.01});
+    for (int i = 0; i < 120; ++i) particles.step();
+    EXPECT_LT(expect_parted(particles.deformable(), model, colliders_of(model)), 1.5);
+}
+
+TEST(Untangle, PartsTwoLayersThatCrossAlongALine) {
+    const TriangleMesh below = sheet_mesh(20, 20);
+    for (const double angle : {0.05, 0.3, -0.3}) {
+        const TriangleMesh above = bent(sheet_mesh(14, 14), [&](const Vec3f& p) {
+            return turned(p + Vec3f{0.03F, 0.011F, 0}, {0.2, 1, 0}, angle) + Vec3f{0, 0, 0.01F};
+        });
+        expect_parted(cloth_of(joined({below, above})), {}, {});
+    }
+}
+
+TEST(Untangle, PartsALayerWhoseCornerOrBumpHasComeThroughAnother) {
+    const TriangleMesh level = sheet_mesh(20, 20);
+    const TriangleMesh corner = bent(sheet_mesh(14, 14), [](const Vec3f& p) {
+        return p + Vec3f{0, 0, 0.12F - 0.2F * (p.x + p.y)};
+    });
+    EXPECT_LT(expect_parted(cloth_of(joined({level, corner})), {}, {}), 1.5);
+    const TriangleMesh bump = bent(sheet_mesh(17, 17), [](const Vec3f& p) {
+        return p * 0.9F + Vec3f{0.02F, 0.01F, 0.05F - 0.12F * std::exp(-20 * (p.x * p.x + p.y * p.y))};
+    });
+    EXPECT_LT(expect_parted(cloth_of(joined({level, bump})), {}, {}), 1.5);
+    EXPECT_LT(expect_parted(cloth_of(joined({bump, level})), {}, {}), 1.5);
+}
+
+TEST(Untangle, PartsLayersThatCutIntoEachOtherFromTheirBorders) {
+    const TriangleMesh level = sheet_mesh(20, 20);
+    const TriangleMesh beside = bent(sheet_mesh(14, 14), [](const Vec3f& p) {
+        return turned(p, {1, 0, 0}, 0.4) + Vec3f{0.5F, 0.013F, 0.007F};
+    });
+    expect_parted(cloth_of(joined({level, beside})), {}, {});
+}
+
+TEST(Untangle, PartsASheetFoldedThroughItself) {
+    // A strip whose two ends cross.
+    const TriangleMesh strip = bent(sheet_mesh(33, 9), [](const Vec3f& p) {
+        const double angle = double{p.x} * 1.2 * 2 * std::numbers::pi;
+        return Vec3f(0.3F * float(std::sin(angle)), p.y,
+                     0.3F * float(std::cos(angle)) + p.x * (1.2F * (p.y + 0.375F) + 0.003F));
+    });
+    expect_parted(cloth_of(strip), {}, {});
+}
+
+TEST(Untangle, PartsAThreadThatPassesThroughASheet) {
+    TriangleMesh mesh = sheet_mesh(15, 15);
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    MeshClothOptions options;
+    for (std::uint32_t i = 0; i < 12; ++i) {
+        const float way = 0.02F * static_cast<float>(i);
+        mesh.vertices.push_back({0.013F + way, 0.021F + way * way, 0.19F - way});
+        if (i > 0) options.threads.push_back({first + i - 1, first + i});
+    }
+    std::reverse(options.threads.begin(), options.threads.end());
+    expect_parted(make_cloth(mesh, options), {}, {});
+}
+
+TEST(Untangle, PartsLayersInsideAModelFromItAndFromEachOther) {
+    const std::vector<TriangleMesh> ball{make_sphere(0.4, 24, 12)};
+    const TriangleMesh level = sheet_mesh(20, 20);
+    const TriangleMesh tilted = bent(sheet_mesh(14, 14), [](const Vec3f& p) {
+        return turned(p, {0, 1, 0}, 0.1) + Vec3f{0.01F, 0.01F, 0.02F};
+    });
+    const TriangleMesh both = bent(joined({level, tilted}), [](const Vec3f& p) {
+        return p + Vec3f{0, 0, 0.33F};
+    });
+    expect_parted(cloth_of(both), ball, colliders_of(ball));
+}
+
+TEST(Untangle, ChangesNothingThatBeginsApart) {
+    const std::vector<Collider> ball = colliders_of({make_sphere(0.4, 24, 12)});
+    const Deformable sheet = sheet_at(0.5, 1, 20, {0, 0.01, -0.01});
+    SimulationOptions plain = kUntangled;
+    plain.untangle = false;
+    EXPECT_EQ(Simulation(sheet, ball, kUntangled).state_hash(), Simulation(sheet, ball, plain).state_hash());
+}
+
+TEST(Untangle, LeavesVelocitiesAsTheyAre) {
+    const Vec3d step{0.001, 0.002, -0.003};
+    const Deformable sheet = sheet_at(0.1, 1.2, 20, step);
+    const Simulation simulation(sheet, colliders_of({make_sphere(0.4, 24, 12)}), kUntangled);
+    const Deformable& parted = simulation.deformable();
+    EXPECT_NE(parted.positions, sheet.positions);
+    for (std::size_t i = 0; i < sheet.particle_count(); ++i)
+        EXPECT_LT(length(parted.positions[i] - parted.previous_positions[i] - Vec3f(step)), 1e-6F);
+}
+
+TEST(Untangle, MovesNoPinnedParticleAndNamesWhatThatLeaves) {
+    const std::vector<Collider> ball = colliders_of({make_sphere(0.4, 24, 12)});
+    Deformable sheet = sheet_at(0.1, 1.2, 21);
+    sheet.inverse_masses[0] = 0; // outside
+    EXPECT_EQ(Simulation(sheet, ball, kUntangled).positions()[0], sheet.positions[0]);
+    const std::size_t middle = 21 * 21 / 2;
+    sheet.inverse_masses[middle] = 0;
+    expect_error(ErrorCode::InvalidOptions, "that untangle could not part: face ",
+                 [&] { Simulation(sheet, ball, kUntangled); });
+    Deformable inside = sheet_at(0.1, 0.2, 5);
+    inside.inverse_masses.assign(25, 0);
+    expect_error(
+        ErrorCode::InvalidOptions,
+        "25 particles begin inside collider 0 and could not be moved out by untangle, the first of them "
+        "particle 0",
+        [&] { Simulation(inside, ball, kUntangled); });
+}
+
+TEST(Untangle, MovesTheLayerThatIsNotPinned) {
+    const TriangleMesh level = sheet_mesh(20, 20);
+    const TriangleMesh corner = bent(sheet_mesh(14, 14), [](const Vec3f& p) {
+        return p + Vec3f{0, 0, 0.12F - 0.2F * (p.x + p.y)};
+    });
+    for (const bool first : {true, false}) {
+        Deformable cloth = cloth_of(joined({level, corner}));
+        for (std::size_t i = 0; i < cloth.particle_count(); ++i)
+            if ((i < 400) == first) cloth.inverse_masses[i] = 0;
+        const Simulation simulation(cloth, {}, kUntangled);
+        for (std::size_t i = 0; i < cloth.particle_count(); ++i)
+            if (cloth.inverse_masses[i] == 0) EXPECT_EQ(simulation.positions()[i], cloth.positions[i]);
+    }
+    Deformable cloth = cloth_of(joined({level, corner}));
+    cloth.inverse_masses.assign(cloth.particle_count(), 0);
+    expect_error(ErrorCode::InvalidOptions, "begins intersecting itself in ",
+                 [&] { Simulation(cloth, {}, kUntangled); });
+}
+
+TEST(Untangle, NeedsSurfaceCollision) {
+    expect_error(ErrorCode::InvalidOptions, "untangle needs surface_collision",
+                 [] { Simulation(sheet_at(1, 1, 5), {}, {.untangle = true}); });
+}
+
+TEST(Untangle, GivesTheSameBitsOnEveryRun) {
+    const std::vector<Collider> ball = colliders_of({make_sphere(0.4, 24, 12)});
+    EXPECT_EQ(Simulation(sheet_at(0.1, 1.2, 20), ball, kUntangled).state_hash(),
+              Simulation(sheet_at(0.1, 1.2, 20), ball, kUntangled).state_hash());
+}
