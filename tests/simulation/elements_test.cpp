@@ -136,7 +136,8 @@ TEST(ElementTree, VisitsWhatABoxTouchesOnceAlsoAfterItsElementsMoved) {
         Scattered scattered(count, 1);
         ElementTree tree(scattered.elements, scattered.positions);
         scattered.move(0.5F);
-        tree.refit(scattered.elements, scattered.positions, scattered.positions);
+        tree.refit(scattered.elements, scattered.positions,
+                   std::vector<std::uint8_t>(tree.group_count(), 0xFF));
         Random random(2);
         for (int i = 0; i < 100; ++i) {
             Box box = box_of({}, arrays_of({in_cube(random, 1)}));
@@ -164,39 +165,96 @@ TEST(ElementTree, BoundsTheDistanceOfABoxFromBelow) {
     }
 }
 
-TEST(NearElements, AreThoseWhoseBoxesAreNearUnderEveryInstructionSet) {
-    using Found = std::vector<std::array<std::uint32_t, 2>>;
-    for (const std::size_t count : {1, 8, 20, 300}) {
-        const Scattered a(count, 5), b(2 * count, 6);
-        const ElementTree tree_a(a.elements, a.positions), tree_b(b.elements, b.positions);
-        const float reach = 0.07F;
-        const auto is_near = [&](const Scattered& one, std::uint32_t i, const Scattered& other,
-                                 std::uint32_t j) {
-            Box box = box_of(one.elements[i], one.positions);
-            box.grow(reach);
-            return touch(box, box_of(other.elements[j], other.positions));
-        };
-        Found expected, expected_own;
-        for (std::uint32_t i = 0; i < count; ++i) {
-            for (std::uint32_t j = 0; j < 2 * count; ++j)
-                if (is_near(a, i, b, j)) expected.push_back({i, j});
-            for (std::uint32_t j = i + 1; j < count; ++j)
-                if (is_near(a, i, a, j) || is_near(a, j, a, i)) expected_own.push_back({i, j});
-        }
-        Found first;
-        under_each_instruction_set([&](std::string_view) {
-            Found found, found_own;
-            find_near(tree_a, tree_b, reach, found);
-            find_near(tree_a, tree_a, reach, found_own);
-            if (first.empty()) first = found;
-            EXPECT_EQ(found, first) << "in another order";
-            std::sort(found.begin(), found.end());
-            EXPECT_EQ(found, expected);
-            for (auto& pair : found_own) std::sort(pair.begin(), pair.end());
-            std::sort(found_own.begin(), found_own.end());
-            EXPECT_EQ(found_own, expected_own);
-        });
+namespace {
+
+/// Elements on their way: by boxes, one after the other.
+struct Moving {
+    explicit Moving(std::size_t count, std::uint32_t seed) : at_start(count, seed), at_end(at_start) {
+        at_end.move(0.3F);
+        tree = MovingTree(at_start.elements, at_start.positions);
+        tree.want([](std::uint32_t) { return true; });
+        tree.refit(at_start.elements, at_start.positions, at_end.positions);
     }
+
+    bool may_come_near(std::uint32_t i, const Moving& other, std::uint32_t j, float reach) const {
+        const auto grown = [&](const Scattered& scattered) {
+            Box box = box_of(scattered.elements[i], scattered.positions);
+            box.grow(reach);
+            return box;
+        };
+        const Box from = grown(at_start), to = grown(at_end);
+        const Box other_from = box_of(other.at_start.elements[j], other.at_start.positions);
+        const Box other_to = box_of(other.at_end.elements[j], other.at_end.positions);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const bool stays_above =
+                other_from.low[axis] > from.high[axis] && other_to.low[axis] > to.high[axis];
+            const bool stays_below =
+                other_from.high[axis] < from.low[axis] && other_to.high[axis] < to.low[axis];
+            if (stays_above || stays_below) return false;
+        }
+        return true;
+    }
+
+    Scattered at_start, at_end;
+    MovingTree tree;
+};
+
+using Found = std::vector<std::array<std::uint32_t, 2>>;
+
+Found sorted(Found found) {
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+} // namespace
+
+TEST(NearElements, AreThoseThatMayComeNearOnTheirWaysUnderEveryInstructionSet) {
+    for (const std::size_t count : {1, 8, 20, 300}) {
+        Moving a(count, 5);
+        const Moving b(2 * count, 6);
+        const float reach = 0.07F;
+        for (const std::uint32_t every : {1, 3}) {
+            const auto is_wanted = [&](std::uint32_t i) { return i % every == 0; };
+            a.tree.want(is_wanted);
+            Found expected, expected_own;
+            for (std::uint32_t i = 0; i < count; ++i) {
+                for (std::uint32_t j = 0; is_wanted(i) && j < 2 * count; ++j)
+                    if (a.may_come_near(i, b, j, reach)) expected.push_back({i, j});
+                for (std::uint32_t j = i + 1; j < count; ++j)
+                    if ((is_wanted(i) || is_wanted(j)) &&
+                        (a.may_come_near(i, a, j, reach) || a.may_come_near(j, a, i, reach)))
+                        expected_own.push_back({i, j});
+            }
+            Found first;
+            under_each_instruction_set([&](std::string_view) {
+                Found found, found_own;
+                find_near(a.tree, b.tree, reach, found);
+                find_near(a.tree, a.tree, reach, found_own);
+                if (first.empty()) first = found;
+                EXPECT_EQ(found, first) << "in another order";
+                EXPECT_EQ(sorted(found), expected);
+                for (auto& pair : found_own) std::sort(pair.begin(), pair.end());
+                EXPECT_EQ(sorted(found_own), expected_own);
+            });
+        }
+    }
+}
+
+TEST(NearElements, AreNotThoseThatMoveAlike) {
+    Moving far(1, 7), beside(1, 7);
+    // Both fly far along the same way, one past where the other begins, but never nearer than at first.
+    const auto fly = [](Moving& moving, const Vec3f& offset) {
+        for (std::size_t v = 0; v < 3 * moving.at_start.elements.size(); ++v) {
+            moving.at_start.positions.set(v, moving.at_start.positions[v] + offset);
+            moving.at_end.positions.set(v, moving.at_start.positions[v] + Vec3f{100, 100, 100});
+        }
+        moving.tree.refit(moving.at_start.elements, moving.at_start.positions, moving.at_end.positions);
+    };
+    fly(far, {});
+    fly(beside, {20, 20, 20});
+    Found found;
+    find_near(far.tree, beside.tree, 1, found);
+    EXPECT_TRUE(found.empty());
 }
 
 TEST(PairLists, KeepWhatIsAddedThroughEveryMove) {

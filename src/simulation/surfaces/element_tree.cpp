@@ -64,16 +64,6 @@ Box box_of(const Element& element, const PointArrays& positions) {
     return box;
 }
 
-Box box_of(const Element& element, const PointArrays& from, const PointArrays& to) {
-    Box box = box_of(element, from);
-    const Box at_end = box_of(element, to);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        box.low[axis] = std::min(box.low[axis], at_end.low[axis]);
-        box.high[axis] = std::max(box.high[axis], at_end.high[axis]);
-    }
-    return box;
-}
-
 void ElementTree::Level::resize(std::size_t count) {
     const std::size_t padded = (count + kWidth - 1) / kWidth * kWidth;
     for (std::vector<float>& bound : low) bound.assign(padded, kInfinity);
@@ -113,16 +103,19 @@ ElementTree::ElementTree(std::span<const Element> elements, const PointArrays& p
         levels_.emplace_back().resize(count);
         count = (count + kWidth - 1) / kWidth;
     } while (count > 1);
-    refit(elements, positions, positions);
+    refit(elements, positions, std::vector<std::uint8_t>(group_count(), 0xFF));
 }
 
-void ElementTree::refit(std::span<const Element> elements, const PointArrays& from, const PointArrays& to) {
-    for (std::size_t i = 0; i < order_.size(); ++i) levels_[0].set(i, box_of(elements[order_[i]], from, to));
-    std::size_t count = order_.size();
-    for (std::size_t level = 1; level < levels_.size(); ++level) {
+void ElementTree::refit(std::span<const Element> elements, const PointArrays& positions,
+                        std::span<const std::uint8_t> groups) {
+    for (std::size_t i = 0; i < order_.size(); ++i)
+        if (((groups[i / kWidth] >> (i % kWidth)) & 1U) != 0)
+            levels_[0].set(i, box_of(elements[order_[i]], positions));
+    for (std::size_t level = 1, count = order_.size(); level < levels_.size(); ++level) {
         count = (count + kWidth - 1) / kWidth;
         for (std::size_t i = 0; i < count; ++i)
-            levels_[level].set(i, levels_[level - 1].box_of_group(i * kWidth));
+            if (level > 1 || groups[i] != 0)
+                levels_[level].set(i, levels_[level - 1].box_of_group(i * kWidth));
     }
 }
 

@@ -25,8 +25,6 @@ struct Box {
 };
 
 Box box_of(const Element& element, const PointArrays& positions);
-/// Around an element whose vertices move from the one to the other places.
-Box box_of(const Element& element, const PointArrays& from, const PointArrays& to);
 
 /// Boxes around the elements of a surface, around groups of eight, around groups of eight groups, and so on.
 /// The groups are fixed from the start; the boxes follow the surface.
@@ -38,8 +36,10 @@ class ElementTree {
     /// Groups elements that are near each other in these positions.
     ElementTree(std::span<const Element> elements, const PointArrays& positions);
 
-    /// To elements whose vertices move from the one to the other places.
-    void refit(std::span<const Element> elements, const PointArrays& from, const PointArrays& to);
+    /// To elements that have moved. @param groups  [group_count()] one bit for each that may have
+    void refit(std::span<const Element> elements, const PointArrays& positions,
+               std::span<const std::uint8_t> groups);
+    std::size_t group_count() const { return levels_.empty() ? 0 : levels_[0].group_count(); }
 
     /// Calls visit(element) for each element whose box touches this one.
     template <typename Visit>

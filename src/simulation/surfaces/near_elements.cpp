@@ -10,9 +10,9 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
-#include <span>
 
 HWY_BEFORE_NAMESPACE();
 namespace echinus {
@@ -20,19 +20,34 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Which of the eight boxes from `first` on touch this one, one bit each.
-HWY_INLINE unsigned touching(const ElementTree::Level& boxes, std::size_t first, const Box& box) {
+/// Where a way begins and where it ends.
+struct MovingBox {
+    Box from, to;
+
+    void grow(float by) {
+        from.grow(by);
+        to.grow(by);
+    }
+};
+
+/// Which of the eight boxes from `first` on this one may touch, one bit each.
+HWY_INLINE unsigned touching(const MovingTree& tree, std::size_t level, std::size_t first,
+                             const MovingBox& box) {
     constexpr hn::CappedTag<float, ElementTree::kWidth> d;
+    const ElementTree::Level &from = tree.from.levels()[level], &to = tree.to.levels()[level];
     unsigned mask = 0;
     for (std::size_t lane = 0; lane < ElementTree::kWidth; lane += hn::Lanes(d)) {
-        auto apart = hn::Gt(hn::LoadU(d, &boxes.low[0][first + lane]), hn::Set(d, box.high[0]));
-        apart = hn::Or(apart, hn::Lt(hn::LoadU(d, &boxes.high[0][first + lane]), hn::Set(d, box.low[0])));
-        for (std::size_t axis = 1; axis < 3; ++axis) {
-            apart = hn::Or(apart,
-                           hn::Gt(hn::LoadU(d, &boxes.low[axis][first + lane]), hn::Set(d, box.high[axis])));
-            apart = hn::Or(apart,
-                           hn::Lt(hn::LoadU(d, &boxes.high[axis][first + lane]), hn::Set(d, box.low[axis])));
-        }
+        const std::size_t i = first + lane;
+        const auto apart_along = [&](std::size_t axis) HWY_ATTR {
+            const auto above =
+                hn::And(hn::Gt(hn::LoadU(d, &from.low[axis][i]), hn::Set(d, box.from.high[axis])),
+                        hn::Gt(hn::LoadU(d, &to.low[axis][i]), hn::Set(d, box.to.high[axis])));
+            const auto below =
+                hn::And(hn::Lt(hn::LoadU(d, &from.high[axis][i]), hn::Set(d, box.from.low[axis])),
+                        hn::Lt(hn::LoadU(d, &to.high[axis][i]), hn::Set(d, box.to.low[axis])));
+            return hn::Or(above, below);
+        };
+        const auto apart = hn::Or(apart_along(0), hn::Or(apart_along(1), apart_along(2)));
         std::array<std::uint8_t, 8> bits{};
         hn::StoreMaskBits(d, hn::Not(apart), bits.data());
         const unsigned lanes_mask = (1U << hn::Lanes(d)) - 1;
@@ -46,84 +61,81 @@ HWY_INLINE Box box_of(const ElementTree::Level& boxes, std::size_t i) {
             {boxes.high[0][i], boxes.high[1][i], boxes.high[2][i]}};
 }
 
-/// One search: the elements of one group of `a` against all of `b`.
-struct GroupSearch {
-    const ElementTree& a;
-    const ElementTree& b;
-    bool is_same;
-    std::vector<std::array<std::uint32_t, 2>>& near;
-    std::size_t group = 0;                        ///< of `a`
-    std::array<Box, ElementTree::kWidth> boxes{}; ///< of its elements, grown by the reach
-    std::size_t box_count = 0;
+HWY_INLINE void enclose(Box& box, const Box& other) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.low[axis] = std::min(box.low[axis], other.low[axis]);
+        box.high[axis] = std::max(box.high[axis], other.high[axis]);
+    }
+}
 
-    void search(std::size_t level, std::size_t first, const Box& around) {
-        // Groups before this one have found it.
-        unsigned mask = touching(b.levels()[level], first, around);
-        for (; mask != 0; mask &= mask - 1) {
-            const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(mask));
-            if (level > 1)
-                search(level - 1, i * ElementTree::kWidth, around);
-            else if (!is_same || i >= group)
-                compare(i);
+/// The wanted elements of one group of `a` against all of `b`.
+struct GroupSearch {
+    const MovingTree& a;
+    const MovingTree& b;
+    bool is_same;
+    float reach;
+    std::vector<std::array<std::uint32_t, 2>>& near;
+    std::size_t group = 0; ///< of `a`
+    std::array<MovingBox, ElementTree::kWidth> boxes{};
+
+    void search_all() {
+        for (group = 0; group < a.wanted.size(); ++group)
+            if (a.wanted[group] != 0) search_group();
+    }
+
+    void search_group() {
+        const std::size_t first = group * ElementTree::kWidth;
+        MovingBox around;
+        for (unsigned rest = a.wanted[group], n = 0; rest != 0; rest &= rest - 1, ++n) {
+            const auto k = static_cast<std::size_t>(std::countr_zero(rest));
+            boxes[k] = {box_of(a.from.levels()[0], first + k), box_of(a.to.levels()[0], first + k)};
+            boxes[k].grow(reach);
+            if (n == 0) around = boxes[k];
+            enclose(around.from, boxes[k].from);
+            enclose(around.to, boxes[k].to);
+        }
+        if (const std::size_t top = b.from.levels().size() - 1; top > 0) return search(top, 0, around);
+        for (unsigned rest = a.wanted[group]; rest != 0; rest &= rest - 1)
+            compare(static_cast<std::size_t>(std::countr_zero(rest)), 0);
+    }
+
+    void search(std::size_t level, std::size_t first, const MovingBox& around) {
+        if (level == 1) return compare_groups(first);
+        for (unsigned mask = touching(b, level, first, around); mask != 0; mask &= mask - 1)
+            search(level - 1,
+                   (first + static_cast<std::size_t>(std::countr_zero(mask))) * ElementTree::kWidth, around);
+    }
+
+    /// With the elements of eight groups of `b`.
+    void compare_groups(std::size_t first) {
+        for (unsigned rest = a.wanted[group]; rest != 0; rest &= rest - 1) {
+            const auto k = static_cast<std::size_t>(std::countr_zero(rest));
+            for (unsigned mask = touching(b, 1, first, boxes[k]); mask != 0; mask &= mask - 1)
+                compare(k, first + static_cast<std::size_t>(std::countr_zero(mask)));
         }
     }
 
-    void compare(std::size_t other) {
+    /// Of two wanted elements of one tree, the first finds the second.
+    unsigned left_to(std::size_t k, std::size_t other) const {
+        if (!is_same || other > group) return ~0U;
+        const unsigned others = ~static_cast<unsigned>(b.wanted[other]);
+        if (other < group) return others;
+        return (others & ~(1U << k)) | (~1U << k);
+    }
+
+    void compare(std::size_t k, std::size_t other) {
         const std::size_t first = other * ElementTree::kWidth;
-        for (std::size_t k = 0; k < box_count; ++k) {
-            unsigned mask = touching(b.levels()[0], first, boxes[k]);
-            if (is_same && other == group) mask &= ~0U << (k + 1);
-            for (; mask != 0; mask &= mask - 1)
-                near.push_back({a.order()[group * ElementTree::kWidth + k],
-                                b.order()[first + static_cast<std::size_t>(std::countr_zero(mask))]});
-        }
+        unsigned mask = left_to(k, other) & 0xFF;
+        if (mask == 0) return;
+        for (mask &= touching(b, 0, first, boxes[k]); mask != 0; mask &= mask - 1)
+            near.push_back({a.from.order()[group * ElementTree::kWidth + k],
+                            b.from.order()[first + static_cast<std::size_t>(std::countr_zero(mask))]});
     }
 };
 
-void find_near_lanes(const ElementTree& a, const ElementTree& b, float reach,
+void find_near_lanes(const MovingTree& a, const MovingTree& b, float reach,
                      std::vector<std::array<std::uint32_t, 2>>& near) {
-    GroupSearch search{.a = a, .b = b, .is_same = &a == &b, .near = near};
-    const std::size_t group_count = a.levels()[0].group_count();
-    for (std::size_t group = 0; group < group_count; ++group) {
-        search.group = group;
-        const std::size_t first = group * ElementTree::kWidth;
-        search.box_count = std::min(ElementTree::kWidth, a.order().size() - first);
-        Box around = box_of(a.levels()[0], first);
-        for (std::size_t k = 0; k < search.box_count; ++k) {
-            search.boxes[k] = box_of(a.levels()[0], first + k);
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                around.low[axis] = std::min(around.low[axis], search.boxes[k].low[axis]);
-                around.high[axis] = std::max(around.high[axis], search.boxes[k].high[axis]);
-            }
-            search.boxes[k].grow(reach);
-        }
-        around.grow(reach);
-        const std::size_t top = b.levels().size() - 1;
-        if (top == 0)
-            search.compare(0);
-        else
-            search.search(top, 0, around);
-    }
-}
-
-void find_near_box(const ElementTree& tree, std::size_t level, std::size_t first, const Box& box,
-                   std::uint32_t number, std::vector<std::array<std::uint32_t, 2>>& near) {
-    for (unsigned mask = touching(tree.levels()[level], first, box); mask != 0; mask &= mask - 1) {
-        const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(mask));
-        if (level == 0)
-            near.push_back({number, tree.order()[i]});
-        else
-            find_near_box(tree, level - 1, i * ElementTree::kWidth, box, number, near);
-    }
-}
-
-void find_near_boxes(std::span<const Box> boxes, const ElementTree& tree, float reach,
-                     std::vector<std::array<std::uint32_t, 2>>& near) {
-    for (std::uint32_t i = 0; i < boxes.size(); ++i) {
-        Box box = boxes[i];
-        box.grow(reach);
-        find_near_box(tree, tree.levels().size() - 1, 0, box, i, near);
-    }
+    GroupSearch{.a = a, .b = b, .is_same = &a == &b, .reach = reach, .near = near}.search_all();
 }
 
 } // namespace HWY_NAMESPACE
@@ -135,19 +147,12 @@ namespace echinus {
 
 namespace {
 HWY_EXPORT(find_near_lanes);
-HWY_EXPORT(find_near_boxes);
 } // namespace
 
-void find_near(const ElementTree& a, const ElementTree& b, float reach,
+void find_near(const MovingTree& a, const MovingTree& b, float reach,
                std::vector<std::array<std::uint32_t, 2>>& near) {
-    if (a.order().empty() || b.order().empty()) return;
+    if (a.from.order().empty() || b.from.order().empty()) return;
     ECHINUS_DISPATCH(find_near_lanes)(a, b, reach, near);
-}
-
-void find_near(std::span<const Box> boxes, const ElementTree& tree, float reach,
-               std::vector<std::array<std::uint32_t, 2>>& near) {
-    if (tree.order().empty()) return;
-    ECHINUS_DISPATCH(find_near_boxes)(boxes, tree, reach, near);
 }
 
 } // namespace echinus

@@ -1,9 +1,9 @@
 #include "simulation/surfaces/self_surface.hpp"
 
-#include "simulation/surfaces/near_elements.hpp"
 #include "simulation/surfaces/shares.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -16,11 +16,16 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// After so many rounds a way that is still too long is given up.
 constexpr int kRounds = 12;
 
+/// Pairs are listed for at most so many frames: for more, more are near some time; for fewer, the search
+/// comes more often. And for no more than in which a vertex goes so many times the distance called near.
+constexpr std::uint32_t kMostFrames = 6;
+constexpr float kMostWay = 4;
+
+/// Pairs of a vertex are listed for one pass only: for this one, for one before.
+constexpr std::uint8_t kNow = 1, kOver = 2;
+
 /// No way is shortened to quite the length that is left.
 constexpr float kAlmost = 1 - 1.0F / (1 << 10);
-
-/// Where fewer vertices than one in so many have left their ways, only what is near them is searched for.
-constexpr std::size_t kFewMoved = 8;
 
 /// A share of an element's least height: neighbours of neighbours lie no nearer than a height, and have to
 /// move a little.
@@ -67,15 +72,17 @@ SelfSurface::SelfSurface(std::shared_ptr<const Elements> own, const Particles& p
         const float most = kMostOfHeight * least_height(element, particles.positions);
         for (const std::uint32_t v : element.vertices) most_[v] = std::min(most_[v], most);
     }
-    for (PointArrays* points : {&starts_, &goals_, &anchors_, &searched_from_, &searched_to_})
+    for (PointArrays* points : {&starts_, &goals_, &anchors_, &expected_, &speeds_, &from_, &to_})
         points->resize(count);
     rooms_.assign(count, -1);
     quiet_.assign(count, -1);
     is_alert_.assign(count, 0);
     has_moved_.assign(count, 0);
-    if (!faces_.empty()) face_tree_ = ElementTree(faces_, particles.positions);
-    if (!edges_.empty()) edge_tree_ = ElementTree(edges_, particles.positions);
-    vertex_tree_ = ElementTree(vertices_, particles.positions);
+    listed_in_.assign(count, 0);
+    is_listed_for_pass_.assign(count, 0);
+    if (!faces_.empty()) face_tree_ = MovingTree(faces_, particles.positions);
+    if (!edges_.empty()) edge_tree_ = MovingTree(edges_, particles.positions);
+    vertex_tree_ = MovingTree(vertices_, particles.positions);
 }
 
 // ---- The frame
@@ -92,12 +99,15 @@ void SelfSurface::to_frame(const RigidTransform* frame, const PointArrays& place
         result.set(i, (in_world_ ? places[i] : now_.point_to_local(places[i])) - drift_);
 }
 
-void SelfSurface::begin_pass(const RigidTransform* frame, const PointArrays& starts) {
+void SelfSurface::begin_pass(const RigidTransform* frame, const PointArrays& starts, bool is_first) {
     drift_ = drift_ + drifting_;
     drifting_ = {};
     to_frame(frame, starts, starts_);
     is_measured_ = false;
-    searched_from_ = searched_to_;
+    is_first_pass_ = is_first;
+    if (is_first) ++frame_number_;
+    for (std::size_t v = 0; v < own_->vertex_count(); ++v)
+        if (is_listed_for_pass_[v] != 0) is_listed_for_pass_[v] = kOver;
 }
 
 void SelfSurface::set_goals(const RigidTransform* frame, const PointArrays& goals) {
@@ -124,83 +134,116 @@ bool SelfSurface::all_within(std::span<const float> radii) const {
 
 // ---- Pairs
 
-/// Pairs were dropped since a plane separates them widely both at the beginning and at the end of the ways
-/// for which they were searched. So it does while their vertices stay near such a way in time, in the pass in
-/// which it begins, and later while they stay near its end.
-bool SelfSurface::is_off_its_way(std::uint32_t v) const {
-    if (!has_searched_) return true;
-    const auto is_near = [&](const Vec3f& place) {
-        const Vec3f away = place - searched_to_[v];
-        return dot(away, away) <= reach_.slack * reach_.slack;
-    };
-    return !(is_near(goals_[v] - drifting_) && (searched_from_[v] == starts_[v] || is_near(starts_[v])));
+/// Where a vertex is expected when this pass begins or ends, less the drift.
+Vec3f SelfSurface::expected(std::uint32_t v, bool at_end) const {
+    if (is_listed_for_pass_[v] != 0) return expected_[v] + speeds_[v] * (at_end ? 1.0F : 0.0F);
+    return expected_in(v, frame_number_ + (at_end || !is_first_pass_ ? 1 : 0));
 }
 
-/// Which pairs are listed depends on the way of each vertex for which they were searched last.
+Vec3f SelfSurface::expected_in(std::uint32_t v, std::uint32_t frame) const {
+    return expected_[v] + speeds_[v] * static_cast<float>(static_cast<std::int32_t>(frame - listed_in_[v]));
+}
+
+/// Pairs were dropped since a plane separates them widely both at the beginning and at the end of the frames
+/// for which they were searched. So it does while their vertices stay near where they are expected.
+bool SelfSurface::is_elsewhere(std::uint32_t v) const {
+    if (!has_searched_ || is_listed_for_pass_[v] == kOver) return true;
+    if (frame_number_ > last_frame_ && speeds_[v] != Vec3f{}) return true;
+    const auto is_near = [&](const Vec3f& place, const Vec3f& expected) {
+        const Vec3f away = place - expected;
+        return dot(away, away) <= reach_.slack * reach_.slack;
+    };
+    return !(is_near(starts_[v], expected(v, false)) && is_near(goals_[v] - drifting_, expected(v, true)));
+}
+
+/// A vertex that hardly moves is expected to stay, however long. In a later pass of a frame, vertices that
+/// have not arrived go on while the others stay: what is found then holds for this pass.
+void SelfSurface::expect(std::uint32_t v) {
+    const Vec3f speed = goals_[v] - drifting_ - starts_[v];
+    const bool stays = dot(speed, speed) * (kMostFrames * kMostFrames) <= reach_.slack * reach_.slack;
+    expected_.set(v, starts_[v]);
+    speeds_.set(v, stays ? Vec3f{} : speed);
+    listed_in_[v] = frame_number_;
+    is_listed_for_pass_[v] = is_first_pass_ ? 0 : kNow;
+}
+
+/// Which pairs are listed depends on what is expected of each vertex.
 void SelfSurface::list_pairs() {
     std::size_t moved_count = 0;
     for (std::uint32_t v = 0; v < own_->vertex_count(); ++v) {
-        has_moved_[v] = is_off_its_way(v) ? 1 : 0;
+        has_moved_[v] = is_elsewhere(v) ? 1 : 0;
         if (has_moved_[v] == 0) continue;
         ++moved_count;
-        searched_from_.set(v, starts_[v]);
-        searched_to_.set(v, goals_[v] - drifting_);
+        expect(v);
     }
     if (moved_count == 0) return;
     is_measured_ = false;
     has_searched_ = true;
-    face_tree_.refit(faces_, searched_from_, searched_to_);
-    edge_tree_.refit(edges_, searched_from_, searched_to_);
-    vertex_tree_.refit(vertices_, searched_from_, searched_to_);
-    candidates_.clear();
-    if (moved_count > own_->vertex_count() / kFewMoved)
-        search_everywhere();
-    else
-        search_around_moved();
+    set_window();
+    search();
     keep_near();
 }
 
-void SelfSurface::search_everywhere() {
-    searched_count += faces_.size();
-    pairs_.clear();
+/// Ways are looked at from the first of the frames to the end of the last one. A vertex that is expected
+/// elsewhere since goes a straight way too, which may well be followed backwards.
+void SelfSurface::set_window() {
+    // What is found in a later pass holds for this one, in which the other vertices rest.
+    const bool is_new = !is_first_pass_ || !has_window_ || frame_number_ > last_frame_;
+    has_window_ = is_first_pass_;
+    if (is_new) first_frame_ = frame_number_;
+    if (frame_number_ > last_frame_) last_frame_ = frame_number_ + frames_to_list() - 1;
+    for (std::uint32_t v = 0; v < own_->vertex_count(); ++v) {
+        if (!is_new && has_moved_[v] == 0) continue;
+        from_.set(v, is_first_pass_ ? expected_in(v, first_frame_) : expected(v, false));
+        to_.set(v, is_first_pass_ ? expected_in(v, last_frame_ + 1) : expected(v, true));
+    }
+    const auto has_changed = [&](const Element& element) { return is_new || has_moved(element); };
+    face_tree_.want([&](std::uint32_t f) { return has_changed(faces_[f]); });
+    edge_tree_.want([&](std::uint32_t e) { return has_changed(edges_[e]); });
+    vertex_tree_.want([&](std::uint32_t v) { return is_new || has_moved_[v] != 0; });
+    face_tree_.refit(faces_, from_, to_);
+    edge_tree_.refit(edges_, from_, to_);
+    vertex_tree_.refit(vertices_, from_, to_);
+    if (!is_new) return;
+    face_tree_.want([&](std::uint32_t f) { return has_moved(faces_[f]); });
+    edge_tree_.want([&](std::uint32_t e) { return has_moved(edges_[e]); });
+    vertex_tree_.want([&](std::uint32_t v) { return has_moved_[v] != 0; });
+}
+
+std::uint32_t SelfSurface::frames_to_list() const {
+    double way = 0;
+    for (std::size_t v = 0; v < own_->vertex_count(); ++v)
+        way += static_cast<double>(length(goals_[v] - drifting_ - starts_[v]));
+    const double most =
+        static_cast<double>(kMostWay * reach_.near) * static_cast<double>(own_->vertex_count());
+    return way * kMostFrames < most ? kMostFrames : std::max(1U, static_cast<std::uint32_t>(most / way));
+}
+
+bool SelfSurface::has_moved(const Element& element) const {
+    return (has_moved_[element.vertices[0]] | has_moved_[element.vertices[1]] |
+            has_moved_[element.vertices[2]]) != 0;
+}
+
+/// For what is near the vertices that have moved. The pairs of the others stay listed.
+void SelfSurface::search() {
+    candidates_.clear();
+    std::erase_if(pairs_, [&](const Pair& pair) {
+        return std::any_of(pair.points.begin(), pair.points.end(),
+                           [&](std::uint32_t v) { return has_moved_[v] != 0; });
+    });
     const float reach = reach_.near + 2 * reach_.slack;
     near_.clear();
     find_near(vertex_tree_, face_tree_, reach, near_);
     for (const auto& [vertex, face] : near_) add_vertex_face(vertex, face);
     near_.clear();
+    find_near(face_tree_, vertex_tree_, reach, near_);
+    for (const auto& [face, vertex] : near_)
+        if (has_moved_[vertex] == 0) add_vertex_face(vertex, face);
+    near_.clear();
     find_near(edge_tree_, edge_tree_, reach, near_);
     for (const auto& [a, b] : near_) add_edge_edge(a, b);
-}
-
-void SelfSurface::search_around_moved() {
-    const auto is_moved = [&](const Element& element) {
-        return (has_moved_[element.vertices[0]] | has_moved_[element.vertices[1]] |
-                has_moved_[element.vertices[2]]) != 0;
-    };
-    std::erase_if(pairs_, [&](const Pair& pair) {
-        return std::any_of(pair.points.begin(), pair.points.end(),
-                           [&](std::uint32_t v) { return has_moved_[v] != 0; });
-    });
-    const auto find_around = [&](std::span<const Element> elements, const ElementTree& others) {
-        wanted_.clear();
-        boxes_.clear();
-        for (std::uint32_t e = 0; e < elements.size(); ++e) {
-            if (!is_moved(elements[e])) continue;
-            wanted_.push_back(e);
-            boxes_.push_back(box_of(elements[e], searched_from_, searched_to_));
-        }
-        near_.clear();
-        find_near(boxes_, others, reach_.near + 2 * reach_.slack, near_);
-    };
-    find_around(vertices_, face_tree_);
-    for (const auto& [i, face] : near_) add_vertex_face(wanted_[i], face);
-    find_around(faces_, vertex_tree_);
-    searched_count += wanted_.size();
-    for (const auto& [i, vertex] : near_)
-        if (has_moved_[vertex] == 0) add_vertex_face(vertex, wanted_[i]);
-    find_around(edges_, edge_tree_);
-    for (const auto& [i, b] : near_) // two that moved are found from both sides
-        if (wanted_[i] < b || !is_moved(edges_[b])) add_edge_edge(wanted_[i], b);
+    for (const std::uint8_t mask : face_tree_.wanted)
+        searched_count += static_cast<std::uint64_t>(std::popcount(mask));
 }
 
 void SelfSurface::add_vertex_face(std::uint32_t vertex, std::uint32_t face) {
@@ -219,14 +262,14 @@ void SelfSurface::add_edge_edge(std::uint32_t a, std::uint32_t b) {
 /// Of the candidates, those that may come near on their ways, which they go together.
 void SelfSurface::keep_near() {
     separations_.resize(candidates_.size());
-    separations(candidates_, searched_from_, searched_from_, separations_);
+    separations(candidates_, from_, from_, separations_);
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
         const Pair& pair = candidates_[i];
         const Vec3f normal = separations_[i].normal;
         const std::size_t own = own_count(pair.kind);
         float least = kInfinity, most = -kInfinity;
         for (std::size_t k = 0; k < 4; ++k) {
-            const float height = dot(normal, searched_to_[pair.points[k]] - searched_from_[pair.points[0]]);
+            const float height = dot(normal, to_[pair.points[k]] - from_[pair.points[0]]);
             least = k < own ? std::min(least, height) : least;
             most = k < own ? most : std::max(most, height);
         }

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "collider/frame_change.hpp"
-#include "simulation/surfaces/element_tree.hpp"
 #include "simulation/surfaces/elements.hpp"
+#include "simulation/surfaces/near_elements.hpp"
 #include "simulation/surfaces/separation.hpp"
 #include "simulation/surfaces/surface_contact.hpp"
 
@@ -22,15 +22,16 @@ namespace echinus {
 /// a plane along the same normal where they end, never meets: its gap along the normal is a concave function
 /// of time. Where no such plane remains, the ways of the pair's vertices are shortened.
 ///
-/// Only what is near can meet. The pairs that are near along their ways are listed, and the list holds as
-/// long as no vertex leaves its way by a slack. Around each vertex lies a ball, its *room*: while all stay in
+/// Only what is near can meet. Vertices are expected to go on as they move now, and the pairs that would be
+/// near then are listed. The list holds for some passes, as long as no vertex is farther than a slack from
+/// where it is expected. Around each vertex lies a ball, its *room*: while all stay in
 /// their rooms nothing meets, and there is nothing to do. All this is said of motion relative to the mean
 /// motion of the particles, which carries everything along.
 class SelfSurface {
   public:
     struct Reach {
         float near;      ///< pairs this near along their ways are listed
-        float slack;     ///< how far a vertex may leave the way for which pairs were listed
+        float slack;     ///< how far a vertex may be from where it is expected
         float least_gap; ///< no motion takes a pair nearer than this
     };
 
@@ -40,7 +41,7 @@ class SelfSurface {
 
     /// Ways are straight in the world, or in a frame that moves.
     /// @param frame  where the frame stands; none: the world
-    void begin_pass(const RigidTransform* frame, const PointArrays& starts);
+    void begin_pass(const RigidTransform* frame, const PointArrays& starts, bool is_first);
     /// Looks for contacts on the way to the goals. @param frame  at the end of the frame
     void look_ahead(const RigidTransform* frame, const PointArrays& goals);
     void relax(Particles& particles, std::span<const float> inverse_masses, SimulationProfile& profile);
@@ -63,9 +64,14 @@ class SelfSurface {
     bool all_within(std::span<const float> radii) const;
 
     void list_pairs();
-    bool is_off_its_way(std::uint32_t vertex) const;
-    void search_everywhere();
-    void search_around_moved();
+    Vec3f expected(std::uint32_t vertex, bool at_end) const;
+    Vec3f expected_in(std::uint32_t vertex, std::uint32_t frame) const;
+    bool is_elsewhere(std::uint32_t vertex) const;
+    void expect(std::uint32_t vertex);
+    void set_window();
+    std::uint32_t frames_to_list() const;
+    bool has_moved(const Element& element) const;
+    void search();
     void add_vertex_face(std::uint32_t vertex, std::uint32_t face);
     void add_edge_edge(std::uint32_t a, std::uint32_t b);
     void keep_near();
@@ -78,7 +84,7 @@ class SelfSurface {
 
     std::shared_ptr<const Elements> own_;
     std::vector<Element> faces_, edges_, vertices_; ///< each as elements of their own
-    ElementTree face_tree_, edge_tree_, vertex_tree_;
+    MovingTree face_tree_, edge_tree_, vertex_tree_;
     Reach reach_;
     float thickness_, friction_;
     std::vector<float> most_;     ///< by vertex: the most thickness that the elements around it allow
@@ -91,11 +97,18 @@ class SelfSurface {
     Vec3f drifting_;             ///< in this pass
     // Pairs, each once, with the one side as the deformable's and the other as the opponent's
     bool has_searched_ = false;
-    PointArrays searched_from_, searched_to_; ///< the ways for which they were listed, less the drift
-    std::vector<std::uint8_t> has_moved_;     ///< by vertex, while they are listed
+    bool is_first_pass_ = true; ///< of this frame
+    std::uint32_t frame_number_ = 0;
+    std::uint32_t first_frame_ = 0, last_frame_ = 0; ///< from the start of the one to the end of the other,
+                                                     ///< pairs are listed
+    bool has_window_ = false;                        ///< the trees stand for these frames
+    PointArrays expected_, speeds_; ///< where vertices were when their pairs were listed, and how they move
+                                    ///< in a frame, less the drift
+    std::vector<std::uint32_t> listed_in_;         ///< by vertex: the frame
+    std::vector<std::uint8_t> is_listed_for_pass_; ///< by vertex
+    PointArrays from_, to_;                        ///< expected at both ends of these frames
+    std::vector<std::uint8_t> has_moved_;          ///< by vertex, while they are listed
     std::vector<std::array<std::uint32_t, 2>> near_;
-    std::vector<std::uint32_t> wanted_;
-    std::vector<Box> boxes_;
     std::vector<Pair> candidates_, pairs_;
     std::vector<Separation> separations_;
     // Rooms

@@ -80,7 +80,7 @@ void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders, const
         collisions.known_clearances(c, particles, clearances_[c]);
         models_[c].begin_frame(colliders[c], particles, clearances_[c]);
     }
-    if (self_) self_->begin_pass(carrier_pose(), particles.positions);
+    if (self_) self_->begin_pass(carrier_pose(), particles.positions, true);
 }
 
 void SurfaceCollision::look_ahead(const std::vector<Collider>& colliders, const Particles& particles) {
@@ -113,7 +113,7 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
     for (int number = 0; number < kMostPasses; ++number) {
         if (number > 0) {
             for (ModelSurface& model : models_) model.begin_pass(particles.positions);
-            if (self_) self_->begin_pass(carrier_pose(), particles.positions);
+            if (self_) self_->begin_pass(carrier_pose(), particles.positions, false);
         }
         const bool may_go_on = pass(particles, number == 0);
         profile.squeezed_count += std::exchange(squeezed_now_, 0);
