@@ -11,22 +11,23 @@
 
 namespace echinus {
 
-/// Of several attempts to part what intersects, all from the same start, the first of those that leave the
-/// fewest pairs and among them stretch edges least.
+/// Of several states of particles, all made from one start, the first of those in which the fewest pairs
+/// intersect and among them edges are stretched least.
 class BestPlaces {
   public:
     BestPlaces(const Elements& elements, const std::vector<Vec3f>& start)
         : elements_(elements), start_(start) {}
 
-    /// @param left  the pairs that still intersect
-    void consider(const std::vector<Vec3f>& positions, std::size_t left) {
-        const std::pair cost{left, largest_stretch(elements_, start_, positions)};
+    void consider(const std::vector<Vec3f>& positions, std::size_t pair_count) {
+        if (pair_count > cost_.first) return;
+        const std::pair cost{pair_count, largest_stretch(elements_, start_, positions)};
         if (cost >= cost_) return;
         cost_ = cost;
         positions_ = positions;
     }
+    /// @pre a state was considered
     const std::vector<Vec3f>& get() const { return positions_; }
-    bool moved() const { return positions_ != start_; }
+    std::size_t pair_count() const { return cost_.first; }
 
   private:
     const Elements& elements_;

@@ -26,7 +26,8 @@ namespace {
 
 /// Elements that intersect go a step in each round. A step is half a thickness, or this share of an edge.
 constexpr int kMostRounds = 200;
-constexpr int kPatience = 40; // a face that is raised along a tip intersects it all the way
+constexpr int kPatience = 40;       // a face that is raised along a tip intersects it all the way,
+constexpr float kStepGrowth = 1.1F; // in steps that grow meanwhile
 constexpr float kStepShare = 1.0F / 16;
 
 /// Surfaces that a particle on its way out of nested parts may come to.
@@ -95,33 +96,42 @@ class Attempt {
   public:
     Attempt(const Elements& elements, const std::vector<float>& inverse_masses,
             const std::vector<Model>& models, const std::vector<Vec3f>& start)
-        : positions(start), elements_(elements), inverse_masses_(inverse_masses), models_(models),
-          directions_(start.size()), edge_length_(mean_edge_length(elements, start)) {}
+        : elements_(elements), inverse_masses_(inverse_masses), models_(models), directions_(start.size()),
+          positions_(start), edge_length_(mean_edge_length(elements, start)) {}
 
-    void go(Way way) {
-        std::vector<std::uint32_t> active(elements_.all.size());
-        std::iota(active.begin(), active.end(), 0U);
+    /// Pairs that intersect, and particles inside.
+    std::size_t tangle_count() const {
+        std::size_t count = inside_count();
+        for (const Model& model : models_) count += model.pairs_with(mesh_of(everything())).size();
+        return count;
+    }
+
+    void go(Way way, BestPlaces& best) {
+        std::vector<std::uint32_t> active = everything();
         if (way != Way::Nearest) choose_directions(active, way == Way::Forwards ? 1.0F : -1.0F);
         Progress progress(kPatience);
         for (int round = 0; round < kMostRounds; ++round) {
-            std::vector<std::uint8_t> moved(positions.size());
+            std::vector<std::uint8_t> moved(positions_.size());
             move_out_of_insides(moved);
             const std::vector<std::uint32_t> tangled =
-                push_intersecting(joined(active, elements_around(moved)), moved);
+                push_intersecting(joined(active, elements_around(moved)), moved, best);
             const std::vector<std::uint32_t> changed = elements_around(moved);
-            if (changed.empty() || !progress.goes_on(left)) break;
+            if (changed.empty() || !progress.goes_on(pair_count_)) break;
             active = joined(changed, tangled);
+            step_factor_ = progress.is_idle() ? kStepGrowth * step_factor_ : 1;
         }
     }
 
-    std::vector<Vec3f> positions;
-    std::size_t left = 0; ///< pairs of an element and a face that intersect
-
   private:
+    std::vector<std::uint32_t> everything() const {
+        std::vector<std::uint32_t> all(elements_.all.size());
+        std::iota(all.begin(), all.end(), 0U);
+        return all;
+    }
     bool pinned(std::size_t particle) const { return inverse_masses_[particle] == 0; }
 
     TriangleMesh mesh_of(std::span<const std::uint32_t> chosen) const {
-        TriangleMesh mesh{positions, {}};
+        TriangleMesh mesh{positions_, {}};
         for (const std::uint32_t e : chosen) mesh.faces.push_back(elements_.all[e].vertices);
         return mesh;
     }
@@ -135,17 +145,17 @@ class Attempt {
                 for (const std::uint32_t e : elements_.at(v)) tangled[e] = 1;
             });
         }
-        UnionFind parts(positions.size());
+        UnionFind parts(positions_.size());
         for (std::size_t e = 0; e < tangled.size(); ++e)
             if (tangled[e] != 0)
                 for (const std::uint32_t v : elements_.all[e].vertices)
                     parts.join(elements_.all[e].vertices[0], v);
-        std::vector<Vec3f> normals(positions.size());
-        std::vector<float> areas(positions.size());
+        std::vector<Vec3f> normals(positions_.size());
+        std::vector<float> areas(positions_.size());
         for (std::size_t e = 0; e < tangled.size(); ++e) {
             if (tangled[e] == 0) continue;
             const auto& [a, b, c] = elements_.all[e].vertices;
-            const Vec3f normal = cross(positions[b] - positions[a], positions[c] - positions[a]);
+            const Vec3f normal = cross(positions_[b] - positions_[a], positions_[c] - positions_[a]);
             normals[parts.find(a)] += normal;
             areas[parts.find(a)] += length(normal);
         }
@@ -162,10 +172,16 @@ class Attempt {
     template <typename Visit>
     void for_each_inside(const Model& model, const Visit& visit) const {
         if (!model.has_inside) return;
-        std::vector<std::uint8_t> inside(positions.size());
-        contains_batch(*model.collider, std::span(positions), inside);
-        for (std::size_t v = 0; v < positions.size(); ++v)
+        std::vector<std::uint8_t> inside(positions_.size());
+        contains_batch(*model.collider, std::span(positions_), inside);
+        for (std::size_t v = 0; v < positions_.size(); ++v)
             if (inside[v] != 0) visit(v);
+    }
+
+    std::size_t inside_count() const {
+        std::size_t count = 0;
+        for (const Model& model : models_) for_each_inside(model, [&](std::size_t) { ++count; });
+        return count;
     }
 
     void move_out_of_insides(std::vector<std::uint8_t>& moved) {
@@ -173,22 +189,23 @@ class Attempt {
             for_each_inside(model, [&](std::size_t v) {
                 if (pinned(v)) return;
                 std::optional<Vec3f> place;
-                if (directions_[v] != Vec3f{}) place = model.out_along(positions[v], directions_[v]);
-                positions[v] = place ? *place : model.out_to_nearest(positions[v]);
+                if (directions_[v] != Vec3f{}) place = model.out_along(positions_[v], directions_[v]);
+                positions_[v] = place ? *place : model.out_to_nearest(positions_[v]);
                 moved[v] = 1;
             });
     }
 
-    /// @return those of the elements that intersected
+    /// @param judged  all that may intersect
+    /// @return those that do
     std::vector<std::uint32_t> push_intersecting(const std::vector<std::uint32_t>& judged,
-                                                 std::vector<std::uint8_t>& moved) {
-        std::vector<Vec3f> pushes(positions.size());
+                                                 std::vector<std::uint8_t>& moved, BestPlaces& best) {
+        std::vector<Vec3f> pushes(positions_.size());
         std::vector<std::uint32_t> tangled;
-        left = 0;
+        pair_count_ = 0;
         float step = 0;
         for (const Model& model : models_) {
             const std::vector<FacePair> pairs = model.pairs_with(mesh_of(judged));
-            left += pairs.size();
+            pair_count_ += pairs.size();
             if (!pairs.empty()) step = std::max({step, model.thickness / 2, kStepShare * edge_length_});
             for (std::size_t i = 0; i < pairs.size(); ++i) {
                 if (i > 0 && pairs[i].a == pairs[i - 1].a) continue;
@@ -196,9 +213,10 @@ class Attempt {
                 push(tangled.back(), model, pushes);
             }
         }
-        for (std::size_t v = 0; v < positions.size(); ++v) {
+        best.consider(positions_, pair_count_ + inside_count());
+        for (std::size_t v = 0; v < positions_.size(); ++v) {
             if (pushes[v] == Vec3f{} || pinned(v)) continue;
-            positions[v] += unit_or_zero(pushes[v]) * step;
+            positions_[v] += unit_or_zero(pushes[v]) * (step * step_factor_);
             moved[v] = 1;
         }
         return joined(tangled, {});
@@ -222,9 +240,9 @@ class Attempt {
 
     Vec3f away_from_surface(const Element& element, const Model& model) const {
         const auto& [a, b, c] = element.vertices;
-        const Vec3f middle = (positions[a] + positions[b] + positions[c]) * (1.0F / 3);
+        const Vec3f middle = (positions_[a] + positions_[b] + positions_[c]) * (1.0F / 3);
         const float farthest = std::max(
-            {length(positions[a] - middle), length(positions[b] - middle), length(positions[c] - middle)});
+            {length(positions_[a] - middle), length(positions_[b] - middle), length(positions_[c] - middle)});
         return contact(*model.collider, middle, farthest).normal;
     }
 
@@ -242,7 +260,10 @@ class Attempt {
     const std::vector<float>& inverse_masses_;
     const std::vector<Model>& models_;
     std::vector<Vec3f> directions_; ///< by particle; 0 where there is none
+    std::vector<Vec3f> positions_;
     float edge_length_;
+    float step_factor_ = 1;
+    std::size_t pair_count_ = 0; ///< in this round
 };
 
 } // namespace
@@ -254,12 +275,11 @@ bool part_from_models(const Elements& elements, const std::vector<float>& invers
     models.reserve(colliders.size());
     for (const Collider& collider : colliders) models.emplace_back(collider, options);
     BestPlaces best(elements, positions);
-    for (const Way way : {Way::Nearest, Way::Forwards, Way::Backwards}) {
-        Attempt attempt(elements, inverse_masses, models, positions);
-        attempt.go(way);
-        best.consider(attempt.positions, attempt.left);
-        if (!best.moved()) return false;
-    }
+    const Attempt start(elements, inverse_masses, models, positions);
+    best.consider(positions, start.tangle_count());
+    if (best.pair_count() == 0) return false;
+    for (const Way way : {Way::Nearest, Way::Forwards, Way::Backwards}) Attempt(start).go(way, best);
+    if (best.get() == positions) return false;
     positions = best.get();
     return true;
 }

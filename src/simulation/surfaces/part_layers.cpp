@@ -7,6 +7,7 @@
 #include <echinus/intersections.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -32,30 +33,30 @@ struct Step {
     bool to_front;
 };
 
+/// To which side of another layer one goes where neither is cut off.
+enum class Side { Front, Back, Nearer };
+
 class Attempt {
   public:
     Attempt(const Elements& elements, const std::vector<float>& inverse_masses, float gap, bool face_moves,
-            const std::vector<Vec3f>& start, bool to_front)
-        : positions(start), elements_(elements), inverse_masses_(inverse_masses), gap_(gap),
-          face_moves_(face_moves), to_front_(to_front) {}
+            const std::vector<Vec3f>& start, Side side)
+        : elements_(elements), inverse_masses_(inverse_masses), positions_(start), gap_(gap),
+          face_moves_(face_moves), side_(side) {}
 
-    void go() {
+    void go(BestPlaces& best) {
         Progress progress(kPatience);
         for (int round = 0; round < kMostRounds; ++round) {
             const std::vector<FacePair> pairs = self_intersecting_pairs(mesh());
-            left = pairs.size();
-            if (left == 0 || !progress.goes_on(left) || !take(steps_for(crossings_of(pairs), pairs))) return;
+            best.consider(positions_, pairs.size());
+            if (pairs.empty() || !progress.goes_on(pairs.size())) return;
+            if (!take(steps_for(crossings_of(pairs), pairs))) return;
         }
-        left = self_intersecting_pairs(mesh()).size();
     }
-
-    std::vector<Vec3f> positions;
-    std::size_t left = 0; ///< pairs that intersect
-    bool chose_a_side = false;
+    bool chose_a_side() const { return chose_a_side_; }
 
   private:
     TriangleMesh mesh() const {
-        TriangleMesh mesh{positions, {}};
+        TriangleMesh mesh{positions_, {}};
         for (const Element& element : elements_.all) mesh.faces.push_back(element.vertices);
         return mesh;
     }
@@ -80,8 +81,8 @@ class Attempt {
             const auto& [p, q] = elements_.edges[element.edges[k]];
             if (other.has(p) || other.has(q)) continue;
             const auto& [a, b, c] = other.vertices;
-            if (triangles_intersect({positions[p], positions[q], positions[q]},
-                                    {positions[a], positions[b], positions[c]}))
+            if (triangles_intersect({positions_[p], positions_[q], positions_[q]},
+                                    {positions_[a], positions_[b], positions_[c]}))
                 crossings.push_back({element.edges[k], face});
         }
     }
@@ -90,11 +91,11 @@ class Attempt {
     std::vector<Step> steps_for(const std::vector<Crossing>& crossings, const std::vector<FacePair>& pairs) {
         std::vector<bool> cut(elements_.edges.size(), false);
         for (const Crossing& crossing : crossings) cut[crossing.edge] = true;
-        UnionFind pieces(positions.size());
+        UnionFind pieces(positions_.size());
         for (std::size_t e = 0; e < elements_.edges.size(); ++e)
             if (!cut[e]) pieces.join(elements_.edges[e][0], elements_.edges[e][1]);
-        std::vector<std::size_t> sizes(positions.size());
-        for (std::uint32_t v = 0; v < positions.size(); ++v) ++sizes[pieces.find(v)];
+        std::vector<std::size_t> sizes(positions_.size());
+        for (std::uint32_t v = 0; v < positions_.size(); ++v) ++sizes[pieces.find(v)];
         UnionFind layers = layers_of(pairs);
         std::vector<Step> steps;
         for (const auto& [edge, face] : crossings) {
@@ -104,11 +105,14 @@ class Attempt {
             if (p_piece != q_piece) {
                 const auto& [from, to] = p_piece < q_piece ? std::pair{p, q} : std::pair{q, p};
                 steps.push_back({std::min(p_piece, q_piece).first, from, face, height(to, face) >= 0});
-            } else if (layers.find(p) <= layers.find(elements_.all[face].vertices[0])) {
-                chose_a_side = true;
-                const bool p_in_front = height(p, face) > height(q, face);
-                steps.push_back({positions.size(), p_in_front == to_front_ ? q : p, face, to_front_});
+                continue;
             }
+            if (layers.find(p) > layers.find(elements_.all[face].vertices[0])) continue;
+            chose_a_side_ = true;
+            const bool p_in_front = height(p, face) > height(q, face);
+            const bool p_is_nearer = std::fabs(height(p, face)) < std::fabs(height(q, face));
+            const bool to_front = side_ == Side::Nearer ? p_is_nearer != p_in_front : side_ == Side::Front;
+            steps.push_back({positions_.size(), p_in_front == to_front ? q : p, face, to_front});
         }
         std::stable_sort(steps.begin(), steps.end(),
                          [](const Step& a, const Step& b) { return a.piece_size < b.piece_size; });
@@ -117,7 +121,7 @@ class Attempt {
 
     /// What hangs together among the elements that intersect.
     UnionFind layers_of(const std::vector<FacePair>& pairs) const {
-        UnionFind layers(positions.size());
+        UnionFind layers(positions_.size());
         for (const auto& pair : pairs)
             for (const std::uint32_t e : {pair.a, pair.b})
                 for (const std::uint32_t v : elements_.all[e].vertices)
@@ -127,20 +131,20 @@ class Attempt {
 
     Vec3f normal_of(std::uint32_t face) const {
         const auto& [a, b, c] = elements_.all[face].vertices;
-        const Vec3f normal = cross(positions[b] - positions[a], positions[c] - positions[a]);
+        const Vec3f normal = cross(positions_[b] - positions_[a], positions_[c] - positions_[a]);
         const float size = length(normal);
         return size > 0 ? normal * (1 / size) : Vec3f{};
     }
     float height(std::uint32_t particle, std::uint32_t face) const {
-        return dot(positions[particle] - positions[elements_.all[face].vertices[0]], normal_of(face));
+        return dot(positions_[particle] - positions_[elements_.all[face].vertices[0]], normal_of(face));
     }
 
     /// Of two that pass through each other only the first gives way in a round.
     /// @return whether a particle was moved
     bool take(const std::vector<Step>& steps) {
         const auto pinned = [&](std::uint32_t v) { return inverse_masses_[v] == 0; };
-        std::vector<Vec3f> ways(positions.size());
-        std::vector<bool> gives_way(positions.size(), false), is_passed(positions.size(), false);
+        std::vector<Vec3f> ways(positions_.size());
+        std::vector<bool> gives_way(positions_.size(), false), is_passed(positions_.size(), false);
         for (const Step& step : steps) {
             const auto& corners = elements_.all[step.face].vertices;
             if (is_passed[step.particle] ||
@@ -160,9 +164,9 @@ class Attempt {
             }
         }
         bool moved = false;
-        for (std::size_t v = 0; v < positions.size(); ++v) {
+        for (std::size_t v = 0; v < positions_.size(); ++v) {
             moved = moved || ways[v] != Vec3f{};
-            positions[v] += ways[v];
+            positions_[v] += ways[v];
         }
         return moved;
     }
@@ -173,8 +177,11 @@ class Attempt {
 
     const Elements& elements_;
     const std::vector<float>& inverse_masses_;
+    std::vector<Vec3f> positions_;
     float gap_;
-    bool face_moves_, to_front_;
+    bool face_moves_;
+    Side side_;
+    bool chose_a_side_ = false;
 };
 
 } // namespace
@@ -182,13 +189,12 @@ class Attempt {
 bool part_layers(const Elements& elements, const std::vector<float>& inverse_masses, float gap,
                  bool face_moves, std::vector<Vec3f>& positions) {
     BestPlaces best(elements, positions);
-    for (const bool to_front : {true, false}) {
-        Attempt attempt(elements, inverse_masses, gap, face_moves, positions, to_front);
-        attempt.go();
-        best.consider(attempt.positions, attempt.left);
-        if (!best.moved()) return false;
-        if (attempt.left == 0 && !attempt.chose_a_side) break;
+    for (const Side side : {Side::Front, Side::Back, Side::Nearer}) {
+        Attempt attempt(elements, inverse_masses, gap, face_moves, positions, side);
+        attempt.go(best);
+        if (best.pair_count() == 0 && !attempt.chose_a_side()) break;
     }
+    if (best.get() == positions) return false;
     positions = best.get();
     return true;
 }

@@ -15,7 +15,8 @@ namespace echinus {
 /// Which part that is shows once all edges that pass through something are cut: of the pieces that the
 /// surface falls into, the smaller one has come through. Where the cuts do not go all the way across, because
 /// each layer cuts into the other from its own border, the layer of the smaller particle numbers moves to the
-/// other one's front, or else to its back: to where edges are stretched less.
+/// other one's front, or to its back, or each of its edges by the end that is nearer to the face: the way
+/// after which the fewest pairs intersect, and of those the one that stretches edges least.
 ///
 /// @param gap        that is left between them, units
 /// @param face_moves  instead of the particle, to the same effect: where a model is in the particle's way
