@@ -47,6 +47,16 @@ describe('A mesh', () => {
         assert.deepEqual(report.duplicateFacesDropped, [torus.faceCount]);
         assert.equal(mesh.report().closed, true);
     });
+    test('knows the pairs of its faces that intersect another mesh, and each other', () => {
+        const sheet = echinus.makeMesh([-1, -1, 0, 1, -1, 0, 0, 1, 0, 5, 5, 5, 6, 5, 5, 5, 6, 5], [0, 1, 2, 3, 4, 5]);
+        const needle = echinus.makeMesh([0, 0, -1, 0.1, 0, 1, 0, 0.1, 1], [0, 1, 2]);
+        assert.deepEqual([...sheet.intersectingPairs(needle)], [0, 0]);
+        assert.deepEqual([...needle.intersectingPairs(sheet)], [0, 0]);
+        assert.deepEqual([...sheet.selfIntersectingPairs()], []);
+        const both = echinus.makeMesh([...sheet.vertices, ...needle.vertices], [0, 1, 2, 3, 4, 5, 6, 7, 8]);
+        assert.deepEqual([...both.selfIntersectingPairs()], [0, 2]);
+        assert.throws(() => sheet.intersectingPairs({}), { code: 'InvalidArgument' });
+    });
     test('is read from the bytes of a file', () => {
         const obj = 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv .1e+1 0.5 1e-3\nf 1 2 3 4\nf 1 2 5\n';
         const mesh = echinus.readMesh(new TextEncoder().encode(obj), 'A.OBJ');
@@ -172,6 +182,37 @@ describe('A simulation', () => {
         let touching = 0;
         for (let i = 0; i < simulation.particleCount; ++i) touching += contacts.at(i).found;
         assert.ok(touching > 50, `${touching} touch`);
+    });
+    test('of surfaces has no faces that intersect, and without them it has', () => {
+        const scene = { model: { box: {} }, cloth: { size: [3, 3], particles: [12, 12], position: [0, 0, 0.6], thickness: 0.02 }, surface_collision: false };
+        const box = echinus.makeBox([1, 1, 1]);
+        const map = echinus.buildMap(box);
+        const fallen = (keys) => {
+            const simulation = echinus.parseScene({ ...scene, ...keys }).makeSimulation(map);
+            simulation.step(150);
+            return simulation;
+        };
+        const pairsOf = ({ positions, faces }) => {
+            const cloth = echinus.makeMesh(positions, faces);
+            return [cloth.intersectingPairs(box).length / 2, cloth.selfIntersectingPairs().length / 2];
+        };
+        const surfaces = { surface_collision: true, self_collision: true };
+        const apart = fallen(surfaces);
+        assert.deepEqual(pairsOf(apart), [0, 0]);
+        assert.equal(apart.profile.squeezedCount, 0);
+        assert.ok(apart.profile.measuredPairCount > 0 && apart.profile.searchedFaceCount > 0);
+        const pushed = fallen({ ...surfaces, cloth: { ...scene.cloth, pins: [[5, 5], [6, 6]] }, collider: { linear_velocity: [0, 0, 0.5] } });
+        assert.ok(pushed.profile.squeezedCount > 0 && pushed.profile.truncatedCount > 0, JSON.stringify(pushed.profile));
+
+        const cut = fallen({});
+        assert.ok(pairsOf(cut)[0] > 0);
+        assert.equal(cut.profile.truncatedCount, 0);
+        const continued = (keys) => cut.continueWith(echinus.parseScene({ ...scene, ...surfaces, ...keys }));
+        assert.throws(() => continued({}), /begins intersecting collider 0 in \d+ pairs: face .*set untangle/);
+        const untangled = continued({ untangle: true });
+        assert.deepEqual(pairsOf(untangled), [0, 0]);
+        untangled.step(30);
+        assert.deepEqual(pairsOf(untangled), [0, 0]);
     });
     test('of a cloth that is a mesh takes the mesh that its caller has read', () => {
         const description = { model: { box: {} }, cloth: { mesh: 'bag.obj', rest_mesh: 'wide.obj', position: [0, 0, 2], pins: [0] } };

@@ -186,6 +186,13 @@ export class Mesh extends Deletable {
     weld(): Mesh;
     /** A repaired copy. @param repairs  by default all */
     repair(repairs?: readonly Repair[]): { mesh: Mesh; report: RepairReport };
+    /**
+     * Which faces intersect, decided exactly (echinus/intersections.hpp): pairs of a face of this mesh and a face of
+     * the other, both in one frame, ascending. @returns [2 pair_count]
+     */
+    intersectingPairs(other: Mesh): Uint32Array;
+    /** Pairs of faces of this mesh that intersect beyond what they share, ascending. @returns [2 pair_count] */
+    selfIntersectingPairs(): Uint32Array;
     /** By brute force over all faces, as a reference: 1 inside a closed mesh, 0 outside. */
     windingNumber(point: Vec3): number;
     unsignedDistance(point: Vec3): number;
@@ -410,6 +417,8 @@ export interface SceneDescription {
         velocity?: Vec3;
         /** Default: half the distance between neighbouring particles. */
         thickness?: number;
+        /** Between layers of the cloth. Default: the thickness. */
+        self_thickness?: number;
     };
     material?: {
         friction?: number;
@@ -424,6 +433,12 @@ export interface SceneDescription {
     solver?: 'verlet' | 'xpbd';
     iterations?: number;
     substeps?: number;
+    /** Faces and edges of the cloth keep off the model, not only particles; needs an exact map (docs/surfaces.md). */
+    surface_collision?: boolean;
+    /** Nor do faces of the cloth intersect. Needs surface_collision. */
+    self_collision?: boolean;
+    /** A start that intersects is parted instead of refused. Needs surface_collision. */
+    untangle?: boolean;
     frame_limit?: number;
     at_rest?: { distance?: number; speed?: number; frames?: number };
 }
@@ -470,7 +485,8 @@ export class Scene extends Deletable {
      * The scene's cloth and collider, ready to step. The map may be of another kind than the scene's.
      * @param options  allowOpenCollider: accept the exact map of an open mesh, near whose gaps particles get in and out;
      *                 cloth, clothAtRest: the meshes of clothFile and clothRestFile, welded
-     * @throws InvalidOptions for the exact map of an open mesh otherwise, and where a cloth's mesh is not given; InvalidMesh for one that is no cloth
+     * @throws InvalidOptions for the exact map of an open mesh otherwise, where a cloth's mesh is not given, and with
+     * surface_collision for a start that intersects; InvalidMesh for a mesh that is no cloth
      */
     makeSimulation(map: AnyMap, options?: { allowOpenCollider?: boolean; cloth?: Mesh; clothAtRest?: Mesh }): Simulation;
 }
@@ -500,6 +516,7 @@ export class Simulation extends Deletable {
      * A simulation of the same particles and collider in their present state, with the solver, material, thickness and
      * gravity of another scene: for options that change while the cloth falls. Profile and frame restart. Delete the
      * old one.
+     * @throws InvalidOptions when the scene sets surface_collision and the cloth intersects now; set untangle too
      */
     continueWith(scene: Scene): Simulation;
     /** Steers the collider: it keeps these velocities until they are set again. Units and radians per second. */
@@ -536,6 +553,13 @@ export interface SimulationProfile {
     rescuedCount: number;
     /** How often a particle ended a frame inside an exact map or beyond its surface, though it was free before: 0. */
     lostCount: number;
+    /** With surface_collision: how often a particle ended a frame short of where it was going, so that nothing meets. */
+    truncatedCount: number;
+    /** Work of surface_collision: faces whose neighbourhood was searched, and pairs of their parts that were measured. */
+    searchedFaceCount: number;
+    measuredPairCount: number;
+    /** How often no place for a particle was proven. Only then may faces intersect: 0. */
+    squeezedCount: number;
 }
 
 /** point_world = rotation applied to (scale * point_local), + position. */

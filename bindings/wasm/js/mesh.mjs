@@ -1,4 +1,4 @@
-import { Handle } from './core.mjs';
+import { Handle, requireOwn } from './core.mjs';
 import { refuse, requireCount, requirePoint } from './errors.mjs';
 
 const FAULTS = ['borderEdges', 'nonmanifoldEdges', 'misorientedEdges', 'duplicateFaces', 'degenerateFaces'];
@@ -59,10 +59,23 @@ export class Mesh extends Handle {
     }
 
     faults() {
-        const arrays = this.core.try('mesh_faults', this.address);
+        const lists = this.#numbers(FAULTS.length, 'mesh_faults');
+        return Object.fromEntries(FAULTS.map((name, which) => [name, lists[which]]));
+    }
+
+    intersectingPairs(other) {
+        return this.#numbers(1, 'mesh_intersecting_pairs', requireOwn(this.core, other, Mesh))[0];
+    }
+    selfIntersectingPairs() {
+        return this.#numbers(1, 'mesh_self_intersecting_pairs')[0];
+    }
+
+    /** Copies of the first lists of numbers that an export returns. */
+    #numbers(listCount, name, ...args) {
+        const arrays = this.core.try(name, this.address, ...args);
         try {
-            return Object.fromEntries(FAULTS.map((name, which) => [name, this.core.copyWords(
-                this.core.call('arrays_numbers', arrays, which), this.core.call('arrays_number_count', arrays, which))]));
+            return Array.from({ length: listCount }, (_, which) =>
+                this.core.copyWords(this.core.call('arrays_numbers', arrays, which), this.core.call('arrays_number_count', arrays, which)));
         } finally {
             this.core.call('arrays_delete', arrays);
         }

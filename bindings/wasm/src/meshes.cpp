@@ -7,6 +7,7 @@
 #include "mesh_io/readers.hpp"
 
 #include <echinus/error.hpp>
+#include <echinus/intersections.hpp>
 #include <echinus/mesh.hpp>
 
 #include <algorithm>
@@ -108,6 +109,13 @@ Arrays find_faults(const TriangleMesh& mesh) {
     return faults;
 }
 
+/// Both faces of each pair in turn.
+Arrays numbers_of(const std::vector<FacePair>& pairs) {
+    Arrays result;
+    for (const auto& [a, b] : pairs) result.numbers[0].insert(result.numbers[0].end(), {a, b});
+    return result;
+}
+
 } // namespace
 
 ECHINUS_EXPORT(mesh_make)
@@ -201,6 +209,15 @@ ECHINUS_EXPORT(repaired_report) Text* repaired_report(const RepairedMesh* repair
 }
 ECHINUS_EXPORT(repaired_delete) void repaired_delete(RepairedMesh* repaired) {
     delete repaired;
+}
+
+ECHINUS_EXPORT(mesh_intersecting_pairs)
+Arrays* mesh_intersecting_pairs(const TriangleMesh* mesh, const TriangleMesh* other) {
+    return make_handle([&] { return numbers_of(intersecting_pairs(*mesh, *other)); });
+}
+ECHINUS_EXPORT(mesh_self_intersecting_pairs)
+Arrays* mesh_self_intersecting_pairs(const TriangleMesh* mesh) {
+    return make_handle([&] { return numbers_of(self_intersecting_pairs(*mesh)); });
 }
 
 ECHINUS_EXPORT(mesh_winding_number)

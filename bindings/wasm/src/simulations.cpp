@@ -68,7 +68,11 @@ json to_json(const SimulationProfile& profile) {
             {"contactCount", profile.contact_count},
             {"mapQueryCount", profile.map_query_count},
             {"rescuedCount", profile.rescued_count},
-            {"lostCount", profile.lost_count}};
+            {"lostCount", profile.lost_count},
+            {"truncatedCount", profile.truncated_count},
+            {"searchedFaceCount", profile.searched_face_count},
+            {"measuredPairCount", profile.measured_pair_count},
+            {"squeezedCount", profile.squeezed_count}};
 }
 
 json to_json(const Collider& collider) {
