@@ -12,10 +12,11 @@ import { showLegend, showMapFigures, showRay } from './panel/map_figures';
 import { beQuiet, enableClosing, say } from './panel/notice';
 import { count } from './panel/numbers';
 import { showReport } from './panel/report';
+import { Pairs } from './pairs';
 import { enablePointer } from './pointer';
-import type { FromWorker, MapNews, ModelNews, SurfaceNews, Triple } from './protocol';
+import type { Cuts, FromWorker, MapNews, ModelNews, SurfaceNews, Triple } from './protocol';
 import { objText, saveAs } from './saving';
-import { SAMPLES, type Settings, fromLink, toLink } from './settings';
+import { SAMPLES, type Settings, consistent, fromLink, toLink } from './settings';
 import { ClothView } from './view/cloth_view';
 import { MapView } from './view/map_view';
 import { ModelView } from './view/model_view';
@@ -58,6 +59,7 @@ class App {
     readonly #clothView = new ClothView();
     readonly #mapView = new MapView();
     readonly #figures = new FigureStrip();
+    readonly #pairs = new Pairs((cuts) => this.#showCuts(cuts));
     readonly #controls: Controls;
     readonly #client: Client;
 
@@ -113,6 +115,7 @@ class App {
                 this.#arrived = [];
                 if (this.#paused) this.#pause(false); // a new cloth falls
                 this.#clothView.begin(message.faces);
+                this.#figures.forgetCuts();
                 this.#clothView.byDepth = this.#settings.colour === 'depth';
                 return;
             case 'frame':
@@ -180,12 +183,14 @@ class App {
         this.#controls.showFile(this.#asked.file?.name);
         this.#controls.show(settings);
         this.#showColours();
+        if (this.#model) this.#showNote(settings.map);
         if (this.#model) this.#showTitle(this.#model);
         else byId('subtitle').textContent = '';
     }
 
     #showModel(model: ModelNews): void {
         this.#model = model;
+        this.#pairs.model = model;
         this.#modelView.show(model);
         this.#mapView.begin(model);
         this.#pointCamera(model);
@@ -208,10 +213,14 @@ class App {
 
     #useMap(map: MapNews): void {
         this.#showMap(map);
-        byId('map-note').textContent = mapNote(map.kind, this.#model!.report.closed);
+        this.#showNote(map.kind);
         document.body.classList.toggle('map-exact', map.kind === 'exact');
         document.body.classList.toggle('map-distance', map.kind === 'distance');
         if (this.#settings.view === 'map') this.#askForMap();
+    }
+
+    #showNote(map: MapNews['kind']): void {
+        byId('map-note').textContent = mapNote(map, this.#model!.report.closed, this.#settings.surfaces);
     }
 
     #showMap(map: MapNews): void {
@@ -239,6 +248,7 @@ class App {
             spare = this.#clothView.show(next.arrays);
             this.#modelView.follow(next.collider);
             this.#figures.add(next.figures);
+            this.#pairs.consider(this.#cloth, next.figures.frame, next.arrays.positions, this.#clothView.faces, next.collider);
             // The tests wait for this.
             document.body.dataset.paused = String(next.figures.paused);
             document.body.dataset.rest = String(next.figures.atRest);
@@ -254,10 +264,18 @@ class App {
         this.#figures.countDrawing();
     }
 
+    #showCuts(cuts: Cuts): void {
+        if (cuts.number !== this.#cloth) return;
+        this.#clothView.markCut(cuts.cutFaces);
+        this.#figures.showCuts(cuts);
+    }
+
     // ---- The visitor's actions
 
     #change(settings: Settings, key: keyof Settings): void {
         if (key === 'model' || key === 'up') settings = { ...settings, camera: '' };
+        settings = consistent(settings, key);
+        this.#controls.show(settings);
         this.#setLink(settings);
         switch (key) {
             case 'view':
@@ -273,6 +291,7 @@ class App {
                 return this.#open(this.#asked.file);
         }
         this.#showColours();
+        if (this.#model && (key === 'surfaces' || key === 'self')) this.#showNote(settings.map);
         this.#client.tell({ kind: 'change', turn: ++this.#turn, settings });
     }
 
@@ -425,8 +444,9 @@ class App {
     }
 }
 
-function mapNote(kind: MapNews['kind'], closed: boolean): string {
+function mapNote(kind: MapNews['kind'], closed: boolean, surfaces: boolean): string {
     if (kind === 'distance') return 'Out along the ray from the centre, as in the paper: watch the cloth creep along a leg.';
+    if (surfaces) return 'Out by the shortest way. No face of the cloth gets through the surface, closed or open.';
     if (closed) return 'Out by the shortest way. No particle gets through; sharp parts may show between particles.';
     return 'Out by the shortest way. The mesh is open: near its gaps sides are estimated, and particles may get in there.';
 }

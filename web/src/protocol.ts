@@ -97,6 +97,28 @@ export interface Cut {
     height: number;
 }
 
+/** To the worker that counts intersecting faces (worker/pairs.ts). */
+export interface PairsQuestion {
+    /** Of the cloth, to be named in the answer. */
+    number: number;
+    /** Where it is another than in the last question. */
+    model?: { vertices: Float32Array; faces: Uint32Array };
+    /** Transferred. */
+    positions: Float32Array<ArrayBuffer>;
+    faces: Uint32Array;
+    collider: Pick<ColliderState, 'position' | 'rotation'>;
+}
+
+/** Its answer: pairs of faces that intersect, and the faces of the cloth among them. */
+export interface Cuts {
+    number: number;
+    withModel: number;
+    own: number;
+    cutFaces: Uint32Array;
+    /** What it took. */
+    ms: number;
+}
+
 export interface Figures {
     frame: number;
     paused: boolean;

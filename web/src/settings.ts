@@ -14,6 +14,10 @@ export interface Settings {
     /** Of the cloth; rounded to a square number. */
     particles: number;
     friction: number;
+    /** With the exact map: faces of the cloth keep off the model, too, not only its particles. */
+    surfaces: boolean;
+    /** And off each other; only together with `surfaces`. */
+    self: boolean;
     /** What particles keep from the model, in distances between neighbouring particles. */
     thickness: number;
     /** Radii of the model per second. */
@@ -47,6 +51,8 @@ export const DEFAULTS: Readonly<Settings> = {
     directions: 40_000,
     particles: 10_000,
     friction: 0.5,
+    surfaces: false,
+    self: false,
     thickness: 0.5,
     wind: 0,
     motion: 'still',
@@ -97,8 +103,14 @@ export function fromLink(hash: string): Settings {
         const range = RANGES[key as keyof typeof RANGES] as readonly [number, number] | undefined;
         if (choices?.includes(text)) settings[key] = text;
         else if (range && text !== '' && Number.isFinite(Number(text))) settings[key] = Math.min(range[1], Math.max(range[0], Number(text)));
-        else if (key === 'mend') settings[key] = text !== 'false';
+        else if (typeof DEFAULTS[key as keyof Settings] === 'boolean' && ['true', 'false'].includes(text)) settings[key] = text === 'true';
         else if (key === 'camera' && standpoint.fromText(text)) settings[key] = text;
     }
-    return settings as unknown as Settings;
+    return consistent(settings as unknown as Settings, 'surfaces');
+}
+
+/** @param changed  the key that wins where two contradict each other */
+export function consistent(settings: Settings, changed: keyof Settings): Settings {
+    if (!settings.self || settings.surfaces) return settings;
+    return changed === 'self' ? { ...settings, surfaces: true } : { ...settings, self: false };
 }

@@ -31,7 +31,7 @@ test('the cloth falls on the horse and comes to rest, and in no frame is a parti
 async function fallInWorker() {
     const script = performance.getEntriesByType('resource').find(({ name }) => /worker-[^/]*\.js$/.test(name)).name;
     const worker = new Worker(script, { type: 'module' });
-    const settings = { model: 'horse', view: 'cloth', map: 'exact', cells: 'auto', particles: 2500, friction: 0.5, thickness: 0.5, wind: 0, motion: 'still', up: 'auto', mend: true, colour: 'fabric' };
+    const settings = { model: 'horse', view: 'cloth', map: 'exact', cells: 'auto', particles: 2500, friction: 0.5, surfaces: false, self: false, thickness: 0.5, wind: 0, motion: 'still', up: 'auto', mend: true, colour: 'fabric' };
     let mostInside = 0;
     return new Promise((resolve, reject) => {
         worker.onmessage = ({ data }) => {
@@ -162,6 +162,68 @@ test('a cloth of 100 000 particles falls', async () => {
     await untilFrame(page, 30);
     assert.equal(await figure(page, 'inside'), '0');
     assert.equal((await clothOf(page)).length, 316 * 316); // the nearest square number
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+const untilCounted = (page) => page.waitForFunction(() => document.getElementById('figure-own-pairs').textContent !== '–', null, { timeout: 60_000 });
+
+/** How many pixels of the picture have the colour of faults. */
+async function redPixels(page) {
+    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#save-picture').click()]);
+    const bytes = [...(await readFile(await download.path()))];
+    return page.evaluate(async (bytes) => {
+        const image = await createImageBitmap(new Blob([new Uint8Array(bytes)], { type: 'image/png' }));
+        const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
+        context.drawImage(image, 0, 0);
+        const { data } = context.getImageData(0, 0, image.width, image.height);
+        let count = 0;
+        for (let i = 0; i < data.length; i += 4) count += Math.abs(data[i] - 0xd1) + Math.abs(data[i + 1] - 0x24) + Math.abs(data[i + 2] - 0x2f) < 12 ? 1 : 0;
+        return count;
+    }, bytes);
+}
+
+test('faces that intersect are counted and drawn in red, and once surfaces collide there are none', async () => {
+    const page = await browser.open('#model=torus&particles=400&thickness=0.1&surfaces=false&self=false', SMALL);
+    await page.waitForFunction(() => Number(document.getElementById('figure-pairs').textContent) > 0, null, { timeout: 60_000 });
+    await picture(page, 'cut');
+    assert.ok((await redPixels(page)) > 20);
+    await page.locator('input[name=self]').check();
+    assert.ok(await page.locator('input[name=surfaces]').isChecked(), 'a cloth that collides with itself does with the model');
+    assert.match(await page.locator('#map-note').textContent(), /No face of the cloth gets through/);
+    await page.waitForFunction(() => ['figure-pairs', 'figure-own-pairs'].every((id) => document.getElementById(id).textContent === '0'), null, { timeout: 60_000 });
+    await untilFrame(page, 60 + (await page.evaluate(() => Number(document.body.dataset.frame))));
+    assert.equal(await page.locator('#notice').isVisible(), false);
+    assert.equal(await redPixels(page), 0);
+    await picture(page, 'untangled');
+    await page.locator('input[name=surfaces]').uncheck();
+    assert.ok(!(await page.locator('input[name=self]').isChecked()));
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+test('no face of a cloth whose surfaces collide intersects while it falls, is pulled and changes its thickness', async () => {
+    const page = await browser.open('#model=torus&particles=900&surfaces=true&self=true', SMALL);
+    await page.evaluate(() => {
+        globalThis.counts = new Set();
+        for (const id of ['figure-pairs', 'figure-own-pairs']) {
+            const cell = document.getElementById(id);
+            new MutationObserver(() => globalThis.counts.add(cell.textContent)).observe(cell, { childList: true, characterData: true, subtree: true });
+        }
+    });
+    await untilFrame(page, 150);
+    const { x, y, width, height } = await page.locator('#canvas').boundingBox();
+    await page.mouse.move(x + 0.5 * width, y + 0.5 * height);
+    await page.mouse.down();
+    await page.mouse.move(x + 0.5 * width, y + 0.9 * height, { steps: 4 });
+    await untilFrame(page, 300);
+    await page.mouse.up();
+    await page.locator('input[name=thickness]').fill('1');
+    await untilFrame(page, 450);
+    await untilCounted(page);
+    await page.waitForTimeout(500);
+    assert.deepEqual(await page.evaluate(() => [...globalThis.counts].filter((count) => count !== '–')), ['0']);
+    assert.equal(await figure(page, 'inside'), '0');
     assert.deepEqual(page.complaints, []);
     await page.context().close();
 });

@@ -131,6 +131,7 @@ function withoutWorker() {
 
 test('only closed meshes get the note that no particle gets through', async () => {
     const page = await openPage();
+    await page.locator('input[name=surfaces]').uncheck();
     assert.match(await page.locator('#map-note').textContent(), /No particle gets through/);
     await drop(page, [['open.obj', OPEN]]);
     await untilTitle(page, 'open.obj, 3 faces');

@@ -1,7 +1,7 @@
 // How long the built page takes, for docs/web.md: from the address to the first falling cloth and the horse's first
 // map, in browsers that have never seen the page, ones that stand open and ones that begin with it; and a time step of
-// 10 000 particles while they fall and come to rest, beside the native program with the scalar reference. Run by
-// scripts/web --speed:  speed.mjs PROGRAM SCENE
+// 10 000 particles while they fall and come to rest, beside the native program with the scalar reference, and with
+// surfaces that collide. Run by scripts/web --speed:  speed.mjs PROGRAM SCENE
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -34,9 +34,10 @@ async function load(wait) {
     return times;
 }
 
-async function stepInPage() {
+/** @param collision  the settings of a link */
+async function stepInPage(collision) {
     const browser = await startBrowser();
-    const page = await browser.open('#particles=10000', TINY);
+    const page = await browser.open(`#particles=10000&${collision}`, TINY);
     const steps = [];
     for (let frame = FIRST_STEP; frame < LAST_STEP; frame += 50) {
         await untilFrame(page, frame);
@@ -48,7 +49,7 @@ async function stepInPage() {
 
 function stepOfNativeScalar() {
     const folder = mkdtempSync(join(tmpdir(), 'echinus-'));
-    const options = ['simulate', scene, '-o', folder, '--frames', String(LAST_STEP), '--every', String(LAST_STEP), '--threads', '1'];
+    const options = ['simulate', scene, '-o', folder, '--frames', String(LAST_STEP), '--every', String(LAST_STEP), '--threads', '1', '--surfaces', 'off', '--self', 'off'];
     execFileSync(program, options, { env: { ...process.env, ECHINUS_INSTRUCTION_SET: 'scalar' }, stdio: 'ignore' });
     const { ms_per_frame } = JSON.parse(readFileSync(join(folder, 'report.json'), 'utf8'));
     rmSync(folder, { recursive: true });
@@ -65,5 +66,9 @@ for (const [browser, times] of Object.entries(loads))
         const ms = times.map((time) => time[key]);
         console.log(`${what}, in a browser ${browser}: ${median(ms).toFixed(0)} ms (${all(ms)})`);
     }
-const [page, native] = [await stepInPage(), stepOfNativeScalar()];
+const [page, native] = [await stepInPage('surfaces=false'), stepOfNativeScalar()];
+for (const collision of ['surfaces=true', 'surfaces=true&self=true']) {
+    const ms = await stepInPage(collision);
+    console.log(`a time step, ${collision}: ${ms.toFixed(1)} ms; of real time ${(1000 / 240).toFixed(1)} ms, ${(ms / page).toFixed(2)} times as long as particles alone`);
+}
 console.log(`a time step: ${page.toFixed(1)} ms, native scalar ${native.toFixed(1)} ms on ${scene}: ${(page / native).toFixed(2)}`);

@@ -1,4 +1,4 @@
-import type { Figures, MapNews } from '../protocol';
+import type { Cuts, Figures, MapNews } from '../protocol';
 import { byId } from './elements';
 import { bytes, count, milliseconds, perSecond } from './numbers';
 
@@ -35,6 +35,18 @@ export class FigureStrip {
         if (figures.stepCount === 0) this.#writeInside();
     }
 
+    /** Nothing yet: a new cloth. */
+    forgetCuts(): void {
+        for (const id of ['figure-pairs', 'figure-own-pairs']) {
+            byId(id).textContent = '\u2013';
+            byId(id).parentElement!.classList.remove('some', 'none');
+        }
+    }
+    showCuts({ withModel, own }: Cuts): void {
+        writeCount('figure-pairs', withModel);
+        writeCount('figure-own-pairs', own);
+    }
+
     showMap({ byteCount, buildMs }: MapNews): void {
         byId('figure-bytes').textContent = bytes(byteCount);
         byId('figure-build').textContent = milliseconds(buildMs);
@@ -52,9 +64,15 @@ export class FigureStrip {
     }
 
     #writeInside(): void {
-        const cell = byId('figure-inside');
-        cell.textContent = count(this.#mostInside);
-        cell.parentElement!.classList.toggle('some', this.#mostInside > 0);
+        writeCount('figure-inside', this.#mostInside);
         this.#mostInside = 0;
     }
+}
+
+/** A number that should be 0. */
+function writeCount(id: string, number: number): void {
+    const cell = byId(id);
+    cell.textContent = count(number);
+    cell.parentElement!.classList.toggle('some', number > 0);
+    cell.parentElement!.classList.toggle('none', number === 0);
 }

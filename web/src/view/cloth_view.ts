@@ -3,16 +3,18 @@ import type { FrameArrays } from '../protocol';
 import { CLOTH, CLOTH_BACK, FAULT, SCALE } from './colours';
 import { matte } from './matte';
 
-/** The cloth: red in front and sand behind, or coloured by the depth of its contacts. */
+/** The cloth: red in front and sand behind, or coloured by the depth of its contacts; with the faces marked that intersect something. */
 export class ClothView {
     /** Uniform: 1 for colours by depth, otherwise 0. */
     readonly #depthShare = { value: 0 };
     readonly mesh = new THREE.Mesh(sheet(NOTHING, NO_FACES), fabric(this.#depthShare));
+    readonly #cut = new THREE.Mesh(facesOf(this.mesh.geometry), warning());
     #faces: Uint32Array = NO_FACES;
     #shown: FrameArrays | undefined;
 
     constructor() {
-        this.mesh.frustumCulled = false; // it moves: its bounding sphere would be wrong a frame later
+        this.mesh.add(this.#cut);
+        for (const mesh of [this.mesh, this.#cut]) mesh.frustumCulled = false; // it moves: its bounding sphere would be wrong a frame later
     }
 
     /** Another cloth, which becomes visible with its first arrays. */
@@ -36,15 +38,25 @@ export class ClothView {
         return previous;
     }
 
+    /** @param cut  numbers of the faces that intersect the model or other faces */
+    markCut(cut: Uint32Array): void {
+        const { geometry } = this.#cut;
+        const index = geometry.index!;
+        cut.forEach((face, i) => (index.array as Uint32Array).set(this.#faces.subarray(3 * face, 3 * face + 3), 3 * i));
+        index.needsUpdate = true;
+        geometry.setDrawRange(0, 3 * cut.length);
+    }
+
     #lay(geometry: THREE.BufferGeometry): void {
-        this.mesh.geometry.dispose();
+        for (const mesh of [this.mesh, this.#cut]) mesh.geometry.dispose();
         this.mesh.geometry = geometry;
+        this.#cut.geometry = facesOf(geometry);
     }
 
     get positions(): Float32Array | undefined {
         return this.#shown?.positions;
     }
-    get faces(): ArrayLike<number> {
+    get faces(): Uint32Array {
         return this.#faces;
     }
 
@@ -93,6 +105,11 @@ function fabric(byDepth: { value: number }): THREE.MeshLambertMaterial {
     return material;
 }
 
+/** Over the cloth, from both sides, in a colour that no light changes. */
+function warning(): THREE.MeshBasicMaterial {
+    return new THREE.MeshBasicMaterial({ color: FAULT.faces, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: -2 });
+}
+
 /** No cloth yet, but with all attributes of one, since three.js compiles the program for them at once. */
 const NO_FACES = new Uint32Array(0);
 const NOTHING: FrameArrays = { positions: new Float32Array(0), normals: new Float32Array(0), depths: new Float32Array(0) };
@@ -104,6 +121,14 @@ function sheet({ positions, normals, depths }: FrameArrays, faces: Uint32Array):
     geometry.setAttribute('normal', dynamic(normals, 3));
     geometry.setAttribute('contactDepth', dynamic(depths, 1));
     return geometry;
+}
+
+/** Faces of another geometry, none yet. The two share the array of positions, so they are disposed of together. */
+function facesOf({ attributes, index }: THREE.BufferGeometry): THREE.BufferGeometry {
+    const corners = new THREE.BufferAttribute(new Uint32Array(index!.count), 1).setUsage(THREE.DynamicDrawUsage);
+    const faces = new THREE.BufferGeometry().setIndex(corners).setAttribute('position', attributes.position);
+    faces.setDrawRange(0, 0);
+    return faces;
 }
 
 function dynamic(array: Float32Array, itemSize: number): THREE.BufferAttribute {

@@ -1,4 +1,5 @@
 import type { ColliderState, Echinus, ExactMap, FlagBuffer, PointBuffer } from 'echinus';
+import { intoFrameOf } from './collider_frame';
 
 /** Counts the particles inside the model by the exact map, even for a cloth that uses the paper's map. */
 export class Judge {
@@ -23,17 +24,5 @@ export class Judge {
     delete(): void {
         this.#points.delete();
         this.#inside.delete();
-    }
-}
-
-/** World points in the frame of a collider of scale 1: subtracts its position, then rotates inversely. */
-function intoFrameOf({ position, rotation: [w, x, y, z] }: ColliderState, world: Float32Array, local: Float32Array): void {
-    for (let i = 0; i < world.length; i += 3) {
-        const px = world[i] - position[0], py = world[i + 1] - position[1], pz = world[i + 2] - position[2];
-        // p + 2 w (p x v) + 2 v x (v x p): Rodrigues' formula for the conjugate of (w, v).
-        const tx = 2 * (py * z - pz * y), ty = 2 * (pz * x - px * z), tz = 2 * (px * y - py * x);
-        local[i] = px + w * tx + (ty * z - tz * y);
-        local[i + 1] = py + w * ty + (tz * x - tx * z);
-        local[i + 2] = pz + w * tz + (tx * y - ty * x);
     }
 }

@@ -115,8 +115,16 @@ export class Playground {
             this.restart();
             return true;
         }
-        if (settings.friction !== before.friction || settings.thickness !== before.thickness) this.#continue();
-        return false;
+        const keys = ['friction', 'thickness', 'surfaces', 'self'] as const;
+        if (keys.every((key) => settings[key] === before[key])) return false;
+        try {
+            this.#continue();
+            return false;
+        } catch (error) {
+            if (!settings.surfaces) throw error;
+            this.restart(); // layers that have passed through each other cannot always be parted
+            return true;
+        }
     }
 
     /** Builds the map in use once more: during the very first build, the host's code is not yet optimised. */
@@ -224,7 +232,7 @@ export class Playground {
     }
 
     #continue(): void {
-        const scene = this.#echinus.parseScene(sceneFor(this.#settings, this.body));
+        const scene = this.#echinus.parseScene(sceneFor(this.#settings, this.body, { falls: true }));
         const simulation = this.#simulation.continueWith(scene);
         this.#earlierFrames += this.#simulation.frame;
         this.#simulation.delete();
