@@ -21,8 +21,8 @@ constexpr Range kSegmentCount{1, 4096};
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 /// The defaults beside an exact map. Beside a distance map surfaces cannot collide.
-constexpr bool kSurfaceCollision = false;
-constexpr bool kSelfCollision = false; ///< where surfaces collide
+constexpr bool kSurfaceCollision = true;
+constexpr bool kSelfCollision = true; ///< where surfaces collide
 
 using Counts = std::array<std::uint32_t, 2>;
 

@@ -158,7 +158,7 @@ void require_valid(const Collider& collider, const SimulationOptions& options, c
         if (exact == nullptr)
             fail(name + " has a " + (custom != nullptr ? "custom" : "distance") +
                  " map, which does not have the faces that surface_collision needs; give it an exact map, or "
-                 "leave out surface_collision, and only particles collide");
+                 "switch surface_collision off, and only particles collide");
     } else if (exact != nullptr && !exact->view().border.empty() && !options.allow_open_colliders) {
         fail(name + " has the exact map of an open mesh, with " +
              std::to_string(exact->view().border.size()) +

@@ -133,9 +133,9 @@ TEST(Scene, OfAMeshIsReadKeyByKey) {
 TEST(Scene, KeepsHalfTheSpacingAwayUnlessItHasAThickness) {
     const AnyMap map = ExactMap::build(make_box({1, 1, 1}));
     const auto thickness = [&](const std::string& key) {
-        const Scene scene = parse_scene(
-            R"({"model": {"box": {}}, "cloth": {"size": [2, 2], "particles": [11, 11])" + key + "}}",
-            "a.json");
+        const Scene scene = parse_scene(R"({"model": {"box": {}}, "cloth": {"size": [2, 2],
+            "position": [0, 0, 2], "particles": [11, 11])" + key + "}}",
+                                        "a.json");
         return make_simulation(scene, map).options().thickness.value();
     };
     EXPECT_NEAR(thickness(""), 0.1, 1e-6);
@@ -179,10 +179,14 @@ TEST(Scene, LetsSurfacesCollideBesideExactMapsOnly) {
         return R"({"model": {"box": {}}, "cloth": {"size": [2, 2]})" + keys + "}";
     };
     const SimulationOptions surfaces =
-        parse_scene(with(R"(, "surface_collision": true)"), "a.json").simulation;
+        parse_scene(with(""), "a.json").simulation;
     EXPECT_TRUE(surfaces.surface_collision);
-    const SimulationOptions none =
-        parse_scene(with(R"(, "surface_collision": false, "self_collision": false)"), "a.json").simulation;
+    EXPECT_TRUE(surfaces.self_collision);
+    const SimulationOptions model_only =
+        parse_scene(with(R"(, "self_collision": false)"), "a.json").simulation;
+    EXPECT_TRUE(model_only.surface_collision);
+    EXPECT_FALSE(model_only.self_collision);
+    const SimulationOptions none = parse_scene(with(R"(, "surface_collision": false)"), "a.json").simulation;
     EXPECT_FALSE(none.surface_collision);
     EXPECT_FALSE(none.self_collision);
     const SimulationOptions distance =

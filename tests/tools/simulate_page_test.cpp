@@ -116,7 +116,8 @@ TEST_F(SimulatePage, RecordsSixtyFramesPerSecondAndTheLast) {
 
 TEST_F(SimulatePage, CountsTheParticlesInsideInEachFrame) {
     write("inside.json", R"({"model": {"box": {"size": [1, 1, 1]}}, "frame_limit": 40,
-        "cloth": {"particles": [2, 2], "size": [0.5, 0.5], "position": [0, 0, 0.3]}})");
+        "cloth": {"particles": [2, 2], "size": [0.5, 0.5], "position": [0, 0, 0.3]},
+        "surface_collision": false})");
     const PlayerPage page = play("inside.json");
     EXPECT_EQ(page.description["frames"].front()["inside"], 4);
     EXPECT_EQ(page.description["frames"].back()["inside"], 0);

@@ -69,7 +69,7 @@ TEST_F(SimulateCommand, LosesNoParticleOfTheFlagToItsPole) {
 }
 
 TEST_F(SimulateCommand, LosesNoParticleToAThinPlateThatMovesAndTurns) {
-    const nlohmann::json report = simulate((kSource / "scenes" / "thin_plate_small.json").string());
+    const nlohmann::json report = simulate((kSource / "scenes" / "thin_plate_small.json").string(), {"--surfaces", "off"});
     EXPECT_EQ(report.at("lost_count"), 0);
     EXPECT_GT(report.at("rescued_count"), 0);
     EXPECT_EQ(report.at("inside_at_rest"), 0);
@@ -106,7 +106,7 @@ TEST_F(SimulateCommand, CountsTheFacesThatIntersectAtTheEnd) {
     EXPECT_EQ(apart.at("self_intersecting_pairs"), 0);
     // Two faces around a box, whose four sides of two faces they cut; no particle is near it.
     write("cut.json", R"({"model": {"box": {"size": [1, 1, 1]}}, "cloth": {"particles": [2, 2],
-        "size": [4, 4], "position": [0.3, 0, 0.1]}, "frame_limit": 1})");
+        "size": [4, 4], "position": [0.3, 0, 0.1]}, "frame_limit": 1, "surface_collision": false})");
     const nlohmann::json cut = simulate("cut.json");
     EXPECT_GE(cut.at("intersecting_pairs"), 8);
     EXPECT_LE(cut.at("intersecting_pairs"), 16);
@@ -180,7 +180,7 @@ TEST_F(SimulateCommand, NamesAnOpenModelAndTheRepairThatWouldCloseIt) {
     const auto scene_on = [](const std::string& model, const std::string& more = "") {
         return R"({"model": ")" + model +
                R"(", "frame_limit": 1, "cloth": {"particles": [2, 2], "size": [1, 1],
-            "position": [0, 0, 9]})" +
+            "position": [0, 0, 9]}, "surface_collision": false)" +
                more + "}";
     };
     write("open.obj", echinus::test::open_box_text());
@@ -211,8 +211,8 @@ TEST_F(SimulateCommand, LetsSurfacesCollideWhereTheSceneOrAnOptionSaysSo) {
     const std::string scene = R"({"model": {"sphere": {"radius": 0.2, "segments": [12, 6]}},
         "cloth": {"particles": [2, 2], "size": [2, 2], "position": [0.1, 0, 0.25], "thickness": 0.01},
         "frame_limit": 50)";
-    write("particles.json", scene + "}");
-    write("surfaces.json", scene + R"(, "surface_collision": true, "self_collision": true})");
+    write("particles.json", scene + R"(, "surface_collision": false})");
+    write("surfaces.json", scene + "}");
     const nlohmann::json particles = simulate("particles.json");
     EXPECT_EQ(particles.at("surface_collision"), false);
     EXPECT_GT(particles.at("intersecting_pairs"), 0);
