@@ -50,6 +50,17 @@ TEST(CErrors, AreCutBetweenCharacters) {
     }
 }
 
+#ifndef __SANITIZE_ADDRESS__ // which ends the program instead
+TEST(CErrors, TellWhenMemoryDoesNotSuffice) {
+    const float point[3] = {};
+    const std::uint32_t corners[3] = {};
+    CMesh mesh;
+    expect_refused(echinus_mesh_create(point, std::size_t{1} << 55, 0, corners, 1, out(mesh)),
+                   ECHINUS_OUT_OF_MEMORY, "echinus_mesh_create: memory did not suffice");
+    EXPECT_EQ(mesh, nullptr);
+}
+#endif
+
 TEST(CLibrary, SelectsInstructionSetsByName) {
     const std::string before = echinus_instruction_set();
     std::size_t count = 0;

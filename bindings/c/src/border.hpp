@@ -47,9 +47,12 @@ echinus_status guarded(const char* function, const Body& body) noexcept {
 // ---- Pointers and handles
 
 /// @throws WrongArgument for null
+inline void require_address(const void* pointer, const char* name) {
+    if (pointer == nullptr) throw WrongArgument(std::string(name) + " is NULL");
+}
 template <typename T>
 T& at(T* pointer, const char* name) {
-    if (pointer == nullptr) throw WrongArgument(std::string(name) + " is NULL");
+    require_address(pointer, name);
     return *pointer;
 }
 
@@ -83,7 +86,7 @@ StridedSpan<const T> batch_at(const float* first, std::size_t count, std::size_t
     if (count == 0) return {};
     if (stride == 0) stride = sizeof(T);
     const std::string batch(name);
-    at(first, name);
+    require_address(first, name);
     if (stride < sizeof(T) || stride % sizeof(float) != 0)
         throw WrongArgument("the stride of " + batch + " is " + std::to_string(stride) +
                             "; expected a multiple of 4, at least " + std::to_string(sizeof(T)) + ", or 0");

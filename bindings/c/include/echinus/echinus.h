@@ -8,9 +8,9 @@
 
 /// Echinus for C99 and for whatever calls C. Library libechinus-c; docs/c.md begins with a whole program.
 ///
-/// Errors. What can fail returns a status, and echinus_last_error() has a sentence about it. No exception and
-/// no signal crosses this border. A function that fails sets the handle that it would have made to NULL, and
-/// changes nothing else unless its declaration says so.
+/// Errors. What can fail returns a status, and echinus_last_error() has a sentence about it. No exception
+/// crosses this border. A function that fails sets the handle that it would have made to NULL, and changes
+/// nothing else unless its declaration says so.
 ///
 /// Null pointers. An argument that is NULL is ECHINUS_INVALID_ARGUMENT, unless its declaration says "or
 /// NULL". An array of 0 elements may be NULL. The functions that end in _destroy take NULL and do nothing.
