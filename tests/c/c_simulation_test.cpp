@@ -134,6 +134,7 @@ TEST(CSimulations, TakeEveryOption) {
     fall.options.rest_speed = 0.3;
     fall.options.rest_frame_count = 7;
     fall.options.surface_collision = fall.options.self_collision = 1;
+    fall.options.untangle = 1;
     fall.options.self_thickness = 0.015;
     fall.by_cpp_options = {.solver = SolverKind::Xpbd,
                            .time_step = 1.0 / 120,
@@ -148,6 +149,7 @@ TEST(CSimulations, TakeEveryOption) {
                            .surface_collision = true,
                            .self_collision = true,
                            .self_thickness = 0.015,
+                           .untangle = true,
                            .bound = 50};
     const CSimulation simulation = fall.make(c_small_sheet());
     Simulation by_cpp = fall.make_by_cpp(make_cloth(small_sheet()));

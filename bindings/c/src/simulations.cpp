@@ -11,7 +11,7 @@
 
 namespace echinus::c {
 
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_options, self_collision);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_options, reserved);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_profile, squeezed_count);
 static_assert(ECHINUS_SOLVER_XPBD == static_cast<int>(SolverKind::Xpbd));
 
@@ -26,26 +26,31 @@ std::optional<double> thickness_from(double thickness) {
 }
 
 echinus_simulation_options as_c(const SimulationOptions& options) {
+    // All members: one that is added does not compile until it has a place here.
+    const auto& [solver, time_step, iteration_count, substep_count, gravity, drag, stiffness, compliance,
+                 thickness, friction, rest, keep_free, allow_open_colliders, surface_collision,
+                 self_collision, self_thickness, untangle, bound] = options;
     echinus_simulation_options result{};
-    result.time_step = options.time_step;
-    result.solver = static_cast<echinus_solver>(options.solver);
-    result.iteration_count = options.iteration_count;
-    result.substep_count = options.substep_count;
-    result.rest_frame_count = options.rest.frame_count;
-    result.rest_distance = options.rest.distance;
-    result.rest_speed = options.rest.speed;
-    put_vector(options.gravity, result.gravity);
-    result.drag = options.drag;
-    std::ranges::copy(options.stiffness, result.stiffness);
-    std::ranges::copy(options.compliance, result.compliance);
-    result.thickness = as_c(options.thickness);
-    result.self_thickness = as_c(options.self_thickness);
-    result.friction = options.friction;
-    result.bound = options.bound;
-    result.keep_free = options.keep_free ? 1 : 0;
-    result.allow_open_colliders = options.allow_open_colliders ? 1 : 0;
-    result.surface_collision = options.surface_collision ? 1 : 0;
-    result.self_collision = options.self_collision ? 1 : 0;
+    result.time_step = time_step;
+    result.solver = static_cast<echinus_solver>(solver);
+    result.iteration_count = iteration_count;
+    result.substep_count = substep_count;
+    result.rest_frame_count = rest.frame_count;
+    result.rest_distance = rest.distance;
+    result.rest_speed = rest.speed;
+    put_vector(gravity, result.gravity);
+    result.drag = drag;
+    std::ranges::copy(stiffness, result.stiffness);
+    std::ranges::copy(compliance, result.compliance);
+    result.thickness = as_c(thickness);
+    result.self_thickness = as_c(self_thickness);
+    result.friction = friction;
+    result.bound = bound;
+    result.keep_free = keep_free ? 1 : 0;
+    result.allow_open_colliders = allow_open_colliders ? 1 : 0;
+    result.surface_collision = surface_collision ? 1 : 0;
+    result.self_collision = self_collision ? 1 : 0;
+    result.untangle = untangle ? 1 : 0;
     return result;
 }
 
@@ -70,6 +75,7 @@ SimulationOptions options_from(const echinus_simulation_options* options) {
             .surface_collision = given.surface_collision != 0,
             .self_collision = given.self_collision != 0,
             .self_thickness = thickness_from(given.self_thickness),
+            .untangle = given.untangle != 0,
             .bound = given.bound};
 }
 
@@ -89,19 +95,22 @@ std::vector<Collider> colliders_from(const echinus_collider* first, std::size_t 
 }
 
 echinus_simulation_profile as_c(const SimulationProfile& profile) {
-    return {.size = 0,
-            .integration_seconds = profile.integration_seconds,
-            .constraint_seconds = profile.constraint_seconds,
-            .collision_seconds = profile.collision_seconds,
-            .query_count = profile.query_count,
-            .contact_count = profile.contact_count,
-            .map_query_count = profile.map_query_count,
-            .rescued_count = profile.rescued_count,
-            .lost_count = profile.lost_count,
-            .truncated_count = profile.truncated_count,
-            .searched_face_count = profile.searched_face_count,
-            .measured_pair_count = profile.measured_pair_count,
-            .squeezed_count = profile.squeezed_count};
+    const auto& [integration_seconds, constraint_seconds, collision_seconds, query_count, contact_count,
+                 map_query_count, rescued_count, lost_count, truncated_count, searched_face_count,
+                 measured_pair_count, squeezed_count] = profile;
+    return {0,
+            integration_seconds,
+            constraint_seconds,
+            collision_seconds,
+            query_count,
+            contact_count,
+            map_query_count,
+            rescued_count,
+            lost_count,
+            truncated_count,
+            searched_face_count,
+            measured_pair_count,
+            squeezed_count};
 }
 
 /// @throws WrongArgument for null

@@ -753,6 +753,8 @@ typedef struct echinus_simulation_options {
     int32_t allow_open_colliders;
     int32_t surface_collision; ///< edges and faces collide too
     int32_t self_collision;    ///< faces of the deformable do not meet each other either
+    int32_t untangle;          ///< with surface_collision: part what begins intersecting
+    int32_t reserved;          ///< 0
 } echinus_simulation_options;
 
 ECHINUS_API void echinus_simulation_options_init(echinus_simulation_options* options, size_t size);
