@@ -51,7 +51,7 @@ export const DEFAULTS: Readonly<Settings> = {
     directions: 40_000,
     particles: 10_000,
     friction: 0.5,
-    surfaces: false,
+    surfaces: true,
     self: false,
     thickness: 0.5,
     wind: 0,
