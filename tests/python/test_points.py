@@ -137,6 +137,16 @@ def test_answers_go_where_out_says():
     assert np.array_equal(out, INSIDE)
 
 
+def test_contacts_go_where_earlier_ones_were():
+    contacts = MAP.contacts(POINTS)
+    depth = contacts.depth
+    again = MAP.contacts(POINTS + np.float32(0.01), 0.2, out=contacts)
+    assert np.shares_memory(again.array, contacts.array)
+    assert np.array_equal(depth, MAP.contacts(POINTS + np.float32(0.01), 0.2).depth)
+    with pytest.raises(ValueError, match="out must be a writeable, contiguous array of type"):
+        MAP.contacts(POINTS[1:], out=contacts)
+
+
 @pytest.mark.parametrize(
     "out", [np.ones(2999, bool), np.ones(3000, np.uint8), np.ones(6000, bool)[::2], np.ones((3000, 1), bool), [True] * 3000]
 )

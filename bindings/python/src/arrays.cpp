@@ -100,6 +100,19 @@ void Points::convert(const py::array& points) {
     owner_ = std::move(floats);
 }
 
+py::array answers(const py::dtype& type, const std::vector<py::ssize_t>& shape, const py::object& out) {
+    if (out.is_none()) return py::array(type, shape);
+    const auto fits = [&](const py::array& array) {
+        return array.dtype().equal(type) && array.writeable() && (array.flags() & py::array::c_style) &&
+               is_aligned(array) &&
+               std::vector<py::ssize_t>(array.shape(), array.shape() + array.ndim()) == shape;
+    };
+    if (!py::isinstance<py::array>(out) || !fits(py::array(out)))
+        throw py::value_error("out must be a writeable, contiguous array of type " + text_of(type) +
+                              " with one element for each point");
+    return out;
+}
+
 py::array view_of(std::span<const Vec3f> points, const py::object& owner) {
     return read_only<float>(points, owner);
 }

@@ -43,17 +43,7 @@ class Points {
 };
 
 /// A new array for one answer to each point, or `out` where that is not None and fits.
-template <typename T>
-py::array answers(const std::vector<py::ssize_t>& shape, const py::object& out = py::none()) {
-    if (out.is_none()) return py::array_t<T>(shape);
-    py::array array = py::array_t<T, 0>::check_(out) ? py::array(out) : py::array();
-    if (!array || !array.writeable() || !(array.flags() & py::array::c_style) ||
-        std::vector<py::ssize_t>(array.shape(), array.shape() + array.ndim()) != shape)
-        throw py::value_error("out must be a writeable, contiguous array of type " +
-                              std::string(py::str(static_cast<py::object>(py::dtype::of<T>()))) +
-                              " with one element for each point");
-    return array;
-}
+py::array answers(const py::dtype& type, const std::vector<py::ssize_t>& shape, const py::object& out);
 
 /// A read-only array in memory that belongs to `owner`.
 py::array view_of(std::span<const Vec3f> points, const py::object& owner);

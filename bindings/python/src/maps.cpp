@@ -70,7 +70,7 @@ template <typename Map>
 py::array contains_points(const Map& map, const py::object& points, const py::object& out, int threads) {
     const unsigned workers = thread_count(threads);
     const Points taken(points, "points");
-    py::array inside = answers<bool>(taken.shape(), out);
+    py::array inside = answers(py::dtype::of<bool>(), taken.shape(), out);
     const std::span<std::uint8_t> flags = elements_of<std::uint8_t>(inside);
     in_pieces(taken.size(), [&](std::size_t first, std::size_t count) {
         contains_batch(map.view(), taken.span().subspan(first, count), flags.subspan(first, count), workers);
@@ -79,11 +79,12 @@ py::array contains_points(const Map& map, const py::object& points, const py::ob
 }
 
 template <typename Map>
-py::array contacts_of_points(const Map& map, const py::object& points, float margin, int threads) {
+py::array contacts_of_points(const Map& map, const py::object& points, float margin, const py::object& out,
+                             int threads) {
     const unsigned workers = thread_count(threads);
     if (!(margin >= 0)) throw py::value_error("margin must be 0 or more, not " + std::to_string(margin));
     const Points taken(points, "points");
-    py::array result(contact_type(), taken.shape());
+    py::array result = answers(contact_type(), taken.shape(), out);
     const std::span<Contact> contacts = elements_of<Contact>(result);
     in_pieces(taken.size(), [&](std::size_t first, std::size_t count) {
         contacts_batch(map.view(), taken.span().subspan(first, count), margin, contacts.subspan(first, count),
@@ -97,7 +98,7 @@ py::object signed_distances(const ExactMap& map, const py::object& points, bool 
                             const py::object& out, int threads) {
     const unsigned workers = thread_count(threads);
     const Points taken(points, "points");
-    py::array distances = answers<float>(taken.shape(), out), gradients;
+    py::array distances = answers(py::dtype::of<float>(), taken.shape(), out), gradients;
     const std::span<float> lengths = elements_of<float>(distances);
     std::span<Vec3f> directions;
     if (gradient) {
