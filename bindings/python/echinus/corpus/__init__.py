@@ -1,0 +1,10 @@
+"""Labels for learning: inside or outside, and signed distances, for points around each mesh of a corpus.
+
+``python3 -m echinus label`` labels a folder (docs/labels.md). :func:`sample` gives the samples and labels of one mesh,
+:func:`label` labels many, :func:`verify` checks what is there.
+"""
+
+from echinus.corpus._run import Corpus, Summary, find_meshes, label, verify
+from echinus.corpus._samples import Frame, Refused, Samples, Sampling, sample
+
+__all__ = ["Corpus", "Frame", "Refused", "Samples", "Sampling", "Summary", "find_meshes", "label", "sample", "verify"]

@@ -1,0 +1,105 @@
+"""The command `python3 -m echinus label`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from echinus._errors import Error
+from echinus.corpus._run import Corpus, find_meshes, label, verify
+from echinus.corpus._samples import Frame, Sampling
+
+DEFAULT = Sampling()
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("meshes", nargs="+", help="folders, mesh files, and lists of them (.txt, a path a line)")
+    parser.add_argument("-o", "--output", required=True, help="folder of the labels")
+    parser.add_argument("--format", choices=["occupancy", "deepsdf", "webdataset"], default="occupancy")
+    parser.add_argument("--uniform", type=int, default=DEFAULT.uniform, help="points in the cube of the frame (%(default)s)")
+    parser.add_argument("--near", type=int, default=DEFAULT.near, help="points near the surface (%(default)s)")
+    parser.add_argument("--sigmas", type=_numbers, default=DEFAULT.sigmas, help="how far, as standard deviations (0.01,0.05)")
+    parser.add_argument("--surface", type=int, default=DEFAULT.surface, help="points of the surface, with normals (%(default)s)")
+    parser.add_argument("--frame", choices=["cube", "sphere", "none"], help="default: cube; sphere for deepsdf")
+    parser.add_argument("--padding", type=float, default=DEFAULT.padding, help="of the cube, as a share of its edge (%(default)s)")
+    parser.add_argument("--float16", action="store_true", help="store points in 16 bits; labels are those of the rounded points")
+    parser.add_argument("--no-repair", action="store_true", help="take meshes as they are")
+    parser.add_argument("--min-certain", type=float, default=DEFAULT.min_certain, help="refuse meshes with a smaller share of certain labels (%(default)s)")
+    parser.add_argument("--max-faces", type=int, default=DEFAULT.max_faces, help="refuse larger meshes (%(default)s)")
+    parser.add_argument("--time-limit", type=float, default=DEFAULT.time_limit, help="seconds for a mesh (%(default)s)")
+    parser.add_argument("--seed", type=int, default=0, help="other seeds, other samples (0)")
+    parser.add_argument("--archive-size", type=int, default=64, help="meshes in each archive of webdataset (%(default)s)")
+    parser.add_argument("--workers", type=int, help="processes; default: one for each core")
+    parser.add_argument("--memory", type=float, default=4, help="address space of a process, GiB (%(default)s)")
+    parser.add_argument("--scheduler", help="address of a Dask scheduler, for instance tcp://host:8786")
+    parser.add_argument("--shard", type=_shard, default=(0, 1), help="i/n: only the i-th of n parts, from 0")
+    parser.add_argument("--verify", action="store_true", help="compute nothing; check that all labels are there and unchanged")
+
+
+def main(arguments: argparse.Namespace) -> int:
+    try:
+        corpus = _corpus_of(arguments)
+        return _verify(corpus) if arguments.verify else _label(corpus, arguments)
+    except (Error, ValueError, OSError) as error:
+        print(f"echinus label: {error}", file=sys.stderr)
+        return 1
+
+
+def _corpus_of(a: argparse.Namespace) -> Corpus:
+    usual_frame: Frame = "sphere" if a.format == "deepsdf" else "cube"
+    sampling = Sampling(
+        uniform=a.uniform,
+        near=a.near,
+        sigmas=a.sigmas,
+        surface=a.surface,
+        frame=a.frame or usual_frame,
+        padding=a.padding,
+        dtype="float16" if a.float16 else "float32",
+        distances=a.format != "occupancy",
+        repair=not a.no_repair,
+        min_certain=a.min_certain,
+        max_faces=a.max_faces,
+        time_limit=a.time_limit,
+        seed=a.seed,
+    )
+    meshes = find_meshes(a.meshes)
+    if not meshes:
+        raise ValueError("there are no meshes in " + ", ".join(a.meshes))
+    return Corpus(meshes, a.output, a.format, sampling, archive_size=a.archive_size, shard=a.shard)
+
+
+def _label(corpus: Corpus, a: argparse.Namespace) -> int:
+    memory = int(a.memory * (1 << 30))
+    summary = label(corpus, workers=a.workers, scheduler=a.scheduler, memory=memory, progress=sys.stderr)
+    if summary.already:
+        print(f"{summary.already} meshes had their labels already", file=sys.stderr)
+    print(f"\n{summary}", file=sys.stderr)
+    return 0
+
+
+def _verify(corpus: Corpus) -> int:
+    complaints = verify(corpus)
+    for complaint in complaints:
+        print(complaint)
+    if not complaints:
+        print(f"{len(corpus.meshes)} meshes: each has its labels once, unchanged")
+    return 1 if complaints else 0
+
+
+def _numbers(text: str) -> tuple[float, ...]:
+    return tuple(float(number) for number in text.split(","))
+
+
+def _shard(text: str) -> tuple[int, int]:
+    i, n = map(int, text.split("/"))
+    if not 0 <= i < n:
+        raise ValueError
+    return i, n
+
+
+def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python3 -m echinus", description="Labels for learning (docs/labels.md).")
+    commands = parser.add_subparsers(required=True, dest="command")
+    add_arguments(commands.add_parser("label", help="label the points around each mesh of a corpus"))
+    return parser.parse_args(arguments)

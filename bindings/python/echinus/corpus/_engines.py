@@ -1,0 +1,139 @@
+"""Where tasks run: on processes of this machine, or on a Dask cluster.
+
+An engine yields each task with its records as they come, in any order; or with the reason why no worker survived it.
+"""
+
+from __future__ import annotations
+
+import importlib
+import itertools
+import multiprocessing
+import resource
+from collections import deque
+from collections.abc import Iterable, Iterator
+from multiprocessing.connection import Connection, wait
+from typing import Any
+
+from echinus.corpus._tasks import Record, Task, run
+
+Outcome = tuple[Task, "list[Record] | str"]
+ATTEMPTS = 3  # a worker may be killed for other reasons than its task
+
+
+class _Worker:
+    def __init__(self, memory: int) -> None:
+        # Not by fork: threads of this process would be missing in the child, with their locks.
+        context = multiprocessing.get_context("spawn")
+        self.pipe, theirs = context.Pipe()
+        self.process = context.Process(target=_serve, args=(theirs, memory), daemon=True)
+        self.process.start()
+        theirs.close()
+        self.task: Task | None = None
+
+    def give(self, task: Task) -> None:
+        self.task = task
+        try:
+            self.pipe.send(task)
+        except OSError:
+            pass  # it has died, which the pipe reports as well
+
+    def take(self) -> list[Record] | None:
+        """The records of the task, or None where the worker has died."""
+        try:
+            result = self.pipe.recv()
+        except (EOFError, OSError):
+            self.process.join()
+            return None
+        if isinstance(result, BaseException):
+            raise result
+        records: list[Record] = result
+        return records
+
+    def stop(self) -> None:
+        self.pipe.close()
+        self.process.terminate()
+        self.process.join()
+
+
+def _serve(pipe: Connection, memory: int) -> None:
+    """The life of a worker: with an address space so large that a mesh that needs more is refused."""
+    resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+    while True:
+        try:
+            task = pipe.recv()
+        except EOFError:
+            return
+        try:
+            pipe.send(run(task))
+        except Exception as error:  # for the one who started the run: a full disk, or a fault of ours
+            pipe.send(error)
+
+
+def on_processes(tasks: Iterable[Task], worker_count: int, memory: int) -> Iterator[Outcome]:
+    """A worker that dies is replaced, and its task tried again."""
+    again: deque[Task] = deque()
+    source = iter(tasks)
+    deaths: dict[Task, int] = {}
+    workers = [_Worker(memory) for _ in range(worker_count)]
+    try:
+        for worker in workers:
+            _next(worker, source, again)
+        while any(worker.task is not None for worker in workers):
+            ready = wait([worker.pipe for worker in workers if worker.task is not None])
+            for i, worker in enumerate(workers):
+                if worker.pipe not in ready:
+                    continue
+                task, records = worker.task, worker.take()
+                assert task is not None
+                if records is None:
+                    worker.stop()
+                    workers[i] = worker = _Worker(memory)
+                    deaths[task] = deaths.get(task, 0) + 1
+                    if deaths[task] < ATTEMPTS:
+                        again.append(task)
+                _next(worker, source, again)
+                if records is not None:
+                    deaths.pop(task, None)
+                    yield task, records
+                elif deaths[task] >= ATTEMPTS:
+                    yield task, f"{ATTEMPTS} workers died of it"
+    finally:
+        for worker in workers:
+            worker.stop()
+
+
+def _next(worker: _Worker, source: Iterator[Task], again: deque[Task]) -> None:
+    worker.task = None
+    if again:
+        worker.give(again.popleft())
+    else:
+        for task in itertools.islice(source, 1):
+            worker.give(task)
+
+
+def on_dask(tasks: Iterable[Task], scheduler: str, window: int = 1000) -> Iterator[Outcome]:
+    """On the workers of an existing cluster, which see the same files under the same names.
+
+    The scheduler repeats the tasks of workers that died, as often as its setting ``allowed-failures`` says.
+    """
+    dask: Any = importlib.import_module("distributed")
+    source = iter(tasks)
+    task_of: dict[Any, Task] = {}
+    with dask.Client(scheduler, set_as_default=False) as client:
+
+        def submitted(task: Task) -> Any:
+            future = client.submit(run, task, pure=False)
+            task_of[future] = task
+            return future
+
+        completed = dask.as_completed(
+            [submitted(task) for task in itertools.islice(source, window)], loop=client.loop
+        )
+        for future in completed:
+            task = task_of.pop(future)
+            for following in itertools.islice(source, 1):
+                completed.add(submitted(following))
+            try:
+                yield task, future.result()
+            except dask.KilledWorker:
+                yield task, "the cluster's workers died of it"

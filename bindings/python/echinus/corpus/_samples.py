@@ -1,0 +1,261 @@
+"""The samples of one mesh and their labels."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from dataclasses import dataclass, fields
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from echinus._errors import Error
+from echinus._maps import ExactMap
+from echinus._meshes import Mesh, MeshLike, as_mesh, inspect, repair
+from echinus.corpus._random import Random
+
+Frame = Literal["cube", "sphere", "none"]
+
+
+class Refused(Exception):
+    """A mesh that gets no labels; the text says why."""
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """Which samples, and in which frame.
+
+    Attributes
+    ----------
+    uniform
+        Points in the cube of the frame: [-0.5, 0.5]^3 and half the padding on each side for ``"cube"``, [-1, 1]^3 for
+        ``"sphere"``, the bounding box for ``"none"``, enlarged likewise.
+    near
+        Points of the surface, moved by normally distributed offsets; as many of them for each sigma.
+    sigmas
+        Standard deviations of an offset along each axis, in the frame.
+    surface
+        Points of the surface, evenly by area, with the normals of their faces.
+    frame
+        point_in_frame = (point - loc) / scale. ``"cube"``: the bounding box is centred and its longest edge is 1.
+        ``"sphere"``: it is centred and the farthest vertex has the distance 1 / 1.03, as in DeepSDF. ``"none"``: as
+        the mesh is.
+    padding
+        Of the box of uniform points, as a share of its edge; both sides together.
+    dtype
+        How points are stored. Labels are those of the points as stored.
+    distances
+        Also compute signed distances and nearest points. Without them a closed mesh takes a tenth of the time.
+    repair
+        Mend what can be mended without a guess, as :func:`echinus.repair` does.
+    min_certain
+        Meshes with a smaller share of certain labels are refused.
+    max_faces
+        Meshes with more faces are refused.
+    time_limit
+        Seconds for the labels of a mesh; it is refused where that is not enough.
+    seed
+        Other seeds, other samples. Besides it, samples depend on the vertices and faces only.
+    """
+
+    uniform: int = 50_000
+    near: int = 50_000
+    sigmas: tuple[float, ...] = (0.01, 0.05)
+    surface: int = 10_000
+    frame: Frame = "cube"
+    padding: float = 0.1
+    dtype: Literal["float16", "float32"] = "float32"
+    distances: bool = True
+    repair: bool = True
+    min_certain: float = 0.0
+    max_faces: int = 5_000_000
+    time_limit: float = 600.0
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        for name in ("uniform", "near", "surface", "max_faces"):
+            if getattr(self, name) < 0:
+                raise ValueError(f"{name} must be 0 or more, not {getattr(self, name)}")
+        if self.near and (not self.sigmas or not all(0 < s < np.inf for s in self.sigmas)):
+            raise ValueError(f"sigmas must be positive numbers, not {self.sigmas}")
+        if not 0 <= self.padding < np.inf or not 0 <= self.min_certain <= 1 or not self.time_limit > 0:
+            raise ValueError("padding must be 0 or more, min_certain from 0 to 1, and time_limit positive")
+
+    def to_json(self) -> dict[str, Any]:
+        return {field.name: getattr(self, field.name) for field in fields(self)}
+
+
+@dataclass(frozen=True)
+class Samples:
+    """The samples of a mesh, in its frame, first the uniform ones, then those near the surface.
+
+    Attributes
+    ----------
+    points : ndarray (n, 3)
+    occupancy : ndarray (n) of bool
+    distance : ndarray (n) of float32
+        Signed, negative inside; empty without ``Sampling.distances``.
+    nearest : ndarray (n, 3) of float32
+        The nearest points of the surface; likewise.
+    certain : ndarray (n) of bool
+        False where the mesh is open and the generalised winding number decided.
+    surface, normals : ndarray (m, 3)
+        Points of the surface, and unit normals of their faces.
+    loc, scale
+        point_in_frame = (point - loc) / scale
+    report
+        What is known about the mesh and its labels.
+    """
+
+    points: NDArray[np.floating[Any]]
+    occupancy: NDArray[np.bool_]
+    distance: NDArray[np.float32]
+    nearest: NDArray[np.float32]
+    certain: NDArray[np.bool_]
+    surface: NDArray[np.floating[Any]]
+    normals: NDArray[np.floating[Any]]
+    loc: NDArray[np.float64]
+    scale: float
+    report: dict[str, Any]
+
+
+def sample(mesh: MeshLike, sampling: Sampling = Sampling()) -> Samples:
+    """Samples around a mesh, with their labels.
+
+    Raises
+    ------
+    Refused
+        The mesh is too large, takes too long, has no extent, or too few of its labels are certain.
+    Error
+        ``invalid_mesh``.
+    """
+    mesh = as_mesh(mesh)
+    if len(mesh.faces) > sampling.max_faces:
+        raise Refused(f"it has {len(mesh.faces)} faces; at most {sampling.max_faces} are accepted")
+    key = hashlib.sha256(b"%d/" % len(mesh.vertices))
+    key.update(mesh.vertices.astype("<f4").tobytes())
+    key.update(mesh.faces.astype("<u4").tobytes())
+    mesh, report = _mended(mesh, sampling)
+    framed, loc, scale = _in_frame(mesh, sampling.frame)
+
+    def random(purpose: str) -> Random:
+        return Random(key.digest() + f"{sampling.seed}/{purpose}".encode())
+
+    parts = [_uniform_points(framed, sampling, random("uniform"))]
+    for i, sigma in enumerate(sampling.sigmas if sampling.near else ()):
+        share = sampling.near * (i + 1) // len(sampling.sigmas) - sampling.near * i // len(sampling.sigmas)
+        on_surface, _ = _surface_points(framed, share, random(f"near {i}"))
+        parts.append(on_surface + sigma * random(f"offset {i}").normal(share, 3))
+    points = np.concatenate(parts).astype(sampling.dtype)
+    surface, normals = _surface_points(framed, sampling.surface, random("surface"))
+    if not np.isfinite(points).all():
+        raise Refused(f"its points do not fit into {sampling.dtype}")
+    labels = _labels(framed, points, report["closed"], sampling)
+    certain_share = float(labels["certain"].mean()) if len(points) else 1.0
+    if certain_share < sampling.min_certain:
+        raise Refused(f"only {100 * certain_share:.3g} % of its labels are certain")
+    report |= {"inside": int(labels["inside"].sum()), "certain": certain_share, "loc": loc.tolist(), "scale": scale}
+    count = len(points) if sampling.distances else 0
+    return Samples(
+        points=points,
+        occupancy=labels["inside"].copy(),
+        distance=-labels["depth"][:count],
+        nearest=labels["point"][:count].copy(),
+        certain=labels["certain"].copy(),
+        surface=surface.astype(sampling.dtype),
+        normals=normals.astype(sampling.dtype),
+        loc=loc,
+        scale=scale,
+        report=report,
+    )
+
+
+def _mended(mesh: Mesh, sampling: Sampling) -> tuple[Mesh, dict[str, Any]]:
+    report: dict[str, Any] = {"faces": len(mesh.faces)}
+    if sampling.repair:
+        mesh, done = repair(mesh)
+        report["repaired"] = {
+            "duplicate_faces_dropped": len(done.duplicate_faces_dropped),
+            "doubled_patch_faces_dropped": len(done.doubled_patch_faces_dropped),
+            "components_flipped": done.components_flipped,
+        }
+    found = inspect(mesh)
+    report |= {
+        "closed": found.closed,
+        "border_edges": found.border_edges.count,
+        "misoriented_edges": found.misoriented_edges.count,
+        "components": found.component_count,
+    }
+    return mesh, report
+
+
+def _in_frame(mesh: Mesh, frame: Frame) -> tuple[Mesh, NDArray[np.float64], float]:
+    if frame == "none":
+        return mesh, np.zeros(3), 1.0
+    vertices = mesh.vertices.astype(np.float64)
+    used = vertices[mesh.faces.ravel()]
+    low, high = used.min(axis=0), used.max(axis=0)
+    loc = (low + high) / 2
+    around = used - loc
+    farthest = np.sqrt((around[:, 0] ** 2 + around[:, 1] ** 2 + around[:, 2] ** 2).max())
+    scale = float((high - low).max() if frame == "cube" else 1.03 * farthest)
+    if not 1e-30 < scale < 1e30:
+        raise Refused(f"its extent is {scale:.3g}")
+    return Mesh((vertices - loc) / scale, mesh.faces), loc, scale
+
+
+def _uniform_points(mesh: Mesh, sampling: Sampling, random: Random) -> NDArray[np.float64]:
+    if sampling.frame == "none":
+        used = mesh.vertices[mesh.faces.ravel()].astype(np.float64)
+        low, high = used.min(axis=0), used.max(axis=0)
+        low, high = low - (high - low) * sampling.padding / 2, high + (high - low) * sampling.padding / 2
+    else:
+        half = 1.0 if sampling.frame == "sphere" else 0.5 + sampling.padding / 2
+        low, high = np.full(3, -half), np.full(3, half)
+    points: NDArray[np.float64] = low + (high - low) * random.uniform(sampling.uniform, 3)
+    return points
+
+
+def _surface_points(mesh: Mesh, count: int, random: Random) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Points, evenly by area, and the normals of their faces."""
+    a, b, c = (mesh.vertices[mesh.faces[:, k]].astype(np.float64) for k in range(3))
+    u, v = b - a, c - a
+    normal = np.stack([u[:, k - 2] * v[:, k - 1] - u[:, k - 1] * v[:, k - 2] for k in range(3)], axis=1)
+    area = np.sqrt(normal[:, 0] ** 2 + normal[:, 1] ** 2 + normal[:, 2] ** 2)
+    total = np.cumsum(area)
+    if count and not total[-1] > 0:
+        raise Refused("its surface has no area")
+    face = np.searchsorted(total, random.uniform(count) * total[-1], side="right") if count else np.zeros(0, int)
+    face = np.minimum(face, len(area) - 1)
+    root, share = np.sqrt(random.uniform(count))[:, None], random.uniform(count)[:, None]
+    points = (1 - root) * a[face] + root * (1 - share) * b[face] + root * share * c[face]
+    return points, normal[face] / np.where(area[face] > 0, area[face], 1)[:, None]
+
+
+def _labels(mesh: Mesh, points: NDArray[np.floating[Any]], closed: bool, sampling: Sampling) -> NDArray[np.void]:
+    """In calls of a few seconds, so that the limit is noticed. The first is small: soups are a thousand times as slow."""
+    end = time.monotonic() + sampling.time_limit
+    try:
+        exact = ExactMap(mesh, threads=1)
+    except Error as error:
+        raise Refused(str(error)) from error
+    answers: list[NDArray[np.void]] = []
+    first, count = 0, 1024
+    while first < len(points) or not answers:
+        began = time.monotonic()
+        if began > end:
+            raise Refused(f"its labels take longer than {sampling.time_limit:g} s")
+        answers.append(_answers(exact, points[first : first + count], closed, sampling.distances))
+        first += count
+        count = max(64, int(count * min(1024.0, 2.0 / max(time.monotonic() - began, 1e-6))))
+    return np.concatenate(answers)
+
+
+def _answers(exact: ExactMap, points: NDArray[np.floating[Any]], closed: bool, distances: bool) -> NDArray[np.void]:
+    """Contacts, of which only ``inside`` and ``certain`` matter where no distances are wanted."""
+    if distances or not closed:
+        return exact.contacts(points, np.inf if distances else 0).array
+    array = np.zeros(len(points), exact.contacts(points[:0]).array.dtype)
+    array["inside"], array["certain"] = exact.contains(points), True
+    return array

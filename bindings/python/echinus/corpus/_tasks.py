@@ -1,0 +1,106 @@
+"""What a worker does: one task, whose meshes become the files of a folder or the members of one archive."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pathlib
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+from echinus._errors import Error
+from echinus._meshes import read_mesh
+from echinus.corpus._formats import Format, archive_of, files_of
+from echinus.corpus._samples import Refused, Sampling, sample
+
+UNFINISHED = ".unfinished"  # below the output folder: files that are being written
+Record = dict[str, Any]  # a line of the manifest
+
+
+@dataclass(frozen=True)
+class Task:
+    """Meshes that are labelled together.
+
+    Attributes
+    ----------
+    meshes
+        (name, path) of each.
+    archive
+        The archive that they become, or None: files of their own.
+    refused
+        Name and reason of meshes that are not to be tried, because workers died of them.
+    """
+
+    meshes: tuple[tuple[str, str], ...]
+    output: str
+    sampling: Sampling
+    form: Format
+    max_bytes: int
+    archive: str | None = None
+    refused: tuple[tuple[str, str], ...] = ()
+
+    def alone(self) -> list[Task]:
+        """A task for each mesh, which writes nothing that stays: to find the one that workers die of."""
+        return [replace(self, meshes=(mesh,), archive=None, output=self.place_alone) for mesh in self.meshes]
+
+    @property
+    def place_alone(self) -> str:
+        return os.path.join(self.output, UNFINISHED, f"alone-{self.archive}")
+
+
+def run(task: Task) -> list[Record]:
+    """Labels the meshes and writes their files, each whole or not at all; the same task gives the same records."""
+    reasons = dict(task.refused)
+    records: list[Record] = []
+    members: dict[str, bytes] = {}
+    for name, path in task.meshes:
+        try:
+            if name in reasons:
+                raise Refused(reasons[name])
+            files, report = _labelled(name, path, task)
+        except (Refused, Error, MemoryError) as error:
+            reason = "it needs more memory than a worker has" if isinstance(error, MemoryError) else str(error)
+            records.append({"mesh": name, "source": path, "refused": reason})
+            continue
+        if task.archive is None:
+            written = [_write(task.output, file, content) for file, content in files.items()]
+            records += [{"mesh": name, "source": path, "files": sorted(files), "report": report}, *written]
+        else:
+            members |= files
+            records.append({"mesh": name, "source": path, "files": [task.archive], "report": report})
+    if task.archive is not None:
+        records.append(_write(task.output, task.archive, archive_of(members)))
+    return records
+
+
+def _labelled(name: str, path: str, task: Task) -> tuple[dict[str, bytes], Record]:
+    size = os.path.getsize(path) if os.path.exists(path) else 0
+    if size > task.max_bytes:
+        raise Refused(f"{path}: the file has {size} bytes; at most {task.max_bytes} are accepted")
+    samples = sample(read_mesh(path), task.sampling)
+    return files_of(samples, name, task.form), samples.report | {"points": len(samples.points)}
+
+
+def _write(output: str, name: str, content: bytes) -> Record:
+    """Under another name first, so that the file appears whole."""
+    target = pathlib.Path(output, name)
+    unfinished = pathlib.Path(output, UNFINISHED)
+    for folder in (target.parent, unfinished):
+        folder.mkdir(parents=True, exist_ok=True)
+    handle, part = tempfile.mkstemp(dir=unfinished)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        os.chmod(part, 0o644)
+        os.replace(part, target)
+    except BaseException:
+        os.unlink(part)
+        raise
+    return {"file": name, "sha256": hashlib.sha256(content).hexdigest(), "bytes": len(content)}
+
+
+Run = Callable[[Task], list[Record]]

@@ -1,0 +1,389 @@
+"""Labels of a corpus: right, the same bytes whoever computes them, whole or absent; and read by the loaders of others."""
+
+import io
+import json
+import os
+import pathlib
+import signal
+import statistics
+import subprocess
+import sys
+import tarfile
+import threading
+import time
+
+import numpy as np
+import pytest
+from hypothesis import given, strategies
+
+import echinus as ech
+from echinus import corpus
+from echinus.corpus import _engines, _random, _run, _tasks
+from support import open_torus, torus
+
+SMALL = corpus.Sampling(uniform=300, near=200, sigmas=(0.01, 0.1), surface=100)
+SIDES = corpus.Sampling(**{**SMALL.__dict__, "distances": False})  # as the command takes them for occupancies
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Twelve good meshes, one open, and some that are to be refused."""
+    folder = tmp_path_factory.mktemp("meshes")
+    for i in range(6):
+        (folder / f"class_{i % 2}").mkdir(exist_ok=True)
+        ech.write_mesh(folder / f"class_{i % 2}" / f"torus_{i}.obj", ech.make_torus(1 + i, 0.4, 12 + i, 8))
+        ech.write_mesh(folder / f"class_{i % 2}" / f"sphere_{i}.ply", ech.make_sphere(1, 8 + i, 6))
+    ech.write_mesh(folder / "open.off", open_torus())
+    (folder / "broken.obj").write_text("v 0 0 0\nf 1 2 3\n")
+    (folder / "empty.stl").write_bytes(b"")
+    (folder / "flat.obj").write_text("v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n")
+    return folder
+
+
+def corpus_of(folder, output, **options):
+    sampling = SMALL if options.get("form", "occupancy") != "occupancy" else SIDES
+    return corpus.Corpus(corpus.find_meshes([folder]), output, **{"sampling": sampling, "archive_size": 4, **options})
+
+
+def bytes_below(folder):
+    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
+# ---- Samples
+
+
+def test_labels_are_those_of_the_points_as_they_are_stored():
+    for dtype in ("float16", "float32"):
+        s = corpus.sample(torus(), corpus.Sampling(uniform=2000, near=2000, surface=10, dtype=dtype))
+        assert s.points.dtype == s.surface.dtype == dtype
+        framed = ech.Mesh((torus().vertices.astype(float) - s.loc) / s.scale, torus().faces)
+        truth, distance = ech.winding_number(framed, s.points) > 0.5, ech.unsigned_distance(framed, s.points)
+        clear = distance > 1e-5
+        assert clear.mean() > 0.99 and np.array_equal(s.occupancy[clear], truth[clear])
+        assert np.abs(np.abs(s.distance) - distance).max() < 1e-5
+        assert np.array_equal(s.distance[clear] < 0, truth[clear])
+        assert ech.unsigned_distance(framed, s.nearest).max() < 1e-5
+        assert s.certain.all() and s.report["closed"]
+
+
+def test_samples_near_the_surface_are_as_far_as_their_sigmas_say():
+    s = corpus.sample(ech.make_box((1, 1, 1), 1), corpus.Sampling(uniform=0, near=40_000, sigmas=(0.001, 0.01), surface=0))
+    for part, sigma in zip(np.split(s.distance, 2), (0.001, 0.01)):
+        assert part.std() == pytest.approx(sigma, rel=0.03)  # along the normal of a side
+
+
+def test_samples_of_the_surface_are_even_by_area_and_have_the_normals_of_their_faces():
+    box = ech.make_box((1, 2, 4), 1)
+    s = corpus.sample(box, corpus.Sampling(uniform=0, near=0, surface=28_000))
+    shares = [(np.abs(s.normals[:, axis]) > 0.9).mean() for axis in range(3)]
+    assert shares == pytest.approx([8 / 14, 4 / 14, 2 / 14], abs=0.01)
+    assert np.abs(np.abs(s.normals).max(axis=1) - 1).max() < 1e-6
+    assert ech.unsigned_distance(box, s.surface.astype(float) * s.scale + s.loc).max() < 1e-6
+
+
+@pytest.mark.parametrize("frame, extent", [("cube", 1), ("sphere", 2 / 1.03), ("none", 2.8)])
+def test_a_frame_is_what_it_says(frame, extent):
+    mesh = ech.Mesh(torus().vertices + np.float32([3, 4, 5]), torus().faces)
+    s = corpus.sample(mesh, corpus.Sampling(uniform=20_000, near=0, surface=4000, frame=frame, padding=0.1))
+    assert np.ptp(s.surface[:, 0]) == pytest.approx(extent, rel=0.01)
+    box = {"cube": 1.1, "sphere": 2, "none": 2.8 * 1.1}[frame]
+    assert np.ptp(s.points[:, 0]) == pytest.approx(box, rel=0.01)
+    assert np.allclose(s.surface.mean(axis=0) * s.scale + s.loc, [3, 4, 5], atol=0.05)
+
+
+@pytest.mark.parametrize("mesh", [torus(), open_torus()])
+def test_sides_without_distances_are_the_same(mesh):
+    sides, all_of_it = corpus.sample(mesh, SIDES), corpus.sample(mesh, SMALL)
+    assert len(sides.distance) == len(sides.nearest) == 0
+    for name in ("points", "occupancy", "certain", "surface", "normals"):
+        assert np.array_equal(getattr(sides, name), getattr(all_of_it, name)), name
+    with pytest.raises(ValueError, match="need distances"):
+        corpus.Corpus([], "out", form="deepsdf", sampling=SIDES)
+
+
+def test_samples_depend_on_the_mesh_and_the_seed_only():
+    a, b = corpus.sample(torus(), SMALL), corpus.sample(ech.Mesh(torus().vertices.copy(), torus().faces.astype(int)), SMALL)
+    assert np.array_equal(a.points, b.points)
+    other_seed = corpus.sample(torus(), corpus.Sampling(**{**SMALL.__dict__, "seed": 1}))
+    other_mesh = corpus.sample(ech.make_torus(1, 0.4, 30, 13), SMALL)
+    assert not np.array_equal(a.points, other_seed.points) and not np.array_equal(a.points, other_mesh.points)
+
+
+def test_more_of_one_kind_does_not_change_another():
+    more = corpus.sample(torus(), corpus.Sampling(**{**SMALL.__dict__, "near": 0, "surface": 0}))
+    assert np.array_equal(more.points, corpus.sample(torus(), SMALL).points[:300])
+
+
+def test_a_mesh_that_is_not_to_be_labelled_is_refused_with_a_reason():
+    cases = [
+        (torus(), {"max_faces": 100}, "it has 720 faces; at most 100"),
+        (open_torus(), {"min_certain": 1.0}, "% of its labels are certain"),
+        (torus(), {"time_limit": 1e-9}, "take longer than"),
+        (ech.Mesh(np.zeros((3, 3)), [[0, 1, 2]]), {}, "its extent is 0"),
+        (ech.Mesh([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]]), {}, "no area"),
+        (ech.Mesh(torus().vertices * 1e6, torus().faces), {"frame": "none", "dtype": "float16"}, "do not fit into float16"),
+    ]
+    for mesh, options, reason in cases:
+        with pytest.raises(corpus.Refused, match=reason), np.errstate(over="ignore"):
+            corpus.sample(mesh, corpus.Sampling(**{**SMALL.__dict__, **options}))
+    assert 0 < corpus.sample(open_torus(), SMALL).certain.mean() < 1
+
+
+def test_settings_out_of_range_are_errors():
+    for options in ({"uniform": -1}, {"sigmas": ()}, {"sigmas": (0.1, -1)}, {"padding": -1}, {"min_certain": 2}, {"time_limit": 0}):
+        with pytest.raises(ValueError):
+            corpus.Sampling(**options)
+
+
+# ---- Random numbers
+
+
+@given(strategies.floats(1e-300, 0.5))
+def test_normal_quantiles_agree_with_the_library_of_python(p):
+    expected = statistics.NormalDist().inv_cdf(p)
+    assert _random.normal_quantile(np.array([p, 1 - p]))[0] == pytest.approx(expected, rel=2e-9, abs=1e-9)
+
+
+def test_random_numbers_are_recorded_ones():
+    random = _random.Random(b"key")
+    assert random.uniform(3).tolist() == RECORDED_UNIFORM
+    assert random.normal(2).tolist() == RECORDED_NORMAL
+
+
+RECORDED_UNIFORM = [0.22783940722903906, 0.38930734575340054, 0.9159237802093166]
+RECORDED_NORMAL = [0.25815513066825724, -1.24686766262255]
+
+
+def test_random_numbers_have_the_moments_of_their_distributions():
+    random = _random.Random(b"moments")
+    u, n = random.uniform(200_000), random.normal(200_000)
+    assert u.mean() == pytest.approx(0.5, abs=0.003) and 0 <= u.min() and u.max() < 1
+    assert n.mean() == pytest.approx(0, abs=0.01) and n.std() == pytest.approx(1, abs=0.01)
+    assert (n**4).mean() == pytest.approx(3, abs=0.1)
+
+
+# ---- Formats, read as others read them
+
+
+def test_occupancy_networks_reads_the_points(folder, tmp_path):
+    corpus.label(corpus_of(folder, tmp_path), workers=2)
+    model = tmp_path / "class_0" / "torus_0"
+    # As PointsField and PointCloudField of occupancy_networks/im2mesh/data/fields.py take them.
+    points_dict = np.load(model / "points.npz")
+    points, occupancies = points_dict["points"], np.unpackbits(points_dict["occupancies"])[: len(points_dict["points"])]
+    assert points.shape == (500, 3) and set(np.unique(occupancies)) == {0, 1}
+    cloud = np.load(model / "pointcloud.npz")
+    assert cloud["points"].shape == cloud["normals"].shape == (100, 3)
+    world = points * points_dict["scale"] + points_dict["loc"]
+    mesh = ech.read_mesh(folder / "class_0" / "torus_0.obj")
+    clear = ech.unsigned_distance(mesh, world) > 1e-5
+    assert np.array_equal(occupancies[clear] == 1, (ech.winding_number(mesh, world) > 0.5)[clear])
+
+
+def test_deepsdf_reads_the_distances(folder, tmp_path):
+    corpus.label(corpus_of(folder, tmp_path, form="deepsdf", sampling=corpus.Sampling(uniform=300, near=200, frame="sphere")), workers=2)
+    npz = np.load(tmp_path / "class_1" / "torus_1.npz")
+    # As unpack_sdf_samples of deep_sdf/data.py takes them: rows x, y, z, distance.
+    positive, negative = npz["pos"], npz["neg"]
+    assert positive.shape[1] == negative.shape[1] == 4 and len(positive) + len(negative) == 500
+    assert (positive[:, 3] >= 0).all() and (negative[:, 3] < 0).all()
+    mesh = ech.read_mesh(folder / "class_1" / "torus_1.obj")
+    for rows in (positive, negative):
+        world = rows[:, :3].astype(float) / npz["scale"] - npz["offset"]
+        assert np.allclose(ech.unsigned_distance(mesh, world), np.abs(rows[:, 3]) / npz["scale"], atol=1e-5)
+
+
+def samples_of_archives(folder):
+    """As WebDataset groups them: members in a row whose names are equal up to the first dot of the last part."""
+    for path in sorted(folder.glob("*.tar")):
+        with tarfile.open(path) as archive:
+            sample = {}
+            for member in archive:
+                place, slash, name = member.name.rpartition("/")
+                stem, _, extension = name.partition(".")
+                if sample and sample["__key__"] != place + slash + stem:
+                    yield sample
+                    sample = {}
+                sample |= {"__key__": place + slash + stem, extension: archive.extractfile(member).read()}
+            if sample:
+                yield sample
+
+
+def test_webdataset_reads_the_samples(folder, tmp_path):
+    corpus.label(corpus_of(folder, tmp_path, form="webdataset"), workers=2)
+    samples = {s["__key__"]: s for s in samples_of_archives(tmp_path)}
+    assert len(samples) == 13 and len(list(tmp_path.glob("*.tar"))) == 4
+    one = {name: np.load(io.BytesIO(data)) for name, data in samples["class_0/torus_0"].items() if name.endswith(".npy")}
+    expected = corpus.sample(ech.read_mesh(folder / "class_0" / "torus_0.obj"), SMALL)
+    for name in ("points", "occupancy", "distance", "nearest", "certain", "surface", "normals"):
+        assert np.array_equal(one[f"{name}.npy"], getattr(expected, name)), name
+    assert json.loads(samples["open"]["json"])["closed"] is False
+
+
+# ---- The same bytes, whoever computes them
+
+
+@pytest.fixture(scope="module", params=["occupancy", "webdataset"])
+def reference(request, folder, tmp_path_factory):
+    output = tmp_path_factory.mktemp("reference")
+    summary = corpus.label(corpus_of(folder, output, form=request.param), workers=1)
+    assert (summary.labelled, summary.refused) == (13, 3)
+    return request.param, bytes_below(output)
+
+
+def test_two_workers_give_the_same_bytes(folder, tmp_path, reference):
+    corpus.label(corpus_of(folder, tmp_path, form=reference[0]), workers=2)
+    assert bytes_below(tmp_path) == reference[1]
+
+
+def test_parts_of_the_work_give_the_same_files(folder, tmp_path, reference):
+    for i in (2, 0, 1):
+        part = corpus_of(folder, tmp_path, form=reference[0], shard=(i, 3))
+        corpus.label(part, workers=1)
+    files = {name: data for name, data in bytes_below(tmp_path).items() if "manifest" not in name}
+    assert files == {name: data for name, data in reference[1].items() if "manifest" not in name}
+    lines = sorted(line for path in tmp_path.glob("manifest-*") for line in path.read_text().splitlines()[1:])
+    assert lines == sorted(reference[1]["manifest.jsonl"].decode().splitlines()[1:])
+    assert corpus.verify(corpus_of(folder, tmp_path, form=reference[0])) == []
+
+
+def workers():
+    """The children of this process that label."""
+    children = pathlib.Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
+    return [int(p) for p in children if b"spawn_main" in pathlib.Path(f"/proc/{p}/cmdline").read_bytes()]
+
+
+def test_workers_may_be_killed(folder, tmp_path, reference, monkeypatch):
+    """At any time: while they start, while they compute, and while they write."""
+    monkeypatch.setattr(_engines, "ATTEMPTS", 100)
+    random = np.random.default_rng(1)
+    done, killed = threading.Event(), []
+
+    def kill():
+        while len(killed) < 10 and not done.wait(random.uniform(0.1, 0.6)):
+            killed.extend(workers()[:1])
+            for worker in killed[-1:]:
+                os.kill(worker, signal.SIGKILL)
+
+    killer = threading.Thread(target=kill)
+    killer.start()
+    try:
+        corpus.label(corpus_of(folder, tmp_path, form=reference[0]), workers=2)
+    finally:
+        done.set()
+        killer.join()
+    assert bytes_below(tmp_path) == reference[1] and killed
+
+
+@pytest.mark.parametrize("seconds", [0.6, 1.2])
+def test_a_run_that_was_killed_goes_on_where_it_was(folder, tmp_path, reference, seconds):
+    command = [sys.executable, "-m", "echinus", "label", str(folder), "-o", str(tmp_path), "--format", reference[0], "--archive-size", "4",
+               "--uniform", "300", "--near", "200", "--sigmas", "0.01,0.1", "--surface", "100", "--workers", "2"]
+    run = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+    time.sleep(seconds)
+    run.kill()
+    run.wait()
+    subprocess.run(command, check=True, capture_output=True)
+    assert bytes_below(tmp_path) == reference[1]
+    verdict = subprocess.run([*command, "--verify"], check=True, capture_output=True, text=True)
+    assert "16 meshes: each has its labels once, unchanged" in verdict.stdout
+
+
+def test_a_second_run_computes_nothing(folder, tmp_path):
+    first = corpus.label(corpus_of(folder, tmp_path), workers=2)
+    before = bytes_below(tmp_path)
+    again = corpus.label(corpus_of(folder, tmp_path), workers=2)
+    assert (first.labelled + first.refused, again.already, again.labelled, again.refused) == (16, 16, 0, 0)
+    assert bytes_below(tmp_path) == before
+
+
+def test_other_settings_need_another_folder(folder, tmp_path):
+    corpus.label(corpus_of(folder, tmp_path), workers=1)
+    with pytest.raises(ValueError, match="made with other settings"):
+        corpus.label(corpus_of(folder, tmp_path, sampling=corpus.Sampling()), workers=1)
+
+
+# ---- What is refused, and what is wrong
+
+
+def test_refused_meshes_are_listed_with_the_reason(folder, tmp_path):
+    corpus.label(corpus_of(folder, tmp_path), workers=1)
+    lines = [json.loads(line) for line in (tmp_path / "manifest.jsonl").read_text().splitlines()]
+    refused = {r["mesh"]: r["refused"] for r in lines if "refused" in r}
+    assert set(refused) == {"broken", "empty", "flat"}
+    assert "broken.obj" in refused["broken"] and "extent" in refused["flat"]
+
+
+def test_a_mesh_that_no_worker_survives_is_refused_and_its_neighbours_are_not(folder, tmp_path, monkeypatch):
+    deadly = "class_0/sphere_2"
+
+    def in_one_worker(tasks):
+        for task in tasks:
+            names = {name for name, _ in task.meshes} - {name for name, _ in task.refused}
+            yield task, "3 workers died of it" if deadly in names else _tasks.run(task)
+
+    monkeypatch.setattr(_engines, "on_processes", lambda tasks, workers, memory: in_one_worker(tasks))
+    for form in ("occupancy", "webdataset"):
+        output = tmp_path / form
+        summary = corpus.label(corpus_of(folder, output, form=form))
+        assert (summary.labelled, summary.refused) == (12, 4)
+        assert corpus.verify(corpus_of(folder, output, form=form)) == []
+    assert len(list(samples_of_archives(tmp_path / "webdataset"))) == 12
+
+
+def test_a_mesh_that_needs_too_much_memory_is_refused(folder, tmp_path):
+    ech.write_mesh(tmp_path / "large.ply", ech.make_sphere(1, 2000, 101))  # 400 000 faces, which take 200 MB
+    large = corpus.Corpus(corpus.find_meshes([tmp_path / "large.ply", folder / "class_0"]), tmp_path / "out", sampling=SMALL)
+    summary = corpus.label(large, workers=1, memory=160 << 20)
+    assert summary.refused == 1 and summary.labelled == 6
+    assert "memory" in (tmp_path / "out" / "manifest.jsonl").read_text() or "died" in (tmp_path / "out" / "manifest.jsonl").read_text()
+
+
+def test_verification_finds_what_is_missing_changed_surplus_or_double(folder, tmp_path):
+    c = corpus_of(folder, tmp_path)
+    corpus.label(c, workers=1)
+    assert corpus.verify(c) == []
+    (tmp_path / "open" / "points.npz").unlink()
+    with (tmp_path / "class_0" / "torus_0" / "points.npz").open("r+b") as file:
+        file.write(b"x")
+    (tmp_path / "surplus").write_text("")
+    manifest = tmp_path / "manifest.jsonl"
+    lines = manifest.read_text().splitlines(keepends=True)
+    of_mesh = [line for line in lines if '"mesh":"class_1/torus_1"' in line]
+    manifest.write_text("".join(line for line in lines if '"mesh":"class_0/sphere_0"' not in line) + "".join(of_mesh))
+    complaints = "\n".join(corpus.verify(c))
+    for expected in ("open/points.npz: is missing", "torus_0/points.npz: has other bytes", "surplus: is in no manifest",
+                     "class_0/sphere_0: has no labels", "class_1/torus_1: is recorded 2 times"):
+        assert expected in complaints
+    corpus.label(c, workers=1)  # mends what is missing; what has changed shows only by its hash
+    assert "open/points.npz" not in "\n".join(corpus.verify(c))
+
+
+def test_meshes_are_named_by_their_places(folder, tmp_path):
+    (tmp_path / "list.txt").write_text(f"{folder}/class_0/torus_0.obj\n\n{folder}/open.off\n")
+    names = [name for name, _ in corpus.find_meshes([tmp_path / "list.txt"])]
+    assert [pathlib.PurePath(name).name for name in names] == ["torus_0", "open"]
+    assert [name for name, _ in corpus.find_meshes([folder])] == sorted(name for name, _ in corpus.find_meshes([folder]))
+    (tmp_path / "a.b.obj").write_text("")
+    (tmp_path / "a_b.ply").write_text("")
+    with pytest.raises(ValueError, match="would both be labelled as a_b"):
+        corpus.find_meshes([tmp_path])
+
+
+def test_the_command_says_what_is_wrong(tmp_path):
+    command = [sys.executable, "-m", "echinus", "label"]
+    nothing = subprocess.run([*command, str(tmp_path), "-o", str(tmp_path / "out")], capture_output=True, text=True)
+    assert nothing.returncode == 1 and "there are no meshes in" in nothing.stderr
+    for wrong in (["--shard", "3/3"], ["--format", "other"], ["--sigmas", "x"]):
+        assert subprocess.run([*command, str(tmp_path), "-o", "x", *wrong], capture_output=True).returncode == 2
+
+
+# ---- On a cluster
+
+
+@pytest.mark.filterwarnings("ignore")  # Debian's Dask has deprecated ways
+def test_a_cluster_gives_the_same_bytes(folder, tmp_path, reference):
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, scheduler_port=0) as cluster:
+        corpus.label(corpus_of(folder, tmp_path, form=reference[0]), scheduler=cluster.scheduler_address)
+    assert bytes_below(tmp_path) == reference[1]
