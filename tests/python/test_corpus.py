@@ -1,5 +1,6 @@
 """Labels of a corpus: right, the same bytes whoever computes them, whole or absent; and read by the loaders of others."""
 
+import contextlib
 import io
 import json
 import os
@@ -256,14 +257,17 @@ def workers():
 def test_workers_may_be_killed(folder, tmp_path, reference, monkeypatch):
     """At any time: while they start, while they compute, and while they write."""
     monkeypatch.setattr(_engines, "ATTEMPTS", 100)
-    random = np.random.default_rng(1)
+    waits = [0.05, *np.random.default_rng(1).uniform(0.05, 0.6, 9)]  # seconds; no worker is done before the first
     done, killed = threading.Event(), []
 
     def kill():
-        while len(killed) < 10 and not done.wait(random.uniform(0.1, 0.6)):
-            killed.extend(workers()[:1])
-            for worker in killed[-1:]:
-                os.kill(worker, signal.SIGKILL)
+        for seconds in waits:
+            if done.wait(seconds):
+                return
+            for worker in workers()[:1]:
+                with contextlib.suppress(ProcessLookupError):  # it ended by itself meanwhile
+                    os.kill(worker, signal.SIGKILL)
+                    killed.append(worker)
 
     killer = threading.Thread(target=kill)
     killer.start()

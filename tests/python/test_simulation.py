@@ -13,8 +13,12 @@ import echinus as ech
 from support import ROOT, open_torus, run_program, torus
 
 SCENE = ROOT / "scenes" / "torus_small.json"
-HIGH = {"model": {"torus": {}}, "cloth": {"size": [3, 3], "particles": [12, 12], "position": [0, 0, 2]}}
-SHEET = {"model": {"torus": {}}, "cloth": {"size": [3, 3], "particles": [12, 12], "position": [0, 0, 0.5]}}
+SHEET = {
+    "model": {"torus": {}},
+    "cloth": {"size": [3, 3], "particles": [12, 12], "position": [0, 0, 0.5]},
+    "surface_collision": False,
+}
+HIGH = {**SHEET, "cloth": {**SHEET["cloth"], "position": [0, 0, 2]}}
 
 
 def test_a_simulation_gives_the_positions_of_the_c_plus_plus_program(tmp_path):
@@ -100,8 +104,21 @@ def test_surfaces_collide_where_it_is_said():
     simulation.step(200)
     assert len(ech.intersecting_pairs(simulation.mesh, ech.make_torus())) == 0
     assert simulation.profile.measured_pair_count > 0
-    particles_only = ech.Simulation.from_scene({**SHEET, "surface_collision": True}, surface_collision=False)
-    assert not particles_only.options.surface_collision
+    by_default = {key: value for key, value in SHEET.items() if key != "surface_collision"}
+    assert ech.Simulation.from_scene(by_default).options.self_collision
+    particles_only = ech.Simulation.from_scene({**by_default, "untangle": True}, surface_collision=False).options
+    assert not (particles_only.surface_collision or particles_only.self_collision or particles_only.untangle)
+    sampled = ech.DistanceMap(ech.make_torus())
+    assert not ech.Simulation.from_scene(by_default, model=sampled).options.surface_collision
+
+
+def test_a_start_that_intersects_is_parted_where_it_is_said():
+    low = {**SHEET, "cloth": {**SHEET["cloth"], "position": [0, 0, 0.35]}, "surface_collision": True}
+    with pytest.raises(ech.Error) as raised:
+        ech.Simulation.from_scene(low)
+    assert raised.value.code == "invalid_options"
+    parted = ech.Simulation.from_scene(low, untangle=True)
+    assert len(ech.intersecting_pairs(parted.mesh, ech.make_torus())) == 0
 
 
 def test_an_open_model_is_refused_unless_it_is_said():

@@ -74,6 +74,7 @@ def map_from_bytes(data: bytes) -> ExactMap | DistanceMap: ...
 class Scene:
     surface_collision: bool
     self_collision: bool
+    untangle: bool
     allow_open_colliders: bool
     @staticmethod
     def read(path: Path) -> Scene: ...

@@ -34,6 +34,7 @@ class SimulationOptions:
     self_thickness: float | None
     surface_collision: bool
     self_collision: bool
+    untangle: bool
     allow_open_colliders: bool
 
 
@@ -115,6 +116,7 @@ class Simulation:
         model_folders: Sequence[Path] = (),
         surface_collision: bool | None = None,
         self_collision: bool | None = None,
+        untangle: bool | None = None,
         allow_open_colliders: bool = False,
         threads: int = 0,
     ) -> Simulation:
@@ -131,8 +133,9 @@ class Simulation:
         model_folders
             Where the scene's files are looked for first; then beside the scene, in ``../models`` beside it,
             and in ``models`` in the working folder.
-        surface_collision, self_collision
-            In place of the scene's keys. Without surface collision there is no self-collision.
+        surface_collision, self_collision, untangle
+            In place of the scene's keys. Without the first there is none of the others. A distance map as ``model``
+            has no surface collision.
         allow_open_colliders
             Accept a model that is not closed, for which nothing is promised. Surface collision needs no such
             permission.
@@ -151,11 +154,12 @@ class Simulation:
         else:
             parsed = _core.Scene.read(scene)
             folder = pathlib.Path(scene).parent
-        if surface_collision is not None:
-            parsed.surface_collision = surface_collision
-        parsed.self_collision = parsed.surface_collision and (
-            parsed.self_collision if self_collision is None else self_collision
-        )
+        if surface_collision is None and isinstance(model, DistanceMap):
+            surface_collision = False
+        surfaces = _chosen(surface_collision, parsed.surface_collision)
+        parsed.surface_collision = surfaces
+        parsed.self_collision = surfaces and _chosen(self_collision, parsed.self_collision)
+        parsed.untangle = surfaces and _chosen(untangle, parsed.untangle)
         parsed.allow_open_colliders = allow_open_colliders
         folders = [*map(pathlib.Path, model_folders), folder, folder / ".." / "models", pathlib.Path("models")]
 
@@ -298,6 +302,10 @@ class Simulation:
 
     def __repr__(self) -> str:
         return f"<echinus.Simulation: {len(self.positions)} particles, frame {self.frame}>"
+
+
+def _chosen(given: bool | None, otherwise: bool) -> bool:
+    return otherwise if given is None else given
 
 
 def _vector(values: Sequence[float]) -> Vector:

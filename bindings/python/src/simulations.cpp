@@ -121,6 +121,9 @@ void bind_scene(py::module_& module) {
             "self_collision", [](const Scene& scene) { return scene.simulation.self_collision; },
             [](Scene& scene, bool on) { scene.simulation.self_collision = on; })
         .def_property(
+            "untangle", [](const Scene& scene) { return scene.simulation.untangle; },
+            [](Scene& scene, bool on) { scene.simulation.untangle = on; })
+        .def_property(
             "allow_open_colliders", [](const Scene& scene) { return scene.simulation.allow_open_colliders; },
             [](Scene& scene, bool on) { scene.simulation.allow_open_colliders = on; })
         .def("make_model", make_model)
@@ -188,6 +191,7 @@ py::dict describe(const SimulationOptions& o) {
     result["self_thickness"] = o.self_thickness;
     result["surface_collision"] = o.surface_collision;
     result["self_collision"] = o.self_collision;
+    result["untangle"] = o.untangle;
     result["allow_open_colliders"] = o.allow_open_colliders;
     return result;
 }
