@@ -7,7 +7,6 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <vector>
@@ -143,7 +142,7 @@ py::bytes bytes_of(const AnyMap& map) {
 AnyMap map_of(const py::bytes& bytes) {
     const std::string_view text = bytes;
     auto copy = std::make_shared<std::vector<std::uint64_t>>((text.size() + 7) / 8);
-    std::memcpy(copy->data(), text.data(), text.size());
+    text.copy(reinterpret_cast<char*>(copy->data()), text.size());
     const std::span<const std::byte> copied(reinterpret_cast<const std::byte*>(copy->data()), text.size());
     return load_map(copied, copy, "the bytes of a map");
 }
