@@ -279,13 +279,13 @@ def test_workers_may_be_killed(folder, tmp_path, reference, monkeypatch):
     assert bytes_below(tmp_path) == reference[1] and killed
 
 
-@pytest.mark.parametrize("seconds", [0.6, 1.2])
-def test_a_run_that_was_killed_goes_on_where_it_was(folder, tmp_path, reference, seconds):
+@pytest.mark.parametrize("how, seconds", [(signal.SIGKILL, 0.6), (signal.SIGKILL, 1.2), (signal.SIGINT, 1.0)])
+def test_a_run_that_was_ended_goes_on_where_it_was(folder, tmp_path, reference, how, seconds):
     command = [sys.executable, "-m", "echinus", "label", str(folder), "-o", str(tmp_path), "--format", reference[0], "--archive-size", "4",
                "--uniform", "300", "--near", "200", "--sigmas", "0.01,0.1", "--surface", "100", "--workers", "2"]
     run = subprocess.Popen(command, stderr=subprocess.DEVNULL)
     time.sleep(seconds)
-    run.kill()
+    run.send_signal(how)
     run.wait()
     subprocess.run(command, check=True, capture_output=True)
     assert bytes_below(tmp_path) == reference[1]

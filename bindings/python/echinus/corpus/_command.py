@@ -44,6 +44,9 @@ def main(arguments: argparse.Namespace) -> int:
     except (Error, ValueError, OSError) as error:
         print(f"echinus label: {error}", file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        print("\nechinus label: interrupted; the same command goes on from here", file=sys.stderr)
+        return 130
 
 
 def _corpus_of(a: argparse.Namespace) -> Corpus:

@@ -9,6 +9,7 @@ import importlib
 import itertools
 import multiprocessing
 import resource
+import signal
 from collections import deque
 from collections.abc import Iterable, Iterator
 from multiprocessing.connection import Connection, wait
@@ -57,6 +58,7 @@ class _Worker:
 
 def _serve(pipe: Connection, memory: int) -> None:
     """The life of a worker: with an address space so large that a mesh that needs more is refused."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that gave the tasks hears it, too
     resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     while True:
         try:
