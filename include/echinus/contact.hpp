@@ -31,8 +31,9 @@ struct Contact {
                    ///< contact
     std::int32_t face = kUnknownFace; ///< the face of the mesh that contains `point`, if the map knows it
     bool inside = false;
-    /// False where the mesh is open and `inside` was decided by the generalised winding number
-    /// (exact_map.hpp). Always true with a distance map, which does not judge its answers.
+    /// False where the mesh is open and the generalised winding number is near a half, so that `inside`
+    /// depends on how one would close the holes (kCertainMargin in exact_map.hpp). Always true with a
+    /// distance map, which does not judge its answers.
     bool certain = true;
     Feature feature = Feature::Unknown; ///< the part of the face that is nearest
 

@@ -55,6 +55,22 @@ struct TreeNode {
 };
 static_assert(sizeof(TreeNode) == 128);
 
+/// The faces below each child of the TreeNode of the same number, as seen from afar: moments of their area
+/// vectors about a centre, for the winding number of an open surface. In lattice steps, divided by 4 pi. All
+/// 0 but the centre for a child that does not exist. src/exact_map/winding_nodes.hpp explains them.
+struct WindingNode {
+    static constexpr std::size_t kWidth = TreeNode::kWidth;
+
+    double centre[3][kWidth];
+    double area[3][kWidth];    ///< sum of the area vectors
+    double first[6][kWidth];   ///< coefficients of x^2, y^2, z^2, xy, xz, yz
+    double second[7][kWidth];  ///< of x (x^2 - 3 z^2), y (y^2 - 3 z^2), ... see winding_nodes.cpp
+    double radius[kWidth];     ///< no corner is farther from the centre
+    double spread[kWidth];     ///< integral of the squared distance from the centre
+    double total_area[kWidth]; ///< sum of the areas
+};
+static_assert(sizeof(WindingNode) == 22 * 8 * sizeof(double));
+
 /// An edge of the surface's border: `multiplicity` more faces run from a to b than from b to a.
 struct BorderEdge {
     std::uint32_t a, b; ///< vertices
@@ -99,6 +115,8 @@ struct ExactMapView {
     IndexArray face_numbers;            ///< [face_count] each face's number in the mesh
     std::span<const TreeNode> nodes;    ///< the first is the root
     std::span<const BorderEdge> border; ///< empty when the surface is closed
+    /// [nodes.size()], or empty when the surface is closed. Not in map files, as they follow from the faces.
+    std::span<const WindingNode> winding_nodes;
 
     std::size_t cell_count() const { return std::size_t{8} * divisions * divisions; }
     std::size_t face_count() const { return face_numbers.size(); }
@@ -107,7 +125,7 @@ struct ExactMapView {
         return band_offsets.size_bytes() + outer_limits.size_bytes() + bands.size_bytes() +
                winding_below.size_bytes() + references.size_bytes() + reference_parts.size_bytes() +
                vertices.size_bytes() + corners.size_bytes() + face_numbers.size_bytes() + nodes.size_bytes() +
-               border.size_bytes();
+               border.size_bytes() + winding_nodes.size_bytes();
     }
 };
 

@@ -13,7 +13,10 @@ namespace {
 Vec3d nudge_from_ray(const LatticePoint& d) {
     constexpr double kHair =
         0x1p-22; // lattice steps: less than what parts lattice points from rays, more than rounding
-    const bool along_x = d.x != 0 && d.y == 0 && d.z == 0;
+    // At the origin, the tip of all cone triangles, only the direction matters: it has to pass by their
+    // sides.
+    if (d == LatticePoint{}) return {0x1p-10, 0x1p-31, 0x1p-52};
+    const bool along_x = d.y == 0 && d.z == 0;
     return along_x ? Vec3d{0, kHair, 0} : Vec3d{kHair, 0, 0};
 }
 

@@ -146,7 +146,7 @@ TEST(ScaledCollider, PassesOnTheFaceTheFeatureAndTheMarkOfCertainty) {
     const Collider collider{.map = map, .pose = kPose, .scale = {2, 2, 2}};
     test::Random random(4);
     int uncertain = 0;
-    for (int i = 0; i < 500; ++i) {
+    for (int i = 0; i < 3000; ++i) {
         const Vec3f point = random_point(random, collider.scale);
         const Vec3f local(kPose.to_local(Vec3d(point)) * 0.5);
         const Contact expected = contact(map, local, 0.2F);

@@ -98,8 +98,9 @@ TEST_F(QueryCommand, MarksWhatIsNotCertain) {
     expect_success({"build", "open.obj", "--allow-open", "-o", "open.ech"});
     std::string points;
     for (const char* x : {"-0.95", "-0.5", "0", "0.5", "0.95"})
-        for (const char* y : {"-1.45", "0", "1.45"})
-            for (const char* z : {"-1.95", "0", "1.95"}) points += std::string(x) + ',' + y + ',' + z + '\n';
+        for (const char* y : {"-1.45", "-0.7", "0", "0.7", "1.45"})
+            for (const char* z : {"-1.95", "-0.9", "0", "0.9", "1.95"})
+                points += std::string(x) + ',' + y + ',' + z + '\n';
     std::istringstream lines(expect_success({"query", "open.ech", "-", "-o", "-"}, points));
     std::string line;
     std::getline(lines, line);

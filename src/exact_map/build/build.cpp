@@ -7,6 +7,7 @@
 #include "exact_map/build/index_storage.hpp"
 #include "exact_map/build/resolution.hpp"
 #include "exact_map/layout.hpp"
+#include "exact_map/winding_nodes.hpp"
 #include "geometry/parallel.hpp"
 #include "mesh/is_closed.hpp"
 #include "mesh/mesh_hash.hpp"
@@ -71,11 +72,24 @@ struct OwnedArrays {
     IndexStorage face_numbers;
     std::vector<TreeNode> nodes;
     std::vector<BorderEdge> border;
+    std::vector<WindingNode> winding_nodes;
 };
+
+/// All arrays except the bands.
+ExactMapView surface_of(const OwnedArrays& arrays) {
+    ExactMapView view;
+    view.vertices = std::span(arrays.vertices).subspan(1);
+    view.corners = arrays.corners.view();
+    view.face_numbers = arrays.face_numbers.view();
+    view.nodes = arrays.nodes;
+    view.border = arrays.border;
+    view.winding_nodes = arrays.winding_nodes;
+    return view;
+}
 
 ExactMapView view_of(const OwnedArrays& arrays, const LatticeMesh& lattice, std::uint32_t divisions,
                      InsideRule rule) {
-    ExactMapView view;
+    ExactMapView view = surface_of(arrays);
     view.centre = lattice.centre;
     view.radius = lattice.radius;
     view.divisions = divisions;
@@ -86,23 +100,7 @@ ExactMapView view_of(const OwnedArrays& arrays, const LatticeMesh& lattice, std:
     view.winding_below = arrays.bands.winding_below;
     view.references = arrays.bands.references.view();
     view.reference_parts = arrays.bands.reference_parts;
-    view.vertices = std::span(arrays.vertices).subspan(1);
-    view.corners = arrays.corners.view();
-    view.face_numbers = arrays.face_numbers.view();
-    view.nodes = arrays.nodes;
-    view.border = arrays.border;
     return view;
-}
-
-/// All of ExactMapView::byte_count() but what the bands take.
-std::size_t byte_count_of_surface(const OwnedArrays& arrays) {
-    ExactMapView view;
-    view.vertices = std::span(arrays.vertices).subspan(1);
-    view.corners = arrays.corners.view();
-    view.face_numbers = arrays.face_numbers.view();
-    view.nodes = arrays.nodes;
-    view.border = arrays.border;
-    return view.byte_count();
 }
 
 ExactMapStatistics statistics_of(std::size_t face_count, std::size_t dropped_faces, const Bands& bands) {
@@ -228,6 +226,8 @@ void MapMaker::set_surface(std::span<const Vec3f> vertices) {
     arrays_->vertices.reserve(1 + lattice_.vertices.size());
     arrays_->vertices.emplace_back(); // so that vectors can read a number before the first
     for (const LatticePoint& vertex : lattice_.vertices) arrays_->vertices.emplace_back(vertex);
+    arrays_->winding_nodes.clear();
+    if (!arrays_->border.empty()) arrays_->winding_nodes = find_winding_nodes(surface_of(*arrays_));
 }
 
 /// @returns  false when the bands alone exceed the limit; those of the arrays stay as they are then
@@ -253,13 +253,13 @@ std::uint32_t MapMaker::set_bands() {
     }
     const std::size_t limit = default_byte_limit(faces_.size(), lattice_.vertices.size());
     const std::uint32_t divisions = default_divisions(faces_.size(), open);
-    if (find_bands(divisions, limit - byte_count_of_surface(*arrays_))) return divisions;
+    if (find_bands(divisions, limit - surface_of(*arrays_).byte_count())) return divisions;
     return set_bands_within({limit / 4 * 3, limit}, divisions - 1); // the last quarter is not worth the time
 }
 
 /// @throws Error InvalidOptions when there are no divisions that few bytes are enough for
 std::uint32_t MapMaker::set_bands_within(const ByteRange& bytes, std::uint32_t most) {
-    const std::size_t for_surface = byte_count_of_surface(*arrays_);
+    const std::size_t for_surface = surface_of(*arrays_).byte_count();
     const auto for_bands = [&](std::size_t count) { return count - std::min(count, for_surface); };
     const ByteRange range{for_bands(bytes.enough), for_bands(bytes.limit)};
     const auto divisions =
@@ -310,7 +310,11 @@ const ExactMap& ExactMapBuilder::rebuild(std::span<const Vec3f> vertices) {
 
 ExactMap::ExactMap(const ExactMapView& view, const ExactMapStatistics& statistics, std::uint64_t source_hash,
                    std::shared_ptr<const void> storage)
-    : view_(view), statistics_(statistics), source_hash_(source_hash), storage_(std::move(storage)) {}
+    : view_(view), statistics_(statistics), source_hash_(source_hash), storage_(std::move(storage)) {
+    if (view_.border.empty() || !view_.winding_nodes.empty()) return;
+    winding_nodes_ = std::make_shared<const std::vector<WindingNode>>(find_winding_nodes(view_));
+    view_.winding_nodes = *winding_nodes_;
+}
 
 ExactMap ExactMap::build(const TriangleMesh& mesh, const ExactMapOptions& options) {
     require_sound(options);

@@ -21,6 +21,8 @@ double distance_to_segment(const Vec3d& place, const Vec3d& a, const Vec3d& b) {
 
 /// How often gaps may be halved so that the distances looked at stay below 3 10^8, some seconds on one core.
 int affordable_halvings(std::size_t edge_count, std::size_t cell_count, int most) {
+    constexpr std::size_t kManyEdges = 200; // beside so many, little is found
+    if (edge_count > kManyEdges) return -1;
     constexpr double kMostDistances = 3e8;
     constexpr double kGapsPerCell = 3;
     const double distances_per_piece =
@@ -72,15 +74,16 @@ double GapStates::largest_change(const Vec3d& place, double reach) const {
 }
 
 std::int16_t GapStates::winding_in(const Region& region, int crossings) const {
+    constexpr double kAllowed = 0.5 - kCertainMargin;
     if (max_depth_ < 0) return ExactMapView::kUncertain;
     const double change = largest_change(region.place(), region.reach);
-    if (change >= 0.5) return ExactMapView::kUncertain;
+    if (change >= kAllowed) return ExactMapView::kUncertain;
     const double winding = crossings + border_part(border_, vertices_, region.direction, region.share);
     const double whole = std::round(winding);
     constexpr double kRounding = 1e-6;
     constexpr double kMostStored = 32'000;
     const bool certain =
-        std::fabs(winding - whole) + change < 0.5 - kRounding && std::fabs(whole) < kMostStored;
+        std::fabs(winding - whole) + change < kAllowed - kRounding && std::fabs(whole) < kMostStored;
     return certain ? static_cast<std::int16_t>(whole) : ExactMapView::kUncertain;
 }
 

@@ -17,14 +17,14 @@ struct GapPiece {
     std::int16_t winding; ///< or ExactMapView::kUncertain
 };
 
-/// Finds where the generalised winding number of an open surface stays clear of halves.
+/// Finds where the generalised winding number of an open surface stays clear of halves, by kCertainMargin.
 ///
 /// Between crossings it is a smooth function whose slope the border bounds, edge by edge, by length over
 /// 4 pi distance^2 (the law of Biot and Savart: a solid angle is the potential of a current in its border).
 /// So from its value at one place its range in a convex region follows, if no border edge comes near.
 ///
-/// That takes time proportional to border edges times pieces. Work beyond some seconds is skipped, and its
-/// gaps stay uncertain, as nearly all of a triangle soup is anyway.
+/// That takes time proportional to border edges times pieces. Work beyond some seconds is skipped. Where the
+/// border is long, as that of a triangle soup, next to nothing would be found: there all gaps stay uncertain.
 class GapStates {
   public:
     static constexpr int kMostHalvings = 5;

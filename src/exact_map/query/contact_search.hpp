@@ -14,10 +14,14 @@ namespace echinus {
 /// Two snapped positions differ from the true ones by at most sqrt(3) lattice steps together.
 inline constexpr double kSnapping = 2;
 
+inline bool is_nan(const Vec3f& v) {
+    return std::isnan(v.x) || std::isnan(v.y) || std::isnan(v.z);
+}
+
 /// The signed distance of a point that is not finite.
 inline float signed_distance_without_contact(const Vec3f& point_local) {
-    const bool is_nan = std::isnan(point_local.x) || std::isnan(point_local.y) || std::isnan(point_local.z);
-    return is_nan ? std::numeric_limits<float>::quiet_NaN() : std::numeric_limits<float>::infinity();
+    return is_nan(point_local) ? std::numeric_limits<float>::quiet_NaN()
+                               : std::numeric_limits<float>::infinity();
 }
 
 /// Contacts in a stretched world. The stretch is factored into one number, the unit of lengths, and the

@@ -4,6 +4,7 @@
 #include "exact_map/query/contact_search.hpp"
 #include "exact_map/query/sides.hpp"
 #include "exact_map/query/stretched_contact.hpp"
+#include "exact_map/query/winding.hpp"
 #include "geometry/parallel.hpp"
 #include "simd/dispatch.hpp"
 
@@ -20,8 +21,8 @@ bool contains(const ExactMapView& map, Vec3f point_local) noexcept {
 }
 
 Containment classify(const ExactMapView& map, Vec3f point_local) noexcept {
-    const Side side = side_at(map, frame_of(map), point_local);
-    return {(side & kInsideBit) != 0, (side & kUncertainBit) == 0};
+    const Winding winding = winding_at(map, frame_of(map), point_local);
+    return {is_inside(map.rule, winding.number), winding.certain, winding.computed};
 }
 
 Contact contact(const ExactMapView& map, Vec3f point_local, float margin) noexcept {
@@ -74,6 +75,21 @@ ContactSearch search_everywhere(const ExactMapView& map) {
 }
 
 } // namespace
+
+float winding_number(const ExactMapView& map, Vec3f point_local, float tolerance) noexcept {
+    if (is_nan(point_local)) return std::numeric_limits<float>::quiet_NaN();
+    const double wanted = tolerance > 0 ? double{tolerance} : 0;
+    return static_cast<float>(winding_number_at(map, frame_of(map), point_local, wanted));
+}
+
+void winding_number_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
+                          std::span<float> windings, float tolerance, unsigned thread_count) noexcept {
+    assert(points_local.size() == windings.size());
+    for_each_piece(windings.size(), thread_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            windings[i] = winding_number(map, points_local[i], tolerance);
+    });
+}
 
 float signed_distance(const ExactMapView& map, Vec3f point_local, Vec3f* gradient) noexcept {
     const Contact contact = search_everywhere(map)(point_local);

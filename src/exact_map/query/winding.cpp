@@ -3,6 +3,9 @@
 #include "exact_map/border_part.hpp"
 #include "exact_map/layout.hpp"
 #include "exact_map/query/ray_crossing.hpp"
+#include "exact_map/query/winding_tree.hpp"
+
+#include <echinus/exact_map.hpp>
 
 #include <algorithm>
 #include <array>
@@ -66,23 +69,45 @@ int crossings_in_band(const ExactMapView& map, RaySide side, std::uint32_t band,
                                        : with_corners(map.references.wide.data());
 }
 
-/// The generalised winding number of an open surface, rounded. @param innermost_band  first that lies beyond
-/// p
-Winding generalised_winding(const ExactMapView& map, std::uint32_t innermost_band, const BandRange& bands,
-                            std::uint32_t part, const LatticePoint& p) {
-    int crossings = 0;
-    for (std::uint32_t band = innermost_band; band < bands.last; ++band)
-        crossings += crossings_in_band(map, RaySide::Beyond, band, part, p);
-    return {std::llrint(crossings + border_part(map.border, map.vertices, p)), false};
+/// Is the sum over the border's edges dearer than that by the tree?
+bool is_for_tree(const ExactMapView& map) {
+    return map.border.size() > kFewBorderEdges;
 }
 
-/// The winding number of a place beyond the lattice: 0 for a closed surface; an open one's only fades with
-/// distance.
-Winding winding_beyond_lattice(const ExactMapView& map, const Vec3d& place) {
-    if (map.border.empty() || !is_finite(place)) return {};
+/// Where any error that changes neither side nor certainty is tolerated.
+constexpr double kAnyError = 1;
+
+/// The generalised winding number of an open surface: crossings beyond the place, and the border's part.
+double generalised_winding(const ExactMapView& map, const LatticePoint& p, double tolerance) {
+    if (is_for_tree(map))
+        if (const auto winding = decided_winding_by_tree(map, Vec3d(p), &p, tolerance)) return *winding;
+    const auto [cell, part] = OctahedralCells(map.divisions).locate(p);
+    const std::int64_t t = band_unit_of(l1_norm(p));
+    const BandRange bands = bands_of_cell(map, cell);
+    int crossings = 0;
+    for (std::uint32_t band = bands.first; band < bands.last; ++band)
+        if (t < map.bands[band].upper) crossings += crossings_in_band(map, RaySide::Beyond, band, part, p);
+    return crossings + border_part(map.border, map.vertices, p);
+}
+
+/// That of a place beyond the lattice, where it fades with the distance. @pre the place is finite
+double winding_beyond_lattice(const ExactMapView& map, const Vec3d& place, double tolerance) {
+    if (is_for_tree(map))
+        if (const auto winding = decided_winding_by_tree(map, place, nullptr, tolerance)) return *winding;
     const double largest = std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)});
     const double shrink = static_cast<double>(kLatticeExtent) / largest;
-    return {std::llrint(border_part(map.border, map.vertices, rounded(place * shrink), 1 / shrink)), false};
+    return border_part(map.border, map.vertices, rounded(place * shrink), 1 / shrink);
+}
+
+Winding winding_of(double generalised) {
+    const std::int64_t number = std::llrint(generalised);
+    return {number, std::fabs(generalised - static_cast<double>(number)) <= 0.5 - kCertainMargin, true};
+}
+
+/// Is this place, in lattice steps, rounded into the lattice?
+bool is_on_lattice(const Vec3d& place) {
+    constexpr double kLimit = static_cast<double>(kLatticeExtent) + 0.5;
+    return (std::fabs(place.x) <= kLimit) & (std::fabs(place.y) <= kLimit) & (std::fabs(place.z) <= kLimit);
 }
 
 } // namespace
@@ -94,10 +119,10 @@ Winding winding_at(const ExactMapView& map, const LatticePoint& p) noexcept {
     const BandRange bands = bands_of_cell(map, cell);
     std::uint32_t band = bands.first;
     while (band < bands.last && t >= map.bands[band].upper) ++band;
-    if (band == bands.last) return generalised_winding(map, band, bands, part, p);
+    if (band == bands.last) return winding_of(generalised_winding(map, p, kAnyError));
     const bool in_gap = t < map.bands[band].lower;
     const int winding = in_gap ? map.winding_below[band] : winding_beyond(map, band, bands);
-    if (winding == ExactMapView::kUncertain) return generalised_winding(map, band, bands, part, p);
+    if (winding == ExactMapView::kUncertain) return winding_of(generalised_winding(map, p, kAnyError));
     if (in_gap) return {winding};
     if (winding == ExactMapView::kSplit)
         return {map.winding_below[band] - crossings_in_band(map, RaySide::Before, band, part, p)};
@@ -105,11 +130,21 @@ Winding winding_at(const ExactMapView& map, const LatticePoint& p) noexcept {
 }
 
 Winding winding_at(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local) noexcept {
-    constexpr double kLimit = static_cast<double>(kLatticeExtent) + 0.5; // what is rounded into the lattice
     const Vec3d place = frame.to_lattice(point_local);
-    const bool on_lattice =
-        (std::fabs(place.x) <= kLimit) & (std::fabs(place.y) <= kLimit) & (std::fabs(place.z) <= kLimit);
-    return on_lattice ? winding_at(map, rounded(place)) : winding_beyond_lattice(map, place);
+    if (is_on_lattice(place)) return winding_at(map, rounded(place));
+    if (map.border.empty() || !is_finite(place)) return {};
+    return winding_of(winding_beyond_lattice(map, place, kAnyError));
+}
+
+double winding_number_at(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local,
+                         double tolerance) noexcept {
+    const Vec3d place = frame.to_lattice(point_local);
+    if (!is_finite(place)) return 0;
+    const bool on_lattice = is_on_lattice(place);
+    if (map.border.empty())
+        return on_lattice ? static_cast<double>(winding_at(map, rounded(place)).number) : 0;
+    return on_lattice ? generalised_winding(map, rounded(place), tolerance)
+                      : winding_beyond_lattice(map, place, tolerance);
 }
 
 } // namespace echinus

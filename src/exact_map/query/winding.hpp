@@ -11,7 +11,8 @@ namespace echinus {
 /// How often the surface winds around a place.
 struct Winding {
     std::int64_t number = 0; ///< of an open surface the generalised winding number, rounded
-    bool certain = true;     ///< false where an open surface's had to be computed
+    bool certain = true;     ///< which is at least kCertainMargin away from a half
+    bool computed = false;   ///< for this place, as an open surface's mostly has to be
 };
 
 /// The winding number around a particle. This scalar code is the specification of inside and outside.
@@ -19,5 +20,10 @@ Winding winding_at(const ExactMapView& map, const LatticeFrame& frame, const Vec
 
 /// The same for a place of the lattice, or a few steps beyond it
 Winding winding_at(const ExactMapView& map, const LatticePoint& p) noexcept;
+
+/// The generalised winding number around a particle, not rounded.
+/// @param tolerance  it may be off by this much, but not to the other side of a half
+double winding_number_at(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local,
+                         double tolerance) noexcept;
 
 } // namespace echinus

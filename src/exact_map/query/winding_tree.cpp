@@ -1,0 +1,387 @@
+#include "exact_map/query/winding_tree.hpp"
+
+#include "directions/face_cone.hpp"
+#include "exact_map/layout.hpp"
+
+#include <echinus/exact_map.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "exact_map/query/winding_tree.cpp"
+#include <hwy/foreach_target.h>
+
+// After foreach_target.h, which includes this file once for each instruction set.
+#include "simd/dispatch.hpp"
+
+#include <hwy/highway.h>
+
+#ifndef ECHINUS_WINDING_SUM
+#define ECHINUS_WINDING_SUM
+namespace echinus {
+namespace {
+
+/// A winding number that lies within an error of `value`, one that is small enough or not.
+struct WindingSum {
+    double value;
+    bool decided;
+};
+
+/// How far a winding number is from the next half, and from the next number that is kCertainMargin away from
+/// one: within that distance neither the side nor its certainty changes.
+double distance_from_turning_point(double winding) {
+    const double from_half = std::fabs(winding - std::floor(winding) - 0.5);
+    return std::min(from_half, std::fabs(from_half - kCertainMargin));
+}
+
+} // namespace
+} // namespace echinus
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace echinus::HWY_NAMESPACE {
+
+namespace {
+
+constexpr std::size_t kWidth = TreeNode::kWidth;
+using Row = std::array<double, kWidth>;
+
+/// An angle as a complex number, so that a sum of angles is a product.
+struct Angle {
+    double re = 1, im = 0;
+    double turns = 0; ///< to be added
+
+    /// Adds the argument of a complex number. @pre it is not a negative real number
+    void add(double other_re, double other_im) {
+        const double product_re = re * other_re - im * other_im;
+        const double product_im = re * other_im + im * other_re;
+        if (im >= 0 && other_im >= 0 && product_im < 0) turns += 1;
+        if (im < 0 && other_im < 0 && product_im >= 0) turns -= 1;
+        re = product_re;
+        im = product_im;
+    }
+
+    /// Keeps the numbers in range.
+    void normalise() {
+        const double scale = 1 / (std::fabs(re) + std::fabs(im));
+        re *= scale;
+        im *= scale;
+    }
+
+    double in_turns() const { return turns + argument() / (2 * std::numbers::pi); }
+
+  private:
+    /// Our own atan2, since those of C libraries differ in the last bit. The angle is halved until a series
+    /// is short: tan(x / 2) = y / (x + length).
+    double argument() const {
+        double x = std::fabs(re), y = std::fabs(im);
+        for (int halvings = 0; halvings < 3; ++halvings) x += std::sqrt(x * x + y * y);
+        const double t = y / x, s = t * t; // at most tan(pi / 16)
+        double series = 0;
+        for (int power = 21; power > 0; power -= 2) series = 1.0 / power - s * series;
+        const double acute = 8 * t * series;
+        const double angle = re < 0 ? std::numbers::pi - acute : acute;
+        return im < 0 ? -angle : angle;
+    }
+};
+
+/// Sums one place's winding number: groups of faces as seen from afar, and then the parts of the groups whose
+/// bounds are the worst instead, until the error is small enough.
+class TreeSum {
+  public:
+    /// @param kept_error  groups of smaller error are not parted
+    TreeSum(const ExactMapView& map, const Vec3d& place, const LatticePoint* on_lattice, double kept_error)
+        : map_(map), place_(place), on_lattice_(on_lattice),
+          rounding_(rounding_at(place, on_lattice != nullptr)), kept_error_(kept_error) {}
+
+    WindingSum operator()(double tolerance) {
+        constexpr double kFarthestFromTurningPoint = 0.5 - kCertainMargin;
+        double needed = std::min(tolerance, kFarthestFromTurningPoint);
+        add(0);
+        while (true) {
+            if (error() < needed) {
+                const double sum = value();
+                needed = std::min(tolerance, distance_from_turning_point(sum));
+                if (error() < needed) return {sum, true};
+            }
+            if (!part_the_worst()) return {value(), false};
+        }
+    }
+
+  private:
+    double value() const { return far_value_ + angle_.in_turns(); }
+    /// With more than all sums are rounded.
+    double error() const {
+        constexpr double kRounding = 0x1p-36;
+        return far_error_ + angle_error_ + magnitude_ * kRounding + 0x1p-40;
+    }
+
+    /// Faces seen from afar.
+    struct Group {
+        double value, error;
+        std::uint32_t child; ///< as in TreeNode
+    };
+
+    /// Groups by their errors, up to 2^-n in bin n.
+    class Bins {
+      public:
+        /// Returns false where the bin is full.
+        bool add(const Group& group) {
+            const int halvings = -std::ilogb(group.error) - 1;
+            const auto bin = static_cast<std::size_t>(std::clamp(halvings, 0, static_cast<int>(kCount) - 1));
+            if (sizes_[bin] == kCapacity) return false;
+            groups_[bin][sizes_[bin]++] = group;
+            worst_ = std::min(worst_, bin);
+            return true;
+        }
+        std::optional<Group> take_worst() {
+            while (worst_ < kCount && sizes_[worst_] == 0) ++worst_;
+            if (worst_ == kCount) return std::nullopt;
+            return groups_[worst_][--sizes_[worst_]];
+        }
+
+      private:
+        static constexpr std::size_t kCount = 40, kCapacity = 24;
+
+        std::array<std::uint8_t, kCount> sizes_{};
+        std::size_t worst_ = kCount;
+        std::array<std::array<Group, kCapacity>, kCount> groups_;
+    };
+
+    /// Returns false where no group may be parted.
+    bool part_the_worst() {
+        const std::optional<Group> worst = bins_.take_worst();
+        if (!worst) return false;
+        far_value_ -= worst->value;
+        far_error_ -= worst->error;
+        add(worst->child);
+        return true;
+    }
+
+    /// Adds a child of a node, whose own children are seen from afar or, where they are too near for that,
+    /// added in the same way.
+    void add(std::uint32_t child) {
+        constexpr std::size_t kMaxDepth = 12; // as in walk_near_leaves()
+        std::array<std::uint32_t, kMaxDepth * kWidth> waiting;
+        std::size_t count = 0;
+        waiting[count++] = child;
+        while (count > 0) {
+            const std::uint32_t next = waiting[--count];
+            if ((next & TreeNode::kLeaf) != 0) {
+                add_leaf((next - TreeNode::kLeaf) * static_cast<std::uint32_t>(kWidth));
+                continue;
+            }
+            const FarChildren children = seen_from(place_, map_.winding_nodes[next]);
+            for (std::size_t k = 0; k < kWidth; ++k) {
+                const std::uint32_t part = map_.nodes[next].children[k];
+                if (!(children.errors[k] < kTooFarOff) ||
+                    !keep({children.values[k], children.errors[k], part}))
+                    waiting[count++] = part;
+                else
+                    magnitude_ += children.areas[k] + children.errors[k];
+            }
+        }
+    }
+
+    /// Adds a group unless it should be parted, because there is no room to remember it.
+    bool keep(const Group& group) {
+        if (group.error > kept_error_ && !bins_.add(group)) return false;
+        far_value_ += group.value;
+        far_error_ += group.error;
+        return true;
+    }
+
+    /// The children of a node as seen from a place.
+    struct FarChildren {
+        Row values, areas;
+        Row errors; ///< infinite where a child is too near
+    };
+
+    /// Loops over arrays of their own, for the compiler to vectorise.
+    static FarChildren seen_from(const Vec3d& place, const WindingNode& node) {
+        constexpr double kTooNear = 0.9; // of a radius to the distance
+        FarChildren result;
+        for (std::size_t k = 0; k < kWidth; ++k) {
+            const double x = node.centre[0][k] - place.x, y = node.centre[1][k] - place.y,
+                         z = node.centre[2][k] - place.z;
+            const double xx = x * x, yy = y * y, zz = z * z;
+            const double inverse_sq = 1 / (xx + yy + zz), inverse = std::sqrt(inverse_sq);
+            const double along = node.area[0][k] * x + node.area[1][k] * y + node.area[2][k] * z;
+            const double quadratic = node.first[0][k] * xx + node.first[1][k] * yy + node.first[2][k] * zz +
+                                     node.first[3][k] * (x * y) + node.first[4][k] * (x * z) +
+                                     node.first[5][k] * (y * z);
+            const double cubic = x * (node.second[0][k] * (xx - 3 * zz) + node.second[3][k] * (yy - zz)) +
+                                 y * (node.second[1][k] * (yy - 3 * zz) + node.second[4][k] * (xx - zz)) +
+                                 z * (node.second[2][k] * (zz - 3 * xx) + node.second[5][k] * (yy - xx)) +
+                                 node.second[6][k] * (x * y * z);
+            const double value =
+                inverse_sq * inverse * (along + inverse_sq * (quadratic + inverse_sq * cubic));
+            const double t = node.radius[k] * inverse, rest = 1 - t;
+            const double error = node.spread[k] * inverse_sq * inverse_sq * (t * (4 - 3 * t) / (rest * rest));
+            result.values[k] = value;
+            result.errors[k] = t < kTooNear ? error : std::numeric_limits<double>::infinity();
+            result.areas[k] = node.total_area[k] * inverse_sq;
+        }
+        return result;
+    }
+
+    struct Corner {
+        Row x, y, z;
+    };
+
+    /// The faces of a leaf as complex numbers whose arguments are half their solid angles: van Oosterom and
+    /// Strackee 1983. Divided by the product of the distances, so that their lengths are at most 4, they are
+    /// off by less than 2^-46 for a place of the lattice: coordinates are then whole numbers, and only
+    /// products and roots are rounded.
+    struct Leaf {
+        Row re, im;
+        Row doubts; ///< how far the arguments may be off
+    };
+
+    Leaf angles_of(std::uint32_t first, std::uint32_t count, const Vec3d& nudge) const {
+        std::array<Corner, 3> corners;
+        for (std::uint32_t lane = 0; lane < kWidth; ++lane) {
+            const std::size_t face = first + std::min(lane, count - 1);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vec3<std::int32_t>& v = map_.vertices[map_.corners[3 * face + k]];
+                corners[k].x[lane] = v.x - place_.x - nudge.x;
+                corners[k].y[lane] = v.y - place_.y - nudge.y;
+                corners[k].z[lane] = v.z - place_.z - nudge.z;
+            }
+        }
+        Leaf leaf;
+        const double rounding = rounding_;
+        for (std::size_t k = 0; k < kWidth; ++k) {
+            const double ax = corners[0].x[k], ay = corners[0].y[k], az = corners[0].z[k];
+            const double bx = corners[1].x[k], by = corners[1].y[k], bz = corners[1].z[k];
+            const double cx = corners[2].x[k], cy = corners[2].y[k], cz = corners[2].z[k];
+            const double la = std::sqrt(ax * ax + ay * ay + az * az);
+            const double lb = std::sqrt(bx * bx + by * by + bz * bz);
+            const double lc = std::sqrt(cx * cx + cy * cy + cz * cz);
+            const double volume =
+                ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx);
+            const double ab = ax * bx + ay * by + az * bz, bc = bx * cx + by * cy + bz * cz,
+                         ca = cx * ax + cy * ay + cz * az;
+            const double inverse = 1 / (la * lb * lc);
+            leaf.re[k] = 1 + (ab * lc + bc * la + ca * lb) * inverse;
+            leaf.im[k] = volume * inverse;
+            leaf.doubts[k] = rounding / std::sqrt(leaf.re[k] * leaf.re[k] + leaf.im[k] * leaf.im[k]);
+        }
+        return leaf;
+    }
+
+    void add_leaf(std::uint32_t first) {
+        const std::uint32_t count = std::min(static_cast<std::uint32_t>(kWidth),
+                                             static_cast<std::uint32_t>(map_.face_count()) - first);
+        const Leaf leaf = angles_of(first, count, {});
+        if (is_certain(leaf)) [[likely]]
+            add_angles(leaf, first, count);
+        else
+            add_leaf_from_beside(first, count);
+    }
+
+    /// A place on an edge stands for itself moved by (e, e^2, e^3). Here e is a hair's breadth: less than
+    /// what parts lattice points from edges, more than rounding.
+    void add_leaf_from_beside(std::uint32_t first, std::uint32_t count) {
+        constexpr double kHair = 0x1p-22;
+        const Leaf leaf = angles_of(first, count, {kHair, kHair * 0x1p-9, 0});
+        if (is_certain(leaf))
+            add_angles(leaf, first, count);
+        else
+            angle_error_ += 1; // nothing is known
+    }
+
+    /// Of a leaf's numbers. Coordinates from a place that is not of the lattice are rounded by a share of its
+    /// own, which matters where it is near to the surface. It lies beyond the lattice, hence beyond the
+    /// sphere that holds the surface.
+    static double rounding_at(const Vec3d& place, bool on_lattice) {
+        constexpr double kOnLattice = 0x1p-46;
+        if (on_lattice) return kOnLattice;
+        const double distance = length(place);
+        const double clearance = distance - static_cast<double>(kLatticeExtent + 2);
+        return kOnLattice * (1 + distance / std::max(clearance, 0.25));
+    }
+
+    /// Are the arguments of all numbers known? Not where the place is on an edge.
+    static bool is_certain(const Leaf& leaf) {
+        constexpr double kMostDoubt = 1.0 / 64;
+        bool certain = true;
+        for (std::size_t k = 0; k < kWidth; ++k) certain &= leaf.doubts[k] < kMostDoubt;
+        return certain;
+    }
+
+    void add_angles(const Leaf& leaf, std::uint32_t first, std::uint32_t count) {
+        for (std::uint32_t k = 0; k < count; ++k) {
+            angle_error_ += leaf.doubts[k];
+            if (leaf.re[k] < 0 && std::fabs(leaf.im[k]) <= rounding_) [[unlikely]]
+                angle_.turns += is_behind(first + k) ? 0.5 : -0.5; // on the face: half the sphere
+            else
+                angle_.add(leaf.re[k], leaf.im[k]);
+        }
+        angle_.normalise();
+    }
+
+    /// Is the place behind a face, on the side of its solid? Decided exactly; in its plane, by the
+    /// perturbation.
+    bool is_behind(std::uint32_t face) const {
+        const auto [a, b, c] = face_corners(map_, face);
+        const LatticePoint p = on_lattice_ != nullptr ? *on_lattice_ : rounded(place_);
+        const LatticePoint normal = cross(b - a, c - a);
+        const std::int64_t height = dot(normal, a - p);
+        return height != 0 ? height > 0 : sign_of_perturbation(normal) < 0;
+    }
+
+    const ExactMapView& map_;
+    Vec3d place_;
+    const LatticePoint* on_lattice_;
+
+    static constexpr double kTooFarOff = 0.5; // an error that is not worth remembering
+
+    double rounding_;
+    double kept_error_;
+    double far_value_ = 0, far_error_ = 0;
+    double magnitude_ = 0; ///< of all terms of the two together, at least
+    Bins bins_;
+    Angle angle_; ///< of the faces nearby
+    double angle_error_ = 0;
+};
+
+} // namespace
+
+WindingSum sum_by_tree(const ExactMapView& map, const Vec3d& place, const LatticePoint* on_lattice,
+                       double kept_error, double tolerance) {
+    return TreeSum(map, place, on_lattice, kept_error)(tolerance);
+}
+
+} // namespace echinus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace echinus {
+
+namespace {
+
+HWY_EXPORT(sum_by_tree);
+
+} // namespace
+
+std::optional<double> decided_winding_by_tree(const ExactMapView& map, const Vec3d& place,
+                                              const LatticePoint* on_lattice, double tolerance) noexcept {
+    constexpr double kFinest = 1e-8; // what the rounding of double permits
+    constexpr double kLeastKept = 0x1p-36;
+    const double wanted = std::max(tolerance, kFinest);
+    for (double kept = std::min(0x1p-8, wanted * 0x1p-5);; kept = kept > kLeastKept ? kept * 0x1p-6 : 0) {
+        const WindingSum sum = ECHINUS_DISPATCH(sum_by_tree)(map, place, on_lattice, kept, wanted);
+        if (sum.decided) return sum.value;
+        if (kept == 0) return std::nullopt;
+    }
+}
+
+} // namespace echinus
+#endif

@@ -1,0 +1,206 @@
+#include "directions/face_cone.hpp"
+#include "exact_map/layout.hpp"
+#include "exact_map/query/winding_tree.hpp"
+#include "exact_map/winding_nodes.hpp"
+#include "rivals/compare/point_sets.hpp"
+#include "support/instruction_sets.hpp"
+#include "support/mesh_assembly.hpp"
+#include "support/soups.hpp"
+
+#include <echinus/exact_map.hpp>
+#include <echinus/map_file.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+using namespace echinus;
+
+namespace {
+
+using Real = long double;
+
+/// The sum over all faces of the snapped mesh, by van Oosterom and Strackee. A place on a face counts as
+/// moved by (e, e^2, e^3). In long double volumes around places of the lattice are exact.
+Real full_winding_number(const ExactMapView& map, const Vec3<Real>& place) {
+    Real sum = 0;
+    for (std::uint32_t face = 0; face < map.face_count(); ++face) {
+        const auto corners = face_corners(map, face);
+        const Vec3<Real> a = Vec3<Real>(corners[0]) - place, b = Vec3<Real>(corners[1]) - place,
+                         c = Vec3<Real>(corners[2]) - place;
+        const Real la = std::sqrt(dot(a, a)), lb = std::sqrt(dot(b, b)), lc = std::sqrt(dot(c, c));
+        const LatticePoint normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+        if (normal == LatticePoint{}) continue;
+        const Real volume = dot(a, cross(b, c));
+        const Real base = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+        const Real half = std::fabs(std::atan2(volume, base));
+        const bool is_behind = volume != 0 ? volume > 0 : sign_of_perturbation(normal) < 0;
+        sum += is_behind ? 2 * half : -2 * half;
+    }
+    return sum / (4 * std::numbers::pi_v<Real>);
+}
+
+/// The place that a query of a point is about: on the lattice where it may be.
+Vec3<Real> queried_place(const ExactMapView& map, const Vec3f& point) {
+    const Vec3d place = frame_of(map).to_lattice(point);
+    const auto is_within = [](double x) { return std::fabs(x) <= double{kLatticeExtent} + 0.5; };
+    if (is_within(place.x) && is_within(place.y) && is_within(place.z)) return Vec3<Real>(rounded(place));
+    return Vec3<Real>(place);
+}
+
+std::vector<Vec3f> points_around(const ExactMapView& map, const TriangleMesh& mesh) {
+    std::vector<Vec3f> points = comparison::uniform_points(mesh, 250);
+    for (const Vec3f& p : comparison::surface_points(mesh, 150)) points.push_back(p);
+    for (const Vec3f& p : comparison::surface_points(mesh, 50, 1e-4)) points.push_back(p);
+    test::Random random(9);
+    for (const float far : {1.1F, 2.0F, 30.0F, 1e6F})
+        for (int n = 0; n < 10; ++n)
+            points.push_back(map.centre + test::unit_vector(random) * (far * map.radius));
+    points.push_back(map.centre);
+    return points;
+}
+
+double distance_from_half(Real winding) {
+    return static_cast<double>(std::fabs(winding - std::floor(winding) - Real{0.5}));
+}
+
+} // namespace
+
+TEST(WindingTree, AgreesWithTheFullWindingNumberAtEveryPoint) {
+    for (const auto& [name, mesh] : test::soups()) {
+        const ExactMap map = ExactMap::build(mesh);
+        ASSERT_GT(map.view().border.size(), kFewBorderEdges) << name;
+        for (const Vec3f& p : points_around(map, mesh)) {
+            const Real full = full_winding_number(map, queried_place(map, p));
+            const Containment found = classify(map, p);
+            const double from_half = distance_from_half(full);
+            if (from_half > 1e-7) // what both sums are rounded
+                ASSERT_EQ(found.inside, std::llrint(full) != 0) << name << ", winding number " << full;
+            if (found.computed && std::fabs(from_half - kCertainMargin) > 1e-7)
+                ASSERT_EQ(found.certain, from_half > kCertainMargin) << name << ", winding number " << full;
+            if (!found.computed) ASSERT_GE(from_half, kCertainMargin - 1e-6) << name;
+        }
+    }
+}
+
+TEST(WindingTree, GivesTheWindingNumberToTheTolerance) {
+    for (const auto& [name, mesh] : test::soups()) {
+        const ExactMap map = ExactMap::build(mesh);
+        for (const Vec3f& p : points_around(map, mesh)) {
+            const auto full = static_cast<double>(full_winding_number(map, queried_place(map, p)));
+            const double rounding = 1e-7 * std::max(1.0, std::fabs(full)); // to float
+            for (const float tolerance : {0.3F, 1e-2F, 1e-4F, 0.0F}) {
+                const float found = winding_number(map, p, tolerance);
+                ASSERT_NEAR(found, full, std::max(double{tolerance}, 1e-8) + rounding) << name;
+                if (distance_from_half(full) > 1e-6)
+                    ASSERT_EQ(std::llrint(found), std::llrint(full)) << name << ", " << tolerance;
+            }
+        }
+    }
+}
+
+TEST(WindingTree, GivesTheSameBitsUnderEveryInstructionSet) {
+    for (const auto& [name, mesh] : test::soups()) {
+        const ExactMap map = ExactMap::build(mesh);
+        std::vector<Vec3f> points = points_around(map, mesh);
+        for (const Vec3f& vertex : mesh.vertices)
+            if (points.size() < 800) points.push_back(vertex);
+        std::vector<float> expected, found(points.size());
+        for (const Vec3f& p : points) expected.push_back(winding_number(map, p));
+        test::under_each_instruction_set([&, name = name](std::string_view instruction_set) {
+            for (const unsigned thread_count : {1U, 3U}) {
+                winding_number_batch(map, points, found, 1e-2F, thread_count);
+                EXPECT_EQ(std::memcmp(found.data(), expected.data(), found.size() * sizeof(float)), 0)
+                    << name << ", " << instruction_set;
+            }
+            std::vector<std::uint8_t> inside(points.size());
+            contains_batch(map, points, inside);
+            for (std::size_t i = 0; i < points.size(); ++i)
+                ASSERT_EQ(inside[i] != 0, contains(map, points[i])) << name << ", " << instruction_set;
+        });
+    }
+}
+
+TEST(WindingTree, TellsTheSideOfAPlaceOnAFaceAsAClosedSurfaceDoes) {
+    const TriangleMesh closed = make_box({2, 2, 2}, 16);
+    TriangleMesh open = closed;
+    std::erase_if(open.faces, [&](const Triangle& face) { // a hole in the middle of the top
+        const Vec3f middle = open.vertices[face[0]] + open.vertices[face[1]] + open.vertices[face[2]];
+        return middle.z > 2.99F && std::fabs(middle.x) < 1 && std::fabs(middle.y) < 1;
+    });
+    const ExactMap closed_map = ExactMap::build(closed), open_map = ExactMap::build(open);
+    ASSERT_GT(open_map.view().border.size(), kFewBorderEdges);
+    test::Random random(4);
+    for (int n = 0; n < 600; ++n) {
+        Vec3f p = test::in_cube(random, 0.9F);
+        (n % 3 == 0 ? p.x : n % 3 == 1 ? p.y : p.z) = n % 2 == 0 ? -1.0F : 1.0F;
+        if (p.z > 0.3F) continue; // beside the hole the surface differs
+        const LatticePoint place = rounded(frame_of(open_map).to_lattice(p));
+        const auto winding = decided_winding_by_tree(open_map, Vec3d(place), &place, 1e-3);
+        ASSERT_TRUE(winding.has_value());
+        ASSERT_EQ(*winding > 0.5, contains(closed_map, p)) << p.x << " " << p.y << " " << p.z;
+    }
+}
+
+TEST(WindingTree, AnswersOnEdgesAndVertices) {
+    for (const auto& [name, mesh] : test::soups()) {
+        const ExactMap map = ExactMap::build(mesh);
+        for (std::size_t i = 0; i < mesh.faces.size(); i += 17) {
+            const Vec3f a = mesh.vertices[mesh.faces[i][0]], b = mesh.vertices[mesh.faces[i][1]];
+            for (const Vec3f& p : {a, b, (a + b) * 0.5F})
+                ASSERT_TRUE(std::isfinite(winding_number(map, p))) << name;
+        }
+    }
+}
+
+TEST(WindingTree, OfAFileAnswersAsTheMapThatWasSaved) {
+    for (const auto& [name, mesh] : test::soups()) {
+        const ExactMap map = ExactMap::build(mesh);
+        const auto bytes = std::make_shared<const std::vector<std::byte>>(serialise(map));
+        const ExactMap loaded = std::get<ExactMap>(load_map(*bytes, bytes, name));
+        ASSERT_EQ(loaded.view().winding_nodes.size(), map.view().winding_nodes.size());
+        ASSERT_EQ(loaded.view().byte_count(), map.view().byte_count());
+        for (const Vec3f& p : points_around(map, mesh))
+            ASSERT_EQ(winding_number(loaded, p), winding_number(map, p)) << name;
+    }
+}
+
+TEST(WindingNumber, OfAClosedSurfaceIsWhole) {
+    const ExactMap map = ExactMap::build(test::joined(
+        {make_box({2, 2, 2}), make_box({1, 1, 1}), test::turned_inside_out(make_box({0.5, 9, 9}))}));
+    EXPECT_EQ(winding_number(map, {0.9F, 0.1F, 0.2F}), 1);
+    EXPECT_EQ(winding_number(map, {0.4F, 0.1F, 0.2F}), 2);
+    EXPECT_EQ(winding_number(map, {0.1F, 0.1F, 0.2F}), 1);
+    EXPECT_EQ(winding_number(map, {0.1F, 3, 0.2F}), -1);
+    EXPECT_EQ(winding_number(map, {50, 3, 0.2F}), 0);
+}
+
+TEST(WindingNumber, OfFewBorderEdgesIsTheSumOverThem) {
+    TriangleMesh pierced = make_torus(1, 0.4, 20, 10);
+    pierced.faces.pop_back();
+    const ExactMap map = ExactMap::build(pierced);
+    ASSERT_LE(map.view().border.size(), kFewBorderEdges);
+    for (const Vec3f& p : points_around(map, pierced)) {
+        const auto full = static_cast<double>(full_winding_number(map, queried_place(map, p)));
+        ASSERT_NEAR(winding_number(map, p, 0), full, 1e-4)
+            << p.x << " " << p.y << " " << p.z << " " << length(p - map.view().centre);
+    }
+}
+
+TEST(WindingNumber, IsNanOrZeroForPointsThatAreNotFinite) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    for (const TriangleMesh& mesh : {make_box({2, 2, 2}), test::random_triangles(30, 1)}) {
+        const ExactMap map = ExactMap::build(mesh);
+        EXPECT_TRUE(std::isnan(winding_number(map, {0, kNan, 0})));
+        EXPECT_TRUE(std::isnan(winding_number(map, {kInfinity, kNan, 0})));
+        EXPECT_EQ(winding_number(map, {0, -kInfinity, 0}), 0);
+        EXPECT_NEAR(winding_number(map, {3e38F, 3e38F, -3e38F}), 0, 1e-6F);
+        EXPECT_EQ(winding_number(map, {0, 0, 0}, kNan), winding_number(map, {0, 0, 0}, 0));
+        winding_number_batch(map, {}, {});
+    }
+}
