@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <numeric>
 #include <vector>
@@ -23,11 +24,11 @@ namespace {
 
 constexpr std::uint32_t kTurn = 10; // frames
 
-/// A cloth and its model, ready to be simulated with one contact or another.
+/// A cloth and its models, ready to be simulated with one contact or another.
 struct Fall {
     std::string name;
-    TriangleMesh model;
-    Collider collider;
+    std::vector<TriangleMesh> models;
+    std::vector<Collider> colliders;
     Deformable cloth;
     SimulationOptions options;
     std::uint32_t frame_limit;
@@ -53,7 +54,7 @@ struct SceneRun {
     std::uint32_t frame_limit; ///< of a model that turns, nothing comes to rest
 };
 
-constexpr std::uint32_t kLimit = 3000, kTurningLimit = 720;
+constexpr std::uint32_t kLimit = 3000, kTurningLimit = 720, kPullingLimit = 480;
 
 std::vector<SceneRun> scene_runs() {
     std::vector<SceneRun> runs{
@@ -61,7 +62,7 @@ std::vector<SceneRun> scene_runs() {
         {.name = "torus", .file = "torus.json", .frame_limit = kLimit},
         {.name = "horse, XPBD", .file = "horse_xpbd.json", .frame_limit = kLimit},
     };
-    for (const int speed : {5, 10, 20, 50})
+    for (const int speed : {5, 10, 20, 50, 100})
         runs.push_back({.name = fmt::format("horse at {} units/s", speed),
                         .file = "horse.json",
                         .speed = double(speed),
@@ -104,8 +105,14 @@ Fall fall_of(const SceneRun& run, const Setting& setting) {
     scene.cloth_velocity = down * speed;
     scene.angular_velocity = down * (-run.turn * std::numbers::pi / 180);
     const Simulation start = make_simulation(scene, map);
-    return {run.name,           std::move(model), start.colliders()[0],
-            start.deformable(), scene.simulation, setting.is_short ? kShortLimit : run.frame_limit};
+    return {run.name,           {std::move(model)}, {start.colliders()[0]},
+            start.deformable(), scene.simulation,   setting.is_short ? kShortLimit : run.frame_limit};
+}
+
+Fall fall_onto(std::string name, TriangleMesh model, Deformable cloth, const Setting& setting) {
+    const Collider collider{.map = ExactMap::build(model)};
+    return {std::move(name),  {std::move(model)},  {collider},
+            std::move(cloth), SimulationOptions{}, setting.is_short ? kShortLimit : kLimit};
 }
 
 /// Folds what lies at u > 0 over what lies at u < 0: half a circle about the axis at u = 0 and v = height,
@@ -137,9 +144,107 @@ Fall folded_fall(const Setting& setting) {
     }
     for (std::size_t i = 0; i < folded.particle_count(); ++i)
         folded.previous_positions[i] = folded.positions[i] + Vec3f{0, 0, float(speed * options.time_step)};
-    TriangleMesh box = make_box({1, 1, 0.3});
-    return {"sheet folded in four", box,     {.map = ExactMap::build(box)},
-            std::move(folded),      options, setting.is_short ? kShortLimit : kLimit};
+    return fall_onto("sheet folded in four", make_box({1, 1, 0.3}), std::move(folded), setting);
+}
+
+/// Its models share no surface.
+TriangleMesh joined(const std::vector<TriangleMesh>& parts) {
+    TriangleMesh all;
+    for (const TriangleMesh& part : parts) {
+        const auto first = static_cast<std::uint32_t>(all.vertices.size());
+        all.vertices.insert(all.vertices.end(), part.vertices.begin(), part.vertices.end());
+        for (const Triangle& f : part.faces) all.faces.push_back({f[0] + first, f[1] + first, f[2] + first});
+    }
+    return all;
+}
+
+TriangleMesh moved(TriangleMesh mesh, const Vec3f& by) {
+    for (Vec3f& v : mesh.vertices) v = v + by;
+    return mesh;
+}
+
+TriangleMesh comb() {
+    std::vector<TriangleMesh> teeth;
+    for (int i = -6; i <= 6; ++i)
+        teeth.push_back(moved(make_box({0.02, 0.8, 0.6}), {0.08F * float(i), 0, 0}));
+    return joined(teeth);
+}
+
+/// A level sheet over the middle of the model, twice as large as its bounding sphere's radius.
+Fall sheet_over(std::string name, const TriangleMesh& model, const Setting& setting) {
+    Vec3f low = model.vertices[0], high = low;
+    for (const Vec3f& v : model.vertices) {
+        low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+        high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+    }
+    const double radius = length(Vec3d(high) - Vec3d(low)) / 2;
+    ClothOptions cloth{.width = 2 * radius, .height = 2 * radius};
+    if (setting.is_short) cloth.column_count = cloth.row_count = kShortSide;
+    const Vec3d middle = (Vec3d(high) + Vec3d(low)) * 0.5;
+    cloth.pose.translation = {middle.x, middle.y, double{high.z} + 0.05 * radius};
+    Fall fall = fall_onto(std::move(name), model, make_cloth(cloth), setting);
+    fall.options.gravity =
+        fall.options.gravity * radius; // as fast beside a large model as beside a small one
+    fall.options.allow_open_colliders = true;
+    return fall;
+}
+
+/// Ten sheets, one above the other.
+Fall ten_layers(const Setting& setting) {
+    ClothOptions layer{.column_count = 32, .row_count = 32, .width = 1, .height = 1};
+    if (setting.is_short) layer.column_count = layer.row_count = 10;
+    const auto spacing = static_cast<float>(layer.width / (layer.column_count - 1));
+    const Deformable sheet = make_cloth(layer);
+    std::vector<TriangleMesh> layers;
+    for (int i = 0; i < 10; ++i)
+        layers.push_back(
+            moved({sheet.positions, sheet.faces}, {0.3F, 0.2F, 0.2F + 1.25F * spacing * float(i)}));
+    return fall_onto("ten layers", make_box({1, 1, 0.3}), make_cloth(joined(layers), MeshClothOptions{}),
+                     setting);
+}
+
+/// A closed bag falls into the hole of a torus.
+Fall bag_fall(const Setting& setting) {
+    MeshClothOptions options;
+    options.pose.translation = {0, 0, 1.3};
+    return fall_onto("closed bag", make_torus(1, 0.4, 60, 24), make_cloth(make_sphere(0.9, 60, 30), options),
+                     setting);
+}
+
+/// A ball to which the middle of a sheet is tied pulls it down through a ring, which is a third as wide as
+/// the sheet is long.
+Fall ring_pull(const Setting& setting) {
+    ClothOptions cloth{.column_count = 101, .row_count = 101, .width = 2, .height = 2};
+    if (setting.is_short) cloth.column_count = cloth.row_count = kShortSide + 1;
+    cloth.pose.translation = {0, 0, 0.3};
+    Fall fall =
+        fall_onto("sheet pulled through a ring", make_torus(0.6, 0.2, 60, 24), make_cloth(cloth), setting);
+    const TriangleMesh ball = make_sphere(0.05, 12, 8);
+    Collider pulling{.map = ExactMap::build(ball)};
+    pulling.pose.translation = {0, 0, 0.2};
+    pulling.linear_velocity = {0, 0, -1};
+    fall.models.push_back(ball);
+    fall.colliders.push_back(pulling);
+    const auto middle = static_cast<std::uint32_t>(fall.cloth.particle_count() / 2);
+    fall.cloth.attachments.push_back({.particle = middle, .collider = 1});
+    fall.cloth.inverse_masses[middle] = 0;
+    fall.frame_limit = std::min(fall.frame_limit, kPullingLimit);
+    return fall;
+}
+
+std::vector<Fall> other_falls(const Setting& setting) {
+    std::vector<Fall> falls{folded_fall(setting),
+                            sheet_over("needle", make_box({0.01, 0.01, 1}), setting),
+                            sheet_over("thin plate", make_box({1, 0.002, 0.6}), setting),
+                            sheet_over("comb", comb(), setting),
+                            ten_layers(setting),
+                            bag_fall(setting),
+                            ring_pull(setting)};
+    for (const char* file : {"human_mannequin.obj", "scorpion.obj", "teapot.obj"})
+        if (std::filesystem::exists(setting.meshes / file))
+            falls.push_back(sheet_over(std::filesystem::path(file).stem().string(),
+                                       weld(read_mesh(setting.meshes / file)), setting));
+    return falls;
 }
 
 // ---- The judge ----
@@ -193,7 +298,7 @@ class Runner {
   public:
     Runner(const Fall& fall, const Method& method, std::uint32_t judged_stride)
         : fall_(fall), judged_stride_(judged_stride),
-          simulation_(fall.cloth, {fall.collider}, options_of(fall, method)) {}
+          simulation_(fall.cloth, fall.colliders, options_of(fall, method)) {}
 
     bool is_done() const { return simulation_.at_rest() || simulation_.frame() >= fall_.frame_limit; }
 
@@ -258,8 +363,11 @@ class Runner {
     void judge() {
         const Deformable& cloth = simulation_.deformable();
         const TriangleMesh surface{cloth.positions, cloth.faces};
-        const TriangleMesh model = placed(fall_.model, simulation_.colliders()[0]);
-        model_pairs_ = std::max(model_pairs_, intersecting_pairs(surface, model).size());
+        std::size_t model_pairs = 0;
+        for (std::size_t c = 0; c < fall_.models.size(); ++c)
+            model_pairs +=
+                intersecting_pairs(surface, placed(fall_.models[c], simulation_.colliders()[c])).size();
+        model_pairs_ = std::max(model_pairs_, model_pairs);
         own_pairs_ = std::max(own_pairs_, self_intersecting_pairs(surface).size());
         strain_ever_ = std::max(strain_ever_, strains_of(cloth).back());
         ++judged_frames_;
@@ -303,6 +411,6 @@ Records measure_surfaces(const Setting& setting) {
          "rested", "strain",    "strain_99", "strain_ever", "truncated_mean", "truncated_most", "squeezed",
          "lost",   "gap_mean",  "gap_least", "frame_ms",    "frame_ms_99",    "frame_ms_worst", "ratio"});
     for (const SceneRun& run : scene_runs()) add_fall(fall_of(run, setting), setting, records);
-    add_fall(folded_fall(setting), setting, records);
+    for (const Fall& fall : other_falls(setting)) add_fall(fall, setting, records);
     return records;
 }

@@ -134,7 +134,8 @@ TEST(Scene, KeepsHalfTheSpacingAwayUnlessItHasAThickness) {
     const AnyMap map = ExactMap::build(make_box({1, 1, 1}));
     const auto thickness = [&](const std::string& key) {
         const Scene scene = parse_scene(R"({"model": {"box": {}}, "cloth": {"size": [2, 2],
-            "position": [0, 0, 2], "particles": [11, 11])" + key + "}}",
+            "position": [0, 0, 2], "particles": [11, 11])" +
+                                            key + "}}",
                                         "a.json");
         return make_simulation(scene, map).options().thickness.value();
     };
@@ -178,8 +179,7 @@ TEST(Scene, LetsSurfacesCollideBesideExactMapsOnly) {
     const auto with = [](const std::string& keys) {
         return R"({"model": {"box": {}}, "cloth": {"size": [2, 2]})" + keys + "}";
     };
-    const SimulationOptions surfaces =
-        parse_scene(with(""), "a.json").simulation;
+    const SimulationOptions surfaces = parse_scene(with(""), "a.json").simulation;
     EXPECT_TRUE(surfaces.surface_collision);
     EXPECT_TRUE(surfaces.self_collision);
     const SimulationOptions model_only =

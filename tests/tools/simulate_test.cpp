@@ -69,7 +69,8 @@ TEST_F(SimulateCommand, LosesNoParticleOfTheFlagToItsPole) {
 }
 
 TEST_F(SimulateCommand, LosesNoParticleToAThinPlateThatMovesAndTurns) {
-    const nlohmann::json report = simulate((kSource / "scenes" / "thin_plate_small.json").string(), {"--surfaces", "off"});
+    const nlohmann::json report =
+        simulate((kSource / "scenes" / "thin_plate_small.json").string(), {"--surfaces", "off"});
     EXPECT_EQ(report.at("lost_count"), 0);
     EXPECT_GT(report.at("rescued_count"), 0);
     EXPECT_EQ(report.at("inside_at_rest"), 0);
