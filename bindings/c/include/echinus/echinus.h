@@ -458,7 +458,7 @@ typedef struct echinus_contact {
     float depth;     ///< distance to point: positive inside, negative outside
     int32_t face;    ///< of the mesh; -1 where it is not known
     uint8_t inside;
-    uint8_t certain; ///< 0 where the mesh is open and the generalised winding number decided
+    uint8_t certain; ///< 0 where the mesh is open and its winding number is within 0.1 of a half
     uint8_t feature; ///< an echinus_feature
 } echinus_contact;
 
@@ -469,7 +469,7 @@ ECHINUS_API echinus_status echinus_map_contains(const echinus_map* map, const fl
 
 /// Which points are inside, and whether that is certain. One point after the other, on one thread.
 /// @param inside   [count] out
-/// @param certain  [count] out: 0 where the mesh is open and the generalised winding number decided
+/// @param certain  [count] out: 0 where the mesh is open and its winding number is within 0.1 of a half
 ECHINUS_API echinus_status echinus_map_classify(const echinus_map* map, const float* points, size_t count,
                                                 size_t stride, uint8_t* inside, uint8_t* certain);
 
