@@ -27,11 +27,11 @@ constexpr std::uint32_t kTurn = 10; // frames
 /// A cloth and its models, ready to be simulated with one contact or another.
 struct Fall {
     std::string name;
-    std::vector<TriangleMesh> models;
-    std::vector<Collider> colliders;
+    std::vector<TriangleMesh> models{};
+    std::vector<Collider> colliders{};
     Deformable cloth;
-    SimulationOptions options;
-    std::uint32_t frame_limit;
+    SimulationOptions options{};
+    std::uint32_t frame_limit = 0;
 };
 
 struct Method {
@@ -105,14 +105,19 @@ Fall fall_of(const SceneRun& run, const Setting& setting) {
     scene.cloth_velocity = down * speed;
     scene.angular_velocity = down * (-run.turn * std::numbers::pi / 180);
     const Simulation start = make_simulation(scene, map);
-    return {run.name,           {std::move(model)}, {start.colliders()[0]},
-            start.deformable(), scene.simulation,   setting.is_short ? kShortLimit : run.frame_limit};
+    Fall fall{.name = run.name, .cloth = start.deformable(), .options = scene.simulation};
+    fall.models.push_back(std::move(model));
+    fall.colliders.push_back(start.colliders()[0]);
+    fall.frame_limit = setting.is_short ? kShortLimit : run.frame_limit;
+    return fall;
 }
 
 Fall fall_onto(std::string name, TriangleMesh model, Deformable cloth, const Setting& setting) {
-    const Collider collider{.map = ExactMap::build(model)};
-    return {std::move(name),  {std::move(model)},  {collider},
-            std::move(cloth), SimulationOptions{}, setting.is_short ? kShortLimit : kLimit};
+    Fall fall{.name = std::move(name), .cloth = std::move(cloth)};
+    fall.colliders.push_back({.map = ExactMap::build(model)});
+    fall.models.push_back(std::move(model));
+    fall.frame_limit = setting.is_short ? kShortLimit : kLimit;
+    return fall;
 }
 
 /// Folds what lies at u > 0 over what lies at u < 0: half a circle about the axis at u = 0 and v = height,
