@@ -145,9 +145,10 @@ class ExactMapStatistics:
     expected_tests
         Faces that ``contains`` looks at for a point on the surface; about 10 for most meshes.
     certain_share
-        Share of the bounding sphere's volume where answers are certain; 1 for a closed mesh.
+        Share of the bounding sphere's volume where the map knows the answer beforehand; 1 for a
+        closed mesh.
     uncertain_directions
-        Share of the directions from the centre along which an answer is uncertain somewhere.
+        Share of the directions from the centre along which an answer is computed somewhere.
     """
 
     face_count: int
