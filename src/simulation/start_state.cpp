@@ -25,7 +25,7 @@ constexpr std::size_t kNamedPairs = 3;
 /// @param option  that asks for this
 std::string remedy(const SimulationOptions& options, const char* option) {
     return std::string("; move the start until they are apart, ") +
-           (options.untangle ? "" : "set untangle, which does that, ") + "or leave out " + option;
+           (options.untangle ? "" : "set untangle, which does that, ") + "or switch " + option + " off";
 }
 
 /// With edges and vertices as faces without area, after the faces.

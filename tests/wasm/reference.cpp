@@ -137,7 +137,8 @@ const char* const kSimulations[] = {
 };
 const char* const kScene = R"({
     "model": {"torus": {"segments": [40, 16]}},
-    "cloth": {"particles": [31, 30], "size": [3, 3], "position": [0, 0, 0.45], "thickness": 0.014, "pins": [[0, 0]]}
+    "cloth": {"particles": [31, 30], "size": [3, 3], "position": [0, 0, 0.45], "thickness": 0.014, "pins": [[0, 0]]},
+    "surface_collision": false
 })";
 constexpr std::uint32_t kFrameCount = 120;
 

@@ -271,7 +271,7 @@ describe('A simulation', () => {
         const cube = echinus.makeBox([1, 1, 1]);
         const open = echinus.makeMesh(cube.vertices, cube.faces.slice(3));
         const map = echinus.buildMap(open);
-        const scene = echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [10, 10], position: [0, 0, 2] } });
+        const scene = echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [10, 10], position: [0, 0, 2] }, surface_collision: false });
         const error = errorOf(() => scene.makeSimulation(map));
         assert.equal(error.code, 'InvalidOptions');
         assert.match(error.message, /open mesh/);
@@ -281,7 +281,7 @@ describe('A simulation', () => {
         assertAlive();
     });
     test('refuses velocities that are not finite, and particles that it does not have', () => {
-        const scene = echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [10, 10] } });
+        const scene = echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [10, 10], position: [0, 0, 2] } });
         const simulation = scene.makeSimulation(scene.buildMap(scene.makeModel()));
         for (const use of [
             () => simulation.setParticleVelocity(100, [0, 0, 0]), () => simulation.setParticleVelocity(-1, [0, 0, 0]), () => simulation.setParticleVelocity(0, [NaN, 0, 0]),

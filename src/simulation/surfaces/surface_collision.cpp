@@ -16,6 +16,10 @@ namespace {
 /// that the vertices keep, and need not be pushed before they are much nearer.
 constexpr float kSurfaceShare = 0.75F;
 
+/// In mean edges. What lies between vertices that keep off farther keeps off as far: edges would never be
+/// pushed, and to list what is so far away takes memory without end.
+constexpr float kMostThickness = 2;
+
 /// As far as neighbours of neighbours leave room: shares of the mean edge.
 constexpr float kMostSelfThickness = 0.25F;
 constexpr float kLeastSelfReach = 0.2F;
@@ -50,7 +54,8 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
     const float edge_length = mean_edge_length(*elements_, particles.positions);
     for (const Collider& collider : colliders) {
         const ColliderNow now(collider, collider.pose, options);
-        const float thickness = kSurfaceShare * now.thickness;
+        const float most = edge_length > 0 ? kMostThickness * edge_length : now.thickness;
+        const float thickness = std::min(kSurfaceShare * now.thickness, most);
         const float extent = now.coordinate_sum + static_cast<float>(kLatticeExtent) * now.step;
         const float least_gap = kLeastGapSteps * now.step + extent * (1.0F / (1 << 21));
         models_.emplace_back(collider, elements_, reach_of(thickness, edge_length, least_gap), thickness,
