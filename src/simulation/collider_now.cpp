@@ -17,6 +17,10 @@ float largest(const Vec3d& scale) {
     return static_cast<float>(std::max({std::fabs(scale.x), std::fabs(scale.y), std::fabs(scale.z)}));
 }
 
+float sum_of_coordinates(const Vec3d& v) {
+    return static_cast<float>(std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z));
+}
+
 } // namespace
 
 ColliderNow::ColliderNow(const Collider& collider, const RigidTransform& previous_pose,
@@ -27,8 +31,9 @@ ColliderNow::ColliderNow(const Collider& collider, const RigidTransform& previou
       thickness(std::max(static_cast<float>(options.thickness.value()), 2 * guard)),
       friction(static_cast<float>(options.friction)),
       two_sided(options.surface_collision && !map.border.empty()),
-      coordinate_sum(static_cast<float>(std::fabs(collider.pose.translation.x) +
-                                        std::fabs(collider.pose.translation.y) +
-                                        std::fabs(collider.pose.translation.z))) {}
+      coordinate_sum(sum_of_coordinates(collider.pose.translation) +
+                     sum_of_coordinates({double{map.centre.x} * collider.scale.x,
+                                         double{map.centre.y} * collider.scale.y,
+                                         double{map.centre.z} * collider.scale.z})) {}
 
 } // namespace echinus

@@ -24,7 +24,7 @@ struct ColliderNow {
     float friction;
     /// An open surface that lets nothing through: each particle stays on its side, and none is inside.
     bool two_sided;
-    float coordinate_sum; ///< of where the collider stands; bounds what is lost in rounding
+    float coordinate_sum; ///< of where collider and mesh stand; bounds what rounding loses
 
     /// @pre the options have a thickness
     ColliderNow(const Collider& collider, const RigidTransform& previous_pose,

@@ -22,6 +22,9 @@ class ModelSurface {
     ModelSurface(const Collider& collider, std::shared_ptr<const Elements> own, const PairReach& reach,
                  float thickness, float friction);
 
+    /// Keeps pairs so far apart from now on.
+    void keep_gap(float least_gap) { pairs_.keep_gap(least_gap); }
+
     /// @param clearances  [vertex_count] lower bounds of the vertices' distances from the model
     void begin_frame(const Collider& collider, const Particles& particles, std::span<const float> clearances);
     /// Looks for contacts on the way to where the frame would lead the particles.

@@ -99,6 +99,12 @@ void SelfSurface::to_frame(const RigidTransform* frame, const PointArrays& place
         result.set(i, (in_world_ ? places[i] : now_.point_to_local(places[i])) - drift_);
 }
 
+void SelfSurface::keep_gap(float least_gap) {
+    reach_.least_gap = least_gap;
+    std::fill(rooms_.begin(), rooms_.end(), -1.0F);
+    std::fill(quiet_.begin(), quiet_.end(), -1.0F);
+}
+
 void SelfSurface::begin_pass(const RigidTransform* frame, const PointArrays& starts, bool is_first) {
     drift_ = drift_ + drifting_;
     drifting_ = {};

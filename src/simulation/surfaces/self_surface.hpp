@@ -39,6 +39,9 @@ class SelfSurface {
     SelfSurface(std::shared_ptr<const Elements> own, const Particles& particles, const Reach& reach,
                 float thickness, float friction);
 
+    /// Keeps pairs so far apart from now on.
+    void keep_gap(float least_gap);
+
     /// Ways are straight in the world, or in a frame that moves.
     /// @param frame  where the frame stands; none: the world
     void begin_pass(const RigidTransform* frame, const PointArrays& starts, bool is_first);

@@ -39,6 +39,18 @@ float largest_coordinate(const PointArrays& positions) {
     return largest;
 }
 
+float extent_of(const ColliderNow& now) {
+    return now.coordinate_sum + static_cast<float>(kLatticeExtent) * now.step;
+}
+
+/// More than what is lost in rounding: beside a model, and of the deformable's own pairs.
+float least_gap(const ColliderNow& now, float extent) {
+    return kLeastGapSteps * now.step + extent * (1.0F / (1 << 21));
+}
+float least_gap(float extent) {
+    return extent * (1.0F / (1 << 17));
+}
+
 PairReach reach_of(float thickness, float edge_length, float least_gap) {
     const float slack = std::max(edge_length / 8, thickness / 4);
     return {.listed = thickness + edge_length / 4 + 2 * slack, .slack = slack, .least_gap = least_gap};
@@ -56,9 +68,9 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
         const ColliderNow now(collider, collider.pose, options);
         const float most = edge_length > 0 ? kMostThickness * edge_length : now.thickness;
         const float thickness = std::min(kSurfaceShare * now.thickness, most);
-        const float extent = now.coordinate_sum + static_cast<float>(kLatticeExtent) * now.step;
-        const float least_gap = kLeastGapSteps * now.step + extent * (1.0F / (1 << 21));
-        models_.emplace_back(collider, elements_, reach_of(thickness, edge_length, least_gap), thickness,
+        extents_.push_back(extent_of(now));
+        models_.emplace_back(collider, elements_,
+                             reach_of(thickness, edge_length, least_gap(now, extents_.back())), thickness,
                              now.friction);
     }
     if (options.self_collision) {
@@ -66,13 +78,29 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
             std::min(static_cast<float>(options.self_thickness.value_or(*options.thickness)),
                      kMostSelfThickness * edge_length);
         const float near = std::max(kSelfReach * thickness, kLeastSelfReach * edge_length);
-        const float least_gap = largest_coordinate(particles.positions) * (1.0F / (1 << 17));
-        self_.emplace(elements_, particles, SelfSurface::Reach{near, near / 4, least_gap}, thickness,
-                      static_cast<float>(options.friction));
+        extents_.push_back(largest_coordinate(particles.positions));
+        self_.emplace(elements_, particles, SelfSurface::Reach{near, near / 4, least_gap(extents_.back())},
+                      thickness, static_cast<float>(options.friction));
     }
     leaving_.reserve(particles.count());
     poses_.resize(models_.size());
     clearances_.assign(models_.size(), std::vector<float>(particles.count()));
+}
+
+/// What travels far from where it began is rounded more. Least gaps grow in large steps, since all is
+/// measured anew then.
+void SurfaceCollision::keep_gaps(const std::vector<Collider>& colliders, const Particles& particles) {
+    for (std::size_t c = 0; c < models_.size(); ++c) {
+        const ColliderNow now(colliders[c], colliders[c].pose, options_);
+        if (extent_of(now) <= extents_[c]) continue;
+        extents_[c] = 2 * extent_of(now);
+        models_[c].keep_gap(least_gap(now, extents_[c]));
+    }
+    if (!self_) return;
+    const float extent = largest_coordinate(particles.positions);
+    if (extent <= extents_.back()) return;
+    extents_.back() = 2 * extent;
+    self_->keep_gap(least_gap(extents_.back()));
 }
 
 void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders, const Collisions& collisions,
@@ -80,6 +108,7 @@ void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders, const
     carrier_ = static_cast<std::size_t>(
         std::find_if(colliders.begin(), colliders.end(), [](const Collider& c) { return c.moves(); }) -
         colliders.begin());
+    keep_gaps(colliders, particles);
     for (std::size_t c = 0; c < models_.size(); ++c) {
         poses_[c] = colliders[c].pose;
         collisions.known_clearances(c, particles, clearances_[c]);

@@ -33,6 +33,7 @@ class SurfaceCollision {
     void end_frame(Particles& particles, SimulationProfile& profile);
 
   private:
+    void keep_gaps(const std::vector<Collider>& colliders, const Particles& particles);
     bool pass(Particles& particles, bool is_first);
     void find_leaving();
     void shorten_ways(bool is_first, const Particles& particles);
@@ -41,6 +42,7 @@ class SurfaceCollision {
     SimulationOptions options_;
     std::shared_ptr<const Elements> elements_;
     std::vector<ModelSurface> models_;
+    std::vector<float> extents_; ///< by model, the deformable last: coordinates for which least gaps allow
     std::optional<SelfSurface> self_;
     std::vector<RigidTransform> poses_; ///< of the colliders, as of the last substep
     std::vector<float> inverse_masses_;

@@ -46,6 +46,12 @@ class SurfacePairs {
     /// Forgets everything: the frame has changed, or the deformable was moved.
     void reset();
 
+    /// Keeps pairs so far apart from now on: forgets everything.
+    void keep_gap(float least_gap) {
+        reach_.least_gap = least_gap;
+        reset();
+    }
+
     /// @param starts  of all vertices, when the frame begins
     /// @param clearances  lower bounds of their distances from the opponent, or none
     void begin(const Opponent& opponent, const PointArrays& starts, std::span<const float> clearances);
