@@ -228,6 +228,8 @@ TEST_F(SimulateCommand, LetsSurfacesCollideWhereTheSceneOrAnOptionSaysSo) {
     };
     EXPECT_EQ(hash_with("particles.json", {"--surfaces", "on", "--self", "on"}), surfaces.at("state_hash"));
     EXPECT_EQ(hash_with("surfaces.json", {"--surfaces", "off"}), particles.at("state_hash"));
+    write("untangled.json", scene + R"(, "untangle": true})");
+    EXPECT_EQ(hash_with("untangled.json", {"--surfaces", "off"}), particles.at("state_hash"));
     expect_failure(2, "--self", {"simulate", "particles.json", "-o", "run", "--self", "on"});
     expect_failure(2, "--surfaces", {"simulate", "particles.json", "-o", "run", "--surfaces", "maybe"});
 }

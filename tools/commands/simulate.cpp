@@ -164,11 +164,13 @@ void open(Results& results, const SimulateArguments& arguments, const Scene& sce
     }
 }
 
-/// Without contact of surfaces there is none of the cloth with itself, unless it is asked for.
+/// Without contact of surfaces there is none of the cloth with itself, unless it is asked for, and nothing to
+/// untangle.
 void choose_collision(const SimulateArguments& arguments, Scene& scene) {
     SimulationOptions& options = scene.simulation;
     options.surface_collision = arguments.surfaces.value_or(options.surface_collision);
     options.self_collision = arguments.self.value_or(options.self_collision && options.surface_collision);
+    options.untangle = options.untangle && options.surface_collision;
     if (options.surface_collision && !std::holds_alternative<ExactMapOptions>(scene.map))
         throw WrongUse("--surfaces", "needs a scene with an exact map, which has the model's faces");
     if (options.self_collision && !options.surface_collision)
