@@ -19,4 +19,5 @@
 #include <echinus/mesh.hpp>
 #include <echinus/simulation.hpp>
 #include <echinus/surface_queries.hpp>
+#include <echinus/tetrahedra.hpp>
 #include <echinus/version.hpp>

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <echinus/tetrahedra.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace echinus {
+
+/// The face opposite each corner of a positive tetrahedron, counter-clockwise seen from outside it.
+inline constexpr std::array<std::array<int, 3>, 4> kFaceCorners{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+
+Triangle face_opposite(const Tetrahedron& tetrahedron, int corner);
+
+/// One tetrahedron's use of one of its faces.
+struct FaceUse {
+    Triangle vertices; ///< ascending
+    std::uint32_t tetrahedron;
+    std::uint8_t corner; ///< opposite
+    bool is_even;        ///< face_opposite() is an even permutation of `vertices`
+};
+
+/// All uses of all faces, sorted by face and then by tetrahedron.
+/// @throws Error InvalidMesh when an index is out of range, or two tetrahedra lie on the same side of a face;
+/// so each face has at most two uses
+std::vector<FaceUse> sorted_face_uses(const TetrahedralMesh& mesh);
+
+/// @throws Error InvalidMesh when there are more tetrahedra than std::uint32_t counts, an index is out of
+/// range, or a tetrahedron has two equal corners
+void require_indices(const TetrahedralMesh& mesh);
+
+} // namespace echinus
