@@ -50,6 +50,10 @@ struct alignas(64) ValidMask {
 
 ValidMask fill(std::span<const Ray> rays, RTCRay16& packet) {
     ValidMask valid;
+    // Where Embree has no packets of 16, as without AVX-512, it does not look at the mask: a ray whose end
+    // lies before its beginning is left alone there (seen in Embree 3.12).
+    std::fill(std::begin(packet.tnear), std::end(packet.tnear), 0.0F);
+    std::fill(std::begin(packet.tfar), std::end(packet.tfar), -std::numeric_limits<float>::infinity());
     for (std::size_t i = 0; i < rays.size(); ++i) {
         valid.lanes[i] = -1;
         packet.org_x[i] = rays[i].origin.x;
@@ -58,7 +62,6 @@ ValidMask fill(std::span<const Ray> rays, RTCRay16& packet) {
         packet.dir_x[i] = rays[i].direction.x;
         packet.dir_y[i] = rays[i].direction.y;
         packet.dir_z[i] = rays[i].direction.z;
-        packet.tnear[i] = 0;
         packet.tfar[i] = std::numeric_limits<float>::infinity();
         packet.time[i] = 0;
         packet.mask[i] = 0xFFFFFFFF;

@@ -82,7 +82,8 @@ struct Packet {
             rays.ray.dir_x[i] = kDirection.x;
             rays.ray.dir_y[i] = kDirection.y;
             rays.ray.dir_z[i] = kDirection.z;
-            rays.ray.tfar[i] = kInfinity;
+            rays.ray.tfar[i] =
+                traced ? kInfinity : -kInfinity; // without AVX-512 Embree does not look at `valid`
             rays.ray.mask[i] = ~0U;
             rays.ray.id[i] = static_cast<unsigned>(i);
             rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
