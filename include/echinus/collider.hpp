@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 #include <variant>
 
@@ -42,6 +43,7 @@ struct Collider {
     Vec3d scale{1, 1, 1};
     Vec3d linear_velocity{};  ///< of the pose's translation, units per second
     Vec3d angular_velocity{}; ///< about the pose's translation, world axes, radians per second
+    std::string name{};       ///< for errors; if empty, "collider" and its number
 
     bool moves() const { return linear_velocity != Vec3d{} || angular_velocity != Vec3d{}; }
 };

@@ -52,6 +52,7 @@ class JsonObject {
     /// The object under a key, if it is there.
     std::optional<JsonObject> object(const char* key);
     bool is_string(const char* key) const { return has(key) && value_[key].is_string(); }
+    bool is_object(const char* key) const { return has(key) && value_[key].is_object(); }
     bool is_array(const char* key) const { return has(key) && value_[key].is_array(); }
 
     /// To be called when everything has been asked for.

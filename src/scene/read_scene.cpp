@@ -230,6 +230,9 @@ VertexChoice read_vertices(JsonObject& cloth, const char* key) {
         cloth.read(key, numbers, {0, 4e9});
         return numbers;
     }
+    if (!cloth.is_object(key))
+        cloth.refuse(key,
+                     "an array of vertex numbers, or a box: an object with its corners \"from\" and \"to\"");
     VertexBox box;
     auto object = cloth.object(key);
     object->require("from");
@@ -254,12 +257,15 @@ void read_mesh_cloth(JsonObject& cloth, Scene& scene) {
     made.attachments = read_vertices(cloth, "attachments");
 }
 
+/// @pre the map was read
 void read_cloth(JsonObject& root, Scene& scene) {
     root.require("cloth");
     auto cloth = root.object("cloth");
     cloth->read("velocity", scene.cloth_velocity, kCoordinate);
     cloth->read("thickness", scene.simulation.thickness, {0, 1e9});
     cloth->read("self_thickness", scene.simulation.self_thickness, {0, 1e9});
+    if (!std::holds_alternative<ExactMapOptions>(scene.map))
+        refuse_keys_of_other_choice(*cloth, {"self_thickness"}, "map.kind", "exact");
     cloth->has("mesh") ? read_mesh_cloth(*cloth, scene) : read_sheet(*cloth, scene);
     cloth->finish();
 }

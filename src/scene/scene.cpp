@@ -15,7 +15,7 @@ fs::path find_model(const ModelFile& model, std::span<const fs::path> folders) {
         if (fs::is_regular_file(path, ignored)) return path;
         tried += (tried.empty() ? "" : ", ") + folder.string();
     }
-    throw Error(ErrorCode::Unreadable, "the model " + model.name + " is in none of the folders " + tried +
+    throw Error(ErrorCode::Unreadable, "the mesh " + model.name + " is in none of the folders " + tried +
                                            "; scripts/setup puts the models of the scenes into models/");
 }
 
@@ -42,12 +42,25 @@ AnyMap build_map(const TriangleMesh& mesh, const MapOptions& options, unsigned t
     return DistanceMap::build(mesh, with_threads);
 }
 
+namespace {
+
+/// How sentences call a model.
+struct NameOfModel {
+    std::string operator()(const ModelFile& file) const { return fs::path(file.name).filename().string(); }
+    std::string operator()(const TorusModel&) const { return "the torus"; }
+    std::string operator()(const SphereModel&) const { return "the sphere"; }
+    std::string operator()(const BoxModel&) const { return "the box"; }
+};
+
+} // namespace
+
 Collider make_collider(const Scene& scene, const ColliderMap& map) {
     return {.map = map,
             .pose = scene.pose,
             .scale = scene.scale,
             .linear_velocity = scene.linear_velocity,
-            .angular_velocity = scene.angular_velocity};
+            .angular_velocity = scene.angular_velocity,
+            .name = std::visit(NameOfModel{}, scene.model)};
 }
 
 Simulation make_simulation(const Scene& scene, const ColliderMap& map, const ClothMeshes& meshes) {

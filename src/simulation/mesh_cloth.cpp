@@ -50,6 +50,11 @@ void require_possible(const TriangleMesh& mesh, const MeshClothOptions& options)
     for (const Attachment& attachment : options.attachments)
         require_option(attachment.particle < count,
                        missing_vertex("an attachment names", attachment.particle, count));
+    const std::set<std::uint32_t> pinned(options.pins.begin(), options.pins.end());
+    for (const Attachment& attachment : options.attachments)
+        require_option(!pinned.contains(attachment.particle),
+                       "vertex " + std::to_string(attachment.particle) +
+                           " is both pinned, which keeps it in place, and attached, which moves it");
 }
 
 Vec3f placed(const Vec3f& vertex, const MeshClothOptions& options) {

@@ -23,9 +23,15 @@ namespace {
 constexpr std::size_t kNamedPairs = 3;
 
 /// @param option  that asks for this
-std::string remedy(const SimulationOptions& options, const char* option) {
+/// @param pinned  untangle() moves no pinned particle
+std::string remedy(const SimulationOptions& options, const char* option, bool pinned = false) {
     return std::string("; move the start until they are apart, ") +
-           (options.untangle ? "" : "set untangle, which does that, ") + "or switch " + option + " off";
+           (options.untangle || pinned ? "" : "set untangle, which does that, ") + "or switch " + option +
+           " off";
+}
+
+std::string name_of(const Collider& collider, std::size_t number) {
+    return collider.name.empty() ? "collider " + std::to_string(number) : collider.name;
 }
 
 /// With edges and vertices as faces without area, after the faces.
@@ -55,8 +61,27 @@ template <typename Describe>
     throw Error(ErrorCode::InvalidOptions, sentence + remedy(options, option));
 }
 
-void require_apart(const TriangleMesh& surface, const Elements& elements, const Collider& collider,
-                   const SimulationOptions& options, const std::string& name) {
+void require_outside(const std::vector<Vec3f>& positions, const std::vector<float>& inverse_masses,
+                     const Collider& collider, const SimulationOptions& options, const std::string& name) {
+    std::vector<std::uint8_t> inside(positions.size());
+    contains_batch(collider, std::span(positions), inside);
+    const auto first = std::find(inside.begin(), inside.end(), std::uint8_t{1});
+    if (first == inside.end()) return;
+    std::size_t pinned = 0;
+    for (std::size_t v = 0; v < inside.size(); ++v)
+        if (inside[v] != 0 && inverse_masses[v] == 0) ++pinned;
+    const std::string count = std::to_string(std::count(inside.begin(), inside.end(), std::uint8_t{1}));
+    throw Error(ErrorCode::InvalidOptions,
+                count + " particles begin inside " + name +
+                    (pinned > 0 ? ", " + std::to_string(pinned) + " of them pinned there" : "") +
+                    (options.untangle ? "; untangle could not move them out" : "") +
+                    "; the first is particle " + std::to_string(first - inside.begin()) +
+                    remedy(options, "surface_collision", pinned > 0));
+}
+
+void require_apart(const TriangleMesh& surface, const std::vector<float>& inverse_masses,
+                   const Elements& elements, const Collider& collider, const SimulationOptions& options,
+                   const std::string& name) {
     const ExactMapView& map = std::get<ExactMap>(collider.map.kind).view();
     const FrameChange body(collider.pose, {1, 1, 1});
     TriangleMesh in_body = surface;
@@ -67,17 +92,7 @@ void require_apart(const TriangleMesh& surface, const Elements& elements, const 
             return name_of(elements, pair.a) + " and its face " + std::to_string(pair.b);
         });
     // Where nothing intersects, a piece is inside as a whole. An open surface has no inside.
-    if (!map.border.empty()) return;
-    std::vector<std::uint8_t> inside(surface.vertices.size());
-    contains_batch(collider, std::span(surface.vertices), inside);
-    const auto first = std::find(inside.begin(), inside.end(), std::uint8_t{1});
-    if (first == inside.end()) return;
-    throw Error(ErrorCode::InvalidOptions,
-                std::to_string(std::count(inside.begin(), inside.end(), std::uint8_t{1})) +
-                    " particles begin inside " + name +
-                    (options.untangle ? " and could not be moved out by untangle" : "") +
-                    ", the first of them particle " + std::to_string(first - inside.begin()) +
-                    remedy(options, "surface_collision"));
+    if (map.border.empty()) require_outside(surface.vertices, inverse_masses, collider, options, name);
 }
 
 } // namespace
@@ -87,7 +102,8 @@ void require_apart(const Deformable& deformable, const std::vector<Collider>& co
     const Elements elements = elements_of(deformable);
     const TriangleMesh surface = surface_of(deformable, elements);
     for (std::size_t i = 0; i < colliders.size(); ++i)
-        require_apart(surface, elements, colliders[i], options, "collider " + std::to_string(i));
+        require_apart(surface, deformable.inverse_masses, elements, colliders[i], options,
+                      name_of(colliders[i], i));
     if (!options.self_collision) return;
     const std::vector<FacePair> pairs = self_intersecting_pairs(surface);
     if (!pairs.empty())

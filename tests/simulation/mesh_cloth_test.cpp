@@ -274,6 +274,7 @@ TEST(MeshCloth, RefusesOptionsOutOfRangeByName) {
     };
     expect_option("a pin names vertex 9, but the cloth has only 9", {.pins = {9}});
     expect_option("an attachment names vertex 10", {.attachments = {{10}}});
+    expect_option("vertex 4 is both pinned", {.pins = {0, 4}, .attachments = {{4}}});
     expect_option("a thread ends at vertex 11", {.threads = {{0, 11}}});
     expect_option("the scale of a cloth must be positive", {.scale = 0});
     expect_option("its rest shape 2; it needs as many", {.rest_vertices = {{}, {}}});

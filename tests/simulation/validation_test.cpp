@@ -178,7 +178,7 @@ TEST(SimulationSetUp, NamesTheFacesWithWhichADeformableBeginsIntersecting) {
                            ", face ",
                        [&] { Simulation(wide, box, surfaces); });
     test::expect_error(ErrorCode::InvalidOptions,
-                       "25 particles begin inside collider 0, the first of them particle 0",
+                       "25 particles begin inside collider 0; the first is particle 0",
                        [&] { Simulation(sheet_at(2.2, 0.5, 5), box, surfaces); });
     Deformable thread;
     thread.positions = thread.previous_positions = {{0, 0, 2.2F}, {0, 0, 3}};
