@@ -3,7 +3,10 @@
 #include <echinus/export.hpp>
 #include <echinus/mesh.hpp>
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
+#include <vector>
 
 ECHINUS_EXPORT_BEGIN
 
@@ -12,16 +15,27 @@ namespace echinus {
 
 /// Reads OBJ, PLY (text and binary), STL (text and binary), OFF, glTF, GLB and 3DS, by the file name's
 /// extension. All meshes of the file are joined (node transforms applied), polygons are triangulated, equal
-/// positions are welded and vertices that no face uses are dropped; points, lines, normals, colours and
-/// materials are ignored. Nothing is repaired: inspect() reports the faults of the result. Face numbers are
-/// those of the file, a polygon of k corners counted as its k - 2 triangles. Coordinates in text are rounded
-/// to the nearest float. The same file gives the same mesh.
+/// positions are welded and vertices that no face uses are dropped; points, lines (but see
+/// read_mesh_and_edges()), normals, colours and materials are ignored. Nothing is repaired: inspect() reports
+/// the faults of the result. Face numbers are those of the file, a polygon of k corners counted as its k - 2
+/// triangles. Coordinates in text are rounded to the nearest float. The same file gives the same mesh.
 ///
 /// @throws Error Unreadable, WrongFormat, Damaged (a file shorter or longer than it declares; the sentence
 /// names the line or byte) or InvalidMesh (no faces; an index out of range or a coordinate that is not finite
 /// as a float, even of an unused vertex); the sentence begins with the path. glTF with compressed or
 /// quantised positions is refused as WrongFormat.
 TriangleMesh read_mesh(const std::filesystem::path& path);
+
+/// A mesh, and edges that are drawn apart from its faces: threads, needles, wires.
+struct MeshAndEdges {
+    TriangleMesh mesh;
+    std::vector<std::array<std::uint32_t, 2>> edges; ///< vertex indices, in the order of the file
+};
+
+/// The same, with the lines of the file: those of an OBJ (`l`), a line of k corners as k - 1 edges, and
+/// polygons of two corners in the other formats. Vertices that only lines use are kept.
+/// @throws Error as read_mesh(); InvalidMesh only when there are neither faces nor lines
+MeshAndEdges read_mesh_and_edges(const std::filesystem::path& path);
 
 /// Writes OBJ, PLY (binary), STL (binary) or OFF, by the file name's extension. Floats read back with the
 /// same bits. Writes to a temporary name beside the target and renames it, so a failure leaves no partial
@@ -30,6 +44,11 @@ TriangleMesh read_mesh(const std::filesystem::path& path);
 /// @throws Error Unwritable, WrongFormat for an extension that is not in the list, or InvalidMesh as
 /// inspect() does
 void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
+
+/// The same with the edges, as lines of an OBJ; other formats only where there are none.
+/// @throws Error as write_mesh(); WrongFormat where the format has no lines, InvalidMesh when an edge names a
+/// vertex that does not exist
+void write_mesh_and_edges(const std::filesystem::path& path, const MeshAndEdges& drawn);
 
 } // namespace echinus
 

@@ -6,6 +6,7 @@
 #include <echinus/mesh.hpp>
 #include <echinus/simulation.hpp>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -64,6 +65,7 @@ struct MeshCloth {
 /// empty.
 struct ClothMeshes {
     TriangleMesh mesh, rest_mesh;
+    std::vector<std::array<std::uint32_t, 2>> threads{}; ///< of `mesh`: see read_mesh_and_edges()
 };
 
 /// The complete initial state of a simulation. A scene that was read is complete, with each number in its

@@ -60,6 +60,18 @@ std::string encode_obj(const TriangleMesh& mesh) {
     return text;
 }
 
+std::string encode_obj_lines(std::span<const std::array<std::uint32_t, 2>> edges) {
+    std::string text;
+    for (const auto& [a, b] : edges) {
+        text += "l ";
+        append_text(text, a + 1ULL);
+        text += ' ';
+        append_text(text, b + 1ULL);
+        text += '\n';
+    }
+    return text;
+}
+
 std::string encode_off(const TriangleMesh& mesh) {
     std::string text =
         "OFF\n" + std::to_string(mesh.vertices.size()) + " " + std::to_string(mesh.faces.size()) + " 0\n";

@@ -2,6 +2,9 @@
 
 #include <echinus/mesh.hpp>
 
+#include <array>
+#include <cstdint>
+#include <span>
 #include <string>
 
 /// The bytes of mesh files. Text has the shortest decimals that read back to the same float.
@@ -9,6 +12,8 @@
 namespace echinus {
 
 std::string encode_obj(const TriangleMesh& mesh);
+/// The part of an OBJ with edges that no face has.
+std::string encode_obj_lines(std::span<const std::array<std::uint32_t, 2>> edges);
 std::string encode_off(const TriangleMesh& mesh);
 std::string encode_ply(const TriangleMesh& mesh); ///< binary, little endian
 std::string encode_stl(const TriangleMesh& mesh); ///< binary; normals are computed, 0 for faces without area

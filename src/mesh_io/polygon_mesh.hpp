@@ -9,7 +9,7 @@
 
 namespace echinus {
 
-/// The contents of a file: vertices, and polygons with any number of corners.
+/// The contents of a file: vertices, and polygons with any number of corners; those of two are edges.
 struct PolygonMesh {
     std::vector<Vec3f> vertices;
     std::vector<std::uint32_t> corners;       ///< vertex indices, in range, polygon after polygon

@@ -6,7 +6,10 @@
 
 #include <echinus/mesh_io.hpp>
 
+#include <array>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 namespace echinus {
 
@@ -39,6 +42,32 @@ const Format& format_of(const MeshSource& source) {
             in_quotes(ending));
 }
 
+PolygonMesh read_polygons(const MeshSource& source) {
+    if (source.bytes.empty()) source.fail(ErrorCode::Damaged, "the file is empty");
+    return format_of(source).read(source);
+}
+
+/// The polygons of two corners.
+std::vector<std::array<std::uint32_t, 2>> edges_of(const PolygonMesh& polygons) {
+    std::vector<std::array<std::uint32_t, 2>> edges;
+    std::size_t begin = 0;
+    for (const std::uint32_t count : polygons.corner_counts) {
+        if (count == 2) edges.push_back({polygons.corners[begin], polygons.corners[begin + 1]});
+        begin += count;
+    }
+    return edges;
+}
+
+/// What `read` makes of the file's bytes.
+template <typename Read>
+auto read_file(const std::filesystem::path& path, const Read& read) {
+    const auto source = [&](std::span<const std::byte> bytes) {
+        return MeshSource{path.string(), {reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
+    };
+    const MappedFile file(path, [&](auto beginning) { require_beginning(source(beginning)); });
+    return read(source(file.bytes()));
+}
+
 } // namespace
 
 void require_beginning(const MeshSource& beginning) {
@@ -46,18 +75,32 @@ void require_beginning(const MeshSource& beginning) {
 }
 
 TriangleMesh read_mesh(const MeshSource& source) {
-    if (source.bytes.empty()) source.fail(ErrorCode::Damaged, "the file is empty");
-    const TriangleMesh mesh = triangulate(format_of(source).read(source), source);
+    const TriangleMesh mesh = triangulate(read_polygons(source), source);
     if (mesh.faces.empty()) source.fail(ErrorCode::InvalidMesh, "the file has no faces");
     return weld(mesh);
 }
 
+MeshAndEdges read_mesh_and_edges(const MeshSource& source) {
+    const PolygonMesh polygons = read_polygons(source);
+    TriangleMesh joined = triangulate(polygons, source);
+    const std::size_t face_count = joined.faces.size();
+    // weld() keeps the vertices of faces, so edges go through it as faces without area.
+    for (const auto& [a, b] : edges_of(polygons)) joined.faces.push_back({a, b, b});
+    if (joined.faces.empty()) source.fail(ErrorCode::InvalidMesh, "the file has neither faces nor lines");
+    MeshAndEdges result{.mesh = weld(joined), .edges = {}};
+    std::vector<Triangle>& faces = result.mesh.faces;
+    for (std::size_t i = face_count; i < faces.size(); ++i)
+        result.edges.push_back({faces[i][0], faces[i][1]});
+    faces.resize(face_count);
+    return result;
+}
+
 TriangleMesh read_mesh(const std::filesystem::path& path) {
-    const auto source = [&](std::span<const std::byte> bytes) {
-        return MeshSource{path.string(), {reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
-    };
-    const MappedFile file(path, [&](auto beginning) { require_beginning(source(beginning)); });
-    return read_mesh(source(file.bytes()));
+    return read_file(path, [](const MeshSource& source) { return read_mesh(source); });
+}
+
+MeshAndEdges read_mesh_and_edges(const std::filesystem::path& path) {
+    return read_file(path, [](const MeshSource& source) { return read_mesh_and_edges(source); });
 }
 
 } // namespace echinus

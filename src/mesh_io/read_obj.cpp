@@ -6,19 +6,19 @@
 #include <charconv>
 #include <limits>
 
-// The format: Wavefront Technologies, "Advanced Visualizer", appendix B1, "Object Files". Reads vertices and
-// faces; ignores the other statements.
+// The format: Wavefront Technologies, "Advanced Visualizer", appendix B1, "Object Files". Reads vertices,
+// faces and lines; ignores the other statements.
 
 namespace echinus {
 
 namespace {
 
-constexpr std::array<std::string_view, 42> kOtherStatements{
-    "vt",   "vn",     "vp",     "p",        "l",        "fo",         "o",         "g",      "s",
-    "mg",   "mtllib", "usemtl", "maplib",   "usemap",   "bevel",      "lod",       "cstype", "deg",
-    "bmat", "step",   "curv",   "curv2",    "surf",     "parm",       "trim",      "hole",   "scrv",
-    "sp",   "end",    "con",    "c_interp", "d_interp", "shadow_obj", "trace_obj", "ctech",  "stech",
-    "call", "csh",    "cdc",    "bzp",      "bsp",      "res"};
+constexpr std::array<std::string_view, 41> kOtherStatements{
+    "vt",     "vn",     "vp",       "p",        "fo",         "o",         "g",      "s",     "mg",
+    "mtllib", "usemtl", "maplib",   "usemap",   "bevel",      "lod",       "cstype", "deg",   "bmat",
+    "step",   "curv",   "curv2",    "surf",     "parm",       "trim",      "hole",   "scrv",  "sp",
+    "end",    "con",    "c_interp", "d_interp", "shadow_obj", "trace_obj", "ctech",  "stech", "call",
+    "csh",    "cdc",    "bzp",      "bsp",      "res"};
 
 class ObjReader {
   public:
@@ -39,6 +39,8 @@ class ObjReader {
             read_vertex();
         else if (keyword == "f")
             read_face();
+        else if (keyword == "l")
+            read_line();
         else if (std::find(kOtherStatements.begin(), kOtherStatements.end(), keyword) ==
                  kOtherStatements.end())
             scanner_.fail(ErrorCode::WrongFormat, in_quotes(keyword) + " is no statement of an OBJ file");
@@ -57,6 +59,16 @@ class ObjReader {
         for (; !scanner_.at_end_of_line(); ++corner_count)
             mesh_.corners.push_back(vertex_index(scanner_.next_word()));
         mesh_.corner_counts.push_back(corner_count);
+    }
+
+    /// A line of k corners is k - 1 polygons of two.
+    void read_line() {
+        for (std::uint32_t last = vertex_index(scanner_.next_word()); !scanner_.at_end_of_line();) {
+            const std::uint32_t next = vertex_index(scanner_.next_word());
+            mesh_.corners.insert(mesh_.corners.end(), {last, next});
+            mesh_.corner_counts.push_back(2);
+            last = next;
+        }
     }
 
     /// Of a corner v, v/vt, v//vn or v/vt/vn: from 1, or negative and counted back from the latest vertex.
@@ -81,7 +93,7 @@ class ObjReader {
     void require_largest_index() const {
         if (largest_index_ >= static_cast<std::int64_t>(mesh_.vertices.size()))
             scanner_.fail_at(line_of_largest_, ErrorCode::InvalidMesh,
-                             "the face refers to vertex " + std::to_string(largest_index_ + 1) +
+                             "the statement refers to vertex " + std::to_string(largest_index_ + 1) +
                                  ", but the file has only " + std::to_string(mesh_.vertices.size()) +
                                  " vertices");
     }

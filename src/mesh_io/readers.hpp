@@ -3,6 +3,8 @@
 #include "mesh_io/mesh_source.hpp"
 #include "mesh_io/polygon_mesh.hpp"
 
+#include <echinus/mesh_io.hpp>
+
 /// One reader per kind of file. OBJ, OFF, PLY and STL are read here and not by Assimp, whose readers (5.2.5)
 /// round a tenth of all written coordinates to another float than the nearest, miss most truncations, and
 /// abort (OFF) or hang (PLY) on some damaged files.
@@ -23,6 +25,7 @@ PolygonMesh read_scene(const MeshSource& source);
 
 /// read_mesh() for the bytes of a file; the extension of the source's name determines the format.
 TriangleMesh read_mesh(const MeshSource& source);
+MeshAndEdges read_mesh_and_edges(const MeshSource& source);
 
 /// Refuses the first bytes of a stream when read_mesh() would refuse it whatever followed them, so that a
 /// stream without an end is not read up to a limit.

@@ -31,4 +31,15 @@ void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
     write_file(path, encode(mesh));
 }
 
+void write_mesh_and_edges(const std::filesystem::path& path, const MeshAndEdges& drawn) {
+    if (drawn.edges.empty()) return write_mesh(path, drawn.mesh);
+    if (encoder_for(path) != encode_obj)
+        throw Error(ErrorCode::WrongFormat,
+                    path.string() + ": edges without faces are written to files that end in .obj");
+    TriangleMesh joined = drawn.mesh;
+    for (const auto& [a, b] : drawn.edges) joined.faces.push_back({a, b, b});
+    require_valid(joined);
+    write_file(path, encode_obj(drawn.mesh) + encode_obj_lines(drawn.edges));
+}
+
 } // namespace echinus

@@ -69,6 +69,7 @@ Deformable make_cloth(const MeshCloth& cloth, const NamedMesh& start, const Clot
         require_same_faces(start, rest);
         options.rest_vertices = std::move(rest.mesh.vertices);
     }
+    options.threads = meshes.threads;
     options.pins = chosen(cloth.pins, start, "cloth.pins");
     for (const std::uint32_t vertex : chosen(cloth.attachments, start, "cloth.attachments"))
         options.attachments.push_back({.particle = vertex});

@@ -32,12 +32,18 @@ TEST(ReadObj, ReadsEverySpellingOfACorner) {
     }
 }
 
-TEST(ReadObj, PassesOverEverythingButVerticesAndFaces) {
+TEST(ReadObj, PassesOverEverythingButVerticesFacesAndLines) {
     const PolygonMesh mesh =
         read("# made by hand\nmtllib a.mtl\no thing\ng part\nv 0 0 0 1\nv 1 0 0 0.5 0.5 0.5\nvt 0 0\n"
-             "vn 0 0 1\nv 1 1 0\nusemtl red\ns off\np 1\nl 1 2\nf 1 2 3\n");
+             "vn 0 0 1\nv 1 1 0\nusemtl red\ns off\np 1\nf 1 2 3\n");
     EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}));
     EXPECT_EQ(mesh.corners, (Indices{0, 1, 2}));
+}
+
+TEST(ReadObj, CutsALineIntoPolygonsOfTwoCorners) {
+    const PolygonMesh mesh = read(kSquare + "f 1 2 3\nl 1/4 2/5 -1\nl 3\n");
+    EXPECT_EQ(mesh.corners, (Indices{0, 1, 2, 0, 1, 1, 3}));
+    EXPECT_EQ(mesh.corner_counts, (Indices{3, 2, 2}));
 }
 
 TEST(ReadObj, CountsNegativeNumbersFromTheVerticesSoFar) {
@@ -52,7 +58,8 @@ TEST(ReadObj, LetsAFacePrecedeItsVertices) {
 TEST(ReadObj, NamesTheLineOfAnIndexOutOfRange) {
     expect_obj_error(ErrorCode::InvalidMesh, "line 5: there is no vertex 0", kSquare + "f 0 1 2\n");
     expect_obj_error(ErrorCode::InvalidMesh, "line 5: there is no vertex -5", kSquare + "f -5 1 2\n");
-    expect_obj_error(ErrorCode::InvalidMesh, "line 6: the face refers to vertex 7, but the file has only 4",
+    expect_obj_error(ErrorCode::InvalidMesh,
+                     "line 6: the statement refers to vertex 7, but the file has only 4",
                      kSquare + "f 1 2 3\nf 1 2 7\nf 1 2 3\n");
     expect_obj_error(ErrorCode::InvalidMesh, "line 5: there is no vertex 4294967297",
                      kSquare + "f 1 2 4294967297\n");

@@ -57,6 +57,31 @@ TEST_F(WriteMesh, WritesFloatsThatReadBackToTheSameBits) {
     }
 }
 
+TEST_F(WriteMesh, KeepsTheEdgesThatNoFaceHas) {
+    const MeshAndEdges flag{{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, 2}}, {{0, 1, 2}}},
+                            {{0, 3}, {4, 3}}};
+    write_mesh_and_edges(path("flag.obj"), flag);
+    const MeshAndEdges read = read_mesh_and_edges(path("flag.obj"));
+    EXPECT_EQ(read.mesh.vertices, flag.mesh.vertices);
+    EXPECT_EQ(read.mesh.faces, flag.mesh.faces);
+    EXPECT_EQ(read.edges, flag.edges);
+    EXPECT_EQ(read_mesh(path("flag.obj")).vertices.size(), 3U) << "without edges, only what faces use";
+}
+
+TEST_F(WriteMesh, WritesAThreadAlone) {
+    const MeshAndEdges thread{{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {}}, {{0, 1}, {1, 2}}};
+    write_mesh_and_edges(path("thread.obj"), thread);
+    EXPECT_EQ(read_mesh_and_edges(path("thread.obj")).edges, thread.edges);
+    expect_error(ErrorCode::InvalidMesh, "no faces", [&] { read_mesh(path("thread.obj")); });
+}
+
+TEST_F(WriteMesh, RefusesEdgesInAFormatWithoutLinesAndOfMissingVertices) {
+    MeshAndEdges flag{{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, {{0, 1}}};
+    expect_error(ErrorCode::WrongFormat, "end in .obj", [&] { write_mesh_and_edges(path("a.ply"), flag); });
+    flag.edges = {{0, 3}};
+    expect_error(ErrorCode::InvalidMesh, "vertex 3", [&] { write_mesh_and_edges(path("a.obj"), flag); });
+}
+
 TEST_F(WriteMesh, KeepsFacesAndPositionsInEveryFormat) {
     const TriangleMesh torus = make_torus(1, 0.4, 20, 12);
     for (const char* name : {"a.obj", "a.off", "a.ply", "a.stl", "A.STL"}) {

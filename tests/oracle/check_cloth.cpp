@@ -3,6 +3,7 @@
 #include "json.hpp"
 #include "oracle/intersection_judge.hpp"
 #include "recording/simulation_folder.hpp"
+#include "recording/threads.hpp"
 
 #include <fmt/format.h>
 
@@ -20,7 +21,8 @@ std::optional<FacePair> first_of(const std::vector<FacePair>& pairs) {
 }
 
 JudgedFrame judge(const SimulationFolder& folder, std::size_t sample) {
-    const TriangleMesh cloth = folder.cloth(sample);
+    const MeshAndEdges saved = folder.cloth(sample);
+    const TriangleMesh cloth{saved.mesh.vertices, surface_of(saved)};
     const auto model_pairs = intersecting_pairs_by_cgal(cloth, folder.collider(sample));
     const auto own_pairs = self_intersecting_pairs_by_cgal(cloth);
     return {.frame = folder.frame_of(sample),
@@ -63,7 +65,7 @@ ClothCheckResult check_cloth(const std::filesystem::path& path, const ClothCheck
     const auto start = std::chrono::steady_clock::now();
     const SimulationFolder folder(path);
     ClothCheckResult result{.folder = path.string(),
-                            .cloth_face_count = folder.cloth(0).faces.size(),
+                            .cloth_face_count = surface_of(folder.cloth(0)).size(),
                             .model_face_count = folder.collider(0).faces.size()};
     const std::vector<std::size_t> samples = samples_to_judge(folder.sample_count(), options.stride);
     for (const std::size_t sample : samples) {

@@ -3,6 +3,7 @@
 import _thread
 import copy
 import json
+import pathlib
 import pickle
 import threading
 
@@ -89,6 +90,16 @@ def test_a_mesh_or_a_map_may_replace_the_model():
         simulation = ech.Simulation.from_scene(SHEET, model=model)
         simulation.step(100)
         assert simulation.state_hash == expected.state_hash
+
+
+def test_the_lines_of_a_file_are_threads(tmp_path: pathlib.Path):
+    (tmp_path / "thread.obj").write_text("v -1 0 1\nv 0 0 1\nv 1 0 1\nl 1 2 3\n")
+    scene = {"model": {"torus": {}}, "cloth": {"mesh": "thread.obj", "thickness": 0.02}}
+    simulation = ech.Simulation.from_scene(scene, model_folders=[tmp_path])
+    simulation.step(30)
+    ends = simulation.positions
+    assert ends.shape == (3, 3) and simulation.faces.shape == (0, 3)
+    assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(1, abs=0.02), "held by its sticks"
 
 
 def test_a_mesh_may_replace_the_file_of_the_cloth():

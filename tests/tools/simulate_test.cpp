@@ -152,6 +152,32 @@ TEST_F(SimulateCommand, LetsAMeshFromAFileFallAsCloth) {
         {"render", "moment", "run", "--samples", "1", "--width", "60", "--height", "40", "-o", "p.png"});
 }
 
+TEST_F(SimulateCommand, LetsAThreadAndAKiteOnAThreadFall) {
+    write("thread.obj", "v -1 0 1\nv -0.5 0 1\nv 0 0 1\nv 0.5 0 1\nv 1 0 1\nl 1 2 3 4 5\n");
+    write("kite.obj", "v 0 0 1\nv 1 0 1\nv 1 1 1\nv 1.5 1 1.5\nv 2 1 2\nf 1 2 3\nl 3 4 5\n");
+    for (const std::string name : {"thread", "kite"}) {
+        write("scene.json", R"({"model": {"box": {}}, "frame_limit": 60, "cloth": {"mesh": ")" + name +
+                                R"(.obj", "thickness": 0.05}})");
+        const nlohmann::json report = simulate("scene.json");
+        EXPECT_EQ(report.at("particles"), 5);
+        EXPECT_EQ(report.at("intersecting_pairs"), 0);
+        EXPECT_NE(content("run/cloth.obj").find("\nl "), std::string::npos) << "the threads are saved";
+        expect_success(
+            {"render", "moment", "run", "--samples", "1", "--width", "60", "--height", "40", "-o", "p.png"});
+    }
+}
+
+TEST_F(SimulateCommand, NamesTheModelThatAClothBeginsIn) {
+    write("scene.json", R"({"model": {"box": {}}, "cloth": {"size": [2, 2], "particles": [5, 5]}})");
+    expect_failure(1, "scene.json: \"cloth\": the deformable begins intersecting the box in",
+                   {"simulate", "scene.json", "-o", "run"});
+    write("scene.json",
+          R"({"model": {"box": {}}, "cloth": {"size": [0.2, 0.2], "particles": [2, 2], "pins": [[0, 0]]}})");
+    expect_failure(1,
+                   "4 particles begin inside the box, 1 of them pinned there; the first is particle 0; move",
+                   {"simulate", "scene.json", "-o", "run"});
+}
+
 TEST_F(SimulateCommand, NamesTheMeshOfAClothAndTheFaceAtFault) {
     const std::string sheet = "v 0 0 2\nv 1 0 2\nv 1 1 2\nv 0 1 2\nv 0 0 3\nf 1 2 3\nf 1 3 4\nf 1 3 5\n";
     write("three.obj", sheet);
@@ -159,8 +185,7 @@ TEST_F(SimulateCommand, NamesTheMeshOfAClothAndTheFaceAtFault) {
     expect_failure(1, "three.obj: the edge between vertices 0 and 2 has the faces 0, 1, 2",
                    {"simulate", "scene.json", "-o", "run"});
     write("scene.json", R"({"model": {"box": {}}, "cloth": {"mesh": "nowhere.obj"}})");
-    expect_failure(1, "scene.json: the model nowhere.obj is in none",
-                   {"simulate", "scene.json", "-o", "run"});
+    expect_failure(1, "scene.json: the mesh nowhere.obj is in none", {"simulate", "scene.json", "-o", "run"});
     write("scene.json", R"({"model": {"box": {}}, "cloth": {"mesh": {"box": {}}, "pins": [8]}})");
     expect_failure(1, "scene.json: \"cloth\": cloth.mesh: a pin names vertex 8",
                    {"simulate", "scene.json", "-o", "run"});

@@ -106,7 +106,7 @@ TEST_F(SimulationFolderTest, GivesTheClothOfEverySampleWithTheFacesOfItsRestMesh
     const SimulationFolder simulation(folder());
     ASSERT_EQ(simulation.sample_count(), 10U);
     for (std::size_t sample = 0; sample < 10; ++sample) {
-        const TriangleMesh cloth = simulation.cloth(sample);
+        const TriangleMesh cloth = simulation.cloth(sample).mesh;
         EXPECT_EQ(cloth.vertices, positions_at(sample, 10));
         EXPECT_EQ(cloth.faces, square_cloth().faces);
     }

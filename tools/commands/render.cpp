@@ -3,6 +3,7 @@
 #include "output.hpp"
 #include "progress.hpp"
 #include "recording/simulation_folder.hpp"
+#include "recording/threads.hpp"
 
 #include <echinus/intersections.hpp>
 #include <echinus/map_file.hpp>
@@ -181,25 +182,38 @@ struct SimulationPicture : PictureArguments {
     double close_up_reach = 0; ///< along each axis; 0: no close-up
 };
 
-/// Marks the faces that intersect others.
-void mark_intersections(RenderedObject& collider, RenderedObject& cloth) {
-    for (const auto& [cloth_face, face] : intersecting_pairs(cloth.mesh, collider.mesh)) {
-        cloth.marked_faces.push_back(cloth_face);
-        collider.marked_faces.push_back(face);
+/// Marks what intersects something: a face of the cloth, or the tube of a piece of thread.
+void mark(RenderedObject& drawn, std::uint32_t number, std::size_t face_count) {
+    const auto first_of_tubes = static_cast<std::uint32_t>(face_count);
+    if (number < first_of_tubes) return drawn.marked_faces.push_back(number);
+    for (std::uint32_t i = 0; i < kTubeFaces; ++i)
+        drawn.marked_faces.push_back(first_of_tubes + kTubeFaces * (number - first_of_tubes) + i);
+}
+
+void mark_intersections(const MeshAndEdges& cloth, RenderedObject& drawn_collider,
+                        RenderedObject& drawn_cloth) {
+    const TriangleMesh surface{cloth.mesh.vertices, surface_of(cloth)};
+    const auto mark_cloth = [&](std::uint32_t number) { mark(drawn_cloth, number, cloth.mesh.faces.size()); };
+    for (const auto& [number, face] : intersecting_pairs(surface, drawn_collider.mesh)) {
+        mark_cloth(number);
+        drawn_collider.marked_faces.push_back(face);
     }
-    for (const auto& [a, b] : self_intersecting_pairs(cloth.mesh))
-        cloth.marked_faces.insert(cloth.marked_faces.end(), {a, b});
+    for (const auto& [a, b] : self_intersecting_pairs(surface)) {
+        mark_cloth(a);
+        mark_cloth(b);
+    }
 }
 
 /// The collider and the cloth at one moment.
 std::array<RenderedObject, 2> objects_at(const SimulationFolder& folder, std::size_t sample) {
     std::array<RenderedObject, 2> objects;
+    const MeshAndEdges cloth = folder.cloth(sample);
     objects[0].mesh = folder.collider(sample);
-    objects[1].mesh = folder.cloth(sample);
+    objects[1].mesh = with_tubes(cloth);
     objects[1].colour = palette::kCloth;
     objects[1].back_colour = palette::kClothBack;
     objects[1].crease_angle_deg = 180; // cloth has folds, not edges
-    mark_intersections(objects[0], objects[1]);
+    mark_intersections(cloth, objects[0], objects[1]);
     return objects;
 }
 

@@ -8,6 +8,7 @@
 #include <echinus/mesh_io.hpp>
 
 #include <string>
+#include <utility>
 
 using namespace echinus;
 namespace fs = std::filesystem;
@@ -83,8 +84,11 @@ RepairedMesh load_model(const Scene& scene, const fs::path& scene_path, const st
 ClothMeshes load_cloth(const Scene& scene, const fs::path& scene_path, const std::vector<fs::path>& folders) {
     const auto read = [&](const std::optional<SceneModel>& model) {
         const std::optional<fs::path> file = model ? model_file(*model, scene_path, folders) : std::nullopt;
-        return file ? read_mesh(*file) : TriangleMesh{};
+        return file ? read_mesh_and_edges(*file) : MeshAndEdges{};
     };
     if (!scene.mesh_cloth) return {};
-    return {.mesh = read(scene.mesh_cloth->mesh), .rest_mesh = read(scene.mesh_cloth->rest_mesh)};
+    MeshAndEdges start = read(scene.mesh_cloth->mesh);
+    return {.mesh = std::move(start.mesh),
+            .rest_mesh = read(scene.mesh_cloth->rest_mesh).mesh,
+            .threads = std::move(start.edges)};
 }

@@ -6,14 +6,17 @@
 #include "progress.hpp"
 #include "recording/player_page.hpp"
 #include "recording/point_cache.hpp"
+#include "recording/threads.hpp"
 
 #include <echinus/mesh_io.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
+#include <vector>
 
 using namespace echinus;
 namespace fs = std::filesystem;
@@ -43,7 +46,8 @@ class ResultFolder {
     ResultFolder(const fs::path& target, bool obj) : folder_(target), obj_(obj) {}
 
     void begin(const Deformable& cloth, const TriangleMesh& collider, std::uint32_t stride) {
-        write_mesh(folder_.path_of("cloth.obj"), {cloth.positions, cloth.faces});
+        threads_ = threads_of(cloth);
+        write_mesh_and_edges(folder_.path_of("cloth.obj"), drawn(cloth));
         write_mesh(folder_.path_of("collider.obj"), collider);
         if (obj_) {
             fs::create_directory(folder_.path_of(kFramesName));
@@ -54,8 +58,8 @@ class ResultFolder {
     void add(const Simulation& simulation) {
         if (cache_) return cache_->add(simulation.positions());
         const Deformable& cloth = simulation.deformable();
-        write_mesh(folder_.path_of(kFramesName) / fmt::format("cloth_{:06}.obj", simulation.frame()),
-                   {cloth.positions, cloth.faces});
+        write_mesh_and_edges(
+            folder_.path_of(kFramesName) / fmt::format("cloth_{:06}.obj", simulation.frame()), drawn(cloth));
     }
     void commit(const Json& report) {
         if (cache_) cache_->commit();
@@ -65,8 +69,11 @@ class ResultFolder {
     }
 
   private:
+    MeshAndEdges drawn(const Deformable& cloth) const { return {{cloth.positions, cloth.faces}, threads_}; }
+
     OutputFolder folder_;
     bool obj_;
+    std::vector<std::array<std::uint32_t, 2>> threads_;
     std::optional<PointCacheWriter> cache_;
 };
 
@@ -124,8 +131,10 @@ auto made_as_scene_says(const SimulateArguments& arguments, const char* key, con
     try {
         return make();
     } catch (const Error& error) {
-        if (error.code() != ErrorCode::InvalidOptions) throw;
-        throw Error(ErrorCode::InvalidScene, arguments.scene.string() + ": \"" + key + "\": " + error.what());
+        if (error.code() == ErrorCode::InvalidOptions)
+            throw Error(ErrorCode::InvalidScene,
+                        arguments.scene.string() + ": \"" + key + "\": " + error.what());
+        throw Error(error.code(), arguments.scene.string() + ": " + error.what());
     }
 }
 

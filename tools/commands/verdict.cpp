@@ -1,12 +1,12 @@
 #include "commands/verdict.hpp"
 
 #include "geometry/parallel.hpp"
+#include "recording/threads.hpp"
 
 #include <echinus/intersections.hpp>
 
 #include <algorithm>
 #include <limits>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -32,21 +32,6 @@ void judge_particles(std::span<const Vec3f> positions, const TriangleMesh& solid
     }
 }
 
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
-
-/// The faces of a cloth, and its edges without faces as faces without area.
-TriangleMesh surface_of(const Deformable& cloth) {
-    TriangleMesh surface{cloth.positions, cloth.faces};
-    std::set<Edge> face_edges;
-    for (const auto& [a, b, c] : cloth.faces)
-        for (const auto& edge : {std::minmax(a, b), std::minmax(b, c), std::minmax(c, a)})
-            face_edges.insert(edge);
-    for (const Stick& stick : cloth.sticks)
-        if (stick.kind == StickKind::Structural && !face_edges.contains(std::minmax(stick.a, stick.b)))
-            surface.faces.push_back({stick.a, stick.b, stick.b});
-    return surface;
-}
-
 /// As a recording has it: rounded to float.
 TriangleMesh placed(TriangleMesh mesh, const RigidTransform& pose) {
     for (Vec3f& vertex : mesh.vertices) vertex = Vec3f(pose.to_world(Vec3d(vertex)));
@@ -54,7 +39,7 @@ TriangleMesh placed(TriangleMesh mesh, const RigidTransform& pose) {
 }
 
 void judge_faces(const Deformable& cloth, const TriangleMesh& model, Verdict& verdict) {
-    const TriangleMesh surface = surface_of(cloth);
+    const TriangleMesh surface{cloth.positions, surface_of(cloth)};
     if (surface.faces.empty()) return;
     verdict.model_pair_count = intersecting_pairs(surface, model).size();
     verdict.own_pair_count = self_intersecting_pairs(surface).size();

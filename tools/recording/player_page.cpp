@@ -3,6 +3,7 @@
 #include "encoding.hpp"
 #include "files/mapped_file.hpp"
 #include "recording/recording_code.hpp"
+#include "recording/threads.hpp"
 #include "rivals/compare/machine.hpp"
 
 #include <echinus/error.hpp>
@@ -88,7 +89,7 @@ Json description_of(const PlayedSimulation& played, const Lattice& lattice) {
           {"faces", played.collider.faces.size()},
           {"centre", to_json(sphere.centre)},
           {"radius", sphere.radius}}},
-        {"cloth_faces", simulation.deformable().faces.size()},
+        {"cloth_faces", surface_of(simulation.deformable()).size()},
         {"lattice_step", lattice.step},
         {"figures", figures_of(played.result)},
         {"frames", frames_of(played.recording, lattice, simulation.colliders().front().moves())},
@@ -113,7 +114,7 @@ std::vector<std::uint8_t> compressed(const PlayedSimulation& played, const Latti
     Deflater deflater;
     deflater.add(bytes_of(played.collider.vertices));
     deflater.add(bytes_of(played.collider.faces));
-    deflater.add(bytes_of(played.result.simulation.deformable().faces));
+    deflater.add(bytes_of(surface_of(played.result.simulation.deformable())));
     add_motion(deflater, played.recording.frames(), lattice);
     return deflater.finish();
 }

@@ -91,10 +91,10 @@ std::vector<std::size_t> candidates(std::size_t sample_count) {
 } // namespace
 
 SimulationFolder::SimulationFolder(const fs::path& folder)
-    : cache_(folder / "cloth.pc2"), cloth_(read_mesh(folder / "cloth.obj")) {
-    if (cloth_.vertices.size() != cache_.point_count())
+    : cache_(folder / "cloth.pc2"), cloth_(read_mesh_and_edges(folder / "cloth.obj")) {
+    if (cloth_.mesh.vertices.size() != cache_.point_count())
         throw Error(ErrorCode::Damaged, (folder / "cloth.obj").string() + ": has " +
-                                            std::to_string(cloth_.vertices.size()) +
+                                            std::to_string(cloth_.mesh.vertices.size()) +
                                             " vertices, but cloth.pc2 has " +
                                             std::to_string(cache_.point_count()) + " points; simulate again");
     read_report(folder / "report.json");
@@ -132,8 +132,8 @@ std::size_t SimulationFolder::sample_at(std::int64_t frame) const {
                                                std::to_string(std::lround(frame_of(sample_count() - 1))));
 }
 
-TriangleMesh SimulationFolder::cloth(std::size_t sample) const {
-    return {cloth_positions(sample), cloth_.faces};
+MeshAndEdges SimulationFolder::cloth(std::size_t sample) const {
+    return {{cloth_positions(sample), cloth_.mesh.faces}, cloth_.edges};
 }
 
 TriangleMesh SimulationFolder::collider(std::size_t sample) const {

@@ -2,7 +2,7 @@
 
 #include "recording/point_cache.hpp"
 
-#include <echinus/mesh.hpp>
+#include <echinus/mesh_io.hpp>
 
 #include <cstdint>
 #include <filesystem>
@@ -25,7 +25,7 @@ class SimulationFolder {
     std::size_t sample_at(std::int64_t frame) const;
 
     std::vector<echinus::Vec3f> cloth_positions(std::size_t sample) const { return cache_.positions(sample); }
-    echinus::TriangleMesh cloth(std::size_t sample) const;
+    echinus::MeshAndEdges cloth(std::size_t sample) const;
     /// In the world, at its pose in that sample.
     echinus::TriangleMesh collider(std::size_t sample) const;
 
@@ -43,7 +43,8 @@ class SimulationFolder {
     void read_report(const std::filesystem::path& path);
 
     PointCacheReader cache_;
-    echinus::TriangleMesh cloth_, collider_;
+    echinus::MeshAndEdges cloth_;
+    echinus::TriangleMesh collider_;
     std::vector<Pose> poses_; ///< ascending frames, at least one
     echinus::Vec3d up_;
     std::optional<double> rest_frame_;

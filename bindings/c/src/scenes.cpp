@@ -27,14 +27,16 @@ class Meshes {
     }
     ClothMeshes cloth(const Scene& scene) const {
         if (!scene.mesh_cloth) return {};
-        return {.mesh = from_file(scene.mesh_cloth->mesh),
-                .rest_mesh = from_file(scene.mesh_cloth->rest_mesh)};
+        MeshAndEdges start = from_file(scene.mesh_cloth->mesh);
+        return {.mesh = std::move(start.mesh),
+                .rest_mesh = from_file(scene.mesh_cloth->rest_mesh).mesh,
+                .threads = std::move(start.edges)};
     }
 
   private:
-    TriangleMesh from_file(const std::optional<SceneModel>& model) const {
-        return model && std::holds_alternative<ModelFile>(*model) ? std::visit(*this, *model)
-                                                                  : TriangleMesh{};
+    MeshAndEdges from_file(const std::optional<SceneModel>& model) const {
+        const auto* file = model ? std::get_if<ModelFile>(&*model) : nullptr;
+        return file != nullptr ? read_mesh_and_edges(find_model(*file, folders_)) : MeshAndEdges{};
     }
 
     std::vector<fs::path> folders_;

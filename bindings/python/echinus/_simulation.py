@@ -18,6 +18,9 @@ from echinus._meshes import Mesh, MeshLike, Path, arrays_of, inspect, read_mesh
 
 Vector = tuple[float, float, float]
 
+#: Vertices and faces, and the edges that no face has.
+_Drawn = tuple["_core.Arrays | None", list[tuple[int, int]]]
+
 
 @dataclass(frozen=True)
 class SimulationOptions:
@@ -168,6 +171,11 @@ class Simulation:
                 return arrays_of(given)
             return None if name is None else arrays_of(read_mesh(_core.find_model(name, folders)))
 
+        def read_cloth(name: str | None, given: MeshLike | None) -> _Drawn:
+            if given is not None or name is None:
+                return read(None, given), []
+            return _core.read_mesh_and_edges(_core.find_model(name, folders))
+
         if isinstance(model, (ExactMap, DistanceMap)):
             collider = model._built
         else:
@@ -175,8 +183,9 @@ class Simulation:
             if not (parsed.surface_collision or allow_open_colliders):
                 _require_closed(Mesh(*arrays), parsed.model_file or "the model")
             collider = parsed.build_map(*arrays, threads)
-        cloth_arrays, rest_arrays = read(parsed.cloth_file, cloth), read(parsed.rest_file, rest_cloth)
-        return cls._of(_core.Simulation(parsed, collider, cloth_arrays, rest_arrays), parsed.frame_limit)
+        start, threads_of_cloth = read_cloth(parsed.cloth_file, cloth)
+        rest, _ = read_cloth(parsed.rest_file, rest_cloth)
+        return cls._of(_core.Simulation(parsed, collider, start, rest, threads_of_cloth), parsed.frame_limit)
 
     @classmethod
     def _of(cls, core: _core.Simulation, frame_limit: int) -> Simulation:

@@ -110,6 +110,10 @@ void bind_meshes(py::module_& module) {
     module.def("read_mesh", [](const std::filesystem::path& path) {
         return arrays_of(unlocked([&] { return read_mesh(path); }));
     });
+    module.def("read_mesh_and_edges", [](const std::filesystem::path& path) {
+        MeshAndEdges read = unlocked([&] { return read_mesh_and_edges(path); });
+        return py::make_tuple(arrays_of(std::move(read.mesh)), read.edges);
+    });
     module.def("write_mesh",
                [](const std::filesystem::path& path, const Vertices& vertices, const Faces& faces) {
                    const TriangleMesh mesh = mesh_of(vertices, faces);

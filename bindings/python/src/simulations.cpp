@@ -143,11 +143,12 @@ AnyMap map_of(const py::object& map) {
 
 std::unique_ptr<SharedSimulation> make_shared_simulation(const Scene& scene, const py::object& model_map,
                                                          const std::optional<Arrays>& cloth,
-                                                         const std::optional<Arrays>& rest) {
+                                                         const std::optional<Arrays>& rest,
+                                                         std::vector<std::array<std::uint32_t, 2>> threads) {
     const auto mesh = [](const std::optional<Arrays>& arrays) {
         return arrays ? mesh_of(arrays->first, arrays->second) : TriangleMesh{};
     };
-    const ClothMeshes meshes{mesh(cloth), mesh(rest)};
+    const ClothMeshes meshes{mesh(cloth), mesh(rest), std::move(threads)};
     const AnyMap map = map_of(model_map);
     const py::gil_scoped_release unlocked;
     return std::make_unique<SharedSimulation>(make_simulation(scene, map, meshes));

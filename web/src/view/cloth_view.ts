@@ -9,15 +9,19 @@ export class ClothView {
     readonly #depthShare = { value: 0 };
     readonly mesh = new THREE.Mesh(sheet(NOTHING, NO_FACES), fabric(this.#depthShare));
     readonly #cut = new THREE.Mesh(facesOf(this.mesh.geometry), warning());
+    readonly #threads = new THREE.LineSegments(threadsOf(this.mesh.geometry), new THREE.LineBasicMaterial({ color: CLOTH }));
     #faces: Uint32Array = NO_FACES;
     #shown: FrameArrays | undefined;
 
     constructor() {
-        this.mesh.add(this.#cut);
-        for (const mesh of [this.mesh, this.#cut]) mesh.frustumCulled = false; // it moves: its bounding sphere would be wrong a frame later
+        this.mesh.add(this.#cut, this.#threads);
+        for (const mesh of [this.mesh, this.#cut, this.#threads]) mesh.frustumCulled = false; // it moves: its bounding sphere would be wrong a frame later
     }
 
-    /** Another cloth, which becomes visible with its first arrays. */
+    /**
+     * Another cloth, which becomes visible with its first arrays.
+     * @param faces  a face with the same corner twice at its end is a piece of thread
+     */
     begin(faces: Uint32Array): void {
         this.#faces = faces;
         this.#shown = undefined;
@@ -48,9 +52,10 @@ export class ClothView {
     }
 
     #lay(geometry: THREE.BufferGeometry): void {
-        for (const mesh of [this.mesh, this.#cut]) mesh.geometry.dispose();
+        for (const mesh of [this.mesh, this.#cut, this.#threads]) mesh.geometry.dispose();
         this.mesh.geometry = geometry;
         this.#cut.geometry = facesOf(geometry);
+        this.#threads.geometry = threadsOf(geometry);
     }
 
     get positions(): Float32Array | undefined {
@@ -123,7 +128,15 @@ function sheet({ positions, normals, depths }: FrameArrays, faces: Uint32Array):
     return geometry;
 }
 
-/** Faces of another geometry, none yet. The two share the array of positions, so they are disposed of together. */
+/** The faces of another geometry that are threads, as lines. The two share the array of positions, so they are disposed of together. */
+function threadsOf({ attributes, index }: THREE.BufferGeometry): THREE.BufferGeometry {
+    const corners = index!.array;
+    const ends: number[] = [];
+    for (let i = 0; i < corners.length; i += 3) if (corners[i + 1] === corners[i + 2]) ends.push(corners[i], corners[i + 1]);
+    return new THREE.BufferGeometry().setIndex(new THREE.BufferAttribute(new Uint32Array(ends), 1)).setAttribute('position', attributes.position);
+}
+
+/** Faces of another geometry, none yet. They share the array of positions, too. */
 function facesOf({ attributes, index }: THREE.BufferGeometry): THREE.BufferGeometry {
     const corners = new THREE.BufferAttribute(new Uint32Array(index!.count), 1).setUsage(THREE.DynamicDrawUsage);
     const faces = new THREE.BufferGeometry().setIndex(corners).setAttribute('position', attributes.position);

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <echinus/mesh_io.hpp>
+#include <echinus/simulation.hpp>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+/// Threads of a cloth: edges without faces. Among faces a piece of thread is { a, b, b }, a face without
+/// area, as for echinus::intersecting_pairs().
+
+/// The structural sticks that are no edges of faces.
+std::vector<std::array<std::uint32_t, 2>> threads_of(const echinus::Deformable& cloth);
+
+/// The faces of a cloth, and after them its threads.
+std::vector<echinus::Triangle> surface_of(const echinus::Deformable& cloth);
+std::vector<echinus::Triangle> surface_of(const echinus::MeshAndEdges& cloth);
+
+/// To draw: the mesh, and a tube of kTubeFaces faces along each thread, in their order, three tenths as thick
+/// as the threads' pieces are long.
+echinus::TriangleMesh with_tubes(const echinus::MeshAndEdges& cloth);
+inline constexpr std::uint32_t kTubeFaces = 12;
