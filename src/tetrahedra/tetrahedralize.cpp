@@ -1,0 +1,202 @@
+#include "exact_map/layout.hpp"
+#include "geometry/parallel.hpp"
+#include "tetrahedra/cut_points.hpp"
+#include "tetrahedra/mend.hpp"
+#include "tetrahedra/ranked_set.hpp"
+#include "tetrahedra/remove_pinches.hpp"
+#include "tetrahedra/stencils.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/tetrahedra.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace echinus {
+
+namespace {
+
+/// Shares of the time, roughly.
+constexpr double kSidesShare = 0.5, kCutsShare = 0.7, kStencilsShare = 0.8;
+
+struct Box {
+    Vec3d low, high;
+
+    double largest_coordinate() const {
+        double largest = 0;
+        for (const double c : {low.x, low.y, low.z, high.x, high.y, high.z})
+            largest = std::max(largest, std::abs(c));
+        return largest;
+    }
+    double volume() const {
+        const Vec3d extent = high - low;
+        return extent.x * extent.y * extent.z;
+    }
+};
+
+Box box_of(const ExactMapView& map) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+    const LatticeFrame frame = frame_of(map);
+    for (std::size_t i = 0; i < map.corners.size(); ++i) {
+        const Vec3d p = frame.to_local(Vec3d(map.vertices[map.corners[i]]));
+        box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+        box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+    }
+    return box;
+}
+
+void require_options(const TetrahedralizeOptions& options) {
+    if (!(options.size >= 0) || !std::isfinite(options.size))
+        throw Error(ErrorCode::InvalidOptions, "the size of tetrahedra must be finite and positive");
+    if ((options.size > 0) == (options.count > 0))
+        throw Error(ErrorCode::InvalidOptions,
+                    "either the size of the tetrahedra or their count must be given, and positive");
+    if (options.count > options.most_tetrahedra)
+        throw Error(ErrorCode::InvalidOptions, std::to_string(options.count) +
+                                                   " tetrahedra are more than the limit of " +
+                                                   std::to_string(options.most_tetrahedra));
+}
+
+void require_size(const Box& box, double size) {
+    if (size < box.largest_coordinate() / 4096)
+        throw Error(ErrorCode::InvalidOptions,
+                    "tetrahedra of the size " + std::to_string(size) +
+                        " are too small for coordinates of up to " +
+                        std::to_string(box.largest_coordinate()) +
+                        " as floats; choose a larger size or move the model to the origin");
+    const double vertex_count = BodyLattice::vertex_count_around(box.low, box.high, size);
+    if (vertex_count > static_cast<double>(TetrahedralizeOptions::kMaxLatticeVertices))
+        throw Error(ErrorCode::InvalidOptions,
+                    "with the size " + std::to_string(size) + " the lattice around the model has " +
+                        std::to_string(vertex_count) + " vertices, more than the limit of " +
+                        std::to_string(TetrahedralizeOptions::kMaxLatticeVertices) +
+                        "; choose a larger size");
+}
+
+/// The tetrahedra of all slabs, one after the other.
+std::vector<StencilTetrahedron> cut_lattice(const BodyLattice& lattice, const LatticeSides& sides,
+                                            const CutPoints& cuts, const TetrahedralizeOptions& options) {
+    std::vector<std::vector<StencilTetrahedron>> of_slab(lattice.slab_count());
+    std::atomic<std::size_t> count = 0;
+    const auto cut_slab = [&](std::size_t slab) {
+        const BodyLattice::Vertex begin = slab * lattice.slab_size(), end = begin + lattice.slab_size();
+        for (BodyLattice::Vertex vertex = begin; vertex < end; vertex += 2) // the corners of cubes
+            for_each_tetrahedron_at(lattice.place_of(vertex),
+                                    [&](const std::array<BodyLattice::Place, 4>& corners) {
+                                        for (const BodyLattice::Place& place : corners)
+                                            if (!lattice.contains(place)) return;
+                                        add_stencil(lattice, sides, cuts, corners, of_slab[slab]);
+                                    });
+        count += of_slab[slab].size();
+        if (count > options.most_tetrahedra)
+            throw Error(ErrorCode::InvalidOptions, "with the size " + std::to_string(lattice.size()) +
+                                                       " there are more tetrahedra than the limit of " +
+                                                       std::to_string(options.most_tetrahedra) +
+                                                       "; choose a larger size");
+    };
+    parallel_for(of_slab.size(), options.thread_count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t slab = begin; slab < end; ++slab) cut_slab(slab);
+    });
+    std::vector<StencilTetrahedron> all;
+    all.reserve(count);
+    for (std::vector<StencilTetrahedron>& tetrahedra : of_slab) {
+        all.insert(all.end(), tetrahedra.begin(), tetrahedra.end());
+        tetrahedra = {};
+    }
+    return all;
+}
+
+/// Numbers the vertices: those of the lattice in its order, then the cut points.
+TetrahedralMesh number_vertices(const BodyLattice& lattice, const CutPoints& cuts,
+                                const std::vector<StencilTetrahedron>& tetrahedra) {
+    RankedSet vertices(lattice.vertex_count()), points(cuts.size());
+    const auto set_of = [&](StencilCorner corner) -> RankedSet& {
+        return corner.is_cut_point() ? points : vertices;
+    };
+    for (const StencilTetrahedron& corners : tetrahedra)
+        for (const StencilCorner corner : corners) set_of(corner).insert(corner.number());
+    const std::uint32_t vertex_count = vertices.count_ranks();
+    TetrahedralMesh mesh;
+    mesh.vertices.reserve(vertex_count + points.count_ranks());
+    vertices.for_each([&](std::uint64_t vertex) {
+        mesh.vertices.emplace_back(cuts.position_of(lattice.place_of(vertex)));
+    });
+    points.for_each([&](std::uint64_t point) { mesh.vertices.emplace_back(cuts.position(point)); });
+    mesh.tetrahedra.reserve(tetrahedra.size());
+    for (const StencilTetrahedron& corners : tetrahedra) {
+        Tetrahedron& numbers = mesh.tetrahedra.emplace_back();
+        for (std::size_t i = 0; i < 4; ++i)
+            numbers[i] =
+                set_of(corners[i]).rank(corners[i].number()) + (corners[i].is_cut_point() ? vertex_count : 0);
+    }
+    return mesh;
+}
+
+/// One try; a body without tetrahedra where no vertex of the lattice is inside.
+Tetrahedralization stuff(const ExactMapView& map, const Box& box, double size,
+                         const TetrahedralizeOptions& options) {
+    const auto report = [&](double share) {
+        if (options.progress) options.progress(share);
+    };
+    require_size(box, size);
+    const BodyLattice lattice(box.low, box.high, size);
+    LatticeSides sides =
+        find_sides(map, lattice, options.thread_count, [&](double share) { report(kSidesShare * share); });
+    const auto find = [&](const Vec3d& outside, const Vec3d& inside) {
+        return find_entry(map, outside, inside);
+    };
+    CutPoints cuts(lattice, sides, find, options.thread_count);
+    cuts.warp(sides);
+    report(kCutsShare);
+    Tetrahedralization result{number_vertices(lattice, cuts, cut_lattice(lattice, sides, cuts, options)),
+                              size, 0};
+    report(kStencilsShare);
+    result.removed_tetrahedra = remove_pinches(result.mesh);
+    drop_unused_vertices(result.mesh);
+    report(1);
+    return result;
+}
+
+/// Tries sizes until the count is met: the count grows with the inverse cube of the size, and a little faster
+/// while the lattice misses parts of the model.
+Tetrahedralization stuff_count(const ExactMapView& map, const Box& box,
+                               const TetrahedralizeOptions& options) {
+    constexpr int kMostTries = 16;
+    constexpr double kTolerance = 0.05;
+    const auto wanted = static_cast<double>(options.count);
+    const auto miss = [&](const Tetrahedralization& body) {
+        return std::abs(static_cast<double>(body.mesh.tetrahedra.size()) / wanted - 1);
+    };
+    // As if the model filled its box, where twelve tetrahedra fill a cube: too large at first, not too small.
+    double size = std::max(std::cbrt(12 * box.volume() / wanted), box.largest_coordinate() / 2048);
+    Tetrahedralization best;
+    for (int i = 0; i < kMostTries; ++i) {
+        Tetrahedralization body = stuff(map, box, size, options);
+        const auto count = static_cast<double>(body.mesh.tetrahedra.size());
+        size *= std::clamp(std::cbrt(count / wanted), 0.5, 2.0);
+        if (i == 0 || miss(body) < miss(best)) best = std::move(body);
+        if (miss(best) <= kTolerance) break;
+    }
+    return best;
+}
+
+} // namespace
+
+Tetrahedralization tetrahedralize(const ExactMapView& model, const TetrahedralizeOptions& options) {
+    require_options(options);
+    const Box box = box_of(model);
+    Tetrahedralization body =
+        options.count > 0 ? stuff_count(model, box, options) : stuff(model, box, options.size, options);
+    if (body.mesh.tetrahedra.empty())
+        throw Error(
+            ErrorCode::InvalidMesh,
+            "no tetrahedra of the size " + std::to_string(body.size) +
+                " fit into the model: it is thinner than that, or encloses nothing; choose a smaller size");
+    return body;
+}
+
+} // namespace echinus
