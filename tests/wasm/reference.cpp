@@ -134,6 +134,8 @@ const char* const kSimulations[] = {
         "mesh": {"sphere": {"radius": 0.9, "segments": [40, 20]}}, "position": [0, 0, 1.2], "attachments": [3]}})",
     R"({"solver": "xpbd", "cloth": {"size": null, "particles": null, "pins": null, "bending": "angles",
         "mesh": {"torus": {"major": 1, "minor": 0.3}}, "position": [0.2, 0, 0.8]}})",
+    R"({"surface_collision": true, "collider": {"angular_velocity": [0, 0, 90]}})",
+    R"({"surface_collision": true, "self_collision": true})",
 };
 const char* const kScene = R"({
     "model": {"torus": {"segments": [40, 16]}},

@@ -34,7 +34,11 @@ std::size_t longest_axis(std::span<const std::uint32_t> elements, const std::vec
 
 /// Halves along the longest axis, so that the first half fills whole groups of the largest possible size.
 void sort_into_groups(std::span<std::uint32_t> elements, const std::vector<Vec3f>& middles) {
-    if (elements.size() <= ElementTree::kWidth) return;
+    if (elements.size() <= ElementTree::kWidth) {
+        // nth_element() leaves them in an order that differs between standard libraries.
+        std::sort(elements.begin(), elements.end());
+        return;
+    }
     std::size_t group = ElementTree::kWidth;
     while (group * ElementTree::kWidth < elements.size()) group *= ElementTree::kWidth;
     const std::size_t group_count = (elements.size() + group - 1) / group;
