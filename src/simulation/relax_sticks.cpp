@@ -207,6 +207,10 @@ void relax_one_by_one(StickArrays& sticks, std::size_t first, std::size_t count,
 
 } // namespace
 
+void relax(StickArrays& sticks, std::span<const std::uint32_t> chosen, PointArrays& positions) noexcept {
+    for (const std::uint32_t i : chosen) relax_one(sticks, i, positions);
+}
+
 void relax(StickArrays& sticks, PointArrays& positions) noexcept {
     if (!use_kernels()) return relax_one_by_one(sticks, 0, sticks.count(), positions);
     for (const StickRun& run : sticks.runs) {

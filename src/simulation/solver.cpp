@@ -95,6 +95,7 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
     if (options.surface_collision) {
         require_apart(deformable, colliders, options);
         surfaces_.emplace(deformable, colliders, particles_, options);
+        if (options.solver == SolverKind::Verlet) stretched_part_.emplace(sticks_, particles_.count());
     }
     const Sphere start = box_sphere(deformable.positions);
     start_centre_ = start.centre;
@@ -112,6 +113,7 @@ void Simulation::Solver::step() {
         restore_goals();
         for (std::uint32_t iteration = 0; iteration < options.iteration_count; ++iteration) {
             relax_constraints();
+            relax_stretched_part();
             collide();
         }
     }
@@ -125,6 +127,8 @@ void Simulation::Solver::begin_frame() {
     const Stopwatch stopwatch(profile.integration_seconds);
     particles_.frame_start = particles_.positions;
     collisions_.begin_frame(colliders);
+    if (stretched_part_ && frame % StretchedPart::kFrames == 0)
+        stretched_part_->find(sticks_, particles_.positions);
 }
 
 void Simulation::Solver::begin_surfaces() {
@@ -175,6 +179,13 @@ void Simulation::Solver::collide() {
     const Stopwatch stopwatch(profile.collision_seconds);
     collisions_.relax(particles_, profile);
     if (surfaces_) surfaces_->relax(particles_, profile);
+}
+
+void Simulation::Solver::relax_stretched_part() {
+    if (!stretched_part_ || stretched_part_->empty()) return;
+    const Stopwatch stopwatch(profile.constraint_seconds);
+    surfaces_->relax_part(stretched_part_->particles(), particles_, profile);
+    relax(sticks_, stretched_part_->sticks(), particles_.positions);
 }
 
 void Simulation::Solver::keep_free() {

@@ -6,6 +6,7 @@
 #include "simulation/particles.hpp"
 #include "simulation/rest.hpp"
 #include "simulation/sticks.hpp"
+#include "simulation/stretched_part.hpp"
 #include "simulation/surfaces/surface_collision.hpp"
 #include "simulation/wind.hpp"
 
@@ -44,6 +45,7 @@ class Simulation::Solver {
     void restore_goals();
     void relax_constraints();
     void collide();
+    void relax_stretched_part();
     void keep_free();
     void publish();
     void judge_frame();
@@ -54,6 +56,7 @@ class Simulation::Solver {
     Attachments attachments_;
     Collisions collisions_;
     std::optional<SurfaceCollision> surfaces_;
+    std::optional<StretchedPart> stretched_part_; ///< with contact of surfaces, by Verlet
     RestWatch rest_;
     Wind wind_;
     bool goals_give_way_;

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace echinus {
@@ -59,5 +60,8 @@ StickArrays weighted_sticks(const Deformable& deformable, const SimulationOption
 
 /// One relaxation of all sticks, in order. The same bits under every instruction set.
 void relax(StickArrays& sticks, PointArrays& positions) noexcept;
+
+/// The same of some sticks, by their numbers.
+void relax(StickArrays& sticks, std::span<const std::uint32_t> chosen, PointArrays& positions) noexcept;
 
 } // namespace echinus

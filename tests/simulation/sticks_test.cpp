@@ -1,4 +1,5 @@
 #include "simulation/sticks.hpp"
+#include "simulation/stretched_part.hpp"
 #include "support/cloth_meshes.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/random_points.hpp"
@@ -6,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <set>
 
 using namespace echinus;
@@ -123,4 +125,47 @@ TEST(Sticks, OfAMeshStandInRunsThatShareNoParticle) {
 TEST(Sticks, BetweenPinnedParticlesAreLeftOut) {
     const Deformable cloth = rumpled_cloth(6, 4, {0, 1});
     EXPECT_EQ(weighted_sticks(cloth, {}).count(), cloth.sticks.size() - 1);
+}
+
+TEST(StretchedPart, IsEmptyInAClothAtRest) {
+    const Deformable cloth = make_cloth({.column_count = 40, .row_count = 40});
+    const StickArrays sticks = weighted_sticks(cloth, {});
+    PointArrays positions;
+    positions.load(cloth.positions);
+    StretchedPart part(sticks, cloth.particle_count());
+    part.find(sticks, positions);
+    EXPECT_TRUE(part.empty());
+}
+
+TEST(StretchedPart, IsWhatLiesWithinThreeSticksOfAStretchedOne) {
+    Deformable cloth = make_cloth({.column_count = 60, .row_count = 60});
+    const StickArrays sticks = weighted_sticks(cloth, {});
+    const std::uint32_t middle = 30 * 60 + 30;
+    cloth.positions[middle].z += 0.03F; // as far again as a neighbour
+    PointArrays positions;
+    positions.load(cloth.positions);
+    StretchedPart part(sticks, cloth.particle_count());
+    part.find(sticks, positions);
+    ASSERT_FALSE(part.empty());
+    EXPECT_TRUE(std::is_sorted(part.sticks().begin(), part.sticks().end()));
+    for (std::uint32_t i = 0; i < cloth.particle_count(); ++i) {
+        const int columns = std::abs(int(i % 60) - 30), rows = std::abs(int(i / 60) - 30);
+        const int away = std::max(columns, rows); // sticks lead two columns or rows on
+        if (away <= 3) EXPECT_EQ(part.particles()[i], 1) << i;
+        if (away > 8) EXPECT_EQ(part.particles()[i], 0) << i;
+    }
+    for (std::uint32_t i = 0; i < sticks.count(); ++i)
+        EXPECT_EQ(std::binary_search(part.sticks().begin(), part.sticks().end(), i),
+                  (part.particles()[sticks.a[i]] & part.particles()[sticks.b[i]]) != 0);
+}
+
+TEST(StretchedPart, IsEmptyWhereMuchIsStretched) {
+    Deformable cloth = make_cloth({.column_count = 40, .row_count = 40});
+    const StickArrays sticks = weighted_sticks(cloth, {});
+    for (Vec3f& p : cloth.positions) p = p * 1.5F;
+    PointArrays positions;
+    positions.load(cloth.positions);
+    StretchedPart part(sticks, cloth.particle_count());
+    part.find(sticks, positions);
+    EXPECT_TRUE(part.empty());
 }

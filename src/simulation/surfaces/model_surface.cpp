@@ -125,8 +125,10 @@ void ModelSurface::begin_substep(const Collider& collider, const RigidTransform&
 }
 
 void ModelSurface::relax(Particles& particles, std::span<const float> inverse_masses,
-                         SimulationProfile& profile) {
+                         SimulationProfile& profile, std::span<const std::uint8_t> chosen) {
     for (Contact& contact : contacts_) {
+        const auto& at = contact.in_world.particles;
+        if (!chosen.empty() && (chosen[at[0]] | chosen[at[1]] | chosen[at[2]]) == 0) continue;
         Vec3f point;
         for (std::size_t k = 0; k < 3; ++k)
             point += particles.positions[contact.in_world.particles[k]] * contact.in_world.weights[k];

@@ -30,7 +30,9 @@ class ModelSurface {
     /// Looks for contacts on the way to where the frame would lead the particles.
     void look_ahead(const Collider& collider_at_end, const PointArrays& goals);
     void begin_substep(const Collider& collider, const RigidTransform& previous_pose);
-    void relax(Particles& particles, std::span<const float> inverse_masses, SimulationProfile& profile);
+    /// @param chosen  [particle_count] if not empty, only contacts of particles that have 1 here
+    void relax(Particles& particles, std::span<const float> inverse_masses, SimulationProfile& profile,
+               std::span<const std::uint8_t> chosen = {});
 
     /// The collider is where it ends the frame, and so are the particles' goals.
     void set_goals(const PointArrays& goals);

@@ -142,6 +142,11 @@ void SurfaceCollision::relax(Particles& particles, SimulationProfile& profile) {
     if (self_) self_->relax(particles, inverse_masses_, profile);
 }
 
+void SurfaceCollision::relax_part(std::span<const std::uint8_t> chosen, Particles& particles,
+                                  SimulationProfile& profile) {
+    for (ModelSurface& model : models_) model.relax(particles, inverse_masses_, profile, chosen);
+}
+
 void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profile) {
     goals_ = particles.positions;
     for (int number = 0; number < kMostPasses; ++number) {

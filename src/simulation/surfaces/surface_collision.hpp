@@ -30,6 +30,8 @@ class SurfaceCollision {
     void look_ahead(const std::vector<Collider>& colliders, const Particles& particles);
     void begin_substep(const std::vector<Collider>& colliders);
     void relax(Particles& particles, SimulationProfile& profile);
+    /// Only the contacts with models of chosen particles, [particle_count] 1.
+    void relax_part(std::span<const std::uint8_t> chosen, Particles& particles, SimulationProfile& profile);
     void end_frame(Particles& particles, SimulationProfile& profile);
 
   private:
