@@ -20,8 +20,8 @@ namespace echinus {
 /// (b - a) x (c - a) . (d - a) / 6 is positive.
 using Tetrahedron = std::array<std::uint32_t, 4>;
 
-/// A body cut into tetrahedra that share vertices. It has no invariants; require_valid() tells whether every
-/// other function takes it.
+/// A body cut into tetrahedra that share vertices. It has no invariants; require_valid_tetrahedra() tells
+/// whether every other function takes it.
 struct TetrahedralMesh {
     std::vector<Vec3f> vertices;         ///< [vertex_count] positions in the caller's unit
     std::vector<Tetrahedron> tetrahedra; ///< [tetrahedron_count]
@@ -32,7 +32,7 @@ struct TetrahedralMesh {
 /// @throws Error InvalidMesh when there is no tetrahedron, an index is out of range, a used vertex is not
 /// finite, a tetrahedron is flat or negative, or two lie on the same side of a face of theirs; the sentence
 /// names the first
-void require_valid(const TetrahedralMesh& mesh);
+void require_valid_tetrahedra(const TetrahedralMesh& mesh);
 
 /// The faces that belong to one tetrahedron only, outward, in the order of the tetrahedra. The vertices are
 /// those of the body with their numbers, also the inner ones, which no face uses. Closed; and manifold unless
@@ -101,7 +101,7 @@ struct TetrahedralReport {
 };
 
 /// Examines a body. Time O(n log n).
-/// @throws Error InvalidMesh as require_valid() does
+/// @throws Error InvalidMesh as require_valid_tetrahedra() does
 TetrahedralReport inspect(const TetrahedralMesh& mesh);
 
 /// How far the boundary of a body and the surface of a model are apart, at samples on both: the corners of
@@ -112,7 +112,7 @@ struct BoundaryDistance {
 };
 
 /// @param thread_count  0: all cores; the result does not depend on it
-/// @throws Error InvalidMesh as require_valid() does
+/// @throws Error InvalidMesh as require_valid_tetrahedra() does
 BoundaryDistance measure_distance(const TetrahedralMesh& mesh, const ExactMapView& model,
                                   unsigned thread_count = 0);
 
@@ -131,7 +131,7 @@ using Embedding = std::vector<EmbeddedPoint>;
 /// several, the one with the smallest number. Time O(log n) for a point in a body of well-shaped tetrahedra.
 /// @param points  [n] finite
 /// @returns [n]
-/// @throws Error InvalidMesh as require_valid() does, or when a point is not finite
+/// @throws Error InvalidMesh as require_valid_tetrahedra() does, or when a point is not finite
 Embedding embed(const TetrahedralMesh& mesh, StridedSpan<const Vec3f> points, unsigned thread_count = 0);
 
 /// Where the points are once the body's vertices have moved. An affine motion of the body moves all points by

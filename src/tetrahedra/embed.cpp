@@ -9,7 +9,7 @@
 namespace echinus {
 
 Embedding embed(const TetrahedralMesh& mesh, StridedSpan<const Vec3f> points, unsigned thread_count) {
-    require_valid(mesh);
+    require_valid_tetrahedra(mesh);
     for (std::size_t i = 0; i < points.size(); ++i)
         if (!is_finite(points[i]))
             throw Error(ErrorCode::InvalidMesh,

@@ -83,7 +83,7 @@ std::pair<double, double> distances(const TriangleMesh& from, const ExactMapView
 
 BoundaryDistance measure_distance(const TetrahedralMesh& mesh, const ExactMapView& model,
                                   unsigned thread_count) {
-    require_valid(mesh);
+    require_valid_tetrahedra(mesh);
     const TriangleMesh surface = boundary(mesh);
     const double spacing = mean_edge(surface);
     const ExactMap map = ExactMap::build(surface, {.thread_count = thread_count});

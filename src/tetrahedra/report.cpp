@@ -55,7 +55,7 @@ std::size_t count_used(const TetrahedralMesh& mesh) {
 } // namespace
 
 TetrahedralReport inspect(const TetrahedralMesh& mesh) {
-    require_valid(mesh);
+    require_valid_tetrahedra(mesh);
     Extremes lengths, angles, volumes;
     double volume = 0;
     for (std::size_t number = 0; number < mesh.tetrahedra.size(); ++number) {

@@ -7,7 +7,7 @@
 
 namespace echinus {
 
-void require_valid(const TetrahedralMesh& mesh) {
+void require_valid_tetrahedra(const TetrahedralMesh& mesh) {
     if (mesh.tetrahedra.empty()) throw Error(ErrorCode::InvalidMesh, "the body has no tetrahedra");
     require_indices(mesh);
     for (std::size_t number = 0; number < mesh.tetrahedra.size(); ++number) {

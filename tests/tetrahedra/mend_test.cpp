@@ -12,9 +12,9 @@ TEST(MendTetrahedra, TurnsNegativeOnesOnly) {
     TetrahedralMesh body = make_brick(2);
     std::swap(body.tetrahedra[3][0], body.tetrahedra[3][2]);
     std::swap(body.tetrahedra[8][1], body.tetrahedra[8][3]);
-    EXPECT_ANY_THROW(require_valid(body));
+    EXPECT_ANY_THROW(require_valid_tetrahedra(body));
     EXPECT_EQ(turn_negative(body), 2U);
-    EXPECT_NO_THROW(require_valid(body));
+    EXPECT_NO_THROW(require_valid_tetrahedra(body));
     EXPECT_EQ(turn_negative(body), 0U);
     EXPECT_EQ(body.tetrahedra[0], make_brick(2).tetrahedra[0]);
 }
@@ -27,7 +27,7 @@ TEST(MendTetrahedra, DropsVerticesThatNothingUses) {
     const MeshReport before = inspect(boundary(body));
     EXPECT_EQ(drop_unused_vertices(body), 9U);
     EXPECT_EQ(body.vertices.size(), 18U);
-    EXPECT_NO_THROW(require_valid(body));
+    EXPECT_NO_THROW(require_valid_tetrahedra(body));
     EXPECT_EQ(inspect(boundary(body)).signed_volume, before.signed_volume);
     EXPECT_EQ(before.signed_volume, 4);
 }

@@ -11,7 +11,7 @@ using namespace echinus::test;
 namespace {
 
 void expect_invalid(const std::string& words, const TetrahedralMesh& mesh) {
-    expect_error(ErrorCode::InvalidMesh, words, [&] { require_valid(mesh); });
+    expect_error(ErrorCode::InvalidMesh, words, [&] { require_valid_tetrahedra(mesh); });
 }
 
 } // namespace
@@ -19,7 +19,7 @@ void expect_invalid(const std::string& words, const TetrahedralMesh& mesh) {
 TEST(RequireValidTetrahedra, TakesABrickAndWhateverLiesUnusedBesideIt) {
     TetrahedralMesh brick = make_brick(2);
     brick.vertices.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.F, 0.F);
-    EXPECT_NO_THROW(require_valid(brick));
+    EXPECT_NO_THROW(require_valid_tetrahedra(brick));
 }
 
 TEST(RequireValidTetrahedra, NamesWhatIsWrong) {
@@ -49,7 +49,7 @@ TEST(RequireValidTetrahedra, FindsFlatnessThatRoundingHides) {
     TetrahedralMesh mesh{{{far, 0, 0}, {0, far, 0}, {0, 0, far}, {far, far, -far}}, {{0, 1, 2, 3}}};
     expect_invalid("tetrahedron 0 is flat", mesh);
     mesh.vertices[3].x = far - 1;
-    EXPECT_ANY_THROW(require_valid(mesh));
+    EXPECT_ANY_THROW(require_valid_tetrahedra(mesh));
     std::swap(mesh.tetrahedra[0][0], mesh.tetrahedra[0][1]);
-    EXPECT_NO_THROW(require_valid(mesh));
+    EXPECT_NO_THROW(require_valid_tetrahedra(mesh));
 }
