@@ -102,7 +102,7 @@ struct TetrahedralReport {
 
 /// Examines a body. Time O(n log n).
 /// @throws Error InvalidMesh as require_valid_tetrahedra() does
-TetrahedralReport inspect(const TetrahedralMesh& mesh);
+TetrahedralReport inspect_tetrahedra(const TetrahedralMesh& mesh);
 
 /// How far the boundary of a body and the surface of a model are apart, at samples on both: the corners of
 /// their faces, and points between them no farther apart than the mean edge of the boundary.

@@ -54,7 +54,7 @@ std::size_t count_used(const TetrahedralMesh& mesh) {
 
 } // namespace
 
-TetrahedralReport inspect(const TetrahedralMesh& mesh) {
+TetrahedralReport inspect_tetrahedra(const TetrahedralMesh& mesh) {
     require_valid_tetrahedra(mesh);
     Extremes lengths, angles, volumes;
     double volume = 0;

@@ -12,7 +12,7 @@ using namespace echinus::test;
 
 TEST(TetrahedralReport, KnowsTheRegularTetrahedron) {
     const TetrahedralMesh regular{{{1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, 1}}, {{0, 1, 2, 3}}};
-    const TetrahedralReport report = inspect(regular);
+    const TetrahedralReport report = inspect_tetrahedra(regular);
     EXPECT_EQ(report.tetrahedron_count, 1U);
     EXPECT_EQ(report.vertex_count, 4U);
     EXPECT_NEAR(report.volume, 8.0 / 3, 1e-12);
@@ -23,7 +23,7 @@ TEST(TetrahedralReport, KnowsTheRegularTetrahedron) {
 }
 
 TEST(TetrahedralReport, KnowsABrick) {
-    const TetrahedralReport report = inspect(make_brick(3));
+    const TetrahedralReport report = inspect_tetrahedra(make_brick(3));
     EXPECT_EQ(report.tetrahedron_count, 6U * 27);
     EXPECT_NEAR(report.volume, 27, 1e-12);
     EXPECT_NEAR(report.least_volume, 1.0 / 6, 1e-12);

@@ -28,7 +28,7 @@ Tetrahedralization tetrahedralize_mesh(const TriangleMesh& mesh, TetrahedralizeO
 /// Positive tetrahedra whose volumes add up to what their boundary encloses, and a boundary that does not
 /// intersect itself: so they overlap nowhere.
 TetrahedralReport expect_good_body(const TetrahedralMesh& mesh) {
-    const TetrahedralReport report = inspect(mesh); // throws unless all are positive
+    const TetrahedralReport report = inspect_tetrahedra(mesh); // throws unless all are positive
     EXPECT_EQ(report.vertex_count, mesh.vertices.size());
     EXPECT_GT(report.least_volume, 0);
     EXPECT_GE(report.least_angle_deg, kLeastAngle);
@@ -98,7 +98,7 @@ TEST(Tetrahedralize, ConvergesToTheVolumeOfASphere) {
     double last_error = 1;
     for (const double size : {0.4, 0.2, 0.1}) {
         const double error =
-            std::abs(inspect(tetrahedralize(map, {.size = size}).mesh).volume - volume) / volume;
+            std::abs(inspect_tetrahedra(tetrahedralize(map, {.size = size}).mesh).volume - volume) / volume;
         EXPECT_LT(error, last_error / 3) << size; // chords: a quarter at half the size
         last_error = error;
     }
