@@ -24,6 +24,9 @@ constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 constexpr bool kSurfaceCollision = true;
 constexpr bool kSelfCollision = true; ///< where surfaces collide
 
+/// With "small_holes" and without "hole_edges".
+constexpr std::uint32_t kUsualHoleEdges = 32;
+
 using Counts = std::array<std::uint32_t, 2>;
 
 SceneModel read_torus(JsonObject torus) {
@@ -74,11 +77,28 @@ SceneModel read_model(JsonObject& parent, const char* key) {
 
 RepairOptions read_repair(JsonObject& scene) {
     RepairOptions options;
+    bool small_holes = false, sheets = false;
     for (const std::size_t word :
-         scene.read_words("repair", {"duplicate_faces", "doubled_patches", "inside_out"})) {
+         scene.read_words("repair", {"duplicate_faces", "doubled_patches", "small_holes", "inside_out",
+                                     "inner_faces", "sheets"})) {
         if (word == 0) options.drop_duplicate_faces = true;
         if (word == 1) options.drop_doubled_patches = true;
-        if (word == 2) options.flip_inside_out = true;
+        if (word == 2) small_holes = true;
+        if (word == 3) options.flip_inside_out = true;
+        if (word == 4) options.drop_inner_faces = true;
+        if (word == 5) sheets = true;
+    }
+    if (small_holes) {
+        options.max_hole_edges = kUsualHoleEdges;
+        scene.read("hole_edges", options.max_hole_edges, {3, RepairOptions::kMaxHoleEdges});
+    } else if (scene.has("hole_edges")) {
+        scene.refuse("hole_edges", "left out, or \"repair\" must have the word \"small_holes\"");
+    }
+    if (sheets) {
+        scene.require("sheet_thickness");
+        scene.read("sheet_thickness", options.sheet_thickness, kLength);
+    } else if (scene.has("sheet_thickness")) {
+        scene.refuse("sheet_thickness", "left out, or \"repair\" must have the word \"sheets\"");
     }
     return options;
 }

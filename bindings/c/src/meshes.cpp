@@ -5,15 +5,14 @@
 #include <echinus/mesh_io.hpp>
 
 #include <algorithm>
-#include <iterator>
 
 namespace echinus::c {
 
 static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Triangle) == 3 * sizeof(std::uint32_t) &&
               sizeof(FacePair) == 2 * sizeof(std::uint32_t));
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_mesh_report, radius);
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_options, reserved);
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_report, components_flipped);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_options, sheet_thickness);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_report, faces_added);
 static_assert(ECHINUS_FIRST_FACE_COUNT == Fault::kFirstFaceCount);
 
 std::vector<Vec3f> points_from(const float* points, std::size_t count, std::size_t stride, const char* name) {
@@ -67,20 +66,30 @@ RepairOptions repair_options_from(const echinus_repair_options* options) {
     const auto given = read_struct(options, echinus_repair_options{}, "options");
     return {.drop_duplicate_faces = given.drop_duplicate_faces != 0,
             .drop_doubled_patches = given.drop_doubled_patches != 0,
-            .flip_inside_out = given.flip_inside_out != 0};
+            .flip_inside_out = given.flip_inside_out != 0,
+            .max_hole_edges = given.max_hole_edges,
+            .drop_inner_faces = given.drop_inner_faces != 0,
+            .sheet_thickness = given.sheet_thickness};
 }
 
 echinus_repair_report describe(const RepairReport& report) {
     return {.size = 0,
             .duplicate_faces_dropped = report.duplicate_faces_dropped.size(),
             .doubled_patch_faces_dropped = report.doubled_patch_faces_dropped.size(),
-            .components_flipped = report.components_flipped};
+            .components_flipped = report.components_flipped,
+            .holes_closed = report.holes_closed,
+            .holes_left = report.holes_left,
+            .inner_faces_dropped = report.inner_faces_dropped.size(),
+            .sheets_thickened = report.sheets_thickened,
+            .faces_added = report.faces_added};
 }
 
 std::vector<std::uint32_t> dropped_faces(const RepairReport& report) {
     std::vector<std::uint32_t> result;
-    std::ranges::merge(report.duplicate_faces_dropped, report.doubled_patch_faces_dropped,
-                       std::back_inserter(result));
+    for (const auto& faces :
+         {report.duplicate_faces_dropped, report.doubled_patch_faces_dropped, report.inner_faces_dropped})
+        result.insert(result.end(), faces.begin(), faces.end());
+    std::ranges::sort(result);
     return result;
 }
 

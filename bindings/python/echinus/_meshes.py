@@ -169,15 +169,31 @@ def weld(mesh: MeshLike) -> Mesh:
 
 @dataclass(frozen=True)
 class RepairReport:
-    """What :func:`repair` did; faces by their numbers before it."""
+    """What :func:`repair` did; faces by their numbers before it, and after those the ones that close holes.
+
+    Attributes
+    ----------
+    holes_left
+        Those with more edges, and rims of sheets; 0 unless holes were to be closed.
+    sheets_thickened
+        Pieces of surface between rims.
+    faces_added
+        To close holes and to thicken sheets.
+    """
 
     duplicate_faces_dropped: tuple[int, ...]
     doubled_patch_faces_dropped: tuple[int, ...]
     components_flipped: int
+    holes_closed: int
+    holes_left: int
+    inner_faces_dropped: tuple[int, ...]
+    sheets_thickened: int
+    faces_added: int
 
     @property
     def changed_anything(self) -> bool:
-        return bool(self.duplicate_faces_dropped or self.doubled_patch_faces_dropped or self.components_flipped)
+        dropped = self.duplicate_faces_dropped + self.doubled_patch_faces_dropped + self.inner_faces_dropped
+        return bool(dropped or self.components_flipped or self.faces_added)
 
 
 def repair(
@@ -186,8 +202,14 @@ def repair(
     drop_duplicate_faces: bool = True,
     drop_doubled_patches: bool = True,
     flip_inside_out: bool = True,
+    close_holes: int = 0,
+    drop_inner_faces: bool = False,
+    sheet_thickness: float = 0.0,
 ) -> tuple[Mesh, RepairReport]:
     """A copy without the faults that can be mended without a guess, and what was done.
+
+    The last three arguments make open surfaces and assemblies solid, on request: they guess what was meant. The
+    order is: duplicate faces, doubled patches, holes, what is inside out, inner faces, sheets.
 
     Parameters
     ----------
@@ -199,13 +221,30 @@ def repair(
         Where two pairs of faces fill the same quadrilateral, each along its own diagonal, one pair is dropped.
     flip_inside_out
         Closed parts whose faces look inwards are turned round; cavities stay cavities.
+    close_holes
+        Fills holes whose border has at most so many edges, up to 256, with the triangles of least area. The rim
+        of a sheet, whose filling would have more than a third of the sheet's area, is no hole.
+    drop_inner_faces
+        Faces with the solid on both sides are dropped, a patch of neighbours at a time, where no edge that stays is
+        less balanced for it: an engine in the body of a car. A part that crosses the surface stays.
+    sheet_thickness
+        Parts that are not closed become solids so thick, half of it on either side, in the unit of the mesh.
 
     Raises
     ------
     Error
-        ``invalid_mesh`` as :func:`inspect`.
+        ``invalid_mesh`` as :func:`inspect`; ``invalid_options`` for more edges, or for a thickness that does not
+        suit the size of the mesh.
     """
-    arrays, report = _core.repair(*arrays_of(mesh), drop_duplicate_faces, drop_doubled_patches, flip_inside_out)
+    arrays, report = _core.repair(
+        *arrays_of(mesh),
+        drop_duplicate_faces,
+        drop_doubled_patches,
+        flip_inside_out,
+        close_holes,
+        drop_inner_faces,
+        sheet_thickness,
+    )
     return Mesh(*arrays), RepairReport(**report)
 
 

@@ -53,16 +53,25 @@ py::dict inspect_mesh(const Vertices& vertices, const Faces& faces) {
 
 /// ((vertices, faces), report)
 py::tuple repair_mesh(const Vertices& vertices, const Faces& faces, bool drop_duplicate_faces,
-                      bool drop_doubled_patches, bool flip_inside_out) {
+                      bool drop_doubled_patches, bool flip_inside_out, std::uint32_t max_hole_edges,
+                      bool drop_inner_faces, double sheet_thickness) {
     const RepairOptions options{.drop_duplicate_faces = drop_duplicate_faces,
                                 .drop_doubled_patches = drop_doubled_patches,
-                                .flip_inside_out = flip_inside_out};
+                                .flip_inside_out = flip_inside_out,
+                                .max_hole_edges = max_hole_edges,
+                                .drop_inner_faces = drop_inner_faces,
+                                .sheet_thickness = sheet_thickness};
     const TriangleMesh mesh = mesh_of(vertices, faces);
     RepairedMesh repaired = unlocked([&] { return repair(mesh, options); });
     py::dict report;
     report["duplicate_faces_dropped"] = py::tuple(py::cast(repaired.report.duplicate_faces_dropped));
     report["doubled_patch_faces_dropped"] = py::tuple(py::cast(repaired.report.doubled_patch_faces_dropped));
     report["components_flipped"] = repaired.report.components_flipped;
+    report["holes_closed"] = repaired.report.holes_closed;
+    report["holes_left"] = repaired.report.holes_left;
+    report["inner_faces_dropped"] = py::tuple(py::cast(repaired.report.inner_faces_dropped));
+    report["sheets_thickened"] = repaired.report.sheets_thickened;
+    report["faces_added"] = repaired.report.faces_added;
     return py::make_tuple(arrays_of(std::move(repaired.mesh)), report);
 }
 

@@ -199,6 +199,8 @@ export class Mesh extends Deletable {
 }
 
 export type Repair = 'duplicate_faces' | 'doubled_patches' | 'inside_out';
+/** What a scene may do besides. */
+export type MakeSolid = 'small_holes' | 'inner_faces' | 'sheets';
 
 export interface Fault {
     count: number;
@@ -402,7 +404,11 @@ export type Shape = { torus: object } | { sphere: object } | { box: object };
 /** Keys and limits: docs/scenes.md. Angles are degrees. */
 export interface SceneDescription {
     model: string | Shape;
-    repair?: readonly Repair[];
+    repair?: readonly (Repair | MakeSolid)[];
+    /** With 'small_holes'. */
+    hole_edges?: number;
+    /** With 'sheets'. */
+    sheet_thickness?: number;
     map?: MapOptions;
     collider?: {
         position?: Vec3;
@@ -468,7 +474,7 @@ export interface MeshCloth {
 export class Scene extends Deletable {
     /** The name of the model's file in the scene; null when the model is a generated shape. */
     readonly modelFile: string | null;
-    readonly repair: Repair[];
+    readonly repair: (Repair | MakeSolid)[];
     readonly frameLimit: number;
     /** Seconds. */
     readonly timeStep: number;

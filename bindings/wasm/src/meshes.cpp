@@ -40,7 +40,12 @@ json to_json(const MeshReport& report) {
 json to_json(const RepairReport& report) {
     return {{"duplicateFacesDropped", report.duplicate_faces_dropped},
             {"doubledPatchFacesDropped", report.doubled_patch_faces_dropped},
-            {"componentsFlipped", report.components_flipped}};
+            {"componentsFlipped", report.components_flipped},
+            {"holesClosed", report.holes_closed},
+            {"holesLeft", report.holes_left},
+            {"innerFacesDropped", report.inner_faces_dropped},
+            {"sheetsThickened", report.sheets_thickened},
+            {"facesAdded", report.faces_added}};
 }
 
 std::vector<Vec3f> vertices_at(const float* first, std::uint32_t count) {

@@ -37,7 +37,10 @@ json describe(const Scene& scene) {
     json repairs = json::array();
     if (scene.repair.drop_duplicate_faces) repairs.push_back("duplicate_faces");
     if (scene.repair.drop_doubled_patches) repairs.push_back("doubled_patches");
+    if (scene.repair.max_hole_edges != 0) repairs.push_back("small_holes");
     if (scene.repair.flip_inside_out) repairs.push_back("inside_out");
+    if (scene.repair.drop_inner_faces) repairs.push_back("inner_faces");
+    if (scene.repair.sheet_thickness != 0) repairs.push_back("sheets");
     json description = cloth_files(scene);
     description.update({{"modelFile", to_json(scene.model)},
                         {"repair", repairs},

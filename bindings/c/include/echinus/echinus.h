@@ -179,13 +179,16 @@ typedef struct echinus_mesh_report {
 /// @param report  out; its size is set
 ECHINUS_API echinus_status echinus_mesh_inspect(const echinus_mesh* mesh, echinus_mesh_report* report);
 
-/// What a repair may do. All off by default.
+/// What a repair may do, in the order of echinus_repair_report. All off by default.
 typedef struct echinus_repair_options {
     size_t size;
     int32_t drop_duplicate_faces;
     int32_t drop_doubled_patches; ///< of two pairs of faces that fill one quadrilateral, drops one
     int32_t flip_inside_out;      ///< turns closed components that are inside out
     int32_t reserved;             ///< 0
+    uint32_t max_hole_edges;      ///< fills holes with at most so many edges; up to 256, 0: none
+    int32_t drop_inner_faces;     ///< drops faces with the solid on both sides
+    double sheet_thickness;       ///< makes solids so thick of components that are not closed; 0: none
 } echinus_repair_options;
 
 ECHINUS_API void echinus_repair_options_init(echinus_repair_options* options, size_t size);
@@ -195,11 +198,20 @@ typedef struct echinus_repair_report {
     uint64_t duplicate_faces_dropped;
     uint64_t doubled_patch_faces_dropped;
     uint64_t components_flipped;
+    uint64_t holes_closed; ///< before components are flipped
+    uint64_t holes_left;   ///< with more edges, or rims of sheets; 0 unless holes were to be closed
+    uint64_t inner_faces_dropped;
+    uint64_t sheets_thickened;
+    uint64_t faces_added; ///< to close holes and to thicken sheets
 } echinus_repair_report;
 
-/// A repaired copy of a mesh; vertices stay as they are.
+/// A repaired copy of a mesh. Faces keep their order, new ones come after them. Vertices stay as they are but
+/// for those of sheets that are thickened.
 /// @param report         out, its size is set; or NULL
-/// @param dropped_faces  out, uint32_t: numbers of the dropped faces in the given mesh, ascending; or NULL
+/// @param dropped_faces  out, uint32_t: numbers of the dropped faces in the given mesh, ascending; those that
+///                       closed a hole have the numbers after the mesh's; or NULL
+/// @return ECHINUS_INVALID_MESH; ECHINUS_INVALID_OPTIONS for more edges than 256 or a thickness that does not
+/// suit the mesh
 ECHINUS_API echinus_status echinus_mesh_repair(const echinus_mesh* mesh,
                                                const echinus_repair_options* options, echinus_mesh** repaired,
                                                echinus_repair_report* report, echinus_array** dropped_faces);

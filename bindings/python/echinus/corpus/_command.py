@@ -25,6 +25,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--padding", type=float, default=DEFAULT.padding, help="of the cube, as a share of its edge (%(default)s)")
     parser.add_argument("--float16", action="store_true", help="store points in 16 bits; labels are those of the rounded points")
     parser.add_argument("--no-repair", action="store_true", help="take meshes as they are")
+    parser.add_argument("--close-holes", type=int, default=DEFAULT.close_holes, metavar="EDGES", help="fill holes of at most so many edges, up to 256")
+    parser.add_argument("--drop-inner-faces", action="store_true", help="drop faces that lie within the solid")
+    parser.add_argument("--thicken", type=float, default=DEFAULT.thicken, metavar="SHARE", help="make solids of open parts, so thick as a share of the mesh's longest edge")
     parser.add_argument("--min-certain", type=float, default=DEFAULT.min_certain, help="refuse meshes with a smaller share of certain labels (%(default)s)")
     parser.add_argument("--max-faces", type=int, default=DEFAULT.max_faces, help="refuse larger meshes (%(default)s)")
     parser.add_argument("--time-limit", type=float, default=DEFAULT.time_limit, help="seconds for a mesh (%(default)s)")
@@ -61,6 +64,9 @@ def _corpus_of(a: argparse.Namespace) -> Corpus:
         dtype="float16" if a.float16 else "float32",
         distances=a.format != "occupancy",
         repair=not a.no_repair,
+        close_holes=a.close_holes,
+        drop_inner_faces=a.drop_inner_faces,
+        thicken=a.thicken,
         min_certain=a.min_certain,
         max_faces=a.max_faces,
         time_limit=a.time_limit,

@@ -49,6 +49,10 @@ class Sampling:
         Also compute signed distances and nearest points. Without them a closed mesh takes a tenth of the time.
     repair
         Mend what can be mended without a guess, as :func:`echinus.repair` does.
+    close_holes, drop_inner_faces
+        Make meshes solid, as the arguments of :func:`echinus.repair` of these names do, in its order.
+    thicken
+        Likewise: the thickness that sheets get, as a share of the longest edge of the mesh's bounding box.
     min_certain
         Meshes with a smaller share of certain labels are refused.
     max_faces
@@ -68,6 +72,9 @@ class Sampling:
     dtype: Literal["float16", "float32"] = "float32"
     distances: bool = True
     repair: bool = True
+    close_holes: int = 0
+    drop_inner_faces: bool = False
+    thicken: float = 0.0
     min_certain: float = 0.0
     max_faces: int = 5_000_000
     time_limit: float = 600.0
@@ -79,8 +86,14 @@ class Sampling:
                 raise ValueError(f"{name} must be 0 or more, not {getattr(self, name)}")
         if self.near and (not self.sigmas or not all(0 < s < np.inf for s in self.sigmas)):
             raise ValueError(f"sigmas must be positive numbers, not {self.sigmas}")
+        if not 0 <= self.close_holes <= 256 or not 0 <= self.thicken <= 0.5:
+            raise ValueError("close_holes must be from 0 to 256, and thicken from 0 to 0.5")
         if not 0 <= self.padding < np.inf or not 0 <= self.min_certain <= 1 or not self.time_limit > 0:
             raise ValueError("padding must be 0 or more, min_certain from 0 to 1, and time_limit positive")
+
+    @property
+    def makes_solid(self) -> bool:
+        return bool(self.close_holes or self.drop_inner_faces or self.thicken)
 
     def to_json(self) -> dict[str, Any]:
         return {field.name: getattr(self, field.name) for field in fields(self)}
@@ -173,13 +186,29 @@ def sample(mesh: MeshLike, sampling: Sampling = Sampling()) -> Samples:
 
 def _mended(mesh: Mesh, sampling: Sampling) -> tuple[Mesh, dict[str, Any]]:
     report: dict[str, Any] = {"faces": len(mesh.faces)}
-    if sampling.repair:
-        mesh, done = repair(mesh)
+    if sampling.repair or sampling.makes_solid:
+        mesh, done = repair(
+            mesh,
+            drop_duplicate_faces=sampling.repair,
+            drop_doubled_patches=sampling.repair,
+            flip_inside_out=sampling.repair,
+            close_holes=sampling.close_holes,
+            drop_inner_faces=sampling.drop_inner_faces,
+            sheet_thickness=sampling.thicken * _longest_edge(mesh) if sampling.thicken else 0.0,
+        )
         report["repaired"] = {
             "duplicate_faces_dropped": len(done.duplicate_faces_dropped),
             "doubled_patch_faces_dropped": len(done.doubled_patch_faces_dropped),
             "components_flipped": done.components_flipped,
         }
+        if sampling.makes_solid:
+            report["made_solid"] = {
+                "holes_closed": done.holes_closed,
+                "holes_left": done.holes_left,
+                "inner_faces_dropped": len(done.inner_faces_dropped),
+                "sheets_thickened": done.sheets_thickened,
+                "faces_added": done.faces_added,
+            }
     found = inspect(mesh)
     report |= {
         "closed": found.closed,
@@ -188,6 +217,13 @@ def _mended(mesh: Mesh, sampling: Sampling) -> tuple[Mesh, dict[str, Any]]:
         "components": found.component_count,
     }
     return mesh, report
+
+
+def _longest_edge(mesh: Mesh) -> float:
+    """Of the bounding box."""
+    inspect(mesh)  # refuses what has none
+    used = mesh.vertices[mesh.faces.ravel()].astype(np.float64)
+    return float((used.max(axis=0) - used.min(axis=0)).max())
 
 
 def _in_frame(mesh: Mesh, frame: Frame) -> tuple[Mesh, NDArray[np.float64], float]:

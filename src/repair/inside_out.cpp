@@ -1,8 +1,8 @@
 #include "mesh/components.hpp"
 #include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
-#include "mesh/repairs.hpp"
 #include "mesh/winding_number.hpp"
+#include "repair/repairs.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,6 +1,6 @@
 #include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
-#include "mesh/repairs.hpp"
+#include "repair/repairs.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 #include "mesh/edges.hpp"
-#include "mesh/repairs.hpp"
+#include "repair/repairs.hpp"
 
 #include <algorithm>
 #include <array>

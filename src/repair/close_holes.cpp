@@ -1,0 +1,128 @@
+#include "mesh/components.hpp"
+#include "mesh/edges.hpp"
+#include "repair/hole_loops.hpp"
+#include "repair/repairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace echinus {
+
+namespace {
+
+double area_of(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+    return length(cross(b - a, c - a)) / 2;
+}
+
+double area_of(const TriangleMesh& mesh, const Triangle& face) {
+    return area_of(Vec3d(mesh.vertices[face[0]]), Vec3d(mesh.vertices[face[1]]),
+                   Vec3d(mesh.vertices[face[2]]));
+}
+
+/// The triangles of least area that fill a loop, by dynamic programming over its chords: Barequet and Sharir,
+/// "Filling Gaps in the Boundary of a Polyhedron" (1995). Time O(n^3), memory O(n^2).
+///
+/// Of fillings of equal area, which a flat hole has many of, the one with the shortest chords is taken.
+/// Chords that are edges of the mesh already and triangles without area are used where there is no other way.
+class LeastFilling {
+  public:
+    LeastFilling(const TriangleMesh& mesh, std::span<const EdgeUse> edge_uses, const HoleLoop& loop)
+        : loop_(loop), count_(loop.size()), best_(count_ * count_), split_(count_ * count_) {
+        double perimeter = 0;
+        for (std::size_t i = 0; i < count_; ++i) {
+            points_.emplace_back(mesh.vertices[loop[i]]);
+            perimeter += length(Vec3d(mesh.vertices[loop[(i + 1) % count_]]) - points_[i]);
+        }
+        last_resort_ = 1e3 * perimeter * perimeter;
+        for (std::size_t reach = 2; reach < count_; ++reach)
+            for (std::size_t i = 0; i + reach < count_; ++i) {
+                find_best_split(i, i + reach);
+                if (reach + 1 == count_) continue; // the last side of the loop is no chord
+                constexpr double kLengthWeight = 1e-6;
+                const Vec3d chord = points_[i + reach] - points_[i];
+                const bool is_edge = !uses_of_edge(edge_uses, loop[i], loop[i + reach]).empty();
+                best_[at(i, i + reach)] += kLengthWeight * dot(chord, chord) + (is_edge ? last_resort_ : 0);
+            }
+    }
+
+    std::vector<Triangle> faces() const {
+        std::vector<Triangle> result;
+        std::vector<std::pair<std::size_t, std::size_t>> chords{{0, count_ - 1}};
+        while (!chords.empty()) {
+            const auto [i, j] = chords.back();
+            chords.pop_back();
+            if (j - i < 2) continue;
+            const std::size_t k = split_[at(i, j)];
+            result.push_back({loop_[i], loop_[k], loop_[j]});
+            chords.emplace_back(k, j);
+            chords.emplace_back(i, k);
+        }
+        return result;
+    }
+
+  private:
+    std::size_t at(std::size_t i, std::size_t j) const { return i * count_ + j; }
+
+    double cost_of(const Vec3d& a, const Vec3d& b, const Vec3d& c) const {
+        constexpr double kThin = 1e-6;
+        const double area = area_of(a, b, c);
+        return area > kThin * dot(c - a, c - a) ? area : area + last_resort_;
+    }
+
+    void find_best_split(std::size_t i, std::size_t j) {
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t k = i + 1; k < j; ++k) {
+            const double cost =
+                best_[at(i, k)] + best_[at(k, j)] + cost_of(points_[i], points_[k], points_[j]);
+            if (cost < least) {
+                least = cost;
+                split_[at(i, j)] = static_cast<std::uint16_t>(k);
+            }
+        }
+        best_[at(i, j)] = least;
+    }
+
+    const HoleLoop& loop_;
+    std::size_t count_;
+    double last_resort_ = 0; ///< a cost beyond that of any area
+    std::vector<Vec3d> points_;
+    std::vector<double> best_;         ///< [count * count] the least cost to fill from i to j > i
+    std::vector<std::uint16_t> split_; ///< [count * count] the corner between them
+};
+
+static_assert(RepairOptions::kMaxHoleEdges <= std::numeric_limits<std::uint16_t>::max());
+
+} // namespace
+
+ClosedHoles close_small_holes(TriangleMesh& mesh, std::uint32_t max_edges) {
+    // A larger share is no hole in a surface, but the other side of a sheet.
+    constexpr double kLargestShare = 1.0 / 3;
+    const Components components = find_components(mesh);
+    std::vector<double> component_area(components.count);
+    std::vector<std::uint32_t> component_of_vertex(mesh.vertices.size());
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
+        component_area[components.of_face[face]] += area_of(mesh, mesh.faces[face]);
+        for (const std::uint32_t vertex : mesh.faces[face])
+            component_of_vertex[vertex] = components.of_face[face];
+    }
+
+    const std::vector<EdgeUse> edge_uses = sorted_edge_uses(mesh);
+    ClosedHoles result;
+    for (const HoleLoop& loop : find_hole_loops(mesh)) {
+        std::vector<Triangle> filling;
+        if (loop.size() <= max_edges) filling = LeastFilling(mesh, edge_uses, loop).faces();
+        double area = 0;
+        for (const Triangle& face : filling) area += area_of(mesh, face);
+        if (!filling.empty() && area <= kLargestShare * component_area[component_of_vertex[loop[0]]]) {
+            mesh.faces.insert(mesh.faces.end(), filling.begin(), filling.end());
+            ++result.closed;
+        } else {
+            ++result.left;
+        }
+    }
+    return result;
+}
+
+} // namespace echinus
