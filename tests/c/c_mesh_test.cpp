@@ -134,6 +134,37 @@ TEST(CMeshes, AreReportedAndRepairedAsInCpp) {
     expect_ok(echinus_mesh_repair(mesh.get(), &options, out(repaired), nullptr, nullptr));
 }
 
+TEST(CMeshes, AreMadeSolidAsInCpp) {
+    TriangleMesh open = make_box({1, 2, 3}, 2);
+    open.faces.pop_back();
+    open.vertices.insert(open.vertices.end(), {{5, 0, 0}, {6, 0, 0}, {5, 1, 0}});
+    const auto sheet = static_cast<std::uint32_t>(open.vertices.size() - 3);
+    open.faces.push_back({sheet, sheet + 1, sheet + 2});
+    echinus_repair_options options;
+    echinus_repair_options_init(&options, sizeof options);
+    options.max_hole_edges = 3;
+    options.drop_inner_faces = 1;
+    options.sheet_thickness = 0.125;
+    CMesh solid;
+    echinus_repair_report changes{};
+    changes.size = sizeof changes;
+    expect_ok(echinus_mesh_repair(c_mesh_of(open).get(), &options, out(solid), &changes, nullptr));
+    const RepairedMesh by_cpp =
+        repair(open, {.max_hole_edges = 3, .drop_inner_faces = true, .sheet_thickness = 0.125});
+    expect_same_mesh(solid, by_cpp.mesh);
+    EXPECT_EQ(changes.holes_closed, 1U);
+    EXPECT_EQ(changes.holes_left, 1U);
+    EXPECT_EQ(changes.sheets_thickened, 1U);
+    EXPECT_EQ(changes.faces_added, by_cpp.report.faces_added);
+
+    options.max_hole_edges = 257;
+    EXPECT_EQ(echinus_mesh_repair(c_mesh_of(open).get(), &options, out(solid), nullptr, nullptr),
+              ECHINUS_INVALID_OPTIONS);
+    options.size = offsetof(echinus_repair_options, max_hole_edges); // a program of before there were any
+    expect_ok(echinus_mesh_repair(c_mesh_of(open).get(), &options, out(solid), nullptr, nullptr));
+    expect_same_mesh(solid, open);
+}
+
 TEST(CMeshes, AreWeldedAndJudgedAsInCpp) {
     TriangleMesh soup;
     const TriangleMesh box = make_box({1, 2, 3});

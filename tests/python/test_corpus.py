@@ -130,8 +130,33 @@ def test_a_mesh_that_is_not_to_be_labelled_is_refused_with_a_reason():
     assert 0 < corpus.sample(open_torus(), SMALL).certain.mean() < 1
 
 
+def test_meshes_become_solid_on_request_and_the_report_says_how():
+    def sampled(mesh, **options):
+        return corpus.sample(mesh, corpus.Sampling(**{**SMALL.__dict__, **options}))
+
+    filled = sampled(open_torus(), close_holes=256)
+    assert filled.report["made_solid"]["holes_closed"] >= 1 and filled.report["closed"] and filled.certain.all()
+
+    soup = ech.Mesh(torus().vertices[torus().faces].reshape(-1, 3), np.arange(3 * len(torus().faces)).reshape(-1, 3))
+    shell = sampled(soup, thicken=0.02)
+    assert shell.report["made_solid"]["sheets_thickened"] == len(torus().faces) and shell.report["closed"]
+    box = max(torus().vertices.max(axis=0) - torus().vertices.min(axis=0))
+    by_hand, _ = ech.repair(soup, sheet_thickness=0.02 * float(box))
+    in_shell = ech.ExactMap(by_hand).contains(shell.points.astype(float) * shell.scale + shell.loc)
+    assert (in_shell == shell.occupancy).mean() > 0.99 and 0 < shell.occupancy.mean() < 0.6
+
+    engine = ech.Mesh(torus().vertices / 4 + np.float32([0, 1, 0]), torus().faces)
+    twice = ech.Mesh(
+        np.concatenate([torus().vertices, engine.vertices]), np.concatenate([torus().faces, engine.faces + len(torus().vertices)])
+    )
+    assert sampled(twice, drop_inner_faces=True).report["made_solid"]["inner_faces_dropped"] == len(engine.faces)
+    assert "made_solid" not in sampled(open_torus()).report
+    with pytest.raises(ech.Error, match="thickness"):
+        sampled(open_torus(), thicken=1e-7)
+
+
 def test_settings_out_of_range_are_errors():
-    for options in ({"uniform": -1}, {"sigmas": ()}, {"sigmas": (0.1, -1)}, {"padding": -1}, {"min_certain": 2}, {"time_limit": 0}):
+    for options in ({"close_holes": 257}, {"close_holes": -1}, {"thicken": -1}, {"thicken": np.nan}, {"uniform": -1}, {"sigmas": ()}, {"sigmas": (0.1, -1)}, {"padding": -1}, {"min_certain": 2}, {"time_limit": 0}):
         with pytest.raises(ValueError):
             corpus.Sampling(**options)
 
@@ -235,6 +260,14 @@ def reference(request, folder, tmp_path_factory):
 def test_two_workers_give_the_same_bytes(folder, tmp_path, reference):
     corpus.label(corpus_of(folder, tmp_path, form=reference[0]), workers=2)
     assert bytes_below(tmp_path) == reference[1]
+
+
+def test_solids_have_the_same_bytes_with_more_workers(folder, tmp_path):
+    solid = corpus.Sampling(**{**SIDES.__dict__, "close_holes": 64, "drop_inner_faces": True, "thicken": 0.01})
+    for workers in (1, 2):
+        corpus.label(corpus_of(folder, tmp_path / str(workers), sampling=solid), workers=workers)
+    assert bytes_below(tmp_path / "1") == bytes_below(tmp_path / "2")
+    assert '"made_solid"' in (tmp_path / "1" / "manifest.jsonl").read_text()
 
 
 def test_parts_of_the_work_give_the_same_files(folder, tmp_path, reference):

@@ -131,6 +131,39 @@ def test_repairs_are_done_and_reported():
     assert not nothing.changed_anything and np.array_equal(same.faces, faulty.faces)
 
 
+def test_a_mesh_is_made_solid_on_request():
+    mesh = torus()
+    holed = ech.Mesh(mesh.vertices, mesh.faces[5:])
+    assert not ech.inspect(ech.repair(holed)[0]).closed
+    filled, report = ech.repair(holed, close_holes=16)
+    assert report.holes_closed >= 1 and report.holes_left == 0 and report.changed_anything
+    assert ech.inspect(filled).closed and np.array_equal(filled.faces[: len(holed.faces)], holed.faces)
+
+    engine = ech.make_box((0.1, 0.1, 0.1))
+    vertices = np.concatenate([mesh.vertices, engine.vertices + np.float32([1, 0, 0])])
+    car = ech.Mesh(vertices, np.concatenate([mesh.faces, engine.faces + np.uint32(len(mesh.vertices))]))
+    body, report = ech.repair(car, drop_inner_faces=True)
+    assert report.inner_faces_dropped == tuple(range(len(mesh.faces), len(car.faces)))
+    assert np.array_equal(body.faces, mesh.faces)
+
+    sheet = ech.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    plate, report = ech.repair(sheet, sheet_thickness=0.1)
+    assert report.sheets_thickened == 1 and report.faces_added == 7
+    assert ech.inspect(plate).signed_volume == pytest.approx(0.05)
+    assert ech.ExactMap(plate).contains([[0.2, 0.2, 0.04], [0.2, 0.2, 0.06]]).tolist() == [True, False]
+
+
+def test_an_impossible_repair_is_an_error():
+    sheet = ech.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    for edges in (-1, 257):
+        with pytest.raises(ValueError, match="close_holes"):
+            ech.repair(sheet, close_holes=edges)
+    for thickness in (-1, np.nan, np.inf, 1e-9, 100):
+        with pytest.raises(ech.Error, match="thickness") as raised:
+            ech.repair(sheet, sheet_thickness=thickness)
+        assert raised.value.code == "invalid_options"
+
+
 def test_welding_joins_equal_positions():
     mesh = torus()
     soup = ech.Mesh(mesh.vertices[mesh.faces].reshape(-1, 3), np.arange(3 * len(mesh.faces)).reshape(-1, 3))

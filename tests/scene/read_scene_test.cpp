@@ -1,3 +1,5 @@
+#include "support/expect_error.hpp"
+
 #include <echinus/error.hpp>
 #include <echinus/scene.hpp>
 
@@ -70,6 +72,27 @@ std::string dotted(const json::json_pointer& pointer) {
 }
 
 } // namespace
+
+TEST(Scene, SaysHowItsModelBecomesSolid) {
+    const auto with = [](const std::string& keys) {
+        return parse_scene(R"({"model": "car.obj", "cloth": {"size": [1, 1]}, )" + keys + "}", "a.json")
+            .repair;
+    };
+    const RepairOptions options =
+        with(R"("repair": ["small_holes", "inner_faces", "sheets"], "sheet_thickness": 0.02)");
+    EXPECT_EQ(options.max_hole_edges, 32U);
+    EXPECT_TRUE(options.drop_inner_faces);
+    EXPECT_EQ(options.sheet_thickness, 0.02);
+    EXPECT_EQ(with(R"("repair": ["small_holes"], "hole_edges": 8)").max_hole_edges, 8U);
+    const auto refuse = [&](const std::string& keys, const std::string& words) {
+        test::expect_error(ErrorCode::InvalidScene, words, [&] { with(keys); });
+    };
+    refuse(R"("repair": ["small_holes"], "hole_edges": 257)", "hole_edges");
+    refuse(R"("hole_edges": 8)", R"("repair" must have the word "small_holes")");
+    refuse(R"("sheet_thickness": 1)", R"("repair" must have the word "sheets")");
+    refuse(R"("repair": ["sheets"])", "sheet_thickness");
+    refuse(R"("repair": ["sheets"], "sheet_thickness": 0)", "sheet_thickness");
+}
 
 TEST(Scene, IsReadKeyByKey) {
     const Scene scene = parse_scene(kFullScene, "a.json");

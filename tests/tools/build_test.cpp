@@ -373,3 +373,17 @@ TEST_F(BuildCommand, RefusesWhatHasNoInsideUnlessTold) {
         json::parse(expect_success({"build", "flat.obj", "--allow-open", "-o", "flat.ech", "--json"}));
     EXPECT_EQ(built["centre_inside"], false);
 }
+
+TEST_F(BuildCommand, MakesAnOpenMeshSolidWhereAskedTo) {
+    write("open.obj", open_box_text());
+    expect_failure(1, "--close-holes or --thicken", {"build", "open.obj", "-o", "map.ech"});
+    const json built =
+        json::parse(expect_success({"build", "open.obj", "--close-holes", "3", "--json", "-o", "map.ech"}));
+    EXPECT_EQ(built["repairs"]["holes_closed"], 1);
+    EXPECT_EQ(built["repairs"]["faces_added"], 1);
+    EXPECT_EQ(built["certain_share"], 1);
+    const std::string shell = expect_success({"build", "open.obj", "--thicken", "0.25", "-o", "map.ech"});
+    EXPECT_NE(shell.find("1 sheet thickened"), std::string::npos) << shell;
+    EXPECT_FALSE(contains(load_exact_map(path("map.ech")), {0, 0, 0}));
+    EXPECT_TRUE(contains(load_exact_map(path("map.ech")), {0.9F, 0, 0.3F}));
+}

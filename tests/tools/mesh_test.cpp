@@ -63,3 +63,34 @@ TEST_F(MeshCommand, ReportsAFileThatCannotBeWritten) {
     expect_failure(1, "a.glb: meshes are written to files that end in", {"mesh", "box", "-o", "a.glb"});
     expect_failure(1, "missing/a.obj", {"mesh", "box", "-o", "missing/a.obj"});
 }
+
+TEST_F(MeshCommand, RepairsAMeshAndMakesItSolid) {
+    TriangleMesh box = make_box({1, 1, 1}, 2);
+    box.faces.push_back(box.faces[0]);
+    box.faces.erase(box.faces.begin() + 5);
+    write_mesh(path("box.obj"), box);
+    EXPECT_EQ(expect_success({"mesh", "repair", "box.obj", "-o", "mended.obj"}),
+              "1 duplicate face dropped; the mesh is not closed now\n");
+    EXPECT_EQ(expect_success({"mesh", "repair", "box.obj", "--close-holes", "3", "-o", "solid.obj"}),
+              "1 duplicate face dropped, 1 hole closed; the mesh is closed now\n");
+    EXPECT_TRUE(inspect(read_mesh(path("solid.obj"))).closed);
+    EXPECT_NEAR(inspect(read_mesh(path("solid.obj"))).signed_volume, 1, 1e-6);
+    EXPECT_NE(expect_success({"mesh", "repair", "box.obj", "--thicken", "0.1", "--json", "-o", "shell.ply"})
+                  .find("\"sheets_thickened\": 1"),
+              std::string::npos);
+    EXPECT_TRUE(inspect(read_mesh(path("shell.ply"))).closed);
+}
+
+TEST_F(MeshCommand, RefusesAnImpossibleRepair) {
+    write_mesh(path("box.obj"), make_box({1, 1, 1}));
+    const auto repair = [](const std::string& option, const std::string& value) {
+        return std::vector<std::string>{"mesh", "repair", "box.obj", option, value, "-o", "out.obj"};
+    };
+    expect_failure(2, "--close-holes", repair("--close-holes", "257"));
+    expect_failure(2, "--close-holes", repair("--close-holes", "-1"));
+    for (const char* wrong : {"0", "-1", "nan", "inf", "thick", ""})
+        expect_failure(2, "--thicken", repair("--thicken", wrong));
+    expect_failure(2, "this file is read",
+                   {"mesh", "repair", "box.obj", "--drop-inner-faces", "-o", "./box.obj"});
+    EXPECT_FALSE(std::filesystem::exists(path("out.obj")));
+}

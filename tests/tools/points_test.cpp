@@ -250,9 +250,9 @@ TEST_F(Points, AreRefusedWhenThereAreMoreThanMemoryShouldHold) {
 TEST_F(Points, GetAnswersAsPackedRecords) {
     const std::vector<Contact> contacts{{{1, 2, 3}, {0, 0, 1}, 0.5F, 7, true}, {{4, 5, 6}, {}, 0, -1, false}};
     const fs::path target = path("answers.npy");
-    const auto writer = open_answers(target, TableFormat::Npy, contacts.size());
-    writer->write({contacts.data(), 1});
-    writer->write({contacts.data() + 1, 1});
+    const auto writer = open_answers(target, TableFormat::Npy, contacts.size(), {});
+    writer->write({.contacts = {contacts.data(), 1}});
+    writer->write({.contacts = {contacts.data() + 1, 1}});
     EXPECT_FALSE(fs::exists(target)) << "nothing may appear before the end";
     writer->finish();
 
@@ -282,8 +282,8 @@ TEST_F(Points, GetAnswersAsPackedRecords) {
 
 TEST_F(Points, GetAnswersAsText) {
     const std::vector<Contact> contacts{{{1, 2, 0.1F}, {0, 0, 1}, 0.5F, 7, true}};
-    const auto writer = open_answers(path("answers.csv"), TableFormat::Csv, contacts.size());
-    writer->write(contacts);
+    const auto writer = open_answers(path("answers.csv"), TableFormat::Csv, contacts.size(), {});
+    writer->write({.contacts = contacts});
     writer->finish();
     std::ifstream file(path("answers.csv"));
     std::string names, values;

@@ -141,6 +141,44 @@ TEST_F(QueryCommand, ReadsAndWritesTheStandardStreams) {
     expect_failure(2, "--json", {"query", "box.ech", "points.npy", "-o", "-", "--json"});
 }
 
+TEST_F(QueryCommand, AddsSignedDistancesAndWindingNumbers) {
+    write("open.obj", open_box_text());
+    expect_success({"build", "open.obj", "--allow-open", "-o", "open.ech"});
+    const ExactMap map = load_exact_map(path("open.ech"));
+    std::string expected;
+    for (const Vec3f& point : kPoints) {
+        std::ostringstream line;
+        line.precision(9);
+        line << signed_distance(map, point) << ' ' << winding_number(map, point, 1e-4F) << '\n';
+        expected += line.str();
+    }
+    std::istringstream lines(expect_success(
+        {"query", "open.ech", "points.csv", "--signed-distance", "--winding-number", "-o", "-"}));
+    std::string line, found;
+    std::getline(lines, line);
+    EXPECT_TRUE(line.ends_with(",certain,signed_distance,winding_number")) << line;
+    while (std::getline(lines, line)) {
+        const std::size_t second = line.rfind(','), first = line.rfind(',', second - 1);
+        std::ostringstream numbers;
+        numbers.precision(9);
+        numbers << std::stof(line.substr(first + 1)) << ' ' << std::stof(line.substr(second + 1)) << '\n';
+        found += numbers.str();
+    }
+    EXPECT_EQ(found, expected);
+
+    expect_success({"query", "open.ech", "points.npy", "--signed-distance", "-o", "with.npy"});
+    expect_success({"query", "open.ech", "points.npy", "-o", "without.npy"});
+    EXPECT_NE(content("with.npy").find("('certain', '|u1'), ('signed_distance', '<f4')]"), std::string::npos);
+    EXPECT_EQ(content("with.npy").size() % 64, (kPoints.size() * (34 + 4)) % 64);
+    EXPECT_EQ(content("without.npy").size() % 64, (kPoints.size() * 34) % 64);
+}
+
+TEST_F(QueryCommand, AsksADistanceMapForNothingThatItDoesNotHave) {
+    for (const std::string option : {"--signed-distance", "--winding-number"})
+        expect_failure(2, option + ": needs an exact map",
+                       {"query", "box.ech", "points.csv", option, "-o", "answers.csv"});
+}
+
 TEST_F(QueryCommand, AnswersNoPointsWithNoAnswers) {
     write("none.npy", npy_text({}));
     expect_success({"query", "box.ech", "none.npy", "-o", "answers.npy"});

@@ -1,5 +1,6 @@
 #include "commands/commands.hpp"
 #include "commands/descriptions.hpp"
+#include "commands/repair_arguments.hpp"
 #include "directions/lattice.hpp"
 #include "input.hpp"
 #include "output.hpp"
@@ -31,7 +32,7 @@ struct BuildArguments {
     std::vector<Option> exact_only, distance_only;  ///< options of one kind of map
     std::vector<Option> counted_only, divided_only; ///< options of some grids of a distance map
     unsigned thread_count = 0;
-    bool repair = false;
+    RepairArguments repair;
     bool allow_open = false;
     bool json = false;
 };
@@ -82,9 +83,9 @@ void require_solid(const MeshReport& report, const TriangleMesh& mesh, const Bui
         ErrorCode::InvalidMesh,
         name + ": " +
             refusal_of_open_mesh(mesh, report, "--repair",
-                                 exact ? ", or accept answers that are not certain near its holes with "
-                                         "--allow-open"
-                                       : ", or accept wrong answers behind its holes with --allow-open"));
+                                 std::string(", or with --close-holes or --thicken, or accept ") +
+                                     (exact ? "answers that are not certain near its holes with --allow-open"
+                                            : "wrong answers behind its holes with --allow-open")));
 }
 
 /// Of a closed surface, in cubic lattice steps.
@@ -137,8 +138,8 @@ struct BuiltMap {
 
 BuiltMap build_map(TriangleMesh mesh, const BuildArguments& arguments) {
     RepairReport repairs;
-    if (arguments.repair) {
-        RepairedMesh repaired = repair(mesh, RepairOptions::all());
+    if (arguments.repair.given()) {
+        RepairedMesh repaired = repair(mesh, arguments.repair.options());
         mesh = std::move(repaired.mesh);
         repairs = std::move(repaired.report);
     }
@@ -156,12 +157,12 @@ BuiltMap build_map(TriangleMesh mesh, const BuildArguments& arguments) {
 void print_result(const MapDescription& description, const BuiltMap& built, const BuildArguments& arguments) {
     if (arguments.json) {
         Json object = to_json(description);
-        if (arguments.repair) object.add("repairs", to_json(built.repairs));
+        if (arguments.repair.given()) object.add("repairs", to_json(built.repairs));
         if (built.inside_out) object.add("inside_out", true);
         print(object.indented());
     } else if (arguments.target != kStandardStream) {
         print(to_text(description, arguments.target.string()));
-        if (arguments.repair) print("\nRepair: " + to_text(built.repairs) + ".\n");
+        if (arguments.repair.given()) print("\nRepair: " + to_text(built.repairs) + ".\n");
         if (built.inside_out) print("\nThe mesh is inside out. What it encloses is inside all the same.\n");
     }
 }
@@ -260,8 +261,9 @@ void add_options(Command command, BuildArguments& arguments) {
         .range(0, 1024)
         .type_name("COUNT")
         .show_default();
-    command.add_flag("--repair", arguments.repair,
+    command.add_flag("--repair", arguments.repair.repair,
                      "Mend the mesh first: drop duplicate faces and doubled patches, turn inside-out parts");
+    add_solid_options(command, arguments.repair);
     command.add_flag("--allow-open", arguments.allow_open,
                      "Build also from a mesh that is not closed: near its holes answers of an exact map are "
                      "not certain, behind them those of a distance map are wrong");

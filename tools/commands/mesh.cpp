@@ -1,4 +1,7 @@
 #include "commands/commands.hpp"
+#include "commands/descriptions.hpp"
+#include "commands/repair_arguments.hpp"
+#include "input.hpp"
 #include "mesh_io/encode.hpp"
 #include "output.hpp"
 
@@ -91,14 +94,61 @@ void add_box(Command mesh) {
     box.action([options] { write_result(options->target, make_box(options->size, options->segments)); });
 }
 
+struct Mending {
+    MeshArgument mesh;
+    std::filesystem::path target;
+    RepairArguments repair{.repair = true, .solid = {}};
+    bool keep_faults = false;
+    bool json = false;
+};
+
+void mend(Mending arguments) {
+    require_one_result(arguments.target, arguments.json);
+    require_another_file(arguments.mesh.path, arguments.target);
+    arguments.repair.repair = !arguments.keep_faults;
+    const auto [mesh, report] = naming_mesh(
+        arguments.mesh.name(), [&] { return repair(read_mesh(arguments.mesh), arguments.repair.options()); });
+    write_result(arguments.target.string(), mesh);
+    const bool closed = inspect(mesh).closed;
+    if (arguments.json) {
+        Json object = to_json(report);
+        object.add("faces", mesh.faces.size());
+        object.add("closed_then", closed);
+        print(object.indented());
+    } else if (arguments.target != kStandardStream) {
+        print(to_text(report) + "; the mesh is " + (closed ? "closed" : "not closed") + " now\n");
+    }
+}
+
+void add_repair(Command mesh) {
+    auto arguments = std::make_shared<Mending>();
+    Command command =
+        mesh.add_command("repair", "A mesh without its faults, made solid where that is asked for");
+    command.add("MESH", &arguments->mesh.path, "Mesh file (OBJ, PLY, STL, OFF, glTF, GLB, 3DS), or -")
+        .required()
+        .type_name("");
+    command
+        .add("-o,--output", &arguments->target,
+             "File to write: .obj, .ply, .stl or .off; - for OBJ on standard output")
+        .required();
+    add_solid_options(command, arguments->repair);
+    command.add_flag("--keep-faults", arguments->keep_faults,
+                     "Leave duplicate faces, doubled patches and inside-out parts as they are");
+    arguments->mesh.add_format_option(command);
+    command.add_flag("--json", arguments->json, "Print one JSON object");
+    command.footer("Example: echinus mesh repair truck.obj --close-holes 32 --drop-inner-faces -o solid.obj");
+    command.action([arguments] { mend(*arguments); });
+}
+
 } // namespace
 
 void add_mesh_command(Command program) {
-    Command mesh =
-        program.add_command("mesh", "Make a closed mesh: torus, sphere or box, centred at the origin");
-    mesh.require_command("A subcommand (torus, sphere or box)");
+    Command mesh = program.add_command(
+        "mesh", "Make a closed mesh: torus, sphere or box, centred at the origin; or repair one");
+    mesh.require_command("A subcommand (torus, sphere, box or repair)");
     mesh.footer("Example: echinus mesh torus --major 1 --minor 0.4 --segments 60x24 -o torus.obj");
     add_torus(mesh);
     add_sphere(mesh);
     add_box(mesh);
+    add_repair(mesh);
 }

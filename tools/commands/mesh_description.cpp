@@ -93,7 +93,12 @@ std::string refusal_of_open_mesh(const echinus::TriangleMesh& mesh, const MeshRe
 Json to_json(const RepairReport& report) {
     return {{"duplicate_faces_dropped", report.duplicate_faces_dropped.size()},
             {"doubled_patch_faces_dropped", report.doubled_patch_faces_dropped.size()},
-            {"components_flipped", report.components_flipped}};
+            {"components_flipped", report.components_flipped},
+            {"holes_closed", report.holes_closed},
+            {"holes_left", report.holes_left},
+            {"inner_faces_dropped", report.inner_faces_dropped.size()},
+            {"sheets_thickened", report.sheets_thickened},
+            {"faces_added", report.faces_added}};
 }
 
 std::string to_text(const RepairReport& report) {
@@ -104,7 +109,11 @@ std::string to_text(const RepairReport& report) {
     };
     add(report.duplicate_faces_dropped.size(), "duplicate face", "dropped");
     add(report.doubled_patch_faces_dropped.size(), "face", "of doubled patches dropped");
+    add(report.holes_closed, "hole", "closed");
+    add(report.holes_left, "hole", "left");
     add(report.components_flipped, "inside-out component", "turned");
+    add(report.inner_faces_dropped.size(), "inner face", "dropped");
+    add(report.sheets_thickened, "sheet", "thickened");
     return phrases.empty() ? "nothing to mend" : fmt::format("{}", fmt::join(phrases, ", "));
 }
 

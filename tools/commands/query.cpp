@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 using namespace echinus;
@@ -21,6 +22,7 @@ struct QueryArguments {
     fs::path points;
     fs::path target;
     float margin = 0;
+    bool signed_distance = false, winding_number = false;
     bool json = false;
 };
 
@@ -58,15 +60,49 @@ void count(std::span<const Contact> contacts, QuerySummary& summary) {
     }
 }
 
-QuerySummary answer(const AnyMap& map, float margin, PointSource& source, AnswerWriter& answers) {
+/// Only an exact map knows the distance from the surface for every point, and how often it goes around it.
+void require_exact(const AnyMap& map, const QueryArguments& arguments) {
+    if (std::holds_alternative<ExactMap>(map)) return;
+    for (const auto& [wanted, name] : {std::pair(arguments.signed_distance, "--signed-distance"),
+                                       std::pair(arguments.winding_number, "--winding-number")})
+        if (wanted) throw WrongUse(name, "needs an exact map; this one is a distance map");
+}
+
+/// What only an exact map has, a block at a time.
+struct ExactAnswers {
+    const AnyMap& map;
+    std::vector<float> signed_distances, winding_numbers; ///< as large as a block, or not wanted
+
+    void complete(Answers& answers, StridedSpan<const Vec3f> points) {
+        if (!signed_distances.empty()) {
+            const std::span<float> results(signed_distances.data(), points.size());
+            signed_distance_batch(std::get<ExactMap>(map), points, results);
+            answers.signed_distances = results;
+        }
+        if (!winding_numbers.empty()) {
+            const std::span<float> results(winding_numbers.data(), points.size());
+            constexpr float kTolerance = 1e-4F;
+            winding_number_batch(std::get<ExactMap>(map), points, results, kTolerance);
+            answers.winding_numbers = results;
+        }
+    }
+};
+
+QuerySummary answer(const AnyMap& map, const QueryArguments& arguments, PointSource& source,
+                    AnswerWriter& answers) {
     constexpr std::size_t kBlock = std::size_t{1} << 16;
     std::vector<Vec3f> points(kBlock);
     std::vector<Contact> contacts(kBlock);
+    ExactAnswers exact{map, std::vector<float>(arguments.signed_distance ? kBlock : 0),
+                       std::vector<float>(arguments.winding_number ? kBlock : 0)};
     QuerySummary summary;
     while (const std::size_t point_count = source.read(points)) {
         const std::span<Contact> block(contacts.data(), point_count);
-        contacts_batch(map, StridedSpan<const Vec3f>(points.data(), point_count), margin, block);
-        answers.write(block);
+        const StridedSpan<const Vec3f> asked(points.data(), point_count);
+        contacts_batch(map, asked, arguments.margin, block);
+        Answers result{.contacts = block};
+        exact.complete(result, asked);
+        answers.write(result);
         count(block, summary);
     }
     answers.finish();
@@ -89,13 +125,16 @@ void query(const QueryArguments& arguments) {
     require_sound(arguments);
     const InputFile map_file(arguments.map, "ech");
     const AnyMap map = map_file.read([](const fs::path& path) { return load_map(path); });
+    require_exact(map, arguments);
     auto input = std::make_unique<Input>(arguments.points);
     const TableFormat format = format_of_points(arguments.points, *input);
     const TableFormat answer_format = format_of_answers(arguments.target, format);
     const auto source =
         format == TableFormat::Npy ? open_npy_points(std::move(input)) : open_csv_points(std::move(input));
-    const auto answers = open_answers(arguments.target, answer_format, source->count());
-    print_summary(answer(map, arguments.margin, *source, *answers), arguments);
+    const auto answers = open_answers(
+        arguments.target, answer_format, source->count(),
+        {.signed_distance = arguments.signed_distance, .winding_number = arguments.winding_number});
+    print_summary(answer(map, arguments, *source, *answers), arguments);
 }
 
 } // namespace
@@ -116,6 +155,11 @@ void add_query_command(Command program) {
              "the unit of the mesh; with a distance map measured along their ray from the centre")
         .type_name("DISTANCE")
         .show_default();
+    command.add_flag("--signed-distance", arguments->signed_distance,
+                     "Add the signed distance of every point, however far: negative inside (exact maps)");
+    command.add_flag("--winding-number", arguments->winding_number,
+                     "Add how often the surface goes around each point, to 0.0001: not whole where it is "
+                     "open (exact maps)");
     command.add_flag("--json", arguments->json, "Print one JSON object");
     command.footer("Example:\n  echinus query torus.ech points.npy -o answers.npy");
     command.action([arguments] { query(*arguments); });

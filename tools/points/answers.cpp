@@ -16,22 +16,29 @@ namespace {
 
 class NpyAnswers final : public AnswerWriter {
   public:
-    NpyAnswers(const std::filesystem::path& target, std::uint64_t count) : output_(target) {
-        output_.write(format_npy_header("[('inside', '|u1'), ('depth', '<f4'), ('normal', '<f4', (3,)), "
-                                        "('point', '<f4', (3,)), ('face', '<i4'), "
-                                        "('certain', '|u1')]",
-                                        count));
+    NpyAnswers(const std::filesystem::path& target, std::uint64_t count, AnswerFields fields)
+        : output_(target) {
+        output_.write(
+            format_npy_header("[('inside', '|u1'), ('depth', '<f4'), ('normal', '<f4', (3,)), "
+                              "('point', '<f4', (3,)), ('face', '<i4'), "
+                              "('certain', '|u1')" +
+                                  std::string(fields.signed_distance ? ", ('signed_distance', '<f4')" : "") +
+                                  (fields.winding_number ? ", ('winding_number', '<f4')" : "") + "]",
+                              count));
     }
 
-    void write(std::span<const Contact> contacts) override {
+    void write(const Answers& answers) override {
         records_.clear();
-        for (const Contact& contact : contacts) {
+        for (std::size_t i = 0; i < answers.contacts.size(); ++i) {
+            const Contact& contact = answers.contacts[i];
             append(static_cast<std::uint8_t>(contact.inside));
             append(contact.depth);
             append(contact.normal);
             append(contact.point);
             append(contact.face);
             append(static_cast<std::uint8_t>(contact.certain));
+            if (!answers.signed_distances.empty()) append(answers.signed_distances[i]);
+            if (!answers.winding_numbers.empty()) append(answers.winding_numbers[i]);
         }
         output_.write(records_);
     }
@@ -53,17 +60,24 @@ class NpyAnswers final : public AnswerWriter {
 
 class CsvAnswers final : public AnswerWriter {
   public:
-    explicit CsvAnswers(const std::filesystem::path& target) : output_(target) {
-        output_.write("inside,depth,normal_x,normal_y,normal_z,point_x,point_y,point_z,face,certain\n");
+    CsvAnswers(const std::filesystem::path& target, AnswerFields fields) : output_(target) {
+        output_.write(
+            std::string("inside,depth,normal_x,normal_y,normal_z,point_x,point_y,point_z,face,certain") +
+            (fields.signed_distance ? ",signed_distance" : "") +
+            (fields.winding_number ? ",winding_number" : "") + "\n");
     }
 
-    void write(std::span<const Contact> contacts) override {
+    void write(const Answers& answers) override {
         lines_.clear();
-        for (const Contact& contact : contacts) {
+        for (std::size_t i = 0; i < answers.contacts.size(); ++i) {
+            const Contact& contact = answers.contacts[i];
             const Vec3f &normal = contact.normal, &point = contact.point;
-            fmt::format_to(std::back_inserter(lines_), "{},{},{},{},{},{},{},{},{},{}\n",
+            fmt::format_to(std::back_inserter(lines_), "{},{},{},{},{},{},{},{},{},{}",
                            contact.inside ? 1 : 0, contact.depth, normal.x, normal.y, normal.z, point.x,
                            point.y, point.z, contact.face, contact.certain ? 1 : 0);
+            for (const std::span<const float> more : {answers.signed_distances, answers.winding_numbers})
+                if (!more.empty()) fmt::format_to(std::back_inserter(lines_), ",{}", more[i]);
+            lines_ += '\n';
         }
         output_.write(lines_);
     }
@@ -78,7 +92,7 @@ class CsvAnswers final : public AnswerWriter {
 } // namespace
 
 std::unique_ptr<AnswerWriter> open_answers(const std::filesystem::path& target, TableFormat format,
-                                           std::uint64_t count) {
-    if (format == TableFormat::Csv) return std::make_unique<CsvAnswers>(target);
-    return std::make_unique<NpyAnswers>(target, count);
+                                           std::uint64_t count, AnswerFields fields) {
+    if (format == TableFormat::Csv) return std::make_unique<CsvAnswers>(target, fields);
+    return std::make_unique<NpyAnswers>(target, count, fields);
 }

@@ -233,8 +233,9 @@ def repair(
     Raises
     ------
     Error
-        ``invalid_mesh`` as :func:`inspect`; ``invalid_options`` for more edges, or for a thickness that does not
-        suit the size of the mesh.
+        ``invalid_mesh`` as :func:`inspect`; ``invalid_options`` for a thickness that does not suit the mesh.
+    ValueError
+        More edges than 256, or fewer than 0.
     """
     arrays, report = _core.repair(
         *arrays_of(mesh),

@@ -8,6 +8,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <filesystem>
+#include <string>
 
 namespace echinus::python {
 
@@ -53,12 +54,15 @@ py::dict inspect_mesh(const Vertices& vertices, const Faces& faces) {
 
 /// ((vertices, faces), report)
 py::tuple repair_mesh(const Vertices& vertices, const Faces& faces, bool drop_duplicate_faces,
-                      bool drop_doubled_patches, bool flip_inside_out, std::uint32_t max_hole_edges,
+                      bool drop_doubled_patches, bool flip_inside_out, std::int64_t max_hole_edges,
                       bool drop_inner_faces, double sheet_thickness) {
+    if (max_hole_edges < 0 || max_hole_edges > std::int64_t{RepairOptions::kMaxHoleEdges})
+        throw py::value_error("close_holes must be from 0 to " +
+                              std::to_string(RepairOptions::kMaxHoleEdges));
     const RepairOptions options{.drop_duplicate_faces = drop_duplicate_faces,
                                 .drop_doubled_patches = drop_doubled_patches,
                                 .flip_inside_out = flip_inside_out,
-                                .max_hole_edges = max_hole_edges,
+                                .max_hole_edges = static_cast<std::uint32_t>(max_hole_edges),
                                 .drop_inner_faces = drop_inner_faces,
                                 .sheet_thickness = sheet_thickness};
     const TriangleMesh mesh = mesh_of(vertices, faces);
