@@ -4,6 +4,7 @@
 #include "support/crowded_meshes.hpp"
 #include "support/draping.hpp"
 #include "support/instruction_sets.hpp"
+#include "support/soups.hpp"
 #include "support/surface_judge.hpp"
 
 #include <echinus/simulation.hpp>
@@ -298,4 +299,18 @@ TEST(SurfaceCollision, CountsAsLostWhatTwoModelsHaveSqueezedInside) {
                 simulation.set_collider_velocity(c, {0, 0, c == 0 ? 0.5 : -0.5}, {});
     }
     EXPECT_GT(most_inside, 30u);
+}
+
+TEST(SurfaceCollision, KeepsASheetOffAnAssemblyOfOpenParts) {
+    const Deformable sheet = sheet_at(1.1, 1.6, 24, {0, 0, -0.02});
+    expect_falls_without_meeting(assembly(60), {}, sheet, 120);
+}
+
+TEST(SurfaceCollision, OfParticlesOnlyKeepsPositionsFiniteOnAnySoup) {
+    for (const auto& [name, soup] : soups()) {
+        SimulationOptions options{.thickness = kThickness, .allow_open_colliders = true};
+        Simulation simulation(sheet_at(1.3, 1.6, 16, {0, 0, -0.02}), {{ExactMap::build(soup)}}, options);
+        for (int frame = 0; frame < 120; ++frame) simulation.step();
+        for (const Vec3f& p : simulation.positions()) ASSERT_TRUE(is_finite(p)) << name;
+    }
 }
