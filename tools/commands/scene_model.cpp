@@ -44,7 +44,8 @@ void require_closed(const TriangleMesh& mesh, const TriangleMesh& as_read, const
     throw Error(ErrorCode::InvalidMesh,
                 name + ": " +
                     refusal_of_open_mesh(as_read, report,
-                                         R"("repair": ["duplicate_faces", "doubled_patches"] in the scene)"));
+                                         R"("repair": ["duplicate_faces", "doubled_patches"] in the scene)",
+                                         R"(, or with "small_holes" or "sheets" in the scene's "repair")"));
 }
 
 } // namespace

@@ -236,6 +236,12 @@ export interface RepairReport {
     duplicateFacesDropped: number[];
     doubledPatchFacesDropped: number[];
     componentsFlipped: number;
+    /** What only a scene may ask for; 0 or empty otherwise. */
+    holesClosed: number;
+    holesLeft: number;
+    innerFacesDropped: number[];
+    sheetsThickened: number;
+    facesAdded: number;
 }
 
 // ---- Maps
