@@ -56,8 +56,8 @@ void require_in_range(const RepairOptions& options) {
                                                    " are possible: close larger ones in a modelling program");
     if (!(options.sheet_thickness >= 0 && std::isfinite(options.sheet_thickness)))
         throw Error(ErrorCode::InvalidOptions,
-                    "the thickness of sheets is " + std::to_string(options.sheet_thickness) +
-                        "; it must be a finite length, or 0 to leave sheets as they are");
+                    "the thickness of sheets is negative or not finite; it must be a "
+                    "finite length, or 0 to leave sheets as they are");
 }
 
 } // namespace

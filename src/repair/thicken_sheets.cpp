@@ -11,7 +11,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string>
+#include <sstream>
 
 namespace echinus {
 
@@ -35,10 +35,11 @@ void require_suitable(const TriangleMesh& mesh, double thickness) {
     const double radius = smallest_enclosing_sphere(positions).radius;
     const double least = std::max(radius * 0x1p-15, farthest * 0x1p-20); // 16 steps of a map or of floats
     if (thickness >= least && thickness <= radius) return;
-    throw Error(ErrorCode::InvalidOptions,
-                "sheets cannot get the thickness " + std::to_string(thickness) +
-                    "; for this mesh it must be " + std::to_string(least) + " to " + std::to_string(radius) +
-                    ", from what its coordinates resolve to the radius of its bounding sphere");
+    std::ostringstream sentence;
+    sentence << "sheets cannot get the thickness " << thickness << "; for this mesh it must be " << least
+             << " to " << radius
+             << ", from what its coordinates resolve to the radius of its bounding sphere";
+    throw Error(ErrorCode::InvalidOptions, sentence.str());
 }
 
 /// The sheets of a mesh: faces of open components, joined across every edge at which just two of them meet
