@@ -160,9 +160,17 @@ TEST(CMeshes, AreMadeSolidAsInCpp) {
     options.max_hole_edges = 257;
     EXPECT_EQ(echinus_mesh_repair(c_mesh_of(open).get(), &options, out(solid), nullptr, nullptr),
               ECHINUS_INVALID_OPTIONS);
-    options.size = offsetof(echinus_repair_options, max_hole_edges); // a program of before there were any
-    expect_ok(echinus_mesh_repair(c_mesh_of(open).get(), &options, out(solid), nullptr, nullptr));
+
+    // A program of before there were any of these.
+    options.size = offsetof(echinus_repair_options, max_hole_edges);
+    changes.size = offsetof(echinus_repair_report, holes_closed);
+    changes.holes_closed = 7;
+    expect_ok(echinus_mesh_repair(c_mesh_of(open).get(), &options, out(solid), &changes, nullptr));
     expect_same_mesh(solid, open);
+    EXPECT_EQ(changes.holes_closed, 7U);
+    options.size -= 1;
+    EXPECT_EQ(echinus_mesh_repair(c_mesh_of(open).get(), &options, out(solid), nullptr, nullptr),
+              ECHINUS_INVALID_ARGUMENT);
 }
 
 TEST(CMeshes, AreWeldedAndJudgedAsInCpp) {

@@ -127,8 +127,12 @@ Enum enumerator(const CEnum& value, Enum last, const char* name) {
 
 // ---- Structs that begin with their size
 
+/// The size of a struct in the first version; one that has grown since is named where it is used.
+template <typename Struct>
+inline constexpr std::size_t kFirstSize = sizeof(Struct);
+
 /// @throws WrongArgument when the size of a struct of the caller's cannot be right
-void require_size(std::size_t size, std::size_t known_size, const char* name);
+void require_size(std::size_t size, std::size_t known_size, std::size_t first_size, const char* name);
 
 /// @throws WrongArgument when a byte after the known ones is set: a member that this library does not have
 void require_zero(const void* first, std::size_t known_size, std::size_t size, const char* name);
@@ -145,7 +149,7 @@ inline std::size_t common_size(std::size_t size, std::size_t known_size) {
 template <typename Struct>
 Struct read_struct(const Struct* given, const Struct& defaults, const char* name) {
     const std::size_t size = at(given, name).size;
-    require_size(size, sizeof(Struct), name);
+    require_size(size, sizeof(Struct), kFirstSize<Struct>, name);
     require_zero(given, sizeof(Struct), size, name);
     Struct result = defaults;
     std::memcpy(&result, given, common_size(size, sizeof(Struct)));
@@ -156,7 +160,7 @@ Struct read_struct(const Struct* given, const Struct& defaults, const char* name
 template <typename Struct>
 void write_struct(Struct* result, Struct value, const char* name) {
     const std::size_t size = at(result, name).size;
-    require_size(size, sizeof(Struct), name);
+    require_size(size, sizeof(Struct), kFirstSize<Struct>, name);
     value.size = size;
     std::memset(result, 0, size);
     std::memcpy(result, &value, common_size(size, sizeof(Struct)));

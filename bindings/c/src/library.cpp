@@ -100,11 +100,10 @@ Vec3d finite_vector_at(const double* first, const char* name) {
     return vector;
 }
 
-void require_size(std::size_t size, std::size_t known_size, const char* name) {
-    // All structs are as in the first version so far; one that grows will accept its earlier sizes. The upper
-    // bound is there for a size that was never set.
+void require_size(std::size_t size, std::size_t known_size, std::size_t first_size, const char* name) {
+    // The upper bound is there for a size that was never set.
     constexpr std::size_t kLargest = 4096;
-    if (size >= known_size && size <= kLargest) return;
+    if (size >= first_size && size <= kLargest) return;
     throw WrongArgument("the size of " + std::string(name) + " is " + std::to_string(size) +
                         "; expected sizeof, " + std::to_string(known_size) +
                         ": fill options by their _init function and set the size of " + "results");

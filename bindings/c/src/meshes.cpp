@@ -13,6 +13,12 @@ static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Triangle) == 3 * size
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_mesh_report, radius);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_options, sheet_thickness);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_report, faces_added);
+template <>
+inline constexpr std::size_t kFirstSize<echinus_repair_options> = offsetof(echinus_repair_options,
+                                                                           max_hole_edges);
+template <>
+inline constexpr std::size_t kFirstSize<echinus_repair_report> = offsetof(echinus_repair_report,
+                                                                          holes_closed);
 static_assert(ECHINUS_FIRST_FACE_COUNT == Fault::kFirstFaceCount);
 
 std::vector<Vec3f> points_from(const float* points, std::size_t count, std::size_t stride, const char* name) {

@@ -84,7 +84,7 @@ std::vector<Collider> colliders_from(const echinus_collider* first, std::size_t 
     std::vector<Collider> result;
     if (count == 0) return result;
     const std::size_t size = at(first, "colliders").size;
-    require_size(size, sizeof *first, "colliders");
+    require_size(size, sizeof *first, sizeof *first, "colliders");
     for (std::size_t i = 0; i < count; ++i) {
         const auto* place = reinterpret_cast<const std::byte*>(first) + i * size;
         const auto& given = *reinterpret_cast<const echinus_collider*>(place);
