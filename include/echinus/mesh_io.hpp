@@ -2,8 +2,10 @@
 
 #include <echinus/export.hpp>
 #include <echinus/mesh.hpp>
+#include <echinus/tetrahedra.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
@@ -49,6 +51,35 @@ void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
 /// @throws Error as write_mesh(); WrongFormat where the format has no lines, InvalidMesh when an edge names a
 /// vertex that does not exist
 void write_mesh_and_edges(const std::filesystem::path& path, const MeshAndEdges& drawn);
+
+// ---- Tetrahedra ----
+
+/// A body, and what was changed for it to be valid.
+struct TetrahedraFile {
+    TetrahedralMesh mesh; ///< valid; every vertex is used
+    /// Tetrahedra that were negative and had two corners exchanged: the order of corners is a file's
+    /// convention, the body is the same.
+    std::size_t turned_tetrahedra = 0;
+    std::size_t dropped_vertices = 0; ///< that no tetrahedron uses
+};
+
+/// Reads .msh (Gmsh 2.2 and 4.1, text and binary), .vtk (legacy, an unstructured grid, text and binary) and
+/// TetGen's .node with .ele: either path names the pair, whose names differ in the extension only, and
+/// numbers count from 0 or 1. Points, lines and plane cells are ignored, as are data; other cells than
+/// tetrahedra of four corners are refused. Tetrahedra keep their order. Coordinates are rounded to the
+/// nearest float. Positions are not welded.
+///
+/// @throws Error Unreadable, WrongFormat, Damaged or InvalidMesh as read_mesh() does. InvalidMesh also for a
+/// tetrahedron that is flat, and for two on the same side of a face of theirs, as where an inverted one lies
+/// folded over its neighbour; the sentence has their numbers, from 0
+TetrahedraFile read_tetrahedra(const std::filesystem::path& path);
+
+/// Writes .msh (Gmsh 2.2, text) or .vtk (legacy, text), by the file name's extension. Floats read back with
+/// the same bits. Writes as write_mesh() does.
+///
+/// @throws Error Unwritable, WrongFormat for another extension, or InvalidMesh as
+/// require_valid_tetrahedra() does
+void write_tetrahedra(const std::filesystem::path& path, const TetrahedralMesh& mesh);
 
 } // namespace echinus
 

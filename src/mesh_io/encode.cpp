@@ -108,4 +108,43 @@ std::string encode_stl(const TriangleMesh& mesh) {
     return bytes;
 }
 
+std::string encode_msh(const TetrahedralMesh& mesh) {
+    std::string text =
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(mesh.vertices.size()) + "\n";
+    for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
+        const Vec3f& p = mesh.vertices[vertex];
+        append_text(text, vertex + 1);
+        text += ' ';
+        append_line(text, p.x, p.y, p.z);
+    }
+    text += "$EndNodes\n$Elements\n" + std::to_string(mesh.tetrahedra.size()) + "\n";
+    for (std::size_t number = 0; number < mesh.tetrahedra.size(); ++number) {
+        append_text(text, number + 1);
+        text += " 4 2 1 1"; // a tetrahedron with two tags: the physical and the geometrical entity
+        for (const std::uint32_t vertex : mesh.tetrahedra[number]) {
+            text += ' ';
+            append_text(text, vertex + 1ULL);
+        }
+        text += '\n';
+    }
+    return text + "$EndElements\n";
+}
+
+std::string encode_vtk(const TetrahedralMesh& mesh) {
+    const std::string count = std::to_string(mesh.tetrahedra.size());
+    std::string text = "# vtk DataFile Version 3.0\ntetrahedra\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " +
+                       std::to_string(mesh.vertices.size()) + " float\n";
+    for (const Vec3f& p : mesh.vertices) append_line(text, p.x, p.y, p.z);
+    text += "CELLS " + count + " " + std::to_string(5 * mesh.tetrahedra.size()) + "\n";
+    for (const Tetrahedron& corners : mesh.tetrahedra) {
+        text += "4 ";
+        append_text(text, corners[0]);
+        text += ' ';
+        append_line(text, corners[1], corners[2], corners[3]);
+    }
+    text += "CELL_TYPES " + count + "\n";
+    for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) text += "10\n"; // VTK_TETRA
+    return text;
+}
+
 } // namespace echinus

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <echinus/mesh.hpp>
+#include <echinus/tetrahedra.hpp>
 
 #include <array>
 #include <cstdint>
@@ -17,5 +18,8 @@ std::string encode_obj_lines(std::span<const std::array<std::uint32_t, 2>> edges
 std::string encode_off(const TriangleMesh& mesh);
 std::string encode_ply(const TriangleMesh& mesh); ///< binary, little endian
 std::string encode_stl(const TriangleMesh& mesh); ///< binary; normals are computed, 0 for faces without area
+
+std::string encode_msh(const TetrahedralMesh& mesh); ///< version 2.2
+std::string encode_vtk(const TetrahedralMesh& mesh); ///< legacy, an unstructured grid
 
 } // namespace echinus

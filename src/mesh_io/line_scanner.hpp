@@ -16,6 +16,9 @@ namespace echinus {
 class LineScanner {
   public:
     explicit LineScanner(const MeshSource& source) : source_(source) {}
+    /// Begins at an offset, where the line of this number does.
+    LineScanner(const MeshSource& source, std::size_t offset, std::size_t line_number)
+        : source_(source), next_(offset), next_number_(line_number) {}
 
     /// Goes to the next line that has a word. False at the end of the text.
     /// @throws Error WrongFormat when the line has control characters and so is no text

@@ -1,0 +1,86 @@
+#include "mesh_io/tetrahedra_readers.hpp"
+
+#include <limits>
+#include <string>
+
+// The format: the manual of TetGen, chapter "File Formats"
+// (https://wias-berlin.de/software/tetgen/fformats.html): a .node file with the points and an .ele file with
+// the tetrahedra. The first point's number, 0 or 1, is that from which both count. Attributes, markers and
+// regions are ignored.
+
+namespace echinus {
+
+namespace {
+
+std::size_t next_count(LineScanner& scanner, const char* what) {
+    const std::int64_t count = scanner.next_integer(what);
+    if (count < 0 || count >= std::numeric_limits<std::uint32_t>::max())
+        scanner.fail(ErrorCode::Damaged, std::string(what) + " cannot be " + std::to_string(count));
+    return static_cast<std::size_t>(count);
+}
+
+void require_number(LineScanner& scanner, std::int64_t expected, const char* what) {
+    const std::int64_t number = scanner.next_integer(what);
+    if (number != expected)
+        scanner.fail(ErrorCode::Damaged, std::string(what) + " should be " + std::to_string(expected) +
+                                             ", not " + std::to_string(number));
+}
+
+/// @returns the number of the first point
+std::int64_t read_nodes(const MeshSource& source, TetrahedralMesh& mesh) {
+    LineScanner scanner(source);
+    scanner.require_line("the number of points");
+    const std::size_t point_count = next_count(scanner, "the number of points");
+    require_number(scanner, 3, "the dimension");
+    std::int64_t first = 0;
+    for (std::size_t i = 0; i < point_count; ++i) {
+        scanner.require_line("point " + std::to_string(i + 1) + " of " + std::to_string(point_count));
+        if (i == 0) {
+            first = scanner.next_integer("a point's number");
+            if (first != 0 && first != 1)
+                scanner.fail(ErrorCode::Damaged,
+                             "points are numbered from 0 or 1, not from " + std::to_string(first));
+        } else {
+            require_number(scanner, first + static_cast<std::int64_t>(i), "the point's number");
+        }
+        const float x = scanner.next_coordinate();
+        const float y = scanner.next_coordinate();
+        mesh.vertices.emplace_back(x, y, scanner.next_coordinate());
+    }
+    return first;
+}
+
+std::uint32_t next_corner(LineScanner& scanner, std::int64_t first, std::size_t point_count) {
+    const std::int64_t number = scanner.next_integer("a point's number");
+    // Compared before the subtraction, which could overflow.
+    if (number < first || static_cast<std::uint64_t>(number - first) >= point_count)
+        scanner.fail(ErrorCode::InvalidMesh, "the tetrahedron refers to point " + std::to_string(number) +
+                                                 ", but there are " + std::to_string(point_count) +
+                                                 " points, numbered from " + std::to_string(first));
+    return static_cast<std::uint32_t>(number - first);
+}
+
+} // namespace
+
+TetrahedralMesh read_tetgen(const MeshSource& nodes, const MeshSource& elements) {
+    TetrahedralMesh mesh;
+    const std::int64_t first = read_nodes(nodes, mesh);
+    LineScanner scanner(elements);
+    scanner.require_line("the number of tetrahedra");
+    const std::size_t count = next_count(scanner, "the number of tetrahedra");
+    if (const std::size_t corner_count = next_count(scanner, "the number of corners"); corner_count != 4)
+        scanner.fail(ErrorCode::WrongFormat, "tetrahedra of four points are read, not of " +
+                                                 std::to_string(corner_count) + "; run TetGen without -o2");
+    for (std::size_t i = 0; i < count; ++i) {
+        scanner.require_line("tetrahedron " + std::to_string(i + 1) + " of " + std::to_string(count));
+        require_number(scanner, first + static_cast<std::int64_t>(i), "the tetrahedron's number");
+        Tetrahedron& corners = mesh.tetrahedra.emplace_back();
+        for (std::uint32_t& corner : corners) corner = next_corner(scanner, first, mesh.vertices.size());
+    }
+    if (scanner.next_line())
+        scanner.fail(ErrorCode::Damaged, "the file goes on after the " + std::to_string(count) +
+                                             " tetrahedra that its head promises");
+    return mesh;
+}
+
+} // namespace echinus
