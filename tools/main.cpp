@@ -62,6 +62,7 @@ void parse_and_run(int argc, char** argv) {
 #endif
     add_simulate_command(command);
     add_render_command(command);
+    add_tetrahedralize_command(command);
     command.footer("A file named - is standard input or standard output, except a scene.\n"
                    "Exit status: 0 done, 1 failed, 2 wrong use; an error is one line on standard error.\n"
                    "echinus COMMAND --help shows the options of a command and an example.");

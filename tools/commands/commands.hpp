@@ -12,3 +12,4 @@ void add_query_command(Command program);
 void add_compare_command(Command program);
 void add_simulate_command(Command program);
 void add_render_command(Command program);
+void add_tetrahedralize_command(Command program);
