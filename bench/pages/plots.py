@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Draws the plots of docs/performance_tables.md from bench/results/: time against error, time and error against
-bytes, build time against faces. scripts/bench runs it."""
+"""Draws the plots of docs/performance_tables.md and docs/surfaces_measured.md from bench/results/: time against error,
+time and error against bytes, build time against faces, time of a frame against particles. scripts/bench runs it."""
 
 import argparse
 import csv
@@ -75,11 +75,17 @@ def draw(task, folder, images):
         tori = [r for r in rows if r["mesh"].startswith("torus")]
         plot(curves_of(tori, lambda r: float(r["faces"]), lambda r: float(r["ms"])), "faces", "ms",
              images / "build_faces.svg")
+    elif task == "surfaces":
+        falls = [r for r in rows if r["scene"] == "horse, the fall alone"]
+        curves = {}
+        for r in falls:
+            curves.setdefault(r["method"], ([], True))[0].append((float(r["particles"]), float(r["frame_ms"])))
+        plot(curves, "particles", "ms a frame", images / "surfaces_particles.svg")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("task", choices=["contains", "contacts", "bytes", "build"])
+    parser.add_argument("task", choices=["contains", "contacts", "bytes", "build", "surfaces"])
     parser.add_argument("--results", type=pathlib.Path, required=True)
     parser.add_argument("--images", type=pathlib.Path, required=True)
     arguments = parser.parse_args()

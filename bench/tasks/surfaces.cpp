@@ -54,7 +54,7 @@ struct SceneRun {
     std::uint32_t frame_limit; ///< of a model that turns, nothing comes to rest
 };
 
-constexpr std::uint32_t kLimit = 3000, kTurningLimit = 720, kPullingLimit = 480;
+constexpr std::uint32_t kLimit = 3000, kTurningLimit = 720, kPullingLimit = 480, kFallLimit = 250;
 
 std::vector<SceneRun> scene_runs() {
     std::vector<SceneRun> runs{
@@ -79,6 +79,9 @@ std::vector<SceneRun> scene_runs() {
                         .file = "horse.json",
                         .turn = double(turn),
                         .frame_limit = kTurningLimit});
+    for (const std::uint32_t side : {30, 50, 100, 200, 316}) // bench/pages/plots.py draws them by their name
+        runs.push_back(
+            {.name = "horse, the fall alone", .file = "horse.json", .side = side, .frame_limit = kFallLimit});
     return runs;
 }
 
