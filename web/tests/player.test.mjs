@@ -124,6 +124,25 @@ test('a cloth of any shape is drawn', { skip }, async () => {
     await page.context().close();
 });
 
+test('a thread is drawn, and falls', { skip }, async () => {
+    const vertices = Array.from({ length: 41 }, (_, i) => `v ${-1.5 + 0.075 * i} 0.95 0.6`);
+    const line = `l ${vertices.map((_, i) => i + 1).join(' ')}`;
+    writeFileSync(inProject('out/web/thread.obj'), [...vertices, line].join('\n'));
+    const scene = inProject('out/web/thread.json');
+    writeFileSync(scene, JSON.stringify({ model: { torus: {} }, cloth: { mesh: 'thread.obj', thickness: 0.02 }, frame_limit: 60 }));
+    const page = await browser.open(record('recorded_thread', scene), SMALL);
+    await page.addStyleTag({ content: '#transport { opacity: 0 }' });
+    const seenAt = async (frame) => {
+        await scrubTo(page, frame);
+        return page.locator('#canvas').screenshot();
+    };
+    const before = await seenAt(0);
+    assert.ok(!before.equals(await seenAt(await lastOf(page))));
+    await picture(page, 'player_thread');
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
 test('a turning model is shown turning', { skip }, async () => {
     const scene = inProject('out/web/turning_box.json');
     const outOfSight = { size: [1, 1], particles: [2, 2], position: [0, 0, 50] };
