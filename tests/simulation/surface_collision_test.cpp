@@ -306,11 +306,11 @@ TEST(SurfaceCollision, KeepsASheetOffAnAssemblyOfOpenParts) {
     expect_falls_without_meeting(assembly(60), {}, sheet, 120);
 }
 
-TEST(SurfaceCollision, OfParticlesOnlyKeepsPositionsFiniteOnAnySoup) {
-    for (const auto& [name, soup] : soups()) {
-        SimulationOptions options{.thickness = kThickness, .allow_open_colliders = true};
-        Simulation simulation(sheet_at(1.3, 1.6, 16, {0, 0, -0.02}), {{ExactMap::build(soup)}}, options);
-        for (int frame = 0; frame < 120; ++frame) simulation.step();
-        for (const Vec3f& p : simulation.positions()) ASSERT_TRUE(is_finite(p)) << name;
-    }
+// In its notches a soup has no certain inside: particles may get in and be pushed out, but stay numbers.
+TEST(SurfaceCollision, OfParticlesOnlyKeepsPositionsFiniteOnASoup) {
+    const TriangleMesh soup = exploded(make_torus(1, 0.4, 24, 12), 0.97F);
+    Simulation simulation(sheet_at(0.5, 1.6, 10, {0, 0, -0.02}), {{ExactMap::build(soup)}},
+                          {.thickness = kThickness, .allow_open_colliders = true});
+    for (int frame = 0; frame < 60; ++frame) simulation.step();
+    for (const Vec3f& p : simulation.positions()) ASSERT_TRUE(is_finite(p));
 }
