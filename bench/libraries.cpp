@@ -37,6 +37,16 @@ std::vector<BenchSystem> libraries_on(const Subject& subject) {
     return list;
 }
 
+std::vector<BenchSystem> labelling_libraries(const TriangleMesh& mesh) {
+    std::vector<BenchSystem> list{
+        bench_system("Embree", false, [&mesh] { return EmbreeTree::build_open(mesh, RaySides::FirstHit); }),
+        bench_system("Embree parity", false, [&mesh] { return EmbreeTree::build_open(mesh); }),
+    };
+    if (inspect(mesh).closed)
+        list.push_back(bench_system("CGAL", false, [&mesh] { return cgal_tree(mesh); }));
+    return list;
+}
+
 std::vector<NamedTriangleRival> triangle_rivals(const TriangleMesh& model) {
     std::vector<NamedTriangleRival> list;
     list.push_back({"Embree", std::make_unique<const EmbreeTriangles>(model)});

@@ -21,6 +21,10 @@ std::vector<BenchSystem> systems_on(const Subject& subject);
 /// Those of them that are other people's libraries, compiled for this very machine as their users would.
 [[gnu::visibility("default")]] std::vector<BenchSystem> libraries_on(const Subject& subject);
 
+/// Embree in two ways and, around a closed mesh, CGAL: libraries that label points. The mesh may be open.
+[[gnu::visibility("default")]] std::vector<BenchSystem>
+labelling_libraries(const echinus::TriangleMesh& mesh);
+
 /// A library that is asked about triangles.
 struct NamedTriangleRival {
     std::string name;

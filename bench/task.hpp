@@ -21,7 +21,6 @@ struct Setting {
 
 Records measure_contains(const Setting& setting);
 Records measure_contacts(const Setting& setting);
-Records measure_distances(const Setting& setting);
 Records measure_bytes(const Setting& setting);
 Records measure_build(const Setting& setting);
 Records measure_cloth(const Setting& setting);

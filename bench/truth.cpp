@@ -4,6 +4,7 @@
 #include "mesh/mesh_hash.hpp"
 #include "oracle/distance_tree.hpp"
 #include "oracle/exact_judge.hpp"
+#include "oracle/solid_angle_tree.hpp"
 #include "pinning.hpp"
 
 #include <fmt/format.h>
@@ -14,6 +15,8 @@
 #include <algorithm>
 #include <atomic>
 #include <fstream>
+#include <functional>
+#include <memory>
 #include <thread>
 
 using namespace echinus;
@@ -51,8 +54,18 @@ std::vector<test::Corners> corners_of(const TriangleMesh& mesh) {
     return corners;
 }
 
-void find_truth(const Subject& subject, const JudgedSet& set, Truth& truth) {
-    const test::ExactJudge judge(subject.mesh);
+std::function<bool(const Vec3f&)> judge_of_sides(const TriangleMesh& mesh, SideJudge side_judge) {
+    if (side_judge == SideJudge::Parity)
+        return [judge = std::make_shared<const test::ExactJudge>(mesh)](const Vec3f& p) {
+            return judge->inside(p);
+        };
+    return [tree = std::make_shared<const test::SolidAngleTree>(mesh)](const Vec3f& p) {
+        return tree->winding_number(Vec3d(p)) > 0.5;
+    };
+}
+
+void find_truth(const Subject& subject, SideJudge side_judge, const JudgedSet& set, Truth& truth) {
+    const std::function<bool(const Vec3f&)> is_inside = judge_of_sides(subject.mesh, side_judge);
     const test::DistanceTree tree(corners_of(subject.mesh));
     constexpr std::size_t kBatch = 4096;
     std::atomic<std::size_t> next{0};
@@ -60,7 +73,7 @@ void find_truth(const Subject& subject, const JudgedSet& set, Truth& truth) {
         for (std::size_t begin = next.fetch_add(kBatch); begin < set.points.size();
              begin = next.fetch_add(kBatch))
             for (std::size_t i = begin; i < std::min(begin + kBatch, set.points.size()); ++i) {
-                truth.inside[i] = judge.inside(set.points[i]) ? 1 : 0;
+                truth.inside[i] = is_inside(set.points[i]) ? 1 : 0;
                 truth.distance[i] = static_cast<float>(tree.distance(Vec3d(set.points[i])));
             }
     };
@@ -71,13 +84,14 @@ void find_truth(const Subject& subject, const JudgedSet& set, Truth& truth) {
 
 } // namespace
 
-void judge(const Subject& subject, const fs::path& cache, JudgedSet& set) {
+void judge(const Subject& subject, const fs::path& cache, JudgedSet& set, SideJudge side_judge) {
     const fs::path path =
-        cache / fmt::format("{}_{}_{:016x}.truth", subject.name, set.name, hash_of(subject, set));
+        cache / fmt::format("{}_{}_{:016x}{}.truth", subject.name, set.name, hash_of(subject, set),
+                            side_judge == SideJudge::Parity ? "" : "_winding");
     set.truth = {std::vector<std::uint8_t>(set.points.size()), std::vector<float>(set.points.size()), {}};
     if (read_cached(path, set.truth)) return;
     unpin();
-    find_truth(subject, set, set.truth);
+    find_truth(subject, side_judge, set, set.truth);
     pin_to_one_core();
     write_cached(path, set.truth);
 }

@@ -16,10 +16,11 @@ double quantile(const std::vector<double>& sorted, double q) {
     return sorted[below] + (sorted[above] - sorted[below]) * (place - static_cast<double>(below));
 }
 
-double seconds_of(const std::function<void(Part)>& run, Part part) {
-    const double start = thread_seconds();
+double seconds_of(const std::function<void(Part)>& run, Part part, bool all_threads) {
+    const auto now = all_threads ? process_seconds : thread_seconds;
+    const double start = now();
     run(part);
-    return thread_seconds() - start;
+    return now() - start;
 }
 
 Part before(Part part, std::size_t item_count) {
@@ -29,11 +30,11 @@ Part before(Part part, std::size_t item_count) {
 }
 
 /// Seconds that a racer takes for its parts.
-double turn_seconds(const Racer& racer, std::size_t warm_up) {
+double turn_seconds(const Racer& racer, const TurnOptions& options) {
     double seconds = 0;
     for (const Part& part : racer.parts) {
-        racer.run(before(part, warm_up));
-        seconds += seconds_of(racer.run, part);
+        racer.run(before(part, options.warm_up));
+        seconds += seconds_of(racer.run, part, options.all_threads);
     }
     return seconds;
 }
@@ -76,7 +77,7 @@ std::vector<Part> parts_for(const std::function<void(Part)>& run, std::size_t it
     if (item_count <= kMinParts * kPart) return whole;
     double seconds = 0; // for a part
     for (const Part& part : spread_parts(item_count, kMinParts, kPart))
-        seconds += seconds_of(run, part) / kMinParts;
+        seconds += seconds_of(run, part, false) / kMinParts;
     const double affordable = patience_seconds / seconds;
     if (affordable * kPart >= static_cast<double>(item_count)) return whole;
     return spread_parts(item_count, std::max(static_cast<std::size_t>(affordable), kMinParts), kPart);
@@ -89,7 +90,7 @@ std::vector<Pace> take_turns(const std::vector<Racer>& racers, const TurnOptions
         for (std::size_t turn = 0; turn < racers.size(); ++turn) {
             const std::size_t k = pass % 2 == 0 ? turn : racers.size() - 1 - turn;
             if (seconds[k] > options.enough_seconds) continue;
-            const double turn_took = turn_seconds(racers[k], options.warm_up);
+            const double turn_took = turn_seconds(racers[k], options);
             seconds[k] += turn_took;
             pass_ns[k].push_back(1e9 * turn_took / static_cast<double>(item_count_of(racers[k].parts)));
             if (options.report_progress)

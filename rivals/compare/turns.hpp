@@ -27,6 +27,7 @@ struct TurnOptions {
     int passes = 5;
     double enough_seconds =
         std::numeric_limits<double>::infinity(); ///< a racer that was timed this long drops out
+    bool all_threads = false;                    ///< time those that a racer starts, too
     std::function<void(double fraction)> report_progress;
 };
 
@@ -37,10 +38,10 @@ struct Pace {
     std::vector<double> pass_ns; ///< [passes, or fewer for one that dropped out] per item
 };
 
-/// Races on the calling thread, by its processor time. All racers take their turn, there and back, `passes`
-/// times over, so that a machine that changes its pace hits all alike. Before each part each runs for a while
-/// on the items before it, or on its first where there are none: its tables, not another's, are then in the
-/// caches, as they would be in a program that uses one of them.
+/// Races on the calling thread, by its processor time unless all threads count. All racers take their turn,
+/// there and back, `passes` times over, so that a machine that changes its pace hits all alike. Before each
+/// part each runs for a while on the items before it, or on its first where there are none: its tables, not
+/// another's, are then in the caches, as they would be in a program that uses one of them.
 std::vector<Pace> take_turns(const std::vector<Racer>& racers, const TurnOptions& options);
 
 /// What a racer should do in a turn: all items in one part if a short trial says that this takes at most

@@ -50,6 +50,25 @@ def test_the_layout_of_the_points_does_not_change_an_answer(layout):
     assert np.array_equal(MAP.signed_distance(points), MAP.signed_distance(POINTS))
 
 
+def test_large_answers_are_their_own_and_what_replaces_them_is_right():
+    many = np.tile(POINTS, (30, 1))  # answers of 4 MB, whose memory waits for the next ones
+    first = MAP.contacts(many)
+    kept = first.depth
+    second = MAP.contacts(many[::-1])
+    assert not np.shares_memory(first.array, second.array)
+    assert np.array_equal(second.depth, kept[::-1])
+    address = first.array.ctypes.data
+    del first
+    third = MAP.contacts(many + 1)
+    assert third.array.ctypes.data != address  # a view still has it
+    assert np.array_equal(kept, np.tile(MAP.contacts(POINTS).depth, 30))
+    del kept
+    fourth = MAP.contacts(many)
+    assert fourth.array.ctypes.data == address
+    assert (fourth.array == np.tile(MAP.contacts(POINTS).array, 30)).all()
+    fourth.array["depth"] = 0  # it can be written to
+
+
 @pytest.mark.parametrize("shape", [(3000,), (30, 100), (2, 3, 500), (3000, 1), (1, 3000)])
 def test_leading_dimensions_are_kept(shape):
     points = POINTS.reshape(*shape, 3)

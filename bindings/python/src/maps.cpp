@@ -103,7 +103,7 @@ py::object signed_distances(const ExactMap& map, const py::object& points, bool 
     if (gradient) {
         std::vector<py::ssize_t> shape = taken.shape();
         shape.push_back(3);
-        gradients = py::array_t<float>(shape);
+        gradients = answers(py::dtype::of<float>(), shape, py::none());
         directions = {static_cast<Vec3f*>(gradients.mutable_data()), taken.size()};
     }
     in_pieces(taken.size(), [&](std::size_t first, std::size_t count) {
@@ -118,7 +118,7 @@ py::array sweep_points(const ExactMap& map, const py::object& start, const py::o
     const unsigned workers = thread_count(threads);
     const Points from(start, "start"), to(end, "end");
     if (from.shape() != to.shape()) throw py::value_error("start and end must have the same shape");
-    py::array result(hit_type(), from.shape());
+    py::array result = answers(hit_type(), from.shape(), py::none());
     const std::span<SweepHit> hits = elements_of<SweepHit>(result);
     in_pieces(from.size(), [&](std::size_t first, std::size_t count) {
         for_each_piece(count, workers, [&](std::size_t begin, std::size_t past) {

@@ -199,6 +199,11 @@ struct EmbreeTree::Scene {
 
 EmbreeTree EmbreeTree::build(const TriangleMesh& mesh, RaySides sides, unsigned thread_count) {
     require_closed(mesh, "a ray that tells sides");
+    return build_open(mesh, sides, thread_count);
+}
+
+EmbreeTree EmbreeTree::build_open(const TriangleMesh& mesh, RaySides sides, unsigned thread_count) {
+    require_valid(mesh);
     return EmbreeTree(std::make_unique<const Scene>(mesh, sides, thread_count));
 }
 

@@ -33,6 +33,10 @@ class EmbreeTree final : public System {
     /// outside [1e-15, 1e15]
     static EmbreeTree build(const TriangleMesh& mesh, RaySides sides = RaySides::Parity,
                             unsigned thread_count = 1);
+    /// The same around a mesh that may be open, where a side is what one ray happens to meet.
+    /// @throws Error InvalidMesh as inspect() does
+    static EmbreeTree build_open(const TriangleMesh& mesh, RaySides sides = RaySides::Parity,
+                                 unsigned thread_count = 1);
 
     EmbreeTree(EmbreeTree&&) noexcept;
     EmbreeTree& operator=(EmbreeTree&&) noexcept;
