@@ -1,5 +1,5 @@
 // The Python module echinus_bench: what measure.py and systems.py take from C++. Arrays of answers belong to
-// the caller. caller.
+// the caller.
 
 #include "arrays.hpp"
 #include "pinning.hpp"
@@ -15,7 +15,13 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 using namespace echinus;
 using namespace echinus::comparison;
@@ -131,10 +137,9 @@ void contains_by_winding_number(const Vertices& vertices, const Faces& faces, co
 py::array point_set(const Vertices& vertices, const Faces& faces, const std::string& name,
                     std::size_t count) {
     const TriangleMesh mesh = python::mesh_of(vertices, faces);
-    const auto kept =
-        new std::vector<Vec3f>(name == "U" ? uniform_points(mesh, count) : surface_points(mesh, count));
-    const py::capsule owner(kept, [](void* p) { delete static_cast<std::vector<Vec3f>*>(p); });
-    return python::view_of(*kept, owner);
+    const std::vector<Vec3f> points = name == "U" ? uniform_points(mesh, count) : surface_points(mesh, count);
+    return py::array_t<float>({static_cast<py::ssize_t>(points.size()), py::ssize_t{3}},
+                              reinterpret_cast<const float*>(points.data())); // a copy
 }
 
 /// (inside, distance) of each point.
