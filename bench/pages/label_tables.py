@@ -62,4 +62,4 @@ def labels(folder):
         r = results.where(mesh=mesh)[-1]
         tables.append(f"**{mesh}** ({r['kind']}), {r['faces']} faces:\n\n{label_table(results, mesh)}")
     return {"labels": "\n\n".join(tables), "labels ratios": label_ratios(results), "labels corpus": label_corpus(results),
-            "labels python": label_python(results), "labels machine": results.machine, "labels commit": results.commit}
+            "labels python": label_python(results) if results.where(task="python") else "Not recorded yet.", "labels machine": results.machine, "labels commit": results.commit}
