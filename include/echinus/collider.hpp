@@ -8,12 +8,14 @@
 #include <echinus/geometry.hpp>
 
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
 #include <utility>
 #include <variant>
+#include <vector>
 
 ECHINUS_EXPORT_BEGIN
 
@@ -53,6 +55,37 @@ Vec3d velocity_at(const Collider& collider, const Vec3d& point_world);
 
 /// The pose a time later. Exact for constant velocities, to rounding; the same bits on every system.
 RigidTransform pose_after(const Collider& collider, double seconds);
+
+/// The velocities that lead the collider to a pose, the shorter way round.
+/// @param seconds  positive
+void head_for(Collider& collider, const RigidTransform& pose, double seconds);
+
+/// Where a collider is at a time.
+struct PoseKey {
+    double time = 0; ///< seconds
+    RigidTransform pose{};
+};
+
+/// The pose at a time. From key to key the translation goes straight and the rotation about one axis, the
+/// shorter way round (slerp: Shoemake 1985), both evenly. Before the first key and after the last one the
+/// pose is that key's. The same bits on every system. Cost: the logarithm of the number of keys.
+/// @pre there is a key, times ascend, poses are finite and rotations of unit length
+RigidTransform pose_at(std::span<const PoseKey> keys, double seconds);
+
+/// The vertices of a model over time, in samples at equal distances, such as a PC2 file has (mesh_io.hpp).
+struct VertexCache {
+    double start_time = 0;                             ///< of the first sample, seconds
+    double sample_seconds = 1;                         ///< from one sample to the next; positive
+    std::size_t vertex_count = 0;                      ///< of the model
+    std::shared_ptr<const std::vector<Vec3f>> samples; ///< vertex_count positions each, local; at least one
+
+    std::size_t sample_count() const { return vertex_count > 0 ? samples->size() / vertex_count : 0; }
+    double end_time() const { return start_time + sample_seconds * static_cast<double>(sample_count() - 1); }
+};
+
+/// The vertices at a time: straight and even from sample to sample; before the first and after the last they
+/// rest. @pre the cache has a sample
+std::vector<Vec3f> vertices_at(const VertexCache& cache, double seconds);
 
 // Queries: as those of the map. noexcept, no allocation (but a custom map's own), any number of threads. A
 // point is transformed to the local frame in double and rounded to float there, so a collider may stand far

@@ -77,6 +77,9 @@ struct Rotation {
     static Rotation about(const Vec3d& axis, double angle_rad);
 
     Vec3d apply(const Vec3d& v) const;
+    /// The axis, as long as the angle in radians, which is at most pi: about(vector, length(vector)) turns
+    /// the same way. 0 where nothing turns. The same bits on every machine.
+    Vec3d vector() const;
     Rotation inverse() const { return {w, -x, -y, -z}; }
     /// First `b`, then `a`.
     friend Rotation operator*(const Rotation& a, const Rotation& b);

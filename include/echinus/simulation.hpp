@@ -209,9 +209,17 @@ struct SimulationOptions {
     /// refused. Time: up to some hundred times that of looking for the pairs that intersect
     /// (intersections.hpp).
     bool untangle = false;
+    /// Keep account of what deformables put on the colliders, for load_on(). Takes a few percent of the time.
+    bool measure_loads = false;
     /// A particle farther than this from the middle of where the deformable began ends the simulation as
     /// diverged, units. 0: 10 000 times the deformable's extent at the start.
     double bound = 0;
+};
+
+/// What bears on a collider, in the world's axes.
+struct Load {
+    Vec3d force;  ///< mass * length / s^2, with masses in the unit in which inverse_masses are their inverses
+    Vec3d torque; ///< about where the pose's translation was when the frame began: mass * length^2 / s^2
 };
 
 /// Times and counts of step() since the simulation began. Times are not part of the result.
@@ -309,9 +317,54 @@ class Simulation {
     /// XXH64 of the bits of all positions and previous positions.
     std::uint64_t state_hash() const;
 
-    /// Steers a collider: it keeps these velocities until they are set again.
-    /// @pre collider_index < colliders().size()
+    // Steering colliders. Of these three the last one called holds; each needs collider_index <
+    // colliders().size().
+
+    /// The collider keeps these velocities.
     void set_collider_velocity(std::size_t collider_index, const Vec3d& linear, const Vec3d& angular);
+
+    /// The next frame leads the collider to this pose, evenly and the shorter way round, and leaves it there,
+    /// to rounding. Particles and surfaces are kept out of it on the way as of any collider that moves, and
+    /// rub against it. Until the next call it stands still.
+    /// @throws Error InvalidOptions when the pose is not finite, or its rotation off the unit length by more
+    /// than 1e-4
+    void set_collider_pose(std::size_t collider_index, const RigidTransform& pose);
+
+    /// The collider follows the keys: each frame leads it to where pose_at() has it at the frame's end, which
+    /// is options().time_step * frame() after the simulation began. It does so from where it is, so begin it
+    /// at pose_at() of the present. The simulation is not at rest before the last key. No keys: it stands
+    /// still.
+    /// @throws Error InvalidOptions, naming the key, when a time or a pose is not finite, a rotation not of
+    /// unit length to 1e-4, or a time not later than the one before it
+    void set_collider_keyframes(std::size_t collider_index, std::vector<PoseKey> keys);
+
+    // Colliders that deform: their vertices move, and their faces stay the same. Each needs collider_index <
+    // colliders().size(), an exact map and options().surface_collision. Surfaces are kept off the moving
+    // faces as off any (docs/surfaces.md), and attached particles stay beside the face that was nearest to
+    // them when the collider first deformed. Each frame that deforms it builds its exact map anew, on one
+    // thread.
+
+    /// The next frame leads the vertices of a collider's mesh here, each on a straight way; then they rest.
+    /// The pose, which may move meanwhile, is another thing. The map is built in this call.
+    /// @param vertices_local  [vertex_count] of the mesh that its exact map was built of, in its order
+    /// @throws Error InvalidOptions for another number of vertices, a place that is not finite, a collider
+    /// without an exact map, or without options().surface_collision; as ExactMap::build(). Then nothing has
+    /// changed
+    void set_collider_vertices(std::size_t collider_index, std::span<const Vec3f> vertices_local);
+
+    /// Each frame leads the vertices to where vertices_at() has them at its end. The simulation is not at
+    /// rest before the last sample.
+    /// @throws Error InvalidOptions for a cache of another number of vertices, without a sample, or with
+    /// times or places that are not finite; and as above
+    void set_collider_cache(std::size_t collider_index, VertexCache cache);
+
+    /// What the deformable put on a collider in the last frame, as its mean over the frame: the momentum that
+    /// contacts, friction, rescue and truncation gave to particles, with the opposite sign. Also what sticks
+    /// and folds pull at particles that are attached to it, provided that all pinned particles are. Before
+    /// the first frame 0. A host that moves a rigid body by it and then the collider by the body exchanges
+    /// momentum with the deformable (examples/07_load).
+    /// @pre collider_index < colliders().size(), and options().measure_loads
+    Load load_on(std::size_t collider_index) const;
 
     /// Gives a particle a velocity, units per second, from which the next frame goes on as from any other:
     /// sticks pull at it and colliders stop it, so a hand that drags particles by setting their velocities

@@ -33,21 +33,6 @@ auto with_queries(const Collider& collider, const FrameChange& frame, float marg
 
 } // namespace
 
-Vec3d velocity_at(const Collider& collider, const Vec3d& point_world) {
-    return collider.linear_velocity +
-           cross(collider.angular_velocity, point_world - collider.pose.translation);
-}
-
-RigidTransform pose_after(const Collider& collider, double seconds) {
-    RigidTransform pose = collider.pose;
-    pose.translation += collider.linear_velocity * seconds;
-    const double speed = length(collider.angular_velocity);
-    if (speed == 0) return pose;
-    const Rotation turn = Rotation::about(collider.angular_velocity, speed * seconds);
-    pose.rotation = (turn * pose.rotation).normalised();
-    return pose;
-}
-
 bool contains(const Collider& collider, Vec3f point_world) noexcept {
     const FrameChange frame(collider);
     return with_queries(collider, frame, 0, [&](const auto& queries) {

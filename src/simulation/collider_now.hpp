@@ -2,6 +2,7 @@
 
 #include "collider/frame_change.hpp"
 #include "simulation/material_motion.hpp"
+#include "simulation/particles.hpp"
 
 #include <echinus/collider.hpp>
 #include <echinus/exact_map.hpp>
@@ -24,12 +25,19 @@ struct ColliderNow {
     float friction;
     /// An open surface that lets nothing through: each particle stays on its side, and none is inside.
     bool two_sided;
+    /// [particle_count] How the surface beside each particle deforms in this substep, in the world, beyond
+    /// what the collider itself moves; null where it does not.
+    const PointArrays* drift = nullptr;
     float coordinate_sum; ///< of where collider and mesh stand; bounds what rounding loses
 
     /// @pre the options have a thickness
     ColliderNow(const Collider& collider, const RigidTransform& previous_pose,
                 const SimulationOptions& options);
 
+    /// How the surface beside a particle has moved in this substep.
+    Vec3f motion_at(std::size_t particle, const Vec3f& position) const {
+        return drift == nullptr ? material.at(position) : material.at(position) + (*drift)[particle];
+    }
     Vec3f to_body(const Vec3f& point_local) const { return Vec3f(times(Vec3d(point_local), scale)); }
     /// Is the place outside, whichever way the particle came?
     bool outside(const Vec3f& position) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "simulation/particles.hpp"
+#include "simulation/surface_motion.hpp"
 
 #include <echinus/simulation.hpp>
 
@@ -21,7 +22,10 @@ class Collision {
     virtual ~Collision() = default;
     virtual std::unique_ptr<Collision> clone() const = 0;
 
-    virtual void begin_frame(const Collider&) {}
+    /// @param motion  how its surface deforms in this frame, or null; lives as long as the frame
+    virtual void begin_frame(const Collider&, const SurfaceMotion* /*motion*/) {}
+    /// Nothing was asked of it for a while, in which the collider may have moved; it stands here now.
+    virtual void resume(const Collider&) {}
     /// The collider may have moved.
     virtual void begin_substep(const Collider& collider, const RigidTransform& previous_pose) = 0;
     /// One relaxation of all particles.

@@ -24,15 +24,29 @@ ExactCollision::ExactCollision(const Collider& collider, const Particles& partic
     moved_along_.resize(particles.count());
 }
 
-void ExactCollision::begin_frame(const Collider& collider) {
+void ExactCollision::begin_frame(const Collider& collider, const SurfaceMotion* motion) {
     frame_start_pose_ = collider.pose;
-    free_places_.begin_frame(collider);
+    motion_ = motion;
+    free_places_.begin_frame(collider, motion != nullptr ? &motion->carried : nullptr);
     moves_ = collider.moves();
+    if (motion != nullptr) known_.weaken(motion->most);
+}
+
+void ExactCollision::resume(const Collider& collider) {
+    now_ = ColliderNow(collider, collider.pose, options_);
+    known_.follow(now_);
 }
 
 void ExactCollision::begin_substep(const Collider& collider, const RigidTransform& previous_pose) {
     now_ = ColliderNow(collider, previous_pose, options_);
     if (moves_) known_.follow(now_);
+    if (motion_ == nullptr) return;
+    // Each substep looks at the surface as it ends the frame, and takes its share of the motion.
+    drift_.resize(moved_along_.x.size() - PointArrays::kPadding);
+    const float share = 1 / static_cast<float>(options_.substep_count);
+    for (std::size_t i = 0; i + PointArrays::kPadding < drift_.x.size(); ++i)
+        drift_.set(i, now_.body.normal_to_world(motion_->carried[i]) * share);
+    now_.drift = &drift_;
 }
 
 void ExactCollision::relax(Particles& particles, SimulationProfile& profile) {
@@ -126,6 +140,9 @@ Vec3f ExactCollision::normal_to_own_side(std::size_t i, const Particles& particl
 
 bool ExactCollision::meet_on_the_way(std::size_t i, const Particles& particles, SimulationProfile& profile) {
     if (!options_.keep_free || !free_places_.has(i)) return false;
+    // The surface may have come over the place where a particle was free.
+    if (motion_ != nullptr && !now_.two_sided && contains(now_.map, free_places_.local(i, particles)))
+        return false;
     const Vec3f position = particles.positions[i];
     if (length(position - known_.asked_at[i]) < known_.clearance[i]) return false;
     ++profile.map_query_count;
@@ -148,12 +165,16 @@ void ExactCollision::known_clearances(const Particles& particles, std::span<floa
 }
 
 std::span<const std::uint32_t> ExactCollision::find_unproven(const Particles& particles) {
-    if (moves_) {
+    const bool takes_along = moves_ || motion_ != nullptr;
+    if (takes_along) {
         const FrameChange before(frame_start_pose_, {1, 1, 1});
-        for (std::size_t i = 0; i < particles.count(); ++i)
-            moved_along_.set(i, now_.body.point_to_world(before.point_to_local(particles.frame_start[i])));
+        for (std::size_t i = 0; i < particles.count(); ++i) {
+            Vec3f place = before.point_to_local(particles.frame_start[i]);
+            if (motion_ != nullptr) place += motion_->carried[i];
+            moved_along_.set(i, now_.body.point_to_world(place));
+        }
     }
-    const PointArrays& free_now = moves_ ? moved_along_ : particles.frame_start;
+    const PointArrays& free_now = takes_along ? moved_along_ : particles.frame_start;
     unproven_.count = 0;
     list_unproven(known_, now_, particles.positions, free_now, unproven_);
     // These were compared with where they were at the start of the frame, not with where they were free last.
@@ -183,7 +204,8 @@ void ExactCollision::take_back(std::size_t i, Particles& particles) const {
 }
 
 void ExactCollision::end_frame(const Particles& particles) {
-    free_places_.end_frame(now_, particles, options_.keep_free);
+    // Where the surface deforms, a place that was free before this frame need not be one now.
+    free_places_.end_frame(now_, particles, options_.keep_free && motion_ == nullptr);
 }
 
 } // namespace echinus

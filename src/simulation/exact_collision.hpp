@@ -28,7 +28,8 @@ class ExactCollision final : public Collision {
     ExactCollision(const Collider& collider, const Particles& particles, const SimulationOptions& options);
     std::unique_ptr<Collision> clone() const override { return std::make_unique<ExactCollision>(*this); }
 
-    void begin_frame(const Collider& collider) override;
+    void begin_frame(const Collider& collider, const SurfaceMotion* motion) override;
+    void resume(const Collider& collider) override;
     void begin_substep(const Collider& collider, const RigidTransform& previous_pose) override;
     /// To the thickness over the nearest point, with friction.
     void relax(Particles& particles, SimulationProfile& profile) override;
@@ -62,6 +63,8 @@ class ExactCollision final : public Collision {
     PointArrays moved_along_; ///< places at the frame's start, moved along; used while the collider moves
     ParticleList to_ask_, unproven_;
     bool moves_ = false;
+    const SurfaceMotion* motion_ = nullptr; ///< in this frame
+    PointArrays drift_;                     ///< ColliderNow::drift; used while the surface deforms
 };
 
 } // namespace echinus

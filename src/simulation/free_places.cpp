@@ -13,8 +13,9 @@ FreePlaces::FreePlaces(const ColliderNow& collider, const Particles& particles)
     }
 }
 
-void FreePlaces::begin_frame(const Collider& collider) {
+void FreePlaces::begin_frame(const Collider& collider, const PointArrays* carried) {
     frame_start_ = FrameChange(collider);
+    carried_ = carried;
 }
 
 bool FreePlaces::mark_lost(std::size_t i) {

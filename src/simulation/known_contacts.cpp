@@ -20,6 +20,14 @@ void KnownContacts::follow(const ColliderNow& collider) {
     }
 }
 
+void KnownContacts::weaken(float most) {
+    for (std::size_t i = 0; i + PointArrays::kPadding < clearance.size(); ++i) {
+        if (clearance[i] == kNeverAsk) continue;
+        clearance[i] = height[i] == kNoPlane ? clearance[i] - most : -1;
+        height[i] = kNoPlane;
+    }
+}
+
 void KnownContacts::remember(std::size_t i, const ColliderNow& collider, const Vec3f& position,
                              float clearance_now) {
     asked_at.set(i, position);

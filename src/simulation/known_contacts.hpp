@@ -32,6 +32,8 @@ struct KnownContacts {
 
     /// Moves along with the collider, which has moved.
     void follow(const ColliderNow& collider);
+    /// The surface deforms, no vertex by more than this: planes are forgotten, and clearances lessened.
+    void weaken(float most);
     void remember(std::size_t i, const ColliderNow& collider, const Vec3f& position, float clearance_now);
     void remember_plane(std::size_t i, const ColliderNow& collider, const Vec3f& normal_in_body,
                         float height_now);

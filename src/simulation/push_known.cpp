@@ -66,7 +66,9 @@ HWY_INLINE void push(const FloatMask& below, const FloatLanes& missing, const Po
                      const ColliderNow& collider, std::size_t i, Particles& particles) {
     const FloatLanes zero = splat(0);
     const PointLanes position = load(particles.positions, i), previous = load(particles.previous, i);
-    const PointLanes start = previous + motion_at(collider.material, position);
+    PointLanes surface_motion = motion_at(collider.material, position);
+    if (collider.drift != nullptr) surface_motion = surface_motion + load(*collider.drift, i);
+    const PointLanes start = previous + surface_motion;
     const PointLanes motion = position - start;
     const FloatLanes toward = zero - dot(motion, normal);
     const FloatLanes approach = hn::IfThenElse(zero < toward, toward, zero);
@@ -160,7 +162,7 @@ bool push_one(const KnownContacts& known, const ColliderNow& collider, std::size
     const Vec3f normal = known.normal[i];
     const float missing = collider.thickness - (known.height[i] + dot(position - known.asked_at[i], normal));
     if (!(missing > 0)) return false;
-    const Vec3f start = previous + collider.material.at(position);
+    const Vec3f start = previous + collider.motion_at(i, position);
     const auto [motion, excess] = push_out(position - start, normal, missing, collider.friction);
     particles.positions.set(i, start + motion);
     particles.previous.set(i, previous + normal * excess);

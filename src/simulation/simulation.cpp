@@ -50,8 +50,29 @@ const SimulationProfile& Simulation::profile() const {
 
 void Simulation::set_collider_velocity(std::size_t collider_index, const Vec3d& linear,
                                        const Vec3d& angular) {
+    solver_->motions.keep_velocity(collider_index);
     solver_->colliders[collider_index].linear_velocity = linear;
     solver_->colliders[collider_index].angular_velocity = angular;
+}
+
+void Simulation::set_collider_pose(std::size_t collider_index, const RigidTransform& pose) {
+    solver_->motions.lead_to(collider_index, solver_->name_of_collider(collider_index), pose);
+}
+
+void Simulation::set_collider_keyframes(std::size_t collider_index, std::vector<PoseKey> keys) {
+    solver_->motions.follow(collider_index, solver_->name_of_collider(collider_index), std::move(keys));
+}
+
+void Simulation::set_collider_vertices(std::size_t collider_index, std::span<const Vec3f> vertices_local) {
+    solver_->lead_vertices(collider_index, vertices_local);
+}
+
+void Simulation::set_collider_cache(std::size_t collider_index, VertexCache cache) {
+    solver_->follow_cache(collider_index, std::move(cache));
+}
+
+Load Simulation::load_on(std::size_t collider_index) const {
+    return solver_->load_on(collider_index);
 }
 
 void Simulation::set_particle_velocity(std::size_t particle, const Vec3d& velocity) {

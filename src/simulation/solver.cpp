@@ -12,6 +12,7 @@
 #include <limits>
 #include <string>
 #include <utility>
+#include <variant>
 
 namespace echinus {
 
@@ -86,10 +87,11 @@ void integrate_coordinate(float* __restrict positions, float* __restrict previou
 Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colliders_in,
                            const SimulationOptions& options_in)
     : deformable(valid_start(std::move(deformable_in), colliders_in, options_in)),
-      colliders(with_unit_rotations(std::move(colliders_in))),
+      colliders(with_unit_rotations(std::move(colliders_in))), motions(colliders.size()),
       options(with_thickness(options_in, deformable)), largest_speed(std::numeric_limits<double>::infinity()),
       particles_(deformable), sticks_(weighted_sticks(deformable, options)),
       folds_(weighted_folds(deformable, options)), attachments_(deformable, colliders),
+      deforming_(colliders.size()), surface_motions_(colliders.size()), clearances_(particles_.count()),
       collisions_(colliders, particles_, options), rest_(options.rest, deformable.positions),
       goals_give_way_(sticks_.gives_way()), substep_seconds_(options.time_step / options.substep_count) {
     if (options.surface_collision) {
@@ -97,6 +99,7 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
         surfaces_.emplace(deformable, colliders, particles_, options);
         if (options.solver == SolverKind::Verlet) stretched_part_.emplace(sticks_, particles_.count());
     }
+    if (options.measure_loads) meter_.emplace(deformable, colliders.size());
     const Sphere start = box_sphere(deformable.positions);
     start_centre_ = start.centre;
     // A single particle has no extent; its bound is then in the caller's unit.
@@ -105,11 +108,11 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
 
 void Simulation::Solver::step() {
     begin_frame();
-    begin_surfaces();
+    begin_collisions();
     for (std::uint32_t substep = 0; substep < options.substep_count; ++substep) {
         integrate(substep == 0 ? 1 - options.drag : 1);
         if (substep == 0) look_ahead();
-        move_colliders();
+        move_colliders(substep);
         restore_goals();
         for (std::uint32_t iteration = 0; iteration < options.iteration_count; ++iteration) {
             relax_constraints();
@@ -126,14 +129,29 @@ void Simulation::Solver::step() {
 void Simulation::Solver::begin_frame() {
     const Stopwatch stopwatch(profile.integration_seconds);
     particles_.frame_start = particles_.positions;
-    collisions_.begin_frame(colliders);
+    motions.begin_frame(colliders, (frame + 1.0) * options.time_step, options.time_step);
+    if (meter_) meter_->begin_frame(colliders);
     if (stretched_part_ && frame % StretchedPart::kFrames == 0)
         stretched_part_->find(sticks_, particles_.positions);
 }
 
-void Simulation::Solver::begin_surfaces() {
+/// Colliders that deform get the maps of the frame's end.
+void Simulation::Solver::deform() {
+    for (std::size_t c = 0; c < colliders.size(); ++c) {
+        surface_motions_[c] = nullptr;
+        if (!deforming_[c]) continue;
+        collisions_.known_clearances(c, particles_, clearances_);
+        deforming_[c]->begin_frame(colliders[c], (frame + 1.0) * options.time_step, particles_, clearances_,
+                                   surfaces_->carry_reach(c));
+        surface_motions_[c] = deforming_[c]->motion();
+    }
+}
+
+void Simulation::Solver::begin_collisions() {
     const Stopwatch stopwatch(profile.collision_seconds);
-    if (surfaces_) surfaces_->begin_frame(colliders, collisions_, particles_);
+    deform();
+    collisions_.begin_frame(colliders, surface_motions_, particles_, options);
+    if (surfaces_) surfaces_->begin_frame(colliders, surface_motions_, collisions_, particles_);
 }
 
 void Simulation::Solver::look_ahead() {
@@ -154,10 +172,11 @@ void Simulation::Solver::integrate(double share_kept) {
     integrate_coordinate(now.z.data(), before.z.data(), mobility, particles_.count(), keep, fall.z);
 }
 
-void Simulation::Solver::move_colliders() {
+void Simulation::Solver::move_colliders(std::uint32_t substep) {
     const Stopwatch stopwatch(profile.collision_seconds);
     collisions_.begin_substep(colliders, substep_seconds_);
-    attachments_.follow(colliders, particles_.positions);
+    const auto share = static_cast<float>(substep + 1) / static_cast<float>(options.substep_count);
+    attachments_.follow(colliders, deforming_, share, particles_.positions);
     if (surfaces_) surfaces_->begin_substep(colliders);
 }
 
@@ -171,28 +190,38 @@ void Simulation::Solver::restore_goals() {
 
 void Simulation::Solver::relax_constraints() {
     const Stopwatch stopwatch(profile.constraint_seconds);
+    if (meter_) meter_->note(particles_);
     relax(folds_, particles_.positions);
     relax(sticks_, particles_.positions);
+    if (meter_) meter_->charge_holder(particles_);
 }
 
 void Simulation::Solver::collide() {
     const Stopwatch stopwatch(profile.collision_seconds);
-    collisions_.relax(particles_, profile);
-    if (surfaces_) surfaces_->relax(particles_, profile);
+    LoadMeter* const meter = meter_ ? &*meter_ : nullptr;
+    collisions_.relax(particles_, profile, meter);
+    if (surfaces_) surfaces_->relax(particles_, profile, meter);
 }
 
 void Simulation::Solver::relax_stretched_part() {
     if (!stretched_part_ || stretched_part_->empty()) return;
     const Stopwatch stopwatch(profile.constraint_seconds);
-    surfaces_->relax_part(stretched_part_->particles(), particles_, profile);
+    LoadMeter* const meter = meter_ ? &*meter_ : nullptr;
+    surfaces_->relax_part(stretched_part_->particles(), particles_, profile, meter);
+    if (meter != nullptr) meter->note(particles_);
     relax(sticks_, stretched_part_->sticks(), particles_.positions);
+    if (meter != nullptr) meter->charge_holder(particles_);
 }
 
 void Simulation::Solver::keep_free() {
     const Stopwatch stopwatch(profile.collision_seconds);
-    if (!surfaces_) return collisions_.keep_free(particles_, profile);
+    for (const std::size_t collider : collisions_.meet_late(colliders, particles_))
+        if (surfaces_) surfaces_->meet_late(collider, colliders[collider], particles_);
+    LoadMeter* const meter = meter_ ? &*meter_ : nullptr;
+    if (meter != nullptr) meter->note(particles_);
+    if (!surfaces_) return collisions_.keep_free(particles_, profile, meter);
     const std::uint64_t squeezed_before = profile.squeezed_count;
-    surfaces_->end_frame(particles_, profile);
+    surfaces_->end_frame(particles_, profile, meter);
     collisions_.end_frame(particles_, profile.squeezed_count > squeezed_before, profile);
 }
 
@@ -219,6 +248,45 @@ void Simulation::Solver::judge_frame() {
     }
     largest_speed = std::sqrt(double{largest_motion_sq}) / substep_seconds_;
     rest_.watch(deformable.positions, largest_speed);
+}
+
+/// From now on the collider's surface deforms, if only a little.
+DeformingCollider& Simulation::Solver::deforming(std::size_t collider) {
+    if (deforming_[collider]) return *deforming_[collider];
+    const std::string name = name_of_collider(collider);
+    const auto* exact = std::get_if<ExactMap>(&colliders[collider].map.kind);
+    if (exact == nullptr || !options.surface_collision)
+        throw Error(ErrorCode::InvalidOptions,
+                    name + (exact == nullptr
+                                ? " has no exact map, which a model that deforms needs"
+                                : " cannot deform without surface_collision, which keeps particles "
+                                  "out of faces that move; set it"));
+    deforming_[collider].emplace(*exact, name);
+    attachments_.hold_on_to_surface(collider, colliders[collider], *deforming_[collider]);
+    return *deforming_[collider];
+}
+
+void Simulation::Solver::lead_vertices(std::size_t collider, std::span<const Vec3f> vertices_local) {
+    deforming(collider).lead_to(vertices_local);
+}
+
+void Simulation::Solver::follow_cache(std::size_t collider, VertexCache cache) {
+    deforming(collider).follow(std::move(cache));
+}
+
+bool Simulation::Solver::all_arrived() const {
+    const double time = frame * options.time_step;
+    return motions.all_arrived(time) &&
+           std::all_of(deforming_.begin(), deforming_.end(),
+                       [&](const auto& collider) { return !collider || collider->has_arrived(time); });
+}
+
+std::string Simulation::Solver::name_of_collider(std::size_t collider) const {
+    return name_of(colliders[collider], collider);
+}
+
+Load Simulation::Solver::load_on(std::size_t collider) const {
+    return meter_ ? meter_->load_on(collider, options.time_step, substep_seconds_) : Load{};
 }
 
 /// The velocity is what the particle moved in the last substep.

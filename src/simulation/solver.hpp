@@ -1,8 +1,11 @@
 #pragma once
 
 #include "simulation/attachments.hpp"
+#include "simulation/collider_motions.hpp"
 #include "simulation/collisions.hpp"
+#include "simulation/deforming_collider.hpp"
 #include "simulation/folds.hpp"
+#include "simulation/load_meter.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/rest.hpp"
 #include "simulation/sticks.hpp"
@@ -15,6 +18,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace echinus {
@@ -27,21 +32,30 @@ class Simulation::Solver {
     void step();
     void set_particle_velocity(std::size_t particle, const Vec3d& velocity);
     void blow(const Vec3d& wind, double rate);
-    bool at_rest() const { return rest_.at_rest(); }
+    /// @throws Error InvalidOptions, as DeformingCollider's
+    void lead_vertices(std::size_t collider, std::span<const Vec3f> vertices_local);
+    void follow_cache(std::size_t collider, VertexCache cache);
+    Load load_on(std::size_t collider) const;
+    std::string name_of_collider(std::size_t collider) const;
+    bool at_rest() const { return rest_.at_rest() && all_arrived(); }
 
     Deformable deformable;
     std::vector<Collider> colliders;
+    ColliderMotions motions;
     SimulationOptions options;
     std::uint32_t frame = 0;
     double largest_speed;
     SimulationProfile profile;
 
   private:
+    DeformingCollider& deforming(std::size_t collider);
+    void deform();
+    bool all_arrived() const;
     void begin_frame();
     void integrate(double share_kept);
-    void begin_surfaces();
+    void begin_collisions();
     void look_ahead();
-    void move_colliders();
+    void move_colliders(std::uint32_t substep);
     void restore_goals();
     void relax_constraints();
     void collide();
@@ -54,9 +68,13 @@ class Simulation::Solver {
     StickArrays sticks_;
     FoldArrays folds_;
     Attachments attachments_;
+    std::vector<std::optional<DeformingCollider>> deforming_; ///< by collider; none where it never deformed
+    std::vector<const SurfaceMotion*> surface_motions_;       ///< by collider, in this frame
+    std::vector<float> clearances_;                           ///< of the particles, while it begins
     Collisions collisions_;
     std::optional<SurfaceCollision> surfaces_;
     std::optional<StretchedPart> stretched_part_; ///< with contact of surfaces, by Verlet
+    std::optional<LoadMeter> meter_;
     RestWatch rest_;
     Wind wind_;
     bool goals_give_way_;

@@ -3,6 +3,7 @@
 #include "collider/frame_change.hpp"
 #include "simulation/surfaces/elements.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
+#include "simulation/validation.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/exact_map.hpp>
@@ -28,10 +29,6 @@ std::string remedy(const SimulationOptions& options, const char* option, bool pi
     return std::string("; move the start until they are apart, ") +
            (options.untangle || pinned ? "" : "set untangle, which does that, ") + "or switch " + option +
            " off";
-}
-
-std::string name_of(const Collider& collider, std::size_t number) {
-    return collider.name.empty() ? "collider " + std::to_string(number) : collider.name;
 }
 
 /// With edges and vertices as faces without area, after the faces.

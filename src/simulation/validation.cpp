@@ -170,9 +170,28 @@ void require_valid(const Collider& collider, const SimulationOptions& options, c
 
 } // namespace
 
+void require_valid(const VertexCache& cache, std::size_t vertex_count, const std::string& owner) {
+    if (!std::isfinite(cache.start_time) || !std::isfinite(cache.sample_seconds) ||
+        !(cache.sample_seconds > 0))
+        fail(owner +
+             ": the times of its vertex cache are not finite, or the samples not a positive time apart");
+    if (cache.vertex_count != vertex_count)
+        fail(owner + " has " + std::to_string(vertex_count) + " vertices, and its vertex cache " +
+             std::to_string(cache.vertex_count) + "; a cache has to be made of the same mesh");
+    if (cache.samples == nullptr || cache.samples->empty() || cache.samples->size() % vertex_count != 0)
+        fail(owner + ": its vertex cache has no samples, or the last one is not complete");
+    const auto bad = std::find_if(cache.samples->begin(), cache.samples->end(),
+                                  [](const Vec3f& p) { return !is_finite(p); });
+    if (bad != cache.samples->end())
+        fail(owner + ": vertex " +
+             std::to_string(static_cast<std::size_t>(bad - cache.samples->begin()) % vertex_count) +
+             " of its vertex cache is not finite in sample " +
+             std::to_string(static_cast<std::size_t>(bad - cache.samples->begin()) / vertex_count));
+}
+
 void require_valid(const std::vector<Collider>& colliders, const SimulationOptions& options) {
     for (std::size_t i = 0; i < colliders.size(); ++i)
-        require_valid(colliders[i], options, "collider " + std::to_string(i));
+        require_valid(colliders[i], options, name_of(colliders[i], i));
 }
 
 } // namespace echinus

@@ -8,6 +8,11 @@
 
 namespace echinus {
 
+/// How errors call a collider.
+inline std::string name_of(const Collider& collider, std::size_t number) {
+    return collider.name.empty() ? "collider " + std::to_string(number) : collider.name;
+}
+
 // Each throws Error InvalidOptions with a sentence that names the field or the index at fault.
 
 void require_valid(const SimulationOptions& options);
@@ -17,5 +22,8 @@ void require_valid(const std::vector<Collider>& colliders, const SimulationOptio
 void require_valid_attachments(const Deformable& deformable, std::size_t collider_count);
 /// @param owner  of the pose, as the sentence begins: "collider 0"
 void require_valid(const RigidTransform& pose, const std::string& owner);
+
+/// @param vertex_count  of the collider's mesh
+void require_valid(const VertexCache& cache, std::size_t vertex_count, const std::string& owner);
 
 } // namespace echinus

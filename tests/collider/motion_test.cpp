@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <vector>
 
 using namespace echinus;
 
@@ -62,4 +63,36 @@ TEST(ColliderMotion, WithoutVelocityChangesNoBit) {
     EXPECT_EQ(pose.translation, collider.pose.translation);
     EXPECT_EQ(pose.rotation.w, collider.pose.rotation.w);
     EXPECT_FALSE(collider.moves());
+}
+
+TEST(ColliderMotion, HeadsForAPoseAndGetsThere) {
+    const RigidTransform goal{Rotation::about({3, -1, 2}, 2.9), {-1, 4, 0.5}};
+    Collider collider = moving({9, 9, 9}, {7, 0, 0});
+    head_for(collider, goal, 0.25);
+    const RigidTransform halfway = pose_after(collider, 0.125), there = pose_after(collider, 0.25);
+    for (const Vec3d& point : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}})
+        EXPECT_NEAR(length(there.to_world(point) - goal.to_world(point)), 0, 1e-12);
+    EXPECT_NEAR(length(halfway.translation - (collider.pose.translation + goal.translation) * 0.5), 0, 1e-12);
+    EXPECT_LE(length(collider.angular_velocity), std::numbers::pi / 0.25);
+}
+
+TEST(ColliderMotion, GoesEvenlyFromKeyToKeyAndRestsBeyondThem) {
+    const Vec3d axis{0.6, 0, 0.8};
+    const std::vector<PoseKey> keys{{1, {Rotation::about(axis, 0.5), {0, 0, 0}}},
+                                    {3, {Rotation::about(axis, 2.5), {4, 0, 2}}},
+                                    {4, {Rotation::about(axis, -3.5), {4, 1, 2}}}};
+    const auto expect_pose = [&](double time, double angle, const Vec3d& translation) {
+        const RigidTransform pose = pose_at(keys, time);
+        const RigidTransform expected{Rotation::about(axis, angle), translation};
+        for (const Vec3d& point : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}})
+            EXPECT_NEAR(length(pose.to_world(point) - expected.to_world(point)), 0, 1e-12) << time;
+    };
+    expect_pose(-10, 0.5, {0, 0, 0});
+    expect_pose(1, 0.5, {0, 0, 0});
+    expect_pose(1.5, 1, {1, 0, 0.5});
+    expect_pose(2.75, 2.25, {3.5, 0, 1.75});
+    expect_pose(3, 2.5, {4, 0, 2});
+    // From 2.5 to -3.5 the shorter way leads up, to 2 pi - 3.5.
+    expect_pose(3.5, (2.5 + 2 * std::numbers::pi - 3.5) / 2, {4, 0.5, 2});
+    expect_pose(1e9, -3.5, {4, 1, 2});
 }

@@ -21,6 +21,17 @@ TEST(Rotation, AgreesWithSineAndCosineAtAnyAngle) {
     }
 }
 
+TEST(Rotation, GivesItsVectorTheShorterWayRound) {
+    for (double angle = -20; angle < 20; angle += 0.37) {
+        const Vec3d axis{2.0 / 3, -1.0 / 3, 2.0 / 3};
+        const double shorter = std::remainder(angle, 2 * std::numbers::pi);
+        const Vec3d vector = Rotation::about(axis, angle).vector();
+        EXPECT_NEAR(length(vector - axis * shorter), 0, 1e-13) << angle;
+    }
+    EXPECT_EQ(Rotation{}.vector(), Vec3d{});
+    EXPECT_NEAR(length(Rotation::about({1, 0, 0}, 1e-9).vector() - Vec3d{1e-9, 0, 0}), 0, 1e-14);
+}
+
 TEST(Rotation, ProductAppliesTheRightFactorFirst) {
     const Rotation a = Rotation::about({1, 2, 3}, 0.7);
     const Rotation b = Rotation::about({-2, 1, 0.5}, 1.9);

@@ -1,10 +1,17 @@
+#include "support/draping.hpp"
+#include "support/expect_error.hpp"
+#include "support/surface_judge.hpp"
+
 #include <echinus/simulation.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <numbers>
 
 using namespace echinus;
+using namespace echinus::test;
 
 namespace {
 
@@ -96,4 +103,94 @@ TEST(Steering, AirAtRestBrakesAndNeverTurnsRound) {
         simulation.set_particle_velocity(i, {0, 0, 1});
     simulation.blow({}, 1e9);
     EXPECT_NEAR(mean_velocity(simulation).z, 0, 1e-5);
+}
+
+// ---- Colliders
+
+namespace {
+
+void expect_pose(const RigidTransform& pose, const RigidTransform& expected) {
+    for (const Vec3d& point : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}})
+        EXPECT_NEAR(length(pose.to_world(point) - expected.to_world(point)), 0, 1e-11);
+}
+
+} // namespace
+
+TEST(Steering, LeadsAColliderToAPoseInOneFrameAndLeavesItThere) {
+    for (const std::uint32_t substeps : {1u, 10u}) {
+        SimulationOptions options = kWeightless;
+        options.solver = substeps == 1 ? SolverKind::Verlet : SolverKind::Xpbd;
+        options.substep_count = substeps;
+        Simulation simulation(sheet_at(5, 1, 4), colliders_of({make_box({1, 1, 1})}), options);
+        const RigidTransform goal{Rotation::about({1, 2, 3}, 2), {0.5, -1, 0.25}};
+        simulation.set_collider_velocity(0, {100, 0, 0}, {});
+        simulation.set_collider_pose(0, goal);
+        simulation.step();
+        expect_pose(simulation.colliders()[0].pose, goal);
+        EXPECT_NEAR(simulation.colliders()[0].linear_velocity.y, -1 / 0.01, 1e-9);
+        const RigidTransform there = simulation.colliders()[0].pose;
+        simulation.step();
+        EXPECT_EQ(simulation.colliders()[0].pose.translation, there.translation);
+        EXPECT_FALSE(simulation.colliders()[0].moves());
+        simulation.set_collider_velocity(0, {0, 0, 2}, {});
+        simulation.step();
+        simulation.step();
+        expect_pose(simulation.colliders()[0].pose, {goal.rotation, goal.translation + Vec3d{0, 0, 0.04}});
+    }
+}
+
+TEST(Steering, LeadsAColliderAlongKeysAndRestsNotBeforeTheLast) {
+    const std::vector<PoseKey> keys{{0, {}}, {0.1, {{}, {0, 0, 1}}}, {3, {{}, {0, 0, 1}}}};
+    SimulationOptions options = kWeightless;
+    options.rest.frame_count = 5;
+    Simulation simulation(sheet_at(5, 1, 4), colliders_of({make_box({1, 1, 1})}), options);
+    simulation.set_collider_keyframes(0, keys);
+    for (int frame = 1; frame <= 300; ++frame) {
+        simulation.step();
+        expect_pose(simulation.colliders()[0].pose, pose_at(keys, frame * 0.01));
+        ASSERT_EQ(simulation.at_rest(), frame == 300) << frame;
+    }
+    EXPECT_FALSE(simulation.colliders()[0].moves());
+}
+
+TEST(Steering, TakesASheetAlongOnATrayThatTurnsAndHaltsWithoutMeetingIt) {
+    // Back and forth by 30 degrees and 0.2 units in a quarter of a second each, up, and down again.
+    const TriangleMesh tray = make_box({1, 1, 0.1});
+    std::vector<PoseKey> keys;
+    for (int i = 0; i < 7; ++i)
+        keys.push_back({0.25 * i,
+                        {Rotation::about({0, 0, 1}, (i % 2) * std::numbers::pi / 6),
+                         {0.2 * (i % 2), 0, i == 3 ? 0.3 : 0.1 * (i % 3)}}});
+    SimulationOptions options{.thickness = 0.01, .surface_collision = true, .self_collision = true};
+    Simulation simulation(sheet_at(0.065, 0.6, 16), colliders_of({tray}), options);
+    simulation.set_collider_keyframes(0, keys);
+    expect_nothing_meets(simulation, {tray}, 400);
+}
+
+TEST(Steering, RefusesPosesAndKeysThatMakeNoSense) {
+    Simulation simulation(sheet_at(5, 1, 4), colliders_of({make_box({1, 1, 1}), make_box({1, 1, 1})}), {});
+    const double infinity = std::numeric_limits<double>::infinity();
+    const auto refuse = [](const std::string& words, const auto& call) {
+        expect_error(ErrorCode::InvalidOptions, words, call);
+    };
+    refuse("collider 1 has a translation that is not finite", [&] {
+        simulation.set_collider_pose(1, {{}, {0, infinity, 0}});
+    });
+    refuse("collider 1 has the rotation", [&] { simulation.set_collider_pose(1, {{2, 0, 0, 0}, {}}); });
+    refuse("collider 1: keyframe 2 is at 1.500000 s, not later than the one before it, at 2.000000 s; times "
+           "must "
+           "ascend",
+           [&] {
+               simulation.set_collider_keyframes(1, {{0, {}}, {2, {}}, {1.5, {}}});
+           });
+    refuse("keyframe 1 is at", [&] { simulation.set_collider_keyframes(1, {{0, {}}, {0, {}}}); });
+    refuse("collider 1: keyframe 0 has a time that is not finite", [&] {
+        simulation.set_collider_keyframes(1, {{std::nan(""), {}}});
+    });
+    refuse("collider 1: keyframe 1 has the rotation", [&] {
+        simulation.set_collider_keyframes(1, {{0, {}}, {1, {{0, 0, 0, 0}, {}}}});
+    });
+    // Nothing is lost: the collider rests where it was.
+    simulation.step();
+    EXPECT_EQ(simulation.colliders()[1].pose.translation, Vec3d{});
 }

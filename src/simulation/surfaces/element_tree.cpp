@@ -68,6 +68,15 @@ Box box_of(const Element& element, const PointArrays& positions) {
     return box;
 }
 
+Box box_of_both(const Box& a, const Box& b) {
+    Box both{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        both.low[axis] = std::min(a.low[axis], b.low[axis]);
+        both.high[axis] = std::max(a.high[axis], b.high[axis]);
+    }
+    return both;
+}
+
 void ElementTree::Level::resize(std::size_t count) {
     const std::size_t padded = (count + kWidth - 1) / kWidth * kWidth;
     for (std::vector<float>& bound : low) bound.assign(padded, kInfinity);
@@ -115,10 +124,23 @@ void ElementTree::refit(std::span<const Element> elements, const PointArrays& po
     for (std::size_t i = 0; i < order_.size(); ++i)
         if (((groups[i / kWidth] >> (i % kWidth)) & 1U) != 0)
             levels_[0].set(i, box_of(elements[order_[i]], positions));
+    refit_groups(groups);
+}
+
+void ElementTree::refit(std::span<const Element> elements, const PointArrays& from, const PointArrays& to) {
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+        const Element& element = elements[order_[i]];
+        levels_[0].set(i, box_of_both(box_of(element, from), box_of(element, to)));
+    }
+    refit_groups({});
+}
+
+/// @param groups  [group_count()] those whose elements have changed, or none: all
+void ElementTree::refit_groups(std::span<const std::uint8_t> groups) {
     for (std::size_t level = 1, count = order_.size(); level < levels_.size(); ++level) {
         count = (count + kWidth - 1) / kWidth;
         for (std::size_t i = 0; i < count; ++i)
-            if (level > 1 || groups[i] != 0)
+            if (level > 1 || groups.empty() || groups[i] != 0)
                 levels_[level].set(i, levels_[level - 1].box_of_group(i * kWidth));
     }
 }

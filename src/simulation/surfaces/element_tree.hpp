@@ -25,6 +25,8 @@ struct Box {
 };
 
 Box box_of(const Element& element, const PointArrays& positions);
+/// Around both.
+Box box_of_both(const Box& a, const Box& b);
 
 /// Boxes around the elements of a surface, around groups of eight, around groups of eight groups, and so on.
 /// The groups are fixed from the start; the boxes follow the surface.
@@ -39,6 +41,8 @@ class ElementTree {
     /// To elements that have moved. @param groups  [group_count()] one bit for each that may have
     void refit(std::span<const Element> elements, const PointArrays& positions,
                std::span<const std::uint8_t> groups);
+    /// All of them, to the ways from here to there.
+    void refit(std::span<const Element> elements, const PointArrays& from, const PointArrays& to);
     std::size_t group_count() const { return levels_.empty() ? 0 : levels_[0].group_count(); }
 
     /// Calls visit(element) for each element whose box touches this one.
@@ -85,6 +89,7 @@ class ElementTree {
                 visit_group(level - 1, first + k, box, visit);
         }
     }
+    void refit_groups(std::span<const std::uint8_t> groups);
     void shorten(std::size_t level, std::size_t group, const Box& box, float& distance_sq) const;
 
     std::vector<std::uint32_t> order_; ///< the elements, group by group

@@ -34,6 +34,7 @@ ModelSurface::ModelSurface(const Collider& collider, std::shared_ptr<const Eleme
     is_forgotten_.resize(own_->all.size());
     is_alert_.resize(own_->vertex_count());
     starts_.resize(own_->vertex_count());
+    bases_.resize(own_->vertex_count());
     goals_.resize(own_->vertex_count());
 }
 
@@ -45,16 +46,35 @@ void ModelSurface::to_body(const PointArrays& places, PointArrays& result) const
     for (std::size_t i = 0; i < own_->vertex_count(); ++i) result.set(i, now_.point_to_local(places[i]));
 }
 
-void ModelSurface::begin_frame(const Collider& collider, const Particles& particles,
-                               std::span<const float> clearances) {
+void ModelSurface::begin_frame(const Collider& collider, const SurfaceMotion* motion,
+                               const PointArrays& starts, std::span<const float> clearances) {
     now_ = FrameChange(collider.pose, {1, 1, 1});
     at_origin_ = is_identity(collider.pose);
-    begin_pass(particles.positions, clearances);
+    if (motion == nullptr) return begin_pass(starts, clearances);
+    deform(*motion);
+    motion_ = motion;
+    to_body(starts, starts_);
+    for (std::size_t v = 0; v < own_->vertex_count(); ++v) bases_.set(v, starts_[v] + motion->carried[v]);
+    pairs_.begin({&shape_->elements, &deformed_->tree, &motion->from, &motion->to, motion->most}, starts_,
+                 bases_, clearances);
+}
+
+/// The tree covers the ways of this frame, and therefore also where they end.
+void ModelSurface::deform(const SurfaceMotion& motion) {
+    if (!deformed_) {
+        deformed_.emplace();
+        deformed_->tree = shape_->tree;
+    }
+    deformed_->positions = motion.to;
+    deformed_->tree.refit(shape_->elements.all, motion.from, motion.to);
 }
 
 void ModelSurface::begin_pass(const PointArrays& starts, std::span<const float> clearances) {
+    motion_ = nullptr;
     to_body(starts, starts_);
-    pairs_.begin({&shape_->elements, &shape_->tree, &shape_->positions}, starts_, clearances);
+    bases_ = starts_;
+    const Shape& shape = deformed_ ? *deformed_ : *shape_;
+    pairs_.begin({&shape_->elements, &shape.tree, &shape.positions}, starts_, bases_, clearances);
 }
 
 void ModelSurface::look_ahead(const Collider& collider_at_end, const PointArrays& goals) {
@@ -86,7 +106,7 @@ float ModelSurface::consider(std::uint32_t element, const Pair& pair, const Sepa
     float way = 0;
     float readiness = kReadiness;
     for (std::size_t k = 0; k < own_count(pair.kind); ++k) {
-        way = std::max(way, length(goals_[pair.points[k]] - starts_[pair.points[k]]));
+        way = std::max(way, length(goals_[pair.points[k]] - bases_[pair.points[k]]));
         if (is_alert_[pair.points[k]] != 0) readiness = kAlertReadiness;
     }
     if (!(apart.gap < thickness_ * (1 + readiness) + way)) return apart.gap - thickness_;
@@ -102,8 +122,13 @@ void ModelSurface::add_contact(std::uint32_t element, const Pair& pair, const Se
         contact.in_world.weights[k] = k < own ? apart.weights[k] : 0;
     }
     float level = -std::numeric_limits<float>::infinity();
-    for (std::size_t k = own; k < 4; ++k)
-        level = std::max(level, dot(apart.normal, shape_->positions[pair.points[k]]));
+    const PointArrays& model = deformed_ ? deformed_->positions : shape_->positions;
+    for (std::size_t k = own; k < 4; ++k) {
+        const std::uint32_t vertex = pair.points[k];
+        level = std::max(level, dot(apart.normal, model[vertex]));
+        if (motion_ != nullptr)
+            contact.drift_body += (motion_->to[vertex] - motion_->from[vertex]) * apart.weights[k];
+    }
     contact.element = element;
     contact.normal_body = apart.normal;
     contact.offset_body = level + thickness_;
@@ -116,8 +141,10 @@ void ModelSurface::place(Contact& contact) const {
     contact.in_world.offset = dot(contact.in_world.normal, on_plane);
 }
 
-void ModelSurface::begin_substep(const Collider& collider, const RigidTransform& previous_pose) {
+void ModelSurface::begin_substep(const Collider& collider, const RigidTransform& previous_pose,
+                                 std::uint32_t substeps) {
     material_ = MaterialMotion(previous_pose, collider.pose);
+    drift_share_ = motion_ != nullptr ? 1 / static_cast<float>(substeps) : 0;
     if (!collider.moves()) return;
     now_ = FrameChange(collider.pose, {1, 1, 1});
     at_origin_ = is_identity(collider.pose);
@@ -132,7 +159,9 @@ void ModelSurface::relax(Particles& particles, std::span<const float> inverse_ma
         Vec3f point;
         for (std::size_t k = 0; k < 3; ++k)
             point += particles.positions[contact.in_world.particles[k]] * contact.in_world.weights[k];
-        if (!echinus::relax(contact.in_world, inverse_masses, material_.at(point), friction_, particles))
+        const Vec3f drift = now_.normal_to_world(contact.drift_body) * drift_share_;
+        if (!echinus::relax(contact.in_world, inverse_masses, material_.at(point) + drift, friction_,
+                            particles))
             continue;
         contact.has_pushed = true;
         ++profile.contact_count;

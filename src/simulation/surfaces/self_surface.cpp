@@ -72,7 +72,7 @@ SelfSurface::SelfSurface(std::shared_ptr<const Elements> own, const Particles& p
         const float most = kMostOfHeight * least_height(element, particles.positions);
         for (const std::uint32_t v : element.vertices) most_[v] = std::min(most_[v], most);
     }
-    for (PointArrays* points : {&starts_, &goals_, &anchors_, &expected_, &speeds_, &from_, &to_})
+    for (PointArrays* points : {&starts_, &goals_, &bases_, &anchors_, &expected_, &speeds_, &from_, &to_})
         points->resize(count);
     rooms_.assign(count, -1);
     quiet_.assign(count, -1);
@@ -366,21 +366,30 @@ void SelfSurface::relax(Particles& particles, std::span<const float> inverse_mas
 
 /// A vertex that ends early does not drift on with the others: it leaves the way for which its pairs were
 /// listed, and the next round finds what is near its new one.
-std::span<const float> SelfSurface::allowed_shares(const RigidTransform* frame, const PointArrays& goals) {
+std::span<const float> SelfSurface::allowed_shares(const RigidTransform* frame, const PointArrays& goals,
+                                                   const PointArrays* bases) {
     set_goals(frame, goals);
     stuck_count_ = 0;
     if (all_within(rooms_)) return {};
+    if (bases != nullptr)
+        to_frame(frame, *bases, bases_);
+    else
+        bases_ = starts_;
     list_pairs();
     measure();
     shares_.assign(own_->vertex_count(), 1);
     whole_goals_ = goals_;
     for (int round = 0; shorten_ways(round); ++round) {
         for (std::uint32_t v = 0; v < own_->vertex_count(); ++v)
-            if (shares_[v] != 1) goals_.set(v, starts_[v] + (whole_goals_[v] - starts_[v]) * shares_[v]);
+            if (shares_[v] != 1) goals_.set(v, place_at_share(v));
         list_pairs();
         measure();
     }
     return shares_;
+}
+
+Vec3f SelfSurface::place_at_share(std::uint32_t v) const {
+    return bases_[v] + (whole_goals_[v] - bases_[v]) * shares_[v];
 }
 
 /// Shortens the ways of pairs that could meet. @return whether there were any
@@ -392,21 +401,26 @@ bool SelfSurface::shorten_ways(int round) {
         const Separation& apart = separations_[i];
         const std::size_t own = own_count(pair.kind);
         const Vec3f origin = starts_[pair.points[0]];
-        float least = kInfinity, most = -kInfinity;
+        float least = kInfinity, most = -kInfinity, least_base = kInfinity, most_base = -kInfinity;
+        bool stays = true; // where its vertices go none of their ways
         for (std::size_t k = 0; k < 4; ++k) {
             const std::uint32_t v = pair.points[k];
-            const Vec3f end = starts_[v] + (whole_goals_[v] - starts_[v]) * shares_[v];
-            const float height = dot(apart.normal, end - origin);
+            const float height = dot(apart.normal, place_at_share(v) - origin);
+            const float base = dot(apart.normal, bases_[v] - origin);
+            stays = stays && bases_[v] == starts_[v];
             least = k < own ? std::min(least, height) : least;
             most = k < own ? most : std::max(most, height);
+            least_base = k < own ? std::min(least_base, base) : least_base;
+            most_base = k < own ? most_base : std::max(most_base, base);
         }
         const float kept = apart.gap - std::max(usable_gap(apart.gap, reach_.least_gap), 0.0F);
         const float at_end = least - most;
+        const float at_base = stays ? apart.gap : least_base - most_base;
         if (apart.gap > 0 && at_end >= kept) continue;
-        const float share = round < kRounds && apart.gap > kept
-                                ? std::clamp((apart.gap - kept) / (apart.gap - at_end), 0.0F, 1.0F) * kAlmost
+        const float share = round < kRounds && at_base > kept
+                                ? std::clamp((at_base - kept) / (at_base - at_end), 0.0F, 1.0F) * kAlmost
                                 : 0.0F;
-        bool can_be_shortened = false, moves = false;
+        bool can_be_shortened = false, moves = !stays;
         for (const std::uint32_t v : pair.points) {
             moves = moves || (mobility_[v] == 0 && whole_goals_[v] != starts_[v]);
             if (shares_[v] == 0 || mobility_[v] == 0) continue;

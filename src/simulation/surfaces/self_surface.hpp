@@ -50,8 +50,10 @@ class SelfSurface {
     void relax(Particles& particles, std::span<const float> inverse_masses, SimulationProfile& profile);
 
     /// The shares of the ways to the goals that vertices may go, or none where all may go the whole way.
-    std::span<const float> allowed_shares(const RigidTransform* frame, const PointArrays& goals);
-    /// Pairs that could meet nevertheless, since a pinned vertex is led on while the others stay behind.
+    /// @param bases  [vertex_count] where the vertices end that go none of their ways, or null: they stay
+    std::span<const float> allowed_shares(const RigidTransform* frame, const PointArrays& goals,
+                                          const PointArrays* bases);
+    /// Pairs that could meet nevertheless, since a vertex is led on while the others stay behind.
     std::uint64_t stuck_count() const { return stuck_count_; }
 
     std::uint64_t searched_count = 0, measured_count = 0;
@@ -84,6 +86,7 @@ class SelfSurface {
     float closing(const Pair& pair, const Separation& apart) const;
     float consider(const Pair& pair, const Separation& apart);
     bool shorten_ways(int round);
+    Vec3f place_at_share(std::uint32_t vertex) const;
 
     std::shared_ptr<const Elements> own_;
     std::vector<Element> faces_, edges_, vertices_; ///< each as elements of their own
@@ -119,6 +122,7 @@ class SelfSurface {
     std::vector<float> rooms_, quiet_; ///< radii; within the quiet ones no contact begins or changes
     bool is_measured_ = false;         ///< in this pass
     std::vector<float> shares_;
+    PointArrays bases_;       ///< at a share of 0
     PointArrays whole_goals_; ///< before any way was shortened
     std::uint64_t stuck_count_ = 0;
     // Contacts

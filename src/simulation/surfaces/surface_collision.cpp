@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace echinus {
@@ -28,6 +29,9 @@ constexpr float kSelfReach = 1.3F;
 
 /// A vertex that is too fast for what is listed goes its way in several passes.
 constexpr int kMostPasses = 8;
+
+/// No model.
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 /// In lattice steps: a vertex of the mesh and of the map differ by less than one.
 constexpr float kLeastGapSteps = 4;
@@ -69,9 +73,10 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
         const float most = edge_length > 0 ? kMostThickness * edge_length : now.thickness;
         const float thickness = std::min(kSurfaceShare * now.thickness, most);
         extents_.push_back(extent_of(now));
-        models_.emplace_back(collider, elements_,
-                             reach_of(thickness, edge_length, least_gap(now, extents_.back())), thickness,
-                             now.friction);
+        const PairReach reach = reach_of(thickness, edge_length, least_gap(now, extents_.back()));
+        // A face that is near has a vertex no farther than its edges are long.
+        carry_reaches_.push_back(reach.listed + 2 * edge_length);
+        models_.emplace_back(collider, elements_, reach, thickness, now.friction);
     }
     if (options.self_collision) {
         const float thickness =
@@ -83,7 +88,12 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
                       thickness, static_cast<float>(options.friction));
     }
     leaving_.reserve(particles.count());
+    stopped_by_.assign(particles.count(), kNone);
     poses_.resize(models_.size());
+    start_poses_.resize(models_.size());
+    moves_.resize(models_.size());
+    is_near_.assign(models_.size(), 1);
+    bases_.resize(particles.count());
     clearances_.assign(models_.size(), std::vector<float>(particles.count()));
 }
 
@@ -103,18 +113,33 @@ void SurfaceCollision::keep_gaps(const std::vector<Collider>& colliders, const P
     self_->keep_gap(least_gap(extents_.back()));
 }
 
-void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders, const Collisions& collisions,
-                                   const Particles& particles) {
-    carrier_ = static_cast<std::size_t>(
-        std::find_if(colliders.begin(), colliders.end(), [](const Collider& c) { return c.moves(); }) -
-        colliders.begin());
+/// Calls visit(number, model) for the models that are not away.
+template <typename Visit>
+void SurfaceCollision::for_each_near(const Visit& visit) {
+    for (std::size_t c = 0; c < models_.size(); ++c)
+        if (is_near_[c] != 0) visit(c, models_[c]);
+}
+
+void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders,
+                                   std::span<const SurfaceMotion* const> motions,
+                                   const Collisions& collisions, const Particles& particles) {
     keep_gaps(colliders, particles);
+    motions_.assign(motions.begin(), motions.end());
+    own_frame_ = models_.size();
     for (std::size_t c = 0; c < models_.size(); ++c) {
-        poses_[c] = colliders[c].pose;
-        collisions.known_clearances(c, particles, clearances_[c]);
-        models_[c].begin_frame(colliders[c], particles, clearances_[c]);
+        moves_[c] = colliders[c].moves() || motions[c] != nullptr ? 1 : 0;
+        start_poses_[c] = poses_[c] = colliders[c].pose;
+        // Vertices may have left their rooms meanwhile and come back.
+        const bool was_away = std::exchange(is_near_[c], collisions.is_away(c) ? 0 : 1) == 0;
+        if (is_near_[c] != 0 && was_away) models_[c].reset();
     }
-    if (self_) self_->begin_pass(carrier_pose(), particles.positions, true);
+    const auto near_count = std::count(is_near_.begin(), is_near_.end(), std::uint8_t{1});
+    for_each_near([&](std::size_t c, ModelSurface& model) {
+        if (near_count == 1 && moves_[c] != 0) own_frame_ = c;
+        collisions.known_clearances(c, particles, clearances_[c]);
+        model.begin_frame(colliders[c], motions[c], particles.positions, clearances_[c]);
+    });
+    if (self_) self_->begin_pass(own_pose(), particles.positions, true);
 }
 
 void SurfaceCollision::look_ahead(const std::vector<Collider>& colliders, const Particles& particles) {
@@ -123,36 +148,59 @@ void SurfaceCollision::look_ahead(const std::vector<Collider>& colliders, const 
         const Vec3f start = particles.frame_start[i];
         expected_.set(i, start + (particles.positions[i] - start) * substeps);
     }
-    for (std::size_t c = 0; c < models_.size(); ++c) {
+    RigidTransform own_pose_at_end;
+    for_each_near([&](std::size_t c, ModelSurface& model) {
         Collider at_end = colliders[c];
         at_end.pose = pose_after(at_end, options_.time_step);
-        models_[c].look_ahead(at_end, expected_);
-        if (self_ && c == carrier_) self_->look_ahead(&at_end.pose, expected_);
-    }
-    if (self_ && carrier() == nullptr) self_->look_ahead(nullptr, expected_);
+        if (c == own_frame_) own_pose_at_end = at_end.pose;
+        model.look_ahead(at_end, expected_);
+    });
+    if (self_) self_->look_ahead(own_pose() != nullptr ? &own_pose_at_end : nullptr, expected_);
 }
 
 void SurfaceCollision::begin_substep(const std::vector<Collider>& colliders) {
-    for (std::size_t c = 0; c < models_.size(); ++c)
-        models_[c].begin_substep(colliders[c], std::exchange(poses_[c], colliders[c].pose));
+    for_each_near([&](std::size_t c, ModelSurface& model) {
+        model.begin_substep(colliders[c], std::exchange(poses_[c], colliders[c].pose),
+                            options_.substep_count);
+    });
 }
 
-void SurfaceCollision::relax(Particles& particles, SimulationProfile& profile) {
-    for (ModelSurface& model : models_) model.relax(particles, inverse_masses_, profile);
+void SurfaceCollision::relax(Particles& particles, SimulationProfile& profile, LoadMeter* meter) {
+    for_each_near([&](std::size_t c, ModelSurface& model) {
+        if (meter != nullptr) meter->note(particles);
+        model.relax(particles, inverse_masses_, profile);
+        if (meter != nullptr) meter->charge(c, particles);
+    });
     if (self_) self_->relax(particles, inverse_masses_, profile);
 }
 
 void SurfaceCollision::relax_part(std::span<const std::uint8_t> chosen, Particles& particles,
-                                  SimulationProfile& profile) {
-    for (ModelSurface& model : models_) model.relax(particles, inverse_masses_, profile, chosen);
+                                  SimulationProfile& profile, LoadMeter* meter) {
+    for_each_near([&](std::size_t c, ModelSurface& model) {
+        if (meter != nullptr) meter->note(particles);
+        model.relax(particles, inverse_masses_, profile, chosen);
+        if (meter != nullptr) meter->charge(c, particles);
+    });
 }
 
-void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profile) {
+void SurfaceCollision::meet_late(std::size_t collider, const Collider& at_end, const Particles& particles) {
+    is_near_[collider] = 1;
+    ModelSurface& model = models_[collider];
+    model.reset();
+    Collider at_start = at_end;
+    at_start.pose = start_poses_[collider];
+    model.begin_frame(at_start, motions_[collider], particles.frame_start, {});
+    model.look_ahead(at_end, particles.positions);
+    poses_[collider] = at_end.pose;
+}
+
+void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profile, LoadMeter* meter) {
+    if (meter != nullptr) std::fill(stopped_by_.begin(), stopped_by_.end(), kNone);
     goals_ = particles.positions;
     for (int number = 0; number < kMostPasses; ++number) {
         if (number > 0) {
-            for (ModelSurface& model : models_) model.begin_pass(particles.positions);
-            if (self_) self_->begin_pass(carrier_pose(), particles.positions, false);
+            for_each_near([&](std::size_t, ModelSurface& model) { model.begin_pass(particles.positions); });
+            if (self_) self_->begin_pass(own_pose(), particles.positions, false);
         }
         const bool may_go_on = pass(particles, number == 0);
         profile.squeezed_count += std::exchange(squeezed_now_, 0);
@@ -168,6 +216,7 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
         const float share = way_sq > 0 ? std::clamp(dot(left, way) / way_sq, 0.0F, 1.0F) : 0;
         const Vec3f velocity = goals_[v] - particles.previous[v];
         particles.previous.set(v, particles.positions[v] - velocity * share);
+        if (meter != nullptr && stopped_by_[v] != kNone) meter->charge(stopped_by_[v], v, particles);
     }
     profile.searched_face_count = profile.measured_pair_count = 0;
     if (self_) {
@@ -182,7 +231,7 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
 
 /// @return whether another pass may take a vertex farther
 bool SurfaceCollision::pass(Particles& particles, bool is_first) {
-    for (ModelSurface& model : models_) model.set_goals(goals_);
+    for_each_near([&](std::size_t, ModelSurface& model) { model.set_goals(goals_); });
     find_leaving();
     ends_ = goals_;
     for (const std::uint32_t v : leaving_) {
@@ -199,23 +248,31 @@ bool SurfaceCollision::pass(Particles& particles, bool is_first) {
     return may_go_on;
 }
 
-/// So that the deformable does not meet itself. What models allow of a way, they allow of a part of it.
+/// So that the deformable does not meet itself. What models allow of a way, they allow of a part of it: the
+/// places that they allow are convex.
 void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles) {
-    const RigidTransform* pose = is_first ? carrier_pose() : nullptr;
-    const std::span<const float> shares = self_->allowed_shares(carrier_pose(), ends_);
+    const bool deforms =
+        std::any_of(motions_.begin(), motions_.end(), [](const SurfaceMotion* m) { return m != nullptr; });
+    const bool moves = std::count(moves_.begin(), moves_.end(), std::uint8_t{1}) != 0;
+    const bool is_one_frame = !is_first || !moves || (own_pose() != nullptr && !deforms);
+    if (!is_one_frame)
+        for (std::uint32_t v = 0; v < particles.count(); ++v) bases_.set(v, base_of(v, is_first, particles));
+    const std::span<const float> shares =
+        self_->allowed_shares(own_pose(), ends_, is_one_frame ? nullptr : &bases_);
     squeezed_now_ += self_->stuck_count();
     if (shares.empty()) return;
-    // Beside a model that moves otherwise than the one that carries along, nothing is known of a part of a
-    // way.
-    const bool is_proven = pose == nullptr || models_.size() == 1;
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
         if (shares[v] == 1) continue;
-        if (!is_proven) ++squeezed_now_;
         const Vec3f end = ends_[v];
-        const Vec3f from = pose != nullptr ? carrier()->carried(v)
-                           : is_first      ? particles.frame_start[v]
-                                           : particles.positions[v];
+        const Vec3f from = base_of(v, is_first, particles);
         ends_.set(v, from + (end - from) * shares[v]);
+        // Where one of the models takes a vertex may be none that another allows.
+        bool is_permitted = true;
+        if (!is_one_frame)
+            for_each_near([&](std::size_t, ModelSurface& model) {
+                is_permitted = is_permitted && model.permits(v, ends_[v]);
+            });
+        if (!is_permitted) ++squeezed_now_;
     }
 }
 
@@ -230,11 +287,29 @@ void SurfaceCollision::find_leaving() {
     };
     for (bool found = true; found;) {
         found = false;
-        for (ModelSurface& model : models_) found = add(model.find_leaving()) || found;
+        for_each_near([&](std::size_t, ModelSurface& model) { found = add(model.find_leaving()) || found; });
         if (!found || models_.size() == 1) break;
         for (const std::uint32_t v : leaving_)
-            for (ModelSurface& model : models_) model.renew(v);
+            for_each_near([&](std::size_t, ModelSurface& model) { model.renew(v); });
     }
+}
+
+/// The model that takes a vertex along that would else stay behind, or none: of several, the first that moves
+/// and is near it.
+const ModelSurface* SurfaceCollision::carrier_of(std::uint32_t vertex, bool is_first) const {
+    if (!is_first) return nullptr;
+    for (std::size_t c = 0; c < models_.size(); ++c) {
+        if (moves_[c] == 0 || is_near_[c] == 0) continue;
+        if (c == own_frame_ || models_[c].is_beside(vertex)) return &models_[c];
+    }
+    return nullptr;
+}
+
+/// Where a vertex ends that goes none of its way.
+Vec3f SurfaceCollision::base_of(std::uint32_t vertex, bool is_first, const Particles& particles) const {
+    const ModelSurface* carrier = carrier_of(vertex, is_first);
+    if (carrier != nullptr) return carrier->carried(vertex);
+    return is_first ? particles.frame_start[vertex] : particles.positions[vertex];
 }
 
 Vec3f SurfaceCollision::find_place(std::uint32_t vertex, bool is_first, const Particles& particles) {
@@ -243,16 +318,18 @@ Vec3f SurfaceCollision::find_place(std::uint32_t vertex, bool is_first, const Pa
         ++squeezed_now_;
         return goal;
     }
-    const ModelSurface* frame = is_first ? carrier() : nullptr;
-    const Vec3f start = is_first ? particles.frame_start[vertex] : particles.positions[vertex];
-    const Vec3f from = frame != nullptr ? frame->carried(vertex) : start;
+    const ModelSurface* carrier = carrier_of(vertex, is_first);
+    const Vec3f from = base_of(vertex, is_first, particles);
     Shares shares;
-    for (const ModelSurface& model : models_)
-        shares.keep(model.allowed(vertex, &model == frame ? nullptr : &from));
+    for_each_near([&](std::size_t c, ModelSurface& model) {
+        const float most = shares.most;
+        shares.keep(model.allowed(vertex, &model == carrier ? nullptr : &from));
+        if (shares.most < most || shares.none()) stopped_by_[vertex] = static_cast<std::uint32_t>(c);
+    });
     if (shares.none()) ++squeezed_now_;
     const float share = shares.none() ? 0 : std::max(shares.most, 0.0F);
     if (share == 1) return goal;
-    return frame != nullptr ? frame->place_at(share, vertex) : start + (goal - start) * share;
+    return carrier != nullptr ? carrier->place_at(share, vertex) : from + (goal - from) * share;
 }
 
 } // namespace echinus

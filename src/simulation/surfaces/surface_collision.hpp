@@ -24,15 +24,24 @@ class SurfaceCollision {
                      const Particles& particles, const SimulationOptions& options);
 
     /// @param collisions  of the particles with the same colliders, which know some distances already
-    void begin_frame(const std::vector<Collider>& colliders, const Collisions& collisions,
-                     const Particles& particles);
+    /// Particles so near to a collider go along with its surface where that deforms.
+    float carry_reach(std::size_t collider) const { return carry_reaches_[collider]; }
+
+    /// @param motions  [collider_count] how surfaces deform in this frame, null where they do not
+    void begin_frame(const std::vector<Collider>& colliders, std::span<const SurfaceMotion* const> motions,
+                     const Collisions& collisions, const Particles& particles);
     /// After the first integration of a frame, before its colliders have moved.
     void look_ahead(const std::vector<Collider>& colliders, const Particles& particles);
     void begin_substep(const std::vector<Collider>& colliders);
-    void relax(Particles& particles, SimulationProfile& profile);
+    /// @param meter  of the loads on the colliders, or null
+    void relax(Particles& particles, SimulationProfile& profile, LoadMeter* meter);
     /// Only the contacts with models of chosen particles, [particle_count] 1.
-    void relax_part(std::span<const std::uint8_t> chosen, Particles& particles, SimulationProfile& profile);
-    void end_frame(Particles& particles, SimulationProfile& profile);
+    void relax_part(std::span<const std::uint8_t> chosen, Particles& particles, SimulationProfile& profile,
+                    LoadMeter* meter);
+    /// A collider that was away in this frame is not any more (BroadPhase), at the end of it.
+    void meet_late(std::size_t collider, const Collider& at_end, const Particles& particles);
+    /// @param meter  has noted the velocities, or null
+    void end_frame(Particles& particles, SimulationProfile& profile, LoadMeter* meter);
 
   private:
     void keep_gaps(const std::vector<Collider>& colliders, const Particles& particles);
@@ -40,22 +49,35 @@ class SurfaceCollision {
     void find_leaving();
     void shorten_ways(bool is_first, const Particles& particles);
     Vec3f find_place(std::uint32_t vertex, bool is_first, const Particles& particles);
+    const ModelSurface* carrier_of(std::uint32_t vertex, bool is_first) const;
+    Vec3f base_of(std::uint32_t vertex, bool is_first, const Particles& particles) const;
+    template <typename Visit>
+    void for_each_near(const Visit& visit);
 
     SimulationOptions options_;
     std::shared_ptr<const Elements> elements_;
     std::vector<ModelSurface> models_;
+    std::vector<float> carry_reaches_; ///< by model
     std::vector<float> extents_; ///< by model, the deformable last: coordinates for which least gaps allow
     std::optional<SelfSurface> self_;
     std::vector<RigidTransform> poses_; ///< of the colliders, as of the last substep
     std::vector<float> inverse_masses_;
-    const ModelSurface* carrier() const { return carrier_ < models_.size() ? &models_[carrier_] : nullptr; }
-    const RigidTransform* carrier_pose() const { return carrier() != nullptr ? &poses_[carrier_] : nullptr; }
-    std::size_t carrier_ = 0; ///< the first collider that moves; beyond the last where none does
-    PointArrays expected_, goals_, ends_;
+    /// Where one model is near, the deformable's own pairs are looked at in its frame, so that what it takes
+    /// along rests.
+    const RigidTransform* own_pose() const {
+        return own_frame_ < models_.size() ? &poses_[own_frame_] : nullptr;
+    }
+    std::size_t own_frame_ = 0;                 ///< a collider, or beyond the last: the world
+    std::vector<const SurfaceMotion*> motions_; ///< by collider, in this frame
+    std::vector<std::uint8_t> moves_;           ///< by collider
+    std::vector<std::uint8_t> is_near_;         ///< by collider: not away (BroadPhase)
+    std::vector<RigidTransform> start_poses_;   ///< of the colliders
+    PointArrays expected_, goals_, ends_, bases_;
     std::vector<std::vector<float>> clearances_; ///< by model and vertex
     std::vector<std::uint32_t> leaving_;
     std::vector<std::uint8_t> is_leaving_, is_truncated_;
-    std::uint64_t squeezed_now_ = 0; ///< vertices without a place
+    std::vector<std::uint32_t> stopped_by_; ///< by vertex: the model beside which its way ended last
+    std::uint64_t squeezed_now_ = 0;        ///< vertices without a place
 };
 
 } // namespace echinus

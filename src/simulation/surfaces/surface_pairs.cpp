@@ -21,13 +21,10 @@ bool is_near(const Box& a, const Box& b) {
            a.low[2] <= b.high[2] && a.high[2] >= b.low[2];
 }
 
-Box box_of_points(std::span<const Vec3f> points) {
-    Box box{{points[0].x, points[0].y, points[0].z}, {points[0].x, points[0].y, points[0].z}};
-    for (const Vec3f& p : points) {
-        box.low = {std::min(box.low[0], p.x), std::min(box.low[1], p.y), std::min(box.low[2], p.z)};
-        box.high = {std::max(box.high[0], p.x), std::max(box.high[1], p.y), std::max(box.high[2], p.z)};
-    }
-    return box;
+Box box_of_way(const PointArrays& from, const PointArrays& to, std::uint32_t vertex) {
+    const Vec3f a = from[vertex], b = to[vertex];
+    return {{std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)},
+            {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)}};
 }
 
 } // namespace
@@ -52,10 +49,13 @@ void SurfacePairs::reset() {
 
 // ---- Lists
 
-void SurfacePairs::begin(const Opponent& opponent, const PointArrays& starts,
+void SurfacePairs::begin(const Opponent& opponent, const PointArrays& starts, const PointArrays& bases,
                          std::span<const float> clearances) {
+    if (opponent.ends != nullptr || was_for_one_frame_) reset();
+    was_for_one_frame_ = opponent.ends != nullptr;
     opponent_ = opponent;
     starts_ = &starts;
+    bases_ = &bases;
     clearances_ = clearances;
     ++frame_;
 }
@@ -93,12 +93,12 @@ float SurfacePairs::clearance_of(const Element& element) const {
 
 void SurfacePairs::list(std::uint32_t element) {
     ++listed_count;
-    const float clearance = clearance_of(own_->all[element]);
+    const float clearance = clearance_of(own_->all[element]) - 2 * opponent_.most;
     if (clearance > reach_.listed) {
         list_reaches_[element] = clearance;
         return;
     }
-    Box box = box_of(own_->all[element], *starts_);
+    Box box = box_of_both(box_of(own_->all[element], *starts_), box_of(own_->all[element], *bases_));
     box.grow(reach_.listed);
     near_pairs_.clear();
     bool found = false;
@@ -118,23 +118,22 @@ void SurfacePairs::list(std::uint32_t element) {
 void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_number) {
     const Element& own = own_->all[own_number];
     const Element& other = opponent_.elements->all[other_number];
-    std::array<Vec3f, 3> a, b;
+    // Each point's way, a box.
+    const PointArrays& other_ends = opponent_.ends != nullptr ? *opponent_.ends : *opponent_.positions;
+    std::array<Box, 3> a, b;
     for (std::size_t k = 0; k < 3; ++k) {
-        a[k] = (*starts_)[own.vertices[k]];
-        b[k] = (*opponent_.positions)[other.vertices[k]];
+        a[k] = box_of_way(*starts_, *bases_, own.vertices[k]);
+        b[k] = box_of_way(*opponent_.positions, other_ends, other.vertices[k]);
     }
-    Box own_box = box_of_points(a), other_box = box_of_points(b);
+    Box own_box = box_of_both(box_of_both(a[0], a[1]), a[2]);
+    const Box other_box = box_of_both(box_of_both(b[0], b[1]), b[2]);
     own_box.grow(reach_.listed);
     if (!is_near(own_box, other_box)) return;
-    const auto is_near_box = [](const Vec3f& p, const Box& box) {
-        const std::array<Vec3f, 1> point{p};
-        return is_near(box_of_points(point), box);
-    };
     if (other.is_face()) {
         Box reached = other_box;
         reached.grow(reach_.listed);
         for (std::size_t k = 0; k < own.vertex_count; ++k)
-            if (own.owns_vertex(k) && is_near_box(a[k], reached))
+            if (own.owns_vertex(k) && is_near(a[k], reached))
                 near_pairs_.push_back(
                     {{own.vertices[k], other.vertices[0], other.vertices[1], other.vertices[2]},
                      other_number,
@@ -142,7 +141,7 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
     }
     if (own.is_face())
         for (std::size_t k = 0; k < other.vertex_count; ++k)
-            if (other.owns_vertex(k) && is_near_box(b[k], own_box))
+            if (other.owns_vertex(k) && is_near(b[k], own_box))
                 near_pairs_.push_back({{own.vertices[0], own.vertices[1], own.vertices[2], other.vertices[k]},
                                        other_number,
                                        PairKind::FaceVertex});
@@ -150,25 +149,27 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
     for (std::size_t i = 0; i < edge_count(own); ++i) {
         if (!own.owns_edge(i)) continue;
         const std::size_t i_next = (i + 1) % 3;
-        Box edge_box = box_of_points(std::array{a[i], a[i_next]});
+        Box edge_box = box_of_both(a[i], a[i_next]);
         edge_box.grow(reach_.listed);
         for (std::size_t j = 0; j < edge_count(other); ++j) {
             if (!other.owns_edge(j)) continue;
             const std::size_t j_next = (j + 1) % 3;
             const std::array<std::uint32_t, 4> points{own.vertices[i], own.vertices[i_next],
                                                       other.vertices[j], other.vertices[j_next]};
-            if (is_near(edge_box, box_of_points(std::array{b[j], b[j_next]})))
+            if (is_near(edge_box, box_of_both(b[j], b[j_next])))
                 near_pairs_.push_back({points, other_number, PairKind::EdgeEdge});
         }
     }
 }
 
-/// Of the pairs whose boxes are near, those that are near.
+/// Of the pairs whose boxes are near, those that are near, or get so on the way to the bases.
 void SurfacePairs::keep_near(std::uint32_t element) {
     separations_.resize(near_pairs_.size());
     separations(near_pairs_, *starts_, *opponent_.positions, separations_);
     for (std::size_t i = 0; i < near_pairs_.size(); ++i) {
-        if (separations_[i].gap > reach_.listed) continue;
+        float gap = separations_[i].gap;
+        if (opponent_.ends != nullptr) gap -= std::max(closing(near_pairs_[i], separations_[i].normal), 0.0F);
+        if (gap > reach_.listed) continue;
         lists_.add(element, near_pairs_[i]);
     }
 }
@@ -200,6 +201,24 @@ std::array<Vec3f, 4> SurfacePairs::points_of(const Pair& pair) const {
     return points;
 }
 
+/// How far the opponent's part of a pair comes along the normal.
+float SurfacePairs::advance(const Pair& pair, const Vec3f& normal) const {
+    if (opponent_.ends == nullptr) return 0;
+    float most = -kInfinity;
+    for (std::size_t k = own_count(pair.kind); k < 4; ++k)
+        most = std::max(
+            most, dot(normal, (*opponent_.ends)[pair.points[k]] - (*opponent_.positions)[pair.points[k]]));
+    return most;
+}
+
+/// By how much the gap of a pair shrinks along the normal while its own part goes to the bases.
+float SurfacePairs::closing(const Pair& pair, const Vec3f& normal) const {
+    float least = kInfinity;
+    for (std::size_t k = 0; k < own_count(pair.kind); ++k)
+        least = std::min(least, dot(normal, (*bases_)[pair.points[k]] - (*starts_)[pair.points[k]]));
+    return advance(pair, normal) - least;
+}
+
 /// How far the vertices of an element may go by what is not listed.
 float SurfacePairs::bound_of(std::uint32_t element) const {
     return list_reaches_[element] - moved_since_listed(element) - reach_.least_gap;
@@ -211,7 +230,7 @@ bool SurfacePairs::is_beyond(std::uint32_t vertex, const Vec3f& goal, float radi
 }
 
 void SurfacePairs::wake(std::uint32_t vertex) {
-    anchors_.set(vertex, (*starts_)[vertex]);
+    anchors_.set(vertex, (*bases_)[vertex]);
     rooms_[vertex] = quiet_[vertex] = kInfinity;
     renewed_in_[vertex] = frame_;
     woken_.push_back(vertex);
@@ -234,7 +253,7 @@ void SurfacePairs::measure_woken() {
 
 void SurfacePairs::shrink(std::uint32_t vertex, float room, float quiet) {
     if (!(room < rooms_[vertex] || quiet < quiet_[vertex])) return;
-    const float used = length((*starts_)[vertex] - anchors_[vertex]);
+    const float used = length((*bases_)[vertex] - anchors_[vertex]);
     rooms_[vertex] = std::min(rooms_[vertex], room - used);
     quiet_[vertex] = std::min(quiet_[vertex], quiet - used);
 }
@@ -244,6 +263,9 @@ std::span<const std::uint32_t> SurfacePairs::find_leaving(const PointArrays& goa
         leaving_.clear();
         for (std::uint32_t v = 0; v < own_->vertex_count(); ++v) {
             if (!is_beyond(v, goals[v], rooms_[v])) continue;
+            // In a later pass, after the opponent has deformed, most vertices have arrived: they rest, and so
+            // need no room.
+            if (rooms_[v] == -1 && opponent_.ends == nullptr && goals[v] == (*starts_)[v]) continue;
             if (renewed_in_[v] == frame_)
                 leaving_.push_back(v);
             else
@@ -265,7 +287,7 @@ bool SurfacePairs::renew(std::uint32_t vertex) {
 }
 
 Shares SurfacePairs::allowed(std::uint32_t vertex, const Vec3f& from, const Vec3f& to) const {
-    const Vec3f start = (*starts_)[vertex];
+    const Vec3f start = (*starts_)[vertex], base = (*bases_)[vertex];
     Shares shares;
     float bound = kInfinity;
     for (const std::uint32_t element : own_->at(vertex)) {
@@ -275,17 +297,18 @@ Shares SurfacePairs::allowed(std::uint32_t vertex, const Vec3f& from, const Vec3
             if (std::find(pair.points.begin(), own, vertex) == own) continue;
             const auto points = points_of(pair);
             const Separation apart = separation(pair.kind, points);
-            if (!(apart.gap > 0)) return {0, 0};
+            // What deforms would have to be followed exactly.
+            if (!(apart.gap > 0)) return opponent_.ends != nullptr ? Shares{1, 0} : Shares{0, 0};
             // How far above the plane at the end of the pair's own part the vertex begins.
             float above = kInfinity;
             for (std::size_t k = 0; k < own_count(pair.kind); ++k)
                 above = std::min(above, dot(apart.normal, points[k] - start));
-            const float allowed_way = std::max(usable(apart.gap), 0.0F) - above;
+            const float allowed_way = std::max(usable(apart.gap), 0.0F) - above - advance(pair, apart.normal);
             shares.keep_not_negative(dot(apart.normal, from - start) + allowed_way,
                                      dot(apart.normal, to - start) + allowed_way);
         }
     }
-    shares.keep_in_ball(from - start, to - from, bound);
+    shares.keep_in_ball(from - base, to - from, bound);
     return shares;
 }
 

@@ -14,11 +14,15 @@
 
 namespace echinus {
 
-/// A model's surface, at rest in the frame in which everything is said here.
+/// A model's surface, in the frame in which everything is said here. Unless it deforms, it rests there.
 struct Opponent {
     const Elements* elements;
-    const ElementTree* tree;
+    const ElementTree* tree; ///< where it deforms, of the ways of its elements
     const PointArrays* positions;
+    /// Where it deforms: its vertices go straight from the positions to here, none farther than `most`, as
+    /// the deformable's do to their bases.
+    const PointArrays* ends = nullptr;
+    float most = 0;
 };
 
 /// Lengths, in units of the world.
@@ -38,6 +42,11 @@ struct PairReach {
 ///
 /// The pairs come from lists of what is near each element, which hold until one of its vertices has moved by
 /// a slack.
+///
+/// Where the model deforms, both sides of a pair go straight ways, and the plane between them is enough if it
+/// is so at both ends (docs/surfaces.md). Every vertex has a *base*, where it ends when it goes along with
+/// the surface beside it; rooms lie around bases, and what a pair's parts close on the way there is taken off
+/// its gap. All that is known is for this one frame.
 class SurfacePairs {
   public:
     /// @param own  must outlive this
@@ -53,13 +62,16 @@ class SurfacePairs {
     }
 
     /// @param starts  of all vertices, when the frame begins
-    /// @param clearances  lower bounds of their distances from the opponent, or none
-    void begin(const Opponent& opponent, const PointArrays& starts, std::span<const float> clearances);
+    /// @param bases   of all vertices; where the opponent rests, they are the starts
+    /// @param clearances  lower bounds of the starts' distances from the opponent, or none
+    void begin(const Opponent& opponent, const PointArrays& starts, const PointArrays& bases,
+               std::span<const float> clearances);
 
     /// Gives new rooms to the vertices that leave the smaller ball around them in which nothing new is to be
     /// expected, on their way to the goals. First calls forget(elements) with those whose pairs are measured
     /// anew, and then, for each of these pairs, visit(element, pair, separation), which returns how far the
-    /// pair's vertices may go before it has to be measured again.
+    /// pair's vertices may go before it has to be measured again. The separation's gap is what is left of it
+    /// for ways from the bases.
     template <typename Forget, typename Visit>
     void look_ahead(const PointArrays& goals, const Forget& forget, const Visit& visit) {
         for (std::uint32_t v = 0; v < own_->vertex_count(); ++v)
@@ -78,6 +90,16 @@ class SurfacePairs {
     /// @param from, to  the way's ends, in this frame
     Shares allowed(std::uint32_t vertex, const Vec3f& from, const Vec3f& to) const;
 
+    /// Is one of the shares of a vertex's way that ends here?
+    bool permits(std::uint32_t vertex, const Vec3f& place) const {
+        return !is_beyond(vertex, place, rooms_[vertex]) || !allowed(vertex, place, place).none();
+    }
+    /// Is anything listed near a vertex?
+    bool has_pairs(std::uint32_t vertex) const {
+        return std::any_of(own_->at(vertex).begin(), own_->at(vertex).end(),
+                           [&](std::uint32_t element) { return !lists_.of(element).empty(); });
+    }
+
     std::uint64_t measured_count = 0, listed_count = 0;
 
   private:
@@ -92,6 +114,8 @@ class SurfacePairs {
     void gather_measured();
     void shrink(std::uint32_t vertex, float room, float quiet);
     std::array<Vec3f, 4> points_of(const Pair& pair) const;
+    float advance(const Pair& pair, const Vec3f& normal) const;
+    float closing(const Pair& pair, const Vec3f& normal) const;
 
     void keep_list(std::uint32_t element);
     float moved_since_listed(std::uint32_t element) const;
@@ -114,6 +138,8 @@ class SurfacePairs {
     // The frame
     Opponent opponent_{};
     const PointArrays* starts_ = nullptr;
+    const PointArrays* bases_ = nullptr;
+    bool was_for_one_frame_ = false; ///< what is known, since the opponent deformed
     std::span<const float> clearances_;
     std::uint32_t frame_ = 0;
     std::vector<std::uint32_t> renewed_in_;  ///< by vertex: the frame of its room
@@ -131,8 +157,10 @@ void SurfacePairs::measure_collected(const Visit& visit) {
     gather_measured();
     for (std::size_t i = 0; i < measured_pairs_.size(); ++i) {
         const Pair& pair = measured_pairs_[i];
-        const Separation& apart = separations_[i];
-        const float room = usable(apart.gap);
+        Separation apart = separations_[i];
+        const float closed = opponent_.ends != nullptr ? closing(pair, apart.normal) : 0;
+        const float room = usable(apart.gap) - closed;
+        apart.gap -= closed;
         const float quiet = visit(measured_elements_[i], pair, apart);
         for (std::size_t k = 0; k < own_count(pair.kind); ++k) shrink(pair.points[k], room, quiet);
     }

@@ -1,0 +1,72 @@
+#include "simulation/collider_motions.hpp"
+
+#include "simulation/validation.hpp"
+
+#include <echinus/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace echinus {
+
+namespace {
+
+bool same(const RigidTransform& a, const RigidTransform& b) {
+    const Rotation &p = a.rotation, &q = b.rotation;
+    return a.translation == b.translation && p.w == q.w && p.x == q.x && p.y == q.y && p.z == q.z;
+}
+
+void require_valid(const std::vector<PoseKey>& keys, const std::string& owner) {
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const std::string name = owner + ": keyframe " + std::to_string(i);
+        require_valid(keys[i].pose, name);
+        if (!std::isfinite(keys[i].time))
+            throw Error(ErrorCode::InvalidOptions, name + " has a time that is not finite");
+        if (i > 0 && !(keys[i].time > keys[i - 1].time))
+            throw Error(ErrorCode::InvalidOptions, name + " is at " + std::to_string(keys[i].time) +
+                                                       " s, not later than the one before it, at " +
+                                                       std::to_string(keys[i - 1].time) +
+                                                       " s; times must ascend");
+    }
+}
+
+} // namespace
+
+void ColliderMotions::lead_to(std::size_t collider, const std::string& name, const RigidTransform& pose) {
+    require_valid(pose, name);
+    Motion& motion = motions_[collider];
+    motion.is_led = true;
+    motion.keys.clear();
+    motion.next = pose;
+    motion.next->rotation = pose.rotation.normalised();
+}
+
+void ColliderMotions::follow(std::size_t collider, const std::string& name, std::vector<PoseKey> keys) {
+    require_valid(keys, name);
+    for (PoseKey& key : keys) key.pose.rotation = key.pose.rotation.normalised();
+    motions_[collider] = {.is_led = true, .next = {}, .keys = std::move(keys), .last = {}};
+}
+
+void ColliderMotions::begin_frame(std::vector<Collider>& colliders, double end_time, double frame_seconds) {
+    for (std::size_t c = 0; c < motions_.size(); ++c) {
+        Motion& motion = motions_[c];
+        if (!motion.is_led) continue;
+        if (!motion.keys.empty()) motion.next = pose_at(motion.keys, end_time);
+        // A collider that stays where it was led does not move at all, not even by what was rounded.
+        if (motion.next && !(motion.last && same(*motion.next, *motion.last)))
+            head_for(colliders[c], *motion.next, frame_seconds);
+        else
+            colliders[c].linear_velocity = colliders[c].angular_velocity = {};
+        if (motion.next) motion.last = std::exchange(motion.next, std::nullopt);
+    }
+}
+
+bool ColliderMotions::all_arrived(double time) const {
+    return std::all_of(motions_.begin(), motions_.end(), [&](const Motion& motion) {
+        return motion.keys.empty() || motion.keys.back().time <= time;
+    });
+}
+
+} // namespace echinus

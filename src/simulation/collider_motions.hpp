@@ -1,0 +1,41 @@
+#pragma once
+
+#include <echinus/collider.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace echinus {
+
+/// What leads the colliders of a simulation: constant velocities, a pose for the next frame, or keys. All
+/// become velocities for a frame.
+class ColliderMotions {
+  public:
+    explicit ColliderMotions(std::size_t collider_count) : motions_(collider_count) {}
+
+    void keep_velocity(std::size_t collider) { motions_[collider] = {}; }
+    /// @param name  of the collider, for errors
+    /// @throws Error InvalidOptions
+    void lead_to(std::size_t collider, const std::string& name, const RigidTransform& pose);
+    /// The same.
+    void follow(std::size_t collider, const std::string& name, std::vector<PoseKey> keys);
+
+    /// Gives the colliders that are led the velocities of the frame that begins.
+    /// @param end_time  when the frame ends, seconds since the simulation began
+    void begin_frame(std::vector<Collider>& colliders, double end_time, double frame_seconds);
+    /// Has every collider that follows keys come to its last one?
+    bool all_arrived(double time) const;
+
+  private:
+    struct Motion {
+        bool is_led = false; ///< by a pose or by keys
+        std::optional<RigidTransform> next;
+        std::vector<PoseKey> keys;
+        std::optional<RigidTransform> last; ///< where the frame before led
+    };
+    std::vector<Motion> motions_; ///< one for each collider
+};
+
+} // namespace echinus

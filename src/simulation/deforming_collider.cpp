@@ -1,0 +1,145 @@
+#include "simulation/deforming_collider.hpp"
+
+#include "collider/frame_change.hpp"
+#include "simulation/surfaces/model_mesh.hpp"
+#include "simulation/validation.hpp"
+
+#include <echinus/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace echinus {
+
+namespace {
+
+Vec3f scaled(const Vec3f& local, const Vec3d& scale) {
+    return Vec3f(times(Vec3d(local), scale));
+}
+
+} // namespace
+
+std::array<float, 3> shares_in(const std::array<Vec3f, 3>& corners, const Vec3f& point) {
+    const Vec3f ab = corners[1] - corners[0], ac = corners[2] - corners[0], ap = point - corners[0];
+    const float bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac);
+    const float pb = dot(ap, ab), pc = dot(ap, ac);
+    const float determinant = bb * cc - bc * bc;
+    // Without an area, along the longer edge.
+    if (!(determinant > 1e-12F * bb * cc)) {
+        const bool along_b = bb >= cc;
+        const float size = along_b ? bb : cc;
+        const float share = size > 0 ? std::clamp((along_b ? pb : pc) / size, 0.0F, 1.0F) : 0;
+        return {1 - share, along_b ? share : 0, along_b ? 0 : share};
+    }
+    const float b = std::clamp((cc * pb - bc * pc) / determinant, 0.0F, 1.0F);
+    const float c = std::clamp((bb * pc - bc * pb) / determinant, 0.0F, 1 - b);
+    return {1 - b - c, b, c};
+}
+
+DeformingCollider::DeformingCollider(const ExactMap& map, std::string name) : name_(std::move(name)) {
+    const ExactMapView& view = map.view();
+    const TriangleMesh in_map_order = model_mesh(view, {1, 1, 1});
+    std::vector<Triangle> faces(view.face_count());
+    for (std::size_t f = 0; f < faces.size(); ++f) faces[view.face_numbers[f]] = in_map_order.faces[f];
+    faces_ = std::make_shared<const std::vector<Triangle>>(std::move(faces));
+    vertices_ = in_map_order.vertices;
+    options_ = {.rule = view.rule, .thread_count = 1};
+}
+
+DeformingCollider::DeformingCollider(const DeformingCollider& other)
+    : name_(other.name_), faces_(other.faces_), options_(other.options_), vertices_(other.vertices_),
+      cache_(other.cache_), next_vertices_(other.next_vertices_), next_map_(other.next_map_) {}
+
+void DeformingCollider::lead_to(std::span<const Vec3f> vertices_local) {
+    if (vertices_local.size() != vertices_.size())
+        throw Error(ErrorCode::InvalidOptions,
+                    name_ + " has " + std::to_string(vertices_.size()) +
+                        " vertices, and was given places for " + std::to_string(vertices_local.size()) +
+                        "; a model deforms with the faces and vertices that it has");
+    for (std::size_t i = 0; i < vertices_local.size(); ++i)
+        if (!is_finite(vertices_local[i]))
+            throw Error(ErrorCode::InvalidOptions,
+                        name_ + ": the place of vertex " + std::to_string(i) + " is not finite");
+    std::optional<ExactMapBuilder>& builder = builders_[turn_];
+    if (!builder) builder.emplace(*faces_, options_);
+    next_map_ = builder->rebuild(vertices_local);
+    turn_ = 1 - turn_;
+    next_vertices_.assign(vertices_local.begin(), vertices_local.end());
+}
+
+void DeformingCollider::follow(VertexCache cache) {
+    require_valid(cache, vertices_.size(), name_);
+    cache_ = std::move(cache);
+}
+
+std::array<Vec3f, 3> DeformingCollider::corners(const Triangle& face, const Vec3d& scale) const {
+    return {scaled(vertices_[face[0]], scale), scaled(vertices_[face[1]], scale),
+            scaled(vertices_[face[2]], scale)};
+}
+
+bool DeformingCollider::has_arrived(double time) const {
+    return !cache_ || time >= cache_->end_time();
+}
+
+void DeformingCollider::begin_frame(Collider& collider, double end_time, const Particles& particles,
+                                    std::span<const float> clearances, float reach) {
+    if (cache_) {
+        const std::vector<Vec3f> goal = vertices_at(*cache_, end_time);
+        if (goal != vertices_) lead_to(goal);
+    }
+    deforms_ = next_map_.has_value() && next_vertices_ != vertices_;
+    if (deforms_) {
+        find_motion(collider);
+        find_carried(collider, particles, clearances, reach);
+    }
+    if (!next_map_) return;
+    collider.map = *next_map_;
+    next_map_.reset();
+    std::swap(vertices_, next_vertices_);
+}
+
+void DeformingCollider::find_motion(const Collider& collider) {
+    const std::size_t count = vertices_.size();
+    motion_.from.resize(count);
+    motion_.to.resize(count);
+    float most_sq = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec3f from = scaled(vertices_[i], collider.scale),
+                    to = scaled(next_vertices_[i], collider.scale);
+        motion_.from.set(i, from);
+        motion_.to.set(i, to);
+        most_sq = std::max(most_sq, dot(to - from, to - from));
+    }
+    motion_.most = std::sqrt(most_sq);
+}
+
+/// As the point of the surface that is nearest when the frame begins.
+void DeformingCollider::find_carried(const Collider& collider, const Particles& particles,
+                                     std::span<const float> clearances, float reach) {
+    motion_.carried.resize(particles.count());
+    motion_.carried.fill(0);
+    near_.clear();
+    near_positions_.clear();
+    for (std::uint32_t i = 0; i < particles.count(); ++i) {
+        if (clearances[i] > reach) continue;
+        near_.push_back(i);
+        near_positions_.push_back(particles.positions[i]);
+    }
+    contacts_.resize(near_.size());
+    contacts_batch(collider, near_positions_, reach, contacts_);
+    const FrameChange body(collider.pose, {1, 1, 1});
+    for (std::size_t n = 0; n < near_.size(); ++n) {
+        if (!contacts_[n].found() || contacts_[n].face == Contact::kUnknownFace) continue;
+        const Triangle& face = (*faces_)[static_cast<std::size_t>(contacts_[n].face)];
+        const auto shares =
+            shares_in(std::array{motion_.from[face[0]], motion_.from[face[1]], motion_.from[face[2]]},
+                      body.point_to_local(contacts_[n].point));
+        Vec3f way;
+        for (std::size_t k = 0; k < 3; ++k) way += (motion_.to[face[k]] - motion_.from[face[k]]) * shares[k];
+        motion_.carried.set(near_[n], way);
+    }
+}
+
+} // namespace echinus

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "simulation/surface_motion.hpp"
+
+#include <echinus/collider.hpp>
+#include <echinus/exact_map.hpp>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace echinus {
+
+/// Shares of a triangle's corners in the point of it that is nearest to one in its plane.
+std::array<float, 3> shares_in(const std::array<Vec3f, 3>& corners, const Vec3f& point);
+
+/// A collider whose surface deforms: an exact map for each frame, and the way from one to the next.
+class DeformingCollider {
+  public:
+    /// @param map   of the surface as it is
+    /// @param name  of the collider, for errors
+    DeformingCollider(const ExactMap& map, std::string name);
+    DeformingCollider(const DeformingCollider& other);
+    DeformingCollider& operator=(const DeformingCollider&) = delete;
+
+    /// The next frame leads the vertices there.
+    /// @throws Error InvalidOptions for another number of vertices, or as ExactMapBuilder::rebuild(); then
+    /// nothing has changed
+    void lead_to(std::span<const Vec3f> vertices_local);
+    /// Along a cache, from the next frame on. @throws Error InvalidOptions
+    void follow(VertexCache cache);
+
+    /// Gives the collider the map of the frame's end.
+    /// @param end_time    when the frame ends, seconds since the simulation began
+    /// @param clearances  lower bounds of the particles' distances from the surface
+    /// @param reach       particles so near are beside it
+    void begin_frame(Collider& collider, double end_time, const Particles& particles,
+                     std::span<const float> clearances, float reach);
+    /// In this frame, or null: the surface does not deform.
+    const SurfaceMotion* motion() const { return deforms_ ? &motion_ : nullptr; }
+
+    /// In the mesh's order.
+    const std::vector<Triangle>& faces() const { return *faces_; }
+    /// At the end of this frame, local.
+    const std::vector<Vec3f>& vertices() const { return vertices_; }
+    /// Of a face at the end of this frame, in the body frame.
+    std::array<Vec3f, 3> corners(const Triangle& face, const Vec3d& scale) const;
+    /// Has it come to the last sample?
+    bool has_arrived(double time) const;
+
+  private:
+    void find_motion(const Collider& collider);
+    void find_carried(const Collider& collider, const Particles& particles, std::span<const float> clearances,
+                      float reach);
+
+    std::string name_;
+    std::shared_ptr<const std::vector<Triangle>> faces_;
+    ExactMapOptions options_;
+    /// They take turns: the one builds while the other's map is in use, so that both use their memory again.
+    std::array<std::optional<ExactMapBuilder>, 2> builders_;
+    std::size_t turn_ = 0;
+    std::vector<Vec3f> vertices_;
+    std::optional<VertexCache> cache_;
+    std::vector<Vec3f> next_vertices_;
+    std::optional<ExactMap> next_map_;
+    bool deforms_ = false;
+    SurfaceMotion motion_;
+    std::vector<std::uint32_t> near_;   ///< particles that may be beside the surface,
+    std::vector<Vec3f> near_positions_; ///< where they are,
+    std::vector<Contact> contacts_;     ///< and what is nearest to them
+};
+
+} // namespace echinus

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "simulation/particles.hpp"
+
+namespace echinus {
+
+/// How the surface of a collider deforms in a frame: each of its vertices goes straight, in the body frame
+/// (the collider's frame with its scale applied), whatever the collider itself does meanwhile.
+struct SurfaceMotion {
+    PointArrays from, to; ///< [vertex_count of the model]
+    float most = 0;       ///< no vertex goes farther
+    /// [particle_count] The way of the surface beside each particle, 0 where none is near: one that goes it
+    /// stays beside the surface, as one does that a rigid model takes along.
+    PointArrays carried;
+};
+
+} // namespace echinus

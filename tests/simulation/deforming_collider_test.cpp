@@ -1,0 +1,267 @@
+// Colliders whose vertices move. Every frame is judged exactly, against the mesh as it is then.
+
+#include "support/cloth_meshes.hpp"
+#include "support/draping.hpp"
+#include "support/expect_error.hpp"
+#include "support/instruction_sets.hpp"
+#include "support/surface_judge.hpp"
+
+#include <echinus/simulation.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+using namespace echinus;
+using namespace echinus::test;
+
+namespace {
+
+constexpr double kThickness = 0.01;
+constexpr double kPi = std::numbers::pi;
+
+SimulationOptions surfaces(bool self = false) {
+    return {.thickness = kThickness, .surface_collision = true, .self_collision = self};
+}
+
+/// Where a point of the mesh is at a time.
+using Deformation = std::function<Vec3d(const Vec3d& point, double seconds)>;
+
+TriangleMesh deformed(TriangleMesh mesh, const Deformation& deform, double seconds) {
+    for (Vec3f& v : mesh.vertices) v = Vec3f(deform(Vec3d(v), seconds));
+    return mesh;
+}
+
+Vec3d breathe(const Vec3d& p, double t) {
+    return p * (1 + 0.3 * std::sin(2 * kPi * t));
+}
+/// About the y axis, more the farther along x.
+Vec3d bend(const Vec3d& p, double t) {
+    const double angle = 0.9 * std::sin(3 * kPi * t) * p.x;
+    return {p.x * std::cos(angle) + p.z * std::sin(angle), p.y,
+            p.z * std::cos(angle) - p.x * std::sin(angle)};
+}
+/// A wave that runs along x.
+Vec3d wave(const Vec3d& p, double t) {
+    return p + Vec3d{0, 0, 0.06 * std::sin(4 * p.x - 6 * t) - 0.06 * std::sin(4 * p.x)};
+}
+/// Tops slide over bottoms.
+Vec3d shear(const Vec3d& p, double t) {
+    return p + Vec3d{0.4 * t * (p.z + 0.05), 0, 0};
+}
+
+/// Leads the collider's vertices along, and judges every frame. @return the most pairs in a frame
+std::size_t most_pairs(Simulation& simulation, const TriangleMesh& model, const Deformation& deform,
+                       int frame_count) {
+    const double dt = simulation.options().time_step;
+    std::size_t most = 0;
+    for (int i = 1; i <= frame_count; ++i) {
+        const TriangleMesh now = deformed(model, deform, i * dt);
+        simulation.set_collider_vertices(0, now.vertices);
+        simulation.step();
+        most = std::max(most, meeting_faces(simulation, {now}).size());
+    }
+    return most;
+}
+
+void expect_nothing_meets_while(const TriangleMesh& model, const Deformation& deform, Deformable sheet,
+                                int frame_count, Collider collider, const SimulationOptions& options) {
+    Simulation simulation(std::move(sheet), {std::move(collider)}, options);
+    EXPECT_EQ(most_pairs(simulation, model, deform, frame_count), 0u);
+    EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+    EXPECT_EQ(simulation.profile().lost_count, 0u);
+    EXPECT_GT(simulation.profile().contact_count, 1000u);
+}
+
+void expect_nothing_meets_while(const TriangleMesh& model, const Deformation& deform, Deformable sheet,
+                                int frame_count, const SimulationOptions& options = surfaces()) {
+    expect_nothing_meets_while(model, deform, std::move(sheet), frame_count, {.map = ExactMap::build(model)},
+                               options);
+}
+
+} // namespace
+
+TEST(DeformingCollider, KeepsASheetOffABallThatBreathes) {
+    expect_nothing_meets_while(make_sphere(0.4, 32, 16), breathe, sheet_at(0.43, 1.2, 25), 300);
+    expect_nothing_meets_while(make_sphere(0.4, 32, 16), breathe, sheet_at(0.43, 1.2, 25), 300,
+                               surfaces(true));
+}
+
+TEST(DeformingCollider, KeepsASheetOffAPlateThatBends) {
+    expect_nothing_meets_while(make_box({1.4, 0.5, 0.06}, 14), bend, sheet_at(0.06, 1, 21), 300);
+    expect_nothing_meets_while(make_box({1.4, 0.5, 0.06}, 14), bend, sheet_at(0.06, 1, 21), 300,
+                               surfaces(true));
+}
+
+TEST(DeformingCollider, KeepsASheetOnAFloorWithRunningWaves) {
+    expect_nothing_meets_while(make_box({1.6, 1.2, 0.1}, 24), wave, sheet_at(0.08, 0.9, 25), 300,
+                               surfaces(true));
+}
+
+TEST(DeformingCollider, KeepsAPinnedSheetOffABallThatGrowsIntoIt) {
+    Deformable sheet = sheet_at(0.45, 1, 21);
+    for (const std::size_t corner : {0u, 20u, 420u, 440u}) sheet.inverse_masses[corner] = 0;
+    expect_nothing_meets_while(
+        make_sphere(0.4, 32, 16), [](const Vec3d& p, double t) { return p * (1 + std::min(t, 0.5)); }, sheet,
+        240);
+}
+
+TEST(DeformingCollider, MayMoveAndBeScaledMeanwhile) {
+    const TriangleMesh ball = make_sphere(1, 24, 12);
+    Collider collider{.map = ExactMap::build(ball), .pose = {Rotation::about({1, 0, 0}, 0.3), {0, 0, -0.1}}};
+    collider.scale = {0.4, -0.5, 0.35};
+    collider.linear_velocity = {0.2, 0, 0.1};
+    collider.angular_velocity = {0, 0, 3};
+    expect_nothing_meets_while(ball, breathe, sheet_at(0.4, 1.2, 25), 200, collider, surfaces());
+}
+
+TEST(DeformingCollider, IsFollowedInSmallSteps) {
+    SimulationOptions options = surfaces();
+    options.solver = SolverKind::Xpbd;
+    options.iteration_count = 1;
+    options.substep_count = 10;
+    expect_nothing_meets_while(make_sphere(0.4, 32, 16), breathe, sheet_at(0.43, 1.2, 25), 200, options);
+}
+
+TEST(DeformingCollider, TakesASheetAlongByFriction) {
+    // The top of the box goes at 0.4 * 0.1 units per second; so does what lies on it.
+    const TriangleMesh box = make_box({1.6, 1.6, 0.1}, 4);
+    Simulation simulation(sheet_at(0.061, 0.6, 13), {{.map = ExactMap::build(box)}}, surfaces());
+    EXPECT_EQ(most_pairs(simulation, box, shear, 480), 0u);
+    double way = 0;
+    for (const Vec3f& p : simulation.positions()) way += double{p.x};
+    EXPECT_NEAR(way / double(simulation.positions().size()), 2 * 0.4 * 0.1, 0.004);
+}
+
+TEST(DeformingCollider, LeadsAttachedParticlesBesideTheirFaces) {
+    const TriangleMesh box = make_box({1, 1, 1}, 2);
+    Deformable sheet = sheet_at(0.6, 0.5, 6);
+    std::vector<std::uint32_t> attached;
+    for (std::uint32_t i = 0; i < 36; ++i) {
+        sheet.inverse_masses[i] = 0;
+        sheet.attachments.push_back({i, 0});
+    }
+    Simulation simulation(sheet, {{.map = ExactMap::build(box), .angular_velocity = {0, 0, 1}}}, surfaces());
+    // The whole box turns about x and rises: attached particles do the same, and turn with the pose.
+    const auto turn = [](const Vec3d& p, double t) {
+        return Rotation::about({1, 0, 0}, t).apply(p) + Vec3d{0, 0, t};
+    };
+    const double dt = simulation.options().time_step;
+    for (int i = 1; i <= 240; ++i) {
+        simulation.set_collider_vertices(0, deformed(box, turn, i * dt).vertices);
+        simulation.step();
+        for (std::size_t p = 0; p < 36; ++p) {
+            const Vec3d expected =
+                Rotation::about({0, 0, 1}, i * dt).apply(turn(Vec3d(sheet.positions[p]), i * dt));
+            ASSERT_NEAR(length(Vec3d(simulation.positions()[p]) - expected), 0, 2e-5) << i;
+        }
+    }
+}
+
+TEST(DeformingCollider, PlaysACacheAndRestsNotBeforeItsEnd) {
+    const TriangleMesh ball = make_sphere(0.4, 24, 12);
+    constexpr int kSamples = 13;
+    auto samples = std::make_shared<std::vector<Vec3f>>();
+    for (int i = 0; i < kSamples; ++i) {
+        const TriangleMesh now = deformed(ball, breathe, i / 24.0);
+        samples->insert(samples->end(), now.vertices.begin(), now.vertices.end());
+    }
+    const VertexCache cache{
+        .sample_seconds = 1.0 / 24, .vertex_count = ball.vertices.size(), .samples = samples};
+    Simulation played(sheet_at(0.43, 1, 15), {{.map = ExactMap::build(ball)}}, surfaces());
+    Simulation led = played;
+    played.set_collider_cache(0, cache);
+    for (int i = 1; i <= 130; ++i) {
+        const TriangleMesh now{vertices_at(cache, i / 240.0), ball.faces};
+        led.set_collider_vertices(0, now.vertices);
+        led.step();
+        played.step();
+        ASSERT_EQ(played.state_hash(), led.state_hash()) << i;
+        ASSERT_TRUE(meeting_faces(played, {now}).empty()) << i;
+        const std::uint64_t expected = ExactMap::build(now).source_hash();
+        ASSERT_EQ(std::get<ExactMap>(played.colliders()[0].map.kind).source_hash(), expected);
+    }
+    // Half way between two samples.
+    const std::vector<Vec3f> between = vertices_at(cache, 1.5 / 24);
+    const std::size_t n = ball.vertices.size();
+    for (std::size_t i = 0; i < n; ++i)
+        EXPECT_NEAR(length(between[i] - ((*samples)[n + i] + (*samples)[2 * n + i]) * 0.5F), 0, 1e-6);
+}
+
+TEST(DeformingCollider, IsTheSameInACopyAndUnderEveryInstructionSet) {
+    const TriangleMesh ball = make_sphere(0.4, 24, 12);
+    std::vector<std::uint64_t> hashes;
+    const auto run = [&](std::string_view) {
+        Simulation simulation(sheet_at(0.43, 1, 15), {{.map = ExactMap::build(ball)}}, surfaces(true));
+        most_pairs(simulation, ball, breathe, 60);
+        auto copy = std::make_unique<Simulation>(simulation);
+        Simulation second = *copy;
+        copy.reset();
+        for (Simulation* each : {&simulation, &second}) {
+            most_pairs(*each, ball, bend, 40);
+            hashes.push_back(each->state_hash());
+        }
+    };
+    run("");
+    under_each_instruction_set(run);
+    for (const std::uint64_t hash : hashes) EXPECT_EQ(hash, hashes[0]);
+}
+
+TEST(DeformingCollider, CountsWhatItLeavesNoRoom) {
+    // A pinned sheet between the jaws of a comb that shut.
+    const TriangleMesh jaws = [] {
+        TriangleMesh both = make_box({1, 1, 0.2}, 4);
+        const auto count = static_cast<std::uint32_t>(both.vertices.size());
+        TriangleMesh upper = both;
+        for (Vec3f& v : both.vertices) v.z -= 0.2F;
+        for (const Vec3f& v : upper.vertices) both.vertices.push_back(v + Vec3f{0, 0, 0.2F});
+        for (const auto& [a, b, c] : upper.faces) both.faces.push_back({a + count, b + count, c + count});
+        return both;
+    }();
+    const auto shut = [](const Vec3d& p, double t) { return p + Vec3d{0, 0, p.z > 0 ? -0.4 * t : 0.4 * t}; };
+    Simulation simulation(sheet_at(0, 0.5, 8), {{.map = ExactMap::build(jaws)}}, surfaces());
+    const std::size_t pairs = most_pairs(simulation, jaws, shut, 120);
+    EXPECT_GT(pairs, 0u);
+    EXPECT_GT(simulation.profile().squeezed_count, 0u);
+}
+
+TEST(DeformingCollider, RefusesOtherTopologiesAndKeepsWhatItHas) {
+    const TriangleMesh ball = make_sphere(0.4, 12, 6);
+    Simulation simulation(sheet_at(1, 1, 5), {{.map = ExactMap::build(ball)}}, surfaces());
+    const auto refuse = [](const std::string& words, const auto& call) {
+        expect_error(ErrorCode::InvalidOptions, words, call);
+    };
+    const std::string count = std::to_string(ball.vertices.size());
+    std::vector<Vec3f> places = ball.vertices;
+    places.pop_back();
+    refuse("collider 0 has " + count + " vertices, and was given places for " +
+               std::to_string(ball.vertices.size() - 1),
+           [&] { simulation.set_collider_vertices(0, places); });
+    places = ball.vertices;
+    places[3].y = std::numeric_limits<float>::quiet_NaN();
+    refuse("the place of vertex 3 is not finite", [&] { simulation.set_collider_vertices(0, places); });
+    const auto samples = std::make_shared<std::vector<Vec3f>>(ball.vertices);
+    refuse("a cache has to be made of the same mesh",
+           [&] { simulation.set_collider_cache(0, {.vertex_count = 7, .samples = samples}); });
+    refuse("a positive time apart", [&] {
+        simulation.set_collider_cache(
+            0, {.sample_seconds = 0, .vertex_count = ball.vertices.size(), .samples = samples});
+    });
+    refuse("has no samples",
+           [&] { simulation.set_collider_cache(0, {.vertex_count = ball.vertices.size(), .samples = {}}); });
+    const auto bad = std::make_shared<std::vector<Vec3f>>(places);
+    refuse("vertex 3 of its vertex cache is not finite in sample 0",
+           [&] { simulation.set_collider_cache(0, {.vertex_count = ball.vertices.size(), .samples = bad}); });
+    simulation.step();
+
+    Simulation particles(sheet_at(1, 1, 5), {{.map = ExactMap::build(ball)}}, {});
+    refuse("surface_collision", [&] { particles.set_collider_vertices(0, ball.vertices); });
+    Simulation distances(sheet_at(1, 1, 5), {{.map = DistanceMap::build(ball)}}, {});
+    refuse("has no exact map", [&] { distances.set_collider_vertices(0, ball.vertices); });
+}

@@ -1,0 +1,110 @@
+// Colliders that each move on their own, and those that are too far away to matter.
+
+#include "support/draping.hpp"
+#include "support/surface_judge.hpp"
+
+#include <echinus/simulation.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+using namespace echinus;
+using namespace echinus::test;
+
+namespace {
+
+SimulationOptions surfaces(bool self) {
+    return {.thickness = 0.01, .surface_collision = true, .self_collision = self};
+}
+
+} // namespace
+
+TEST(SeveralColliders, KeepASheetOffAllOfThemWhileEachMovesOnItsOwn) {
+    // A floor at rest, a ball that rises, a rod that sweeps across and turns, and a box that swings on keys.
+    const std::vector<TriangleMesh> models{make_box({3, 3, 0.1}), make_sphere(0.2, 20, 10),
+                                           make_box({0.05, 1.2, 0.05}, 4), make_box({0.2, 0.2, 0.2}, 2)};
+    for (const bool self : {false, true}) {
+        std::vector<Collider> colliders = colliders_of(models);
+        colliders[0].pose.translation = {0, 0, -0.5};
+        colliders[1].linear_velocity = {0, 0, 0.1};
+        colliders[2].pose.translation = {-1.2, 0, -0.15};
+        colliders[2].linear_velocity = {0.5, 0, 0};
+        colliders[2].angular_velocity = {0, 0, 0.7};
+        std::vector<PoseKey> keys;
+        for (int i = 0; i < 12; ++i)
+            keys.push_back(
+                {0.2 * i, {Rotation::about({0, 1, 1}, 0.5 * i), {0.45, 0.3 * (i % 2), -0.3 + 0.05 * i}}});
+        colliders[3].pose = pose_at(keys, 0);
+        Simulation simulation(sheet_at(0.25, 1.4, 25), colliders, surfaces(self));
+        simulation.set_collider_keyframes(3, keys);
+        expect_nothing_meets(simulation, models, 400);
+        EXPECT_EQ(simulation.profile().lost_count, 0u);
+    }
+}
+
+TEST(SeveralColliders, ChangeNothingWhileTheyAreFarAway) {
+    const std::vector<TriangleMesh> ball{make_sphere(0.4, 24, 12)};
+    for (const bool surface : {false, true}) {
+        SimulationOptions options = surfaces(surface);
+        options.surface_collision = surface;
+        std::vector<Collider> colliders = colliders_of({ball[0], make_box({1, 1, 1}), make_sphere(1, 16, 8)});
+        colliders[1].pose.translation = {9, 0, 0};
+        colliders[1].angular_velocity = {0, 0, 5};
+        colliders[2].pose.translation = {0, 0, 8};
+        Simulation among(sheet_at(0.45, 1, 20), colliders, options);
+        Simulation alone(sheet_at(0.45, 1, 20), {colliders[0]}, options);
+        for (int i = 0; i < 150; ++i) {
+            among.step();
+            alone.step();
+            ASSERT_EQ(among.state_hash(), alone.state_hash()) << i;
+        }
+        EXPECT_EQ(among.profile().map_query_count, alone.profile().map_query_count);
+    }
+}
+
+TEST(SeveralColliders, AreMetHoweverFastTheyCome) {
+    // Within a frame: a sheet that is shot at a far box, and a box that is led into a sheet from far away.
+    const std::vector<TriangleMesh> models{make_box({0.1, 0.1, 0.1}), make_box({2, 2, 0.05}, 4)};
+    for (const bool surface : {false, true})
+        for (const bool sheet_comes : {false, true}) {
+            SimulationOptions options = surfaces(surface);
+            options.surface_collision = surface;
+            std::vector<Collider> colliders = colliders_of(models);
+            colliders[0].pose.translation = {0, 0, 40};
+            colliders[1].pose.translation = {0, 0, -10};
+            Simulation simulation(sheet_at(0, 0.5, 10), colliders, options);
+            for (int i = 0; i < 5; ++i) simulation.step();
+            if (sheet_comes)
+                for (std::size_t i = 0; i < 100; ++i) simulation.set_particle_velocity(i, {0, 0, -4000});
+            else
+                simulation.set_collider_pose(1, {{}, {0, 0, 10}});
+            for (int i = 0; i < 20; ++i) {
+                simulation.step();
+                ASSERT_TRUE(!surface || meeting_faces(simulation, models).empty()) << i;
+                for (const Vec3f& p : simulation.positions())
+                    ASSERT_GT(double{p.z}, simulation.colliders()[1].pose.translation.z) << i;
+            }
+            EXPECT_EQ(simulation.profile().lost_count, 0u);
+            EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+        }
+}
+
+TEST(SeveralColliders, ComeAndGo) {
+    // A ball that passes over a sheet again and again, far away in between, and pushes it down; another that
+    // stays.
+    const std::vector<TriangleMesh> models{make_sphere(0.25, 20, 10), make_sphere(0.15, 20, 10)};
+    std::vector<Collider> colliders = colliders_of(models);
+    std::vector<PoseKey> keys;
+    for (int i = 0; i < 5; ++i)
+        keys.push_back(
+            {0.6 * i, {Rotation::about({0, 1, 0}, 2.0 * i), {i % 2 == 0 ? -2.5 : 2.5, 0.38, 0.36}}});
+    colliders[1].pose = pose_at(keys, 0);
+    Deformable sheet = sheet_at(0.27, 1, 20);
+    for (const std::size_t corner : {0u, 19u, 380u, 399u}) sheet.inverse_masses[corner] = 0;
+    Simulation simulation(sheet, colliders, surfaces(true));
+    simulation.set_collider_keyframes(1, keys);
+    expect_nothing_meets(simulation, models, 480);
+}
