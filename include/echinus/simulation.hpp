@@ -342,7 +342,7 @@ class Simulation {
     // colliders().size(), an exact map and options().surface_collision. Surfaces are kept off the moving
     // faces as off any (docs/surfaces.md), and attached particles stay beside the face that was nearest to
     // them when the collider first deformed. Each frame that deforms it builds its exact map anew, on one
-    // thread.
+    // thread, and may allocate.
 
     /// The next frame leads the vertices of a collider's mesh here, each on a straight way; then they rest.
     /// The pose, which may move meanwhile, is another thing. The map is built in this call.

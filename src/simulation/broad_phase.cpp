@@ -71,9 +71,9 @@ std::array<Vec3d, 8> WideBox::corners() const {
 }
 
 BroadPhase::BroadPhase(const std::vector<Collider>& colliders)
-    : models_(colliders.size(), empty_box()), can_be_away_(colliders.size(), 0), away_(colliders.size(), 0) {
+    : models_(colliders.size(), empty_box()), can_be_away_(colliders.size(), 0), away_(colliders.size(), 0),
+      start_poses_(colliders.size()) {
     met_late_.reserve(colliders.size());
-    start_poses_.reserve(colliders.size());
     if (colliders.size() < 2) return;
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         const auto* exact = std::get_if<ExactMap>(&colliders[c].map.kind);
@@ -103,10 +103,9 @@ void BroadPhase::begin_frame(const std::vector<Collider>& colliders, const Parti
     const double way =
         1.5 * substeps * std::max(largest(start_.low - before.low), largest(start_.high - before.high));
     carry_ = 0;
-    start_poses_.clear();
-    for (const Collider& collider : colliders) {
-        carry_ = std::max(carry_, way_of(collider, start_, frame_seconds));
-        start_poses_.push_back(collider.pose);
+    for (std::size_t c = 0; c < colliders.size(); ++c) {
+        carry_ = std::max(carry_, way_of(colliders[c], start_, frame_seconds));
+        start_poses_[c] = colliders[c].pose;
     }
     for (std::size_t c = 0; c < colliders.size(); ++c)
         away_[c] = can_be_away_[c] != 0 &&

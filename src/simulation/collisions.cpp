@@ -14,14 +14,16 @@ constexpr double kAwayInThicknesses = 4;
 
 Collisions::Collisions(const std::vector<Collider>& colliders, const Particles& particles,
                        const SimulationOptions& options)
-    : broad_phase_(colliders), rescues_(options.keep_free) {
+    : broad_phase_(colliders), was_away_(colliders.size()), frame_start_poses_(colliders.size()),
+      rescues_(options.keep_free) {
     for (const Collider& collider : colliders)
         collisions_.push_back(make_collision(collider, particles, options));
     unproven_.reserve(collisions_.size() * particles.count());
 }
 
 Collisions::Collisions(const Collisions& other)
-    : broad_phase_(other.broad_phase_), rescues_(other.rescues_), has_lost_(other.has_lost_) {
+    : broad_phase_(other.broad_phase_), was_away_(other.was_away_),
+      frame_start_poses_(other.frame_start_poses_), rescues_(other.rescues_), has_lost_(other.has_lost_) {
     for (const auto& collision : other.collisions_) collisions_.push_back(collision->clone());
     unproven_.reserve(other.unproven_.capacity());
 }
@@ -31,15 +33,13 @@ void Collisions::begin_frame(const std::vector<Collider>& colliders,
                              const SimulationOptions& options) {
     for (std::size_t i = 0; i < collisions_.size(); ++i)
         if (motions[i] != nullptr) broad_phase_.deform(i, motions[i]->from, motions[i]->to);
-    was_away_.resize(collisions_.size());
     for (std::size_t i = 0; i < collisions_.size(); ++i) was_away_[i] = is_away(i) ? 1 : 0;
     broad_phase_.begin_frame(colliders, particles, options.time_step,
                              kAwayInThicknesses * options.thickness.value(), options.substep_count);
-    frame_start_poses_.clear();
     for (std::size_t i = 0; i < collisions_.size(); ++i) {
         collisions_[i]->begin_frame(colliders[i], motions[i]);
         if (was_away_[i] != 0 && !is_away(i)) collisions_[i]->resume(colliders[i]);
-        frame_start_poses_.push_back(colliders[i].pose);
+        frame_start_poses_[i] = colliders[i].pose;
     }
 }
 

@@ -91,6 +91,7 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
     stopped_by_.assign(particles.count(), kNone);
     poses_.resize(models_.size());
     start_poses_.resize(models_.size());
+    motions_.resize(models_.size());
     moves_.resize(models_.size());
     is_near_.assign(models_.size(), 1);
     bases_.resize(particles.count());

@@ -23,11 +23,13 @@ class SurfaceCollision {
     SurfaceCollision(const Deformable& deformable, const std::vector<Collider>& colliders,
                      const Particles& particles, const SimulationOptions& options);
 
-    /// @param collisions  of the particles with the same colliders, which know some distances already
     /// Particles so near to a collider go along with its surface where that deforms.
     float carry_reach(std::size_t collider) const { return carry_reaches_[collider]; }
 
-    /// @param motions  [collider_count] how surfaces deform in this frame, null where they do not
+    /// @param motions     [collider_count] how surfaces deform in this frame, null where they do not; they
+    /// live
+    ///                    as long as the frame
+    /// @param collisions  of the particles with the same colliders, which know some distances already
     void begin_frame(const std::vector<Collider>& colliders, std::span<const SurfaceMotion* const> motions,
                      const Collisions& collisions, const Particles& particles);
     /// After the first integration of a frame, before its colliders have moved.
