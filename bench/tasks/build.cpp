@@ -10,6 +10,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
 
 using namespace echinus;
 using namespace echinus::comparison;
@@ -18,10 +22,9 @@ namespace {
 
 constexpr std::size_t kMaxFacesForCgal = 300'000; // beyond, it takes minutes
 
-void measure_on(const Subject& subject, const Setting& setting, Records& records) {
-    const std::vector<TimedStructure> builds = builds_on(subject);
+void record(const Subject& subject, const std::vector<TimedStructure>& builds, int passes,
+            const Setting& setting, Records& records) {
     const std::size_t faces = subject.mesh.faces.size();
-    const int passes = subject.large ? 3 : 3 * setting.effort.passes;
     const std::vector<Pace> paces = time_builds(builds, passes, [&](double fraction) {
         setting.report_progress(fmt::format("build {} of {} faces", subject.name, faces), fraction);
     });
@@ -31,6 +34,35 @@ void measure_on(const Subject& subject, const Setting& setting, Records& records
                      {"system", builds[k].system},
                      {"ms", fmt::format("{:.4g}", 1e-6 * paces[k].ns)},
                      {"spread", fmt::format("{:.2g}", paces[k].spread)}});
+}
+
+void measure_on(const Subject& subject, const Setting& setting, Records& records) {
+    record(subject, builds_on(subject), subject.large ? 3 : 3 * setting.effort.passes, setting, records);
+}
+
+/// A torus of `faces` faces around which waves run, as an animated body deforms: a rebuild for each of its
+/// poses, in turn, and Embree's build of the first.
+void measure_deforming(std::size_t faces, const Setting& setting, Records& records) {
+    constexpr std::size_t kPoses = 24;
+    const Subject torus{"torus with running waves", torus_of(faces), 1.4, true, Axis::Z};
+    auto poses = std::make_shared<std::vector<std::vector<Vec3f>>>();
+    for (std::size_t i = 0; i < kPoses; ++i) {
+        std::vector<Vec3f>& pose = poses->emplace_back(torus.mesh.vertices);
+        for (Vec3f& v : pose) {
+            const double phase = 2 * std::numbers::pi * static_cast<double>(i) / kPoses;
+            v.z += static_cast<float>(0.1 * std::sin(3 * double{v.x} + phase));
+        }
+    }
+    const ExactMapOptions exact{.thread_count = 1};
+    const auto builder = std::make_shared<ExactMapBuilder>(torus.mesh.faces, exact);
+    const auto next = std::make_shared<std::size_t>(0);
+    std::vector<TimedStructure> builds{
+        {"exact map build", true, [&, exact] { (void)ExactMap::build(torus.mesh, exact); }},
+        {"exact map rebuild", true, [=] { (void)builder->rebuild((*poses)[++*next % kPoses]); }}};
+    for (const BenchSystem& library : libraries_on(torus))
+        if (library.name == "Embree")
+            builds.push_back({library.name, false, [build = library.builder.build] { (void)build(); }});
+    record(torus, builds, 3 * setting.effort.passes, setting, records);
 }
 
 } // namespace
@@ -72,6 +104,8 @@ Records measure_build(const Setting& setting) {
         const Subject subject = make_subject();
         if (!subject.large || !setting.is_short) measure_on(subject, setting, records);
     }
+    for (const std::size_t faces : {7'000, 20'000, 52'000})
+        if (!setting.is_short || faces == 7'000) measure_deforming(faces, setting, records);
     const std::size_t max_faces = setting.is_short ? 5000 : 300'000;
     for (std::size_t faces = 1000; faces <= max_faces; faces *= 4) {
         Subject torus{"torus of n faces", torus_of(faces), 1.4, true, Axis::Z};

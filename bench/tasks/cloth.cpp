@@ -77,7 +77,7 @@ void add_if_there(std::string_view name, std::string setting, const TriangleMesh
 
 ClothScene read_cloth_scene(const Setting& setting, const char* file) {
     ClothScene result{read_scene(setting.scenes / file), {}};
-    result.mesh = repair(read_mesh(setting.debian_horse), result.scene.repair).mesh;
+    result.mesh = repair(read_mesh(setting.debian_horse), result.scene.colliders.front().repair).mesh;
     return result;
 }
 

@@ -92,10 +92,10 @@ constexpr double kShortSpeed = 3;
 Fall fall_of(const SceneRun& run, const Setting& setting) {
     Scene scene = read_scene(setting.scenes / run.file);
     TriangleMesh model;
-    if (const auto* torus = std::get_if<TorusModel>(&scene.model))
+    if (const auto* torus = std::get_if<TorusModel>(&scene.colliders.front().model))
         model = make_mesh(*torus);
     else
-        model = repair(read_mesh(setting.debian_horse), scene.repair).mesh;
+        model = repair(read_mesh(setting.debian_horse), scene.colliders.front().repair).mesh;
     const ExactMap map = ExactMap::build(model);
     if (run.side != 0) scene.cloth.column_count = scene.cloth.row_count = run.side;
     if (run.thickness != 0) scene.simulation.thickness = run.thickness * double{map.view().radius};
@@ -106,7 +106,7 @@ Fall fall_of(const SceneRun& run, const Setting& setting) {
     }
     const Vec3d down = scene.simulation.gravity * (1 / length(scene.simulation.gravity));
     scene.cloth_velocity = down * speed;
-    scene.angular_velocity = down * (-run.turn * std::numbers::pi / 180);
+    scene.colliders.front().angular_velocity = down * (-run.turn * std::numbers::pi / 180);
     const Simulation start = make_simulation(scene, map);
     Fall fall{.name = run.name, .cloth = start.deformable(), .options = scene.simulation};
     fall.models.push_back(std::move(model));

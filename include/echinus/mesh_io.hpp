@@ -1,5 +1,6 @@
 #pragma once
 
+#include <echinus/collider.hpp>
 #include <echinus/export.hpp>
 #include <echinus/mesh.hpp>
 #include <echinus/tetrahedra.hpp>
@@ -80,6 +81,17 @@ TetrahedraFile read_tetrahedra(const std::filesystem::path& path);
 /// @throws Error Unwritable, WrongFormat for another extension, or InvalidMesh as
 /// require_valid_tetrahedra() does
 void write_tetrahedra(const std::filesystem::path& path, const TetrahedralMesh& mesh);
+
+/// Reads the vertices of a model over time: a PC2 point cache, or a folder of OBJ files, one each, in the
+/// order of their names. PC2 says at which frames its samples were taken; those of a folder are frames 0, 1,
+/// 2 ...
+///
+/// @param mesh               the model, as read_mesh() gives it
+/// @param frames_per_second  positive
+/// @throws Error as read_mesh() does; InvalidMesh when the number of vertices, or a face of a folder's mesh,
+/// is not the model's; the sentence begins with the path
+VertexCache read_vertex_cache(const std::filesystem::path& path, const TriangleMesh& mesh,
+                              double frames_per_second);
 
 } // namespace echinus
 

@@ -58,7 +58,7 @@ struct MeshCloth {
     double scale = 1;
     BendingKind bending = BendingKind::Angles;
     VertexChoice pins;
-    VertexChoice attachments; ///< move with the collider
+    VertexChoice attachments; ///< move with the first collider
 };
 
 /// The meshes of a scene's cloth that come from files, as the caller has read them; the others are left
@@ -68,16 +68,29 @@ struct ClothMeshes {
     std::vector<std::array<std::uint32_t, 2>> threads{}; ///< of `mesh`: see read_mesh_and_edges()
 };
 
+/// How a model deforms: a file or a folder for read_vertex_cache().
+struct CacheFile {
+    std::string name; ///< as written in the scene; see find_model()
+    double frames_per_second = 24;
+};
+
+/// A model in the world, and how it moves.
+struct SceneCollider {
+    SceneModel model;
+    RepairOptions repair; ///< for the mesh, before the map is built
+    RigidTransform pose;  ///< at the start
+    Vec3d scale{1, 1, 1}; ///< along the axes of the mesh
+    Vec3d linear_velocity;
+    Vec3d angular_velocity;         ///< radians per second
+    std::vector<PoseKey> keyframes; ///< in place of velocities, where there are any
+    std::optional<CacheFile> cache; ///< the model deforms
+};
+
 /// The complete initial state of a simulation. A scene that was read is complete, with each number in its
 /// range; the generators check whether a shape is possible.
 struct Scene {
-    SceneModel model;
-    RepairOptions repair; ///< for the mesh, before the map is built
-    MapOptions map;
-    RigidTransform pose;  ///< of the collider at the start
-    Vec3d scale{1, 1, 1}; ///< of the collider, along the axes of the mesh
-    Vec3d linear_velocity;
-    Vec3d angular_velocity; ///< radians per second
+    std::vector<SceneCollider> colliders; ///< at least one
+    MapOptions map;                       ///< of each collider
     ClothOptions cloth;
     std::optional<MeshCloth> mesh_cloth; ///< in place of `cloth`
     Vec3d cloth_velocity;                ///< of all particles at the start that are not pinned
@@ -97,9 +110,11 @@ Scene parse_scene(std::string_view json, const std::string& name);
 /// @throws Error InvalidScene as above
 MapOptions parse_map_options(std::string_view json, const std::string& name);
 
-/// The path of a model's file, in the first of the folders that has it. An absolute name needs no folder.
+/// The path of a model's file, or of a cache's file or folder, in the first of the folders that has it. An
+/// absolute name needs no folder.
 /// @throws Error Unreadable, naming the folders that were searched
 std::filesystem::path find_model(const ModelFile& model, std::span<const std::filesystem::path> folders);
+std::filesystem::path find_cache(const CacheFile& cache, std::span<const std::filesystem::path> folders);
 
 /// The mesh of a generated model.
 /// @throws Error InvalidOptions as the generators do
@@ -112,8 +127,8 @@ TriangleMesh make_mesh(const BoxModel& model);
 /// @throws Error as the map's build() does
 AnyMap build_map(const TriangleMesh& mesh, const MapOptions& options, unsigned thread_count = 0);
 
-/// The scene's collider, with a map of the scene's model.
-Collider make_collider(const Scene& scene, const ColliderMap& map);
+/// The collider as it starts, with a map of its model.
+Collider make_collider(const SceneCollider& collider, const ColliderMap& map);
 
 /// The scene's cloth where it starts, at rest.
 /// @param meshes  of a cloth that is made of files
@@ -122,8 +137,16 @@ Collider make_collider(const Scene& scene, const ColliderMap& map);
 /// other faces
 Deformable make_cloth(const Scene& scene, const ClothMeshes& meshes = {});
 
-/// The scene's cloth and collider, ready to step.
-/// @throws Error InvalidOptions, and as make_cloth()
+/// The scene's cloth and colliders, ready to step.
+/// @param maps  of the colliders' models, in their order
+/// @param caches  [collider_count] of the colliders that have one in the scene, as the caller has read them;
+/// may
+///                be left out where none has
+/// @throws Error InvalidOptions, also when there are more or fewer maps than colliders, or a cache is
+/// missing, and as make_cloth()
+Simulation make_simulation(const Scene& scene, std::span<const ColliderMap> maps,
+                           const ClothMeshes& meshes = {}, std::span<const VertexCache> caches = {});
+/// The same of a scene with one collider.
 Simulation make_simulation(const Scene& scene, const ColliderMap& map, const ClothMeshes& meshes = {});
 
 } // namespace echinus

@@ -181,6 +181,12 @@ void JsonObject::read(const char* key, std::array<double, 2>& value, Range range
         refuse(key, expected_array(2, expected_number("a number", range)));
 }
 
+void JsonObject::read(const char* key, std::array<double, 4>& value, Range range) {
+    const json* found = find(key);
+    if (found != nullptr && !read_array(*found, value, range))
+        refuse(key, expected_array(4, expected_number("a number", range)));
+}
+
 void JsonObject::read(const char* key, std::array<std::uint32_t, 2>& value, Range range) {
     const json* found = find(key);
     if (found != nullptr && !read_array(*found, value, range))
@@ -243,6 +249,16 @@ std::optional<JsonObject> JsonObject::object(const char* key) {
     const json* found = find(key);
     if (found == nullptr) return std::nullopt;
     return JsonObject(*found, scene_name_, path_of(key));
+}
+
+std::vector<JsonObject> JsonObject::objects(const char* key) {
+    const json* found = find(key);
+    std::vector<JsonObject> list;
+    if (found == nullptr) return list;
+    if (!found->is_array() || found->empty()) refuse(key, "an array of objects, with at least one");
+    for (std::size_t i = 0; i < found->size(); ++i)
+        list.emplace_back((*found)[i], scene_name_, path_of(key) + "[" + std::to_string(i) + "]");
+    return list;
 }
 
 void JsonObject::finish() const {

@@ -40,6 +40,7 @@ class JsonObject {
     void read(const char* key, std::uint32_t& value, Range range);
     void read(const char* key, Vec3d& value, Range range);
     void read(const char* key, std::array<double, 2>& value, Range range);
+    void read(const char* key, std::array<double, 4>& value, Range range);
     /// Whole numbers have to be written as such: 10, not 1e1.
     void read(const char* key, std::array<std::uint32_t, 2>& value, Range range);
     void read(const char* key, std::vector<std::array<std::uint32_t, 2>>& value, Range range);
@@ -51,6 +52,8 @@ class JsonObject {
     std::vector<std::size_t> read_words(const char* key, const std::vector<std::string_view>& words);
     /// The object under a key, if it is there.
     std::optional<JsonObject> object(const char* key);
+    /// The objects of an array under a key; none where it is not there. They are named KEY[0], KEY[1], ...
+    std::vector<JsonObject> objects(const char* key);
     bool is_string(const char* key) const { return has(key) && value_[key].is_string(); }
     bool is_object(const char* key) const { return has(key) && value_[key].is_object(); }
     bool is_array(const char* key) const { return has(key) && value_[key].is_array(); }

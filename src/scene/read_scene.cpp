@@ -18,6 +18,8 @@ namespace {
 constexpr Range kCoordinate{-1e9, 1e9};
 constexpr Range kLength{1e-9, 1e9};
 constexpr Range kSegmentCount{1, 4096};
+/// Of the square of a quaternion's length.
+constexpr double kUnitTolerance = 1e-4;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 /// The defaults beside an exact map. Beside a distance map surfaces cannot collide.
@@ -175,6 +177,15 @@ MapOptions read_map(JsonObject map) {
 RigidTransform read_pose(JsonObject& object) {
     RigidTransform pose;
     object.read("position", pose.translation, kCoordinate);
+    if (object.is_array("rotation")) {
+        std::array<double, 4> q{};
+        object.read("rotation", q, {-1, 1});
+        const double size_sq = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+        if (std::abs(size_sq - 1) > kUnitTolerance)
+            object.refuse("rotation", "a quaternion [w, x, y, z] of length 1");
+        pose.rotation = Rotation{q[0], q[1], q[2], q[3]}.normalised();
+        return pose;
+    }
     auto rotation = object.object("rotation");
     if (!rotation) return pose;
     Vec3d axis;
@@ -204,16 +215,75 @@ void read_scale(JsonObject& collider, Vec3d& scale) {
                             "an array of 3, each a number from 1e-9 to 1e+09 or from -1e+09 to -1e-9");
 }
 
-void read_collider(JsonObject& root, Scene& scene) {
-    auto collider = root.object("collider");
-    if (!collider) return;
+/// Each with a time and a pose.
+std::vector<PoseKey> read_keyframes(JsonObject& collider) {
+    std::vector<PoseKey> keys;
+    for (JsonObject& object : collider.objects("keyframes")) {
+        PoseKey& key = keys.emplace_back();
+        object.require("time");
+        object.read("time", key.time, {-1e9, 1e9});
+        key.pose = read_pose(object);
+        object.finish();
+        if (keys.size() > 1 && !(key.time > keys[keys.size() - 2].time))
+            object.refuse("time", "later than that of the keyframe before it");
+    }
+    return keys;
+}
+
+/// A name, or an object with one.
+std::optional<CacheFile> read_cache(JsonObject& collider) {
+    if (!collider.has("cache")) return std::nullopt;
+    if (collider.is_string("cache")) return CacheFile{.name = *collider.read_string("cache")};
+    auto object = collider.object("cache");
+    CacheFile cache;
+    object->require("file");
+    cache.name = *object->read_string("file");
+    object->read("frames_per_second", cache.frames_per_second, {1e-9, 1e9});
+    object->finish();
+    return cache;
+}
+
+/// Where it stands and how it moves.
+void read_motion(JsonObject& object, SceneCollider& collider) {
+    read_scale(object, collider.scale);
+    collider.cache = read_cache(object);
+    collider.keyframes = read_keyframes(object);
+    if (!collider.keyframes.empty()) {
+        for (const char* key : {"position", "rotation", "linear_velocity", "angular_velocity"})
+            if (object.has(key)) object.refuse(key, "left out where there are keyframes");
+        collider.pose = pose_at(collider.keyframes, 0);
+        return;
+    }
     Vec3d degrees_per_second;
-    scene.pose = read_pose(*collider);
-    read_scale(*collider, scene.scale);
-    collider->read("linear_velocity", scene.linear_velocity, kCoordinate);
-    collider->read("angular_velocity", degrees_per_second, {-1e6, 1e6});
-    collider->finish();
-    scene.angular_velocity = degrees_per_second * kRadiansPerDegree;
+    collider.pose = read_pose(object);
+    object.read("linear_velocity", collider.linear_velocity, kCoordinate);
+    object.read("angular_velocity", degrees_per_second, {-1e6, 1e6});
+    collider.angular_velocity = degrees_per_second * kRadiansPerDegree;
+}
+
+/// One model, with the keys of its collider apart; or an array of colliders with a model each.
+void read_colliders(JsonObject& root, Scene& scene) {
+    if (root.has("colliders")) {
+        for (const char* key : {"model", "repair", "collider"})
+            if (root.has(key)) root.refuse(key, "left out where there is the key \"colliders\"");
+        for (JsonObject& object : root.objects("colliders")) {
+            SceneCollider& collider = scene.colliders.emplace_back();
+            object.require("model");
+            collider.model = read_model(object, "model");
+            collider.repair = read_repair(object);
+            read_motion(object, collider);
+            object.finish();
+        }
+        return;
+    }
+    SceneCollider& collider = scene.colliders.emplace_back();
+    root.require("model");
+    collider.model = read_model(root, "model");
+    collider.repair = read_repair(root);
+    auto object = root.object("collider");
+    if (!object) return;
+    read_motion(*object, collider);
+    object->finish();
 }
 
 void read_pins(JsonObject& cloth, ClothOptions& options) {
@@ -333,6 +403,10 @@ void read_surfaces(JsonObject& root, Scene& scene) {
     self = surfaces && kSelfCollision;
     root.read("self_collision", self);
     if (self && !surfaces) root.refuse("self_collision", "false, or \"surface_collision\" must be true");
+    for (const SceneCollider& collider : scene.colliders)
+        if (collider.cache && !surfaces)
+            root.refuse(root.has("surface_collision") ? "surface_collision" : "map",
+                        "such that surfaces collide, since a collider has a vertex cache");
     bool& untangle = scene.simulation.untangle;
     root.read("untangle", untangle);
     if (untangle && !surfaces) root.refuse("untangle", "false, or \"surface_collision\" must be true");
@@ -386,11 +460,8 @@ Scene parse_scene(std::string_view json, const std::string& name) {
     const nlohmann::json document = parse_json(json, name);
     JsonObject root(document, name, "");
     Scene scene;
-    root.require("model");
-    scene.model = read_model(root, "model");
-    scene.repair = read_repair(root);
+    read_colliders(root, scene);
     if (auto map = root.object("map")) scene.map = read_map(*std::move(map));
-    read_collider(root, scene);
     read_cloth(root, scene);
     read_surfaces(root, scene);
     read_solver(root, scene.simulation);

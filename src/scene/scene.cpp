@@ -1,22 +1,46 @@
 #include <echinus/error.hpp>
 #include <echinus/scene.hpp>
 
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace echinus {
 
 namespace fs = std::filesystem;
 
-fs::path find_model(const ModelFile& model, std::span<const fs::path> folders) {
+namespace {
+
+/// @param is_right  whether a path is what is looked for
+template <typename IsRight>
+fs::path find(const std::string& name, std::span<const fs::path> folders, const char* what,
+              const IsRight& is_right) {
     std::string tried;
     for (const fs::path& folder : folders) {
-        std::error_code ignored;
-        const fs::path path = folder / model.name; // an absolute name replaces the folder
-        if (fs::is_regular_file(path, ignored)) return path;
+        const fs::path path = folder / name; // an absolute name replaces the folder
+        if (is_right(path)) return path;
         tried += (tried.empty() ? "" : ", ") + folder.string();
     }
-    throw Error(ErrorCode::Unreadable, "the mesh " + model.name + " is in none of the folders " + tried +
+    throw Error(ErrorCode::Unreadable, std::string(what) + name + " is in none of the folders " + tried +
                                            "; scripts/setup puts the models of the scenes into models/");
+}
+
+bool is_file(const fs::path& path) {
+    std::error_code ignored;
+    return fs::is_regular_file(path, ignored);
+}
+
+} // namespace
+
+fs::path find_model(const ModelFile& model, std::span<const fs::path> folders) {
+    return find(model.name, folders, "the model ", is_file);
+}
+
+fs::path find_cache(const CacheFile& cache, std::span<const fs::path> folders) {
+    return find(cache.name, folders, "the vertex cache ", [](const fs::path& path) {
+        std::error_code ignored;
+        return is_file(path) || fs::is_directory(path, ignored);
+    });
 }
 
 TriangleMesh make_mesh(const TorusModel& model) {
@@ -54,22 +78,48 @@ struct NameOfModel {
 
 } // namespace
 
-Collider make_collider(const Scene& scene, const ColliderMap& map) {
+Collider make_collider(const SceneCollider& collider, const ColliderMap& map) {
     return {.map = map,
-            .pose = scene.pose,
-            .scale = scene.scale,
-            .linear_velocity = scene.linear_velocity,
-            .angular_velocity = scene.angular_velocity,
-            .name = std::visit(NameOfModel{}, scene.model)};
+            .pose = collider.pose,
+            .scale = collider.scale,
+            .linear_velocity = collider.linear_velocity,
+            .angular_velocity = collider.angular_velocity,
+            .name = std::visit(NameOfModel{}, collider.model)};
 }
 
-Simulation make_simulation(const Scene& scene, const ColliderMap& map, const ClothMeshes& meshes) {
+Simulation make_simulation(const Scene& scene, std::span<const ColliderMap> maps, const ClothMeshes& meshes,
+                           std::span<const VertexCache> caches) {
+    if (maps.size() != scene.colliders.size())
+        throw Error(ErrorCode::InvalidOptions, "the scene has " + std::to_string(scene.colliders.size()) +
+                                                   " colliders, and make_simulation() got " +
+                                                   std::to_string(maps.size()) +
+                                                   " maps; it takes one for each");
+    for (std::size_t c = 0; c < maps.size(); ++c)
+        if (scene.colliders[c].cache && (c >= caches.size() || caches[c].samples == nullptr))
+            throw Error(ErrorCode::InvalidOptions,
+                        "collider " + std::to_string(c) + " has the vertex cache " +
+                            scene.colliders[c].cache->name +
+                            ", which was not given; read it with read_vertex_cache(), or take it out of the "
+                            "scene");
     Deformable cloth = make_cloth(scene, meshes);
     const Vec3d way = scene.cloth_velocity * (scene.simulation.time_step / scene.simulation.substep_count);
     for (std::size_t i = 0; i < cloth.particle_count(); ++i)
         if (cloth.inverse_masses[i] != 0)
             cloth.previous_positions[i] = Vec3f(Vec3d(cloth.positions[i]) - way);
-    return Simulation(std::move(cloth), {make_collider(scene, map)}, scene.simulation);
+    std::vector<Collider> colliders;
+    for (std::size_t c = 0; c < maps.size(); ++c)
+        colliders.push_back(make_collider(scene.colliders[c], maps[c]));
+    Simulation simulation(std::move(cloth), std::move(colliders), scene.simulation);
+    for (std::size_t c = 0; c < maps.size(); ++c)
+        if (!scene.colliders[c].keyframes.empty())
+            simulation.set_collider_keyframes(c, scene.colliders[c].keyframes);
+    for (std::size_t c = 0; c < maps.size(); ++c)
+        if (scene.colliders[c].cache) simulation.set_collider_cache(c, caches[c]);
+    return simulation;
+}
+
+Simulation make_simulation(const Scene& scene, const ColliderMap& map, const ClothMeshes& meshes) {
+    return make_simulation(scene, std::span(&map, 1), meshes);
 }
 
 } // namespace echinus

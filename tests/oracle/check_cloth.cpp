@@ -23,7 +23,7 @@ std::optional<FacePair> first_of(const std::vector<FacePair>& pairs) {
 JudgedFrame judge(const SimulationFolder& folder, std::size_t sample) {
     const MeshAndEdges saved = folder.cloth(sample);
     const TriangleMesh cloth{saved.mesh.vertices, surface_of(saved)};
-    const auto model_pairs = intersecting_pairs_by_cgal(cloth, folder.collider(sample));
+    const auto model_pairs = intersecting_pairs_by_cgal(cloth, folder.colliders(sample));
     const auto own_pairs = self_intersecting_pairs_by_cgal(cloth);
     return {.frame = folder.frame_of(sample),
             .model_pairs = model_pairs.size(),
@@ -66,7 +66,7 @@ ClothCheckResult check_cloth(const std::filesystem::path& path, const ClothCheck
     const SimulationFolder folder(path);
     ClothCheckResult result{.folder = path.string(),
                             .cloth_face_count = surface_of(folder.cloth(0)).size(),
-                            .model_face_count = folder.collider(0).faces.size()};
+                            .model_face_count = folder.colliders(0).faces.size()};
     const std::vector<std::size_t> samples = samples_to_judge(folder.sample_count(), options.stride);
     for (const std::size_t sample : samples) {
         result.frames.push_back(judge(folder, sample));

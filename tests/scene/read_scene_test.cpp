@@ -96,21 +96,21 @@ TEST(Scene, SaysHowItsModelBecomesSolid) {
 
 TEST(Scene, IsReadKeyByKey) {
     const Scene scene = parse_scene(kFullScene, "a.json");
-    EXPECT_EQ(std::get<ModelFile>(scene.model).name, "horse.3ds");
-    EXPECT_FALSE(scene.repair.drop_duplicate_faces);
-    EXPECT_TRUE(scene.repair.drop_doubled_patches);
-    EXPECT_TRUE(scene.repair.flip_inside_out);
+    EXPECT_EQ(std::get<ModelFile>(scene.colliders.front().model).name, "horse.3ds");
+    EXPECT_FALSE(scene.colliders.front().repair.drop_duplicate_faces);
+    EXPECT_TRUE(scene.colliders.front().repair.drop_doubled_patches);
+    EXPECT_TRUE(scene.colliders.front().repair.flip_inside_out);
     const auto& map = std::get<DistanceMapOptions>(scene.map);
     EXPECT_EQ(map.longitude_count, 128u);
     EXPECT_EQ(map.colatitude_count, 64u);
     EXPECT_EQ(map.correction, VertexCorrection::Paper);
     EXPECT_EQ(map.entry_format, EntryFormat::Unorm16);
     EXPECT_EQ(map.pole_axis, PoleAxis::Y);
-    EXPECT_EQ(scene.pose.translation, (Vec3d{1, 2, 3}));
-    EXPECT_NEAR(length(scene.pose.rotation.apply({1, 0, 0}) - Vec3d{0, 1, 0}), 0, 1e-12);
-    EXPECT_EQ(scene.scale, (Vec3d{2.5, 2.5, 2.5}));
-    EXPECT_EQ(scene.linear_velocity, (Vec3d{0.1, 0.2, 0.3}));
-    EXPECT_NEAR(scene.angular_velocity.y, std::numbers::pi, 1e-12);
+    EXPECT_EQ(scene.colliders.front().pose.translation, (Vec3d{1, 2, 3}));
+    EXPECT_NEAR(length(scene.colliders.front().pose.rotation.apply({1, 0, 0}) - Vec3d{0, 1, 0}), 0, 1e-12);
+    EXPECT_EQ(scene.colliders.front().scale, (Vec3d{2.5, 2.5, 2.5}));
+    EXPECT_EQ(scene.colliders.front().linear_velocity, (Vec3d{0.1, 0.2, 0.3}));
+    EXPECT_NEAR(scene.colliders.front().angular_velocity.y, std::numbers::pi, 1e-12);
     EXPECT_EQ(scene.cloth.column_count, 20u);
     EXPECT_EQ(scene.cloth.row_count, 30u);
     EXPECT_EQ(scene.cloth.width, 1.5);
@@ -169,7 +169,7 @@ TEST(Scene, KeepsHalfTheSpacingAwayUnlessItHasAThickness) {
 
 TEST(Scene, NeedsOnlyAModelAndTheSizeOfTheCloth) {
     const Scene scene = parse_scene(R"({"model": {"torus": {}}, "cloth": {"size": [2, 2]}})", "a.json");
-    EXPECT_EQ(std::get<TorusModel>(scene.model).major_segments, 60u);
+    EXPECT_EQ(std::get<TorusModel>(scene.colliders.front().model).major_segments, 60u);
     EXPECT_EQ(scene.cloth.column_count, 100u);
     EXPECT_EQ(scene.simulation.iteration_count, 10u);
     EXPECT_EQ(refusal(R"({"cloth": {"size": [2, 2]}})"), "a.json: the key model is missing");
@@ -329,8 +329,8 @@ TEST(Scene, ScalesTheColliderByOneNumberOrThree) {
     const auto scale_of = [](const std::string& scale) {
         return R"({"model": "a", "cloth": {"size": [1, 1]}, "collider": {"scale": )" + scale + "}}";
     };
-    EXPECT_EQ(parse_scene(scale_of("2"), "a").scale, (Vec3d{2, 2, 2}));
-    EXPECT_EQ(parse_scene(scale_of("[1, -2, 0.5]"), "a").scale, (Vec3d{1, -2, 0.5}));
+    EXPECT_EQ(parse_scene(scale_of("2"), "a").colliders.front().scale, (Vec3d{2, 2, 2}));
+    EXPECT_EQ(parse_scene(scale_of("[1, -2, 0.5]"), "a").colliders.front().scale, (Vec3d{1, -2, 0.5}));
     for (const char* wrong : {"0", "-1", "[1, 0, 1]", "[1, 1]", "[1, 1, 1e10]", "\"2\""})
         EXPECT_EQ(refusal(scale_of(wrong)).rfind("a.json: collider.scale is ", 0), 0u) << wrong;
 }
@@ -349,7 +349,9 @@ TEST(Scene, ThrowsTheClothAtItsVelocityButForThePins) {
 
 TEST(Scene, MakesTheShapesThatItNames) {
     const auto model_of = [](const std::string& model) {
-        return parse_scene(R"({"cloth": {"size": [1, 1]}, "model": )" + model + "}", "a.json").model;
+        return parse_scene(R"({"cloth": {"size": [1, 1]}, "model": )" + model + "}", "a.json")
+            .colliders.front()
+            .model;
     };
     const auto torus =
         std::get<TorusModel>(model_of(R"({"torus": {"major": 2, "minor": 0.5, "segments": [12, 8]}})"));
@@ -471,4 +473,97 @@ TEST(SceneFile, OfTheRepositoryIsSound) {
         ++count;
     }
     EXPECT_GE(count, 5u);
+}
+
+// ---- Colliders that move, deform, and are several
+
+namespace {
+
+std::string with_collider(const std::string& collider) {
+    return R"({"model": "a.obj", "cloth": {"size": [1, 1]}, "collider": )" + collider + "}";
+}
+
+} // namespace
+
+TEST(Scene, LeadsAColliderAlongKeyframes) {
+    const Scene scene = parse_scene(with_collider(R"({"scale": 2, "keyframes": [
+        {"time": -1, "position": [0, 0, 0]},
+        {"time": 1, "position": [4, 0, 0], "rotation": {"axis": [0, 0, 1], "degrees": 90}},
+        {"time": 2, "position": [4, 1, 0], "rotation": [0, 0, 0, 1]}]})"),
+                                    "a.json");
+    const SceneCollider& collider = scene.colliders.front();
+    ASSERT_EQ(collider.keyframes.size(), 3u);
+    EXPECT_EQ(collider.scale.x, 2);
+    EXPECT_EQ(collider.keyframes[1].time, 1);
+    EXPECT_EQ(collider.keyframes[2].pose.rotation.z, 1);
+    EXPECT_NEAR(length(collider.keyframes[1].pose.rotation.apply({1, 0, 0}) - Vec3d{0, 1, 0}), 0, 1e-12);
+    // It begins where the keys have it at 0 s.
+    EXPECT_NEAR(length(collider.pose.translation - Vec3d{2, 0, 0}), 0, 1e-12);
+}
+
+TEST(Scene, RefusesKeyframesThatMakeNoSense) {
+    EXPECT_EQ(
+        refusal(with_collider(R"({"keyframes": [{"time": 0}, {"time": 0}]})")),
+        "a.json: collider.keyframes[1].time is 0; it must be later than that of the keyframe before it");
+    EXPECT_EQ(refusal(with_collider(R"({"keyframes": [{"time": 0, "position": [0, 0]}]})")),
+              "a.json: collider.keyframes[0].position is [0,0]; it must be an array of 3, each a number from "
+              "-1e+09 "
+              "to 1e+09");
+    EXPECT_EQ(refusal(with_collider(R"({"keyframes": [{"position": [0, 0, 0]}]})")),
+              "a.json: the key collider.keyframes[0].time is missing");
+    EXPECT_EQ(refusal(with_collider(R"({"keyframes": [{"time": 0, "rotation": [1, 1, 0, 0]}]})")),
+              "a.json: collider.keyframes[0].rotation is [1,1,0,0]; it must be a quaternion [w, x, y, z] of "
+              "length 1");
+    EXPECT_EQ(refusal(with_collider(R"({"keyframes": []})")),
+              "a.json: collider.keyframes is []; it must be an array of objects, with at least one");
+    EXPECT_EQ(refusal(with_collider(R"({"position": [0, 0, 1], "keyframes": [{"time": 0}]})")),
+              "a.json: collider.position is [0,0,1]; it must be left out where there are keyframes");
+    EXPECT_EQ(refusal(with_collider(R"({"keyframes": [{"time": 0, "scale": 1}]})")),
+              "a.json: there is no key \"collider.keyframes[0].scale\"; the nearest is "
+              "\"collider.keyframes[0].time\"");
+}
+
+TEST(Scene, HasSeveralCollidersEachWithItsModelAndMotion) {
+    const Scene scene = parse_scene(R"({"cloth": {"size": [1, 1]}, "colliders": [
+        {"model": {"sphere": {"radius": 0.5}}, "linear_velocity": [0, 0, 1]},
+        {"model": {"box": {}}, "position": [0, 0, -3], "scale": [1, 2, 3]}]})",
+                                    "a.json");
+    ASSERT_EQ(scene.colliders.size(), 2u);
+    EXPECT_EQ(std::get<SphereModel>(scene.colliders[0].model).radius, 0.5);
+    EXPECT_EQ(scene.colliders[0].linear_velocity.z, 1);
+    EXPECT_EQ(scene.colliders[1].scale.z, 3);
+    const std::vector<ColliderMap> maps{build_map(make_mesh(SphereModel{.radius = 0.5}), scene.map),
+                                        build_map(make_mesh(BoxModel{}), scene.map)};
+    Simulation simulation = make_simulation(scene, maps);
+    simulation.step();
+    EXPECT_GT(simulation.colliders()[0].pose.translation.z, 0);
+    EXPECT_EQ(simulation.colliders()[1].pose.translation.z, -3);
+    try {
+        make_simulation(scene, maps.front());
+        ADD_FAILURE();
+    } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()),
+                  "the scene has 2 colliders, and make_simulation() got 1 maps; it takes one for each");
+    }
+    EXPECT_EQ(refusal(R"({"model": "a", "cloth": {"size": [1, 1]}, "colliders": [{"model": "b"}]})"),
+              "a.json: model is \"a\"; it must be left out where there is the key \"colliders\"");
+    EXPECT_EQ(refusal(R"({"cloth": {"size": [1, 1]}, "colliders": [{"model": "b"}, {}]})"),
+              "a.json: the key colliders[1].model is missing");
+}
+
+TEST(Scene, NamesTheCacheThatDeformsACollider) {
+    const Scene short_form = parse_scene(with_collider(R"({"cache": "walk.pc2"})"), "a.json");
+    EXPECT_EQ(short_form.colliders.front().cache->name, "walk.pc2");
+    EXPECT_EQ(short_form.colliders.front().cache->frames_per_second, 24);
+    const Scene scene =
+        parse_scene(with_collider(R"({"cache": {"file": "walk", "frames_per_second": 30}})"), "a.json");
+    EXPECT_EQ(scene.colliders.front().cache->name, "walk");
+    EXPECT_EQ(scene.colliders.front().cache->frames_per_second, 30);
+    EXPECT_EQ(refusal(with_collider(R"({"cache": {"frames_per_second": 30}})")),
+              "a.json: the key collider.cache.file is missing");
+    EXPECT_NE(refusal(R"({"model": "a", "cloth": {"size": [1, 1]}, "surface_collision": false,
+                          "collider": {"cache": "b"}})")
+                  .find("since a collider has a vertex cache"),
+              std::string::npos);
+    EXPECT_THROW(make_simulation(scene, ExactMap::build(make_box({1, 1, 1}))), Error);
 }

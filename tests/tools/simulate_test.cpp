@@ -3,6 +3,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -39,6 +44,25 @@ class SimulateCommand : public CommandLineTest {
 
 const std::string kFallingSheet = R"({"model": {"box": {"size": [1, 1, 1]}},
     "cloth": {"particles": [4, 3], "size": [1, 1], "position": [0, 0, 2]}, "frame_limit": 6})";
+
+const std::vector<std::array<float, 3>> kTableCorners{
+    {-0.5F, -0.5F, -0.1F}, {0.5F, -0.5F, -0.1F}, {0.5F, 0.5F, -0.1F}, {-0.5F, 0.5F, -0.1F},
+    {-0.5F, -0.5F, 0.1F},  {0.5F, -0.5F, 0.1F},  {0.5F, 0.5F, 0.1F},  {-0.5F, 0.5F, 0.1F}};
+const std::string kTable = R"(v -0.5 -0.5 -0.1
+v 0.5 -0.5 -0.1
+v 0.5 0.5 -0.1
+v -0.5 0.5 -0.1
+v -0.5 -0.5 0.1
+v 0.5 -0.5 0.1
+v 0.5 0.5 0.1
+v -0.5 0.5 0.1
+f 4 3 2 1
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+)";
 
 } // namespace
 
@@ -271,4 +295,90 @@ TEST_F(SimulateCommand, TakesAnOpenModelWhereSurfacesCollide) {
     EXPECT_GT(report.at("contact_gap").at("particles"), 0);
     write("particles.json", scene + "false}");
     expect_failure(1, "roof.obj", {"simulate", "particles.json", "-o", "run"});
+}
+
+// ---- Colliders that move on their own, and deform
+
+namespace {
+
+/// As PC2: a box whose top waves.
+std::string waving_box(const std::vector<std::array<float, 3>>& corners, int sample_count) {
+    std::string bytes("POINTCACHE2\0", 12);
+    const auto add = [&](const auto& value) {
+        bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    add(std::int32_t{1});
+    add(static_cast<std::int32_t>(corners.size()));
+    add(0.0F);
+    add(1.0F);
+    add(std::int32_t{sample_count});
+    for (int i = 0; i < sample_count; ++i)
+        for (const auto& [x, y, z] : corners) {
+            add(x);
+            add(y);
+            add(z > 0 ? z + 0.1F * std::sin(0.5F * static_cast<float>(i) + 2 * x) - 0.1F * std::sin(2 * x)
+                      : z);
+        }
+    return bytes;
+}
+
+} // namespace
+
+TEST_F(SimulateCommand, LetsEachColliderMoveOnItsOwnAndSavesWhereItStands) {
+    write("scene.json", R"({"cloth": {"particles": [20, 20], "size": [1, 1], "position": [0, 0, 0.3]},
+        "colliders": [
+            {"model": {"box": {"size": [3, 3, 0.1]}}, "position": [0, 0, -0.4]},
+            {"model": {"sphere": {"radius": 0.2, "segments": [16, 8]}}, "linear_velocity": [0, 0, 0.1]},
+            {"model": {"box": {"size": [0.1, 0.8, 0.1]}}, "keyframes": [
+                {"time": 0, "position": [-1, 0, 0]},
+                {"time": 0.5, "position": [0.3, 0, 0.05], "rotation": {"axis": [0, 0, 1], "degrees": 60}}]}],
+        "frame_limit": 200})");
+    const nlohmann::json report = simulate("scene.json");
+    EXPECT_EQ(report.at("lost_count"), 0);
+    EXPECT_EQ(report.at("squeezed"), 0);
+    EXPECT_EQ(report.at("intersecting_pairs"), 0);
+    EXPECT_EQ(report.at("self_intersecting_pairs"), 0);
+    EXPECT_EQ(report.at("inside_at_rest"), 0);
+    const nlohmann::json& colliders = report.at("colliders");
+    ASSERT_EQ(colliders.size(), 3u);
+    EXPECT_EQ(report.at("collider").at("mesh"), "collider.obj");
+    EXPECT_EQ(colliders[2].at("mesh"), "collider_2.obj");
+    EXPECT_EQ(colliders[0].at("poses").size(), 1u);
+    EXPECT_EQ(colliders[1].at("poses").size(), 201u);
+    // From its last key on it rests.
+    EXPECT_EQ(colliders[2].at("poses").size(), 121u);
+    EXPECT_NEAR(colliders[2].at("poses").back().at("translation")[0].get<double>(), 0.3, 1e-9);
+    EXPECT_TRUE(fs::exists(path("run/collider_1.obj")));
+    // Pictures show all of them.
+    expect_success(
+        {"render", "moment", "run", "-o", "end.png", "--width", "40", "--height", "30", "--samples", "1"});
+}
+
+TEST_F(SimulateCommand, DeformsAColliderByACacheAndSavesIt) {
+    write("box.obj", kTable);
+    write("wave.pc2", waving_box(kTableCorners, 20));
+    const std::string scene =
+        R"({"model": "box.obj", "collider": {"cache": {"file": "wave.pc2", "frames_per_second": 24}},
+        "cloth": {"particles": [20, 20], "size": [0.9, 0.9], "position": [0, 0, 0.2]}, "frame_limit": 200})";
+    write("scene.json", scene);
+    const nlohmann::json report = simulate("scene.json", {"--every", "10"});
+    EXPECT_EQ(report.at("lost_count"), 0);
+    EXPECT_EQ(report.at("squeezed"), 0);
+    EXPECT_EQ(report.at("intersecting_pairs"), 0);
+    EXPECT_EQ(report.at("inside_at_rest"), 0);
+    EXPECT_GT(report.at("contact_gap").at("particles"), 50);
+    EXPECT_EQ(report.at("colliders")[0].at("cache"), "collider.pc2");
+    EXPECT_EQ(fs::file_size(path("run/collider.pc2")), 32 + 21 * kTableCorners.size() * 12);
+    expect_success(
+        {"render", "moment", "run", "-o", "end.png", "--width", "40", "--height", "30", "--samples", "1"});
+
+    expect_failure(2, "cannot show a collider that deforms",
+                   {"simulate", "scene.json", "--html", "page.html"});
+    write("wave.pc2", waving_box({{0, 0, 0}, {1, 0, 0}}, 20));
+    expect_failure(1, "wave.pc2: has 2 points, but the model has 8 vertices",
+                   {"simulate", "scene.json", "-o", "other"});
+    write("scene.json",
+          R"({"model": "box.obj", "collider": {"cache": "none.pc2"}, "cloth": {"size": [1, 1]}})");
+    expect_failure(1, "scene.json: the vertex cache none.pc2 is in none of the folders",
+                   {"simulate", "scene.json", "-o", "other"});
 }

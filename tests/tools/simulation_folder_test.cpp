@@ -88,7 +88,7 @@ class SimulationFolderTest : public test::TemporaryFolderTest {
         const SimulationFolder simulation(folder());
         for (std::size_t sample = 0; sample < simulation.sample_count(); ++sample) {
             simulation.cloth(sample);
-            simulation.collider(sample);
+            simulation.colliders(sample);
         }
     }
     void expect_error(ErrorCode code, const std::string& words) const {
@@ -115,10 +115,10 @@ TEST_F(SimulationFolderTest, GivesTheClothOfEverySampleWithTheFacesOfItsRestMesh
 TEST_F(SimulationFolderTest, PosesTheColliderAsItStoodLast) {
     const SimulationFolder simulation(folder());
     const TriangleMesh box = make_box({2, 2, 2});
-    EXPECT_EQ(simulation.collider(0).vertices, box.vertices);
-    EXPECT_EQ(simulation.collider(3).vertices, box.vertices);
+    EXPECT_EQ(simulation.colliders(0).vertices, box.vertices);
+    EXPECT_EQ(simulation.colliders(3).vertices, box.vertices);
     for (std::size_t sample : {4U, 9U}) {
-        const TriangleMesh moved = simulation.collider(sample); // half a turn about z, then along x
+        const TriangleMesh moved = simulation.colliders(sample); // half a turn about z, then along x
         for (std::size_t v = 0; v < box.vertices.size(); ++v) {
             const Vec3f& point = box.vertices[v];
             EXPECT_NEAR(length(moved.vertices[v] - Vec3f{10 - point.x, -point.y, point.z}), 0, 1e-6);

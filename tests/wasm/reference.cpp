@@ -154,7 +154,8 @@ json run_simulation(const char* part) {
     json description = json::parse(kScene);
     description.merge_patch(json::parse(part));
     const Scene scene = parse_scene(description.dump(), "scene");
-    const AnyMap map = build_map(make_mesh(std::get<TorusModel>(scene.model)), scene.map, 1);
+    const AnyMap map =
+        build_map(make_mesh(std::get<TorusModel>(scene.colliders.front().model)), scene.map, 1);
     Simulation simulation = make_simulation(scene, map);
     for (std::uint32_t frame = 0; frame < kFrameCount; ++frame) simulation.step();
     return {{"scene", description},

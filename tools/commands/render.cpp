@@ -208,7 +208,7 @@ void mark_intersections(const MeshAndEdges& cloth, RenderedObject& drawn_collide
 std::array<RenderedObject, 2> objects_at(const SimulationFolder& folder, std::size_t sample) {
     std::array<RenderedObject, 2> objects;
     const MeshAndEdges cloth = folder.cloth(sample);
-    objects[0].mesh = folder.collider(sample);
+    objects[0].mesh = folder.colliders(sample);
     objects[1].mesh = with_tubes(cloth);
     objects[1].colour = palette::kCloth;
     objects[1].back_colour = palette::kClothBack;

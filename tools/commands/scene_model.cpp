@@ -50,8 +50,8 @@ void require_closed(const TriangleMesh& mesh, const TriangleMesh& as_read, const
 
 } // namespace
 
-std::string model_name(const Scene& scene) {
-    return std::visit(NameOfModel{}, scene.model);
+std::string model_name(const SceneModel& model) {
+    return std::visit(NameOfModel{}, model);
 }
 
 std::string notice_beside(const fs::path& model_file) {
@@ -62,24 +62,38 @@ std::string notice_beside(const fs::path& model_file) {
     return {reinterpret_cast<const char*>(notice.bytes().data()), notice.bytes().size()};
 }
 
+namespace {
+
+/// Where files of a scene are looked for, after those that the caller names.
+std::vector<fs::path> with_folders_of(const fs::path& scene_path, std::vector<fs::path> folders) {
+    folders.push_back(scene_path.parent_path().empty() ? "." : scene_path.parent_path());
+    folders.push_back(scene_path.parent_path() / ".." / "models");
+    folders.emplace_back("models");
+    return folders;
+}
+
+} // namespace
+
 std::optional<fs::path> model_file(const SceneModel& model, const fs::path& scene_path,
                                    std::vector<fs::path> folders) {
     const auto* file = std::get_if<ModelFile>(&model);
     if (file == nullptr) return std::nullopt;
-    folders.push_back(scene_path.parent_path().empty() ? "." : scene_path.parent_path());
-    folders.push_back(scene_path.parent_path() / ".." / "models");
-    folders.emplace_back("models");
     return naming_file(scene_path.string(), ErrorCode::Unreadable,
-                       [&] { return find_model(*file, folders); });
+                       [&] { return find_model(*file, with_folders_of(scene_path, std::move(folders))); });
 }
 
-RepairedMesh load_model(const Scene& scene, const fs::path& scene_path, const std::optional<fs::path>& file) {
-    const TriangleMesh as_read = std::visit(MeshOfModel{scene_path, file}, scene.model);
-    RepairedMesh model = repair(as_read, scene.repair);
-    // Surfaces are kept apart whether they have an inside or not.
-    if (!scene.simulation.surface_collision)
-        require_closed(model.mesh, as_read, scene_path.string() + (file ? ": " + file->string() : ""));
-    return model;
+fs::path cache_path(const CacheFile& cache, const fs::path& scene_path, std::vector<fs::path> folders) {
+    return naming_file(scene_path.string(), ErrorCode::Unreadable,
+                       [&] { return find_cache(cache, with_folders_of(scene_path, std::move(folders))); });
+}
+
+TriangleMesh load_model(const SceneCollider& collider, const fs::path& scene_path,
+                        const std::optional<fs::path>& file, bool may_be_open) {
+    const TriangleMesh as_read = std::visit(MeshOfModel{scene_path, file}, collider.model);
+    TriangleMesh mesh = repair(as_read, collider.repair).mesh;
+    if (!may_be_open)
+        require_closed(mesh, as_read, scene_path.string() + (file ? ": " + file->string() : ""));
+    return mesh;
 }
 
 ClothMeshes load_cloth(const Scene& scene, const fs::path& scene_path, const std::vector<fs::path>& folders) {

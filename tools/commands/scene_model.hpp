@@ -15,11 +15,19 @@ std::optional<std::filesystem::path> model_file(const echinus::SceneModel& model
                                                 const std::filesystem::path& scene_path,
                                                 std::vector<std::filesystem::path> folders);
 
-/// The mesh of a scene's model, read from its file or generated, and repaired by the scene's options.
+/// The path of a collider's cache, which is looked up in the same way.
+/// @throws echinus::Error Unreadable
+std::filesystem::path cache_path(const echinus::CacheFile& cache, const std::filesystem::path& scene_path,
+                                 std::vector<std::filesystem::path> folders);
+
+/// The mesh of a collider's model, read from its file or generated, and repaired by the scene's options.
 /// @param file  what model_file() found
+/// @param may_be_open  surfaces are kept apart whether they have an inside or not
 /// @throws echinus::Error as read_scene's parts do, and InvalidMesh when the mesh is not closed in the end
-echinus::RepairedMesh load_model(const echinus::Scene& scene, const std::filesystem::path& scene_path,
-                                 const std::optional<std::filesystem::path>& file);
+/// and has to be
+echinus::TriangleMesh load_model(const echinus::SceneCollider& collider,
+                                 const std::filesystem::path& scene_path,
+                                 const std::optional<std::filesystem::path>& file, bool may_be_open);
 
 /// Reads the meshes of a scene's cloth that come from files.
 /// @throws echinus::Error as read_mesh() does
@@ -27,7 +35,7 @@ echinus::ClothMeshes load_cloth(const echinus::Scene& scene, const std::filesyst
                                 const std::vector<std::filesystem::path>& folders);
 
 /// The name of the model's file without folders, or of the generated shape.
-std::string model_name(const echinus::Scene& scene);
+std::string model_name(const echinus::SceneModel& model);
 
 /// The file NOTICE in the model's folder, on the source of the models, to accompany published pictures; empty
 /// where there is none.

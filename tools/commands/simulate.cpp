@@ -1,11 +1,12 @@
 #include "commands/commands.hpp"
+#include "commands/loaded_colliders.hpp"
 #include "commands/scene_model.hpp"
 #include "commands/simulation_result.hpp"
 #include "input.hpp"
+#include "mesh_io/point_cache.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "recording/player_page.hpp"
-#include "recording/point_cache.hpp"
 #include "recording/threads.hpp"
 
 #include <echinus/mesh_io.hpp>
@@ -16,6 +17,9 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 using namespace echinus;
@@ -40,15 +44,31 @@ struct SimulateArguments {
     bool json = false;
 };
 
-/// The output folder, with the positions of the cloth in every saved frame: one point cache, or one OBJ each.
+/// In the folder, by the collider's number.
+std::string collider_file(std::size_t number, const char* extension = "obj") {
+    return number == 0 ? fmt::format("collider.{}", extension)
+                       : fmt::format("collider_{}.{}", number, extension);
+}
+
+/// The output folder, with the positions of the cloth in every saved frame: one point cache, or one OBJ each;
+/// and with point caches of the colliders that deform.
 class ResultFolder {
   public:
     ResultFolder(const fs::path& target, bool obj) : folder_(target), obj_(obj) {}
 
-    void begin(const Deformable& cloth, const TriangleMesh& collider, std::uint32_t stride) {
+    /// @param colliders  must outlive this
+    void begin(const Deformable& cloth, const LoadedColliders& colliders, std::uint32_t stride) {
+        colliders_ = &colliders;
         threads_ = threads_of(cloth);
         write_mesh_and_edges(folder_.path_of("cloth.obj"), drawn(cloth));
-        write_mesh(folder_.path_of("collider.obj"), collider);
+        for (std::size_t c = 0; c < colliders.maps.size(); ++c) {
+            const TriangleMesh mesh = colliders.mesh_at(c, 0);
+            write_mesh(folder_.path_of(collider_file(c)), mesh);
+            collider_caches_.push_back(colliders.deforms(c) ? std::make_unique<PointCacheWriter>(
+                                                                  folder_.path_of(collider_file(c, "pc2")),
+                                                                  mesh.vertices.size(), stride)
+                                                            : nullptr);
+        }
         if (obj_) {
             fs::create_directory(folder_.path_of(kFramesName));
         } else {
@@ -56,6 +76,9 @@ class ResultFolder {
         }
     }
     void add(const Simulation& simulation) {
+        const double seconds = simulation.frame() * simulation.options().time_step;
+        for (std::size_t c = 0; c < collider_caches_.size(); ++c)
+            if (collider_caches_[c]) collider_caches_[c]->add(colliders_->mesh_at(c, seconds).vertices);
         if (cache_) return cache_->add(simulation.positions());
         const Deformable& cloth = simulation.deformable();
         write_mesh_and_edges(
@@ -63,6 +86,8 @@ class ResultFolder {
     }
     void commit(const Json& report) {
         if (cache_) cache_->commit();
+        for (auto& cache : collider_caches_)
+            if (cache) cache->commit();
         write_file(folder_.path_of("report.json"), report.indented());
         folder_.commit();
         folder_.remove_old(obj_ ? kCacheName : kFramesName);
@@ -75,6 +100,8 @@ class ResultFolder {
     bool obj_;
     std::vector<std::array<std::uint32_t, 2>> threads_;
     std::optional<PointCacheWriter> cache_;
+    const LoadedColliders* colliders_ = nullptr;
+    std::vector<std::unique_ptr<PointCacheWriter>> collider_caches_; ///< null where it does not deform
 };
 
 /// The output page. Constructed before the simulation, so that a missing player fails at once.
@@ -99,16 +126,22 @@ struct Results {
 };
 
 struct Course {
-    std::vector<SavedPose> poses;
-    std::uint64_t most_truncated = 0; ///< vertices in one frame
+    std::vector<std::vector<SavedPose>> poses; ///< by collider
+    std::uint64_t most_truncated = 0;          ///< vertices in one frame
 };
+
+bool has_moved(const RigidTransform& from, const RigidTransform& to) {
+    const Rotation &a = from.rotation, &b = to.rotation;
+    return from.translation != to.translation || a.w != b.w || a.x != b.x || a.y != b.y || a.z != b.z;
+}
 
 /// Steps until the cloth rests or the frame limit is reached; stops only after a frame that was saved, so
 /// that the last sample is the end.
 Course run(Simulation& simulation, Results& results, std::uint32_t frame_limit, std::uint32_t stride) {
     ProgressBar progress("simulating");
-    const Collider& collider = simulation.colliders().front();
-    Course course{.poses = {{0, collider.pose}}};
+    const std::vector<Collider>& colliders = simulation.colliders();
+    Course course;
+    for (const Collider& collider : colliders) course.poses.push_back({{0, collider.pose}});
     results.watch(simulation, stride);
     while (simulation.frame() < frame_limit && !simulation.at_rest()) {
         for (std::uint32_t i = 0; i < stride; ++i) {
@@ -118,30 +151,13 @@ Course run(Simulation& simulation, Results& results, std::uint32_t frame_limit, 
                 std::max(course.most_truncated, simulation.profile().truncated_count - truncated_before);
             results.watch(simulation, stride);
         }
-        if (collider.moves()) course.poses.push_back({simulation.frame(), collider.pose});
+        for (std::size_t c = 0; c < colliders.size(); ++c)
+            if (has_moved(course.poses[c].back().pose, colliders[c].pose))
+                course.poses[c].push_back({simulation.frame(), colliders[c].pose});
         progress(static_cast<double>(simulation.frame()) / frame_limit);
     }
     if (results.page) results.page->recording->finish(simulation);
     return course;
-}
-
-/// Reports errors in the options that a key of the scene gives as errors of the scene.
-template <typename Make>
-auto made_as_scene_says(const SimulateArguments& arguments, const char* key, const Make& make) {
-    try {
-        return make();
-    } catch (const Error& error) {
-        if (error.code() == ErrorCode::InvalidOptions)
-            throw Error(ErrorCode::InvalidScene,
-                        arguments.scene.string() + ": \"" + key + "\": " + error.what());
-        throw Error(error.code(), arguments.scene.string() + ": " + error.what());
-    }
-}
-
-/// The exact map of the model, which judges the end and the frames of a page: that of the scene, or its own.
-ExactMap judge_of(const AnyMap& map, const TriangleMesh& mesh, unsigned thread_count) {
-    if (const auto* exact = std::get_if<ExactMap>(&map)) return *exact;
-    return ExactMap::build(mesh, {.thread_count = thread_count});
 }
 
 void require_target(const SimulateArguments& arguments) {
@@ -167,8 +183,8 @@ void open(Results& results, const SimulateArguments& arguments, const Scene& sce
     if (!arguments.target.empty()) results.folder.emplace(arguments.target, arguments.obj);
     if (!arguments.page.empty()) {
         const auto make = [&] { return make_cloth(scene, cloth); };
-        require_playable(made_as_scene_says(arguments, "cloth", make).particle_count(), scene.frame_limit,
-                         page_stride(arguments, scene));
+        require_playable(made_as_scene_says(arguments.scene, "cloth", make).particle_count(),
+                         scene.frame_limit, page_stride(arguments, scene));
         results.page.emplace(arguments.page, arguments.player);
     }
 }
@@ -186,11 +202,31 @@ void choose_collision(const SimulateArguments& arguments, Scene& scene) {
         throw WrongUse("--self", "needs contact of surfaces with the model: --surfaces on");
 }
 
+std::vector<ColliderResult> results_of(const LoadedColliders& colliders, Course& course) {
+    std::vector<ColliderResult> results;
+    for (std::size_t c = 0; c < colliders.maps.size(); ++c)
+        results.push_back({.mesh_name = collider_file(c),
+                           .cache_name = colliders.deforms(c) ? collider_file(c, "pc2") : "",
+                           .model = inspect(colliders.judged[c].mesh),
+                           .radius = inspect(colliders.mesh_at(c, 0)).bounding_sphere.radius,
+                           .poses = std::move(course.poses[c])});
+    return results;
+}
+
+/// @throws WrongUse
+void require_playable_colliders(const SimulateArguments& arguments, const Scene& scene) {
+    for (const SceneCollider& collider : scene.colliders)
+        if (collider.cache && !arguments.page.empty())
+            throw WrongUse("--html", "cannot show a collider that deforms, as the cache " +
+                                         collider.cache->name + " makes it do; write a folder with -o DIR");
+}
+
 void simulate(const SimulateArguments& arguments) {
     require_target(arguments);
     Scene scene = read_scene(arguments.scene);
     if (arguments.frame_limit) scene.frame_limit = *arguments.frame_limit;
     choose_collision(arguments, scene);
+    require_playable_colliders(arguments, scene);
     // A page takes its frames from all, and so its last is the end; a folder's last must be one that is
     // saved.
     const std::uint32_t stride = arguments.target.empty() ? 1 : arguments.stride.value_or(1);
@@ -198,38 +234,39 @@ void simulate(const SimulateArguments& arguments) {
     Results results;
     open(results, arguments, scene, cloth);
 
-    const std::optional<fs::path> file = model_file(scene.model, arguments.scene, arguments.model_folders);
-    if (file) require_another_file(*file, arguments.page);
-    const TriangleMesh mesh = load_model(scene, arguments.scene, file).mesh;
-    const AnyMap map = made_as_scene_says(arguments, "map",
-                                          [&] { return build_map(mesh, scene.map, arguments.thread_count); });
-    const ExactMap judging_map = judge_of(map, mesh, arguments.thread_count);
-    Simulation simulation =
-        made_as_scene_says(arguments, "cloth", [&] { return make_simulation(scene, map, cloth); });
-    const TriangleMesh collider_mesh = scaled(mesh, scene.scale);
-    if (results.folder) results.folder->begin(simulation.deformable(), collider_mesh, stride);
-    if (results.page) results.page->recording.emplace(judging_map, page_stride(arguments, scene));
+    const LoadedColliders colliders =
+        load_colliders(scene, arguments.scene, arguments.model_folders, arguments.thread_count);
+    for (const fs::path& file : colliders.files) require_another_file(file, arguments.page);
+    Simulation simulation = made_as_scene_says(arguments.scene, "cloth", [&] {
+        return make_simulation(scene, colliders.maps, cloth, colliders.caches);
+    });
+    if (results.folder) results.folder->begin(simulation.deformable(), colliders, stride);
+    std::vector<ExactMap> judges;
+    for (const JudgedModel& model : colliders.judged) judges.push_back(model.map);
+    if (results.page) results.page->recording.emplace(std::move(judges), page_stride(arguments, scene));
     Course course = naming_file(arguments.scene.string(), ErrorCode::Diverged,
                                 [&] { return run(simulation, results, scene.frame_limit, stride); });
 
     const std::string scene_name = arguments.scene.string();
-    const MeshReport model_report = inspect(mesh);
-    const SimulationResult result{.scene_name = scene_name,
-                                  .simulation = simulation,
-                                  .model = model_report,
-                                  .collider_radius = inspect(collider_mesh).bounding_sphere.radius,
-                                  .verdict = judge(simulation, mesh, judging_map, arguments.thread_count),
-                                  .poses = std::move(course.poses),
-                                  .most_truncated = course.most_truncated};
+    const double seconds = simulation.frame() * simulation.options().time_step;
+    const SimulationResult result{
+        .scene_name = scene_name,
+        .simulation = simulation,
+        .colliders = results_of(colliders, course),
+        .verdict =
+            judge(simulation, colliders.judged_at(seconds, arguments.thread_count), arguments.thread_count),
+        .most_truncated = course.most_truncated};
     const Json report = to_json(result);
+    std::vector<TriangleMesh> placed;
+    for (std::size_t c = 0; c < colliders.maps.size(); ++c) placed.push_back(colliders.mesh_at(c, 0));
     if (results.page)
         write_player_page(results.page->output, results.page->player,
                           {.result = result,
                            .recording = *results.page->recording,
                            .scene_name = arguments.scene.filename().string(),
-                           .model_name = model_name(scene),
-                           .notice = file ? notice_beside(*file) : "",
-                           .collider = collider_mesh});
+                           .model_name = colliders.names,
+                           .notice = colliders.notice,
+                           .colliders = placed});
     if (results.folder) results.folder->commit(report);
     if (arguments.json)
         print(report.indented());

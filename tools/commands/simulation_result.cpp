@@ -88,6 +88,29 @@ Json to_json(const ContactGap& gap) {
     return {{"particles", gap.particle_count}, {"mean", gap.mean}, {"least", gap.least}};
 }
 
+Json to_json(const ColliderResult& collider) {
+    Json result{{"mesh", collider.mesh_name},
+                {"faces", collider.model.face_count},
+                {"vertices", collider.model.vertex_count},
+                {"radius", collider.radius},
+                {"poses", to_json(collider.poses)}};
+    if (!collider.cache_name.empty()) result.add("cache", collider.cache_name);
+    return result;
+}
+
+Json to_json(const std::vector<ColliderResult>& colliders) {
+    Json list = Json::array();
+    for (const ColliderResult& collider : colliders) list.push_back(to_json(collider));
+    return list;
+}
+
+/// R of the largest.
+double radius_of(const std::vector<ColliderResult>& colliders) {
+    double radius = 0;
+    for (const ColliderResult& collider : colliders) radius = std::max(radius, collider.radius);
+    return radius;
+}
+
 std::string percent(double share) {
     return fmt::format("{:.2f} %", share * 100);
 }
@@ -100,7 +123,8 @@ Json to_json(const SimulationResult& result) {
     const Deformable& deformable = simulation.deformable();
     const Rates rates = rates_of(simulation);
     const Strain strain = strain_of(deformable);
-    const double radius = result.collider_radius;
+    const double radius = radius_of(result.colliders);
+    const ColliderResult& first = result.colliders.front();
     const double thickness = options.thickness.value();
     Json rest_frame = nullptr;
     if (simulation.at_rest()) rest_frame = simulation.frame();
@@ -142,8 +166,11 @@ Json to_json(const SimulationResult& result) {
         {"thickness_in_radii", thickness / radius},
         {"gravity", to_json(options.gravity)},
         {"model",
-         {{"faces", result.model.face_count}, {"vertices", result.model.vertex_count}, {"radius", radius}}},
-        {"collider", {{"mesh", "collider.obj"}, {"poses", to_json(result.poses)}}},
+         {{"faces", first.model.face_count},
+          {"vertices", first.model.vertex_count},
+          {"radius", first.radius}}},
+        {"collider", {{"mesh", first.mesh_name}, {"poses", to_json(first.poses)}}},
+        {"colliders", to_json(result.colliders)},
         {"state_hash", fmt::format("{:016x}", simulation.state_hash())},
     };
 }
@@ -153,6 +180,7 @@ std::string to_text(const SimulationResult& result) {
     const Rates rates = rates_of(simulation);
     const Strain strain = strain_of(simulation.deformable());
     const std::size_t particle_count = simulation.deformable().particle_count();
+    const double radius = radius_of(result.colliders);
     std::string text = result.scene_name + "\n";
     const auto add = [&](const char* label, const std::string& value) {
         text += fmt::format("  {:<22}{}\n", label, value);
@@ -178,15 +206,16 @@ std::string to_text(const SimulationResult& result) {
     add("particles inside", fmt::format("{} ({}), by winding number", result.verdict.inside_count,
                                         percent(static_cast<double>(result.verdict.inside_count) /
                                                 static_cast<double>(particle_count))));
-    add("deepest", fmt::format("{:.5f} = {:.5f} R", result.verdict.deepest,
-                               result.verdict.deepest / result.collider_radius));
+    add("deepest", fmt::format("{:.5f} = {:.5f} R", result.verdict.deepest, result.verdict.deepest / radius));
     const double thickness = simulation.options().thickness.value();
-    add("thickness", fmt::format("{:.5f} = {:.5f} R", thickness, thickness / result.collider_radius));
+    add("thickness", fmt::format("{:.5f} = {:.5f} R", thickness, thickness / radius));
     if (const ContactGap& gap = result.verdict.gap; gap.particle_count != 0)
         add("contact gap", fmt::format("{:.3f} thicknesses on average, {:.3f} at least; {} particles",
                                        gap.mean / thickness, gap.least / thickness, gap.particle_count));
-    add("faces that intersect", fmt::format("{} pairs with the model, {} of the cloth's own",
-                                            result.verdict.model_pair_count, result.verdict.own_pair_count));
+    add("faces that intersect",
+        fmt::format("{} pairs with {}, {} of the cloth's own", result.verdict.model_pair_count,
+                    result.colliders.size() == 1 ? "the model" : "the models",
+                    result.verdict.own_pair_count));
     add("strain", percent(strain.mean) + " mean, " + percent(strain.percentile_99) + " 99th percentile, " +
                       percent(strain.largest) + " largest");
     add("state hash", fmt::format("{:016x}", simulation.state_hash()));

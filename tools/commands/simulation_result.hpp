@@ -10,20 +10,27 @@
 #include <string>
 #include <vector>
 
-/// Where the collider stood in a frame that was saved.
+/// Where a collider stood in a frame that was saved.
 struct SavedPose {
     std::uint32_t frame;
     echinus::RigidTransform pose;
+};
+
+/// What is said about a collider.
+struct ColliderResult {
+    std::string mesh_name;        ///< of the file in the folder
+    std::string cache_name;       ///< of that with its vertices over time; empty where it does not deform
+    echinus::MeshReport model;    ///< as read
+    double radius;                ///< R in the world
+    std::vector<SavedPose> poses; ///< one when it stands still
 };
 
 /// What `simulate` reports when it is done.
 struct SimulationResult {
     const std::string& scene_name;
     const echinus::Simulation& simulation;
-    const echinus::MeshReport& model;
-    double collider_radius; ///< R of the collider in the world
+    std::vector<ColliderResult> colliders; ///< at least one
     Verdict verdict;
-    std::vector<SavedPose> poses;     ///< one when the collider stands still
     std::uint64_t most_truncated = 0; ///< vertices in one frame
 };
 

@@ -38,17 +38,10 @@ TriangleMesh placed(TriangleMesh mesh, const RigidTransform& pose) {
     return mesh;
 }
 
-void judge_faces(const Deformable& cloth, const TriangleMesh& model, Verdict& verdict) {
-    const TriangleMesh surface{cloth.positions, surface_of(cloth)};
-    if (surface.faces.empty()) return;
-    verdict.model_pair_count = intersecting_pairs(surface, model).size();
-    verdict.own_pair_count = self_intersecting_pairs(surface).size();
-}
-
-ContactGap gap_of(std::span<const Vec3f> positions, const Collider& collider, double thickness) {
+/// Adds the particles near a collider to the gap; its mean is their sum until all colliders are done.
+void add_gap(std::span<const Vec3f> positions, const Collider& collider, double thickness, ContactGap& gap) {
     std::vector<Contact> contacts(positions.size());
     contacts_batch(collider, positions, static_cast<float>(2 * thickness), contacts);
-    ContactGap gap{.least = std::numeric_limits<double>::infinity()};
     for (const Contact& contact : contacts) {
         if (!contact.found() || contact.inside) continue;
         const double distance = -double{contact.depth};
@@ -56,8 +49,6 @@ ContactGap gap_of(std::span<const Vec3f> positions, const Collider& collider, do
         gap.mean += distance;
         gap.least = std::min(gap.least, distance);
     }
-    if (gap.particle_count != 0) gap.mean /= static_cast<double>(gap.particle_count);
-    return gap;
 }
 
 } // namespace
@@ -69,16 +60,23 @@ TriangleMesh scaled(TriangleMesh mesh, const Vec3d& scale) {
     return mesh;
 }
 
-Verdict judge(const Simulation& simulation, const TriangleMesh& mesh, const ExactMap& exact_map,
-              unsigned thread_count) {
-    const Collider& collider = simulation.colliders().front();
-    const TriangleMesh solid = scaled(mesh, collider.scale);
-    const Collider exact{.map = exact_map, .pose = collider.pose, .scale = collider.scale};
+Verdict judge(const Simulation& simulation, std::span<const JudgedModel> models, unsigned thread_count) {
+    const TriangleMesh surface{simulation.deformable().positions, surface_of(simulation.deformable())};
     Verdict verdict;
-    // An open mesh has no inside.
-    if (exact_map.view().border.empty())
-        judge_particles(simulation.positions(), solid, collider.pose, thread_count, verdict);
-    judge_faces(simulation.deformable(), placed(solid, collider.pose), verdict);
-    verdict.gap = gap_of(simulation.positions(), exact, simulation.options().thickness.value());
+    verdict.gap.least = std::numeric_limits<double>::infinity();
+    for (std::size_t c = 0; c < models.size(); ++c) {
+        const Collider& collider = simulation.colliders()[c];
+        const TriangleMesh solid = scaled(models[c].mesh, collider.scale);
+        // An open mesh has no inside.
+        if (models[c].map.view().border.empty())
+            judge_particles(simulation.positions(), solid, collider.pose, thread_count, verdict);
+        if (!surface.faces.empty())
+            verdict.model_pair_count += intersecting_pairs(surface, placed(solid, collider.pose)).size();
+        add_gap(simulation.positions(),
+                {.map = models[c].map, .pose = collider.pose, .scale = collider.scale},
+                simulation.options().thickness.value(), verdict.gap);
+    }
+    if (!surface.faces.empty()) verdict.own_pair_count = self_intersecting_pairs(surface).size();
+    if (verdict.gap.particle_count != 0) verdict.gap.mean /= static_cast<double>(verdict.gap.particle_count);
     return verdict;
 }

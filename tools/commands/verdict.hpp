@@ -6,6 +6,7 @@
 #include <echinus/simulation.hpp>
 
 #include <cstddef>
+#include <span>
 
 /// Distance of the particles in contact from the model's surface: those outside and nearer than two
 /// thicknesses.
@@ -16,7 +17,7 @@ struct ContactGap {
 
 /// How a cloth lies on a model.
 struct Verdict {
-    std::size_t inside_count = 0;     ///< particles inside the model
+    std::size_t inside_count = 0;     ///< particles inside a model
     double deepest = 0;               ///< distance of the deepest of them from the surface, units
     std::size_t model_pair_count = 0; ///< pairs of a cloth face and a model face that intersect
     std::size_t own_pair_count = 0;   ///< pairs of cloth faces that intersect beyond what they share
@@ -27,11 +28,16 @@ struct Verdict {
 /// inside stays inside.
 echinus::TriangleMesh scaled(echinus::TriangleMesh mesh, const echinus::Vec3d& scale);
 
-/// Judges the cloth as it lies now by the first collider's mesh, whatever map the simulation uses: every
-/// particle by its winding number and its distance from the surface, both brute force over all faces; pairs
-/// of faces exactly, with threads as faces without area; gaps by the exact map.
-/// @param mesh          of the collider, neither scaled nor moved
-/// @param exact_map     of that mesh
+/// What judges a collider, whatever map the simulation uses.
+struct JudgedModel {
+    echinus::TriangleMesh mesh; ///< neither scaled nor moved
+    echinus::ExactMap map;      ///< of that mesh
+};
+
+/// Judges the cloth as it lies now by the colliders' meshes: every particle by its winding number and its
+/// distance from the surface, both brute force over all faces; pairs of faces exactly, with threads as faces
+/// without area; gaps by the exact maps. A particle inside two colliders counts twice.
+/// @param models        [collider_count]
 /// @param thread_count  0: all cores
-Verdict judge(const echinus::Simulation& simulation, const echinus::TriangleMesh& mesh,
-              const echinus::ExactMap& exact_map, unsigned thread_count);
+Verdict judge(const echinus::Simulation& simulation, std::span<const JudgedModel> models,
+              unsigned thread_count);

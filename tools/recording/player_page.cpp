@@ -8,7 +8,9 @@
 
 #include <echinus/error.hpp>
 
+#include <algorithm>
 #include <bit>
+#include <vector>
 
 using namespace echinus;
 namespace fs = std::filesystem;
@@ -44,7 +46,8 @@ std::string read_player(const fs::path& path) {
 
 // ---- Its contents ----
 
-constexpr int kFormat = 1;
+/// Of a recording with one collider, and with several.
+constexpr int kFormat = 1, kFormatOfSeveral = 2;
 static_assert(std::endian::native == std::endian::little, "shapes are written as they lie in memory");
 
 Json to_json(const Vec3d& v) {
@@ -63,36 +66,70 @@ Json figures_of(const SimulationResult& result) {
                                    "ns_per_query", "map_kind", "thickness", "gravity"});
 }
 
+Json to_json(const std::vector<RigidTransform>& poses) {
+    Json list = Json::array();
+    for (const RigidTransform& pose : poses) list.push_back(to_json(pose));
+    return list;
+}
+
 Json frames_of(const Recording& recording, const Lattice& lattice, bool moves) {
     Json frames = Json::array();
     for (const RecordedFrame& frame : recording.frames()) {
         Json entry{
             {"number", frame.number}, {"inside", frame.inside_count}, {"origin", origin_of(frame, lattice)}};
-        if (moves || &frame == &recording.frames().front()) entry.add("pose", to_json(frame.pose));
+        if (moves || &frame == &recording.frames().front()) {
+            if (frame.poses.size() == 1)
+                entry.add("pose", to_json(frame.poses.front()));
+            else
+                entry.add("poses", to_json(frame.poses));
+        }
         frames.push_back(std::move(entry));
     }
     return frames;
 }
 
+/// All colliders, each where it starts.
+Sphere sphere_of(const PlayedSimulation& played) {
+    if (played.colliders.size() == 1) return inspect(played.colliders.front()).bounding_sphere;
+    TriangleMesh all;
+    for (std::size_t c = 0; c < played.colliders.size(); ++c)
+        for (const Vec3f& vertex : played.colliders[c].vertices)
+            all.vertices.emplace_back(played.recording.frames().front().poses[c].to_world(Vec3d(vertex)));
+    all.faces.push_back({0, 1, 2});
+    return inspect(all).bounding_sphere;
+}
+
+/// How many vertices and faces each collider has.
+Json parts_of(std::span<const TriangleMesh> colliders) {
+    Json parts = Json::array();
+    for (const TriangleMesh& mesh : colliders)
+        parts.push_back({{"vertices", mesh.vertices.size()}, {"faces", mesh.faces.size()}});
+    return parts;
+}
+
 Json description_of(const PlayedSimulation& played, const Lattice& lattice) {
     const Simulation& simulation = played.result.simulation;
-    const Sphere sphere = inspect(played.collider).bounding_sphere;
+    const Sphere sphere = sphere_of(played);
+    std::size_t vertex_count = 0, face_count = 0;
+    for (const TriangleMesh& mesh : played.colliders) {
+        vertex_count += mesh.vertices.size();
+        face_count += mesh.faces.size();
+    }
+    const bool moves = std::any_of(played.result.colliders.begin(), played.result.colliders.end(),
+                                   [](const ColliderResult& collider) { return collider.poses.size() > 1; });
+    Json model{{"name", played.model_name}, {"notice", played.notice},          {"vertices", vertex_count},
+               {"faces", face_count},       {"centre", to_json(sphere.centre)}, {"radius", sphere.radius}};
+    if (played.colliders.size() > 1) model.add("parts", parts_of(played.colliders));
     return {
-        {"format", kFormat},
+        {"format", played.colliders.size() == 1 ? kFormat : kFormatOfSeveral},
         {"version", ECHINUS_VERSION},
         {"machine", comparison::describe_machine()},
         {"scene", played.scene_name},
-        {"model",
-         {{"name", played.model_name},
-          {"notice", played.notice},
-          {"vertices", played.collider.vertices.size()},
-          {"faces", played.collider.faces.size()},
-          {"centre", to_json(sphere.centre)},
-          {"radius", sphere.radius}}},
+        {"model", std::move(model)},
         {"cloth_faces", surface_of(simulation.deformable()).size()},
         {"lattice_step", lattice.step},
         {"figures", figures_of(played.result)},
-        {"frames", frames_of(played.recording, lattice, simulation.colliders().front().moves())},
+        {"frames", frames_of(played.recording, lattice, moves)},
     };
 }
 
@@ -112,8 +149,8 @@ std::span<const std::uint8_t> bytes_of(const std::vector<T>& values) {
 std::vector<std::uint8_t> compressed(const PlayedSimulation& played, const Lattice& lattice) {
     static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Triangle) == 3 * sizeof(std::uint32_t));
     Deflater deflater;
-    deflater.add(bytes_of(played.collider.vertices));
-    deflater.add(bytes_of(played.collider.faces));
+    for (const TriangleMesh& mesh : played.colliders) deflater.add(bytes_of(mesh.vertices));
+    for (const TriangleMesh& mesh : played.colliders) deflater.add(bytes_of(mesh.faces));
     deflater.add(bytes_of(surface_of(played.result.simulation.deformable())));
     add_motion(deflater, played.recording.frames(), lattice);
     return deflater.finish();

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -32,8 +33,8 @@ struct PlayedSimulation {
     const Recording& recording;
     std::string scene_name; ///< without folders, since pages are shared
     std::string model_name;
-    std::string notice;                    ///< of the model's source; may be empty
-    const echinus::TriangleMesh& collider; ///< scaled, not moved
+    std::string notice;                               ///< of the model's source; may be empty
+    std::span<const echinus::TriangleMesh> colliders; ///< scaled, not moved
 };
 
 /// Writes one HTML document that plays the simulation and loads nothing from elsewhere: the player, and in it

@@ -41,12 +41,14 @@ void Recording::finish(const Simulation& simulation) {
 }
 
 void Recording::add(const Simulation& simulation) {
-    const Collider& collider = simulation.colliders().front();
     const std::span<const Vec3f> positions = simulation.positions();
-    frames_.push_back({.number = simulation.frame(),
-                       .positions = {positions.begin(), positions.end()},
-                       .pose = collider.pose,
-                       .inside_count = count_inside(model_, collider, positions)});
+    RecordedFrame& frame =
+        frames_.emplace_back(RecordedFrame{simulation.frame(), {positions.begin(), positions.end()}, {}, 0});
+    for (std::size_t c = 0; c < models_.size(); ++c) {
+        const Collider& collider = simulation.colliders()[c];
+        frame.poses.push_back(collider.pose);
+        frame.inside_count += count_inside(models_[c], collider, positions);
+    }
 }
 
 std::uint32_t stride_for_display(double time_step) {

@@ -10,19 +10,20 @@
 /// A frame that was recorded.
 struct RecordedFrame {
     std::uint32_t number;
-    std::vector<echinus::Vec3f> positions; ///< [particle_count] of the cloth, in the world
-    echinus::RigidTransform pose;          ///< of the collider
-    std::size_t inside_count;              ///< particles inside the model, by its exact map
+    std::vector<echinus::Vec3f> positions;      ///< [particle_count] of the cloth, in the world
+    std::vector<echinus::RigidTransform> poses; ///< of the colliders
+    std::size_t inside_count; ///< particles inside a model, by its exact map; inside two of them twice
 };
 
 /// The recording that a page plays: a simulation's cloth and collider in some of its frames, including the
 /// first and the last.
 class Recording {
   public:
-    /// @param model   an exact map of the collider's mesh, which judges the particles, whichever map the
+    /// @param models  exact maps of the colliders' meshes, which judge the particles, whichever maps the
     /// simulation uses
     /// @param stride  frames from one recorded frame to the next, at least 1
-    Recording(echinus::ExactMap model, std::uint32_t stride) : model_(std::move(model)), stride_(stride) {}
+    Recording(std::vector<echinus::ExactMap> models, std::uint32_t stride)
+        : models_(std::move(models)), stride_(stride) {}
 
     /// Records the frame if it is due. Call at the start and after each step.
     void watch(const echinus::Simulation& simulation);
@@ -34,7 +35,7 @@ class Recording {
   private:
     void add(const echinus::Simulation& simulation);
 
-    echinus::ExactMap model_;
+    std::vector<echinus::ExactMap> models_;
     std::uint32_t stride_;
     std::vector<RecordedFrame> frames_;
 };

@@ -37,6 +37,12 @@ class ReportReader {
         if (!object.is_object() || !object.contains(key)) fail(std::string("has no \"") + key + "\"");
         return object[key];
     }
+    /// An array with at least one element.
+    const json& list(const json& object, const char* key) const {
+        const json& value = member(object, key);
+        if (!value.is_array() || value.empty()) fail(std::string("has no \"") + key + "\"");
+        return value;
+    }
     double number(const json& value, const char* what) const {
         if (!value.is_number()) fail(std::string("\"") + what + "\" is not a number");
         return value.get<double>(); // JSON has no infinities
@@ -63,6 +69,27 @@ RigidTransform read_transform(const ReportReader& reader, const json& pose) {
     const double size = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
     if (!(size > 0.5 && size < 2)) reader.fail("a \"rotation\" is not a unit quaternion");
     return {Rotation{q[0], q[1], q[2], q[3]}.normalised(), {x, y, z}};
+}
+
+SavedCollider read_collider(const ReportReader& reader, const json& collider, const fs::path& folder) {
+    SavedCollider saved;
+    const json& mesh_name = reader.member(collider, "mesh");
+    if (!mesh_name.is_string()) reader.fail("the collider's \"mesh\" is not a file name");
+    saved.mesh = read_mesh(folder / mesh_name.get<std::string>());
+    for (const json& pose : reader.list(collider, "poses")) {
+        const double frame = reader.number(reader.member(pose, "frame"), "frame");
+        if (!saved.poses.empty() && !(frame > saved.poses.back().frame))
+            reader.fail("the poses' frames do not ascend");
+        saved.poses.push_back({frame, read_transform(reader, pose)});
+    }
+    if (collider.contains("cache")) {
+        const json& cache_name = collider["cache"];
+        if (!cache_name.is_string()) reader.fail("the collider's \"cache\" is not a file name");
+        saved.cache = std::make_shared<PointCacheReader>(folder / cache_name.get<std::string>());
+        if (saved.cache->point_count() != saved.mesh.vertices.size())
+            reader.fail("the collider's cache has not the points of its mesh");
+    }
+    return saved;
 }
 
 /// How different a cloth looks at two moments: the mean distance between its points, with little weight for
@@ -102,18 +129,16 @@ SimulationFolder::SimulationFolder(const fs::path& folder)
 
 void SimulationFolder::read_report(const fs::path& path) {
     const ReportReader reader(path);
-    const json& collider = reader.member(reader.root(), "collider");
-    const json& mesh_name = reader.member(collider, "mesh");
-    if (!mesh_name.is_string()) reader.fail("the collider's \"mesh\" is not a file name");
-    collider_ = read_mesh(path.parent_path() / mesh_name.get<std::string>());
-
-    const json& poses = reader.member(collider, "poses");
-    if (!poses.is_array() || poses.empty()) reader.fail("the collider has no \"poses\"");
-    for (const json& pose : poses) {
-        const double frame = reader.number(reader.member(pose, "frame"), "frame");
-        if (!poses_.empty() && !(frame > poses_.back().frame)) reader.fail("the poses' frames do not ascend");
-        poses_.push_back({frame, read_transform(reader, pose)});
-    }
+    // Folders from before there were several have one.
+    if (!reader.root().contains("colliders"))
+        colliders_.push_back(
+            read_collider(reader, reader.member(reader.root(), "collider"), path.parent_path()));
+    else
+        for (const json& collider : reader.list(reader.root(), "colliders"))
+            colliders_.push_back(read_collider(reader, collider, path.parent_path()));
+    for (const SavedCollider& collider : colliders_)
+        if (collider.cache && collider.cache->sample_count() != sample_count())
+            reader.fail("a collider's cache has not as many samples as cloth.pc2");
 
     const auto [x, y, z] = reader.numbers<3>(reader.root(), "gravity");
     const Vec3d gravity{x, y, z};
@@ -136,13 +161,19 @@ MeshAndEdges SimulationFolder::cloth(std::size_t sample) const {
     return {{cloth_positions(sample), cloth_.mesh.faces}, cloth_.edges};
 }
 
-TriangleMesh SimulationFolder::collider(std::size_t sample) const {
-    const auto after = std::upper_bound(poses_.begin() + 1, poses_.end(), frame_of(sample),
-                                        [](double frame, const Pose& pose) { return frame < pose.frame; });
-    const RigidTransform& transform = std::prev(after)->transform;
-    TriangleMesh mesh = collider_;
-    for (Vec3f& vertex : mesh.vertices) vertex = Vec3f(transform.to_world(Vec3d(vertex)));
-    return mesh;
+TriangleMesh SimulationFolder::colliders(std::size_t sample) const {
+    TriangleMesh all;
+    for (const auto& [mesh, poses, cache] : colliders_) {
+        const auto after = std::upper_bound(
+            poses.begin() + 1, poses.end(), frame_of(sample),
+            [](double frame, const SavedCollider::Pose& pose) { return frame < pose.frame; });
+        const RigidTransform& transform = std::prev(after)->transform;
+        const auto first = static_cast<std::uint32_t>(all.vertices.size());
+        const std::vector<Vec3f> vertices = cache ? cache->positions(sample) : mesh.vertices;
+        for (const Vec3f& vertex : vertices) all.vertices.emplace_back(transform.to_world(Vec3d(vertex)));
+        for (const auto& [a, b, c] : mesh.faces) all.faces.push_back({first + a, first + b, first + c});
+    }
+    return all;
 }
 
 std::vector<std::size_t> choose_moments(const SimulationFolder& folder, std::size_t count) {

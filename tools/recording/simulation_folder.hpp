@@ -1,14 +1,28 @@
 #pragma once
 
-#include "recording/point_cache.hpp"
+#include "mesh_io/point_cache.hpp"
 
 #include <echinus/mesh_io.hpp>
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
+
+/// A collider in a folder of results.
+struct SavedCollider {
+    struct Pose {
+        double frame = 0;
+        echinus::RigidTransform transform;
+    };
+
+    echinus::TriangleMesh mesh;
+    std::vector<Pose> poses; ///< ascending frames, at least one
+    /// Of its vertices where it deforms, as long as the cloth's; else null.
+    std::shared_ptr<const echinus::PointCacheReader> cache;
+};
 
 /// The output folder of `echinus simulate SCENE -o DIR`: cloth.obj, cloth.pc2, report.json and the collider's
 /// mesh. A *sample* is a moment whose positions were saved.
@@ -26,8 +40,8 @@ class SimulationFolder {
 
     std::vector<echinus::Vec3f> cloth_positions(std::size_t sample) const { return cache_.positions(sample); }
     echinus::MeshAndEdges cloth(std::size_t sample) const;
-    /// In the world, at its pose in that sample.
-    echinus::TriangleMesh collider(std::size_t sample) const;
+    /// All colliders as one mesh, in the world, at their poses in that sample.
+    echinus::TriangleMesh colliders(std::size_t sample) const;
 
     /// Against gravity; +z where there is none.
     const echinus::Vec3d& up() const { return up_; }
@@ -35,17 +49,11 @@ class SimulationFolder {
     const std::optional<double>& rest_frame() const { return rest_frame_; }
 
   private:
-    struct Pose {
-        double frame = 0;
-        echinus::RigidTransform transform;
-    };
-
     void read_report(const std::filesystem::path& path);
 
-    PointCacheReader cache_;
+    echinus::PointCacheReader cache_;
     echinus::MeshAndEdges cloth_;
-    echinus::TriangleMesh collider_;
-    std::vector<Pose> poses_; ///< ascending frames, at least one
+    std::vector<SavedCollider> colliders_;
     echinus::Vec3d up_;
     std::optional<double> rest_frame_;
 };

@@ -7,6 +7,7 @@
 #include <echinus/mesh_io.hpp>
 
 #include <filesystem>
+#include <vector>
 
 namespace echinus::c {
 
@@ -22,8 +23,8 @@ class Meshes {
     TriangleMesh operator()(const ModelFile& file) const { return read_mesh(find_model(file, folders_)); }
     TriangleMesh operator()(const auto& shape) const { return make_mesh(shape); }
 
-    TriangleMesh model(const Scene& scene) const {
-        return repair(std::visit(*this, scene.model), scene.repair).mesh;
+    TriangleMesh model(const SceneCollider& collider) const {
+        return repair(std::visit(*this, collider.model), collider.repair).mesh;
     }
     ClothMeshes cloth(const Scene& scene) const {
         if (!scene.mesh_cloth) return {};
@@ -92,7 +93,9 @@ echinus_status echinus_simulation_from_scene(const echinus_scene* scene, const c
     return make(__func__, simulation, [&] {
         const Scene& description = at(scene, "scene").value;
         const Meshes meshes(folders_from(folders, folder_count, scene->folder));
-        const AnyMap map = build_map(meshes.model(description), description.map, thread_count);
-        return make_simulation(description, map, meshes.cloth(description));
+        std::vector<ColliderMap> maps;
+        for (const SceneCollider& collider : description.colliders)
+            maps.emplace_back(build_map(meshes.model(collider), description.map, thread_count));
+        return make_simulation(description, maps, meshes.cloth(description));
     });
 }

@@ -91,11 +91,12 @@ TriangleMesh shape_of(const auto& shape) {
 
 /// The mesh of the scene's generated model.
 py::tuple make_model(const Scene& scene) {
-    return arrays_of(std::visit([](const auto& model) { return shape_of(model); }, scene.model));
+    return arrays_of(
+        std::visit([](const auto& model) { return shape_of(model); }, scene.colliders.front().model));
 }
 
 py::tuple repair_model(const Scene& scene, const Vertices& vertices, const Faces& faces) {
-    return arrays_of(repair(mesh_of(vertices, faces), scene.repair).mesh);
+    return arrays_of(repair(mesh_of(vertices, faces), scene.colliders.front().repair).mesh);
 }
 
 AnyMap build_model_map(const Scene& scene, const Vertices& vertices, const Faces& faces, int threads) {
@@ -110,7 +111,8 @@ void bind_scene(py::module_& module) {
         .def_static("read", [](const std::filesystem::path& path) { return read_scene(path); })
         .def_static("parse",
                     [](const std::string& json, const std::string& name) { return parse_scene(json, name); })
-        .def_property_readonly("model_file", [](const Scene& scene) { return file_of(scene.model); })
+        .def_property_readonly("model_file",
+                               [](const Scene& scene) { return file_of(scene.colliders.front().model); })
         .def_property_readonly("cloth_file", cloth_file)
         .def_property_readonly("rest_file", rest_file)
         .def_readonly("frame_limit", &Scene::frame_limit)

@@ -35,14 +35,14 @@ json particle_count(const Scene& scene) {
 
 json describe(const Scene& scene) {
     json repairs = json::array();
-    if (scene.repair.drop_duplicate_faces) repairs.push_back("duplicate_faces");
-    if (scene.repair.drop_doubled_patches) repairs.push_back("doubled_patches");
-    if (scene.repair.max_hole_edges != 0) repairs.push_back("small_holes");
-    if (scene.repair.flip_inside_out) repairs.push_back("inside_out");
-    if (scene.repair.drop_inner_faces) repairs.push_back("inner_faces");
-    if (scene.repair.sheet_thickness != 0) repairs.push_back("sheets");
+    if (scene.colliders.front().repair.drop_duplicate_faces) repairs.push_back("duplicate_faces");
+    if (scene.colliders.front().repair.drop_doubled_patches) repairs.push_back("doubled_patches");
+    if (scene.colliders.front().repair.max_hole_edges != 0) repairs.push_back("small_holes");
+    if (scene.colliders.front().repair.flip_inside_out) repairs.push_back("inside_out");
+    if (scene.colliders.front().repair.drop_inner_faces) repairs.push_back("inner_faces");
+    if (scene.colliders.front().repair.sheet_thickness != 0) repairs.push_back("sheets");
     json description = cloth_files(scene);
-    description.update({{"modelFile", to_json(scene.model)},
+    description.update({{"modelFile", to_json(scene.colliders.front().model)},
                         {"repair", repairs},
                         {"frameLimit", scene.frame_limit},
                         {"timeStep", scene.simulation.time_step},
@@ -60,7 +60,7 @@ TriangleMesh make_model(const Scene& scene) {
         else
             return make_mesh(model);
     };
-    return repair(std::visit(make, scene.model), scene.repair).mesh;
+    return repair(std::visit(make, scene.colliders.front().model), scene.colliders.front().repair).mesh;
 }
 
 json to_json(const SimulationProfile& profile) {

@@ -7,12 +7,20 @@ export interface Description {
     version: string;
     machine: string;
     scene: string;
-    model: { name: string; notice: string; vertices: number; faces: number; centre: Triple; radius: number };
+    /** The parts are colliders, where there are several: their vertices follow each other, and then their faces. */
+    model: { name: string; notice: string; vertices: number; faces: number; centre: Triple; radius: number; parts?: Part[] };
     cloth_faces: number;
     lattice_step: number;
     figures: Figures;
     frames: RecordedFrame[];
 }
+
+export interface Part {
+    vertices: number;
+    faces: number;
+}
+
+export type Pose = Pick<ColliderState, 'position' | 'rotation'>;
 
 export interface Figures {
     particles: number;
@@ -37,5 +45,7 @@ export interface RecordedFrame {
     /** The smallest coordinates, in lattice steps. */
     origin: Triple;
     /** Of the first frame, and of each where the model moves. */
-    pose?: Pick<ColliderState, 'position' | 'rotation'>;
+    pose?: Pose;
+    /** The same of several colliders. */
+    poses?: Pose[];
 }

@@ -5,7 +5,8 @@ import { enableClosing, say } from '../panel/notice';
 import { Player } from './player';
 import { Recording } from './recording';
 
-const FORMAT = 1;
+/** With one collider, and with several. */
+const FORMATS = [1, 2];
 
 /** The text of an element written by `echinus simulate --html`. Removes the element, since it is large. */
 function takeText(id: string): string | undefined {
@@ -21,7 +22,7 @@ async function begin(): Promise<void> {
     if (typeof DecompressionStream === 'undefined' || !document.createElement('canvas').getContext('webgl2'))
         return say('This page needs WebGL 2 and DecompressionStream. Chrome and Edge from 94, Firefox from 113 and Safari from 16.4 have both.');
     const parsed = JSON.parse(description);
-    if (parsed.format !== FORMAT) return say(`This player reads recordings of format ${FORMAT}; this one has format ${parsed.format}.`);
+    if (!FORMATS.includes(parsed.format)) return say(`This player reads recordings of format ${FORMATS.join(' and ')}; this one has format ${parsed.format}.`);
     const recording = await Recording.open(parsed, data);
     new Player(recording);
     await recording.readFrames();

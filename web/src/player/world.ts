@@ -4,7 +4,7 @@ import type { FrameArrays } from '../protocol';
 import { ClothView } from '../view/cloth_view';
 import { ModelView } from '../view/model_view';
 import type { Stage } from '../view/stage';
-import type { Description } from './description';
+import type { Description, Part, Pose, RecordedFrame } from './description';
 import { surfaceNormals } from './normals';
 import type { Recording } from './recording';
 
@@ -12,29 +12,45 @@ import type { Recording } from './recording';
 export class World {
     readonly #recording: Recording;
     readonly #cloth = new ClothView();
-    readonly #model = new ModelView();
+    readonly #models: ModelView[] = [];
     #spare: FrameArrays;
 
     constructor(stage: Stage, recording: Recording) {
         this.#recording = recording;
         const { figures, model } = recording.description;
         this.#spare = arraysFor(figures.particles);
-        const none = new Uint32Array(0);
-        this.#model.show({
-            vertices: recording.modelVertices,
-            faces: recording.modelFaces,
-            faults: { borderEdges: none, nonmanifoldEdges: none, misorientedEdges: none, duplicateFaces: none, degenerateFaces: none },
-        });
+        const parts: Part[] = model.parts ?? [model];
+        let firstVertex = 0, firstFace = 0;
+        for (const { vertices, faces } of parts) {
+            this.#addModel(
+                recording.modelVertices.slice(3 * firstVertex, 3 * (firstVertex + vertices)),
+                recording.modelFaces.slice(3 * firstFace, 3 * (firstFace + faces)),
+            );
+            firstVertex += vertices;
+            firstFace += faces;
+        }
         this.#cloth.begin(recording.clothFaces);
 
         const { axis, turn } = upright(figures.gravity);
         const group = new THREE.Group();
         group.quaternion.copy(turn);
-        group.add(this.#model.group, this.#cloth.mesh);
+        group.add(...this.#models.map((view) => view.group), this.#cloth.mesh);
         stage.scene.add(group);
-        const { position, rotation: [w, x, y, z] } = recording.description.frames[0].pose!;
-        const centre = new THREE.Vector3(...model.centre).applyQuaternion(new THREE.Quaternion(x, y, z, w)).add(new THREE.Vector3(...position));
+        const first = posesOf(recording.description.frames[0])!;
+        // Of several colliders it is where they start.
+        const centre = model.parts ? new THREE.Vector3(...model.centre) : placed(model.centre, first[0]);
         stage.lookAt(centre.applyQuaternion(turn).toArray(), model.radius, axis);
+    }
+
+    #addModel(vertices: Float32Array<ArrayBuffer>, faces: Uint32Array<ArrayBuffer>): void {
+        const none = new Uint32Array(0);
+        const view = new ModelView();
+        view.show({
+            vertices,
+            faces,
+            faults: { borderEdges: none, nonmanifoldEdges: none, misorientedEdges: none, duplicateFaces: none, degenerateFaces: none },
+        });
+        this.#models.push(view);
     }
 
     show(frame: number): void {
@@ -43,9 +59,14 @@ export class World {
         this.#recording.positionsOf(frame, arrays.positions);
         surfaceNormals(arrays.positions, this.#recording.clothFaces, arrays.normals);
         this.#spare = this.#cloth.show(arrays) ?? arraysFor(figures.particles);
-        const { pose } = frames[frame];
-        if (pose) this.#model.follow(pose);
+        posesOf(frames[frame])?.forEach((pose, i) => this.#models[i].follow(pose));
     }
+}
+
+const posesOf = (frame: RecordedFrame): Pose[] | undefined => frame.poses ?? (frame.pose && [frame.pose]);
+
+function placed(point: [number, number, number], { position, rotation: [w, x, y, z] }: Pose): THREE.Vector3 {
+    return new THREE.Vector3(...point).applyQuaternion(new THREE.Quaternion(x, y, z, w)).add(new THREE.Vector3(...position));
 }
 
 const arraysFor = (particles: number): FrameArrays => ({

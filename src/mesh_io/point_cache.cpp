@@ -1,4 +1,4 @@
-#include "recording/point_cache.hpp"
+#include "mesh_io/point_cache.hpp"
 
 #include <echinus/error.hpp>
 
@@ -8,7 +8,7 @@
 #include <cstring>
 #include <string_view>
 
-using namespace echinus;
+namespace echinus {
 
 namespace {
 
@@ -45,7 +45,7 @@ void require_header(std::span<const std::byte> bytes, const std::string& name) {
     if (bytes.size() < kHeaderSize)
         fail(ErrorCode::Damaged, name,
              "the file ends at byte " + std::to_string(bytes.size()) +
-                 ", within the header of 32 bytes; simulate again");
+                 ", within the header of 32 bytes; write it again");
     if (const auto version = number_at<std::int32_t>(bytes, 12); version != 1)
         fail(ErrorCode::UnsupportedVersion, name,
              "version " + std::to_string(version) + " of the format; version 1 is the one that is read");
@@ -95,7 +95,7 @@ PointCacheReader::PointCacheReader(const std::filesystem::path& path) : name_(pa
         fail(ErrorCode::Damaged, name_,
              "has " + std::to_string(bytes.size()) + " bytes, but " + std::to_string(sample_count_) +
                  " samples of " + std::to_string(point_count_) + " points take " + std::to_string(expected) +
-                 "; simulate again");
+                 "; write it again");
 }
 
 std::vector<Vec3f> PointCacheReader::positions(std::size_t sample) const {
@@ -108,3 +108,5 @@ std::vector<Vec3f> PointCacheReader::positions(std::size_t sample) const {
                  "point " + std::to_string(i) + " of sample " + std::to_string(sample) + " is not finite");
     return points;
 }
+
+} // namespace echinus

@@ -1,0 +1,38 @@
+// A ball falls on a cloth that is held along its border. What the cloth puts on the ball moves the ball, and
+// the ball the cloth: the loop of a host that has a solver for rigid bodies of its own.
+
+#include <echinus/echinus.hpp>
+
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+
+int main() try {
+    using namespace echinus;
+    constexpr double kMass = 300; // of the ball; the cloth's 900 particles have 1 each
+    constexpr std::uint32_t kFrameCount = 1440, kMeasuredFrom = 1200;
+
+    ClothOptions sheet{.column_count = 30, .row_count = 30, .width = 2, .height = 2};
+    for (std::uint32_t i = 0; i < 30; ++i)
+        for (const std::uint32_t pin : {i, 29 * 30 + i, 30 * i, 30 * i + 29}) sheet.pins.push_back(pin);
+    Collider ball{.map = ExactMap::build(make_sphere(0.3, 40, 20))};
+    ball.pose.translation = {0, 0, 0.8};
+    SimulationOptions options;
+    options.surface_collision = true;
+    options.measure_loads = true;
+    Simulation simulation(make_cloth(sheet), {ball}, options);
+
+    Vec3d velocity, mean_force;
+    for (std::uint32_t frame = 0; frame < kFrameCount; ++frame) {
+        const Vec3d force = simulation.load_on(0).force; // of the frame before
+        velocity += (options.gravity + force * (1 / kMass)) * options.time_step;
+        simulation.set_collider_velocity(0, velocity, {});
+        simulation.step();
+        if (frame >= kMeasuredFrom) mean_force += force * (1.0 / (kFrameCount - kMeasuredFrom));
+    }
+    std::printf("the ball hangs in the cloth at height %.1f, which bears %.0f %% of its weight\n",
+                simulation.colliders()[0].pose.translation.z, 100 * mean_force.z / (kMass * 9.81));
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+}
