@@ -138,7 +138,9 @@ Collider make_collider(const SceneCollider& collider, const ColliderMap& map);
 Deformable make_cloth(const Scene& scene, const ClothMeshes& meshes = {});
 
 /// The scene's cloth and colliders, ready to step.
-/// @param maps  of the colliders' models, in their order
+/// @param maps  of the colliders' models, in their order; of one with a cache, with the vertices that
+/// vertices_at()
+///              gives for 0 s, or the first frame would lead it there
 /// @param caches  [collider_count] of the colliders that have one in the scene, as the caller has read them;
 /// may
 ///                be left out where none has

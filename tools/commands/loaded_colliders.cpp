@@ -50,6 +50,7 @@ LoadedColliders load_colliders(const Scene& scene, const fs::path& scene_path,
             const fs::path path = cache_path(*collider.cache, scene_path, folders);
             loaded.files.push_back(path);
             cache = read_vertex_cache(path, mesh, collider.cache->frames_per_second);
+            mesh.vertices = vertices_at(cache, 0);
         }
         const AnyMap map =
             made_as_scene_says(scene_path, "map", [&] { return build_map(mesh, scene.map, thread_count); });
