@@ -18,6 +18,7 @@
 #include <echinus/map_file.hpp>
 #include <echinus/mesh.hpp>
 #include <echinus/simulation.hpp>
+#include <echinus/soft_body.hpp>
 #include <echinus/surface_queries.hpp>
 #include <echinus/tetrahedra.hpp>
 #include <echinus/version.hpp>

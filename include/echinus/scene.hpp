@@ -5,6 +5,8 @@
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 #include <echinus/simulation.hpp>
+#include <echinus/soft_body.hpp>
+#include <echinus/tetrahedra.hpp>
 
 #include <array>
 #include <cstdint>
@@ -61,11 +63,22 @@ struct MeshCloth {
     VertexChoice attachments; ///< move with the first collider
 };
 
-/// The meshes of a scene's cloth that come from files, as the caller has read them; the others are left
-/// empty.
+/// A soft body: what make_soft_body() takes, by name.
+struct SceneBody {
+    SceneModel mesh;         ///< a closed surface, which is filled with tetrahedra
+    double element = 0;      ///< about their size, units; positive
+    SoftBodyOptions options; ///< without pins and attachments
+    VertexChoice pins;
+    VertexChoice attachments; ///< move with the collider
+    Vec3d velocity;           ///< of all particles at the start that are not pinned
+};
+
+/// The meshes of a scene's cloth and bodies that come from files, as the caller has read them; the others are
+/// left empty.
 struct ClothMeshes {
     TriangleMesh mesh, rest_mesh;
     std::vector<std::array<std::uint32_t, 2>> threads{}; ///< of `mesh`: see read_mesh_and_edges()
+    std::vector<TetrahedralMesh> bodies{};               ///< by body; those of surfaces filled
 };
 
 /// How a model deforms: a file or a folder for read_vertex_cache().
@@ -91,9 +104,12 @@ struct SceneCollider {
 struct Scene {
     std::vector<SceneCollider> colliders; ///< at least one
     MapOptions map;                       ///< of each collider
+    bool has_cloth = true;
     ClothOptions cloth;
     std::optional<MeshCloth> mesh_cloth; ///< in place of `cloth`
     Vec3d cloth_velocity;                ///< of all particles at the start that are not pinned
+    std::optional<double> cloth_density; ///< mass per area; without one particles have the mean mass 1
+    std::vector<SceneBody> bodies;       ///< soft bodies, after the cloth
     SimulationOptions simulation;
     std::uint32_t frame_limit = 3000; ///< the simulation ends here at the latest
 };
@@ -137,7 +153,17 @@ Collider make_collider(const SceneCollider& collider, const ColliderMap& map);
 /// other faces
 Deformable make_cloth(const Scene& scene, const ClothMeshes& meshes = {});
 
-/// The scene's cloth and colliders, ready to step.
+/// The tetrahedra that fill a generated shape: a box exactly, by cuboids of about this size; others as
+/// tetrahedralize() does.
+/// @throws Error InvalidOptions as the generators and tetrahedralize() do
+TetrahedralMesh make_solid(const SceneModel& shape, double element);
+
+/// The scene's cloth and its bodies, which follow it, as one deformable with their velocities.
+/// @throws Error as make_cloth() and make_soft_body() do; for a body the sentence begins with "bodies[0]" or
+/// so. InvalidOptions where a body's file is not given, or there is no vertex in a box
+Deformable make_deformable(const Scene& scene, const ClothMeshes& meshes = {});
+
+/// The scene's cloth, bodies and colliders, ready to step.
 /// @param maps  of the colliders' models, in their order; of one with a cache, with the vertices that
 /// vertices_at()
 ///              gives for 0 s, or the first frame would lead it there
@@ -145,7 +171,7 @@ Deformable make_cloth(const Scene& scene, const ClothMeshes& meshes = {});
 /// may
 ///                be left out where none has
 /// @throws Error InvalidOptions, also when there are more or fewer maps than colliders, or a cache is
-/// missing, and as make_cloth()
+/// missing, and as make_deformable()
 Simulation make_simulation(const Scene& scene, std::span<const ColliderMap> maps,
                            const ClothMeshes& meshes = {}, std::span<const VertexCache> caches = {});
 /// The same of a scene with one collider.

@@ -53,6 +53,21 @@ struct Fold {
     float lever;
 };
 
+/// Elastic material between four particles: stable Neo-Hookean (Macklin and Mueller 2021), under Xpbd. Made
+/// by make_soft_body() (soft_body.hpp). Units are those in which masses, lengths and seconds are given: with
+/// kilograms and metres, mu and lambda are in pascals.
+struct ElasticTetrahedron {
+    std::array<std::uint32_t, 4> particles; ///< (a, b, c, d)
+    /// At rest, the gradients of the barycentric coordinates of b, c and d: the rows of the inverse of the
+    /// matrix with the columns b - a, c - a and d - a. Per length.
+    std::array<Vec3f, 3> gradients;
+    float volume;     ///< at rest; positive
+    float mu, lambda; ///< the Lame parameters: mass / (length s^2); mu positive, lambda not negative
+    /// Viscosity over mu, seconds: of a strain that begins, its stress grows by as much as if that strain had
+    /// lasted so long.
+    float damping;
+};
+
 /// Fixes a particle to a collider: it moves rigidly with the collider, from where it is at the start.
 struct Attachment {
     std::uint32_t particle;
@@ -66,13 +81,16 @@ struct Deformable {
     /// substep_count.
     std::vector<Vec3f> previous_positions;
     /// [particle_count] 1 / mass, in any unit where only ratios count, which they do unless sticks have a
-    /// compliance; 0 for a pinned particle: it stays in place, or where it is attached, and no collider
-    /// pushes it.
+    /// compliance or there are tetrahedra; 0 for a pinned particle: it stays in place, or where it is
+    /// attached, and no collider pushes it.
     std::vector<float> inverse_masses;
     std::vector<Stick> sticks;             ///< in the order in which they are relaxed
     std::vector<Triangle> faces;           ///< for pictures, wind and contact of surfaces
     std::vector<Fold> folds{};             ///< in the order in which they are relaxed, before the sticks
     std::vector<Attachment> attachments{}; ///< of pinned particles, at most one of each
+    /// In the order in which they are relaxed, after the sticks. A particle of theirs that is in no face lies
+    /// inside: where surfaces collide, those around it do, and it does not.
+    std::vector<ElasticTetrahedron> tetrahedra{};
 
     std::size_t particle_count() const { return positions.size(); }
 };

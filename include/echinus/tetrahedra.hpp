@@ -40,6 +40,12 @@ void require_valid_tetrahedra(const TetrahedralMesh& mesh);
 /// @throws Error InvalidMesh when an index is out of range, or two tetrahedra lie on the same side of a face
 TriangleMesh boundary(const TetrahedralMesh& mesh);
 
+/// A box around the origin, of cuboids cut into five tetrahedra each, turned from cuboid to cuboid. Vertex
+/// (i, j, k), counted along x, y and z, has the index (k * (segments[1] + 1) + j) * (segments[0] + 1) + i.
+/// @param segments  cuboids along x, y and z, 1 to 512 each
+/// @throws Error InvalidOptions
+TetrahedralMesh make_solid_box(const Vec3d& size, const std::array<std::uint32_t, 3>& segments);
+
 // ---- From a closed surface to tetrahedra ----
 
 struct TetrahedralizeOptions {

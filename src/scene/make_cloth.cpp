@@ -1,3 +1,5 @@
+#include "scene/vertex_choice.hpp"
+
 #include <echinus/error.hpp>
 #include <echinus/scene.hpp>
 
@@ -31,27 +33,6 @@ struct NamedMesh {
     static TriangleMesh shape_of(const auto& shape) { return make_mesh(shape); }
 };
 
-std::vector<std::uint32_t> vertices_in(const VertexBox& box, const std::vector<Vec3f>& vertices) {
-    std::vector<std::uint32_t> found;
-    for (std::uint32_t i = 0; i < vertices.size(); ++i) {
-        const Vec3d v(vertices[i]);
-        if (v.x >= box.from.x && v.x <= box.to.x && v.y >= box.from.y && v.y <= box.to.y &&
-            v.z >= box.from.z && v.z <= box.to.z)
-            found.push_back(i);
-    }
-    return found;
-}
-
-/// @param key  of the choice, for sentences
-std::vector<std::uint32_t> chosen(const VertexChoice& choice, const NamedMesh& cloth,
-                                  const std::string& key) {
-    const auto* box = std::get_if<VertexBox>(&choice);
-    if (box == nullptr) return std::get<std::vector<std::uint32_t>>(choice);
-    std::vector<std::uint32_t> found = vertices_in(*box, cloth.mesh.vertices);
-    if (found.empty()) throw Error(ErrorCode::InvalidOptions, "none of its vertices is in the box of " + key);
-    return found;
-}
-
 void require_same_faces(const NamedMesh& cloth, const NamedMesh& rest) {
     if (cloth.mesh.faces != rest.mesh.faces || cloth.mesh.vertices.size() != rest.mesh.vertices.size())
         throw Error(ErrorCode::InvalidMesh, "its rest mesh " + rest.name + " has other vertices or faces: " +
@@ -70,8 +51,8 @@ Deformable make_cloth(const MeshCloth& cloth, const NamedMesh& start, const Clot
         options.rest_vertices = std::move(rest.mesh.vertices);
     }
     options.threads = meshes.threads;
-    options.pins = chosen(cloth.pins, start, "cloth.pins");
-    for (const std::uint32_t vertex : chosen(cloth.attachments, start, "cloth.attachments"))
+    options.pins = chosen(cloth.pins, start.mesh.vertices, "cloth.pins");
+    for (const std::uint32_t vertex : chosen(cloth.attachments, start.mesh.vertices, "cloth.attachments"))
         options.attachments.push_back({.particle = vertex});
     return make_cloth(start.mesh, options);
 }

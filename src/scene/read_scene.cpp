@@ -347,10 +347,35 @@ void read_mesh_cloth(JsonObject& cloth, Scene& scene) {
     made.attachments = read_vertices(cloth, "attachments");
 }
 
+SceneBody read_body(JsonObject& object) {
+    SceneBody body;
+    SoftBodyOptions& options = body.options;
+    object.require("mesh");
+    body.mesh = read_model(object, "mesh");
+    object.require("element");
+    object.read("element", body.element, kLength);
+    object.read("density", options.density, {1e-9, 1e15});
+    object.read("young_modulus", options.young_modulus, {1e-9, 1e15});
+    object.read("poisson_ratio", options.poisson_ratio, {0, 0.4999});
+    object.read("damping", options.damping, {0, 1e9});
+    options.pose = read_pose(object);
+    object.read("scale", options.scale, kLength);
+    object.read("velocity", body.velocity, kCoordinate);
+    body.pins = read_vertices(object, "pins");
+    body.attachments = read_vertices(object, "attachments");
+    object.finish();
+    return body;
+}
+
 /// @pre the map was read
 void read_cloth(JsonObject& root, Scene& scene) {
+    for (JsonObject& object : root.objects("bodies")) scene.bodies.push_back(read_body(object));
+    scene.has_cloth = scene.bodies.empty() || root.has("cloth");
+    if (!scene.has_cloth) return;
     root.require("cloth");
     auto cloth = root.object("cloth");
+    if (!scene.bodies.empty()) cloth->require("density");
+    cloth->read("density", scene.cloth_density, {1e-9, 1e15});
     cloth->read("velocity", scene.cloth_velocity, kCoordinate);
     cloth->read("thickness", scene.simulation.thickness, {0, 1e9});
     cloth->read("self_thickness", scene.simulation.self_thickness, {0, 1e9});
@@ -374,10 +399,17 @@ void read_compliance(JsonObject& material, std::array<double, kStickKindCount>& 
     object->finish();
 }
 
-/// @pre the solver was read
-void read_material(JsonObject& root, SimulationOptions& options) {
+/// @pre the solver and the cloth were read
+void read_material(JsonObject& root, Scene& scene) {
+    SimulationOptions& options = scene.simulation;
     auto material = root.object("material");
     if (!material) return;
+    if (scene.has_cloth) {
+        for (const char* key : {"thickness", "self_thickness"})
+            if (material->has(key)) material->refuse(key, "in \"cloth\", where there is one");
+    }
+    material->read("thickness", options.thickness, {0, 1e9});
+    material->read("self_thickness", options.self_thickness, {0, 1e9});
     if (options.solver == SolverKind::Verlet) {
         refuse_keys_of_other_choice(*material, {"compliance"}, "solver", "xpbd");
         read_stick_kinds(*material, options.stiffness, {0, 1.99});
@@ -412,10 +444,15 @@ void read_surfaces(JsonObject& root, Scene& scene) {
     if (untangle && !surfaces) root.refuse("untangle", "false, or \"surface_collision\" must be true");
 }
 
-void read_solver(JsonObject& root, SimulationOptions& options) {
+/// @pre the bodies were read, which need small steps
+void read_solver(JsonObject& root, Scene& scene) {
+    SimulationOptions& options = scene.simulation;
+    const std::size_t usual = scene.bodies.empty() ? 0 : 1;
     root.read("gravity", options.gravity, kCoordinate);
     root.read("time_step", options.time_step, {1e-9, 1e9});
-    if (root.read_word("solver", {"verlet", "xpbd"}).value_or(0) == 0) {
+    const std::size_t solver = root.read_word("solver", {"verlet", "xpbd"}).value_or(usual);
+    if (solver < usual) root.refuse("solver", "\"xpbd\" or left out where there are bodies");
+    if (solver == 0) {
         refuse_keys_of_other_choice(root, {"substeps"}, "solver", "xpbd");
     } else {
         // As much work as ten iterations, in small steps.
@@ -464,8 +501,8 @@ Scene parse_scene(std::string_view json, const std::string& name) {
     if (auto map = root.object("map")) scene.map = read_map(*std::move(map));
     read_cloth(root, scene);
     read_surfaces(root, scene);
-    read_solver(root, scene.simulation);
-    read_material(root, scene.simulation);
+    read_solver(root, scene);
+    read_material(root, scene);
     read_end(root, scene);
     root.finish();
     return scene;

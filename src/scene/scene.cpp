@@ -101,15 +101,10 @@ Simulation make_simulation(const Scene& scene, std::span<const ColliderMap> maps
                             scene.colliders[c].cache->name +
                             ", which was not given; read it with read_vertex_cache(), or take it out of the "
                             "scene");
-    Deformable cloth = make_cloth(scene, meshes);
-    const Vec3d way = scene.cloth_velocity * (scene.simulation.time_step / scene.simulation.substep_count);
-    for (std::size_t i = 0; i < cloth.particle_count(); ++i)
-        if (cloth.inverse_masses[i] != 0)
-            cloth.previous_positions[i] = Vec3f(Vec3d(cloth.positions[i]) - way);
     std::vector<Collider> colliders;
     for (std::size_t c = 0; c < maps.size(); ++c)
         colliders.push_back(make_collider(scene.colliders[c], maps[c]));
-    Simulation simulation(std::move(cloth), std::move(colliders), scene.simulation);
+    Simulation simulation(make_deformable(scene, meshes), std::move(colliders), scene.simulation);
     for (std::size_t c = 0; c < maps.size(); ++c)
         if (!scene.colliders[c].keyframes.empty())
             simulation.set_collider_keyframes(c, scene.colliders[c].keyframes);

@@ -52,4 +52,27 @@ class DisjointRun {
     std::size_t run_ = 1;
 };
 
+/// Consecutive constraints without a common particle.
+struct ConstraintRun {
+    std::size_t first, count;
+};
+
+/// Cuts constraints into runs, in their order.
+/// @param particles_of  gives the particles of the constraint of a number, as an array
+template <typename ParticlesOf>
+std::vector<ConstraintRun> disjoint_runs(std::size_t constraint_count, std::size_t particle_count,
+                                         const ParticlesOf& particles_of) {
+    std::vector<ConstraintRun> runs;
+    DisjointRun particles(particle_count);
+    for (std::size_t i = 0; i < constraint_count; ++i) {
+        if (runs.empty() || !particles.add(particles_of(i))) {
+            runs.push_back({i, 0});
+            particles.begin();
+            particles.add(particles_of(i));
+        }
+        ++runs.back().count;
+    }
+    return runs;
+}
+
 } // namespace echinus

@@ -1,27 +1,6 @@
 #include "simulation/folds.hpp"
 
-#include "simulation/disjoint.hpp"
-
 namespace echinus {
-
-namespace {
-
-std::vector<FoldRun> runs_of(const FoldArrays& folds, std::size_t particle_count) {
-    std::vector<FoldRun> runs;
-    DisjointRun particles(particle_count);
-    for (std::size_t i = 0; i < folds.count(); ++i) {
-        const std::array corners{folds.a[i], folds.b[i], folds.c[i], folds.d[i]};
-        if (runs.empty() || !particles.add(corners)) {
-            runs.push_back({i, 0});
-            particles.begin();
-            particles.add(corners);
-        }
-        ++runs.back().count;
-    }
-    return runs;
-}
-
-} // namespace
 
 FoldArrays weighted_folds(const Deformable& deformable, const SimulationOptions& options) {
     constexpr auto kKind = static_cast<std::size_t>(StickKind::Bending);
@@ -46,7 +25,9 @@ FoldArrays weighted_folds(const Deformable& deformable, const SimulationOptions&
         folds.compliances.push_back(springs ? static_cast<float>(options.compliance[kKind] / (lever * lever))
                                             : 0.0F);
     }
-    folds.runs = runs_of(folds, deformable.particle_count());
+    folds.runs = disjoint_runs(folds.count(), deformable.particle_count(), [&](std::size_t i) {
+        return std::array{folds.a[i], folds.b[i], folds.c[i], folds.d[i]};
+    });
     folds.goal_angles = folds.rest_angles;
     return folds;
 }

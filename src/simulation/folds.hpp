@@ -1,5 +1,6 @@
 #pragma once
 
+#include "simulation/disjoint.hpp"
 #include "simulation/particles.hpp"
 
 #include <echinus/simulation.hpp>
@@ -12,11 +13,6 @@ namespace echinus {
 
 /// The angle between the faces (a, b, c) and (b, a, d), as Fold has it; 0 where one of them has no area.
 float fold_angle(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d);
-
-/// Consecutive folds without a common particle.
-struct FoldRun {
-    std::size_t first, count;
-};
 
 /// All folds with what their relaxation needs, in the order in which they are relaxed.
 ///
@@ -37,7 +33,7 @@ struct FoldArrays {
     std::vector<float> rest_angles, goal_angles; ///< [count]
     std::vector<float> compliances;              ///< [count] of the angle, over substep^2; 0 with Verlet
     float stiffness = 1;                         ///< with Verlet
-    std::vector<FoldRun> runs;
+    std::vector<ConstraintRun> runs;
 
     std::size_t count() const { return a.size(); }
     /// Multipliers begin at 0 in each substep (Macklin et al. 2016, algorithm 1).

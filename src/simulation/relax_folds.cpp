@@ -81,7 +81,7 @@ HWY_INLINE void relax_lanes(FoldArrays& folds, std::size_t i, PointArrays& posit
 }
 
 /// Relaxes as many folds of the run as fill whole vectors. @return how many
-std::size_t relax_fold_run(const FoldRun& run, FoldArrays& folds, PointArrays& positions) {
+std::size_t relax_fold_run(const ConstraintRun& run, FoldArrays& folds, PointArrays& positions) {
     const std::size_t lanes = hn::Lanes(kFloat);
     std::size_t i = 0;
     for (; i + lanes <= run.count; i += lanes) relax_lanes(folds, run.first + i, positions);
@@ -155,7 +155,7 @@ float fold_angle(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d)
 }
 
 void relax(FoldArrays& folds, PointArrays& positions) noexcept {
-    for (const FoldRun& run : folds.runs) {
+    for (const ConstraintRun& run : folds.runs) {
         const std::size_t done = use_kernels() ? ECHINUS_DISPATCH(relax_fold_run)(run, folds, positions) : 0;
         for (std::size_t i = done; i < run.count; ++i) relax_one(folds, run.first + i, positions);
     }

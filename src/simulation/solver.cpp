@@ -2,6 +2,8 @@
 
 #include "simulation/start_state.hpp"
 #include "simulation/stopwatch.hpp"
+#include "simulation/surfaces/edge_lengths.hpp"
+#include "simulation/surfaces/elements.hpp"
 #include "simulation/untangle.hpp"
 #include "simulation/validation.hpp"
 
@@ -38,7 +40,9 @@ double default_thickness(const Deformable& deformable) {
         sum += double{stick.rest_length};
         ++count;
     }
-    return count == 0 ? 0 : sum / static_cast<double>(count) / 2;
+    if (count > 0) return sum / static_cast<double>(count) / 2;
+    if (deformable.tetrahedra.empty()) return 0;
+    return double{mean_edge_length(elements_of(deformable), deformable.positions)} / 2;
 }
 
 SimulationOptions with_thickness(SimulationOptions options, const Deformable& deformable) {
@@ -62,6 +66,7 @@ Deformable valid_start(Deformable deformable, const std::vector<Collider>& colli
                        const SimulationOptions& options) {
     require_valid(options);
     require_valid(deformable);
+    require_solver(deformable, options);
     require_valid(colliders, options);
     require_valid_attachments(deformable, colliders.size());
     if (options.untangle)
@@ -90,10 +95,11 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
       colliders(with_unit_rotations(std::move(colliders_in))), motions(colliders.size()),
       options(with_thickness(options_in, deformable)), largest_speed(std::numeric_limits<double>::infinity()),
       particles_(deformable), sticks_(weighted_sticks(deformable, options)),
-      folds_(weighted_folds(deformable, options)), attachments_(deformable, colliders),
-      deforming_(colliders.size()), surface_motions_(colliders.size()), clearances_(particles_.count()),
-      collisions_(colliders, particles_, options), rest_(options.rest, deformable.positions),
-      goals_give_way_(sticks_.gives_way()), substep_seconds_(options.time_step / options.substep_count) {
+      folds_(weighted_folds(deformable, options)), tetrahedra_(weighted_tetrahedra(deformable, options)),
+      attachments_(deformable, colliders), deforming_(colliders.size()), surface_motions_(colliders.size()),
+      clearances_(particles_.count()), collisions_(colliders, particles_, options),
+      rest_(options.rest, deformable.positions), goals_give_way_(sticks_.gives_way()),
+      substep_seconds_(options.time_step / options.substep_count) {
     if (options.surface_collision) {
         require_apart(deformable, colliders, options);
         surfaces_.emplace(deformable, colliders, particles_, options);
@@ -113,7 +119,7 @@ void Simulation::Solver::step() {
         integrate(substep == 0 ? 1 - options.drag : 1);
         if (substep == 0) look_ahead();
         move_colliders(substep);
-        restore_goals();
+        begin_constraints();
         for (std::uint32_t iteration = 0; iteration < options.iteration_count; ++iteration) {
             relax_constraints();
             relax_stretched_part();
@@ -181,11 +187,13 @@ void Simulation::Solver::move_colliders(std::uint32_t substep) {
 }
 
 /// Multipliers begin at 0 in each substep (Macklin et al. 2016, algorithm 1).
-void Simulation::Solver::restore_goals() {
+void Simulation::Solver::begin_constraints() {
     const Stopwatch stopwatch(profile.constraint_seconds);
     if (goals_give_way_)
         std::copy(sticks_.rest_lengths.begin(), sticks_.rest_lengths.end(), sticks_.goal_lengths.begin());
     folds_.restore_goals();
+    tetrahedra_.begin_substep();
+    damp(tetrahedra_, particles_.positions, particles_.previous);
 }
 
 void Simulation::Solver::relax_constraints() {
@@ -193,6 +201,7 @@ void Simulation::Solver::relax_constraints() {
     if (meter_) meter_->note(particles_);
     relax(folds_, particles_.positions);
     relax(sticks_, particles_.positions);
+    relax(tetrahedra_, particles_.positions, particles_.previous);
     if (meter_) meter_->charge_holder(particles_);
 }
 

@@ -11,6 +11,7 @@
 #include "simulation/sticks.hpp"
 #include "simulation/stretched_part.hpp"
 #include "simulation/surfaces/surface_collision.hpp"
+#include "simulation/tetrahedra.hpp"
 #include "simulation/wind.hpp"
 
 #include <echinus/simulation.hpp>
@@ -56,7 +57,7 @@ class Simulation::Solver {
     void begin_collisions();
     void look_ahead();
     void move_colliders(std::uint32_t substep);
-    void restore_goals();
+    void begin_constraints();
     void relax_constraints();
     void collide();
     void relax_stretched_part();
@@ -67,6 +68,7 @@ class Simulation::Solver {
     Particles particles_;
     StickArrays sticks_;
     FoldArrays folds_;
+    TetrahedronArrays tetrahedra_;
     Attachments attachments_;
     std::vector<std::optional<DeformingCollider>> deforming_; ///< by collider; none where it never deformed
     std::vector<const SurfaceMotion*> surface_motions_;       ///< by collider, in this frame

@@ -90,6 +90,22 @@ void require_valid(const Fold& fold, std::size_t particle_count, const std::stri
         fail(name + " has a rest angle that is not between -pi and pi, or a lever that is not positive");
 }
 
+void require_valid(const ElasticTetrahedron& tetrahedron, std::size_t particle_count,
+                   const std::string& name) {
+    std::array corners = tetrahedron.particles;
+    std::sort(corners.begin(), corners.end());
+    if (corners.back() >= particle_count ||
+        std::adjacent_find(corners.begin(), corners.end()) != corners.end())
+        fail(name + " needs four different particles of " + std::to_string(particle_count));
+    const auto is_in = [](float value, float least) { return value >= least && std::isfinite(value); };
+    const auto& gradients = tetrahedron.gradients;
+    if (!std::all_of(gradients.begin(), gradients.end(), [](const Vec3f& v) { return is_finite(v); }) ||
+        !(tetrahedron.volume > 0) || !(tetrahedron.mu > 0) || !is_in(tetrahedron.volume, 0) ||
+        !is_in(tetrahedron.mu, 0) || !is_in(tetrahedron.lambda, 0) || !is_in(tetrahedron.damping, 0))
+        fail(name +
+             " has a rest shape, a stiffness or a damping out of range; make_soft_body() computes them");
+}
+
 } // namespace
 
 void require_valid(const Deformable& deformable) {
@@ -117,11 +133,19 @@ void require_valid(const Deformable& deformable) {
     }
     for (std::size_t i = 0; i < deformable.folds.size(); ++i)
         require_valid(deformable.folds[i], count, "fold " + std::to_string(i));
+    for (std::size_t i = 0; i < deformable.tetrahedra.size(); ++i)
+        require_valid(deformable.tetrahedra[i], count, "tetrahedron " + std::to_string(i));
     for (std::size_t i = 0; i < deformable.faces.size(); ++i)
         for (const std::uint32_t particle : deformable.faces[i])
             if (particle >= count)
                 fail("face " + std::to_string(i) + " names particle " + std::to_string(particle) +
                      "; the last one is " + std::to_string(count - 1));
+}
+
+void require_solver(const Deformable& deformable, const SimulationOptions& options) {
+    if (!deformable.tetrahedra.empty() && options.solver != SolverKind::Xpbd)
+        fail("the deformable has tetrahedra, which need the solver Xpbd; set simulation option solver, and "
+             "substep_count to 10 or more with an iteration_count of 1");
 }
 
 void require_valid_attachments(const Deformable& deformable, std::size_t collider_count) {

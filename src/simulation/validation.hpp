@@ -17,6 +17,7 @@ inline std::string name_of(const Collider& collider, std::size_t number) {
 
 void require_valid(const SimulationOptions& options);
 void require_valid(const Deformable& deformable);
+void require_solver(const Deformable& deformable, const SimulationOptions& options);
 void require_valid(const std::vector<Collider>& colliders, const SimulationOptions& options);
 /// @pre the deformable is valid
 void require_valid_attachments(const Deformable& deformable, std::size_t collider_count);

@@ -220,7 +220,7 @@ TEST(Folds, OfAMeshStandInLongRunsWithoutACommonParticle) {
     const Deformable cloth = rumpled_cloth(60, 60);
     const FoldArrays folds = weighted_folds(cloth, {});
     std::size_t next = 0;
-    for (const FoldRun& run : folds.runs) {
+    for (const ConstraintRun& run : folds.runs) {
         EXPECT_EQ(run.first, next);
         next += run.count;
         std::set<std::uint32_t> particles;

@@ -5,6 +5,7 @@
 #include "input.hpp"
 
 #include <echinus/error.hpp>
+#include <echinus/exact_map.hpp>
 #include <echinus/mesh_io.hpp>
 
 #include <string>
@@ -96,14 +97,34 @@ TriangleMesh load_model(const SceneCollider& collider, const fs::path& scene_pat
     return mesh;
 }
 
-ClothMeshes load_cloth(const Scene& scene, const fs::path& scene_path, const std::vector<fs::path>& folders) {
+namespace {
+
+/// Fills the surface of a file. Generated shapes are filled where the deformable is made.
+TetrahedralMesh load_body(const SceneBody& body, const fs::path& scene_path,
+                          const std::vector<fs::path>& folders) {
+    const std::optional<fs::path> file = model_file(body.mesh, scene_path, folders);
+    if (!file) return {};
+    return naming_file(file->string(), ErrorCode::InvalidMesh, [&] {
+        const ExactMap map = ExactMap::build(read_mesh(*file));
+        return tetrahedralize(map.view(), {.size = body.element}).mesh;
+    });
+}
+
+} // namespace
+
+ClothMeshes load_meshes(const Scene& scene, const fs::path& scene_path,
+                        const std::vector<fs::path>& folders) {
     const auto read = [&](const std::optional<SceneModel>& model) {
         const std::optional<fs::path> file = model ? model_file(*model, scene_path, folders) : std::nullopt;
         return file ? read_mesh_and_edges(*file) : MeshAndEdges{};
     };
-    if (!scene.mesh_cloth) return {};
-    MeshAndEdges start = read(scene.mesh_cloth->mesh);
-    return {.mesh = std::move(start.mesh),
-            .rest_mesh = read(scene.mesh_cloth->rest_mesh).mesh,
-            .threads = std::move(start.edges)};
+    ClothMeshes meshes;
+    if (scene.has_cloth && scene.mesh_cloth) {
+        MeshAndEdges start = read(scene.mesh_cloth->mesh);
+        meshes = {.mesh = std::move(start.mesh),
+                  .rest_mesh = read(scene.mesh_cloth->rest_mesh).mesh,
+                  .threads = std::move(start.edges)};
+    }
+    for (const SceneBody& body : scene.bodies) meshes.bodies.push_back(load_body(body, scene_path, folders));
+    return meshes;
 }

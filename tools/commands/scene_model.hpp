@@ -29,10 +29,10 @@ echinus::TriangleMesh load_model(const echinus::SceneCollider& collider,
                                  const std::filesystem::path& scene_path,
                                  const std::optional<std::filesystem::path>& file, bool may_be_open);
 
-/// Reads the meshes of a scene's cloth that come from files.
+/// Reads the meshes of a scene's cloth and bodies that come from files, and fills the bodies' surfaces.
 /// @throws echinus::Error as read_mesh() does
-echinus::ClothMeshes load_cloth(const echinus::Scene& scene, const std::filesystem::path& scene_path,
-                                const std::vector<std::filesystem::path>& folders);
+echinus::ClothMeshes load_meshes(const echinus::Scene& scene, const std::filesystem::path& scene_path,
+                                 const std::vector<std::filesystem::path>& folders);
 
 /// The name of the model's file without folders, or of the generated shape.
 std::string model_name(const echinus::SceneModel& model);

@@ -182,7 +182,7 @@ void open(Results& results, const SimulateArguments& arguments, const Scene& sce
           const ClothMeshes& cloth) {
     if (!arguments.target.empty()) results.folder.emplace(arguments.target, arguments.obj);
     if (!arguments.page.empty()) {
-        const auto make = [&] { return make_cloth(scene, cloth); };
+        const auto make = [&] { return make_deformable(scene, cloth); };
         require_playable(made_as_scene_says(arguments.scene, "cloth", make).particle_count(),
                          scene.frame_limit, page_stride(arguments, scene));
         results.page.emplace(arguments.page, arguments.player);
@@ -230,7 +230,7 @@ void simulate(const SimulateArguments& arguments) {
     // A page takes its frames from all, and so its last is the end; a folder's last must be one that is
     // saved.
     const std::uint32_t stride = arguments.target.empty() ? 1 : arguments.stride.value_or(1);
-    const ClothMeshes cloth = load_cloth(scene, arguments.scene, arguments.model_folders);
+    const ClothMeshes cloth = load_meshes(scene, arguments.scene, arguments.model_folders);
     Results results;
     open(results, arguments, scene, cloth);
 

@@ -61,9 +61,10 @@ void list_around(std::size_t vertex_count, Elements& elements) {
 } // namespace
 
 Elements::Elements(std::size_t vertex_count, std::span<const Triangle> faces,
-                   std::span<const Edge> loose_edges) {
+                   std::span<const Edge> loose_edges, const std::vector<bool>& inner) {
     std::vector<EdgeUse> uses;
-    std::vector<bool> used(vertex_count, false);
+    std::vector<bool> used = inner;
+    used.resize(vertex_count, false);
     for (const Triangle& face : faces) {
         const auto number = static_cast<std::uint32_t>(all.size());
         all.push_back({.vertices = {face[0], face[1], face[2]}});
@@ -92,7 +93,10 @@ Elements elements_of(const Deformable& deformable) {
     std::vector<Edge> threads;
     for (const Stick& stick : deformable.sticks)
         if (stick.kind == StickKind::Structural) threads.push_back({stick.a, stick.b});
-    return {deformable.particle_count(), deformable.faces, threads};
+    std::vector<bool> inner(deformable.particle_count(), false);
+    for (const ElasticTetrahedron& tetrahedron : deformable.tetrahedra)
+        for (const std::uint32_t i : tetrahedron.particles) inner[i] = true;
+    return {deformable.particle_count(), deformable.faces, threads, inner};
 }
 
 } // namespace echinus

@@ -40,7 +40,9 @@ struct Elements {
 
     Elements() = default;
     /// @param loose_edges  those that are edges of faces do not count twice
-    Elements(std::size_t vertex_count, std::span<const Triangle> faces, std::span<const Edge> loose_edges);
+    /// @param inner  [vertex_count] or none: vertices that need no element
+    Elements(std::size_t vertex_count, std::span<const Triangle> faces, std::span<const Edge> loose_edges,
+             const std::vector<bool>& inner = {});
 
     std::size_t vertex_count() const { return around_offsets.size() - 1; }
     std::span<const std::uint32_t> at(std::size_t vertex) const {
@@ -49,7 +51,8 @@ struct Elements {
     }
 };
 
-/// Its faces, and the structural sticks that are no edges of faces: threads.
+/// Its faces, and the structural sticks that are no edges of faces: threads. Particles inside a soft body
+/// have none.
 Elements elements_of(const Deformable& deformable);
 
 } // namespace echinus

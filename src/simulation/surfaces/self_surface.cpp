@@ -53,24 +53,49 @@ std::vector<Element> edges_of(const Elements& elements) {
     return edges;
 }
 
-std::vector<Element> vertices_of(const Elements& elements) {
-    std::vector<Element> vertices;
+/// Particles inside a soft body have no element.
+std::vector<std::uint32_t> surface_of(const Elements& elements) {
+    std::vector<std::uint32_t> surface;
     for (std::uint32_t v = 0; v < elements.vertex_count(); ++v)
-        vertices.push_back({.vertices = {v, v, v}, .vertex_count = 1});
+        if (!elements.at(v).empty()) surface.push_back(v);
+    return surface;
+}
+
+std::vector<Element> vertices_of(const std::vector<std::uint32_t>& surface) {
+    std::vector<Element> vertices;
+    for (const std::uint32_t v : surface) vertices.push_back({.vertices = {v, v, v}, .vertex_count = 1});
     return vertices;
+}
+
+/// Of its corners over the faces opposite them.
+float least_height(const ElasticTetrahedron& tetrahedron, const PointArrays& positions) {
+    const auto corner = [&](std::size_t k) { return positions[tetrahedron.particles[k]]; };
+    const float six_volumes =
+        std::fabs(dot(cross(corner(1) - corner(0), corner(2) - corner(0)), corner(3) - corner(0)));
+    float twice_area = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Vec3f a = corner((k + 1) % 4);
+        twice_area = std::max(twice_area, length(cross(corner((k + 2) % 4) - a, corner((k + 3) % 4) - a)));
+    }
+    return twice_area > 0 ? six_volumes / twice_area : 0;
 }
 
 } // namespace
 
-SelfSurface::SelfSurface(std::shared_ptr<const Elements> own, const Particles& particles, const Reach& reach,
-                         float thickness, float friction)
-    : own_(std::move(own)), faces_(faces_of(*own_)), edges_(edges_of(*own_)), vertices_(vertices_of(*own_)),
-      reach_(reach), thickness_(thickness), friction_(friction), mobility_(particles.mobility) {
+SelfSurface::SelfSurface(std::shared_ptr<const Elements> own, std::span<const ElasticTetrahedron> tetrahedra,
+                         const Particles& particles, const Reach& reach, float thickness, float friction)
+    : own_(std::move(own)), faces_(faces_of(*own_)), edges_(edges_of(*own_)), surface_(surface_of(*own_)),
+      vertices_(vertices_of(surface_)), reach_(reach), thickness_(thickness), friction_(friction),
+      mobility_(particles.mobility) {
     const std::size_t count = own_->vertex_count();
     most_.assign(count, kInfinity);
     for (const Element& element : own_->all) {
         const float most = kMostOfHeight * least_height(element, particles.positions);
         for (const std::uint32_t v : element.vertices) most_[v] = std::min(most_[v], most);
+    }
+    for (const ElasticTetrahedron& tetrahedron : tetrahedra) {
+        const float most = kMostOfHeight * least_height(tetrahedron, particles.positions);
+        for (const std::uint32_t v : tetrahedron.particles) most_[v] = std::min(most_[v], most);
     }
     for (PointArrays* points : {&starts_, &goals_, &bases_, &anchors_, &expected_, &speeds_, &from_, &to_})
         points->resize(count);
@@ -133,7 +158,7 @@ bool SelfSurface::all_within(std::span<const float> radii) const {
         const Vec3f way = place - anchors_[v];
         return dot(way, way) <= radii[v] * std::fabs(radii[v]);
     };
-    for (std::size_t v = 0; v < own_->vertex_count(); ++v)
+    for (const std::uint32_t v : surface_)
         if (!is_within(starts_[v], v) || !is_within(goals_[v] - drifting_, v)) return false;
     return true;
 }
@@ -176,7 +201,7 @@ void SelfSurface::expect(std::uint32_t v) {
 /// Which pairs are listed depends on what is expected of each vertex.
 void SelfSurface::list_pairs() {
     std::size_t moved_count = 0;
-    for (std::uint32_t v = 0; v < own_->vertex_count(); ++v) {
+    for (const std::uint32_t v : surface_) {
         has_moved_[v] = is_elsewhere(v) ? 1 : 0;
         if (has_moved_[v] == 0) continue;
         ++moved_count;
@@ -198,7 +223,7 @@ void SelfSurface::set_window() {
     has_window_ = is_first_pass_;
     if (is_new) first_frame_ = frame_number_;
     if (frame_number_ > last_frame_) last_frame_ = frame_number_ + frames_to_list() - 1;
-    for (std::uint32_t v = 0; v < own_->vertex_count(); ++v) {
+    for (const std::uint32_t v : surface_) {
         if (!is_new && has_moved_[v] == 0) continue;
         from_.set(v, is_first_pass_ ? expected_in(v, first_frame_) : expected(v, false));
         to_.set(v, is_first_pass_ ? expected_in(v, last_frame_ + 1) : expected(v, true));
@@ -206,22 +231,21 @@ void SelfSurface::set_window() {
     const auto has_changed = [&](const Element& element) { return is_new || has_moved(element); };
     face_tree_.want([&](std::uint32_t f) { return has_changed(faces_[f]); });
     edge_tree_.want([&](std::uint32_t e) { return has_changed(edges_[e]); });
-    vertex_tree_.want([&](std::uint32_t v) { return is_new || has_moved_[v] != 0; });
+    vertex_tree_.want([&](std::uint32_t i) { return is_new || has_moved_[surface_[i]] != 0; });
     face_tree_.refit(faces_, from_, to_);
     edge_tree_.refit(edges_, from_, to_);
     vertex_tree_.refit(vertices_, from_, to_);
     if (!is_new) return;
     face_tree_.want([&](std::uint32_t f) { return has_moved(faces_[f]); });
     edge_tree_.want([&](std::uint32_t e) { return has_moved(edges_[e]); });
-    vertex_tree_.want([&](std::uint32_t v) { return has_moved_[v] != 0; });
+    vertex_tree_.want([&](std::uint32_t i) { return has_moved_[surface_[i]] != 0; });
 }
 
 std::uint32_t SelfSurface::frames_to_list() const {
     double way = 0;
-    for (std::size_t v = 0; v < own_->vertex_count(); ++v)
+    for (const std::uint32_t v : surface_)
         way += static_cast<double>(length(goals_[v] - drifting_ - starts_[v]));
-    const double most =
-        static_cast<double>(kMostWay * reach_.near) * static_cast<double>(own_->vertex_count());
+    const double most = static_cast<double>(kMostWay * reach_.near) * static_cast<double>(surface_.size());
     return way * kMostFrames < most ? kMostFrames : std::max(1U, static_cast<std::uint32_t>(most / way));
 }
 
@@ -240,11 +264,11 @@ void SelfSurface::search() {
     const float reach = reach_.near + 2 * reach_.slack;
     near_.clear();
     find_near(vertex_tree_, face_tree_, reach, near_);
-    for (const auto& [vertex, face] : near_) add_vertex_face(vertex, face);
+    for (const auto& [i, face] : near_) add_vertex_face(surface_[i], face);
     near_.clear();
     find_near(face_tree_, vertex_tree_, reach, near_);
-    for (const auto& [face, vertex] : near_)
-        if (has_moved_[vertex] == 0) add_vertex_face(vertex, face);
+    for (const auto& [face, i] : near_)
+        if (has_moved_[surface_[i]] == 0) add_vertex_face(surface_[i], face);
     near_.clear();
     find_near(edge_tree_, edge_tree_, reach, near_);
     for (const auto& [a, b] : near_) add_edge_edge(a, b);

@@ -35,9 +35,10 @@ class SelfSurface {
         float least_gap; ///< no motion takes a pair nearer than this
     };
 
+    /// @param tetrahedra  of which the two sides may lie as near to each other as they are flat
     /// @param thickness  that layers keep from each other, as far as the faces are large enough for it
-    SelfSurface(std::shared_ptr<const Elements> own, const Particles& particles, const Reach& reach,
-                float thickness, float friction);
+    SelfSurface(std::shared_ptr<const Elements> own, std::span<const ElasticTetrahedron> tetrahedra,
+                const Particles& particles, const Reach& reach, float thickness, float friction);
 
     /// Keeps pairs so far apart from now on.
     void keep_gap(float least_gap);
@@ -89,11 +90,13 @@ class SelfSurface {
     Vec3f place_at_share(std::uint32_t vertex) const;
 
     std::shared_ptr<const Elements> own_;
-    std::vector<Element> faces_, edges_, vertices_; ///< each as elements of their own
+    std::vector<Element> faces_, edges_; ///< each as elements of their own
+    std::vector<std::uint32_t> surface_; ///< the vertices that have elements
+    std::vector<Element> vertices_;      ///< these as elements
     MovingTree face_tree_, edge_tree_, vertex_tree_;
     Reach reach_;
     float thickness_, friction_;
-    std::vector<float> most_;     ///< by vertex: the most thickness that the elements around it allow
+    std::vector<float> most_;     ///< by vertex: the most thickness that what is around it allows
     std::vector<float> mobility_; ///< by vertex: 1, or 0 for one that is pinned
     // The frame
     FrameChange now_{RigidTransform{}, {1, 1, 1}};

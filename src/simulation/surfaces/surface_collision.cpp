@@ -84,8 +84,9 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
                      kMostSelfThickness * edge_length);
         const float near = std::max(kSelfReach * thickness, kLeastSelfReach * edge_length);
         extents_.push_back(largest_coordinate(particles.positions));
-        self_.emplace(elements_, particles, SelfSurface::Reach{near, near / 4, least_gap(extents_.back())},
-                      thickness, static_cast<float>(options.friction));
+        self_.emplace(elements_, deformable.tetrahedra, particles,
+                      SelfSurface::Reach{near, near / 4, least_gap(extents_.back())}, thickness,
+                      static_cast<float>(options.friction));
     }
     leaving_.reserve(particles.count());
     stopped_by_.assign(particles.count(), kNone);

@@ -1,0 +1,88 @@
+// The relaxation of tetrahedra: a plain loop, and a kernel that takes as many tetrahedra of a run at once as
+// the instruction set has lanes.
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "simulation/relax_tetrahedra.cpp"
+#include <hwy/foreach_target.h>
+
+// After foreach_target.h, which includes this file once for each instruction set.
+#include "simd/dispatch.hpp"
+#include "simulation/tetrahedra-inl.hpp"
+#include "simulation/tetrahedra.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace echinus {
+namespace HWY_NAMESPACE {
+
+template <typename Kind>
+HWY_INLINE void relax_at(std::size_t i, TetrahedronArrays& all, PointArrays& positions,
+                         const PointArrays& previous) {
+    Tetrahedra<Kind> now(all, i, positions, previous);
+    auto shape = Kind::load(all.shape_multipliers, i), volume = Kind::load(all.volume_multipliers, i);
+    now.relax_shape(Kind::load(all.shape_stiffnesses, i), shape);
+    now.relax_volume(Kind::load(all.volume_stiffnesses, i), volume);
+    now.store(all, i, positions);
+    if (!all.keeps_multipliers) return;
+    Kind::store(shape, all.shape_multipliers, i);
+    Kind::store(volume, all.volume_multipliers, i);
+}
+
+template <typename Kind>
+HWY_INLINE void damp_at(std::size_t i, const TetrahedronArrays& all, PointArrays& positions,
+                        const PointArrays& previous) {
+    Tetrahedra<Kind> now(all, i, positions, previous);
+    now.damp(Kind::load(all.viscosities, i));
+    now.store(all, i, positions);
+}
+
+/// As many of the run as fill whole vectors. @return how many
+std::size_t relax_tetrahedron_run(const ConstraintRun& run, TetrahedronArrays& all, PointArrays& positions,
+                                  const PointArrays& previous) {
+    const std::size_t lanes = hn::Lanes(kFloat);
+    std::size_t i = 0;
+    for (; i + lanes <= run.count; i += lanes) relax_at<InLanes>(run.first + i, all, positions, previous);
+    return i;
+}
+std::size_t damp_tetrahedron_run(const ConstraintRun& run, const TetrahedronArrays& all,
+                                 PointArrays& positions, const PointArrays& previous) {
+    const std::size_t lanes = hn::Lanes(kFloat);
+    std::size_t i = 0;
+    for (; i + lanes <= run.count; i += lanes) damp_at<InLanes>(run.first + i, all, positions, previous);
+    return i;
+}
+
+} // namespace HWY_NAMESPACE
+} // namespace echinus
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace echinus {
+
+namespace {
+
+HWY_EXPORT(relax_tetrahedron_run);
+HWY_EXPORT(damp_tetrahedron_run);
+
+} // namespace
+
+void damp(const TetrahedronArrays& all, PointArrays& positions, const PointArrays& previous) noexcept {
+    if (!all.is_viscous) return;
+    for (const ConstraintRun& run : all.runs) {
+        const std::size_t done =
+            use_kernels() ? ECHINUS_DISPATCH(damp_tetrahedron_run)(run, all, positions, previous) : 0;
+        for (std::size_t i = done; i < run.count; ++i)
+            HWY_NAMESPACE::damp_at<HWY_NAMESPACE::OneByOne>(run.first + i, all, positions, previous);
+    }
+}
+
+void relax(TetrahedronArrays& all, PointArrays& positions, const PointArrays& previous) noexcept {
+    for (const ConstraintRun& run : all.runs) {
+        const std::size_t done =
+            use_kernels() ? ECHINUS_DISPATCH(relax_tetrahedron_run)(run, all, positions, previous) : 0;
+        for (std::size_t i = done; i < run.count; ++i)
+            HWY_NAMESPACE::relax_at<HWY_NAMESPACE::OneByOne>(run.first + i, all, positions, previous);
+    }
+}
+
+} // namespace echinus
+#endif // HWY_ONCE

@@ -1,0 +1,167 @@
+// Soft bodies: how they are made, and that their surfaces collide as those of cloth do.
+
+#include "support/expect_error.hpp"
+#include "support/random_points.hpp"
+#include "support/soft_bodies.hpp"
+#include "support/surface_judge.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+using namespace echinus;
+
+namespace {
+
+constexpr double kThickness = 0.004;
+
+SimulationOptions with_surfaces() {
+    return {.solver = SolverKind::Xpbd,
+            .iteration_count = 1,
+            .substep_count = 10,
+            .thickness = kThickness,
+            .surface_collision = true,
+            .self_collision = true};
+}
+
+Deformable cube(std::uint32_t segments, const SoftBodyOptions& options) {
+    return make_soft_body(make_solid_box({0.2, 0.2, 0.2}, {segments, segments, segments}), options);
+}
+
+std::size_t corner_count(const Deformable& body) {
+    std::set<std::uint32_t> corners;
+    for (const Triangle& face : body.faces) corners.insert(face.begin(), face.end());
+    return corners.size();
+}
+
+} // namespace
+
+TEST(SoftBody, WeighsItsVolumeTimesItsDensity) {
+    const Deformable body =
+        make_soft_body(make_solid_box({1, 2, 3}, {3, 4, 5}), {.density = 900, .scale = 0.1});
+    double mass = 0, volume = 0;
+    for (const float inverse_mass : body.inverse_masses) mass += 1 / double{inverse_mass};
+    for (const ElasticTetrahedron& tetrahedron : body.tetrahedra) volume += double{tetrahedron.volume};
+    EXPECT_NEAR(volume, 0.006, 1e-8);
+    EXPECT_NEAR(mass, 5.4, 1e-5);
+}
+
+TEST(SoftBody, HasTheBoundaryOfItsMeshAsFacesAndStandsWhereItIsPut) {
+    const TetrahedralMesh mesh = make_solid_box({1, 1, 1}, {2, 3, 4});
+    const RigidTransform pose{Rotation::about({1, 2, 3}, 0.7), {4, 5, 6}};
+    const Deformable body = make_soft_body(mesh, {.pose = pose, .scale = 2});
+    EXPECT_EQ(body.faces, boundary(mesh).faces);
+    EXPECT_EQ(body.tetrahedra.size(), mesh.tetrahedra.size());
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+        EXPECT_EQ(body.positions[i], Vec3f(pose.to_world(Vec3d(mesh.vertices[i]) * 2)));
+    for (const ElasticTetrahedron& tetrahedron : body.tetrahedra)
+        EXPECT_NEAR(test::volume_ratio(tetrahedron, body.positions), 1, 1e-5);
+}
+
+TEST(SoftBody, IsCombinedWithOthersAndWithCloth) {
+    const Deformable body = cube(2, {.pins = {3}});
+    const Deformable cloth =
+        with_masses_times(0.25, make_cloth({.column_count = 4, .row_count = 5, .pins = {7}}));
+    const std::vector<Deformable> parts{cloth, body, body};
+    const Deformable all = combine(parts);
+    const std::uint32_t count = 27;
+    ASSERT_EQ(all.particle_count(), 20u + 2 * count);
+    EXPECT_EQ(all.faces.size(), cloth.faces.size() + 2 * body.faces.size());
+    EXPECT_EQ(all.sticks.size(), cloth.sticks.size());
+    EXPECT_EQ(all.inverse_masses[0], 4);
+    EXPECT_EQ(all.inverse_masses[7], 0);
+    EXPECT_EQ(all.inverse_masses[20 + 3], 0);
+    EXPECT_EQ(all.inverse_masses[20 + count], body.inverse_masses[0]);
+    for (std::size_t i = 0; i < body.tetrahedra.size(); ++i)
+        for (std::size_t k = 0; k < 4; ++k)
+            EXPECT_EQ(all.tetrahedra[body.tetrahedra.size() + i].particles[k],
+                      20 + count + body.tetrahedra[i].particles[k]);
+    EXPECT_EQ(all.faces.back()[0], body.faces.back()[0] + 20 + count);
+}
+
+TEST(SoftBody, OfImpossibleMeshesAndOptionsIsRefused) {
+    const TetrahedralMesh box = make_solid_box({1, 1, 1}, {1, 1, 1});
+    const auto expect_refused = [&](const char* words, const SoftBodyOptions& options) {
+        test::expect_error(ErrorCode::InvalidOptions, words, [&] { make_soft_body(box, options); });
+    };
+    expect_refused("density is -1", {.density = -1});
+    expect_refused("young_modulus is nan", {.young_modulus = std::nan("")});
+    expect_refused("poisson_ratio is 0.5", {.poisson_ratio = 0.5});
+    expect_refused("damping is -1", {.damping = -1});
+    expect_refused("scale is 0", {.scale = 0});
+    expect_refused("a pin of the soft body names vertex 8", {.pins = {8}});
+    expect_refused("an attachment of the soft body names vertex 9", {.attachments = {{9, 0}}});
+    expect_refused("vertex 3 of the soft body is both pinned", {.pins = {3}, .attachments = {{3, 0}}});
+
+    const auto expect_mesh_refused = [](const char* words, const TetrahedralMesh& mesh) {
+        test::expect_error(ErrorCode::InvalidMesh, words, [&] { make_soft_body(mesh, {}); });
+    };
+    TetrahedralMesh inverted = box;
+    std::swap(inverted.tetrahedra[2][0], inverted.tetrahedra[2][1]);
+    expect_mesh_refused("tetrahedron 2 has a negative volume", inverted);
+    TetrahedralMesh unused = box;
+    unused.vertices.push_back({5, 5, 5});
+    expect_mesh_refused("vertex 8 of the soft body belongs to no tetrahedron", unused);
+    TetrahedralMesh infinite = box;
+    infinite.vertices[0].x = std::numeric_limits<float>::infinity();
+    expect_mesh_refused("not finite", infinite);
+    expect_mesh_refused("no tetrahedra", {});
+    test::expect_error(ErrorCode::InvalidOptions, "masses are to be multiplied by 0",
+                       [&] { with_masses_times(0, make_soft_body(box, {})); });
+}
+
+TEST(SoftBody, NeedsXpbdAndFittingTetrahedra) {
+    const Deformable body = cube(1, {});
+    test::expect_error(ErrorCode::InvalidOptions, "need the solver Xpbd", [&] { Simulation(body, {}, {}); });
+    Deformable wrong = body;
+    wrong.tetrahedra[3].particles[1] = 8;
+    test::expect_error(ErrorCode::InvalidOptions, "tetrahedron 3 needs four different particles of 8",
+                       [&] { Simulation(wrong, {}, {.solver = SolverKind::Xpbd}); });
+    wrong = body;
+    wrong.tetrahedra[1].mu = 0;
+    test::expect_error(ErrorCode::InvalidOptions, "tetrahedron 1 has a rest shape",
+                       [&] { Simulation(wrong, {}, {.solver = SolverKind::Xpbd}); });
+}
+
+TEST(SoftBody, IsNotMovedByItsOwnThickness) {
+    // One element thick, and much thinner than the distance that layers keep.
+    const Deformable sheet =
+        make_soft_body(make_solid_box({0.4, 0.4, 0.004}, {20, 20, 1}), {.young_modulus = 1e4});
+    SimulationOptions options = with_surfaces();
+    options.gravity = {};
+    options.thickness = options.self_thickness = 0.02;
+    Simulation simulation(sheet, {}, options);
+    for (int frame = 0; frame < 20; ++frame) simulation.step();
+    for (std::size_t i = 0; i < sheet.particle_count(); ++i)
+        EXPECT_LT(length(simulation.positions()[i] - sheet.positions[i]), 1e-5F);
+}
+
+TEST(SoftBody, FallsOnABallAndNoFaceMeetsAnotherInAnyFrame) {
+    const std::vector<TriangleMesh> models{make_sphere(0.15, 24, 12)};
+    const Deformable body = cube(
+        5, {.young_modulus = 5e3, .damping = 0.02, .pose = {Rotation::about({1, 1, 0}, 0.5), {0, 0, 0.4}}});
+    ASSERT_LT(corner_count(body), body.particle_count());
+    Simulation simulation(body, test::colliders_of(models), with_surfaces());
+    test::expect_nothing_meets(simulation, models, 240);
+    EXPECT_EQ(simulation.profile().lost_count, 0u);
+    EXPECT_GT(test::least_volume_ratio(body, simulation.positions()), 0.1);
+}
+
+TEST(SoftBody, CollidesWithAnotherAndWithClothAsWithItself) {
+    const std::vector<TriangleMesh> models{make_box({1, 1, 0.1})};
+    const auto at = [](double height, double young) {
+        return cube(3, {.young_modulus = young, .damping = 0.05, .pose = {{}, {0, 0, height}}});
+    };
+    const Deformable cloth = with_masses_times(
+        0.001,
+        make_cloth(
+            {.column_count = 15, .row_count = 15, .width = 0.4, .height = 0.4, .pose = {{}, {0, 0, 0.45}}}));
+    const std::vector<Deformable> parts{at(0.16, 2e4), at(0.7, 8e3), cloth};
+    Simulation simulation(combine(parts), test::colliders_of(models), with_surfaces());
+    test::expect_nothing_meets(simulation, models, 200);
+    // The upper body lies on the cloth, and the cloth on the lower body.
+    const float lower = simulation.positions()[0].z, upper = simulation.positions()[64].z;
+    EXPECT_GT(upper - lower, 0.12F);
+}

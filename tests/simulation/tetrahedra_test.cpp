@@ -1,0 +1,179 @@
+// Tetrahedra: what their relaxation promises for any shape they are in.
+
+#include "simulation/tetrahedra.hpp"
+#include "support/instruction_sets.hpp"
+#include "support/random_points.hpp"
+#include "support/soft_bodies.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+using namespace echinus;
+
+namespace {
+
+SimulationOptions weightless(std::uint32_t substep_count = 10) {
+    return {.solver = SolverKind::Xpbd,
+            .iteration_count = 1,
+            .substep_count = substep_count,
+            .gravity = {},
+            .drag = 0};
+}
+
+Deformable cube(std::uint32_t segments, const SoftBodyOptions& options = {}) {
+    return make_soft_body(make_solid_box({0.2, 0.2, 0.2}, {segments, segments, segments}), options);
+}
+
+void shake(Deformable& body, test::Random& random, float distance) {
+    for (Vec3f& p : body.positions) p += test::in_cube(random, distance);
+    body.previous_positions = body.positions;
+}
+
+struct Momentum {
+    Vec3d linear, angular;
+    double of_all = 0; ///< sum of the particles' linear ones, whatever their directions
+};
+
+/// Angular about the origin.
+Momentum momentum(const Simulation& simulation) {
+    const Deformable& body = simulation.deformable();
+    const double substep = simulation.options().time_step / simulation.options().substep_count;
+    Momentum sum;
+    for (std::size_t i = 0; i < body.particle_count(); ++i) {
+        const Vec3d position(body.positions[i]);
+        const Vec3d impulse =
+            (position - Vec3d(body.previous_positions[i])) * (1 / (substep * double{body.inverse_masses[i]}));
+        sum.linear += impulse;
+        sum.of_all += length(impulse);
+        sum.angular += cross(position, impulse);
+    }
+    return sum;
+}
+
+} // namespace
+
+TEST(Tetrahedra, RelaxToTheSameBitsUnderEachInstructionSetInAnyShape) {
+    test::Random random(3);
+    for (const float distance : {0.0F, 0.001F, 0.02F, 0.2F})
+        for (const std::uint32_t iterations : {1U, 3U}) {
+            Deformable body = cube(4, {.damping = 0.1, .pins = {0, 1, 7}});
+            shake(body, random, distance);
+            for (Vec3f& p : body.previous_positions) p += test::in_cube(random, 0.01F);
+            SimulationOptions options = weightless();
+            options.iteration_count = iterations;
+            std::vector<std::uint64_t> hashes;
+            test::under_each_instruction_set([&](std::string_view) {
+                Simulation simulation(body, {}, options);
+                for (int i = 0; i < 5; ++i) simulation.step();
+                hashes.push_back(simulation.state_hash());
+            });
+            EXPECT_EQ(std::set(hashes.begin(), hashes.end()).size(), 1u) << distance;
+        }
+}
+
+TEST(Tetrahedra, AreRelaxedInRunsWithoutACommonParticle) {
+    const Deformable body = cube(5);
+    const TetrahedronArrays all = weighted_tetrahedra(body, weightless());
+    ASSERT_EQ(all.count(), body.tetrahedra.size());
+    EXPECT_LT(all.runs.size(), 70u);
+    for (const ConstraintRun& run : all.runs) {
+        std::set<std::uint32_t> particles;
+        for (std::size_t i = run.first; i < run.first + run.count; ++i)
+            for (const auto& of_corner : all.particles) EXPECT_TRUE(particles.insert(of_corner[i]).second);
+    }
+}
+
+TEST(Tetrahedra, StayAtRestWhereverTheyStandHoweverTheyAreTurned) {
+    test::Random random(5);
+    for (int i = 0; i < 10; ++i) {
+        const Rotation turn = Rotation::about(Vec3d(test::unit_vector(random)), 3 * i);
+        Deformable body = cube(3, {.young_modulus = 1e5, .pose = {turn, Vec3d(test::in_cube(random, 0.5F))}});
+        Simulation simulation(body, {}, weightless());
+        for (int frame = 0; frame < 100; ++frame) simulation.step();
+        for (std::size_t p = 0; p < body.particle_count(); ++p)
+            EXPECT_LT(length(simulation.positions()[p] - body.positions[p]), 2e-6F);
+    }
+}
+
+TEST(Tetrahedra, ReturnToTheirShapeFromAnyOtherAlsoInsideOutOrFlat) {
+    test::Random random(7);
+    for (const double poisson : {0.0, 0.3, 0.45, 0.49})
+        for (const double young : {1e3, 1e5, 1e8})
+            for (const float distance : {0.02F, 0.1F, 0.3F}) {
+                Deformable body =
+                    cube(3, {.young_modulus = young, .poisson_ratio = poisson, .damping = 0.01});
+                if (distance == 0.3F)
+                    for (Vec3f& p : body.positions) p.z = 0; // flat as a sheet, and then shaken
+                shake(body, random, distance == 0.3F ? 0.001F : distance);
+                ASSERT_LT(test::least_volume_ratio(body, body.positions), distance > 0.05F ? 0.0 : 0.5);
+                SimulationOptions options = weightless();
+                options.drag = 0.02;
+                Simulation simulation(body, {}, options);
+                for (int frame = 0; frame < 1500; ++frame) simulation.step();
+                EXPECT_GT(test::least_volume_ratio(body, simulation.positions()), 0.98)
+                    << "Poisson " << poisson << ", Young " << young << ", distance " << distance;
+                EXPECT_LT(test::energy(simulation), 1e-3 * young * 0.008);
+            }
+}
+
+TEST(Tetrahedra, NeverGainEnergyWithoutALoad) {
+    for (const double poisson : {0.0, 0.3, 0.49})
+        for (const double young : {1e3, 1e5, 1e7})
+            for (const double damping : {0.0, 0.02}) {
+                test::Random random(11);
+                Deformable body =
+                    cube(4, {.young_modulus = young, .poisson_ratio = poisson, .damping = damping});
+                shake(body, random, 0.005F);
+                Simulation simulation(body, {}, weightless());
+                const double start = test::energy(simulation);
+                for (int frame = 0; frame < 400; ++frame) {
+                    simulation.step();
+                    ASSERT_LE(test::energy(simulation), 1.001 * start)
+                        << "frame " << frame << ", Poisson " << poisson << ", Young " << young;
+                }
+            }
+}
+
+TEST(Tetrahedra, KeepTheMomentumOfAFreeBodyThatTurnsAndTrembles) {
+    test::Random random(13);
+    Deformable body = cube(4, {.young_modulus = 1e4});
+    shake(body, random, 0.003F);
+    const SimulationOptions options = weightless();
+    const double substep = options.time_step / options.substep_count;
+    for (std::size_t i = 0; i < body.particle_count(); ++i) {
+        const Vec3d velocity = cross(Vec3d{1, 2, 8}, Vec3d(body.positions[i])) + Vec3d{0.1, 0.05, 0.02};
+        body.previous_positions[i] = Vec3f(Vec3d(body.positions[i]) - velocity * substep);
+    }
+    Simulation simulation(body, {}, options);
+    const Momentum start = momentum(simulation);
+    for (int frame = 0; frame < 240; ++frame) {
+        simulation.step();
+        const Momentum now = momentum(simulation);
+        ASSERT_LT(length(now.linear - start.linear), 2e-3 * start.of_all) << "frame " << frame;
+        ASSERT_LT(length(now.angular - start.angular), 2e-3 * length(start.angular)) << "frame " << frame;
+    }
+}
+
+TEST(Tetrahedra, AreDampedWithoutBeingHeldUp) {
+    // A body that only turns and moves does not strain, so viscosity does not slow it.
+    const auto left_of = [](double damping, bool trembles) {
+        test::Random random(17);
+        Deformable body = cube(3, {.young_modulus = 1e5, .damping = damping});
+        if (trembles) shake(body, random, 0.005F);
+        const SimulationOptions options = weightless();
+        const double substep = options.time_step / options.substep_count;
+        if (!trembles)
+            for (std::size_t i = 0; i < body.particle_count(); ++i)
+                body.previous_positions[i] -=
+                    Vec3f(cross(Vec3d{0, 0, 3}, Vec3d(body.positions[i])) * substep);
+        Simulation simulation(body, {}, options);
+        const double start = test::energy(simulation);
+        for (int frame = 0; frame < 48; ++frame) simulation.step();
+        return test::energy(simulation) / start;
+    };
+    EXPECT_LT(left_of(0.05, true), 0.2 * left_of(0, true));
+    EXPECT_GT(left_of(0.05, false), 0.97);
+}
