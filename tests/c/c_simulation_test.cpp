@@ -272,14 +272,14 @@ TEST(CSimulations, CanOnlyBeReadOnceTheyDiverged) {
 TEST(CDeformables, GoThroughTheirArraysUnchanged) {
     const TriangleMesh sheet{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.2F}, {2, 1, 0}},
                              {{0, 1, 2}, {2, 1, 3}, {1, 4, 3}}};
-    MeshClothOptions expected_options{.scale = 2, .pins = {0}, .attachments = {{.particle = 0}}};
+    MeshClothOptions expected_options{.scale = 2, .pins = {1}, .attachments = {{.particle = 0}}};
     expected_options.rest_vertices = sheet.vertices;
     expected_options.rest_vertices[3].z = 0;
     CMesh mesh;
     expect_ok(echinus_mesh_create(&sheet.vertices.data()->x, 5, 0, sheet.faces.data()->data(), 3, out(mesh)));
     echinus_mesh_cloth_options options;
     echinus_mesh_cloth_options_init(&options, sizeof options);
-    const std::uint32_t pins[1] = {0};
+    const std::uint32_t pins[1] = {1};
     const echinus_attachment attachments[1] = {{.particle = 0, .collider = 0}};
     options.scale = 2;
     options.rest_vertices = &expected_options.rest_vertices.data()->x;
