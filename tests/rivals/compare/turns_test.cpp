@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <thread>
 #include <vector>
 
 using namespace echinus::comparison;
@@ -38,6 +39,20 @@ TEST(Turns, EndForWhoTookLongEnough) {
     options.enough_seconds = 0;
     (void)take_turns({{slow, {{0, 10}}}}, options);
     EXPECT_EQ(calls, 2); // a warm-up of nothing and one turn
+}
+
+TEST(Turns, CountTheThreadsOfARacerWhereAsked) {
+    const auto delegating = [](Part) {
+        std::thread([] {
+            volatile double sum = 0;
+            for (int i = 0; i < 3'000'000; ++i) sum = sum + i;
+        }).join();
+    };
+    TurnOptions options;
+    options.passes = 1;
+    const double alone = take_turns({{delegating, {{0, 1}}}}, options)[0].ns;
+    options.all_threads = true;
+    EXPECT_GT(take_turns({{delegating, {{0, 1}}}}, options)[0].ns, alone);
 }
 
 TEST(Turns, HaveTheMedianOfTheirPasses) {

@@ -3,6 +3,7 @@
 #include "support/mesh_assembly.hpp"
 #include "support/random_points.hpp"
 
+#include <echinus/error.hpp>
 #include <echinus/exact_map.hpp>
 
 #include <gtest/gtest.h>
@@ -53,6 +54,16 @@ TEST(EmbreeTree, FindsTheNearestPointThatTheExactMapFinds) {
             ASSERT_LT(static_cast<std::size_t>(face), mesh.faces.size());
         }
     }
+}
+
+TEST(EmbreeTree, TakesAnOpenMeshOnlyByItsOwnFunction) {
+    const TriangleMesh face{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}}}; // seen from behind from below
+    EXPECT_THROW((void)EmbreeTree::build(face), Error);
+    const EmbreeTree tree = EmbreeTree::build_open(face, RaySides::FirstHit);
+    EXPECT_TRUE(tree.contains({0, 0, -0.1F}));
+    EXPECT_FALSE(tree.contains({0, 0, 0.1F}));
+    EXPECT_FLOAT_EQ(tree.nearest({0, 0, 2}).distance, 2);
+    EXPECT_THROW((void)EmbreeTree::build_open({}), Error);
 }
 
 TEST(EmbreeTree, FindsTheNearestPointOfABoxByItsFormula) {
