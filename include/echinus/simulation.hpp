@@ -380,7 +380,7 @@ class Simulation {
     /// contacts, friction, rescue and truncation gave to particles, with the opposite sign. Also what sticks
     /// and folds pull at particles that are attached to it, provided that all pinned particles are. Before
     /// the first frame 0. A host that moves a rigid body by it and then the collider by the body exchanges
-    /// momentum with the deformable (examples/07_load).
+    /// momentum with the deformable (examples/08_load).
     /// @pre collider_index < colliders().size(), and options().measure_loads
     Load load_on(std::size_t collider_index) const;
 
