@@ -135,6 +135,7 @@ TEST(CSimulations, TakeEveryOption) {
     fall.options.rest_frame_count = 7;
     fall.options.surface_collision = fall.options.self_collision = 1;
     fall.options.untangle = 1;
+    fall.options.measure_loads = 1;
     fall.options.self_thickness = 0.015;
     fall.by_cpp_options = {.solver = SolverKind::Xpbd,
                            .time_step = 1.0 / 120,
@@ -150,6 +151,7 @@ TEST(CSimulations, TakeEveryOption) {
                            .self_collision = true,
                            .self_thickness = 0.015,
                            .untangle = true,
+                           .measure_loads = true,
                            .bound = 50};
     const CSimulation simulation = fall.make(c_small_sheet());
     Simulation by_cpp = fall.make_by_cpp(make_cloth(small_sheet()));
@@ -237,6 +239,39 @@ TEST(CSimulations, AreSteeredAsInCpp) {
     expect_refused(echinus_simulation_blow(simulation.get(), Numbers(wind), -1), ECHINUS_INVALID_ARGUMENT,
                    "rate");
     expect_same_state(simulation, by_cpp);
+}
+
+TEST(CSimulations, LeadCollidersToPosesAndTellTheirLoadsAsInCpp) {
+    Fall fall;
+    fall.options.measure_loads = 1;
+    fall.by_cpp_options.measure_loads = true;
+    const CSimulation simulation = fall.make(c_small_sheet());
+    Simulation by_cpp = fall.make_by_cpp(make_cloth(small_sheet()));
+    echinus_pose pose{.rotation = {1, 0, 0, 0}, .translation = {0, 0, 0}};
+    double force[3], torque[3];
+    for (int i = 1; i <= 30; ++i) {
+        pose.translation[2] = 0.01 * i;
+        expect_ok(echinus_simulation_set_collider_pose(simulation.get(), 0, &pose));
+        by_cpp.set_collider_pose(0, {{}, {0, 0, pose.translation[2]}});
+        step(simulation.get(), 1);
+        step(by_cpp, 1);
+        expect_ok(echinus_simulation_load_on(simulation.get(), 0, force, torque));
+        const Load load = by_cpp.load_on(0);
+        EXPECT_EQ((Vec3d{force[0], force[1], force[2]}), load.force);
+        EXPECT_EQ((Vec3d{torque[0], torque[1], torque[2]}), load.torque);
+    }
+    expect_same_state(simulation, by_cpp);
+    EXPECT_LT(force[2], 0) << "it lifts the sheet";
+
+    pose.rotation[0] = 2;
+    expect_refused(echinus_simulation_set_collider_pose(simulation.get(), 0, &pose), ECHINUS_INVALID_ARGUMENT,
+                   "pose");
+    expect_refused(echinus_simulation_load_on(simulation.get(), 1, force, torque), ECHINUS_INVALID_ARGUMENT,
+                   "there is no collider 1");
+    fall.options.measure_loads = 0;
+    const CSimulation unmeasured = fall.make(c_small_sheet());
+    expect_refused(echinus_simulation_load_on(unmeasured.get(), 0, force, torque), ECHINUS_INVALID_ARGUMENT,
+                   "without options.measure_loads");
 }
 
 TEST(CSimulations, OfACopyGoTheirOwnWay) {

@@ -11,7 +11,7 @@
 
 namespace echinus::c {
 
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_options, reserved);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_options, measure_loads);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_profile, squeezed_count);
 static_assert(ECHINUS_SOLVER_XPBD == static_cast<int>(SolverKind::Xpbd));
 
@@ -29,7 +29,7 @@ echinus_simulation_options as_c(const SimulationOptions& options) {
     // All members: one that is added does not compile until it has a place here.
     const auto& [solver, time_step, iteration_count, substep_count, gravity, drag, stiffness, compliance,
                  thickness, friction, rest, keep_free, allow_open_colliders, surface_collision,
-                 self_collision, self_thickness, untangle, bound] = options;
+                 self_collision, self_thickness, untangle, measure_loads, bound] = options;
     echinus_simulation_options result{};
     result.time_step = time_step;
     result.solver = static_cast<echinus_solver>(solver);
@@ -51,6 +51,7 @@ echinus_simulation_options as_c(const SimulationOptions& options) {
     result.surface_collision = surface_collision ? 1 : 0;
     result.self_collision = self_collision ? 1 : 0;
     result.untangle = untangle ? 1 : 0;
+    result.measure_loads = measure_loads ? 1 : 0;
     return result;
 }
 
@@ -76,6 +77,7 @@ SimulationOptions options_from(const echinus_simulation_options* options) {
             .self_collision = given.self_collision != 0,
             .self_thickness = thickness_from(given.self_thickness),
             .untangle = given.untangle != 0,
+            .measure_loads = given.measure_loads != 0,
             .bound = given.bound};
 }
 
@@ -230,6 +232,27 @@ echinus_status echinus_simulation_set_collider_velocity(echinus_simulation* simu
         require_index(index, running.colliders().size(), "collider");
         running.set_collider_velocity(index, finite_vector_at(linear, "linear"),
                                       finite_vector_at(angular, "angular"));
+    });
+}
+
+echinus_status echinus_simulation_set_collider_pose(echinus_simulation* simulation, size_t index,
+                                                    const echinus_pose* pose) {
+    return guarded(__func__, [&] {
+        Simulation& running = running_at(simulation);
+        require_index(index, running.colliders().size(), "collider");
+        running.set_collider_pose(index, checked_pose(at(pose, "pose"), "pose"));
+    });
+}
+
+echinus_status echinus_simulation_load_on(const echinus_simulation* simulation, size_t index, double* force,
+                                          double* torque) {
+    return guarded(__func__, [&] {
+        const Simulation& measured = simulation_at(simulation);
+        require_index(index, measured.colliders().size(), "collider");
+        require(measured.options().measure_loads, "the simulation was made without options.measure_loads");
+        const Load load = measured.load_on(index);
+        put_vector(load.force, &at(force, "force"));
+        put_vector(load.torque, &at(torque, "torque"));
     });
 }
 

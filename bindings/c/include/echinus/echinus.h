@@ -766,7 +766,7 @@ typedef struct echinus_simulation_options {
     int32_t surface_collision; ///< edges and faces collide too
     int32_t self_collision;    ///< faces of the deformable do not meet each other either
     int32_t untangle;          ///< with surface_collision: part what begins intersecting
-    int32_t reserved;          ///< 0
+    int32_t measure_loads;     ///< keep account for echinus_simulation_load_on()
 } echinus_simulation_options;
 
 ECHINUS_API void echinus_simulation_options_init(echinus_simulation_options* options, size_t size);
@@ -848,6 +848,19 @@ ECHINUS_API echinus_status echinus_simulation_read_collider(const echinus_simula
 ECHINUS_API echinus_status echinus_simulation_set_collider_velocity(echinus_simulation* simulation,
                                                                     size_t index, const double* linear,
                                                                     const double* angular);
+
+/// The next frame leads the collider to this pose, evenly and the shorter way round, and leaves it there.
+/// Until the next call it stands still.
+ECHINUS_API echinus_status echinus_simulation_set_collider_pose(echinus_simulation* simulation, size_t index,
+                                                                const echinus_pose* pose);
+
+/// What the deformable put on a collider in the last frame, as its mean over the frame, with masses in the
+/// unit in which inverse masses are their inverses; 0 before the first.
+/// @param force   [3] out
+/// @param torque  [3] out, about where the pose's translation was when the frame began
+/// @return ECHINUS_INVALID_ARGUMENT also without options.measure_loads
+ECHINUS_API echinus_status echinus_simulation_load_on(const echinus_simulation* simulation, size_t index,
+                                                      double* force, double* torque);
 
 /// Gives a particle a velocity, from which the next frame goes on. A pinned particle stays.
 /// @param velocity  [3] finite, units per second
