@@ -412,7 +412,8 @@ TEST(CScenesOfTheRepository, AreSimulatedAsInCpp) {
     expect_ok(echinus_simulation_from_scene(scene.get(), nullptr, 0, 1, out(simulation)));
     const Scene by_cpp = read_scene(kScene);
     EXPECT_EQ(echinus_scene_frame_limit(scene.get()), by_cpp.frame_limit);
-    const TriangleMesh model = repair(make_mesh(std::get<TorusModel>(by_cpp.model)), by_cpp.repair).mesh;
+    const SceneCollider& collider = by_cpp.colliders.front();
+    const TriangleMesh model = repair(make_mesh(std::get<TorusModel>(collider.model)), collider.repair).mesh;
     Simulation expected = make_simulation(by_cpp, build_map(model, by_cpp.map));
     step(simulation.get(), 10);
     step(expected, 10);

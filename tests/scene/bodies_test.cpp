@@ -59,7 +59,7 @@ TEST(SceneBodies, FollowTheClothWhoseDensityIsThenGiven) {
     const Scene scene = scene_with(R"("cloth": {"size": [2, 1], "particles": [4, 3], "density": 0.2},
         "bodies": [{"mesh": "ball.off", "element": 1, "position": [0, 0, 3]}, {"mesh": {"box": {}}, "element": 1}])");
     const TetrahedralMesh ball = make_solid_box({1, 1, 1}, {1, 1, 1});
-    const Deformable all = make_deformable(scene, {.bodies = {ball, {}}});
+    const Deformable all = make_deformable(scene, {.mesh = {}, .rest_mesh = {}, .bodies = {ball, {}}});
     ASSERT_EQ(all.particle_count(), 12u + 8 + 8);
     EXPECT_NEAR(mass_of(all, 0, 12), 0.4, 1e-6);
     EXPECT_NEAR(mass_of(all, 12, 8), 1000, 1e-3);

@@ -76,6 +76,7 @@ std::string dotted(const json::json_pointer& pointer) {
 TEST(Scene, SaysHowItsModelBecomesSolid) {
     const auto with = [](const std::string& keys) {
         return parse_scene(R"({"model": "car.obj", "cloth": {"size": [1, 1]}, )" + keys + "}", "a.json")
+            .colliders.front()
             .repair;
     };
     const RepairOptions options =
