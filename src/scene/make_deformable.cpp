@@ -50,10 +50,11 @@ double area_of(const Deformable& deformable) {
 
 Deformable cloth_of(const Scene& scene, const ClothMeshes& meshes) {
     Deformable cloth = make_cloth(scene, meshes);
-    if (scene.cloth_density)
-        cloth = with_masses_times(*scene.cloth_density * area_of(cloth) /
-                                      static_cast<double>(cloth.particle_count()),
-                                  std::move(cloth));
+    if (scene.cloth_density) {
+        const double factor =
+            *scene.cloth_density * area_of(cloth) / static_cast<double>(cloth.particle_count());
+        cloth = with_masses_times(factor, std::move(cloth));
+    }
     set_velocity(scene.cloth_velocity, scene.simulation, cloth);
     return cloth;
 }

@@ -33,7 +33,7 @@ bool is_file(const fs::path& path) {
 } // namespace
 
 fs::path find_model(const ModelFile& model, std::span<const fs::path> folders) {
-    return find(model.name, folders, "the model ", is_file);
+    return find(model.name, folders, "the mesh ", is_file);
 }
 
 fs::path find_cache(const CacheFile& cache, std::span<const fs::path> folders) {

@@ -525,7 +525,7 @@ TEST(Scene, RefusesKeyframesThatMakeNoSense) {
 }
 
 TEST(Scene, HasSeveralCollidersEachWithItsModelAndMotion) {
-    const Scene scene = parse_scene(R"({"cloth": {"size": [1, 1]}, "colliders": [
+    const Scene scene = parse_scene(R"({"cloth": {"size": [1, 1], "position": [0, 0, 2]}, "colliders": [
         {"model": {"sphere": {"radius": 0.5}}, "linear_velocity": [0, 0, 1]},
         {"model": {"box": {}}, "position": [0, 0, -3], "scale": [1, 2, 3]}]})",
                                     "a.json");

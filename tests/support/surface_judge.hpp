@@ -57,7 +57,8 @@ inline void expect_nothing_meets(Simulation& simulation, const std::vector<Trian
         simulation.step();
         const std::vector<FacePair> pairs = meeting_faces(simulation, models);
         ASSERT_EQ(pairs.size(), 0u) << "in frame " << simulation.frame() << ", first faces " << pairs[0].a
-                                    << " and " << pairs[0].b;
+                                    << " and " << pairs[0].b << "; squeezed "
+                                    << simulation.profile().squeezed_count << " times";
     }
     EXPECT_EQ(simulation.profile().squeezed_count, 0u);
     EXPECT_GT(simulation.profile().contact_count, 0u);
