@@ -32,7 +32,9 @@ constexpr std::array<std::array<std::uint8_t, 4>, 5> kCuboid{
 
 TetrahedralMesh make_solid_box(const Vec3d& size, const std::array<std::uint32_t, 3>& segments) {
     require_possible(size, segments);
-    const auto& [nx, ny, nz] = segments;
+    const std::array<std::uint32_t, 3> n = segments;
+    const std::uint32_t nx = n[0], ny = n[1],
+                        nz = n[2]; // captured by Clang, which structured bindings are not
     TetrahedralMesh box;
     for (std::uint32_t k = 0; k <= nz; ++k)
         for (std::uint32_t j = 0; j <= ny; ++j)
