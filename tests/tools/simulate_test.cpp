@@ -191,6 +191,15 @@ TEST_F(SimulateCommand, LetsAThreadAndAKiteOnAThreadFall) {
     }
 }
 
+TEST_F(SimulateCommand, SavesTheSurfaceOfASoftBodyAlone) {
+    write("scene.json", R"({"model": {"box": {}}, "frame_limit": 10,
+        "bodies": [{"mesh": {"box": {"size": [0.3, 0.3, 0.3]}}, "element": 0.1, "position": [0, 0, 0.8]}]})");
+    EXPECT_EQ(simulate("scene.json").at("particles"), 4 * 4 * 4);
+    EXPECT_EQ(content("run/cloth.pc2").size(), 32 + 11 * (64 - 8) * 12u);
+    expect_success(
+        {"render", "moment", "run", "--samples", "1", "--width", "60", "--height", "40", "-o", "p.png"});
+}
+
 TEST_F(SimulateCommand, NamesTheModelThatAClothBeginsIn) {
     write("scene.json", R"({"model": {"box": {}}, "cloth": {"size": [2, 2], "particles": [5, 5]}})");
     expect_failure(1, "scene.json: \"cloth\": the deformable begins intersecting the box in",

@@ -59,8 +59,8 @@ class ResultFolder {
     /// @param colliders  must outlive this
     void begin(const Deformable& cloth, const LoadedColliders& colliders, std::uint32_t stride) {
         colliders_ = &colliders;
-        threads_ = threads_of(cloth);
-        write_mesh_and_edges(folder_.path_of("cloth.obj"), drawn(cloth));
+        surface_.emplace(cloth);
+        write_mesh_and_edges(folder_.path_of("cloth.obj"), surface_->mesh(cloth.positions));
         for (std::size_t c = 0; c < colliders.maps.size(); ++c) {
             const TriangleMesh mesh = colliders.mesh_at(c, 0);
             write_mesh(folder_.path_of(collider_file(c)), mesh);
@@ -72,17 +72,17 @@ class ResultFolder {
         if (obj_) {
             fs::create_directory(folder_.path_of(kFramesName));
         } else {
-            cache_.emplace(folder_.path_of(kCacheName), cloth.particle_count(), stride);
+            cache_.emplace(folder_.path_of(kCacheName), surface_->vertex_count(), stride);
         }
     }
     void add(const Simulation& simulation) {
         const double seconds = simulation.frame() * simulation.options().time_step;
         for (std::size_t c = 0; c < collider_caches_.size(); ++c)
             if (collider_caches_[c]) collider_caches_[c]->add(colliders_->mesh_at(c, seconds).vertices);
-        if (cache_) return cache_->add(simulation.positions());
-        const Deformable& cloth = simulation.deformable();
-        write_mesh_and_edges(
-            folder_.path_of(kFramesName) / fmt::format("cloth_{:06}.obj", simulation.frame()), drawn(cloth));
+        if (cache_) return cache_->add(surface_->vertices(simulation.positions()));
+        write_mesh_and_edges(folder_.path_of(kFramesName) /
+                                 fmt::format("cloth_{:06}.obj", simulation.frame()),
+                             surface_->mesh(simulation.positions()));
     }
     void commit(const Json& report) {
         if (cache_) cache_->commit();
@@ -94,11 +94,9 @@ class ResultFolder {
     }
 
   private:
-    MeshAndEdges drawn(const Deformable& cloth) const { return {{cloth.positions, cloth.faces}, threads_}; }
-
     OutputFolder folder_;
     bool obj_;
-    std::vector<std::array<std::uint32_t, 2>> threads_;
+    std::optional<VisibleSurface> surface_;
     std::optional<PointCacheWriter> cache_;
     const LoadedColliders* colliders_ = nullptr;
     std::vector<std::unique_ptr<PointCacheWriter>> collider_caches_; ///< null where it does not deform

@@ -63,6 +63,35 @@ std::vector<Triangle> surface_of(const Deformable& cloth) {
     return surface_of(MeshAndEdges{{{}, cloth.faces}, threads_of(cloth)});
 }
 
+VisibleSurface::VisibleSurface(const Deformable& deformable)
+    : faces_(deformable.faces), threads_(threads_of(deformable)) {
+    std::vector<std::uint32_t> vertex_of(deformable.particle_count());
+    for (const Triangle& face : faces_)
+        for (const std::uint32_t particle : face) vertex_of[particle] = 1;
+    for (const auto& thread : threads_)
+        for (const std::uint32_t particle : thread) vertex_of[particle] = 1;
+    for (std::uint32_t particle = 0; particle < vertex_of.size(); ++particle) {
+        if (vertex_of[particle] == 0) continue;
+        vertex_of[particle] = static_cast<std::uint32_t>(particles_.size());
+        particles_.push_back(particle);
+    }
+    for (Triangle& face : faces_)
+        for (std::uint32_t& corner : face) corner = vertex_of[corner];
+    for (auto& thread : threads_)
+        for (std::uint32_t& end : thread) end = vertex_of[end];
+}
+
+std::vector<Vec3f> VisibleSurface::vertices(std::span<const Vec3f> positions) const {
+    std::vector<Vec3f> result;
+    result.reserve(particles_.size());
+    for (const std::uint32_t particle : particles_) result.push_back(positions[particle]);
+    return result;
+}
+
+MeshAndEdges VisibleSurface::mesh(std::span<const Vec3f> positions) const {
+    return {{vertices(positions), faces_}, threads_};
+}
+
 TriangleMesh with_tubes(const MeshAndEdges& cloth) {
     TriangleMesh drawn = cloth.mesh;
     const auto end = [&](std::uint32_t vertex) { return cloth.mesh.vertices[vertex]; };

@@ -4,7 +4,9 @@
 #include <echinus/simulation.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 /// Threads of a cloth: edges without faces. Among faces a piece of thread is { a, b, b }, a face without
@@ -16,6 +18,23 @@ std::vector<std::array<std::uint32_t, 2>> threads_of(const echinus::Deformable& 
 /// The faces of a cloth, and after them its threads.
 std::vector<echinus::Triangle> surface_of(const echinus::Deformable& cloth);
 std::vector<echinus::Triangle> surface_of(const echinus::MeshAndEdges& cloth);
+
+/// What files hold of a deformable: its faces, its threads, and the particles that they use. Those inside a
+/// soft body are left out; the others keep their order.
+class VisibleSurface {
+  public:
+    explicit VisibleSurface(const echinus::Deformable& deformable);
+
+    std::size_t vertex_count() const { return particles_.size(); }
+    /// @param positions  [particle_count]
+    std::vector<echinus::Vec3f> vertices(std::span<const echinus::Vec3f> positions) const;
+    echinus::MeshAndEdges mesh(std::span<const echinus::Vec3f> positions) const;
+
+  private:
+    std::vector<std::uint32_t> particles_; ///< by vertex
+    std::vector<echinus::Triangle> faces_;
+    std::vector<std::array<std::uint32_t, 2>> threads_;
+};
 
 /// To draw: the mesh, and a tube of kTubeFaces faces along each thread, in their order, three tenths as thick
 /// as the threads' pieces are long.
