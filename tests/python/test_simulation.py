@@ -162,8 +162,6 @@ def test_an_error_in_a_scene_names_the_key():
     with pytest.raises(ech.Error, match='there is no key "cloth.thicknes"') as raised:
         ech.Simulation.from_scene({**SHEET, "cloth": {"size": [1, 1], "thicknes": 1}})
     assert raised.value.code == "invalid_scene"
-    with pytest.raises(TypeError, match="from_scene"):
-        ech.Simulation()
 
 
 def test_models_hands_and_wind_move_what_they_should():

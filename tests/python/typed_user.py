@@ -33,5 +33,21 @@ def run(scene: dict[str, Any]) -> list[NDArray[np.float32]]:
     return frames
 
 
+def drop(path: str) -> list[ech.Load]:
+    organ = ech.read_tetrahedra(path).mesh
+    assert_type(organ.tetrahedra, NDArray[np.uint32])
+    filled = ech.tetrahedralize(ech.ExactMap(ech.boundary(organ)), count=1000).mesh
+    body = ech.make_soft_body(filled, young_modulus=5e3, pins=np.arange(3), position=np.zeros(3).tolist())
+    table = ech.Collider(ech.ExactMap(ech.make_box()), position=(0, 0, -1), scale=2)
+    both = ech.combine([body, ech.with_masses_times(0.1, ech.make_cloth(position=[0, 0, 1]))])
+    simulation = ech.Simulation(both, [table, table], measure_loads=True, solver="xpbd")
+    simulation.set_collider_keyframes(0, [ech.PoseKey(1, (0, 0, 0), ech.rotation_about((0, 0, 1), 1))])
+    simulation.set_collider_cache(1, ech.VertexCache(np.zeros((2, 8, 3)), 0.1))
+    assert_type(ech.embed(filled, organ.vertices).carry(simulation.positions), NDArray[np.float32])
+    return [simulation.load_on(0), simulation.load_on(1)]
+
+
+ech.Simulation(ech.make_cloth(), solver="jacobi")  # type: ignore[arg-type]
+ech.Collider(ech.make_torus())  # type: ignore[arg-type]
 ech.ExactMap(ech.make_torus(), rule="odd")  # type: ignore[arg-type]
 ech.ExactMap(3)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Maps of rigid meshes: which points are inside, how deep, and the way out; and cloth that collides with them.
+"""Maps of meshes: which points are inside, how deep, and the way out; and cloth and soft bodies that collide with them.
 
 All points are in the frame and the unit of the mesh. Arrays of points have the shape ``(..., 3)``, answers
 the shape ``(...)``. An array of type float32 whose points have their three coordinates side by side is read
@@ -10,6 +10,17 @@ its sentence; arrays of a wrong shape or type raise ``ValueError`` or ``TypeErro
 
 from echinus._core import available_instruction_sets, instruction_set, use_instruction_set
 from echinus._core import version as __version__
+from echinus._colliders import (
+    Collider,
+    ColliderState,
+    Load,
+    PoseKey,
+    VertexCache,
+    pose_at,
+    read_vertex_cache,
+    rotation_about,
+)
+from echinus._deformables import Deformable, combine, make_cloth, make_cloth_of_mesh, make_soft_body, with_masses_times
 from echinus._errors import Error, ErrorCode
 from echinus._maps import (
     AnyMap,
@@ -41,43 +52,88 @@ from echinus._meshes import (
     winding_number,
     write_mesh,
 )
-from echinus._simulation import ColliderState, Simulation, SimulationOptions, SimulationProfile
+from echinus._simulation import Simulation, SimulationOptions, SimulationProfile
+from echinus._tetrahedra import (
+    BoundaryDistance,
+    Embedding,
+    TetrahedraFile,
+    Tetrahedralization,
+    TetrahedralMesh,
+    TetrahedralReport,
+    boundary,
+    embed,
+    inspect_tetrahedra,
+    make_solid_box,
+    measure_distance,
+    read_tetrahedra,
+    require_valid_tetrahedra,
+    tetrahedralize,
+    write_tetrahedra,
+)
 
 __all__ = [
     "AnyMap",
+    "BoundaryDistance",
+    "Collider",
     "ColliderState",
     "Contacts",
+    "Deformable",
     "DistanceMap",
     "DistanceMapStatistics",
+    "Embedding",
     "Error",
     "ErrorCode",
     "ExactMap",
     "ExactMapStatistics",
     "Fault",
+    "Load",
     "Mesh",
     "MeshLike",
     "MeshReport",
+    "PoseKey",
     "RepairReport",
     "Simulation",
     "SimulationOptions",
     "SimulationProfile",
     "SweepHits",
+    "TetrahedraFile",
+    "TetrahedralMesh",
+    "TetrahedralReport",
+    "Tetrahedralization",
+    "VertexCache",
     "__version__",
     "as_mesh",
     "available_instruction_sets",
+    "boundary",
+    "combine",
+    "embed",
     "inspect",
+    "inspect_tetrahedra",
     "instruction_set",
     "intersecting_pairs",
     "load",
     "make_box",
+    "make_cloth",
+    "make_cloth_of_mesh",
+    "make_soft_body",
+    "make_solid_box",
     "make_sphere",
     "make_torus",
+    "measure_distance",
+    "pose_at",
     "read_mesh",
+    "read_tetrahedra",
+    "read_vertex_cache",
     "repair",
+    "require_valid_tetrahedra",
+    "rotation_about",
     "self_intersecting_pairs",
+    "tetrahedralize",
     "unsigned_distance",
     "use_instruction_set",
     "weld",
     "winding_number",
+    "with_masses_times",
     "write_mesh",
+    "write_tetrahedra",
 ]

@@ -50,8 +50,8 @@ class Mesh:
     faces: NDArray[np.uint32]
 
     def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None:
-        self.vertices = _read_only(_core.vertex_array(vertices))
-        self.faces = _read_only(_core.face_array(faces))
+        self.vertices = read_only(_core.vertex_array(vertices))
+        self.faces = read_only(_core.face_array(faces))
 
     def __repr__(self) -> str:
         return f"<echinus.Mesh: {len(self.vertices)} vertices, {len(self.faces)} faces>"
@@ -60,7 +60,7 @@ class Mesh:
         return Mesh, (self.vertices, self.faces)
 
 
-def _read_only(array: NDArray[Any]) -> NDArray[Any]:
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
     view = array.view(np.ndarray)
     view.flags.writeable = False
     return view
@@ -158,8 +158,11 @@ def inspect(mesh: MeshLike) -> MeshReport:
     Error
         ``invalid_mesh`` when there is no face, an index is out of range, or a used vertex is not finite.
     """
-    report = _core.inspect(*arrays_of(mesh))
-    return MeshReport(**{key: Fault(**value) if isinstance(value, dict) else value for key, value in report.items()})
+    return report_of(_core.inspect(*arrays_of(mesh)))
+
+
+def report_of(values: dict[str, Any]) -> MeshReport:
+    return MeshReport(**{key: Fault(**value) if isinstance(value, dict) else value for key, value in values.items()})
 
 
 def weld(mesh: MeshLike) -> Mesh:

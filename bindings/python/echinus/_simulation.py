@@ -1,4 +1,4 @@
-"""Cloth among rigid models."""
+"""Cloth and soft bodies among models."""
 
 from __future__ import annotations
 
@@ -9,22 +9,24 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from echinus import _core
+from echinus._colliders import Collider, ColliderState, Load, PoseKey, Vector, VertexCache, quaternion_of, vector_of
+from echinus._deformables import Deformable
 from echinus._errors import Error
 from echinus._maps import AnyMap, DistanceMap, ExactMap
 from echinus._meshes import Mesh, MeshLike, Path, arrays_of, inspect, read_mesh
 
-Vector = tuple[float, float, float]
-
 #: Vertices and faces, and the edges that no face has.
 _Drawn = tuple["_core.Arrays | None", list[tuple[int, int]]]
+#: In place of a collider's model.
+_Model = MeshLike | AnyMap | None
 
 
 @dataclass(frozen=True)
 class SimulationOptions:
-    """The options of a simulation that are in force; docs/scenes.md describes them."""
+    """The options of a simulation that are in force; :class:`Simulation` describes them."""
 
     solver: Literal["verlet", "xpbd"]
     time_step: float
@@ -39,6 +41,14 @@ class SimulationOptions:
     self_collision: bool
     untangle: bool
     allow_open_colliders: bool
+    stiffness: Vector
+    compliance: Vector
+    rest_distance: float
+    rest_speed: float
+    rest_frame_count: int
+    keep_free: bool
+    measure_loads: bool
+    bound: float
 
 
 @dataclass(frozen=True)
@@ -77,43 +87,128 @@ class SimulationProfile:
     squeezed_count: int
 
 
-@dataclass(frozen=True)
-class ColliderState:
-    """Where a rigid model is now: point_world = position + rotation * (scale * point_local).
-
-    Attributes
-    ----------
-    rotation
-        Unit quaternion w, x, y, z.
-    linear_velocity, angular_velocity
-        Units per second, and radians per second about the position.
-    """
-
-    position: Vector
-    rotation: tuple[float, float, float, float]
-    scale: Vector
-    linear_velocity: Vector
-    angular_velocity: Vector
-
-
 class Simulation:
-    """Cloth that falls on a rigid model; :meth:`from_scene` makes one.
+    """A deformable that moves among colliders; :meth:`from_scene` makes one of a scene.
 
-    The same scene gives the same positions, bit for bit. Several threads may call; one at a time computes.
+    The same input gives the same positions, bit for bit. Several threads may call; one at a time computes.
+
+    Parameters
+    ----------
+    deformable
+        Copied.
+    colliders
+        Any number, each with its own place and motion.
+    solver
+        ``"verlet"``: each relaxation of a stick removes a share of its error. ``"xpbd"``: sticks are springs, and
+        the only one for soft bodies. By default ``"xpbd"`` where there are tetrahedra.
+    time_step
+        Seconds per frame.
+    iteration_count, substep_count
+        Relaxations per substep, and substeps per frame: by default 10 and 1, with ``"xpbd"`` 1 and 10.
+    gravity
+        Units per second squared.
+    drag
+        Share of the velocity that is lost per frame, 0 to 1.
+    stiffness
+        Of structural, shear and bending sticks, with ``"verlet"``: 0 to 1.99.
+    compliance
+        The same with ``"xpbd"``: how far a stick gives per unit of force.
+    thickness, self_thickness
+        Distance that particles keep from colliders, and layers from each other; None: chosen by the library.
+    friction
+        Coulomb's coefficient.
+    rest_distance, rest_speed, rest_frame_count
+        At rest, no particle was farther than this from one place, or faster, for so many frames.
+    keep_free
+        Rescue particles that would pass through an exact map.
+    allow_open_colliders
+        Accept exact maps of open meshes, for which nothing is promised. Surface collision needs no such permission.
+    surface_collision
+        Edges and faces collide too. By default where all colliders have exact maps.
+    self_collision
+        Faces of the deformable do not meet each other either. By default as ``surface_collision``.
+    untangle
+        Part what begins intersecting, in place of refusing it.
+    measure_loads
+        Keep account for :meth:`load_on`.
+    bound
+        Beyond it the simulation has diverged; 0: 10 000 times the extent at the start.
+    frame_limit
+        Of :meth:`run`.
+
+    Raises
+    ------
+    Error
+        ``invalid_options``, naming what is at fault.
     """
 
     _simulation: _core.Simulation
     _frame_limit: int
 
-    def __init__(self) -> None:
-        raise TypeError("use echinus.Simulation.from_scene()")
+    def __init__(
+        self,
+        deformable: Deformable,
+        colliders: Sequence[Collider] = (),
+        *,
+        solver: Literal["verlet", "xpbd"] | None = None,
+        time_step: float = 1 / 240,
+        iteration_count: int | None = None,
+        substep_count: int | None = None,
+        gravity: Sequence[float] = (0, 0, -9.81),
+        drag: float = 0.005,
+        stiffness: Sequence[float] = (1, 1, 0.3),
+        compliance: Sequence[float] = (0, 1e-6, 1e-4),
+        thickness: float | None = None,
+        self_thickness: float | None = None,
+        friction: float = 0.5,
+        rest_distance: float = 0.001,
+        rest_speed: float = 0.1,
+        rest_frame_count: int = 60,
+        keep_free: bool = True,
+        allow_open_colliders: bool = False,
+        surface_collision: bool | None = None,
+        self_collision: bool | None = None,
+        untangle: bool = False,
+        measure_loads: bool = False,
+        bound: float = 0,
+        frame_limit: int = 3000,
+    ) -> None:
+        if solver not in (None, "verlet", "xpbd"):
+            raise ValueError(f'solver must be "verlet" or "xpbd", not {solver!r}')
+        xpbd = solver == "xpbd" or (solver is None and len(deformable.tetrahedra) > 0)
+        surfaces = _chosen(surface_collision, keep_free and all(isinstance(c.map, ExactMap) for c in colliders))
+        options = {
+            "xpbd": xpbd,
+            "time_step": time_step,
+            "iteration_count": (1 if xpbd else 10) if iteration_count is None else iteration_count,
+            "substep_count": (10 if xpbd else 1) if substep_count is None else substep_count,
+            "gravity": gravity,
+            "drag": drag,
+            "stiffness": stiffness,
+            "compliance": compliance,
+            "thickness": thickness,
+            "self_thickness": self_thickness,
+            "friction": friction,
+            "rest_distance": rest_distance,
+            "rest_speed": rest_speed,
+            "rest_frame_count": rest_frame_count,
+            "keep_free": keep_free,
+            "allow_open_colliders": allow_open_colliders,
+            "surface_collision": surfaces,
+            "self_collision": _chosen(self_collision, surfaces),
+            "untangle": untangle,
+            "measure_loads": measure_loads,
+            "bound": bound,
+        }
+        self._simulation = _core.Simulation(deformable._deformable, [c._arguments() for c in colliders], options)
+        self._frame_limit = frame_limit
 
     @classmethod
     def from_scene(
         cls,
         scene: Path | Mapping[str, Any],
         *,
-        model: MeshLike | AnyMap | None = None,
+        model: _Model | Sequence[_Model] = None,
         cloth: MeshLike | None = None,
         rest_cloth: MeshLike | None = None,
         model_folders: Sequence[Path] = (),
@@ -121,6 +216,7 @@ class Simulation:
         self_collision: bool | None = None,
         untangle: bool | None = None,
         allow_open_colliders: bool = False,
+        measure_loads: bool = False,
         threads: int = 0,
     ) -> Simulation:
         """The beginning of a scene.
@@ -130,7 +226,9 @@ class Simulation:
         scene
             The path of a JSON file, or its content; docs/scenes.md has every key.
         model
-            A mesh, which the scene may repair, or a map in place of the scene's model.
+            A mesh, which the scene may repair, or a map in place of the scene's model. For a scene with several
+            colliders a list with one for each, None where the scene's own is meant. A collider with a vertex cache
+            takes a mesh only.
         cloth, rest_cloth
             Meshes in place of the files that the scene's cloth is made of.
         model_folders
@@ -142,8 +240,10 @@ class Simulation:
         allow_open_colliders
             Accept a model that is not closed, for which nothing is promised. Surface collision needs no such
             permission.
+        measure_loads
+            Keep account for :meth:`load_on`.
         threads
-            For the build of the map. 0: all cores.
+            For the build of maps. 0: all cores.
 
         Raises
         ------
@@ -157,35 +257,23 @@ class Simulation:
         else:
             parsed = _core.Scene.read(scene)
             folder = pathlib.Path(scene).parent
-        if surface_collision is None and isinstance(model, DistanceMap):
+        models = _one_for_each(model, parsed.collider_count)
+        if surface_collision is None and any(isinstance(given, DistanceMap) for given in models):
             surface_collision = False
         surfaces = _chosen(surface_collision, parsed.surface_collision)
         parsed.surface_collision = surfaces
         parsed.self_collision = surfaces and _chosen(self_collision, parsed.self_collision)
         parsed.untangle = surfaces and _chosen(untangle, parsed.untangle)
         parsed.allow_open_colliders = allow_open_colliders
-        folders = [*map(pathlib.Path, model_folders), folder, folder / ".." / "models", pathlib.Path("models")]
-
-        def read(name: str | None, given: MeshLike | None = None) -> _core.Arrays | None:
-            if given is not None:
-                return arrays_of(given)
-            return None if name is None else arrays_of(read_mesh(_core.find_model(name, folders)))
-
-        def read_cloth(name: str | None, given: MeshLike | None) -> _Drawn:
-            if given is not None or name is None:
-                return read(None, given), []
-            return _core.read_mesh_and_edges(_core.find_model(name, folders))
-
-        if isinstance(model, (ExactMap, DistanceMap)):
-            collider = model._built
-        else:
-            arrays = parsed.repair(*(read(parsed.model_file, model) or parsed.make_model()))
-            if not (parsed.surface_collision or allow_open_colliders):
-                _require_closed(Mesh(*arrays), parsed.model_file or "the model")
-            collider = parsed.build_map(*arrays, threads)
-        start, threads_of_cloth = read_cloth(parsed.cloth_file, cloth)
-        rest, _ = read_cloth(parsed.rest_file, rest_cloth)
-        return cls._of(_core.Simulation(parsed, collider, start, rest, threads_of_cloth), parsed.frame_limit)
+        parsed.measure_loads = measure_loads
+        files = _Files([*map(pathlib.Path, model_folders), folder, folder / ".." / "models", pathlib.Path("models")])
+        loaded = [_load_collider(parsed, i, given, files, threads) for i, given in enumerate(models)]
+        start, threads_of_cloth = files.cloth(parsed.cloth_file, cloth)
+        rest, _ = files.cloth(parsed.rest_file, rest_cloth)
+        bodies = [None if name is None else files.find(name) for name in parsed.body_files]
+        maps, caches = [part[0] for part in loaded], [part[1] for part in loaded]
+        core = parsed.simulate(maps, caches, start, rest, threads_of_cloth, bodies)
+        return cls._of(core, parsed.frame_limit)
 
     @classmethod
     def _of(cls, core: _core.Simulation, frame_limit: int) -> Simulation:
@@ -205,7 +293,7 @@ class Simulation:
         self._simulation.step(frame_count)
 
     def run(self, frame_limit: int | None = None) -> bool:
-        """Steps until the cloth rests or there are so many frames, by default the scene's limit.
+        """Steps until all rests or there are so many frames, by default the scene's limit.
 
         Returns
         -------
@@ -235,17 +323,22 @@ class Simulation:
 
     @property
     def faces(self) -> NDArray[np.uint32]:
-        """(face_count, 3) The particles of each face of the cloth; a read-only view."""
+        """(face_count, 3) The particles of each face; a read-only view."""
         return self._simulation.faces
 
     @property
+    def tetrahedra(self) -> NDArray[np.uint32]:
+        """(tetrahedron_count, 4) The particles of each tetrahedron, in the order of work; a read-only view."""
+        return self._simulation.tetrahedra
+
+    @property
     def mesh(self) -> Mesh:
-        """The cloth as it is now, a copy."""
+        """The faces as they are now, a copy."""
         return Mesh(self.positions.copy(), self.faces)
 
     @property
     def colliders(self) -> list[ColliderState]:
-        """The rigid models where they are now."""
+        """The models where they are now."""
         return [ColliderState(**state) for state in self._simulation.describe_colliders()]
 
     @property
@@ -260,7 +353,7 @@ class Simulation:
 
     @property
     def frame_limit(self) -> int:
-        """The scene's."""
+        """Of :meth:`run`."""
         return self._frame_limit
 
     @property
@@ -285,11 +378,73 @@ class Simulation:
 
     def set_collider_velocity(self, collider: int, linear: Sequence[float], angular: Sequence[float]) -> None:
         """Steers a model: it keeps these velocities, in units and radians per second, until they are set again."""
-        self._simulation.set_collider_velocity(collider, _vector(linear), _vector(angular))
+        self._simulation.set_collider_velocity(collider, vector_of(linear), vector_of(angular))
+
+    def set_collider_pose(
+        self, collider: int, position: Sequence[float], rotation: Sequence[float] = (1, 0, 0, 0)
+    ) -> None:
+        """The next frame leads a model to this pose, evenly and the shorter way round, and leaves it there.
+
+        Parameters
+        ----------
+        rotation
+            Unit quaternion w, x, y, z; :func:`rotation_about` makes one.
+        """
+        self._simulation.set_collider_pose(collider, vector_of(position), quaternion_of(rotation))
+
+    def set_collider_keyframes(self, collider: int, keys: Sequence[PoseKey]) -> None:
+        """A model follows the keys: each frame leads it to where :func:`pose_at` has it at the frame's end.
+
+        It does so from where it is, so begin it at ``pose_at`` of the present. No keys: it stands still.
+
+        Parameters
+        ----------
+        keys
+            Their times ascend, in seconds since the simulation began.
+        """
+        self._simulation.set_collider_keyframes(collider, [key._arguments() for key in keys])
+
+    def set_collider_vertices(self, collider: int, vertices: ArrayLike) -> None:
+        """The next frame leads the vertices of a model here, each on a straight way; then they rest.
+
+        Needs an exact map and surface collision; the map is built anew in this call.
+
+        Parameters
+        ----------
+        vertices : array_like (vertex_count, 3)
+            In the model's own frame, as many and in the same order as those of the mesh that its map was built of.
+
+        Raises
+        ------
+        Error
+            ``invalid_options``; then nothing has changed.
+        """
+        self._simulation.set_collider_vertices(collider, _core.vertex_array(vertices))
+
+    def set_collider_cache(self, collider: int, cache: VertexCache) -> None:
+        """Each frame leads the vertices of a model to where the cache has them at the frame's end.
+
+        Build its map of ``cache.at(0)``, or the first frame leads it there. Needs what :meth:`set_collider_vertices`
+        does.
+        """
+        self._simulation.set_collider_cache(collider, cache._cache)
+
+    def load_on(self, collider: int) -> Load:
+        """What the deformables put on a model in the last frame, as its mean over the frame; 0 before the first.
+
+        With friction, and with what particles that are attached to it pull. A host that moves a rigid body by it, and
+        then the model by the body, exchanges momentum with the deformables.
+
+        Raises
+        ------
+        ValueError
+            The simulation was made without ``measure_loads``.
+        """
+        return Load(*self._simulation.load_on(collider))
 
     def set_particle_velocity(self, particle: int, velocity: Sequence[float]) -> None:
         """Gives a particle a velocity, units per second. A pinned particle stays."""
-        self._simulation.set_particle_velocity(particle, _vector(velocity))
+        self._simulation.set_particle_velocity(particle, vector_of(velocity))
 
     def blow(self, wind: Sequence[float], rate: float) -> None:
         """Wind for the next frame.
@@ -301,7 +456,7 @@ class Simulation:
         rate
             Per second, not negative: the higher, the lighter the cloth.
         """
-        self._simulation.blow(_vector(wind), rate)
+        self._simulation.blow(vector_of(wind), rate)
 
     def __copy__(self) -> Simulation:
         return self._of(self._simulation.copy(), self._frame_limit)
@@ -317,9 +472,58 @@ def _chosen(given: bool | None, otherwise: bool) -> bool:
     return otherwise if given is None else given
 
 
-def _vector(values: Sequence[float]) -> Vector:
-    x, y, z = values
-    return float(x), float(y), float(z)
+def _one_for_each(model: _Model | Sequence[_Model], collider_count: int) -> list[_Model]:
+    """What is given in place of the model of each collider."""
+    if model is None:
+        return [None] * collider_count
+    models = list(model) if isinstance(model, (list, tuple)) else [model]
+    if len(models) != collider_count:
+        raise ValueError(
+            f"the scene has {collider_count} colliders, and model has {len(models)}: give a list with one for each, None"
+            " where the scene's own is meant"
+        )
+    return models
+
+
+class _Files:
+    """The files of a scene, and the folders that they are looked for in."""
+
+    def __init__(self, folders: Sequence[pathlib.Path]) -> None:
+        self.folders = folders
+
+    def find(self, name: str) -> pathlib.Path:
+        return pathlib.Path(_core.find_model(name, self.folders))
+
+    def cloth(self, name: str | None, given: MeshLike | None) -> _Drawn:
+        if given is not None:
+            return arrays_of(given), []
+        return (None, []) if name is None else _core.read_mesh_and_edges(self.find(name))
+
+    def cache(self, cache: tuple[str, float], mesh: _core.Arrays) -> _core.VertexCache:
+        name, frames_per_second = cache
+        return _core.VertexCache.read(_core.find_cache(name, self.folders), *mesh, frames_per_second)
+
+
+def _load_collider(
+    scene: _core.Scene, index: int, given: _Model, files: _Files, threads: int
+) -> tuple[_core.ExactMap | _core.DistanceMap, _core.VertexCache | None]:
+    """The map of a collider, and the cache by which it deforms."""
+    file, cache_file = scene.model_file(index), scene.cache_file(index)
+    if isinstance(given, (ExactMap, DistanceMap)):
+        if cache_file is not None:
+            raise ValueError(f"collider {index} has a vertex cache, which takes a mesh as its model, not a map")
+        return given._built, None
+    if given is not None:
+        arrays = arrays_of(given)
+    else:
+        arrays = scene.make_model(index) if file is None else arrays_of(read_mesh(files.find(file)))
+    arrays = scene.repair(index, *arrays)
+    if not (scene.surface_collision or scene.allow_open_colliders):
+        _require_closed(Mesh(*arrays), file or "the model")
+    if cache_file is None:
+        return scene.build_map(*arrays, threads), None
+    cache = files.cache(cache_file, arrays)
+    return scene.build_map(cache.at(0), arrays[1], threads), cache
 
 
 def _require_closed(mesh: Mesh, name: str) -> None:

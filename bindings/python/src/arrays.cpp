@@ -36,22 +36,50 @@ bool is_aligned(const py::array& array) {
 
 template <typename T, typename Row>
 py::array read_only(std::span<const Row> rows, const py::object& owner) {
-    py::array_t<T> array({static_cast<py::ssize_t>(rows.size()), py::ssize_t{3}},
+    constexpr py::ssize_t kWidth = sizeof(Row) / sizeof(T);
+    py::array_t<T> array({static_cast<py::ssize_t>(rows.size()), kWidth},
                          reinterpret_cast<const T*>(rows.data()), owner);
     array.attr("setflags")(false);
     return array;
 }
 
-std::uint32_t vertex_number(std::int64_t value, std::size_t face) {
-    if (value < 0 || value > std::numeric_limits<std::uint32_t>::max())
-        throw py::value_error("face " + std::to_string(face) + " names the vertex " + std::to_string(value));
-    return static_cast<std::uint32_t>(value);
+bool is_index(std::int64_t value) {
+    return value >= 0 && value <= std::numeric_limits<std::uint32_t>::max();
 }
 
-void require_rows_of_three(const py::array& array, const char* name, const char* remedy) {
-    if (array.ndim() != 2 || array.shape(1) != 3)
-        throw py::value_error(std::string(name) + " must have the shape (n, 3), not " + shape_text(array) +
-                              remedy);
+void require_rows_of(py::ssize_t width, const py::array& array, const char* name, const char* remedy) {
+    if (array.ndim() != 2 || array.shape(1) != width)
+        throw py::value_error(std::string(name) + " must have the shape (n, " + std::to_string(width) +
+                              "), not " + shape_text(array) + remedy);
+}
+
+/// [n, width]
+/// @param row  what one row is called
+py::array_t<std::uint32_t> index_array(const py::object& indices, py::ssize_t width, const char* name,
+                                       const char* row, const char* remedy) {
+    const py::array array = array_of(indices, name, "iu", "whole numbers");
+    require_rows_of(width, array, name, remedy);
+    if (py::array_t<std::uint32_t, py::array::c_style>::check_(array) && is_aligned(array)) return array;
+    const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> numbers(array);
+    py::array_t<std::uint32_t> result({numbers.shape(0), width});
+    const std::int64_t* from = numbers.data();
+    std::uint32_t* to = result.mutable_data();
+    for (py::ssize_t i = 0; i < numbers.size(); ++i) {
+        if (!is_index(from[i]))
+            throw py::value_error(std::string(row) + " " + std::to_string(i / width) + " names the vertex " +
+                                  std::to_string(from[i]));
+        to[i] = static_cast<std::uint32_t>(from[i]);
+    }
+    return result;
+}
+
+template <typename Mesh, typename Cells>
+py::tuple shared_arrays(Mesh mesh, Cells Mesh::*cells) {
+    auto kept = std::make_unique<Mesh>(std::move(mesh));
+    const Mesh& m = *kept;
+    const py::capsule owner(kept.get(), [](void* p) { delete static_cast<Mesh*>(p); });
+    kept.release();
+    return py::make_tuple(view_of(m.vertices, owner), view_of(m.*cells, owner));
 }
 
 // ---- Memory of large answers
@@ -162,10 +190,27 @@ py::array view_of(std::span<const Vec3f> points, const py::object& owner) {
 py::array view_of(std::span<const Triangle> faces, const py::object& owner) {
     return read_only<std::uint32_t>(faces, owner);
 }
+py::array view_of(std::span<const Tetrahedron> tetrahedra, const py::object& owner) {
+    return read_only<std::uint32_t>(tetrahedra, owner);
+}
+py::array view_of(std::span<const ElasticTetrahedron> tetrahedra, const py::object& owner) {
+    const auto* first = reinterpret_cast<const std::byte*>(tetrahedra.data());
+    py::array_t<std::uint32_t> array(
+        {static_cast<py::ssize_t>(tetrahedra.size()), py::ssize_t{4}},
+        {static_cast<py::ssize_t>(sizeof(ElasticTetrahedron)), py::ssize_t{sizeof(std::uint32_t)}},
+        reinterpret_cast<const std::uint32_t*>(first + offsetof(ElasticTetrahedron, particles)), owner);
+    array.attr("setflags")(false);
+    return array;
+}
+py::array view_of(std::span<const float> numbers, const py::object& owner) {
+    py::array_t<float> array(static_cast<py::ssize_t>(numbers.size()), numbers.data(), owner);
+    array.attr("setflags")(false);
+    return array;
+}
 
 py::array_t<float> vertex_array(const py::object& vertices) {
     const py::array array = number_array(vertices, "vertices");
-    require_rows_of_three(array, "vertices", "");
+    require_rows_of(3, array, "vertices", "");
     if (py::array_t<float, py::array::c_style>::check_(array) && is_aligned(array)) return array;
     const Points points(array, "vertices");
     py::array_t<float> floats({static_cast<py::ssize_t>(points.size()), py::ssize_t{3}});
@@ -175,30 +220,48 @@ py::array_t<float> vertex_array(const py::object& vertices) {
 }
 
 py::array_t<std::uint32_t> face_array(const py::object& faces) {
-    const py::array array = array_of(faces, "faces", "iu", "whole numbers");
-    require_rows_of_three(array, "faces", "; cut polygons into triangles first");
-    if (py::array_t<std::uint32_t, py::array::c_style>::check_(array) && is_aligned(array)) return array;
-    const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> numbers(array);
-    py::array_t<std::uint32_t> indices({numbers.shape(0), py::ssize_t{3}});
-    const std::int64_t* from = numbers.data();
-    std::uint32_t* to = indices.mutable_data();
-    for (py::ssize_t i = 0; i < numbers.size(); ++i)
-        to[i] = vertex_number(from[i], static_cast<std::size_t>(i) / 3);
-    return indices;
+    return index_array(faces, 3, "faces", "face", "; cut polygons into triangles first");
+}
+py::array_t<std::uint32_t> tetrahedron_array(const py::object& tetrahedra) {
+    return index_array(tetrahedra, 4, "tetrahedra", "tetrahedron", "");
+}
+
+std::vector<std::uint32_t> whole_numbers(const py::object& numbers, const char* name) {
+    const py::array array = py::array::ensure(numbers);
+    if (array && array.size() == 0) return {}; // an empty list has the type float64
+    const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> values(
+        array_of(numbers, name, "iu", "whole numbers"));
+    std::vector<std::uint32_t> result;
+    for (py::ssize_t i = 0; i < values.size(); ++i) {
+        const std::int64_t value = values.data()[i];
+        if (!is_index(value))
+            throw py::value_error(std::string(name) + " has the number " + std::to_string(value) +
+                                  ", which is no index");
+        result.push_back(static_cast<std::uint32_t>(value));
+    }
+    return result;
+}
+
+std::vector<Vec3f> points_of(const py::array_t<float>& vertices) {
+    const auto* first = reinterpret_cast<const Vec3f*>(vertices.data());
+    return {first, first + vertices.shape(0)};
 }
 
 TriangleMesh mesh_of(const py::array_t<float>& vertices, const py::array_t<std::uint32_t>& faces) {
-    const auto* first_vertex = reinterpret_cast<const Vec3f*>(vertices.data());
-    const auto* first_face = reinterpret_cast<const Triangle*>(faces.data());
-    return {{first_vertex, first_vertex + vertices.shape(0)}, {first_face, first_face + faces.shape(0)}};
+    const auto* first = reinterpret_cast<const Triangle*>(faces.data());
+    return {points_of(vertices), {first, first + faces.shape(0)}};
+}
+
+TetrahedralMesh body_of(const py::array_t<float>& vertices, const py::array_t<std::uint32_t>& tetrahedra) {
+    const auto* first = reinterpret_cast<const Tetrahedron*>(tetrahedra.data());
+    return {points_of(vertices), {first, first + tetrahedra.shape(0)}};
 }
 
 py::tuple arrays_of(TriangleMesh mesh) {
-    auto kept = std::make_unique<TriangleMesh>(std::move(mesh));
-    const TriangleMesh& m = *kept;
-    const py::capsule owner(kept.get(), [](void* p) { delete static_cast<TriangleMesh*>(p); });
-    kept.release();
-    return py::make_tuple(view_of(m.vertices, owner), view_of(m.faces, owner));
+    return shared_arrays(std::move(mesh), &TriangleMesh::faces);
+}
+py::tuple arrays_of(TetrahedralMesh mesh) {
+    return shared_arrays(std::move(mesh), &TetrahedralMesh::tetrahedra);
 }
 
 unsigned thread_count(int threads) {

@@ -2,6 +2,8 @@
 
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
+#include <echinus/simulation.hpp>
+#include <echinus/tetrahedra.hpp>
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -48,16 +50,35 @@ py::array answers(const py::dtype& type, const std::vector<py::ssize_t>& shape, 
 /// A read-only array in memory that belongs to `owner`.
 py::array view_of(std::span<const Vec3f> points, const py::object& owner);
 py::array view_of(std::span<const Triangle> faces, const py::object& owner);
+py::array view_of(std::span<const Tetrahedron> tetrahedra, const py::object& owner);
+/// Their particles, [n, 4].
+py::array view_of(std::span<const ElasticTetrahedron> tetrahedra, const py::object& owner);
+py::array view_of(std::span<const float> numbers, const py::object& owner);
 
 /// [n, 3] float32, contiguous; the same array where it is one already.
 py::array_t<float> vertex_array(const py::object& vertices);
 /// [n, 3] uint32, contiguous; the same array where it is one already.
 py::array_t<std::uint32_t> face_array(const py::object& faces);
+/// [n, 4] uint32, contiguous; the same array where it is one already.
+py::array_t<std::uint32_t> tetrahedron_array(const py::object& tetrahedra);
 
-/// Of arrays from the two functions above.
+/// Whole numbers, not negative, of any shape, as one row.
+std::vector<std::uint32_t> whole_numbers(const py::object& numbers, const char* name);
+
+/// Of arrays from the functions above.
+std::vector<Vec3f> points_of(const py::array_t<float>& vertices);
 TriangleMesh mesh_of(const py::array_t<float>& vertices, const py::array_t<std::uint32_t>& faces);
-/// (vertices, faces), which share the mesh's memory.
+TetrahedralMesh body_of(const py::array_t<float>& vertices, const py::array_t<std::uint32_t>& tetrahedra);
+/// (vertices, faces) or (vertices, tetrahedra), which share the mesh's memory.
 py::tuple arrays_of(TriangleMesh mesh);
+py::tuple arrays_of(TetrahedralMesh mesh);
+
+/// Calls work() without Python's lock.
+template <typename Work>
+auto unlocked(const Work& work) {
+    const py::gil_scoped_release released;
+    return work();
+}
 
 /// As the library takes it: 0 for all cores.
 unsigned thread_count(int threads);

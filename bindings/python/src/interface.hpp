@@ -11,6 +11,10 @@ namespace echinus::python {
 void bind_errors(py::module_& module);
 void bind_meshes(py::module_& module);
 void bind_maps(py::module_& module);
+void bind_tetrahedra(py::module_& module);
+void bind_deformables(py::module_& module);
+void bind_colliders(py::module_& module);
+void bind_scenes(py::module_& module);
 void bind_simulations(py::module_& module);
 
 } // namespace echinus::python

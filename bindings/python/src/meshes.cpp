@@ -1,5 +1,6 @@
 #include "geometry/parallel.hpp"
 #include "interface.hpp"
+#include "reports.hpp"
 
 #include <echinus/intersections.hpp>
 #include <echinus/mesh_io.hpp>
@@ -17,13 +18,6 @@ namespace {
 using Vertices = py::array_t<float>;
 using Faces = py::array_t<std::uint32_t>;
 
-/// Without Python's lock.
-template <typename Work>
-auto unlocked(const Work& work) {
-    const py::gil_scoped_release released;
-    return work();
-}
-
 py::dict to_python(const Fault& fault) {
     py::dict result;
     result["count"] = fault.count;
@@ -33,23 +27,7 @@ py::dict to_python(const Fault& fault) {
 
 py::dict inspect_mesh(const Vertices& vertices, const Faces& faces) {
     const TriangleMesh mesh = mesh_of(vertices, faces);
-    const MeshReport report = unlocked([&] { return inspect(mesh); });
-    const Vec3d& centre = report.bounding_sphere.centre;
-    py::dict result;
-    result["face_count"] = report.face_count;
-    result["vertex_count"] = report.vertex_count;
-    result["component_count"] = report.component_count;
-    result["closed"] = report.closed;
-    result["manifold"] = report.manifold;
-    result["border_edges"] = to_python(report.border_edges);
-    result["nonmanifold_edges"] = to_python(report.nonmanifold_edges);
-    result["misoriented_edges"] = to_python(report.misoriented_edges);
-    result["duplicate_faces"] = to_python(report.duplicate_faces);
-    result["degenerate_faces"] = to_python(report.degenerate_faces);
-    result["signed_volume"] = report.signed_volume;
-    result["centre"] = py::make_tuple(centre.x, centre.y, centre.z);
-    result["radius"] = report.bounding_sphere.radius;
-    return result;
+    return describe(unlocked([&] { return inspect(mesh); }));
 }
 
 /// ((vertices, faces), report)
@@ -116,6 +94,25 @@ py::array pair_array(const std::vector<FacePair>& pairs) {
 }
 
 } // namespace
+
+py::dict describe(const MeshReport& report) {
+    const Vec3d& centre = report.bounding_sphere.centre;
+    py::dict result;
+    result["face_count"] = report.face_count;
+    result["vertex_count"] = report.vertex_count;
+    result["component_count"] = report.component_count;
+    result["closed"] = report.closed;
+    result["manifold"] = report.manifold;
+    result["border_edges"] = to_python(report.border_edges);
+    result["nonmanifold_edges"] = to_python(report.nonmanifold_edges);
+    result["misoriented_edges"] = to_python(report.misoriented_edges);
+    result["duplicate_faces"] = to_python(report.duplicate_faces);
+    result["degenerate_faces"] = to_python(report.degenerate_faces);
+    result["signed_volume"] = report.signed_volume;
+    result["centre"] = py::make_tuple(centre.x, centre.y, centre.z);
+    result["radius"] = report.bounding_sphere.radius;
+    return result;
+}
 
 void bind_meshes(py::module_& module) {
     module.def("vertex_array", vertex_array);

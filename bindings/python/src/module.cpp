@@ -12,6 +12,10 @@ PYBIND11_MODULE(_core, module) {
     bind_errors(module);
     bind_meshes(module);
     bind_maps(module);
+    bind_tetrahedra(module);
+    bind_deformables(module);
+    bind_colliders(module);
+    bind_scenes(module);
     bind_simulations(module);
     module.attr("version") = echinus::version();
     module.def("available_instruction_sets", echinus::available_instruction_sets,

@@ -1,160 +1,96 @@
+#include "arrays.hpp"
+#include "colliders.hpp"
 #include "interface.hpp"
-
-#include <echinus/error.hpp>
-#include <echinus/scene.hpp>
+#include "shared_simulation.hpp"
+#include "values.hpp"
 
 #include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
 
-#include <array>
 #include <cmath>
-#include <filesystem>
-#include <mutex>
+#include <memory>
 #include <optional>
+#include <string>
 
 namespace echinus::python {
 
 namespace {
 
-using Vertices = py::array_t<float>;
-using Faces = py::array_t<std::uint32_t>;
-using Arrays = std::pair<Vertices, Faces>;
-using Vector = std::array<double, 3>;
+// ---- Options
 
-/// A simulation that several threads may call: one at a time computes, without Python's lock.
-class SharedSimulation {
+[[noreturn]] void refuse(const char* option, const char* wanted, const py::handle& given) {
+    const std::string sentence =
+        std::string(option) + " must be " + wanted + ", not " + std::string(py::repr(given));
+    if (py::isinstance<py::int_>(given)) throw py::value_error(sentence); // a number out of range
+    throw py::type_error(sentence);
+}
+
+template <typename T>
+constexpr const char* kWanted = "a number";
+template <>
+constexpr const char* kWanted<bool> = "True or False";
+template <>
+constexpr const char* kWanted<std::uint32_t> = "a whole number from 0 to 4294967295";
+template <>
+constexpr const char* kWanted<Vector> = "three numbers";
+template <>
+constexpr const char* kWanted<std::optional<double>> = "a number or None";
+
+/// Values of a dictionary by their keys.
+class Options {
   public:
-    explicit SharedSimulation(Simulation simulation) : simulation_(std::move(simulation)) {}
+    explicit Options(const py::dict& values) : values_(values) {}
 
-    /// Calls work(simulation) alone.
-    template <typename Work>
-    auto alone(const Work& work) {
-        // Python's lock first: a thread that waited for the mutex with it would stop the one that computes.
-        const py::gil_scoped_release released;
-        const std::lock_guard guard(mutex_);
-        return work(simulation_);
+    template <typename T>
+    T get(const char* key) const {
+        const py::handle value = values_[key];
+        try {
+            return value.cast<T>();
+        } catch (const py::cast_error&) {
+            refuse(key, kWanted<T>, value);
+        }
     }
-    /// The same for work that goes on with the simulation, which is not possible once it has diverged.
-    template <typename Work>
-    void change(const Work& work) {
-        alone([&](Simulation& simulation) {
-            if (diverged_)
-                throw Error(ErrorCode::Diverged, "the simulation has diverged; it can only be read");
-            try {
-                work(simulation);
-            } catch (const Error& error) {
-                diverged_ = error.code() == ErrorCode::Diverged;
-                throw;
-            }
-        });
-    }
-    /// For what no step changes: options, faces, and where the positions lie.
-    const Simulation& unchanging() const { return simulation_; }
 
   private:
-    std::mutex mutex_;
-    Simulation simulation_;
-    bool diverged_ = false;
+    const py::dict& values_;
 };
 
-Vec3d vector_of(const Vector& v, const char* name) {
-    for (const double c : v)
-        if (!std::isfinite(c)) throw py::value_error(std::string(name) + " must be finite");
-    return {v[0], v[1], v[2]};
-}
-py::tuple to_python(const Vec3d& v) {
-    return py::make_tuple(v.x, v.y, v.z);
-}
-
-// ---- Scenes
-
-std::optional<std::string> file_of(const SceneModel& model) {
-    if (const auto* file = std::get_if<ModelFile>(&model)) return file->name;
-    return std::nullopt;
-}
-
-std::optional<std::string> cloth_file(const Scene& scene) {
-    return scene.mesh_cloth ? file_of(scene.mesh_cloth->mesh) : std::nullopt;
-}
-
-std::optional<std::string> rest_file(const Scene& scene) {
-    return scene.mesh_cloth && scene.mesh_cloth->rest_mesh ? file_of(*scene.mesh_cloth->rest_mesh)
-                                                           : std::nullopt;
-}
-
-TriangleMesh shape_of(const ModelFile& file) {
-    throw Error(ErrorCode::InvalidScene, "the scene's model is the file " + file.name);
-}
-TriangleMesh shape_of(const auto& shape) {
-    return make_mesh(shape);
+SimulationOptions options_of(const py::dict& values) {
+    const Options given(values);
+    return {.solver = given.get<bool>("xpbd") ? SolverKind::Xpbd : SolverKind::Verlet,
+            .time_step = given.get<double>("time_step"),
+            .iteration_count = given.get<std::uint32_t>("iteration_count"),
+            .substep_count = given.get<std::uint32_t>("substep_count"),
+            .gravity = vector_of(given.get<Vector>("gravity")),
+            .drag = given.get<double>("drag"),
+            .stiffness = given.get<Vector>("stiffness"),
+            .compliance = given.get<Vector>("compliance"),
+            .thickness = given.get<std::optional<double>>("thickness"),
+            .friction = given.get<double>("friction"),
+            .rest = {.distance = given.get<double>("rest_distance"),
+                     .speed = given.get<double>("rest_speed"),
+                     .frame_count = given.get<std::uint32_t>("rest_frame_count")},
+            .keep_free = given.get<bool>("keep_free"),
+            .allow_open_colliders = given.get<bool>("allow_open_colliders"),
+            .surface_collision = given.get<bool>("surface_collision"),
+            .self_collision = given.get<bool>("self_collision"),
+            .self_thickness = given.get<std::optional<double>>("self_thickness"),
+            .untangle = given.get<bool>("untangle"),
+            .measure_loads = given.get<bool>("measure_loads"),
+            .bound = given.get<double>("bound")};
 }
 
-/// The mesh of the scene's generated model.
-py::tuple make_model(const Scene& scene) {
-    return arrays_of(
-        std::visit([](const auto& model) { return shape_of(model); }, scene.colliders.front().model));
-}
-
-py::tuple repair_model(const Scene& scene, const Vertices& vertices, const Faces& faces) {
-    return arrays_of(repair(mesh_of(vertices, faces), scene.colliders.front().repair).mesh);
-}
-
-AnyMap build_model_map(const Scene& scene, const Vertices& vertices, const Faces& faces, int threads) {
-    const unsigned workers = thread_count(threads);
-    const TriangleMesh mesh = mesh_of(vertices, faces);
-    const py::gil_scoped_release unlocked;
-    return build_map(mesh, scene.map, workers);
-}
-
-void bind_scene(py::module_& module) {
-    py::class_<Scene>(module, "Scene")
-        .def_static("read", [](const std::filesystem::path& path) { return read_scene(path); })
-        .def_static("parse",
-                    [](const std::string& json, const std::string& name) { return parse_scene(json, name); })
-        .def_property_readonly("model_file",
-                               [](const Scene& scene) { return file_of(scene.colliders.front().model); })
-        .def_property_readonly("cloth_file", cloth_file)
-        .def_property_readonly("rest_file", rest_file)
-        .def_readonly("frame_limit", &Scene::frame_limit)
-        .def_property(
-            "surface_collision", [](const Scene& scene) { return scene.simulation.surface_collision; },
-            [](Scene& scene, bool on) { scene.simulation.surface_collision = on; })
-        .def_property(
-            "self_collision", [](const Scene& scene) { return scene.simulation.self_collision; },
-            [](Scene& scene, bool on) { scene.simulation.self_collision = on; })
-        .def_property(
-            "untangle", [](const Scene& scene) { return scene.simulation.untangle; },
-            [](Scene& scene, bool on) { scene.simulation.untangle = on; })
-        .def_property(
-            "allow_open_colliders", [](const Scene& scene) { return scene.simulation.allow_open_colliders; },
-            [](Scene& scene, bool on) { scene.simulation.allow_open_colliders = on; })
-        .def("make_model", make_model)
-        .def("repair", repair_model)
-        .def("build_map", build_model_map);
-    module.def("find_model", [](const std::string& name, const std::vector<std::filesystem::path>& folders) {
-        return find_model({name}, folders);
+std::unique_ptr<SharedSimulation> simulation_of(const Deformable& deformable,
+                                                const std::vector<ColliderArguments>& arguments,
+                                                const py::dict& option_values) {
+    const SimulationOptions options = options_of(option_values);
+    std::vector<Collider> colliders;
+    for (const ColliderArguments& collider : arguments) colliders.push_back(collider_of(collider));
+    return unlocked([&] {
+        return std::make_unique<SharedSimulation>(Simulation(deformable, std::move(colliders), options));
     });
 }
 
 // ---- Simulations
-
-AnyMap map_of(const py::object& map) {
-    if (py::isinstance<ExactMap>(map)) return map.cast<const ExactMap&>();
-    return map.cast<const DistanceMap&>();
-}
-
-std::unique_ptr<SharedSimulation> make_shared_simulation(const Scene& scene, const py::object& model_map,
-                                                         const std::optional<Arrays>& cloth,
-                                                         const std::optional<Arrays>& rest,
-                                                         std::vector<std::array<std::uint32_t, 2>> threads) {
-    const auto mesh = [](const std::optional<Arrays>& arrays) {
-        return arrays ? mesh_of(arrays->first, arrays->second) : TriangleMesh{};
-    };
-    const ClothMeshes meshes{mesh(cloth), mesh(rest), std::move(threads)};
-    const AnyMap map = map_of(model_map);
-    const py::gil_scoped_release unlocked;
-    return std::make_unique<SharedSimulation>(make_simulation(scene, map, meshes));
-}
 
 /// Ctrl-C ends it between two frames.
 void step(SharedSimulation& simulation, std::uint32_t frame_count) {
@@ -196,14 +132,21 @@ py::dict describe(const SimulationOptions& o) {
     result["self_collision"] = o.self_collision;
     result["untangle"] = o.untangle;
     result["allow_open_colliders"] = o.allow_open_colliders;
+    result["stiffness"] = py::tuple(py::cast(o.stiffness));
+    result["compliance"] = py::tuple(py::cast(o.compliance));
+    result["rest_distance"] = o.rest.distance;
+    result["rest_speed"] = o.rest.speed;
+    result["rest_frame_count"] = o.rest.frame_count;
+    result["keep_free"] = o.keep_free;
+    result["measure_loads"] = o.measure_loads;
+    result["bound"] = o.bound;
     return result;
 }
 
 py::dict describe(const Collider& collider) {
-    const Rotation& r = collider.pose.rotation;
     py::dict result;
     result["position"] = to_python(collider.pose.translation);
-    result["rotation"] = py::make_tuple(r.w, r.x, r.y, r.z);
+    result["rotation"] = to_python(collider.pose.rotation);
     result["scale"] = to_python(collider.scale);
     result["linear_velocity"] = to_python(collider.linear_velocity);
     result["angular_velocity"] = to_python(collider.angular_velocity);
@@ -217,30 +160,67 @@ py::list describe_colliders(SharedSimulation& simulation) {
     return result;
 }
 
-void require_below(std::size_t index, std::size_t count, const char* what) {
-    if (index >= count)
-        throw py::index_error("there is no " + std::string(what) + " " + std::to_string(index) +
-                              "; there are " + std::to_string(count));
+std::size_t collider_at(const SharedSimulation& shared, std::int64_t index) {
+    return index_below(shared.unchanging().colliders().size(), index, "collider");
 }
 
-void bind_motion(py::class_<SharedSimulation>& simulation) {
+/// (force, torque)
+py::tuple load_on(SharedSimulation& shared, std::int64_t index) {
+    const std::size_t collider = collider_at(shared, index);
+    if (!shared.unchanging().options().measure_loads)
+        throw py::value_error("the simulation was made without measure_loads");
+    const Load load = shared.alone([&](Simulation& s) { return s.load_on(collider); });
+    return py::make_tuple(to_python(load.force), to_python(load.torque));
+}
+
+void bind_colliders_of(py::class_<SharedSimulation>& simulation) {
     simulation
         .def("set_collider_velocity",
-             [](SharedSimulation& shared, std::size_t index, const Vector& linear, const Vector& angular) {
-                 require_below(index, shared.unchanging().colliders().size(), "collider");
-                 const Vec3d l = vector_of(linear, "linear"), a = vector_of(angular, "angular");
-                 shared.change([&](Simulation& s) { s.set_collider_velocity(index, l, a); });
+             [](SharedSimulation& shared, std::int64_t index, const Vector& linear, const Vector& angular) {
+                 const std::size_t collider = collider_at(shared, index);
+                 const Vec3d l = finite_vector_of(linear, "linear"), a = finite_vector_of(angular, "angular");
+                 shared.change([&](Simulation& s) { s.set_collider_velocity(collider, l, a); });
              })
+        .def("set_collider_pose",
+             [](SharedSimulation& shared, std::int64_t index, const Vector& position,
+                const Quaternion& rotation) {
+                 const std::size_t collider = collider_at(shared, index);
+                 shared.change(
+                     [&](Simulation& s) { s.set_collider_pose(collider, pose_of(position, rotation)); });
+             })
+        .def("set_collider_keyframes",
+             [](SharedSimulation& shared, std::int64_t index, const std::vector<KeyArguments>& keys) {
+                 const std::size_t collider = collider_at(shared, index);
+                 shared.change([&](Simulation& s) { s.set_collider_keyframes(collider, keys_of(keys)); });
+             })
+        .def("set_collider_vertices",
+             [](SharedSimulation& shared, std::int64_t index, const py::array_t<float>& vertices) {
+                 const std::size_t collider = collider_at(shared, index);
+                 const std::span<const Vec3f> places(reinterpret_cast<const Vec3f*>(vertices.data()),
+                                                     static_cast<std::size_t>(vertices.shape(0)));
+                 shared.change([&](Simulation& s) { s.set_collider_vertices(collider, places); });
+             })
+        .def("set_collider_cache",
+             [](SharedSimulation& shared, std::int64_t index, const VertexCache& cache) {
+                 const std::size_t collider = collider_at(shared, index);
+                 shared.change([&](Simulation& s) { s.set_collider_cache(collider, cache); });
+             })
+        .def("load_on", load_on);
+}
+
+void bind_hands(py::class_<SharedSimulation>& simulation) {
+    simulation
         .def("set_particle_velocity",
-             [](SharedSimulation& shared, std::size_t particle, const Vector& velocity) {
-                 require_below(particle, shared.unchanging().positions().size(), "particle");
-                 const Vec3d v = vector_of(velocity, "velocity");
+             [](SharedSimulation& shared, std::int64_t index, const Vector& velocity) {
+                 const std::size_t particle =
+                     index_below(shared.unchanging().positions().size(), index, "particle");
+                 const Vec3d v = finite_vector_of(velocity, "velocity");
                  shared.change([&](Simulation& s) { s.set_particle_velocity(particle, v); });
              })
         .def("blow", [](SharedSimulation& shared, const Vector& wind, double rate) {
             if (!(rate >= 0) || !std::isfinite(rate))
                 throw py::value_error("rate must be 0 or more, and finite");
-            const Vec3d w = vector_of(wind, "wind");
+            const Vec3d w = finite_vector_of(wind, "wind");
             shared.change([&](Simulation& s) { s.blow(w, rate); });
         });
 }
@@ -248,9 +228,8 @@ void bind_motion(py::class_<SharedSimulation>& simulation) {
 } // namespace
 
 void bind_simulations(py::module_& module) {
-    bind_scene(module);
     py::class_<SharedSimulation> simulation(module, "Simulation");
-    simulation.def(py::init(&make_shared_simulation))
+    simulation.def(py::init(&simulation_of))
         .def("step", step)
         .def("copy",
              [](SharedSimulation& shared) {
@@ -274,6 +253,11 @@ void bind_simulations(py::module_& module) {
                                    return view_of(
                                        self.cast<SharedSimulation&>().unchanging().deformable().faces, self);
                                })
+        .def_property_readonly(
+            "tetrahedra",
+            [](const py::object& self) {
+                return view_of(self.cast<SharedSimulation&>().unchanging().deformable().tetrahedra, self);
+            })
         .def_property_readonly("options",
                                [](const SharedSimulation& s) { return describe(s.unchanging().options()); })
         .def_property_readonly("profile",
@@ -293,7 +277,8 @@ void bind_simulations(py::module_& module) {
         .def_property_readonly("state_hash", [](SharedSimulation& shared) {
             return shared.alone([](Simulation& s) { return s.state_hash(); });
         });
-    bind_motion(simulation);
+    bind_colliders_of(simulation);
+    bind_hands(simulation);
 }
 
 } // namespace echinus::python

@@ -1,0 +1,200 @@
+"""Models among which deformables move, and how they move."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from echinus import _core
+from echinus._maps import AnyMap
+from echinus._meshes import MeshLike, Path, arrays_of
+
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Collider:
+    """A map placed in the world: point_world = position + rotation * (scale * point_local).
+
+    Attributes
+    ----------
+    map
+        One map may serve several colliders. Contact of surfaces needs an exact one.
+    rotation
+        Unit quaternion w, x, y, z; :func:`rotation_about` makes one.
+    scale
+        A number, or one for each axis of the map; not 0. A negative one mirrors.
+    linear_velocity, angular_velocity
+        Units per second, and radians per second about the position.
+    name
+        For errors; if empty, "collider" and its number.
+    """
+
+    map: AnyMap
+    position: Sequence[float] = (0, 0, 0)
+    rotation: Sequence[float] = (1, 0, 0, 0)
+    scale: float | Sequence[float] = 1
+    linear_velocity: Sequence[float] = (0, 0, 0)
+    angular_velocity: Sequence[float] = (0, 0, 0)
+    name: str = ""
+
+    def _arguments(self) -> _core.ColliderArguments:
+        x, y, z = np.broadcast_to(np.asarray(self.scale, float), 3).tolist()
+        return (
+            self.map._built,
+            vector_of(self.position),
+            quaternion_of(self.rotation),
+            (x, y, z),
+            vector_of(self.linear_velocity),
+            vector_of(self.angular_velocity),
+            self.name,
+        )
+
+
+@dataclass(frozen=True)
+class ColliderState:
+    """Where a model is now: point_world = position + rotation * (scale * point_local).
+
+    Attributes
+    ----------
+    rotation
+        Unit quaternion w, x, y, z.
+    linear_velocity, angular_velocity
+        Units per second, and radians per second about the position.
+    """
+
+    position: Vector
+    rotation: Quaternion
+    scale: Vector
+    linear_velocity: Vector
+    angular_velocity: Vector
+
+
+class Load(NamedTuple):
+    """What bears on a collider, in the world's axes.
+
+    Attributes
+    ----------
+    force
+        mass * length / s^2, with masses in the unit in which inverse masses are their inverses.
+    torque
+        About where the collider's position was when the frame began.
+    """
+
+    force: Vector
+    torque: Vector
+
+
+class PoseKey(NamedTuple):
+    """Where a collider is at a time, in seconds; the rotation is a unit quaternion w, x, y, z."""
+
+    time: float
+    position: Sequence[float]
+    rotation: Sequence[float] = (1, 0, 0, 0)
+
+    def _arguments(self) -> tuple[float, Vector, Quaternion]:
+        return float(self.time), vector_of(self.position), quaternion_of(self.rotation)
+
+
+def pose_at(keys: Sequence[PoseKey], seconds: float) -> PoseKey:
+    """The pose at a time: from key to key straight, and about one axis the shorter way round, both evenly.
+
+    Before the first key and after the last it is theirs.
+
+    Parameters
+    ----------
+    keys
+        At least one; their times ascend.
+    """
+    return PoseKey(float(seconds), *_core.pose_at([key._arguments() for key in keys], seconds))
+
+
+def rotation_about(axis: Sequence[float], angle_rad: float) -> Quaternion:
+    """The unit quaternion w, x, y, z that turns by an angle about an axis, counter-clockwise seen against it."""
+    return _core.rotation_about(vector_of(axis), angle_rad)
+
+
+class VertexCache:
+    """The vertices of a model over time, in samples at equal distances.
+
+    Between two samples vertices go straight; before the first and after the last they rest.
+
+    Parameters
+    ----------
+    samples : array_like (sample_count, vertex_count, 3)
+        Positions in the model's own frame; copied.
+    sample_seconds
+        From one sample to the next; positive.
+    start_time
+        Of the first sample, seconds.
+    """
+
+    _cache: _core.VertexCache
+
+    def __init__(self, samples: ArrayLike, sample_seconds: float, start_time: float = 0) -> None:
+        self._cache = _core.VertexCache(samples, start_time, sample_seconds)
+
+    @classmethod
+    def _of(cls, core: _core.VertexCache) -> VertexCache:
+        cache = cls.__new__(cls)
+        cache._cache = core
+        return cache
+
+    @property
+    def samples(self) -> NDArray[np.float32]:
+        """(sample_count, vertex_count, 3) A read-only view."""
+        return self._cache.samples
+
+    @property
+    def start_time(self) -> float:
+        """Of the first sample, seconds."""
+        return self._cache.start_time
+
+    @property
+    def sample_seconds(self) -> float:
+        """From one sample to the next."""
+        return self._cache.sample_seconds
+
+    @property
+    def end_time(self) -> float:
+        """Of the last sample, seconds."""
+        return self._cache.end_time
+
+    def at(self, seconds: float) -> NDArray[np.float32]:
+        """(vertex_count, 3) The vertices at a time, a new array."""
+        return self._cache.at(seconds)
+
+    def __repr__(self) -> str:
+        count, vertices, _ = self.samples.shape
+        return f"<echinus.VertexCache: {count} samples of {vertices} vertices, {self.start_time} to {self.end_time} s>"
+
+
+def read_vertex_cache(path: Path, mesh: MeshLike, *, frames_per_second: float) -> VertexCache:
+    """Reads a PC2 point cache, or a folder of OBJ files, one for each frame in the order of their names.
+
+    Parameters
+    ----------
+    mesh
+        The model, as :func:`read_mesh` gives it.
+
+    Raises
+    ------
+    Error
+        As :func:`read_mesh`; ``invalid_mesh`` when the number of vertices, or a face in a folder, is not the model's.
+    """
+    return VertexCache._of(_core.VertexCache.read(path, *arrays_of(mesh), frames_per_second))
+
+
+def vector_of(values: Sequence[float]) -> Vector:
+    x, y, z = values
+    return float(x), float(y), float(z)
+
+
+def quaternion_of(values: Sequence[float]) -> Quaternion:
+    w, x, y, z = values
+    return float(w), float(x), float(y), float(z)

@@ -1,0 +1,241 @@
+"""What moves and deforms: cloth, soft bodies, and several of them together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from echinus import _core
+from echinus._colliders import Quaternion, Vector, quaternion_of, vector_of
+from echinus._meshes import Mesh, MeshLike, arrays_of
+from echinus._tetrahedra import TetrahedralMesh
+
+
+class Deformable:
+    """Particles and what holds them together; :func:`make_cloth` and :func:`make_soft_body` make one.
+
+    It does not change: a simulation copies it.
+    """
+
+    _deformable: _core.Deformable
+
+    def __init__(self) -> None:
+        raise TypeError("use echinus.make_cloth(), make_cloth_of_mesh(), make_soft_body() or combine()")
+
+    @classmethod
+    def _of(cls, core: _core.Deformable) -> Deformable:
+        deformable = cls.__new__(cls)
+        deformable._deformable = core
+        return deformable
+
+    @property
+    def positions(self) -> NDArray[np.float32]:
+        """(particle_count, 3) Where the particles begin; a read-only view."""
+        return self._deformable.positions
+
+    @property
+    def inverse_masses(self) -> NDArray[np.float32]:
+        """(particle_count,) 1 / mass; 0 for a particle that is pinned or attached. A read-only view."""
+        return self._deformable.inverse_masses
+
+    @property
+    def faces(self) -> NDArray[np.uint32]:
+        """(face_count, 3) The particles of each face; a read-only view."""
+        return self._deformable.faces
+
+    @property
+    def tetrahedra(self) -> NDArray[np.uint32]:
+        """(tetrahedron_count, 4) The particles of each tetrahedron, in the order of work; a read-only view."""
+        return self._deformable.tetrahedra
+
+    @property
+    def stick_count(self) -> int:
+        """Of the sticks that hold a cloth together."""
+        return self._deformable.stick_count
+
+    @property
+    def fold_count(self) -> int:
+        """Of the edges at which a cloth of a mesh is kept from folding."""
+        return self._deformable.fold_count
+
+    @property
+    def mesh(self) -> Mesh:
+        """Its faces where they begin."""
+        return Mesh(self.positions, self.faces)
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+    def __repr__(self) -> str:
+        return (
+            f"<echinus.Deformable: {len(self)} particles, {len(self.faces)} faces, {self.stick_count} sticks,"
+            f" {len(self.tetrahedra)} tetrahedra>"
+        )
+
+
+def make_cloth(
+    *,
+    column_count: int = 100,
+    row_count: int = 100,
+    width: float = 1,
+    height: float = 1,
+    position: Sequence[float] = (0, 0, 0),
+    rotation: Sequence[float] = (1, 0, 0, 0),
+    pins: ArrayLike = (),
+) -> Deformable:
+    """A rectangular sheet of cloth at rest: columns along x, rows along y, its middle at ``position``.
+
+    Parameters
+    ----------
+    column_count, row_count
+        Particles along x and y, at least 2. The particle (row, column) has the index
+        ``row * column_count + column``.
+    rotation
+        Unit quaternion w, x, y, z.
+    pins
+        Particles that never move.
+
+    Raises
+    ------
+    Error
+        ``invalid_options``.
+    """
+    _require_count("column_count", column_count)
+    _require_count("row_count", row_count)
+    return Deformable._of(
+        _core.make_cloth(column_count, row_count, width, height, vector_of(position), quaternion_of(rotation), pins)
+    )
+
+
+def make_cloth_of_mesh(
+    mesh: MeshLike,
+    *,
+    rest_vertices: ArrayLike | None = None,
+    threads: ArrayLike = (),
+    bending: Literal["angles", "sticks"] = "angles",
+    position: Sequence[float] = (0, 0, 0),
+    rotation: Sequence[float] = (1, 0, 0, 0),
+    scale: float = 1,
+    pins: ArrayLike = (),
+    attachments: ArrayLike = (),
+) -> Deformable:
+    """A cloth of any shape: its particles are the mesh's vertices.
+
+    Parameters
+    ----------
+    rest_vertices : array_like (n, 3), optional
+        The shape at rest, where it is not that of the mesh.
+    threads : array_like (k, 2)
+        Edges without faces: threads and needles.
+    bending
+        What keeps it from folding sharply: the angle at each edge, or a stick across it.
+    scale, rotation, position
+        A vertex starts at position + rotation * (scale * vertex).
+    pins
+        Vertices that never move.
+    attachments : array_like (k, 2)
+        Vertices that move with a collider, and the number of that collider in the simulation.
+
+    Raises
+    ------
+    Error
+        ``invalid_mesh``, naming a face, edge or vertex at fault; ``invalid_options``.
+    """
+    if bending not in ("angles", "sticks"):
+        raise ValueError(f'bending must be "angles" or "sticks", not {bending!r}')
+    return Deformable._of(
+        _core.make_cloth_of_mesh(
+            *arrays_of(mesh),
+            None if rest_vertices is None else _core.vertex_array(rest_vertices),
+            threads,
+            bending == "sticks",
+            vector_of(position),
+            quaternion_of(rotation),
+            scale,
+            pins,
+            attachments,
+        )
+    )
+
+
+def make_soft_body(
+    mesh: TetrahedralMesh,
+    *,
+    density: float = 1000,
+    young_modulus: float = 1e4,
+    poisson_ratio: float = 0.4,
+    damping: float = 0,
+    position: Sequence[float] = (0, 0, 0),
+    rotation: Sequence[float] = (1, 0, 0, 0),
+    scale: float = 1,
+    pins: ArrayLike = (),
+    attachments: ArrayLike = (),
+) -> Deformable:
+    """An organ, rubber, dough: a body at rest, whose particles are the mesh's vertices and whose faces its boundary.
+
+    In metres, kilograms and seconds the numbers are SI units; docs/soft_bodies.md has the method and its limits.
+
+    Parameters
+    ----------
+    density
+        Mass per volume, positive.
+    young_modulus
+        Stiffness, positive: soft tissue has 1e3 to 1e5 Pa.
+    poisson_ratio
+        0 to 0.4999: towards 0.5 the volume is kept.
+    damping
+        Viscosity over the shear modulus, seconds, not negative.
+    scale, rotation, position
+        A vertex starts at position + rotation * (scale * vertex).
+    pins
+        Vertices that never move.
+    attachments : array_like (k, 2)
+        Vertices that move with a collider, and the number of that collider in the simulation.
+
+    Raises
+    ------
+    Error
+        ``invalid_mesh`` as :func:`require_valid_tetrahedra`, and when no tetrahedron uses a vertex;
+        ``invalid_options`` for numbers out of range and vertices that the mesh does not have.
+    """
+    return Deformable._of(
+        _core.make_soft_body(
+            mesh.vertices,
+            mesh.tetrahedra,
+            density,
+            young_modulus,
+            poisson_ratio,
+            damping,
+            vector_of(position),
+            quaternion_of(rotation),
+            scale,
+            pins,
+            attachments,
+        )
+    )
+
+
+def combine(parts: Sequence[Deformable]) -> Deformable:
+    """Several deformables as one: with ``self_collision`` they collide with each other.
+
+    The particles follow one part after the other. Masses stay as they are, so they must be in one unit: see
+    :func:`with_masses_times`.
+    """
+    return Deformable._of(_core.combine([part._deformable for part in parts]))
+
+
+def with_masses_times(factor: float, deformable: Deformable) -> Deformable:
+    """The same deformable, with all masses times a factor, finite and positive.
+
+    A cloth's particles have the mean mass 1, so *mass of the cloth / number of its particles* brings it to the unit of
+    that mass.
+    """
+    return Deformable._of(_core.with_masses_times(factor, deformable._deformable))
+
+
+def _require_count(name: str, count: int) -> None:
+    if not 2 <= count < 2**32:
+        raise ValueError(f"{name} must be 2 or more, not {count}")

@@ -1,0 +1,308 @@
+"""Bodies of tetrahedra: files, filling a closed surface, reports, and finer meshes that go along."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from echinus import _core
+from echinus._maps import ExactMap
+from echinus._meshes import Mesh, MeshReport, Path, read_only, report_of
+
+
+class TetrahedralMesh:
+    """A body cut into tetrahedra that share vertices.
+
+    Parameters
+    ----------
+    vertices : array_like (n, 3)
+        Positions, rounded to float32.
+    tetrahedra : array_like (m, 4)
+        Whole numbers: the vertices a, b, c, d of each, such that a, b, c turn counter-clockwise seen from d.
+
+    Attributes
+    ----------
+    vertices : ndarray (n, 3) of float32, read-only
+    tetrahedra : ndarray (m, 4) of uint32, read-only
+
+    Notes
+    -----
+    Contiguous arrays of these types are shared, not copied: do not change them while the mesh is in use. A
+    mesh may have any fault; :func:`require_valid_tetrahedra` tells.
+    """
+
+    vertices: NDArray[np.float32]
+    tetrahedra: NDArray[np.uint32]
+
+    def __init__(self, vertices: ArrayLike, tetrahedra: ArrayLike) -> None:
+        self.vertices = read_only(_core.vertex_array(vertices))
+        self.tetrahedra = read_only(_core.tetrahedron_array(tetrahedra))
+
+    def __repr__(self) -> str:
+        return f"<echinus.TetrahedralMesh: {len(self.vertices)} vertices, {len(self.tetrahedra)} tetrahedra>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return TetrahedralMesh, (self.vertices, self.tetrahedra)
+
+
+@dataclass(frozen=True)
+class TetrahedraFile:
+    """A body from a file, and what was changed for it to be valid.
+
+    Attributes
+    ----------
+    mesh
+        Valid; every vertex is used.
+    turned_tetrahedra
+        Those that were negative and had two corners exchanged: the order is a file's convention.
+    dropped_vertices
+        Those that no tetrahedron uses.
+    """
+
+    mesh: TetrahedralMesh
+    turned_tetrahedra: int
+    dropped_vertices: int
+
+
+def read_tetrahedra(path: Path) -> TetrahedraFile:
+    """Reads ``.msh`` (Gmsh 2.2 and 4.1), ``.vtk`` (legacy, an unstructured grid) or TetGen's ``.node`` with ``.ele``.
+
+    Either path names TetGen's pair. Points, lines and plane cells are ignored, as are data; other cells than
+    tetrahedra of four corners are refused. Positions are not welded.
+
+    Raises
+    ------
+    Error
+        ``unreadable``, ``wrong_format``, ``damaged`` or ``invalid_mesh``; the sentence begins with the path.
+    """
+    arrays, turned, dropped = _core.read_tetrahedra(path)
+    return TetrahedraFile(TetrahedralMesh(*arrays), turned, dropped)
+
+
+def write_tetrahedra(path: Path, mesh: TetrahedralMesh) -> None:
+    """Writes ``.msh`` (Gmsh 2.2) or ``.vtk``, by the file name's extension. The file appears whole or not at all.
+
+    Raises
+    ------
+    Error
+        ``unwritable``, ``wrong_format`` for another extension, or ``invalid_mesh``.
+    """
+    _core.write_tetrahedra(path, mesh.vertices, mesh.tetrahedra)
+
+
+def make_solid_box(
+    size: tuple[float, float, float] = (1, 1, 1), segments: tuple[int, int, int] = (1, 1, 1)
+) -> TetrahedralMesh:
+    """A box around the origin, of cuboids cut into five tetrahedra each.
+
+    Vertex (i, j, k), counted along x, y and z, has the index
+    ``(k * (segments[1] + 1) + j) * (segments[0] + 1) + i``.
+
+    Raises
+    ------
+    Error
+        ``invalid_options`` unless lengths are positive and there are 1 to 512 segments along each axis.
+    """
+    return TetrahedralMesh(*_core.make_solid_box(size, segments))
+
+
+@dataclass(frozen=True)
+class Tetrahedralization:
+    """What :func:`tetrahedralize` gives.
+
+    Attributes
+    ----------
+    mesh
+        Valid; every vertex is used.
+    size
+        Of the lattice.
+    removed_tetrahedra
+        Left out where parts of the body would have met in no more than an edge or a vertex.
+    """
+
+    mesh: TetrahedralMesh
+    size: float
+    removed_tetrahedra: int
+
+
+def tetrahedralize(
+    model: ExactMap, *, size: float | None = None, count: int | None = None, most_tetrahedra: int = 10_000_000, threads: int = 0
+) -> Tetrahedralization:
+    """Fills what an exact map says is inside with tetrahedra, by isosurface stuffing (Labelle and Shewchuk 2007).
+
+    All dihedral angles lie between 9.3 and 161.7 degrees, and the boundary is closed, manifold, and does not
+    intersect itself, whatever the model; what is thinner than ``size`` is lost or torn. docs/tetrahedra.md has
+    the method and what it promises.
+
+    Parameters
+    ----------
+    model
+        The map of a closed surface; of an open one, inside is where the winding number says so.
+    size
+        The edge of the lattice's cubes, in the model's unit. Either this or ``count``.
+    count
+        About so many tetrahedra: the size is found by trying.
+    most_tetrahedra
+        More are refused.
+    threads
+        0: all cores. The result does not depend on it.
+
+    Raises
+    ------
+    ValueError
+        Not exactly one of size and count is given.
+    Error
+        ``invalid_options`` for a size that is too small or not finite; ``invalid_mesh`` when no tetrahedron of
+        that size fits into the model.
+    """
+    if (size is None) == (count is None):
+        raise ValueError("give either size or count")
+    if count is not None and count < 1:
+        raise ValueError(f"count must be 1 or more, not {count}")
+    if most_tetrahedra < 0:
+        raise ValueError(f"most_tetrahedra must be 0 or more, not {most_tetrahedra}")
+    arrays, found, removed = _core.tetrahedralize(model._built, size or 0.0, count or 0, most_tetrahedra, threads)
+    return Tetrahedralization(TetrahedralMesh(*arrays), found, removed)
+
+
+def require_valid_tetrahedra(mesh: TetrahedralMesh) -> None:
+    """Raises an error unless every tetrahedron is positive, and two that share a face lie on either side of it.
+
+    Vertices that no tetrahedron uses may be anything. Signs are exact.
+
+    Raises
+    ------
+    Error
+        ``invalid_mesh``, naming the first tetrahedron or vertex at fault.
+    """
+    _core.require_valid_tetrahedra(mesh.vertices, mesh.tetrahedra)
+
+
+def boundary(mesh: TetrahedralMesh) -> Mesh:
+    """The faces that belong to one tetrahedron only, outward; with all vertices of the body, also the inner ones.
+
+    Raises
+    ------
+    Error
+        ``invalid_mesh`` when an index is out of range, or two tetrahedra lie on the same side of a face.
+    """
+    return Mesh(*_core.boundary(mesh.vertices, mesh.tetrahedra))
+
+
+@dataclass(frozen=True)
+class TetrahedralReport:
+    """The properties of a body.
+
+    Attributes
+    ----------
+    vertex_count
+        Vertices that tetrahedra use.
+    volume, least_volume
+        Of all, and of the smallest tetrahedron.
+    least_angle_deg, greatest_angle_deg
+        Between two faces of a tetrahedron.
+    boundary
+        What :func:`inspect` says of :func:`boundary`.
+    """
+
+    tetrahedron_count: int
+    vertex_count: int
+    volume: float
+    least_volume: float
+    shortest_edge: float
+    longest_edge: float
+    least_angle_deg: float
+    greatest_angle_deg: float
+    boundary: MeshReport
+
+
+def inspect_tetrahedra(mesh: TetrahedralMesh) -> TetrahedralReport:
+    """Examines a body.
+
+    Raises
+    ------
+    Error
+        ``invalid_mesh`` as :func:`require_valid_tetrahedra`.
+    """
+    report = _core.inspect_tetrahedra(mesh.vertices, mesh.tetrahedra)
+    report["boundary"] = report_of(report["boundary"])
+    return TetrahedralReport(**report)
+
+
+@dataclass(frozen=True)
+class BoundaryDistance:
+    """How far the boundary of a body and the surface of a model are apart, at samples on both."""
+
+    mean_to_model: float
+    greatest_to_model: float
+    mean_to_boundary: float
+    greatest_to_boundary: float
+
+
+def measure_distance(mesh: TetrahedralMesh, model: ExactMap, *, threads: int = 0) -> BoundaryDistance:
+    """Compares a body's boundary with a model: at the corners of the faces of both, and at points between them."""
+    return BoundaryDistance(*_core.measure_distance(mesh.vertices, mesh.tetrahedra, model._built, threads))
+
+
+class Embedding:
+    """Where points lie in a body, so that they go along with its vertices; :func:`embed` makes one."""
+
+    _embedding: _core.Embedding
+
+    def __init__(self) -> None:
+        raise TypeError("use echinus.embed()")
+
+    def carry(
+        self, positions: ArrayLike, *, out: NDArray[np.float32] | None = None, threads: int = 1
+    ) -> NDArray[np.float32]:
+        """Where the points are once the body's vertices have moved.
+
+        Parameters
+        ----------
+        positions : array_like (vertex_count, 3)
+            Of the body's vertices; those of a simulation that has other particles too are a slice of its positions.
+        out : ndarray (n, 3) of float32, optional
+            Takes the answers.
+
+        Returns
+        -------
+        ndarray (n, 3) of float32
+        """
+        return self._embedding.carry(positions, out, threads)
+
+    @property
+    def vertices(self) -> NDArray[np.uint32]:
+        """(n, 4) The corners of each point's tetrahedron, a new array."""
+        return self._embedding.vertices
+
+    @property
+    def weights(self) -> NDArray[np.float32]:
+        """(n, 4) The weights of these corners, whose sum is 1; outside of the tetrahedron some are negative."""
+        return self._embedding.weights
+
+    def __len__(self) -> int:
+        return self._embedding.size
+
+    def __repr__(self) -> str:
+        return f"<echinus.Embedding: {len(self)} points>"
+
+
+def embed(mesh: TetrahedralMesh, points: ArrayLike, *, threads: int = 0) -> Embedding:
+    """Finds the tetrahedron that each point lies in, or else the nearest one, and the point's weights there.
+
+    Parameters
+    ----------
+    points : array_like (n, 3)
+        Finite.
+
+    Raises
+    ------
+    Error
+        ``invalid_mesh`` as :func:`require_valid_tetrahedra`, and for a point that is not finite.
+    """
+    embedding = Embedding.__new__(Embedding)
+    embedding._embedding = _core.embed(mesh.vertices, mesh.tetrahedra, points, threads)
+    return embedding

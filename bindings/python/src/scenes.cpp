@@ -1,0 +1,154 @@
+#include "arrays.hpp"
+#include "colliders.hpp"
+#include "interface.hpp"
+#include "shared_simulation.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/mesh_io.hpp>
+#include <echinus/scene.hpp>
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace echinus::python {
+
+namespace {
+
+using Vertices = py::array_t<float>;
+using Faces = py::array_t<std::uint32_t>;
+using Arrays = std::pair<Vertices, Faces>;
+
+std::optional<std::string> file_of(const SceneModel& model) {
+    if (const auto* file = std::get_if<ModelFile>(&model)) return file->name;
+    return std::nullopt;
+}
+
+std::optional<std::string> cloth_file(const Scene& scene) {
+    return scene.mesh_cloth ? file_of(scene.mesh_cloth->mesh) : std::nullopt;
+}
+
+std::optional<std::string> rest_file(const Scene& scene) {
+    return scene.mesh_cloth && scene.mesh_cloth->rest_mesh ? file_of(*scene.mesh_cloth->rest_mesh)
+                                                           : std::nullopt;
+}
+
+/// [body_count]
+std::vector<std::optional<std::string>> body_files(const Scene& scene) {
+    std::vector<std::optional<std::string>> files;
+    for (const SceneBody& body : scene.bodies) files.push_back(file_of(body.mesh));
+    return files;
+}
+
+/// (name, frames per second), or nothing
+std::optional<std::pair<std::string, double>> cache_file(const Scene& scene, std::size_t collider) {
+    const std::optional<CacheFile>& cache = scene.colliders.at(collider).cache;
+    if (!cache) return std::nullopt;
+    return std::pair(cache->name, cache->frames_per_second);
+}
+
+TriangleMesh shape_of(const ModelFile& file) {
+    throw Error(ErrorCode::InvalidScene, "the scene's model is the file " + file.name);
+}
+TriangleMesh shape_of(const auto& shape) {
+    return make_mesh(shape);
+}
+
+/// The mesh of a generated model.
+py::tuple make_model(const Scene& scene, std::size_t collider) {
+    return arrays_of(
+        std::visit([](const auto& model) { return shape_of(model); }, scene.colliders.at(collider).model));
+}
+
+py::tuple repair_model(const Scene& scene, std::size_t collider, const Vertices& vertices,
+                       const Faces& faces) {
+    const TriangleMesh mesh = mesh_of(vertices, faces);
+    return arrays_of(unlocked([&] { return repair(mesh, scene.colliders.at(collider).repair).mesh; }));
+}
+
+AnyMap build_model_map(const Scene& scene, const Vertices& vertices, const Faces& faces, int threads) {
+    const unsigned workers = thread_count(threads);
+    const TriangleMesh mesh = mesh_of(vertices, faces);
+    return unlocked([&] { return build_map(mesh, scene.map, workers); });
+}
+
+/// The tetrahedra of a body from a file: those in it, or those that fill its surface.
+TetrahedralMesh read_body(const SceneBody& body, const std::filesystem::path& path) {
+    if (body.element == 0) return read_tetrahedra(path).mesh;
+    const ExactMap map = ExactMap::build(read_mesh(path));
+    return tetrahedralize(map.view(), {.size = body.element}).mesh;
+}
+
+/// What the scene's simulation takes besides the scene. None where the scene does not name a file, and for
+/// colliders without a cache.
+std::unique_ptr<SharedSimulation>
+simulation_of_scene(const Scene& scene, const std::vector<py::object>& model_maps,
+                    const std::vector<std::optional<VertexCache>>& model_caches,
+                    const std::optional<Arrays>& cloth, const std::optional<Arrays>& rest,
+                    std::vector<std::array<std::uint32_t, 2>> threads,
+                    const std::vector<std::optional<std::filesystem::path>>& bodies) {
+    const auto mesh = [](const std::optional<Arrays>& arrays) {
+        return arrays ? mesh_of(arrays->first, arrays->second) : TriangleMesh{};
+    };
+    ClothMeshes meshes{.mesh = mesh(cloth), .rest_mesh = mesh(rest), .threads = std::move(threads)};
+    std::vector<ColliderMap> maps;
+    for (const py::object& map : model_maps) maps.emplace_back(map_of(map));
+    std::vector<VertexCache> caches;
+    for (const std::optional<VertexCache>& cache : model_caches)
+        caches.push_back(cache.value_or(VertexCache{}));
+    return unlocked([&] {
+        for (std::size_t i = 0; i < bodies.size(); ++i)
+            meshes.bodies.push_back(bodies[i] ? read_body(scene.bodies.at(i), *bodies[i])
+                                              : TetrahedralMesh{});
+        return std::make_unique<SharedSimulation>(make_simulation(scene, maps, meshes, caches));
+    });
+}
+
+void bind_options(py::class_<Scene>& scene) {
+    const auto flag = [&](const char* name, bool SimulationOptions::*member) {
+        scene.def_property(
+            name, [member](const Scene& s) { return s.simulation.*member; },
+            [member](Scene& s, bool on) { s.simulation.*member = on; });
+    };
+    flag("surface_collision", &SimulationOptions::surface_collision);
+    flag("self_collision", &SimulationOptions::self_collision);
+    flag("untangle", &SimulationOptions::untangle);
+    flag("allow_open_colliders", &SimulationOptions::allow_open_colliders);
+    flag("measure_loads", &SimulationOptions::measure_loads);
+}
+
+} // namespace
+
+void bind_scenes(py::module_& module) {
+    py::class_<Scene> scene(module, "Scene");
+    scene.def_static("read", [](const std::filesystem::path& path) { return read_scene(path); })
+        .def_static("parse",
+                    [](const std::string& json, const std::string& name) { return parse_scene(json, name); })
+        .def_property_readonly("collider_count", [](const Scene& s) { return s.colliders.size(); })
+        .def("model_file",
+             [](const Scene& s, std::size_t collider) { return file_of(s.colliders.at(collider).model); })
+        .def("cache_file", cache_file)
+        .def_property_readonly("cloth_file", cloth_file)
+        .def_property_readonly("rest_file", rest_file)
+        .def_property_readonly("body_files", body_files)
+        .def_readonly("frame_limit", &Scene::frame_limit)
+        .def("make_model", make_model)
+        .def("repair", repair_model)
+        .def("build_map", build_model_map)
+        .def("simulate", simulation_of_scene);
+    bind_options(scene);
+    module.def("find_model", [](const std::string& name, const std::vector<std::filesystem::path>& folders) {
+        return find_model({name}, folders);
+    });
+    module.def("find_cache", [](const std::string& name, const std::vector<std::filesystem::path>& folders) {
+        return find_cache({.name = name}, folders);
+    });
+}
+
+} // namespace echinus::python

@@ -1,0 +1,28 @@
+#include "values.hpp"
+
+#include <cmath>
+#include <string>
+
+namespace echinus::python {
+
+Vec3d finite_vector_of(const Vector& v, const char* name) {
+    if (!is_finite(vector_of(v))) throw py::value_error(std::string(name) + " must be finite");
+    return vector_of(v);
+}
+
+py::tuple to_python(const Vec3d& v) {
+    return py::make_tuple(v.x, v.y, v.z);
+}
+
+py::tuple to_python(const Rotation& rotation) {
+    return py::make_tuple(rotation.w, rotation.x, rotation.y, rotation.z);
+}
+
+std::size_t index_below(std::size_t count, std::int64_t index, const char* what) {
+    if (index < 0 || static_cast<std::size_t>(index) >= count)
+        throw py::index_error("there is no " + std::string(what) + " " + std::to_string(index) +
+                              "; there are " + std::to_string(count));
+    return static_cast<std::size_t>(index);
+}
+
+} // namespace echinus::python

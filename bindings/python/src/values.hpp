@@ -1,0 +1,36 @@
+#pragma once
+
+#include <echinus/geometry.hpp>
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+/// Vectors, poses and numbers of Python as the library takes them.
+namespace echinus::python {
+
+namespace py = pybind11;
+
+using Vector = std::array<double, 3>;
+using Quaternion = std::array<double, 4>; ///< w, x, y, z
+
+inline Vec3d vector_of(const Vector& v) {
+    return {v[0], v[1], v[2]};
+}
+/// @throws ValueError
+Vec3d finite_vector_of(const Vector& v, const char* name);
+inline RigidTransform pose_of(const Vector& position, const Quaternion& rotation) {
+    return {{rotation[0], rotation[1], rotation[2], rotation[3]}, vector_of(position)};
+}
+
+py::tuple to_python(const Vec3d& v);
+py::tuple to_python(const Rotation& rotation);
+
+/// @param what  is counted
+/// @throws IndexError
+std::size_t index_below(std::size_t count, std::int64_t index, const char* what);
+
+} // namespace echinus::python
