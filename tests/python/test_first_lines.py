@@ -43,5 +43,9 @@ def test_the_lines_of_the_readme_run(folder):
 
 def test_the_programs_of_the_guide_run_one_after_the_other(folder):
     guide.run_guide()
-    assert (folder / "python_distance.png").exists() and (folder / "python_cloth.png").exists()
+    assert {path.name for path in folder.glob("*.png")} == {
+        "python_distance.png",
+        "python_cloth.png",
+        "python_soft_body.png",
+    }
     assert np.load("horse_labels.npz")["occupancy"].shape == (100_000,)
