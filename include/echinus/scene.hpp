@@ -65,8 +65,9 @@ struct MeshCloth {
 
 /// A soft body: what make_soft_body() takes, by name.
 struct SceneBody {
-    SceneModel mesh;         ///< a closed surface, which is filled with tetrahedra
-    double element = 0;      ///< about their size, units; positive
+    /// A closed surface, which is filled with tetrahedra; or a file of tetrahedra, for read_tetrahedra().
+    SceneModel mesh;
+    double element = 0;      ///< about their size, units; 0 where the file has them
     SoftBodyOptions options; ///< without pins and attachments
     VertexChoice pins;
     VertexChoice attachments; ///< move with the collider

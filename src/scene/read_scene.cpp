@@ -347,13 +347,27 @@ void read_mesh_cloth(JsonObject& cloth, Scene& scene) {
     made.attachments = read_vertices(cloth, "attachments");
 }
 
+/// Is it a file of tetrahedra? By its ending, as for read_tetrahedra().
+bool has_tetrahedra(const SceneModel& model) {
+    const auto* file = std::get_if<ModelFile>(&model);
+    if (file == nullptr) return false;
+    std::string ending = fs::path(file->name).extension().string();
+    for (char& c : ending)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return ending == ".msh" || ending == ".vtk" || ending == ".node" || ending == ".ele";
+}
+
 SceneBody read_body(JsonObject& object) {
     SceneBody body;
     SoftBodyOptions& options = body.options;
     object.require("mesh");
     body.mesh = read_model(object, "mesh");
-    object.require("element");
-    object.read("element", body.element, kLength);
+    if (!has_tetrahedra(body.mesh)) {
+        object.require("element");
+        object.read("element", body.element, kLength);
+    } else if (object.has("element")) {
+        object.refuse("element", "left out where the mesh is a file of tetrahedra");
+    }
     object.read("density", options.density, {1e-9, 1e15});
     object.read("young_modulus", options.young_modulus, {1e-9, 1e15});
     object.read("poisson_ratio", options.poisson_ratio, {0, 0.4999});

@@ -332,6 +332,18 @@ def test_scenes_may_have_several_colliders_bodies_and_caches(folder):
     assert np.array_equal(simulation.positions[np.unique(simulation.faces)], vertices)
 
 
+def test_a_body_may_be_a_file_of_tetrahedra(folder):
+    filled = ech.tetrahedralize(ech.ExactMap(BALL), size=0.15).mesh
+    ech.write_tetrahedra(folder / "ball.msh", filled)
+    simulations = []
+    for body in ({"mesh": "ball.msh"}, {"mesh": "ball.obj", "element": 0.15}):
+        scene = {"model": {"box": {}}, "bodies": [{**body, "position": [0, 0, 0.9]}]}
+        simulations.append(ech.Simulation.from_scene(scene, model_folders=[folder]))
+        simulations[-1].step(5)
+    assert len(simulations[0].tetrahedra) == len(filled.tetrahedra)
+    assert simulations[0].state_hash == simulations[1].state_hash
+
+
 def test_each_collider_may_have_another_model(folder):
     floor, _ = SCENE["colliders"]
     without_cache = {**SCENE, "colliders": [floor, {"model": "ball.obj", "position": [0.5, 0, 0.4]}]}

@@ -66,6 +66,20 @@ TEST(SceneBodies, FollowTheClothWhoseDensityIsThenGiven) {
     EXPECT_EQ(all.positions[12], Vec3f(-0.5F, -0.5F, 2.5F));
 }
 
+TEST(SceneBodies, AreTakenAsTheyAreFromFilesOfTetrahedra) {
+    for (const std::string name : {"ball.msh", "ball.VTK", "ball.node", "ball.Ele"}) {
+        const Scene scene = scene_with(R"("bodies": [{"mesh": ")" + name + R"("}])");
+        EXPECT_EQ(scene.bodies[0].element, 0);
+        const Deformable body = make_deformable(
+            scene, {.mesh = {}, .rest_mesh = {}, .bodies = {make_solid_box({1, 1, 1}, {1, 1, 1})}});
+        EXPECT_EQ(body.particle_count(), 8u);
+        expect_refusal("bodies[0].element is 1; it must be left out where the mesh is a file of tetrahedra",
+                       R"("bodies": [{"mesh": ")" + name + R"(", "element": 1}])");
+    }
+    test::expect_error(ErrorCode::InvalidOptions, "bodies[0]: its mesh is the file ball.msh: read it",
+                       [] { make_deformable(scene_with(R"("bodies": [{"mesh": "ball.msh"}])")); });
+}
+
 TEST(SceneBodies, ThatAreImpossibleAreRefused) {
     expect_refusal("the key bodies[0].mesh is missing", R"("bodies": [{}])");
     expect_refusal("bodies is", R"("bodies": [])");

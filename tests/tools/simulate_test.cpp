@@ -200,6 +200,16 @@ TEST_F(SimulateCommand, SavesTheSurfaceOfASoftBodyAlone) {
         {"render", "moment", "run", "--samples", "1", "--width", "60", "--height", "40", "-o", "p.png"});
 }
 
+TEST_F(SimulateCommand, TakesABodyFromAFileOfTetrahedra) {
+    write("ball.node", "4 3 0 0\n0 0 0 0\n1 0.3 0 0\n2 0 0.3 0\n3 0 0 0.3\n");
+    write("ball.ele", "1 4 0\n0 0 1 2 3\n");
+    write("scene.json", R"({"model": {"box": {}}, "frame_limit": 3,
+        "bodies": [{"mesh": "ball.ele", "position": [0, 0, 0.8]}]})");
+    EXPECT_EQ(simulate("scene.json").at("particles"), 4);
+    write("ball.ele", "1 4 0\n0 0 1 2 4\n");
+    expect_failure(1, "ball.ele", {"simulate", "scene.json", "-o", "run"});
+}
+
 TEST_F(SimulateCommand, NamesTheModelThatAClothBeginsIn) {
     write("scene.json", R"({"model": {"box": {}}, "cloth": {"size": [2, 2], "particles": [5, 5]}})");
     expect_failure(1, "scene.json: \"cloth\": the deformable begins intersecting the box in",

@@ -99,11 +99,12 @@ TriangleMesh load_model(const SceneCollider& collider, const fs::path& scene_pat
 
 namespace {
 
-/// Fills the surface of a file. Generated shapes are filled where the deformable is made.
+/// The tetrahedra of a file, or those that fill its surface. Generated shapes are filled where the deformable is made.
 TetrahedralMesh load_body(const SceneBody& body, const fs::path& scene_path,
                           const std::vector<fs::path>& folders) {
     const std::optional<fs::path> file = model_file(body.mesh, scene_path, folders);
     if (!file) return {};
+    if (body.element == 0) return read_tetrahedra(*file).mesh;
     return naming_file(file->string(), ErrorCode::InvalidMesh, [&] {
         const ExactMap map = ExactMap::build(read_mesh(*file));
         return tetrahedralize(map.view(), {.size = body.element}).mesh;
