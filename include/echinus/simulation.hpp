@@ -8,9 +8,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 ECHINUS_EXPORT_BEGIN
@@ -397,6 +399,33 @@ class Simulation {
     /// @param rate  per second: the higher, the lighter the cloth. Not negative
     /// @pre both are finite
     void blow(const Vec3d& wind, double rate);
+
+    // Saved states (docs/saved_states.md). Between frames.
+
+    /// All that decides how the simulation goes on, as bytes: particles, what is known of the surfaces
+    /// around them, the motion of the colliders, counts. The same state gives the same bytes. Not in it is
+    /// what the simulation was made of: deformable, maps, options and vertex caches.
+    /// Cost: about 100 bytes for each particle, and more where surfaces collide; about the time of a
+    /// copy.
+    std::vector<std::byte> save_state() const;
+    /// The same in a file, which appears whole or not at all.
+    /// @throws Error Unwritable
+    void save_state(const std::filesystem::path& path) const;
+
+    /// Goes back, or on, to a saved state: the frames that follow have the same bits as those that followed
+    /// it. The simulation has to be made of the same deformable, colliders where they began, and options; a
+    /// collider that followed a vertex cache follows the same one already. Poses, velocities and keyframes
+    /// come from the state. A custom map is not compared. Times in profile() stay as they are.
+    ///
+    /// Bytes are checked before use, whatever they are. References and spans that this simulation gave out
+    /// end.
+    /// @param name  of the bytes, as errors begin
+    /// @throws Error WrongFormat, UnsupportedVersion or Damaged for bytes that are no state of this version,
+    /// truncated or changed; InvalidOptions for a state of another simulation, saying what differs. Then
+    /// nothing has changed
+    void restore_state(std::span<const std::byte> bytes, const std::string& name = "the saved state");
+    /// From a file. @throws Error as above, and Unreadable; the sentence begins with the path
+    void restore_state(const std::filesystem::path& path);
 
   private:
     class [[gnu::visibility("hidden")]] Solver; // src/simulation/solver.hpp

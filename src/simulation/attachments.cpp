@@ -66,6 +66,18 @@ void Attachments::hold_on_to_surface(std::size_t collider, const Collider& now,
     }
 }
 
+void Attachments::archive(StateArchive& state, std::span<const std::optional<DeformingCollider>> surfaces) {
+    for (Place& place : places_)
+        state.optional(place.hold, [&](Hold& hold) {
+            const auto& surface = surfaces[place.collider];
+            state.require(surface.has_value());
+            for (std::uint32_t& vertex : hold.face)
+                state.index(vertex, surface ? surface->vertices().size() : 0);
+            state.value(hold.shares);
+            state.value(hold.aside);
+        });
+}
+
 void Attachments::follow(const std::vector<Collider>& colliders,
                          std::span<const std::optional<DeformingCollider>> surfaces, float share,
                          PointArrays& positions) const {

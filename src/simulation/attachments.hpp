@@ -33,6 +33,9 @@ class Attachments {
                 std::span<const std::optional<DeformingCollider>> surfaces, float share,
                 PointArrays& positions) const;
 
+    /// @param surfaces  as in follow()
+    void archive(StateArchive& state, std::span<const std::optional<DeformingCollider>> surfaces);
+
   private:
     /// On a face, and beside it.
     struct Hold {

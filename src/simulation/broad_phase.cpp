@@ -125,6 +125,17 @@ const std::vector<std::size_t>& BroadPhase::end_frame(const std::vector<Collider
     return met_late_;
 }
 
+void BroadPhase::archive(StateArchive& state) {
+    for (WideBox& model : models_) {
+        state.value(model.low);
+        state.value(model.high);
+    }
+    for (std::size_t c = 0; c < away_.size(); ++c) {
+        state.choice(away_[c], std::uint8_t{1});
+        state.require(away_[c] <= can_be_away_[c]);
+    }
+}
+
 /// Does the model's box touch that of all places between the start and an end, as the model sees them?
 bool BroadPhase::touches(std::size_t collider, const RigidTransform& end_pose, const WideBox& end,
                          double by) const {

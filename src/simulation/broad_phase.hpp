@@ -1,6 +1,7 @@
 #pragma once
 
 #include "simulation/particles.hpp"
+#include "simulation/state/state_archive.hpp"
 
 #include <echinus/collider.hpp>
 
@@ -46,6 +47,8 @@ class BroadPhase {
     /// @return those that are met late; they are not away from now on
     const std::vector<std::size_t>& end_frame(const std::vector<Collider>& colliders,
                                               const Particles& particles);
+
+    void archive(StateArchive& state);
 
   private:
     bool touches(std::size_t collider, const RigidTransform& end_pose, const WideBox& end, double by) const;

@@ -69,4 +69,19 @@ bool ColliderMotions::all_arrived(double time) const {
     });
 }
 
+void ColliderMotions::archive(StateArchive& state) {
+    for (Motion& motion : motions_) {
+        state.flag(motion.is_led);
+        const auto pose = [&](RigidTransform& place) { state.pose(place); };
+        state.optional(motion.next, pose);
+        state.optional(motion.last, pose);
+        state.items(motion.keys, [&](PoseKey& key) {
+            state.value(key.time);
+            state.pose(key.pose);
+        });
+        for (std::size_t i = 1; i < motion.keys.size(); ++i)
+            state.require(motion.keys[i].time > motion.keys[i - 1].time);
+    }
+}
+
 } // namespace echinus

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "simulation/state/state_archive.hpp"
+
 #include <echinus/collider.hpp>
 
 #include <cstddef>
@@ -27,6 +29,8 @@ class ColliderMotions {
     void begin_frame(std::vector<Collider>& colliders, double end_time, double frame_seconds);
     /// Has every collider that follows keys come to its last one?
     bool all_arrived(double time) const;
+
+    void archive(StateArchive& state);
 
   private:
     struct Motion {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "simulation/particles.hpp"
+#include "simulation/state/state_archive.hpp"
 #include "simulation/surface_motion.hpp"
 
 #include <echinus/simulation.hpp>
@@ -48,6 +49,11 @@ class Collision {
     /// The particle ends this frame lost. @return false when that was said before in this frame
     virtual bool mark_lost(std::size_t /*i*/) { return false; }
     virtual void end_frame(const Particles&) {}
+    /// The same of a collider that is away: no particle is near.
+    virtual void end_frame_away() {}
+
+    /// @param collider  where it stands between two frames
+    virtual void archive(StateArchive&, const Collider& /*collider*/) {}
 };
 
 /// By the kind of the collider's map. @pre the collider is valid, and the options have a thickness

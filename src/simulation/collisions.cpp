@@ -75,14 +75,28 @@ const std::vector<std::size_t>& Collisions::meet_late(const std::vector<Collider
 
 void Collisions::keep_free(Particles& particles, SimulationProfile& profile, LoadMeter* meter) {
     prove(particles, rescues_, profile, meter);
-    for (const auto& collision : collisions_) collision->end_frame(particles);
+    end_frames(particles);
 }
 
 void Collisions::end_frame(Particles& particles, bool was_squeezed, SimulationProfile& profile) {
     // A particle that was lost may be free again. None is rescued: a place that is free for a particle may be
     // none for its faces.
     if (was_squeezed || has_lost_) prove(particles, false, profile, nullptr);
-    for (const auto& collision : collisions_) collision->end_frame(particles);
+    end_frames(particles);
+}
+
+void Collisions::end_frames(const Particles& particles) {
+    for (std::size_t i = 0; i < collisions_.size(); ++i)
+        if (is_away(i))
+            collisions_[i]->end_frame_away();
+        else
+            collisions_[i]->end_frame(particles);
+}
+
+void Collisions::archive(StateArchive& state, const std::vector<Collider>& colliders) {
+    broad_phase_.archive(state);
+    state.flag(has_lost_);
+    for (std::size_t i = 0; i < collisions_.size(); ++i) collisions_[i]->archive(state, colliders[i]);
 }
 
 void Collisions::prove(Particles& particles, bool rescues, SimulationProfile& profile, LoadMeter* meter) {

@@ -48,10 +48,14 @@ class Collisions {
     /// @param was_squeezed  that happened in this frame
     void end_frame(Particles& particles, bool was_squeezed, SimulationProfile& profile);
 
+    /// @param colliders  where they stand
+    void archive(StateArchive& state, const std::vector<Collider>& colliders);
+
   private:
     void prove(Particles& particles, bool rescues, SimulationProfile& profile, LoadMeter* meter);
     std::size_t rescue(std::uint32_t particle, Particles& particles) const;
     bool is_lost(std::uint32_t particle, const Particles& particles) const;
+    void end_frames(const Particles& particles);
     std::size_t mark_lost(std::uint32_t particle, const Particles& particles);
 
     std::vector<std::unique_ptr<Collision>> collisions_; ///< one for each collider

@@ -6,6 +6,9 @@
 
 #include <echinus/error.hpp>
 
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -14,6 +17,12 @@
 namespace echinus {
 
 namespace {
+
+std::uint64_t hash_of(const VertexCache& cache) {
+    const std::array<double, 2> times{cache.start_time, cache.sample_seconds};
+    return XXH64(cache.samples->data(), cache.samples->size() * sizeof(Vec3f),
+                 XXH64(times.data(), sizeof times, cache.vertex_count));
+}
 
 Vec3f scaled(const Vec3f& local, const Vec3d& scale) {
     return Vec3f(times(Vec3d(local), scale));
@@ -38,7 +47,8 @@ std::array<float, 3> shares_in(const std::array<Vec3f, 3>& corners, const Vec3f&
     return {1 - b - c, b, c};
 }
 
-DeformingCollider::DeformingCollider(const ExactMap& map, std::string name) : name_(std::move(name)) {
+DeformingCollider::DeformingCollider(const ExactMap& map, std::string name)
+    : name_(std::move(name)), first_map_(map) {
     const ExactMapView& view = map.view();
     const TriangleMesh in_map_order = model_mesh(view, {1, 1, 1});
     std::vector<Triangle> faces(view.face_count());
@@ -49,8 +59,9 @@ DeformingCollider::DeformingCollider(const ExactMap& map, std::string name) : na
 }
 
 DeformingCollider::DeformingCollider(const DeformingCollider& other)
-    : name_(other.name_), faces_(other.faces_), options_(other.options_), vertices_(other.vertices_),
-      cache_(other.cache_), next_vertices_(other.next_vertices_), next_map_(other.next_map_) {}
+    : name_(other.name_), first_map_(other.first_map_), has_deformed_(other.has_deformed_),
+      faces_(other.faces_), options_(other.options_), vertices_(other.vertices_), cache_(other.cache_),
+      cache_hash_(other.cache_hash_), next_vertices_(other.next_vertices_), next_map_(other.next_map_) {}
 
 void DeformingCollider::lead_to(std::span<const Vec3f> vertices_local) {
     if (vertices_local.size() != vertices_.size())
@@ -62,16 +73,22 @@ void DeformingCollider::lead_to(std::span<const Vec3f> vertices_local) {
         if (!is_finite(vertices_local[i]))
             throw Error(ErrorCode::InvalidOptions,
                         name_ + ": the place of vertex " + std::to_string(i) + " is not finite");
+    next_map_ = built_of(vertices_local);
+    next_vertices_.assign(vertices_local.begin(), vertices_local.end());
+}
+
+ExactMap DeformingCollider::built_of(std::span<const Vec3f> vertices) {
     std::optional<ExactMapBuilder>& builder = builders_[turn_];
     if (!builder) builder.emplace(*faces_, options_);
-    next_map_ = builder->rebuild(vertices_local);
+    ExactMap map = builder->rebuild(vertices);
     turn_ = 1 - turn_;
-    next_vertices_.assign(vertices_local.begin(), vertices_local.end());
+    return map;
 }
 
 void DeformingCollider::follow(VertexCache cache) {
     require_valid(cache, vertices_.size(), name_);
     cache_ = std::move(cache);
+    cache_hash_ = hash_of(*cache_);
 }
 
 std::array<Vec3f, 3> DeformingCollider::corners(const Triangle& face, const Vec3d& scale) const {
@@ -96,8 +113,36 @@ void DeformingCollider::begin_frame(Collider& collider, double end_time, const P
     }
     if (!next_map_) return;
     collider.map = *next_map_;
+    has_deformed_ = true;
     next_map_.reset();
     std::swap(vertices_, next_vertices_);
+}
+
+void DeformingCollider::archive(StateArchive& state, Collider& collider) {
+    bool has_cache = cache_.has_value();
+    std::uint64_t hash = cache_hash_;
+    state.flag(has_cache);
+    state.value(hash);
+    if (state.reads() && has_cache && !(cache_ && hash == cache_hash_))
+        throw Error(ErrorCode::InvalidOptions,
+                    name_ + " followed a vertex cache when the state was saved, and follows " +
+                        (cache_ ? "another one" : "none") + " here; set that cache first");
+    if (!has_cache) cache_.reset();
+    state.flag(has_deformed_);
+    state.array(vertices_);
+    bool is_led = next_map_.has_value();
+    state.flag(is_led);
+    if (is_led) {
+        next_vertices_.resize(vertices_.size());
+        state.array(next_vertices_);
+    }
+    if (!state.reads()) return;
+    deforms_ = false;
+    for (const std::vector<Vec3f>* points : {&vertices_, &next_vertices_})
+        for (const Vec3f& p : *points) state.require(is_finite(p));
+    collider.map = has_deformed_ ? built_of(vertices_) : first_map_;
+    next_map_.reset();
+    if (is_led) next_map_ = built_of(next_vertices_);
 }
 
 void DeformingCollider::find_motion(const Collider& collider) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "simulation/state/state_archive.hpp"
 #include "simulation/surface_motion.hpp"
 
 #include <echinus/collider.hpp>
@@ -40,6 +41,11 @@ class DeformingCollider {
     /// @param reach       particles so near are beside it
     void begin_frame(Collider& collider, double end_time, const Particles& particles,
                      std::span<const float> clearances, float reach);
+    /// As it was before it deformed.
+    const ExactMap& first_map() const { return first_map_; }
+    /// Reading gives the collider the map of the surface as it is.
+    void archive(StateArchive& state, Collider& collider);
+
     /// In this frame, or null: the surface does not deform.
     const SurfaceMotion* motion() const { return deforms_ ? &motion_ : nullptr; }
 
@@ -53,11 +59,14 @@ class DeformingCollider {
     bool has_arrived(double time) const;
 
   private:
+    ExactMap built_of(std::span<const Vec3f> vertices);
     void find_motion(const Collider& collider);
     void find_carried(const Collider& collider, const Particles& particles, std::span<const float> clearances,
                       float reach);
 
     std::string name_;
+    ExactMap first_map_;
+    bool has_deformed_ = false; ///< the collider has another map
     std::shared_ptr<const std::vector<Triangle>> faces_;
     ExactMapOptions options_;
     /// They take turns: the one builds while the other's map is in use, so that both use their memory again.
@@ -65,6 +74,7 @@ class DeformingCollider {
     std::size_t turn_ = 0;
     std::vector<Vec3f> vertices_;
     std::optional<VertexCache> cache_;
+    std::uint64_t cache_hash_ = 0;
     std::vector<Vec3f> next_vertices_;
     std::optional<ExactMap> next_map_;
     bool deforms_ = false;

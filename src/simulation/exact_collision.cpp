@@ -49,6 +49,12 @@ void ExactCollision::begin_substep(const Collider& collider, const RigidTransfor
     now_.drift = &drift_;
 }
 
+void ExactCollision::archive(StateArchive& state, const Collider& collider) {
+    if (state.reads()) now_ = ColliderNow(collider, collider.pose, options_);
+    known_.archive(state);
+    free_places_.archive(state);
+}
+
 void ExactCollision::relax(Particles& particles, SimulationProfile& profile) {
     to_ask_.count = 0;
     profile.contact_count += push_known(known_, now_, particles, to_ask_);

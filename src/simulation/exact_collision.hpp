@@ -42,6 +42,9 @@ class ExactCollision final : public Collision {
     void take_back(std::size_t i, Particles& particles) const override;
     bool mark_lost(std::size_t i) override { return free_places_.mark_lost(i); }
     void end_frame(const Particles& particles) override;
+    void end_frame_away() override { free_places_.end_frame_away(); }
+
+    void archive(StateArchive& state, const Collider& collider) override;
 
   private:
     void ask(Particles& particles, SimulationProfile& profile);

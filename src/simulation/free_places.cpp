@@ -46,4 +46,22 @@ void FreePlaces::end_frame(const ColliderNow& collider, const Particles& particl
     });
 }
 
+void FreePlaces::end_frame_away() {
+    for (const std::uint32_t i : exceptions_) {
+        states_[i] = State::FrameStart;
+        lost_[i] = 0;
+    }
+    exceptions_.clear();
+}
+
+void FreePlaces::archive(StateArchive& state) {
+    for (State& of_particle : states_) state.choice(of_particle, State::Never);
+    for (Vec3f& place : stored_) {
+        state.value(place);
+        state.require(is_finite(place));
+    }
+    state.array(lost_);
+    state.indices(exceptions_, states_.size(), states_.size());
+}
+
 } // namespace echinus

@@ -2,6 +2,7 @@
 
 #include "simulation/collider_now.hpp"
 #include "simulation/particles.hpp"
+#include "simulation/state/state_archive.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -42,6 +43,10 @@ class FreePlaces {
     /// inside. A lost one keeps its place if it is `wanted_back`; otherwise it is free again once it is
     /// outside.
     void end_frame(const ColliderNow& collider, const Particles& particles, bool wanted_back);
+    /// The same beside a collider that is away: all are free.
+    void end_frame_away();
+
+    void archive(StateArchive& state);
 
   private:
     enum class State : std::uint8_t { FrameStart, Stored, Never };

@@ -28,6 +28,12 @@ void KnownContacts::weaken(float most) {
     }
 }
 
+void KnownContacts::archive(StateArchive& state) {
+    for (PointArrays* points : {&asked_at_body, &asked_at, &normal_body, &normal}) state.points(*points);
+    state.array(clearance);
+    state.array(height);
+}
+
 void KnownContacts::remember(std::size_t i, const ColliderNow& collider, const Vec3f& position,
                              float clearance_now) {
     asked_at.set(i, position);

@@ -2,6 +2,7 @@
 
 #include "simulation/collider_now.hpp"
 #include "simulation/particles.hpp"
+#include "simulation/state/state_archive.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -37,6 +38,8 @@ struct KnownContacts {
     void remember(std::size_t i, const ColliderNow& collider, const Vec3f& position, float clearance_now);
     void remember_plane(std::size_t i, const ColliderNow& collider, const Vec3f& normal_in_body,
                         float height_now);
+
+    void archive(StateArchive& state);
 };
 
 /// A contact plane is used until the particle has moved by this share of the thickness.

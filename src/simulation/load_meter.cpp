@@ -47,6 +47,13 @@ void LoadMeter::charge(std::size_t collider, std::uint32_t i, const Particles& p
     sums_[collider].moment += cross(Vec3d(particles.positions[i]) - centres_[collider], given);
 }
 
+void LoadMeter::archive(StateArchive& state) {
+    for (Sum& sum : sums_) {
+        state.value(sum.motion);
+        state.value(sum.moment);
+    }
+}
+
 Load LoadMeter::load_on(std::size_t collider, double time_step, double substep_seconds) const {
     const double scale = -1 / (time_step * substep_seconds);
     return {sums_[collider].motion * scale, sums_[collider].moment * scale};

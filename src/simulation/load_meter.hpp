@@ -1,6 +1,7 @@
 #pragma once
 
 #include "simulation/particles.hpp"
+#include "simulation/state/state_archive.hpp"
 
 #include <echinus/simulation.hpp>
 
@@ -35,6 +36,8 @@ class LoadMeter {
     /// Of the frame that has ended.
     /// @param time_step, substep_seconds  of a frame and of a substep
     Load load_on(std::size_t collider, double time_step, double substep_seconds) const;
+
+    void archive(StateArchive& state);
 
   private:
     struct Sum {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "simulation/state/state_archive.hpp"
+
 #include <echinus/simulation.hpp>
 
 #include <algorithm>
@@ -21,6 +23,11 @@ class RestWatch {
         quiet_frame_count_ = all_near && largest_speed <= condition_.speed ? quiet_frame_count_ + 1 : 0;
     }
     bool at_rest() const { return quiet_frame_count_ >= condition_.frame_count; }
+
+    void archive(StateArchive& state) {
+        state.array(places_);
+        state.value(quiet_frame_count_);
+    }
 
   private:
     bool all_stay(const std::vector<Vec3f>& positions) const {

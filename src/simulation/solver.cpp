@@ -99,7 +99,9 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
       attachments_(deformable, colliders), deforming_(colliders.size()), surface_motions_(colliders.size()),
       clearances_(particles_.count()), collisions_(colliders, particles_, options),
       rest_(options.rest, deformable.positions), goals_give_way_(sticks_.gives_way()),
-      substep_seconds_(options.time_step / options.substep_count) {
+      substep_seconds_(options.time_step / options.substep_count),
+      start_hash_(hash_of(deformable.positions)) {
+    for (const Collider& collider : colliders) start_poses_.push_back(collider.pose);
     if (options.surface_collision) {
         require_apart(deformable, colliders, options);
         surfaces_.emplace(deformable, colliders, particles_, options);

@@ -8,6 +8,8 @@
 #include "simulation/load_meter.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/rest.hpp"
+#include "simulation/state/fingerprint.hpp"
+#include "simulation/state/state_archive.hpp"
 #include "simulation/sticks.hpp"
 #include "simulation/stretched_part.hpp"
 #include "simulation/surfaces/surface_collision.hpp"
@@ -38,6 +40,10 @@ class Simulation::Solver {
     void follow_cache(std::size_t collider, VertexCache cache);
     Load load_on(std::size_t collider) const;
     std::string name_of_collider(std::size_t collider) const;
+    /// Of all that decides how the simulation goes on. Reading may leave a part of it when it throws.
+    void archive(StateArchive& state);
+    /// Of what does not change while it goes on: options, the deformable and where it began, each collider.
+    StateFingerprint fingerprint() const;
     bool at_rest() const { return rest_.at_rest() && all_arrived(); }
 
     Deformable deformable;
@@ -64,6 +70,7 @@ class Simulation::Solver {
     void keep_free();
     void publish();
     void judge_frame();
+    void archive_colliders(StateArchive& state);
 
     Particles particles_;
     StickArrays sticks_;
@@ -81,6 +88,8 @@ class Simulation::Solver {
     Wind wind_;
     bool goals_give_way_;
     double substep_seconds_;
+    std::uint64_t start_hash_;                ///< of where particles began
+    std::vector<RigidTransform> start_poses_; ///< of the colliders
     Vec3d start_centre_;
     double bound_ = 0;
 };

@@ -37,6 +37,11 @@ void StretchedPart::find(const StickArrays& sticks, const PointArrays& positions
     }
 }
 
+void StretchedPart::archive(StateArchive& state, std::size_t stick_count) {
+    state.indices(sticks_, stick_count, stick_count / kMostShare);
+    state.array(is_part_);
+}
+
 /// By the neighbours of all particles that take part.
 void StretchedPart::widen(const StickArrays& sticks) {
     wider_ = is_part_;

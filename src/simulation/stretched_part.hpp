@@ -1,5 +1,6 @@
 #pragma once
 
+#include "simulation/state/state_archive.hpp"
 #include "simulation/sticks.hpp"
 
 #include <cstddef>
@@ -28,6 +29,8 @@ class StretchedPart {
     std::span<const std::uint32_t> sticks() const { return sticks_; }
     /// [particle_count] 1: takes part.
     std::span<const std::uint8_t> particles() const { return is_part_; }
+
+    void archive(StateArchive& state, std::size_t stick_count);
 
   private:
     void widen(const StickArrays& sticks);

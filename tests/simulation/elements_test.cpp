@@ -268,7 +268,7 @@ TEST(PairLists, KeepWhatIsAddedThroughEveryMove) {
             lists.clear(element);
             expected[element].clear();
         } else {
-            lists.add(element, {{i, 0, 0, 0}, 0, PairKind::EdgeEdge});
+            lists.add(element, {{i, 0, 0, 0}, PairKind::EdgeEdge});
             expected[element].push_back(i);
         }
     }

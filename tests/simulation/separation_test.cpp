@@ -174,7 +174,7 @@ TEST(Separation, HasTheSameBitsInVectorLanes) {
             const PairKind kind = kKinds[random() % 3];
             for (std::uint32_t k = 0; k < 4; ++k)
                 (k < own_count(kind) ? own : other).set(4 * i + k, points[k]);
-            pairs.push_back({{4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3}, 0, kind});
+            pairs.push_back({{4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3}, kind});
         }
         under_each_instruction_set([&](std::string_view name) {
             std::vector<Separation> found(count);

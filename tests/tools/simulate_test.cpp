@@ -124,6 +124,18 @@ TEST_F(SimulateCommand, WritesTheClothItsMotionTheColliderAndAReport) {
     EXPECT_TRUE(fs::exists(path("run/collider.obj")));
 }
 
+TEST_F(SimulateCommand, GoesOnFromASavedStateToTheSameEnd) {
+    write("scene.json", kFallingSheet);
+    const nlohmann::json whole = simulate("scene.json");
+    simulate("scene.json", {"--frames", "3", "--save-state", "middle.state"});
+    const nlohmann::json rest = simulate("scene.json", {"--from-state", "middle.state"});
+    EXPECT_EQ(rest.at("state_hash"), whole.at("state_hash"));
+    EXPECT_EQ(rest.at("frames"), 6);
+    write("other.json", R"({"model": {"box": {}}, "cloth": {"size": [1, 1], "position": [0, 0, 2]}})");
+    expect_failure(1, "middle.state is of a simulation with another deformable",
+                   {"simulate", "other.json", "-o", "run", "--from-state", "middle.state"});
+}
+
 TEST_F(SimulateCommand, CountsTheFacesThatIntersectAtTheEnd) {
     write("apart.json", kFallingSheet);
     const nlohmann::json apart = simulate("apart.json");

@@ -32,9 +32,10 @@ constexpr const char* kFramesName = "frames";
 
 struct SimulateArguments {
     fs::path scene;
-    fs::path target; ///< folder; empty: none
-    fs::path page;   ///< empty: none
-    fs::path player; ///< empty: the installed one
+    fs::path target;                 ///< folder; empty: none
+    fs::path page;                   ///< empty: none
+    fs::path player;                 ///< empty: the installed one
+    fs::path from_state, save_state; ///< empty: none
     std::vector<fs::path> model_folders;
     std::optional<std::uint32_t> frame_limit;
     std::optional<std::uint32_t> stride;
@@ -139,16 +140,16 @@ Course run(Simulation& simulation, Results& results, std::uint32_t frame_limit, 
     ProgressBar progress("simulating");
     const std::vector<Collider>& colliders = simulation.colliders();
     Course course;
-    for (const Collider& collider : colliders) course.poses.push_back({{0, collider.pose}});
+    for (const Collider& collider : colliders) course.poses.push_back({{simulation.frame(), collider.pose}});
     results.watch(simulation, stride);
     while (simulation.frame() < frame_limit && !simulation.at_rest()) {
-        for (std::uint32_t i = 0; i < stride; ++i) {
+        do {
             const std::uint64_t truncated_before = simulation.profile().truncated_count;
             simulation.step();
             course.most_truncated =
                 std::max(course.most_truncated, simulation.profile().truncated_count - truncated_before);
             results.watch(simulation, stride);
-        }
+        } while (simulation.frame() % stride != 0);
         for (std::size_t c = 0; c < colliders.size(); ++c)
             if (has_moved(course.poses[c].back().pose, colliders[c].pose))
                 course.poses[c].push_back({simulation.frame(), colliders[c].pose});
@@ -166,6 +167,8 @@ void require_target(const SimulateArguments& arguments) {
         throw WrongUse("simulate", "needs -o DIR, --html FILE, or both");
     if (arguments.target.empty() && arguments.obj)
         throw WrongUse("--obj", "is about the files in a folder, so it needs -o DIR");
+    if (!arguments.from_state.empty() && !arguments.page.empty())
+        throw WrongUse("--from-state", "does not go with --html, whose page shows all frames from the first");
     require_one_result(arguments.page, arguments.json);
     require_another_file(arguments.scene, arguments.page);
 }
@@ -239,6 +242,7 @@ void simulate(const SimulateArguments& arguments) {
         return make_simulation(scene, colliders.maps, cloth, colliders.caches);
     });
     if (results.folder) results.folder->begin(simulation.deformable(), colliders, stride);
+    if (!arguments.from_state.empty()) simulation.restore_state(arguments.from_state);
     std::vector<ExactMap> judges;
     for (const JudgedModel& model : colliders.judged) judges.push_back(model.map);
     if (results.page) results.page->recording.emplace(std::move(judges), page_stride(arguments, scene));
@@ -265,6 +269,7 @@ void simulate(const SimulateArguments& arguments) {
                            .model_name = colliders.names,
                            .notice = colliders.notice,
                            .colliders = placed});
+    if (!arguments.save_state.empty()) simulation.save_state(arguments.save_state);
     if (results.folder) results.folder->commit(report);
     if (arguments.json)
         print(report.indented());
@@ -302,6 +307,14 @@ void add_options(Command command, SimulateArguments& arguments) {
              "Save every so many frames; without it all in a folder, and 60 per second in a page")
         .range(1, 1'000'000)
         .type_name("COUNT");
+    command
+        .add("--from-state", &arguments.from_state,
+             "Go on from a state that --save-state wrote, of the same scene with the same options")
+        .not_empty()
+        .type_name("FILE");
+    command.add("--save-state", &arguments.save_state, "Write the state at the end, to go on from it")
+        .not_empty()
+        .type_name("FILE");
     const std::vector<std::pair<std::string, std::optional<bool>>> on_or_off{{"on", true}, {"off", false}};
     add_choice(command, "--surfaces", arguments.surfaces, on_or_off,
                "Whether faces and edges collide, in place of the scene's surface_collision");

@@ -145,6 +145,14 @@ void ElementTree::refit_groups(std::span<const std::uint8_t> groups) {
     }
 }
 
+void ElementTree::archive(StateArchive& state) {
+    for (Level& level : levels_)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            state.array(level.low[axis]);
+            state.array(level.high[axis]);
+        }
+}
+
 float ElementTree::distance(const Box& box, float most) const {
     float distance_sq = most * most;
     shorten(levels_.size() - 1, 0, box, distance_sq);

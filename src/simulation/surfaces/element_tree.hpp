@@ -1,6 +1,7 @@
 #pragma once
 
 #include "simulation/particles.hpp"
+#include "simulation/state/state_archive.hpp"
 #include "simulation/surfaces/elements.hpp"
 
 #include <algorithm>
@@ -73,6 +74,9 @@ class ElementTree {
             return mask;
         }
     };
+
+    /// Of the boxes.
+    void archive(StateArchive& state);
 
     std::span<const std::uint32_t> order() const { return order_; }
     std::span<const Level> levels() const { return levels_; }

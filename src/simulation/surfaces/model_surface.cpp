@@ -168,6 +168,26 @@ void ModelSurface::relax(Particles& particles, std::span<const float> inverse_ma
     }
 }
 
+void ModelSurface::archive(StateArchive& state) {
+    state.optional(deformed_, [&](Shape& deformed) {
+        if (state.reads()) {
+            deformed.tree = shape_->tree;
+            deformed.positions = shape_->positions;
+        }
+        state.points(deformed.positions);
+        deformed.tree.archive(state);
+    });
+    pairs_.archive(state, shape_->elements.vertex_count());
+    state.items(contacts_, [&](Contact& contact) {
+        echinus::archive(state, contact.in_world, own_->vertex_count());
+        state.value(contact.normal_body);
+        state.value(contact.drift_body);
+        state.value(contact.offset_body);
+        state.index(contact.element, own_->all.size());
+        state.flag(contact.has_pushed);
+    });
+}
+
 void ModelSurface::set_goals(const PointArrays& goals) {
     to_body(goals, goals_);
 }

@@ -41,6 +41,8 @@ class ModelSurface {
     void relax(Particles& particles, std::span<const float> inverse_masses, SimulationProfile& profile,
                std::span<const std::uint8_t> chosen = {});
 
+    void archive(StateArchive& state);
+
     /// The collider is where it ends the frame, and so are the particles' goals.
     void set_goals(const PointArrays& goals);
     /// Begins another pass from here, with the collider at rest.

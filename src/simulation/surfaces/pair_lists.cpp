@@ -12,6 +12,24 @@ constexpr std::size_t kFewAbandoned = 4096;
 
 } // namespace
 
+void archive(StateArchive& state, Pair& pair, std::size_t own_limit, std::size_t opponent_limit) {
+    state.choice(pair.kind, PairKind::EdgeEdge);
+    for (std::size_t k = 0; k < 4; ++k)
+        state.index(pair.points[k], k < own_count(pair.kind) ? own_limit : opponent_limit);
+}
+
+/// Where the lists lie does not matter.
+void PairLists::archive(StateArchive& state, std::size_t own_count, std::size_t opponent_count) {
+    if (state.reads()) *this = PairLists(lists_.size());
+    std::vector<Pair> pairs;
+    for (std::size_t e = 0; e < lists_.size(); ++e) {
+        pairs.assign(of(e).begin(), of(e).end());
+        state.items(pairs, [&](Pair& pair) { echinus::archive(state, pair, own_count, opponent_count); });
+        if (!state.reads()) continue;
+        for (const Pair& pair : pairs) add(e, pair);
+    }
+}
+
 void PairLists::add(std::size_t element, const Pair& pair) {
     List& list = lists_[element];
     if (list.count == list.capacity) make_room(list);

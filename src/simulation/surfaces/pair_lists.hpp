@@ -1,5 +1,6 @@
 #pragma once
 
+#include "simulation/state/state_archive.hpp"
 #include "simulation/surfaces/separation.hpp"
 
 #include <cstddef>
@@ -8,6 +9,9 @@
 #include <vector>
 
 namespace echinus {
+
+/// @param own_limit, opponent_limit  of the numbers of vertices
+void archive(StateArchive& state, Pair& pair, std::size_t own_limit, std::size_t opponent_limit);
 
 /// For each element of a deformable the pairs that it is in. The lists lie in one array; a list that has
 /// grown out of its place moves to the end, and when half of the array is abandoned, all move together.
@@ -20,6 +24,9 @@ class PairLists {
     }
     void add(std::size_t element, const Pair& pair);
     void clear(std::size_t element) { lists_[element].count = 0; }
+
+    /// @param own_count, opponent_count  of vertices
+    void archive(StateArchive& state, std::size_t own_count, std::size_t opponent_count);
 
   private:
     struct List {

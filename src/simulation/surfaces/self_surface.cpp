@@ -1,5 +1,6 @@
 #include "simulation/surfaces/self_surface.hpp"
 
+#include "simulation/surfaces/pair_lists.hpp"
 #include "simulation/surfaces/shares.hpp"
 
 #include <algorithm>
@@ -108,6 +109,34 @@ SelfSurface::SelfSurface(std::shared_ptr<const Elements> own, std::span<const El
     if (!faces_.empty()) face_tree_ = MovingTree(faces_, particles.positions);
     if (!edges_.empty()) edge_tree_ = MovingTree(edges_, particles.positions);
     vertex_tree_ = MovingTree(vertices_, particles.positions);
+}
+
+void SelfSurface::archive(StateArchive& state) {
+    const std::size_t count = own_->vertex_count();
+    state.value(reach_.least_gap);
+    state.flag(in_world_);
+    state.value(drift_);
+    state.value(drifting_);
+    state.flag(has_searched_);
+    state.value(frame_number_);
+    state.value(first_frame_);
+    state.value(last_frame_);
+    state.flag(has_window_);
+    for (PointArrays* points : {&expected_, &speeds_, &from_, &to_, &anchors_}) state.points(*points);
+    state.array(listed_in_);
+    state.array(is_listed_for_pass_);
+    state.items(pairs_, [&](Pair& pair) { echinus::archive(state, pair, count, count); });
+    state.array(rooms_);
+    state.array(quiet_);
+    state.items(contacts_, [&](Contact& contact) {
+        echinus::archive(state, contact.pair, count);
+        state.flag(contact.has_pushed);
+    });
+    state.value(searched_count);
+    state.value(measured_count);
+    if (!state.reads() || !has_window_) return;
+    want(true);
+    refit_trees();
 }
 
 // ---- The frame
@@ -228,17 +257,23 @@ void SelfSurface::set_window() {
         from_.set(v, is_first_pass_ ? expected_in(v, first_frame_) : expected(v, false));
         to_.set(v, is_first_pass_ ? expected_in(v, last_frame_ + 1) : expected(v, true));
     }
-    const auto has_changed = [&](const Element& element) { return is_new || has_moved(element); };
-    face_tree_.want([&](std::uint32_t f) { return has_changed(faces_[f]); });
-    edge_tree_.want([&](std::uint32_t e) { return has_changed(edges_[e]); });
-    vertex_tree_.want([&](std::uint32_t i) { return is_new || has_moved_[surface_[i]] != 0; });
+    want(is_new);
+    refit_trees();
+    if (is_new) want(false);
+}
+
+/// In the trees, what has moved.
+void SelfSurface::want(bool all) {
+    face_tree_.want([&](std::uint32_t f) { return all || has_moved(faces_[f]); });
+    edge_tree_.want([&](std::uint32_t e) { return all || has_moved(edges_[e]); });
+    vertex_tree_.want([&](std::uint32_t i) { return all || has_moved_[surface_[i]] != 0; });
+}
+
+/// To the ways of what is wanted.
+void SelfSurface::refit_trees() {
     face_tree_.refit(faces_, from_, to_);
     edge_tree_.refit(edges_, from_, to_);
     vertex_tree_.refit(vertices_, from_, to_);
-    if (!is_new) return;
-    face_tree_.want([&](std::uint32_t f) { return has_moved(faces_[f]); });
-    edge_tree_.want([&](std::uint32_t e) { return has_moved(edges_[e]); });
-    vertex_tree_.want([&](std::uint32_t i) { return has_moved_[surface_[i]] != 0; });
 }
 
 std::uint32_t SelfSurface::frames_to_list() const {
@@ -279,14 +314,14 @@ void SelfSurface::search() {
 void SelfSurface::add_vertex_face(std::uint32_t vertex, std::uint32_t face) {
     const auto& corners = faces_[face].vertices;
     if (!faces_[face].has(vertex))
-        candidates_.push_back({{vertex, corners[0], corners[1], corners[2]}, face, PairKind::VertexFace});
+        candidates_.push_back({{vertex, corners[0], corners[1], corners[2]}, PairKind::VertexFace});
 }
 
 void SelfSurface::add_edge_edge(std::uint32_t a, std::uint32_t b) {
     const auto& p = edges_[a].vertices;
     const auto& q = edges_[b].vertices;
     if (p[0] != q[0] && p[0] != q[1] && p[1] != q[0] && p[1] != q[1])
-        candidates_.push_back({{p[0], p[1], q[0], q[1]}, b, PairKind::EdgeEdge});
+        candidates_.push_back({{p[0], p[1], q[0], q[1]}, PairKind::EdgeEdge});
 }
 
 /// Of the candidates, those that may come near on their ways, which they go together.

@@ -57,6 +57,8 @@ class SelfSurface {
     /// Pairs that could meet nevertheless, since a vertex is led on while the others stay behind.
     std::uint64_t stuck_count() const { return stuck_count_; }
 
+    void archive(StateArchive& state);
+
     std::uint64_t searched_count = 0, measured_count = 0;
 
   private:
@@ -75,6 +77,8 @@ class SelfSurface {
     bool is_elsewhere(std::uint32_t vertex) const;
     void expect(std::uint32_t vertex);
     void set_window();
+    void want(bool all);
+    void refit_trees();
     std::uint32_t frames_to_list() const;
     bool has_moved(const Element& element) const;
     void search();

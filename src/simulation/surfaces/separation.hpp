@@ -32,7 +32,6 @@ struct Separation {
 /// A vertex and a face or two edges that share no vertex.
 struct Pair {
     std::array<std::uint32_t, 4> points; ///< the vertices of the deformable's part, then the opponent's
-    std::uint32_t opponent;              ///< the element that the opponent's part belongs to
     PairKind kind;
 };
 

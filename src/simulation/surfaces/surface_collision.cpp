@@ -99,6 +99,13 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
     clearances_.assign(models_.size(), std::vector<float>(particles.count()));
 }
 
+void SurfaceCollision::archive(StateArchive& state) {
+    state.array(extents_);
+    state.array(is_near_);
+    for (ModelSurface& model : models_) model.archive(state);
+    if (self_) self_->archive(state);
+}
+
 /// What travels far from where it began is rounded more. Least gaps grow in large steps, since all is
 /// measured anew then.
 void SurfaceCollision::keep_gaps(const std::vector<Collider>& colliders, const Particles& particles) {

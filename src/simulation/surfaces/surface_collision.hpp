@@ -45,6 +45,8 @@ class SurfaceCollision {
     /// @param meter  has noted the velocities, or null
     void end_frame(Particles& particles, SimulationProfile& profile, LoadMeter* meter);
 
+    void archive(StateArchive& state);
+
   private:
     void keep_gaps(const std::vector<Collider>& colliders, const Particles& particles);
     bool pass(Particles& particles, bool is_first);

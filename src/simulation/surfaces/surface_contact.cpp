@@ -4,6 +4,13 @@
 
 namespace echinus {
 
+void archive(StateArchive& state, SurfaceContact& contact, std::size_t particle_count) {
+    for (std::uint32_t& particle : contact.particles) state.index(particle, particle_count);
+    state.value(contact.weights);
+    state.value(contact.normal);
+    state.value(contact.offset);
+}
+
 bool relax(const SurfaceContact& contact, std::span<const float> inverse_masses, const Vec3f& material,
            float friction, Particles& particles) {
     float height = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "simulation/particles.hpp"
+#include "simulation/state/state_archive.hpp"
 
 #include <echinus/geometry.hpp>
 
@@ -26,6 +27,8 @@ struct SurfaceContact {
     Vec3f normal;
     float offset = 0;
 };
+
+void archive(StateArchive& state, SurfaceContact& contact, std::size_t particle_count);
 
 /// One relaxation of a contact: push and friction, shared among the particles by weights and masses.
 /// @param material  the motion of what the point rests on, in this substep

@@ -47,6 +47,23 @@ void SurfacePairs::reset() {
     for (std::size_t e = 0; e < own_->all.size(); ++e) lists_.clear(e);
 }
 
+void SurfacePairs::archive(StateArchive& state, std::size_t opponent_count) {
+    state.value(reach_.least_gap);
+    lists_.archive(state, own_->vertex_count(), opponent_count);
+    state.array(list_reaches_);
+    state.array(element_listed_at_);
+    state.points(anchors_);
+    state.array(rooms_);
+    state.array(quiet_);
+    state.flag(was_for_one_frame_);
+    state.value(frame_);
+    state.array(renewed_in_);
+    state.array(measured_in_);
+    state.value(wake_);
+    state.value(measured_count);
+    state.value(listed_count);
+}
+
 // ---- Lists
 
 void SurfacePairs::begin(const Opponent& opponent, const PointArrays& starts, const PointArrays& bases,
@@ -136,14 +153,12 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
             if (own.owns_vertex(k) && is_near(a[k], reached))
                 near_pairs_.push_back(
                     {{own.vertices[k], other.vertices[0], other.vertices[1], other.vertices[2]},
-                     other_number,
                      PairKind::VertexFace});
     }
     if (own.is_face())
         for (std::size_t k = 0; k < other.vertex_count; ++k)
             if (other.owns_vertex(k) && is_near(b[k], own_box))
                 near_pairs_.push_back({{own.vertices[0], own.vertices[1], own.vertices[2], other.vertices[k]},
-                                       other_number,
                                        PairKind::FaceVertex});
     const auto edge_count = [](const Element& e) { return e.vertex_count == 3 ? 3U : e.vertex_count - 1U; };
     for (std::size_t i = 0; i < edge_count(own); ++i) {
@@ -157,7 +172,7 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
             const std::array<std::uint32_t, 4> points{own.vertices[i], own.vertices[i_next],
                                                       other.vertices[j], other.vertices[j_next]};
             if (is_near(edge_box, box_of_both(b[j], b[j_next])))
-                near_pairs_.push_back({points, other_number, PairKind::EdgeEdge});
+                near_pairs_.push_back({points, PairKind::EdgeEdge});
         }
     }
 }

@@ -100,6 +100,9 @@ class SurfacePairs {
                            [&](std::uint32_t element) { return !lists_.of(element).empty(); });
     }
 
+    /// @param opponent_count  of vertices
+    void archive(StateArchive& state, std::size_t opponent_count);
+
     std::uint64_t measured_count = 0, listed_count = 0;
 
   private:

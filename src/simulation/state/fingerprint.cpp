@@ -1,0 +1,87 @@
+#include "simulation/state/fingerprint.hpp"
+
+#include "simulation/state/state_archive.hpp"
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <variant>
+
+namespace echinus {
+
+namespace {
+
+/// Hashes what it is given, as StateArchive would write it.
+class Hasher {
+  public:
+    template <typename... Values>
+    void add(const Values&... values) {
+        (add_one(values), ...);
+    }
+    template <typename T>
+    void add_all(const std::vector<T>& values) {
+        add(std::uint64_t{values.size()});
+        for (const T& v : values) add(v);
+    }
+    std::uint64_t hash() {
+        const std::vector<std::byte>& bytes = archive_.written();
+        return XXH64(bytes.data(), bytes.size(), 0);
+    }
+
+  private:
+    template <typename T>
+    void add_one(T v) {
+        if constexpr (std::is_same_v<T, bool>)
+            archive_.flag(v);
+        else if constexpr (std::is_enum_v<T>)
+            archive_.choice(v, v);
+        else
+            archive_.value(v);
+    }
+
+    StateArchive archive_;
+};
+
+} // namespace
+
+std::uint64_t hash_of(const SimulationOptions& options) {
+    Hasher hasher;
+    hasher.add(options.solver, options.time_step, options.iteration_count, options.substep_count,
+               options.gravity, options.drag, options.stiffness, options.compliance,
+               options.thickness.value_or(-1), options.friction, options.rest.distance, options.rest.speed,
+               options.rest.frame_count, options.keep_free, options.allow_open_colliders,
+               options.surface_collision, options.self_collision, options.self_thickness.value_or(-1),
+               options.measure_loads, options.bound);
+    return hasher.hash();
+}
+
+std::uint64_t hash_of(const Deformable& deformable, std::uint64_t start_hash) {
+    Hasher hasher;
+    hasher.add(start_hash);
+    hasher.add_all(deformable.inverse_masses);
+    hasher.add_all(deformable.faces);
+    for (const Stick& stick : deformable.sticks) hasher.add(stick.a, stick.b, stick.rest_length, stick.kind);
+    for (const Fold& fold : deformable.folds)
+        hasher.add(fold.a, fold.b, fold.c, fold.d, fold.rest_angle, fold.lever);
+    for (const Attachment& attachment : deformable.attachments)
+        hasher.add(attachment.particle, attachment.collider);
+    for (const ElasticTetrahedron& t : deformable.tetrahedra)
+        hasher.add(t.particles, t.gradients, t.volume, t.mu, t.lambda, t.damping);
+    return hasher.hash();
+}
+
+std::uint64_t hash_of(std::span<const Vec3f> places) {
+    return XXH64(places.data(), places.size_bytes(), 0);
+}
+
+std::uint64_t hash_of(const ColliderMap& map, const Vec3d& scale, const RigidTransform& start) {
+    const auto& [rotation, translation] = start;
+    Hasher hasher;
+    hasher.add(scale, rotation.w, rotation.x, rotation.y, rotation.z, translation,
+               std::uint64_t{map.kind.index()});
+    if (const auto* exact = std::get_if<ExactMap>(&map.kind)) hasher.add(exact->source_hash());
+    if (const auto* distance = std::get_if<DistanceMap>(&map.kind)) hasher.add(distance->source_hash());
+    return hasher.hash();
+}
+
+} // namespace echinus

@@ -1,0 +1,62 @@
+// What belongs to the state of a simulation: all that a frame reads before it writes it.
+
+#include "simulation/solver.hpp"
+
+#include <variant>
+
+namespace echinus {
+
+StateFingerprint Simulation::Solver::fingerprint() const {
+    StateFingerprint result{hash_of(options), hash_of(deformable, start_hash_), {}};
+    for (std::size_t c = 0; c < colliders.size(); ++c) {
+        const ColliderMap map = deforming_[c] ? deforming_[c]->first_map() : colliders[c].map;
+        result.colliders.push_back(hash_of(map, colliders[c].scale, start_poses_[c]));
+    }
+    return result;
+}
+
+void Simulation::Solver::archive(StateArchive& state) {
+    state.value(frame);
+    state.value(largest_speed);
+    for (std::uint64_t* count :
+         {&profile.query_count, &profile.contact_count, &profile.map_query_count, &profile.rescued_count,
+          &profile.lost_count, &profile.truncated_count, &profile.searched_face_count,
+          &profile.measured_pair_count, &profile.squeezed_count})
+        state.value(*count);
+    state.points(particles_.positions);
+    state.points(particles_.previous);
+    rest_.archive(state);
+    if (stretched_part_) stretched_part_->archive(state, sticks_.count());
+    if (meter_) meter_->archive(state);
+    archive_colliders(state);
+    attachments_.archive(state, deforming_);
+    collisions_.archive(state, colliders);
+    if (surfaces_) surfaces_->archive(state);
+    if (state.reads()) publish();
+}
+
+/// Their maps before all else that asks them.
+void Simulation::Solver::archive_colliders(StateArchive& state) {
+    motions.archive(state);
+    for (std::size_t c = 0; c < colliders.size(); ++c) {
+        Collider& collider = colliders[c];
+        state.pose(collider.pose);
+        state.value(collider.linear_velocity);
+        state.value(collider.angular_velocity);
+        state.require(is_finite(collider.linear_velocity) && is_finite(collider.angular_velocity));
+        bool deforms = deforming_[c].has_value();
+        state.flag(deforms);
+        if (deforms && !deforming_[c]) {
+            const auto* exact = std::get_if<ExactMap>(&collider.map.kind);
+            state.require(exact != nullptr && options.surface_collision);
+            deforming_[c].emplace(*exact, name_of_collider(c));
+        }
+        if (!deforms && deforming_[c]) {
+            collider.map = deforming_[c]->first_map();
+            deforming_[c].reset();
+        }
+        if (deforms) deforming_[c]->archive(state, collider);
+    }
+}
+
+} // namespace echinus

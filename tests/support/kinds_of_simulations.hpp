@@ -1,0 +1,171 @@
+#pragma once
+
+#include "support/cloth_meshes.hpp"
+#include "support/custom_maps.hpp"
+#include "support/draping.hpp"
+#include "support/surface_judge.hpp"
+
+#include <echinus/simulation.hpp>
+#include <echinus/soft_body.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// One small simulation of each kind, for what must hold for all of them.
+namespace echinus::test {
+
+struct KindOfSimulation {
+    std::string name;
+    Deformable deformable;
+    std::vector<Collider> colliders;
+    SimulationOptions options;
+    /// What is set once, after it was made.
+    std::function<void(Simulation&)> begin = [](Simulation&) {};
+    /// What a host does before each frame.
+    std::function<void(Simulation&)> steer = [](Simulation&) {};
+
+    Simulation make() const {
+        Simulation simulation(deformable, colliders, options);
+        begin(simulation);
+        return simulation;
+    }
+    void step(Simulation& simulation) const {
+        steer(simulation);
+        simulation.step();
+    }
+};
+
+/// A ball that is pressed flat and lets go again.
+inline TriangleMesh breathing_ball(double seconds) {
+    TriangleMesh ball = make_sphere(0.35, 20, 10);
+    const auto share = static_cast<float>(1 + 0.2 * std::sin(12 * seconds));
+    for (Vec3f& v : ball.vertices) v = {v.x * share, v.y * share, v.z / share};
+    return ball;
+}
+
+inline VertexCache breathing_cache() {
+    std::vector<Vec3f> samples;
+    for (int i = 0; i < 12; ++i) {
+        const TriangleMesh ball = breathing_ball(0.04 * i);
+        samples.insert(samples.end(), ball.vertices.begin(), ball.vertices.end());
+    }
+    return {.sample_seconds = 0.04,
+            .vertex_count = breathing_ball(0).vertices.size(),
+            .samples = std::make_shared<const std::vector<Vec3f>>(std::move(samples))};
+}
+
+inline SimulationOptions surfaces_for_kinds(bool self) {
+    return {.thickness = 0.01, .surface_collision = true, .self_collision = self};
+}
+
+/// Particles beside maps of all kinds, which move; one begins inside, and one collider is far away at first.
+inline KindOfSimulation particles_beside_all_maps() {
+    KindOfSimulation kind{.name = "particles beside maps of all kinds",
+                          .deformable = sheet_at(0.3, 1, 21, {0, 0, 0.005}),
+                          .colliders = {},
+                          .options = {.thickness = 0.01, .measure_loads = true}};
+    kind.deformable.positions[7] = kind.deformable.previous_positions[7] = {0, 0, -0.1F};
+    kind.colliders = {{.map = ExactMap::build(make_torus(0.3, 0.15, 24, 12)), .angular_velocity = {0, 3, 0}},
+                      {.map = DistanceMap::build(make_sphere(0.2, 20, 10)), .pose = {{}, {0.4, 0.4, 0}}},
+                      {.map = std::make_shared<AnalyticBall>(0.2F), .pose = {{}, {-0.4, -0.4, 0}}},
+                      {.map = ExactMap::build(make_box({0.2, 0.2, 0.2})),
+                       .pose = {{}, {0, 0, 3}},
+                       .linear_velocity = {0, 0, -8}}};
+    return kind;
+}
+
+/// A sheet that is pulled over a tip, so that a part of it is stretched far.
+inline KindOfSimulation stretched_sheet() {
+    return {.name = "a sheet that is stretched over a tip",
+            .deformable = sheet_at(0.02, 1, 41),
+            .colliders =
+                colliders_of({{{{0, 0, 0}, {0.02F, 0, -2}, {-0.01F, 0.02F, -2}, {-0.01F, -0.02F, -2}},
+                               {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}}}}),
+            .options = surfaces_for_kinds(false),
+            .steer = [](Simulation& s) {
+                for (const std::size_t i : {818u, 822u}) s.set_particle_velocity(i, {0, 0, -12});
+            }};
+}
+
+/// Colliders that turn, follow keys or are away, below a sheet that folds onto itself.
+inline KindOfSimulation sheet_among_moving_colliders() {
+    std::vector<PoseKey> keys;
+    for (int i = 0; i < 8; ++i)
+        keys.push_back({0.1 * i, {Rotation::about({0, 1, 1}, 0.5 * i), {0.4, 0.2 * (i % 2), -0.2}}});
+    KindOfSimulation kind{.name = "a sheet among colliders that move",
+                          .deformable = sheet_at(0.25, 1.2, 25, {0, 0, 0.01}),
+                          .colliders = colliders_of({make_sphere(0.15, 20, 10), make_box({0.2, 0.2, 0.2}, 2),
+                                                     make_box({0.1, 0.1, 0.1})}),
+                          .options = surfaces_for_kinds(true),
+                          .begin = [keys](Simulation& s) { s.set_collider_keyframes(1, keys); }};
+    kind.options.measure_loads = true;
+    kind.colliders[0].angular_velocity = {1, 0, 4};
+    kind.colliders[1].pose = pose_at(keys, 0);
+    kind.colliders[2].pose.translation = {0, 0, 9};
+    return kind;
+}
+
+/// A cloth of a mesh with folds, as springs, in substeps.
+inline KindOfSimulation springs_with_folds() {
+    SimulationOptions options = surfaces_for_kinds(true);
+    options.solver = SolverKind::Xpbd;
+    options.iteration_count = 2;
+    options.substep_count = 4;
+    options.compliance = {1e-7, 1e-6, 1e-4};
+    return {.name = "springs with folds in substeps",
+            .deformable = make_cloth(rumpled(sheet_mesh(24, 24), 0.004F), {.pose = {{}, {0, 0, 0.33}}}),
+            .colliders = colliders_of({make_sphere(0.3, 24, 12)}),
+            .options = options};
+}
+
+/// Two bodies, one of which falls on the other.
+inline KindOfSimulation soft_bodies() {
+    const TetrahedralMesh box = make_solid_box({0.2, 0.2, 0.2}, {5, 5, 5});
+    const std::vector<Deformable> bodies{
+        make_soft_body(box, {.young_modulus = 2e4, .damping = 0.01, .pose = {{}, {0, 0, 0.12}}}),
+        make_soft_body(box,
+                       {.young_modulus = 1e4, .pose = {Rotation::about({1, 1, 0}, 0.4), {0.05, 0, 0.4}}})};
+    KindOfSimulation kind{.name = "soft bodies",
+                          .deformable = combine(bodies),
+                          .colliders = colliders_of({make_box({1, 1, 0.03}, 4)}),
+                          .options = surfaces_for_kinds(true)};
+    kind.options.solver = SolverKind::Xpbd;
+    kind.options.iteration_count = 1;
+    kind.options.substep_count = 10;
+    kind.options.thickness = 0.004;
+    kind.options.measure_loads = true;
+    return kind;
+}
+
+/// A sheet on a ball whose vertices a host leads, to which some particles are attached, beside one that
+/// follows a cache.
+inline KindOfSimulation sheet_on_deforming_balls() {
+    KindOfSimulation kind{.name = "a sheet on balls that deform",
+                          .deformable = sheet_at(0.4, 1, 25),
+                          .colliders = colliders_of({breathing_ball(0), breathing_ball(0)}),
+                          .options = surfaces_for_kinds(true),
+                          .begin = [](Simulation& s) { s.set_collider_cache(1, breathing_cache()); },
+                          .steer =
+                              [](Simulation& s) {
+                                  const double next = (s.frame() + 1) * s.options().time_step;
+                                  s.set_collider_vertices(0, breathing_ball(next).vertices);
+                              }};
+    kind.colliders[1].pose.translation = {0.55, 0.55, -0.2};
+    for (const std::uint32_t particle : {312u, 313u}) {
+        kind.deformable.inverse_masses[particle] = 0;
+        kind.deformable.attachments.push_back({particle, 0});
+    }
+    return kind;
+}
+
+inline std::vector<KindOfSimulation> kinds_of_simulations() {
+    return {particles_beside_all_maps(), stretched_sheet(), sheet_among_moving_colliders(),
+            springs_with_folds(),        soft_bodies(),     sheet_on_deforming_balls()};
+}
+
+} // namespace echinus::test
