@@ -1,6 +1,7 @@
 #include "handles.hpp"
 
 #include <echinus/map_file.hpp>
+#include <echinus/soft_body.hpp>
 
 #include <gtest/gtest.h>
 
@@ -118,6 +119,15 @@ TEST(CStructs, AreFilledWithTheDefaultsOfCpp) {
     echinus_mesh_cloth_options_init(&mesh_cloth, sizeof mesh_cloth);
     EXPECT_EQ(mesh_cloth.scale, MeshClothOptions{}.scale);
     EXPECT_EQ(mesh_cloth.pose.rotation[0], 1);
+
+    echinus_soft_body_options body;
+    echinus_soft_body_options_init(&body, sizeof body);
+    EXPECT_EQ(body.density, SoftBodyOptions{}.density);
+    EXPECT_EQ(body.young_modulus, SoftBodyOptions{}.young_modulus);
+    EXPECT_EQ(body.poisson_ratio, SoftBodyOptions{}.poisson_ratio);
+    EXPECT_EQ(body.damping, SoftBodyOptions{}.damping);
+    EXPECT_EQ(body.scale, SoftBodyOptions{}.scale);
+    EXPECT_EQ(body.pose.rotation[0], 1);
 
     echinus_simulation_options simulation;
     echinus_simulation_options_init(&simulation, sizeof simulation);

@@ -99,7 +99,8 @@ TriangleMesh load_model(const SceneCollider& collider, const fs::path& scene_pat
 
 namespace {
 
-/// The tetrahedra of a file, or those that fill its surface. Generated shapes are filled where the deformable is made.
+/// The tetrahedra of a file, or those that fill its surface. Generated shapes are filled where the deformable
+/// is made.
 TetrahedralMesh load_body(const SceneBody& body, const fs::path& scene_path,
                           const std::vector<fs::path>& folders) {
     const std::optional<fs::path> file = model_file(body.mesh, scene_path, folders);

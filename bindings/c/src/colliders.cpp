@@ -33,7 +33,24 @@ RigidTransform checked_pose(const echinus_pose& pose, const char* name) {
     return result;
 }
 
+std::vector<PoseKey> keys_from(std::span<const echinus_pose_key> keys) {
+    std::vector<PoseKey> result;
+    for (const echinus_pose_key& key : keys) result.push_back({key.time, pose_from(key.pose)});
+    return result;
+}
+
 namespace {
+
+/// What pose_at() takes for granted.
+void require_valid(std::span<const echinus_pose_key> keys) {
+    require(!keys.empty(), "there is no key");
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        const std::string name = "key " + std::to_string(i);
+        checked_pose(keys[i].pose, name.c_str());
+        if (!std::isfinite(keys[i].time) || (i > 0 && !(keys[i].time > keys[i - 1].time)))
+            throw WrongArgument(name + ": its time is not finite, or not later than the one before it");
+    }
+}
 
 echinus_collider at_rest(const echinus_map* map) {
     echinus_collider result{};
@@ -101,4 +118,14 @@ echinus_status echinus_collider_pose_after(const echinus_collider* collider, dou
                                            echinus_pose* pose) {
     return guarded(__func__,
                    [&] { at(pose, "pose") = pose_to_c(pose_after(collider_at(collider), seconds)); });
+}
+
+echinus_status echinus_pose_at(const echinus_pose_key* keys, size_t key_count, double seconds,
+                               echinus_pose* pose) {
+    return guarded(__func__, [&] {
+        const std::span<const echinus_pose_key> given = values_at(keys, key_count, "keys");
+        require_valid(given);
+        require(std::isfinite(seconds), "seconds is not finite");
+        at(pose, "pose") = pose_to_c(pose_at(keys_from(given), seconds));
+    });
 }

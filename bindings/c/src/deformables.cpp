@@ -2,12 +2,21 @@
 #include "collider.hpp"
 #include "deformable.hpp"
 #include "mesh.hpp"
+#include "tetrahedra.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/soft_body.hpp>
 
 #include <array>
+#include <bit>
 
 namespace echinus::c {
 
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_deformable_arrays, attachment_count);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_deformable_arrays, tetrahedron_count);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_soft_body_options, attachment_count);
+template <>
+inline constexpr std::size_t kFirstSize<echinus_deformable_arrays> = offsetof(echinus_deformable_arrays,
+                                                                              tetrahedra);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_cloth_options, pin_count);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_mesh_cloth_options, reserved);
 
@@ -23,6 +32,12 @@ static_assert(sizeof(echinus_fold) == sizeof(Fold) && offsetof(echinus_fold, d) 
               offsetof(echinus_fold, lever) == offsetof(Fold, lever));
 static_assert(sizeof(echinus_attachment) == sizeof(Attachment) &&
               offsetof(echinus_attachment, collider) == offsetof(Attachment, collider));
+static_assert(sizeof(echinus_elastic_tetrahedron) == sizeof(ElasticTetrahedron) &&
+              offsetof(echinus_elastic_tetrahedron, gradients) == offsetof(ElasticTetrahedron, gradients) &&
+              offsetof(echinus_elastic_tetrahedron, volume) == offsetof(ElasticTetrahedron, volume) &&
+              offsetof(echinus_elastic_tetrahedron, mu) == offsetof(ElasticTetrahedron, mu) &&
+              offsetof(echinus_elastic_tetrahedron, lambda) == offsetof(ElasticTetrahedron, lambda) &&
+              offsetof(echinus_elastic_tetrahedron, damping) == offsetof(ElasticTetrahedron, damping));
 
 echinus_deformable_arrays arrays_of(const Deformable& deformable) {
     echinus_deformable_arrays arrays{};
@@ -38,6 +53,8 @@ echinus_deformable_arrays arrays_of(const Deformable& deformable) {
     arrays.fold_count = deformable.folds.size();
     arrays.attachments = reinterpret_cast<const echinus_attachment*>(deformable.attachments.data());
     arrays.attachment_count = deformable.attachments.size();
+    arrays.tetrahedra = reinterpret_cast<const echinus_elastic_tetrahedron*>(deformable.tetrahedra.data());
+    arrays.tetrahedron_count = deformable.tetrahedra.size();
     return arrays;
 }
 
@@ -72,6 +89,13 @@ std::vector<Attachment> attachments_from(std::span<const echinus_attachment> att
     return result;
 }
 
+std::vector<ElasticTetrahedron> tetrahedra_from(std::span<const echinus_elastic_tetrahedron> tetrahedra) {
+    std::vector<ElasticTetrahedron> result;
+    for (const echinus_elastic_tetrahedron& t : tetrahedra)
+        result.push_back(std::bit_cast<ElasticTetrahedron>(t));
+    return result;
+}
+
 Deformable deformable_from(const echinus_deformable_arrays& arrays) {
     const std::size_t count = arrays.particle_count;
     const std::vector<Vec3f> positions = points_from(arrays.positions, count, 0, "positions");
@@ -88,6 +112,7 @@ Deformable deformable_from(const echinus_deformable_arrays& arrays) {
         .folds = folds_from(values_at(arrays.folds, arrays.fold_count, "folds")),
         .attachments =
             attachments_from(values_at(arrays.attachments, arrays.attachment_count, "attachments")),
+        .tetrahedra = tetrahedra_from(values_at(arrays.tetrahedra, arrays.tetrahedron_count, "tetrahedra")),
     };
 }
 
@@ -145,6 +170,62 @@ MeshClothOptions options_from(const echinus_mesh_cloth_options* options) {
     };
 }
 
+echinus_soft_body_options as_c(const SoftBodyOptions& options) {
+    echinus_soft_body_options result{};
+    result.density = options.density;
+    result.young_modulus = options.young_modulus;
+    result.poisson_ratio = options.poisson_ratio;
+    result.damping = options.damping;
+    result.pose = pose_to_c(options.pose);
+    result.scale = options.scale;
+    return result;
+}
+
+SoftBodyOptions options_from(const echinus_soft_body_options* options) {
+    if (options == nullptr) return {};
+    const auto given = read_struct(options, as_c(SoftBodyOptions{}), "options");
+    return {
+        .density = given.density,
+        .young_modulus = given.young_modulus,
+        .poisson_ratio = given.poisson_ratio,
+        .damping = given.damping,
+        .pose = pose_from(given.pose),
+        .scale = given.scale,
+        .pins = copy_of(given.pins, given.pin_count, "options.pins"),
+        .attachments =
+            attachments_from(values_at(given.attachments, given.attachment_count, "options.attachments")),
+    };
+}
+
+/// What is not there would be found in the next part.
+/// @throws Error InvalidOptions
+void require_own_particles(const Deformable& part, std::size_t number) {
+    const auto require_there = [&](std::uint32_t particle, const char* what) {
+        if (particle >= part.particle_count())
+            throw Error(ErrorCode::InvalidOptions, "part " + std::to_string(number) + ": a " + what +
+                                                       " names particle " + std::to_string(particle) +
+                                                       " of " + std::to_string(part.particle_count()));
+    };
+    for (const Stick& s : part.sticks)
+        for (const std::uint32_t particle : {s.a, s.b}) require_there(particle, "stick");
+    for (const Fold& f : part.folds)
+        for (const std::uint32_t particle : {f.a, f.b, f.c, f.d}) require_there(particle, "fold");
+    for (const Triangle& face : part.faces)
+        for (const std::uint32_t particle : face) require_there(particle, "face");
+    for (const Attachment& a : part.attachments) require_there(a.particle, "attachment");
+    for (const ElasticTetrahedron& t : part.tetrahedra)
+        for (const std::uint32_t particle : t.particles) require_there(particle, "tetrahedron");
+}
+
+Deformable combined(std::span<const echinus_deformable* const> parts) {
+    std::vector<Deformable> copies;
+    for (const echinus_deformable* part : parts) {
+        copies.push_back(at(part, "a part").value);
+        require_own_particles(copies.back(), copies.size() - 1);
+    }
+    return combine(copies);
+}
+
 } // namespace
 
 } // namespace echinus::c
@@ -174,6 +255,26 @@ echinus_status echinus_deformable_cloth_of_mesh(const echinus_mesh* mesh,
                                                 echinus_deformable** deformable) {
     return make(__func__, deformable,
                 [&] { return make_cloth(at(mesh, "mesh").value, options_from(options)); });
+}
+
+void echinus_soft_body_options_init(echinus_soft_body_options* options, size_t size) {
+    init_struct(options, size, as_c(SoftBodyOptions{}));
+}
+echinus_status echinus_deformable_soft_body(const echinus_tetrahedra* body,
+                                            const echinus_soft_body_options* options,
+                                            echinus_deformable** deformable) {
+    return make(__func__, deformable,
+                [&] { return make_soft_body(at(body, "body").value, options_from(options)); });
+}
+
+echinus_status echinus_deformable_combine(const echinus_deformable* const* parts, size_t part_count,
+                                          echinus_deformable** deformable) {
+    return make(__func__, deformable, [&] { return combined(values_at(parts, part_count, "parts")); });
+}
+echinus_status echinus_deformable_with_masses_times(const echinus_deformable* deformable, double factor,
+                                                    echinus_deformable** result) {
+    return make(__func__, result,
+                [&] { return with_masses_times(factor, at(deformable, "deformable").value); });
 }
 
 echinus_status echinus_deformable_read(const echinus_deformable* deformable,

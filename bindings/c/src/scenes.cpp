@@ -26,15 +26,36 @@ class Meshes {
     TriangleMesh model(const SceneCollider& collider) const {
         return repair(std::visit(*this, collider.model), collider.repair).mesh;
     }
-    ClothMeshes cloth(const Scene& scene) const {
-        if (!scene.mesh_cloth) return {};
-        MeshAndEdges start = from_file(scene.mesh_cloth->mesh);
-        return {.mesh = std::move(start.mesh),
-                .rest_mesh = from_file(scene.mesh_cloth->rest_mesh).mesh,
-                .threads = std::move(start.edges)};
+    /// Empty where the collider has none.
+    VertexCache cache(const SceneCollider& collider, const TriangleMesh& model) const {
+        if (!collider.cache) return {};
+        return read_vertex_cache(find_cache(*collider.cache, folders_), model,
+                                 collider.cache->frames_per_second);
+    }
+    ClothMeshes deformables(const Scene& scene) const {
+        ClothMeshes meshes;
+        if (scene.mesh_cloth) {
+            MeshAndEdges start = from_file(scene.mesh_cloth->mesh);
+            meshes = {.mesh = std::move(start.mesh),
+                      .rest_mesh = from_file(scene.mesh_cloth->rest_mesh).mesh,
+                      .threads = std::move(start.edges)};
+        }
+        for (const SceneBody& body : scene.bodies) meshes.bodies.push_back(tetrahedra(body));
+        return meshes;
     }
 
   private:
+    /// Those of a file, or those that fill its surface; none of a generated shape, which is filled where the
+    /// deformable is made.
+    TetrahedralMesh tetrahedra(const SceneBody& body) const {
+        const auto* file = std::get_if<ModelFile>(&body.mesh);
+        if (file == nullptr) return {};
+        const fs::path path = find_model(*file, folders_);
+        if (body.element == 0) return read_tetrahedra(path).mesh;
+        const ExactMap map = ExactMap::build(read_mesh(path));
+        return tetrahedralize(map.view(), {.size = body.element}).mesh;
+    }
+
     MeshAndEdges from_file(const std::optional<SceneModel>& model) const {
         const auto* file = model ? std::get_if<ModelFile>(&*model) : nullptr;
         return file != nullptr ? read_mesh_and_edges(find_model(*file, folders_)) : MeshAndEdges{};
@@ -94,8 +115,13 @@ echinus_status echinus_simulation_from_scene(const echinus_scene* scene, const c
         const Scene& description = at(scene, "scene").value;
         const Meshes meshes(folders_from(folders, folder_count, scene->folder));
         std::vector<ColliderMap> maps;
-        for (const SceneCollider& collider : description.colliders)
-            maps.emplace_back(build_map(meshes.model(collider), description.map, thread_count));
-        return make_simulation(description, maps, meshes.cloth(description));
+        std::vector<VertexCache> caches;
+        for (const SceneCollider& collider : description.colliders) {
+            TriangleMesh model = meshes.model(collider);
+            caches.push_back(meshes.cache(collider, model));
+            if (collider.cache) model.vertices = vertices_at(caches.back(), 0);
+            maps.emplace_back(build_map(model, description.map, thread_count));
+        }
+        return make_simulation(description, maps, meshes.deformables(description), caches);
     });
 }

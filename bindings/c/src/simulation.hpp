@@ -13,6 +13,7 @@ struct echinus_simulation {
     }
 
     echinus::Simulation value;
-    std::vector<echinus_map> maps; ///< [collider_count] for those who read a collider
-    bool failed = false;           ///< a step has; then it can only be read
+    /// [collider_count] For those who read a collider, as it was then.
+    mutable std::vector<echinus_map> maps;
+    bool failed = false; ///< a step has; then it can only be read
 };

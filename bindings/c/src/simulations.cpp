@@ -1,7 +1,9 @@
 #include "border.hpp"
 #include "collider.hpp"
 #include "deformable.hpp"
+#include "mesh.hpp"
 #include "simulation.hpp"
+#include "vertex_cache.hpp"
 
 #include <echinus/error.hpp>
 
@@ -216,6 +218,7 @@ echinus_status echinus_simulation_read_collider(const echinus_simulation* simula
         const std::vector<Collider>& colliders = simulation_at(simulation).colliders();
         require_index(index, colliders.size(), "collider");
         echinus_collider result{};
+        simulation->maps[index].value = colliders[index].map; // another one where it deforms
         result.map = &simulation->maps[index];
         result.pose = pose_to_c(colliders[index].pose);
         put_vector(colliders[index].scale, result.scale);
@@ -241,6 +244,34 @@ echinus_status echinus_simulation_set_collider_pose(echinus_simulation* simulati
         Simulation& running = running_at(simulation);
         require_index(index, running.colliders().size(), "collider");
         running.set_collider_pose(index, checked_pose(at(pose, "pose"), "pose"));
+    });
+}
+
+echinus_status echinus_simulation_set_collider_keyframes(echinus_simulation* simulation, size_t index,
+                                                         const echinus_pose_key* keys, size_t key_count) {
+    return guarded(__func__, [&] {
+        Simulation& running = running_at(simulation);
+        require_index(index, running.colliders().size(), "collider");
+        running.set_collider_keyframes(index, keys_from(values_at(keys, key_count, "keys")));
+    });
+}
+
+echinus_status echinus_simulation_set_collider_vertices(echinus_simulation* simulation, size_t index,
+                                                        const float* vertices, size_t vertex_count,
+                                                        size_t vertex_stride) {
+    return guarded(__func__, [&] {
+        Simulation& running = running_at(simulation);
+        require_index(index, running.colliders().size(), "collider");
+        running.set_collider_vertices(index, points_from(vertices, vertex_count, vertex_stride, "vertices"));
+    });
+}
+
+echinus_status echinus_simulation_set_collider_cache(echinus_simulation* simulation, size_t index,
+                                                     const echinus_vertex_cache* cache) {
+    return guarded(__func__, [&] {
+        Simulation& running = running_at(simulation);
+        require_index(index, running.colliders().size(), "collider");
+        running.set_collider_cache(index, at(cache, "cache").value);
     });
 }
 

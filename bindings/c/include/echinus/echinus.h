@@ -20,9 +20,9 @@
 /// it once by the _destroy of its type. What a function takes as const it reads during the call and does not
 /// keep, unless its declaration says so. What it returns as a pointer belongs to the handle that was asked.
 ///
-/// Threads. Meshes, maps, deformables, scenes and arrays never change: any number of threads may use one at
-/// once. A builder and a simulation are for one thread at a time. thread_count is how many threads a call may
-/// use; 0 stands for all cores. No answer depends on it.
+/// Threads. Meshes, maps, tetrahedra, deformables, scenes and arrays never change: any number of threads may
+/// use one at once. A builder and a simulation are for one thread at a time. thread_count is how many threads
+/// a call may use; 0 stands for all cores. No answer depends on it.
 ///
 /// Strides. Points are x, y, z as float. A batch of them is the address of the first x, a count, and the
 /// bytes from one x to the next: a multiple of 4 and at least 12; 0 stands for 12. Answers lie one after the
@@ -615,6 +615,185 @@ ECHINUS_API echinus_status echinus_collider_velocity_at(const echinus_collider* 
 ECHINUS_API echinus_status echinus_collider_pose_after(const echinus_collider* collider, double seconds,
                                                        echinus_pose* pose);
 
+/// Where a collider is at a time.
+typedef struct echinus_pose_key {
+    double time; ///< seconds
+    echinus_pose pose;
+} echinus_pose_key;
+
+/// The pose at a time: from key to key straight, and about one axis the shorter way round, both evenly;
+/// before the first key and after the last it is theirs.
+/// @param keys  [key_count], at least one; their times ascend, and poses are finite
+/// @param pose  out
+ECHINUS_API echinus_status echinus_pose_at(const echinus_pose_key* keys, size_t key_count, double seconds,
+                                           echinus_pose* pose);
+
+/// The vertices of a model over time, in samples at equal distances. Never changes.
+typedef struct echinus_vertex_cache echinus_vertex_cache;
+
+/// Copies the samples.
+/// @param samples         [3 vertex_count sample_count] in the model's own frame; at least one sample of one
+///                        vertex
+/// @param start_time      of the first sample, seconds
+/// @param sample_seconds  from one sample to the next; positive
+ECHINUS_API echinus_status echinus_vertex_cache_create(const float* samples, size_t sample_count,
+                                                       size_t vertex_count, double start_time,
+                                                       double sample_seconds, echinus_vertex_cache** cache);
+/// Reads a PC2 point cache, or a folder of OBJ files, one for each frame in the order of their names.
+/// @param mesh               the model, as echinus_mesh_read() gives it
+/// @param frames_per_second  positive
+/// @return as echinus_mesh_read(); ECHINUS_INVALID_MESH also when the number of vertices, or a face in a
+/// folder, is not the model's
+ECHINUS_API echinus_status echinus_vertex_cache_read(const char* path, const echinus_mesh* mesh,
+                                                     double frames_per_second, echinus_vertex_cache** cache);
+ECHINUS_API void echinus_vertex_cache_destroy(echinus_vertex_cache* cache);
+
+typedef struct echinus_vertex_cache_info {
+    size_t size;
+    uint64_t sample_count;
+    uint64_t vertex_count;
+    double start_time;
+    double sample_seconds;
+    const float* samples; ///< [3 vertex_count sample_count]; valid as long as the cache
+} echinus_vertex_cache_info;
+
+/// @param info  out; its size is set
+ECHINUS_API echinus_status echinus_vertex_cache_describe(const echinus_vertex_cache* cache,
+                                                         echinus_vertex_cache_info* info);
+/// The vertices at a time: straight from sample to sample; before the first and after the last they rest.
+/// @param vertices  [3 vertex_count] out
+ECHINUS_API echinus_status echinus_vertex_cache_at(const echinus_vertex_cache* cache, double seconds,
+                                                   float* vertices);
+
+// ---- Tetrahedra: solids cut into them (docs/tetrahedra.md) ----
+
+/// A body of tetrahedra that share vertices. Each is positive, and two that share a face lie on either side
+/// of it: what is not so is refused. Never changes.
+typedef struct echinus_tetrahedra echinus_tetrahedra;
+
+/// Copies vertices and tetrahedra.
+/// @param tetrahedra  [4 tetrahedron_count] vertices a, b, c, d: a, b, c turn counter-clockwise seen from d
+/// @return ECHINUS_INVALID_MESH, naming the first tetrahedron or vertex at fault; signs are exact
+ECHINUS_API echinus_status echinus_tetrahedra_create(const float* vertices, size_t vertex_count,
+                                                     size_t vertex_stride, const uint32_t* tetrahedra,
+                                                     size_t tetrahedron_count, echinus_tetrahedra** body);
+
+/// What was changed for a file's body to be valid.
+typedef struct echinus_tetrahedra_file_report {
+    size_t size;
+    uint64_t turned_tetrahedra; ///< that were negative: the order of corners is a file's convention
+    uint64_t dropped_vertices;  ///< that no tetrahedron uses
+} echinus_tetrahedra_file_report;
+
+/// Reads .msh (Gmsh 2.2 and 4.1), .vtk (legacy, an unstructured grid) or TetGen's .node with .ele, either of
+/// which names the pair.
+/// @param report  out, its size is set; or NULL
+/// @return ECHINUS_UNREADABLE, ECHINUS_WRONG_FORMAT, ECHINUS_DAMAGED or ECHINUS_INVALID_MESH
+ECHINUS_API echinus_status echinus_tetrahedra_read(const char* path, echinus_tetrahedra** body,
+                                                   echinus_tetrahedra_file_report* report);
+/// Writes .msh (Gmsh 2.2) or .vtk, by the extension of the name. The file appears whole or not at all.
+/// @return ECHINUS_UNWRITABLE or ECHINUS_WRONG_FORMAT
+ECHINUS_API echinus_status echinus_tetrahedra_write(const echinus_tetrahedra* body, const char* path);
+
+/// A box around the origin, of cuboids cut into five tetrahedra each. Vertex (i, j, k), counted along x, y
+/// and z, has the index (k * (segments[1] + 1) + j) * (segments[0] + 1) + i.
+/// @param size      [3] lengths of the edges
+/// @param segments  [3] cuboids along each axis, 1 to 512
+ECHINUS_API echinus_status echinus_tetrahedra_box(const double* size, const uint32_t* segments,
+                                                  echinus_tetrahedra** body);
+
+typedef struct echinus_tetrahedralize_options {
+    size_t size;
+    double
+        lattice_size; ///< the edge of the lattice's cubes, in the model's unit. Either this or count; 0: not
+    uint64_t count;   ///< about so many tetrahedra
+    uint64_t most_tetrahedra; ///< more are refused
+    uint32_t thread_count;
+    uint32_t reserved; ///< 0
+} echinus_tetrahedralize_options;
+
+ECHINUS_API void echinus_tetrahedralize_options_init(echinus_tetrahedralize_options* options, size_t size);
+
+typedef struct echinus_tetrahedralize_report {
+    size_t size;
+    double lattice_size;
+    uint64_t removed_tetrahedra; ///< left out where parts would have met in no more than an edge or a vertex
+} echinus_tetrahedralize_report;
+
+/// Fills what an exact map says is inside with tetrahedra, by isosurface stuffing. All dihedral angles lie
+/// between 9.3 and 161.7 degrees, and the boundary is closed, manifold and does not intersect itself.
+/// @param report  out, its size is set; or NULL
+/// @return ECHINUS_INVALID_OPTIONS; ECHINUS_INVALID_MESH when no tetrahedron of that size fits into the
+/// model; ECHINUS_INVALID_ARGUMENT for a map of another kind
+ECHINUS_API echinus_status echinus_tetrahedralize(const echinus_map* model,
+                                                  const echinus_tetrahedralize_options* options,
+                                                  echinus_tetrahedra** body,
+                                                  echinus_tetrahedralize_report* report);
+
+ECHINUS_API void echinus_tetrahedra_destroy(echinus_tetrahedra* body);
+
+ECHINUS_API size_t echinus_tetrahedra_vertex_count(const echinus_tetrahedra* body);
+/// [3 vertex_count] x, y, z
+ECHINUS_API const float* echinus_tetrahedra_vertices(const echinus_tetrahedra* body);
+ECHINUS_API size_t echinus_tetrahedra_count(const echinus_tetrahedra* body);
+/// [4 count]
+ECHINUS_API const uint32_t* echinus_tetrahedra_indices(const echinus_tetrahedra* body);
+
+typedef struct echinus_tetrahedra_report {
+    size_t size;
+    uint64_t tetrahedron_count;
+    uint64_t vertex_count; ///< that tetrahedra use
+    double volume;         ///< of all
+    double least_volume;   ///< of one tetrahedron
+    double shortest_edge;
+    double longest_edge;
+    double least_angle_deg; ///< between two faces of a tetrahedron, in degrees
+    double greatest_angle_deg;
+} echinus_tetrahedra_report;
+
+/// @param report  out; its size is set
+ECHINUS_API echinus_status echinus_tetrahedra_inspect(const echinus_tetrahedra* body,
+                                                      echinus_tetrahedra_report* report);
+
+/// The faces that belong to one tetrahedron only, outward, with all vertices of the body.
+ECHINUS_API echinus_status echinus_tetrahedra_boundary(const echinus_tetrahedra* body, echinus_mesh** mesh);
+
+/// How far the boundary of a body and the surface of a model are apart, at samples on both.
+typedef struct echinus_boundary_distance {
+    size_t size;
+    double mean_to_model;
+    double greatest_to_model;
+    double mean_to_boundary;
+    double greatest_to_boundary;
+} echinus_boundary_distance;
+
+/// @param distance  out; its size is set
+/// @return ECHINUS_INVALID_ARGUMENT for a map of another kind than an exact one
+ECHINUS_API echinus_status echinus_tetrahedra_measure_distance(const echinus_tetrahedra* body,
+                                                               const echinus_map* model,
+                                                               uint32_t thread_count,
+                                                               echinus_boundary_distance* distance);
+
+/// Where points lie in a body, so that they go along with it: a finer mesh, for instance. Never changes.
+typedef struct echinus_embedding echinus_embedding;
+
+/// Finds the tetrahedron that each point lies in, or else the nearest one, and the point's weights there.
+/// @param points  [count] finite
+/// @return ECHINUS_INVALID_MESH when a point is not finite
+ECHINUS_API echinus_status echinus_embedding_create(const echinus_tetrahedra* body, const float* points,
+                                                    size_t count, size_t stride, uint32_t thread_count,
+                                                    echinus_embedding** embedding);
+ECHINUS_API void echinus_embedding_destroy(echinus_embedding* embedding);
+/// The number of points.
+ECHINUS_API size_t echinus_embedding_count(const echinus_embedding* embedding);
+/// Where the points are once the body's vertices have moved.
+/// @param positions       [position_count] of the body's vertices, of which there are so many
+/// @param points          [3 count] out; does not overlap the positions
+/// @return ECHINUS_INVALID_ARGUMENT for another number of positions
+ECHINUS_API echinus_status echinus_embedding_carry(const echinus_embedding* embedding, const float* positions,
+                                                   size_t position_count, size_t position_stride,
+                                                   uint32_t thread_count, float* points);
+
 // ---- Deformables ----
 
 typedef enum echinus_stick_kind {
@@ -647,6 +826,16 @@ typedef struct echinus_attachment {
     uint32_t collider; ///< index in the simulation's colliders
 } echinus_attachment;
 
+/// Elastic material between four particles, for the solver XPBD; echinus_deformable_soft_body() computes
+/// them.
+typedef struct echinus_elastic_tetrahedron {
+    uint32_t particles[4];
+    float gradients[3][3]; ///< at rest: rows of the inverse of the matrix with columns b - a, c - a and d - a
+    float volume;          ///< at rest; positive
+    float mu, lambda;      ///< the Lame parameters: mu positive, lambda not negative
+    float damping;         ///< viscosity over mu, seconds
+} echinus_elastic_tetrahedron;
+
 /// Particles and what holds them together, in world units.
 typedef struct echinus_deformable echinus_deformable;
 
@@ -665,6 +854,8 @@ typedef struct echinus_deformable_arrays {
     size_t fold_count;
     const echinus_attachment* attachments; ///< of pinned particles, at most one of each
     size_t attachment_count;
+    const echinus_elastic_tetrahedron* tetrahedra; ///< in the order in which they are relaxed
+    size_t tetrahedron_count;
 } echinus_deformable_arrays;
 
 /// Copies the arrays. Whether they fit together is checked when a simulation is made of them.
@@ -723,6 +914,43 @@ ECHINUS_API void echinus_mesh_cloth_options_init(echinus_mesh_cloth_options* opt
 ECHINUS_API echinus_status echinus_deformable_cloth_of_mesh(const echinus_mesh* mesh,
                                                             const echinus_mesh_cloth_options* options,
                                                             echinus_deformable** deformable);
+
+/// What a soft body is made of, and where it starts; in SI units with metres, kilograms and seconds.
+typedef struct echinus_soft_body_options {
+    size_t size;
+    double density;       ///< mass / length^3; positive
+    double young_modulus; ///< mass / (length s^2); positive. Soft tissue has 1e3 to 1e5 Pa
+    double poisson_ratio; ///< 0 to 0.4999; towards 0.5 the volume is kept
+    double damping;       ///< viscosity over the shear modulus, seconds; not negative
+    echinus_pose pose;
+    double scale;         ///< before the pose; positive
+    const uint32_t* pins; ///< [pin_count] vertices that never move
+    size_t pin_count;
+    const echinus_attachment* attachments; ///< vertices that move with a collider
+    size_t attachment_count;
+} echinus_soft_body_options;
+
+ECHINUS_API void echinus_soft_body_options_init(echinus_soft_body_options* options, size_t size);
+
+/// A body at rest, whose particles are the vertices of the tetrahedra and whose faces their boundary.
+/// Simulate it with ECHINUS_SOLVER_XPBD, one iteration and ten substeps or more.
+/// @param options  or NULL for the defaults
+/// @return ECHINUS_INVALID_MESH when no tetrahedron uses a vertex; ECHINUS_INVALID_OPTIONS
+ECHINUS_API echinus_status echinus_deformable_soft_body(const echinus_tetrahedra* body,
+                                                        const echinus_soft_body_options* options,
+                                                        echinus_deformable** deformable);
+
+/// Several deformables as one, the particles of one part after those of the other: with self_collision they
+/// collide with each other. Masses stay as they are, so they must be in one unit.
+/// @param parts  [part_count]
+/// @return ECHINUS_INVALID_OPTIONS, naming the part, when one names a particle that it does not have
+ECHINUS_API echinus_status echinus_deformable_combine(const echinus_deformable* const* parts,
+                                                      size_t part_count, echinus_deformable** deformable);
+
+/// The same deformable with all masses times a factor, finite and positive. A cloth's particles have the mean
+/// mass 1, so its mass / its particle_count brings it to the unit of that mass.
+ECHINUS_API echinus_status echinus_deformable_with_masses_times(const echinus_deformable* deformable,
+                                                                double factor, echinus_deformable** result);
 
 /// @param arrays  out, its size is set; its pointers are valid as long as the deformable
 ECHINUS_API echinus_status echinus_deformable_read(const echinus_deformable* deformable,
@@ -839,7 +1067,8 @@ ECHINUS_API echinus_status echinus_simulation_read_options(const echinus_simulat
 
 ECHINUS_API size_t echinus_simulation_collider_count(const echinus_simulation* simulation);
 /// A collider in its present pose.
-/// @param collider  out, its size is set; its map is valid as long as the simulation
+/// @param collider  out, its size is set; its map is valid as long as the simulation, and for a collider that
+///                  deforms it is that of its present vertices until the collider is read again
 ECHINUS_API echinus_status echinus_simulation_read_collider(const echinus_simulation* simulation,
                                                             size_t index, echinus_collider* collider);
 
@@ -853,6 +1082,32 @@ ECHINUS_API echinus_status echinus_simulation_set_collider_velocity(echinus_simu
 /// Until the next call it stands still.
 ECHINUS_API echinus_status echinus_simulation_set_collider_pose(echinus_simulation* simulation, size_t index,
                                                                 const echinus_pose* pose);
+
+/// A collider follows the keys: each frame leads it to where echinus_pose_at() has it at the frame's end. It
+/// does so from where it is, so begin it there. Without keys it stands still.
+/// @param keys  [key_count]; their times ascend, in seconds since the simulation began
+/// @return ECHINUS_INVALID_OPTIONS, naming the key
+ECHINUS_API echinus_status echinus_simulation_set_collider_keyframes(echinus_simulation* simulation,
+                                                                     size_t index,
+                                                                     const echinus_pose_key* keys,
+                                                                     size_t key_count);
+
+/// The next frame leads the vertices of a collider here, each on a straight way; then they rest. Needs an
+/// exact map and options.surface_collision; the map is built anew in this call.
+/// @param vertices  [vertex_count] in the model's own frame, as many and in the order of the mesh that its
+/// map
+///                  was built of
+/// @return ECHINUS_INVALID_OPTIONS; then nothing has changed
+ECHINUS_API echinus_status echinus_simulation_set_collider_vertices(echinus_simulation* simulation,
+                                                                    size_t index, const float* vertices,
+                                                                    size_t vertex_count,
+                                                                    size_t vertex_stride);
+
+/// Each frame leads the vertices of a collider to where echinus_vertex_cache_at() has them at the frame's
+/// end. The cache may go afterwards.
+/// @return as above
+ECHINUS_API echinus_status echinus_simulation_set_collider_cache(echinus_simulation* simulation, size_t index,
+                                                                 const echinus_vertex_cache* cache);
 
 /// What the deformable put on a collider in the last frame, as its mean over the frame, with masses in the
 /// unit in which inverse masses are their inverses; 0 before the first.
@@ -889,8 +1144,8 @@ ECHINUS_API void echinus_scene_destroy(echinus_scene* scene);
 /// The frame at which the simulation is to end at the latest.
 ECHINUS_API uint32_t echinus_scene_frame_limit(const echinus_scene* scene);
 
-/// Reads or generates the meshes of a scene, repairs the model as the scene says, builds its map and makes
-/// the simulation. Files are looked for in the folders, then in the scene's folder and in ../models beside
+/// Reads or generates the meshes of a scene, repairs its models as it says, builds their maps and makes the
+/// simulation. Files are looked for in the folders, then in the scene's folder and in ../models beside
 /// it.
 /// @param folders  [folder_count] paths
 /// @return as echinus_mesh_read(), the builds and echinus_simulation_create()

@@ -1,0 +1,407 @@
+// Soft bodies, several parts in one simulation, and colliders that move and deform: in C as in C++, bit for
+// bit.
+
+#include "handles.hpp"
+#include "support/temporary_folder.hpp"
+
+#include <echinus/mesh_io.hpp>
+#include <echinus/simulation.hpp>
+#include <echinus/soft_body.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+using namespace echinus;
+using namespace echinus::test;
+
+namespace {
+
+const Vec3d kSize{0.4, 0.4, 0.4};
+const TriangleMesh kBall = make_sphere(0.3, 16, 8);
+
+TetrahedralMesh block() {
+    return make_solid_box(kSize, {2, 2, 2});
+}
+CTetrahedra c_block() {
+    const std::uint32_t segments[3] = {2, 2, 2};
+    CTetrahedra body;
+    expect_ok(echinus_tetrahedra_box(Numbers(kSize), segments, out(body)));
+    return body;
+}
+
+SoftBodyOptions body_options() {
+    SoftBodyOptions options{.density = 500,
+                            .young_modulus = 2e4,
+                            .poisson_ratio = 0.3,
+                            .damping = 0.01,
+                            .scale = 1.1,
+                            .pins = {3},
+                            .attachments = {{.particle = 5, .collider = 0}}};
+    options.pose.translation = {0, 0, 0.6};
+    return options;
+}
+
+CDeformable c_soft_body() {
+    echinus_soft_body_options options;
+    echinus_soft_body_options_init(&options, sizeof options);
+    const std::uint32_t pins[1] = {3};
+    const echinus_attachment attachments[1] = {{.particle = 5, .collider = 0}};
+    options.density = 500;
+    options.young_modulus = 2e4;
+    options.poisson_ratio = 0.3;
+    options.damping = 0.01;
+    options.scale = 1.1;
+    options.pose.translation[2] = 0.6;
+    options.pins = pins;
+    options.pin_count = 1;
+    options.attachments = attachments;
+    options.attachment_count = 1;
+    CDeformable body;
+    expect_ok(echinus_deformable_soft_body(c_block().get(), &options, out(body)));
+    return body;
+}
+
+CDeformable c_sheet() {
+    echinus_cloth_options options;
+    echinus_cloth_options_init(&options, sizeof options);
+    options.column_count = options.row_count = 8;
+    options.pose.translation[2] = 1;
+    CDeformable sheet;
+    expect_ok(echinus_deformable_cloth(&options, out(sheet)));
+    return sheet;
+}
+Deformable sheet() {
+    ClothOptions options{.column_count = 8, .row_count = 8};
+    options.pose.translation.z = 1;
+    return make_cloth(options);
+}
+
+CMesh c_mesh(const TriangleMesh& mesh) {
+    CMesh result;
+    expect_ok(echinus_mesh_create(&mesh.vertices.data()->x, mesh.vertices.size(), 0,
+                                  mesh.faces.data()->data(), mesh.faces.size(), out(result)));
+    return result;
+}
+
+/// The same block over the same ball, in C and in C++.
+struct Pair {
+    Pair() : Pair(c_soft_body(), make_soft_body(block(), body_options())) {}
+    Pair(const CDeformable& c_deformable, Deformable deformable)
+        : by_cpp(std::move(deformable), {{.map = ExactMap::build(kBall)}},
+                 {.solver = SolverKind::Xpbd,
+                  .iteration_count = 1,
+                  .substep_count = 10,
+                  .surface_collision = true,
+                  .self_collision = true,
+                  .measure_loads = true}) {
+        const CMap map = c_map(c_mesh(kBall));
+        echinus_simulation_options options;
+        echinus_simulation_options_init(&options, sizeof options);
+        options.solver = ECHINUS_SOLVER_XPBD;
+        options.iteration_count = 1;
+        options.substep_count = 10;
+        options.surface_collision = options.self_collision = options.measure_loads = 1;
+        echinus_collider collider;
+        echinus_collider_init(&collider, sizeof collider, map.get());
+        expect_ok(echinus_simulation_create(c_deformable.get(), &collider, 1, &options, out(in_c)));
+    }
+
+    void expect_same_after(int frame_count) {
+        for (int i = 0; i < frame_count; ++i) {
+            expect_ok(echinus_simulation_step(in_c.get()));
+            by_cpp.step();
+        }
+        EXPECT_EQ(echinus_simulation_state_hash(in_c.get()), by_cpp.state_hash());
+        double force[3], torque[3];
+        expect_ok(echinus_simulation_load_on(in_c.get(), 0, force, torque));
+        EXPECT_EQ((Vec3d{force[0], force[1], force[2]}), by_cpp.load_on(0).force);
+        EXPECT_EQ((Vec3d{torque[0], torque[1], torque[2]}), by_cpp.load_on(0).torque);
+    }
+
+    CSimulation in_c;
+    Simulation by_cpp;
+};
+
+TEST(CSoftBodies, FallAsInCpp) {
+    Pair pair;
+    pair.expect_same_after(40);
+}
+
+TEST(CSoftBodies, GoThroughTheirArraysUnchanged) {
+    const Deformable expected = make_soft_body(block(), body_options());
+    const CDeformable body = c_soft_body();
+    echinus_deformable_arrays arrays{};
+    arrays.size = sizeof arrays;
+    expect_ok(echinus_deformable_read(body.get(), &arrays));
+    ASSERT_EQ(arrays.tetrahedron_count, expected.tetrahedra.size());
+    EXPECT_EQ(std::memcmp(arrays.tetrahedra, expected.tetrahedra.data(),
+                          expected.tetrahedra.size() * sizeof(ElasticTetrahedron)),
+              0);
+    CDeformable again;
+    expect_ok(echinus_deformable_create(&arrays, out(again)));
+    Pair(again, expected).expect_same_after(10);
+}
+
+TEST(CSoftBodies, OfAnOlderHeaderHaveNoTetrahedra) {
+    const CDeformable body = c_soft_body();
+    echinus_deformable_arrays arrays{};
+    arrays.size = offsetof(echinus_deformable_arrays, tetrahedra);
+    expect_ok(echinus_deformable_read(body.get(), &arrays));
+    EXPECT_EQ(arrays.attachment_count, 1U);
+    EXPECT_EQ(arrays.tetrahedron_count, 0U);
+}
+
+TEST(CSoftBodies, AreCombinedWithClothAsInCpp) {
+    const Deformable expected[2] = {with_masses_times(0.01, sheet()),
+                                    make_soft_body(block(), body_options())};
+    CDeformable light, both;
+    expect_ok(echinus_deformable_with_masses_times(c_sheet().get(), 0.01, out(light)));
+    const CDeformable body = c_soft_body();
+    const echinus_deformable* const parts[2] = {light.get(), body.get()};
+    expect_ok(echinus_deformable_combine(parts, 2, out(both)));
+    Pair(both, combine(expected)).expect_same_after(30);
+}
+
+TEST(CSoftBodies, ThatCannotBeAreRefused) {
+    const CTetrahedra body = c_block();
+    echinus_soft_body_options options;
+    echinus_soft_body_options_init(&options, sizeof options);
+    CDeformable made;
+    const auto make = [&] { return echinus_deformable_soft_body(body.get(), &options, out(made)); };
+    expect_ok(make());
+    options.poisson_ratio = 0.5;
+    expect_refused(make(), ECHINUS_INVALID_OPTIONS, "poisson_ratio");
+    options.poisson_ratio = 0.3;
+    options.density = NAN;
+    expect_refused(make(), ECHINUS_INVALID_OPTIONS, "density");
+    options.density = 1;
+    const std::uint32_t pins[1] = {27};
+    options.pins = pins;
+    options.pin_count = 1;
+    expect_refused(make(), ECHINUS_INVALID_OPTIONS, "vertex 27");
+    options.pins = nullptr;
+    expect_refused(make(), ECHINUS_INVALID_ARGUMENT, "options.pins is NULL");
+    expect_refused(echinus_deformable_soft_body(nullptr, nullptr, out(made)), ECHINUS_INVALID_ARGUMENT,
+                   "body is NULL");
+    expect_refused(echinus_deformable_soft_body(body.get(), nullptr, nullptr), ECHINUS_INVALID_ARGUMENT,
+                   "the place for the result is NULL");
+    const CDeformable soft = c_soft_body();
+    expect_refused(echinus_deformable_with_masses_times(soft.get(), 0, out(made)), ECHINUS_INVALID_OPTIONS,
+                   "masses");
+    expect_refused(echinus_deformable_with_masses_times(nullptr, 1, out(made)), ECHINUS_INVALID_ARGUMENT,
+                   "deformable is NULL");
+}
+
+TEST(CSoftBodies, PartsNameTheirOwnParticlesOnly) {
+    const float positions[6] = {0, 0, 0, 1, 0, 0};
+    const echinus_stick stick{
+        .a = 0, .b = UINT32_MAX, .rest_length = 1, .kind = ECHINUS_STICK_STRUCTURAL, .reserved = {}};
+    echinus_deformable_arrays arrays{};
+    arrays.size = sizeof arrays;
+    arrays.particle_count = 2;
+    arrays.positions = positions;
+    arrays.sticks = &stick;
+    arrays.stick_count = 1;
+    CDeformable wrong, both;
+    expect_ok(echinus_deformable_create(&arrays, out(wrong)));
+    const CDeformable right = c_sheet();
+    const echinus_deformable* parts[2] = {right.get(), wrong.get()};
+    expect_refused(echinus_deformable_combine(parts, 2, out(both)), ECHINUS_INVALID_OPTIONS,
+                   "part 1: a stick names particle 4294967295 of 2");
+    parts[0] = nullptr;
+    expect_refused(echinus_deformable_combine(parts, 2, out(both)), ECHINUS_INVALID_ARGUMENT,
+                   "a part is NULL");
+    expect_refused(echinus_deformable_combine(nullptr, 2, out(both)), ECHINUS_INVALID_ARGUMENT,
+                   "parts is NULL");
+}
+
+// ---- Colliders
+
+TEST(CColliders, FollowKeyframesAsInCpp) {
+    Pair pair;
+    const echinus_pose_key keys[2] = {
+        {.time = 0, .pose = {.rotation = {1, 0, 0, 0}, .translation = {0, 0, 0}}},
+        {.time = 0.1, .pose = {.rotation = {0.8, 0.6, 0, 0}, .translation = {0, 0, 0.1}}}};
+    const std::vector<PoseKey> expected{{0, {}}, {0.1, {{0.8, 0.6, 0, 0}, {0, 0, 0.1}}}};
+    expect_ok(echinus_simulation_set_collider_keyframes(pair.in_c.get(), 0, keys, 2));
+    pair.by_cpp.set_collider_keyframes(0, expected);
+    pair.expect_same_after(20);
+
+    echinus_pose pose;
+    expect_ok(echinus_pose_at(keys, 2, 0.03, &pose));
+    const RigidTransform there = pose_at(expected, 0.03);
+    EXPECT_EQ(pose.translation[2], there.translation.z);
+    EXPECT_EQ(pose.rotation[1], there.rotation.x);
+    expect_ok(echinus_simulation_set_collider_keyframes(pair.in_c.get(), 0, nullptr, 0));
+    pair.by_cpp.set_collider_keyframes(0, {});
+    pair.expect_same_after(3);
+}
+
+TEST(CColliders, RefuseKeysThatHaveNoMeaning) {
+    Pair pair;
+    echinus_pose_key keys[2] = {{.time = 1, .pose = {.rotation = {1, 0, 0, 0}, .translation = {}}},
+                                {.time = 1, .pose = {.rotation = {1, 0, 0, 0}, .translation = {}}}};
+    const auto set = [&](std::size_t index, std::size_t count) {
+        return echinus_simulation_set_collider_keyframes(pair.in_c.get(), index, keys, count);
+    };
+    echinus_pose pose;
+    expect_refused(set(0, 2), ECHINUS_INVALID_OPTIONS, "keyframe 1");
+    expect_refused(echinus_pose_at(keys, 2, 0, &pose), ECHINUS_INVALID_ARGUMENT, "key 1");
+    expect_refused(set(1, 1), ECHINUS_INVALID_ARGUMENT, "there is no collider 1");
+    expect_refused(echinus_pose_at(keys, 0, 0, &pose), ECHINUS_INVALID_ARGUMENT, "there is no key");
+    expect_refused(echinus_pose_at(keys, 1, NAN, &pose), ECHINUS_INVALID_ARGUMENT, "seconds");
+    expect_refused(echinus_pose_at(keys, 1, 0, nullptr), ECHINUS_INVALID_ARGUMENT, "pose is NULL");
+    expect_refused(echinus_simulation_set_collider_keyframes(pair.in_c.get(), 0, nullptr, 1),
+                   ECHINUS_INVALID_ARGUMENT, "keys is NULL");
+    keys[0].pose.rotation[0] = 2;
+    expect_refused(set(0, 1), ECHINUS_INVALID_OPTIONS, "a quaternion of length 2");
+    pair.expect_same_after(3);
+}
+
+std::vector<Vec3f> grown(float factor) {
+    std::vector<Vec3f> vertices = kBall.vertices;
+    for (Vec3f& v : vertices) v = v * factor;
+    return vertices;
+}
+
+TEST(CColliders, DeformAsInCpp) {
+    Pair pair;
+    echinus_collider before{};
+    before.size = sizeof before;
+    for (const float factor : {1.02F, 1.04F, 1.06F}) {
+        const std::vector<Vec3f> vertices = grown(factor);
+        expect_ok(echinus_simulation_set_collider_vertices(pair.in_c.get(), 0, &vertices.data()->x,
+                                                           vertices.size(), 0));
+        pair.by_cpp.set_collider_vertices(0, vertices);
+        pair.expect_same_after(2);
+    }
+    // What is read then is the collider as it is: a point that only the larger ball has.
+    expect_ok(echinus_simulation_read_collider(pair.in_c.get(), 0, &before));
+    const float point[3] = {0, 0, -0.31F};
+    std::uint8_t inside = 0;
+    expect_ok(echinus_collider_contains(&before, point, 1, 0, &inside));
+    EXPECT_EQ(inside, 1);
+
+    const std::vector<Vec3f> vertices = grown(1);
+    const auto set = [&](const float* first, std::size_t count) {
+        return echinus_simulation_set_collider_vertices(pair.in_c.get(), 0, first, count, 0);
+    };
+    expect_refused(set(&vertices.data()->x, vertices.size() - 1), ECHINUS_INVALID_OPTIONS, "vert");
+    expect_refused(set(nullptr, 3), ECHINUS_INVALID_ARGUMENT, "vertices is NULL");
+    std::vector<Vec3f> bad = vertices;
+    bad[2].y = NAN;
+    expect_refused(set(&bad.data()->x, bad.size()), ECHINUS_INVALID_OPTIONS, "finite");
+    pair.expect_same_after(2);
+}
+
+TEST(CColliders, FollowAVertexCacheAsInCpp) {
+    std::vector<Vec3f> samples;
+    for (const float factor : {1.0F, 1.1F, 1.0F})
+        for (const Vec3f& v : grown(factor)) samples.push_back(v);
+    CVertexCache cache;
+    expect_ok(echinus_vertex_cache_create(&samples.data()->x, 3, kBall.vertices.size(), 0, 0.05, out(cache)));
+    const VertexCache expected{.start_time = 0,
+                               .sample_seconds = 0.05,
+                               .vertex_count = kBall.vertices.size(),
+                               .samples = std::make_shared<const std::vector<Vec3f>>(samples)};
+    echinus_vertex_cache_info info{};
+    info.size = sizeof info;
+    expect_ok(echinus_vertex_cache_describe(cache.get(), &info));
+    EXPECT_EQ(info.sample_count, 3U);
+    EXPECT_EQ(info.vertex_count, kBall.vertices.size());
+    EXPECT_EQ(info.sample_seconds, 0.05);
+    EXPECT_EQ(std::memcmp(info.samples, samples.data(), samples.size() * sizeof(Vec3f)), 0);
+    std::vector<Vec3f> there(kBall.vertices.size());
+    expect_ok(echinus_vertex_cache_at(cache.get(), 0.03, &there.data()->x));
+    EXPECT_EQ(there, vertices_at(expected, 0.03));
+
+    Pair pair;
+    expect_ok(echinus_simulation_set_collider_cache(pair.in_c.get(), 0, cache.get()));
+    cache.reset();
+    pair.by_cpp.set_collider_cache(0, expected);
+    pair.expect_same_after(20);
+}
+
+TEST(CVertexCaches, ThatHaveNoMeaningAreRefused) {
+    const float samples[6] = {};
+    CVertexCache cache;
+    const auto create = [&](std::size_t sample_count, std::size_t vertex_count, double start, double step) {
+        return echinus_vertex_cache_create(samples, sample_count, vertex_count, start, step, out(cache));
+    };
+    expect_ok(create(2, 1, 0, 1));
+    float place[3];
+    expect_refused(echinus_vertex_cache_at(cache.get(), NAN, place), ECHINUS_INVALID_ARGUMENT, "seconds");
+    expect_refused(echinus_vertex_cache_at(cache.get(), 0, nullptr), ECHINUS_INVALID_ARGUMENT,
+                   "vertices is NULL");
+    Pair pair;
+    expect_refused(echinus_simulation_set_collider_cache(pair.in_c.get(), 0, cache.get()),
+                   ECHINUS_INVALID_OPTIONS, "vert");
+    expect_refused(echinus_simulation_set_collider_cache(pair.in_c.get(), 0, nullptr),
+                   ECHINUS_INVALID_ARGUMENT, "cache is NULL");
+    expect_refused(create(0, 1, 0, 1), ECHINUS_INVALID_ARGUMENT, "samples");
+    expect_refused(create(1, 0, 0, 1), ECHINUS_INVALID_ARGUMENT, "samples");
+    expect_refused(create(SIZE_MAX / 2, 4, 0, 1), ECHINUS_INVALID_ARGUMENT, "more than memory can hold");
+    expect_refused(create(1, 1, NAN, 1), ECHINUS_INVALID_ARGUMENT, "start_time");
+    for (const double step : {0.0, -1.0, std::nan(""), HUGE_VAL})
+        expect_refused(create(1, 1, 0, step), ECHINUS_INVALID_ARGUMENT, "sample_seconds");
+    expect_refused(echinus_vertex_cache_create(nullptr, 1, 1, 0, 1, out(cache)), ECHINUS_INVALID_ARGUMENT,
+                   "samples is NULL");
+    expect_refused(echinus_vertex_cache_describe(nullptr, nullptr), ECHINUS_INVALID_ARGUMENT,
+                   "cache is NULL");
+    EXPECT_EQ(cache, nullptr);
+}
+
+// ---- Files and scenes
+
+class CSoftBodyScenes : public TemporaryFolderTest {
+  protected:
+    void SetUp() override {
+        TemporaryFolderTest::SetUp();
+        write_mesh(path("ball.obj"), kBall);
+        std::filesystem::create_directories(path("cache"));
+        for (const int number : {0, 1, 2})
+            write_mesh(path("cache/" + std::to_string(number) + ".obj"),
+                       {grown(1 + 0.05F * static_cast<float>(number)), kBall.faces});
+    }
+};
+
+TEST_F(CSoftBodyScenes, AreReadWithTheirFiles) {
+    const CMesh ball = c_mesh(kBall);
+    CVertexCache cache;
+    expect_ok(echinus_vertex_cache_read(path("cache").c_str(), ball.get(), 24, out(cache)));
+    std::vector<Vec3f> last(kBall.vertices.size());
+    expect_ok(echinus_vertex_cache_at(cache.get(), 9, &last.data()->x));
+    EXPECT_EQ(last, grown(1.1F));
+    expect_refused(echinus_vertex_cache_read(path("cache").c_str(), c_torus().get(), 24, out(cache)),
+                   ECHINUS_INVALID_MESH, "cache");
+    expect_refused(echinus_vertex_cache_read(path("cache").c_str(), ball.get(), 0, out(cache)),
+                   ECHINUS_INVALID_ARGUMENT, "frames_per_second");
+
+    expect_ok(echinus_tetrahedra_write(c_block().get(), path("block.msh").c_str()));
+    const std::string scene_text =
+        R"({"colliders": [{"model": {"box": {"size": [4, 4, 1]}}, "position": [0, 0, -2]},
+            {"model": "ball.obj", "cache": "cache"}],
+        "cloth": {"size": [1, 1], "particles": [8, 8], "position": [0, 0, 1.2], "density": 0.2},
+        "bodies": [{"mesh": "block.msh", "position": [0, 0, 0.6]},
+            {"mesh": "ball.obj", "element": 0.2, "position": [1, 0, 0]}]})";
+    CScene scene;
+    CSimulation simulation;
+    expect_ok(echinus_scene_read(write("scene.json", scene_text).c_str(), out(scene)));
+    expect_ok(echinus_simulation_from_scene(scene.get(), nullptr, 0, 1, out(simulation)));
+    EXPECT_EQ(echinus_simulation_collider_count(simulation.get()), 2U);
+    EXPECT_GT(echinus_simulation_particle_count(simulation.get()), 64U + 27);
+    for (int i = 0; i < 24; ++i) expect_ok(echinus_simulation_step(simulation.get()));
+    // Led by the cache, for a tenth of a second.
+    echinus_collider collider{};
+    collider.size = sizeof collider;
+    expect_ok(echinus_simulation_read_collider(simulation.get(), 1, &collider));
+    const float point[3] = {0, 0, -0.32F};
+    std::uint8_t inside = 0;
+    expect_ok(echinus_collider_contains(&collider, point, 1, 0, &inside));
+    EXPECT_EQ(inside, 1);
+}
+
+} // namespace
