@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -26,6 +27,10 @@ namespace echinus {
 struct ColliderMap {
     using Kind = std::variant<DistanceMap, ExactMap, std::shared_ptr<const CustomMap>>;
     Kind kind;
+    /// Beside a map that is not exact, the exact map of the same mesh, whose faces SimulationOptions::
+    /// surface_collision needs: `kind` pushes particles out, and surfaces are kept from these faces. Queries
+    /// do not ask it.
+    std::optional<ExactMap> surface{};
 
     template <std::convertible_to<Kind> Map>
     ColliderMap(Map&& map) : kind(std::forward<Map>(map)) {}

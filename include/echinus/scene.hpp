@@ -147,6 +147,11 @@ AnyMap build_map(const TriangleMesh& mesh, const MapOptions& options, unsigned t
 /// The collider as it starts, with a map of its model.
 Collider make_collider(const SceneCollider& collider, const ColliderMap& map);
 
+/// The scene's map of a model, by build_map(); beside a distance map, where surfaces collide, with the exact
+/// map of the same mesh.
+/// @throws Error as build_map()
+ColliderMap make_collider_map(const Scene& scene, const TriangleMesh& mesh, unsigned thread_count = 0);
+
 /// The scene's cloth where it starts, at rest.
 /// @param meshes  of a cloth that is made of files
 /// @throws Error as the two make_cloth() do; for a mesh the sentence begins with its name. InvalidOptions

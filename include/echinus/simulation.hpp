@@ -214,9 +214,10 @@ struct SimulationOptions {
     /// how often. Prefer a closed mesh (see repair()) or a distance map.
     bool allow_open_colliders = false;
     /// Edges and faces collide too, not only particles: no face of the deformable ever meets a collider
-    /// (docs/surfaces.md). Every collider needs an exact map; one of an open mesh needs no
-    /// allow_open_colliders and keeps each particle on its side. Nothing may intersect at the start, no
-    /// particle may begin inside a closed model (but see untangle), and keep_free must be true.
+    /// (docs/surfaces.md). Every collider needs an exact map, as its map or as ColliderMap::surface; one
+    /// of an open mesh needs no allow_open_colliders and keeps each particle on its side. Nothing may
+    /// intersect at the start, no particle may begin inside a closed model (but see untangle), and keep_free
+    /// must be true.
     bool surface_collision = false;
     /// Needs surface_collision: the faces of the deformable do not meet each other either.
     bool self_collision = false;

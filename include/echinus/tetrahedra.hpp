@@ -78,9 +78,9 @@ struct Tetrahedralization {
 /// Fills what an exact map says is inside with tetrahedra, by isosurface stuffing on a uniform lattice
 /// (Labelle and Shewchuk 2007, "Isosurface Stuffing: Fast Tetrahedral Meshes with Good Dihedral Angles").
 ///
-/// All tetrahedra are positive, and all dihedral angles lie between 9.3 and 161.7 degrees, whatever the
-/// model: that follows from the lattice and from which of its vertices are inside, not from the surface
-/// (docs/tetrahedra.md). The boundary is closed, manifold and does not intersect itself. Its
+/// All tetrahedra are positive. Their dihedral angles depend on which vertices of the lattice are inside and
+/// where its edges are cut, not on the model; the extremes that were found by trying those cases are 9.3 and
+/// 161.7 degrees (docs/tetrahedra.md). The boundary is closed, manifold and does not intersect itself. Its
 /// vertices lie on the model's surface, up to rounding and two lattice steps of the map, except for those
 /// where tetrahedra were removed. Between them it may be off by about half a size, where the model has edges
 /// or features finer than the lattice; parts that are nearer than a size to each other may join.

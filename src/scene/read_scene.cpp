@@ -443,9 +443,6 @@ void read_surfaces(JsonObject& root, Scene& scene) {
     bool& self = scene.simulation.self_collision;
     surfaces = is_exact && kSurfaceCollision;
     root.read("surface_collision", surfaces);
-    if (surfaces && !is_exact)
-        root.refuse("surface_collision",
-                    "false, or \"map.kind\" must be \"exact\", which has the model's faces");
     self = surfaces && kSelfCollision;
     root.read("self_collision", self);
     if (self && !surfaces) root.refuse("self_collision", "false, or \"surface_collision\" must be true");

@@ -87,6 +87,13 @@ Collider make_collider(const SceneCollider& collider, const ColliderMap& map) {
             .name = std::visit(NameOfModel{}, collider.model)};
 }
 
+ColliderMap make_collider_map(const Scene& scene, const TriangleMesh& mesh, unsigned thread_count) {
+    ColliderMap map(build_map(mesh, scene.map, thread_count));
+    if (scene.simulation.surface_collision && !std::holds_alternative<ExactMap>(map.kind))
+        map.surface = ExactMap::build(mesh, {.thread_count = thread_count});
+    return map;
+}
+
 Simulation make_simulation(const Scene& scene, std::span<const ColliderMap> maps, const ClothMeshes& meshes,
                            std::span<const VertexCache> caches) {
     if (maps.size() != scene.colliders.size())

@@ -1,10 +1,10 @@
 #include "simulation/collider_now.hpp"
 
 #include "directions/lattice.hpp"
+#include "simulation/surfaces/model_mesh.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 namespace echinus {
 
@@ -25,7 +25,7 @@ float sum_of_coordinates(const Vec3d& v) {
 
 ColliderNow::ColliderNow(const Collider& collider, const RigidTransform& previous_pose,
                          const SimulationOptions& options)
-    : map(std::get_if<ExactMap>(&collider.map.kind)->view()), scale(collider.scale), local(collider),
+    : map(map_of_surface(collider)->view()), scale(collider.scale), local(collider),
       body(collider.pose, {1, 1, 1}), material(previous_pose, collider.pose),
       step(map.radius / static_cast<float>(kLatticeExtent) * largest(collider.scale)), guard(kGuard * step),
       thickness(std::max(static_cast<float>(options.thickness.value()), 2 * guard)),

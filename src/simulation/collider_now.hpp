@@ -10,7 +10,8 @@
 
 namespace echinus {
 
-/// A collider with an exact map as it stands in one substep, and what is needed to keep particles off it.
+/// A collider with a surface (map_of_surface()) as it stands in one substep, and what is needed to keep
+/// particles off it.
 ///
 /// Lengths are those of the world in the *body frame*: the collider's frame with its scale applied. The map
 /// is asked in its own frame, *local*.
@@ -30,7 +31,7 @@ struct ColliderNow {
     const PointArrays* drift = nullptr;
     float coordinate_sum; ///< of where collider and mesh stand; bounds what rounding loses
 
-    /// @pre the options have a thickness
+    /// @pre the collider has a surface, and the options a thickness
     ColliderNow(const Collider& collider, const RigidTransform& previous_pose,
                 const SimulationOptions& options);
 

@@ -18,13 +18,6 @@ namespace echinus {
 
 namespace {
 
-[[noreturn]] void refuse_mesh(const std::string& sentence) {
-    throw Error(ErrorCode::InvalidMesh, sentence);
-}
-void require_option(bool condition, const std::string& sentence) {
-    if (!condition) throw Error(ErrorCode::InvalidOptions, sentence);
-}
-
 std::string missing_vertex(const std::string& what, std::uint32_t vertex, std::size_t vertex_count) {
     return what + " vertex " + std::to_string(vertex) + ", but the cloth has only " +
            std::to_string(vertex_count) + " vertices, numbered from 0";

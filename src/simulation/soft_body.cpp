@@ -15,13 +15,6 @@ namespace echinus {
 
 namespace {
 
-[[noreturn]] void refuse_mesh(const std::string& sentence) {
-    throw Error(ErrorCode::InvalidMesh, sentence);
-}
-void require_option(bool condition, const std::string& sentence) {
-    if (!condition) throw Error(ErrorCode::InvalidOptions, sentence);
-}
-
 void require_within(const char* name, double value, double least, double most) {
     require_option(value >= least && value <= most,
                    std::string("the soft body's ") + name + " is " + std::to_string(value) +

@@ -79,7 +79,8 @@ void require_outside(const std::vector<Vec3f>& positions, const std::vector<floa
 void require_apart(const TriangleMesh& surface, const std::vector<float>& inverse_masses,
                    const Elements& elements, const Collider& collider, const SimulationOptions& options,
                    const std::string& name) {
-    const ExactMapView& map = std::get<ExactMap>(collider.map.kind).view();
+    const ExactMap& exact = *map_of_surface(collider);
+    const ExactMapView& map = exact.view();
     const FrameChange body(collider.pose, {1, 1, 1});
     TriangleMesh in_body = surface;
     for (Vec3f& p : in_body.vertices) p = body.point_to_local(p);
@@ -89,7 +90,8 @@ void require_apart(const TriangleMesh& surface, const std::vector<float>& invers
             return name_of(elements, pair.a) + " and its face " + std::to_string(pair.b);
         });
     // Where nothing intersects, a piece is inside as a whole. An open surface has no inside.
-    if (map.border.empty()) require_outside(surface.vertices, inverse_masses, collider, options, name);
+    if (map.border.empty())
+        require_outside(surface.vertices, inverse_masses, with_map(collider, exact), options, name);
 }
 
 } // namespace

@@ -36,6 +36,14 @@ std::string as_text(const Rotation& r) {
 
 } // namespace
 
+void refuse_mesh(const std::string& sentence) {
+    throw Error(ErrorCode::InvalidMesh, sentence);
+}
+
+void require_option(bool condition, const std::string& sentence) {
+    if (!condition) fail(sentence);
+}
+
 void require_valid(const RigidTransform& pose, const std::string& owner) {
     if (!is_finite(pose.translation)) fail(owner + " has a translation that is not finite");
     // As far as rounding to float leads a unit quaternion, and more. Written so that NaN fails it.
@@ -179,10 +187,11 @@ void require_valid(const Collider& collider, const SimulationOptions& options, c
     if (custom != nullptr && *custom == nullptr) fail(name + " has a custom map that is a null pointer");
     const auto* exact = std::get_if<ExactMap>(&collider.map.kind);
     if (options.surface_collision) {
-        if (exact == nullptr)
+        if (exact == nullptr && !collider.map.surface)
             fail(name + " has a " + (custom != nullptr ? "custom" : "distance") +
-                 " map, which does not have the faces that surface_collision needs; give it an exact map, or "
-                 "switch surface_collision off, and only particles collide");
+                 " map, which does not have the faces that surface_collision needs; give it an exact map, as "
+                 "its map or as map.surface beside it, or switch surface_collision off, and only particles "
+                 "collide");
     } else if (exact != nullptr && !exact->view().border.empty() && !options.allow_open_colliders) {
         fail(name + " has the exact map of an open mesh, with " +
              std::to_string(exact->view().border.size()) +

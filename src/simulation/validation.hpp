@@ -13,8 +13,11 @@ inline std::string name_of(const Collider& collider, std::size_t number) {
     return collider.name.empty() ? "collider " + std::to_string(number) : collider.name;
 }
 
+[[noreturn]] void refuse_mesh(const std::string& sentence); ///< throws Error InvalidMesh
+
 // Each throws Error InvalidOptions with a sentence that names the field or the index at fault.
 
+void require_option(bool condition, const std::string& sentence);
 void require_valid(const SimulationOptions& options);
 void require_valid(const Deformable& deformable);
 void require_solver(const Deformable& deformable, const SimulationOptions& options);

@@ -199,7 +199,7 @@ TEST(Scene, UsesAnExactMapUnlessItSaysOtherwise) {
     EXPECT_TRUE(std::holds_alternative<DistanceMap>(build_map(box, DistanceMapOptions{})));
 }
 
-TEST(Scene, LetsSurfacesCollideBesideExactMapsOnly) {
+TEST(Scene, LetsSurfacesCollideBesideExactMapsUnlessItSaysSo) {
     const auto with = [](const std::string& keys) {
         return R"({"model": {"box": {}}, "cloth": {"size": [2, 2]})" + keys + "}";
     };
@@ -217,9 +217,8 @@ TEST(Scene, LetsSurfacesCollideBesideExactMapsOnly) {
         parse_scene(with(R"(, "map": {"kind": "distance"})"), "a.json").simulation;
     EXPECT_FALSE(distance.surface_collision);
     EXPECT_FALSE(distance.self_collision);
-    EXPECT_EQ(refusal(with(R"(, "map": {"kind": "distance"}, "surface_collision": true)")),
-              R"(a.json: surface_collision is true; it must be false, or "map.kind" must be "exact", )"
-              "which has the model's faces");
+    EXPECT_TRUE(parse_scene(with(R"(, "map": {"kind": "distance"}, "surface_collision": true)"), "a.json")
+                    .simulation.surface_collision);
     EXPECT_EQ(refusal(with(R"(, "surface_collision": false, "self_collision": true)")),
               R"(a.json: self_collision is true; it must be false, or "surface_collision" must be true)");
     EXPECT_FALSE(none.untangle);

@@ -2,6 +2,7 @@
 
 #include "support/cloth_meshes.hpp"
 #include "support/crowded_meshes.hpp"
+#include "support/custom_maps.hpp"
 #include "support/draping.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/soups.hpp"
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -98,6 +100,18 @@ TEST(SurfaceCollision, KeepsASheetOffScaledAndMirroredModels) {
         expect_falls_without_meeting(make_torus(1, 0.4, 24, 10),
                                      {.pose = {tilt, {0, 0, -0.4}}, .scale = scale},
                                      sheet_at(0.35, 1, 20, {0, 0, -0.01}), 150);
+}
+
+TEST(SurfaceCollision, KeepsASheetOffTheFacesOfAModelWhateverTheMapBesideThemSays) {
+    const TriangleMesh ball = make_sphere(0.4, 24, 12);
+    const Contact nonsense{.point = {0.3F, 0, -0.2F}, .normal = {0, 1, 0}, .depth = 0.5F, .inside = true};
+    for (ColliderMap map :
+         {ColliderMap(DistanceMap::build(ball)), ColliderMap(std::make_shared<AnalyticBall>(0.4F)),
+          ColliderMap(std::make_shared<ConstantAnswer>(nonsense))}) {
+        map.surface = ExactMap::build(ball);
+        Simulation simulation(sheet_at(0.42, 1.2, 25, {0, 0, -0.01}), {{.map = map}}, kSurfaces);
+        expect_nothing_meets(simulation, {ball}, 60);
+    }
 }
 
 TEST(SurfaceCollision, KeepsASheetOffTwoModelsOfWhichOneMoves) {

@@ -142,7 +142,7 @@ TEST(SimulationSetUp, NamesTheParticleStickOrFaceAtFault) {
     expect_names(refusal([](Deformable& d, auto&) { d = {}; }), "no particles");
 }
 
-TEST(SimulationSetUp, RefusesSurfaceCollisionWithAnythingButExactMaps) {
+TEST(SimulationSetUp, RefusesSurfaceCollisionWithMapsWithoutFaces) {
     const TriangleMesh box = make_box({1, 1, 1});
     const SimulationOptions surfaces{.surface_collision = true};
     test::expect_error(ErrorCode::InvalidOptions, "collider 1 has a distance map, which does not have", [&] {

@@ -54,8 +54,8 @@ LoadedColliders load_colliders(const Scene& scene, const fs::path& scene_path,
         }
         const AnyMap map =
             made_as_scene_says(scene_path, "map", [&] { return build_map(mesh, scene.map, thread_count); });
-        loaded.maps.emplace_back(map);
         ExactMap judge = judge_of(map, mesh, thread_count);
+        loaded.maps.emplace_back(map).surface = judge;
         loaded.judged.push_back({std::move(mesh), std::move(judge)});
         loaded.scales.push_back(collider.scale);
         loaded.names += (loaded.names.empty() ? "" : ", ") + model_name(collider.model);

@@ -197,8 +197,6 @@ void choose_collision(const SimulateArguments& arguments, Scene& scene) {
     options.surface_collision = arguments.surfaces.value_or(options.surface_collision);
     options.self_collision = arguments.self.value_or(options.self_collision && options.surface_collision);
     options.untangle = options.untangle && options.surface_collision;
-    if (options.surface_collision && !std::holds_alternative<ExactMapOptions>(scene.map))
-        throw WrongUse("--surfaces", "needs a scene with an exact map, which has the model's faces");
     if (options.self_collision && !options.surface_collision)
         throw WrongUse("--self", "needs contact of surfaces with the model: --surfaces on");
 }

@@ -120,7 +120,7 @@ echinus_status echinus_simulation_from_scene(const echinus_scene* scene, const c
             TriangleMesh model = meshes.model(collider);
             caches.push_back(meshes.cache(collider, model));
             if (collider.cache) model.vertices = vertices_at(caches.back(), 0);
-            maps.emplace_back(build_map(model, description.map, thread_count));
+            maps.push_back(make_collider_map(description, model, thread_count));
         }
         return make_simulation(description, maps, meshes.deformables(description), caches);
     });

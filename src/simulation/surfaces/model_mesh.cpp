@@ -5,8 +5,19 @@
 #include "exact_map/layout.hpp"
 
 #include <cstddef>
+#include <variant>
 
 namespace echinus {
+
+const ExactMap* map_of_surface(const Collider& collider) {
+    if (const auto* exact = std::get_if<ExactMap>(&collider.map.kind)) return exact;
+    return collider.map.surface ? &*collider.map.surface : nullptr;
+}
+
+Collider with_map(Collider collider, const ExactMap& map) {
+    collider.map = map;
+    return collider;
+}
 
 TriangleMesh model_mesh(const ExactMapView& map, const Vec3d& scale) {
     const LatticeFrame frame = frame_of(map);

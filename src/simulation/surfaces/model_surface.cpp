@@ -25,7 +25,7 @@ ModelSurface::ModelSurface(const Collider& collider, std::shared_ptr<const Eleme
                            const PairReach& reach, float thickness, float friction)
     : own_(std::move(own)), pairs_(*own_, reach), now_(collider.pose, {1, 1, 1}), thickness_(thickness),
       friction_(friction) {
-    const TriangleMesh mesh = model_mesh(std::get<ExactMap>(collider.map.kind).view(), collider.scale);
+    const TriangleMesh mesh = model_mesh(map_of_surface(collider)->view(), collider.scale);
     const auto shape = std::make_shared<Shape>();
     shape->positions.load(mesh.vertices);
     shape->elements = Elements(mesh.vertices.size(), mesh.faces, {});

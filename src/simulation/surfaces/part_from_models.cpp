@@ -51,7 +51,7 @@ std::vector<std::uint32_t> joined(std::vector<std::uint32_t> a, const std::vecto
 }
 
 struct Model {
-    const Collider* collider;
+    Collider collider; ///< with its exact map
     FrameChange body;
     TriangleMesh mesh; ///< in the body frame
     float thickness;
@@ -59,8 +59,8 @@ struct Model {
     bool has_inside;
 
     Model(const Collider& of, const SimulationOptions& options)
-        : collider(&of), body(of.pose, {1, 1, 1}),
-          mesh(model_mesh(std::get<ExactMap>(of.map.kind).view(), of.scale)) {
+        : collider(with_map(of, *map_of_surface(of))), body(of.pose, {1, 1, 1}),
+          mesh(model_mesh(map_of_surface(of)->view(), of.scale)) {
         const ColliderNow now(of, of.pose, options);
         thickness = now.thickness;
         const Vec3d& s = of.scale;
@@ -78,15 +78,15 @@ struct Model {
     std::optional<Vec3f> out_along(Vec3f from, const Vec3f& direction) const {
         for (int i = 0; i < kMostCrossings; ++i) {
             const Vec3f far = from + direction * static_cast<float>(reach);
-            const SweepHit hit = sweep(*collider, collider->pose, from, far);
+            const SweepHit hit = sweep(collider, collider.pose, from, far);
             if (!hit.found()) break;
             from = hit.point + direction * thickness;
-            if (!contains(*collider, from)) return from;
+            if (!contains(collider, from)) return from;
         }
         return std::nullopt;
     }
     Vec3f out_to_nearest(const Vec3f& from) const {
-        const Contact nearest = contact(*collider, from);
+        const Contact nearest = contact(collider, from);
         return nearest.point + nearest.normal * thickness;
     }
 };
@@ -173,7 +173,7 @@ class Attempt {
     void for_each_inside(const Model& model, const Visit& visit) const {
         if (!model.has_inside) return;
         std::vector<std::uint8_t> inside(positions_.size());
-        contains_batch(*model.collider, std::span(positions_), inside);
+        contains_batch(model.collider, std::span(positions_), inside);
         for (std::size_t v = 0; v < positions_.size(); ++v)
             if (inside[v] != 0) visit(v);
     }
@@ -243,7 +243,7 @@ class Attempt {
         const Vec3f middle = (positions_[a] + positions_[b] + positions_[c]) * (1.0F / 3);
         const float farthest = std::max(
             {length(positions_[a] - middle), length(positions_[b] - middle), length(positions_[c] - middle)});
-        return contact(*model.collider, middle, farthest).normal;
+        return contact(model.collider, middle, farthest).normal;
     }
 
     std::vector<std::uint32_t> elements_around(const std::vector<std::uint8_t>& particles) const {
