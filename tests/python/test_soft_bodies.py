@@ -295,6 +295,37 @@ def test_caches_and_keys_that_have_no_meaning_are_refused():
         ech.rotation_about((0, 0, 0), 1)
 
 
+def test_a_saved_state_goes_on_with_the_same_bits():
+    def made():
+        return ech.Simulation(soft_box(position=(0, 0, 0.3)), [BELOW])
+
+    first = made()
+    first.step(30)
+    state, positions = first.save_state(), first.positions
+    first.step(20)
+    before = positions.copy()
+    for simulation in (first, made()):
+        again = simulation.restored(state)
+        assert again.frame == 30
+        again.step(20)
+        assert again.state_hash == first.state_hash
+    assert np.array_equal(positions, before) and np.shares_memory(positions, first.positions)
+
+
+def test_bytes_that_are_no_state_of_it_are_refused():
+    simulation = ech.Simulation(soft_box(), [BELOW])
+    state = simulation.save_state()
+    assert refusal(simulation.restored, b"")[0] == "wrong_format"
+    assert refusal(simulation.restored, b"no state" * 100)[0] == "wrong_format"
+    assert refusal(simulation.restored, state[:-5])[0] == "damaged"
+    changed = bytearray(state)
+    changed[len(state) // 2] ^= 1
+    assert refusal(simulation.restored, bytes(changed))[0] == "damaged"
+    assert refusal(ech.Simulation(soft_box(), [BELOW], friction=0).restored, state)[0] == "invalid_options"
+    with pytest.raises(TypeError):
+        simulation.restored("text")
+
+
 # ---- Scenes
 
 

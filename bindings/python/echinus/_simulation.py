@@ -458,6 +458,23 @@ class Simulation:
         """
         self._simulation.blow(vector_of(wind), rate)
 
+    def save_state(self) -> bytes:
+        """All that decides how the simulation goes on, but for what it was made of (docs/saved_states.md)."""
+        return self._simulation.save_state()
+
+    def restored(self, state: bytes) -> Simulation:
+        """Another simulation, made of the same as this one, that goes on from a saved state with the same bits.
+
+        This one stays as it is, and so do views of its positions.
+
+        Raises
+        ------
+        Error
+            ``wrong_format``, ``unsupported_version`` or ``damaged`` for bytes that are no state of this version;
+            ``invalid_options`` for one of another simulation, saying what differs.
+        """
+        return self._of(self._simulation.restored(state), self._frame_limit)
+
     def __copy__(self) -> Simulation:
         return self._of(self._simulation.copy(), self._frame_limit)
 

@@ -10,6 +10,9 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace echinus::python {
 
@@ -98,6 +101,20 @@ void step(SharedSimulation& simulation, std::uint32_t frame_count) {
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         simulation.change([](Simulation& s) { s.step(); });
     }
+}
+
+py::bytes save_state(SharedSimulation& shared) {
+    const std::vector<std::byte> state = shared.alone([](Simulation& s) { return s.save_state(); });
+    return {reinterpret_cast<const char*>(state.data()), state.size()};
+}
+
+/// Not in place, where views of the positions would end.
+std::unique_ptr<SharedSimulation> restored(SharedSimulation& shared, const py::bytes& state) {
+    const std::string_view text = state;
+    const std::span<const std::byte> bytes(reinterpret_cast<const std::byte*>(text.data()), text.size());
+    Simulation copy = shared.alone([](Simulation& s) { return s; });
+    unlocked([&] { copy.restore_state(bytes); });
+    return std::make_unique<SharedSimulation>(std::move(copy));
 }
 
 py::dict describe(const SimulationProfile& p) {
@@ -235,6 +252,8 @@ void bind_simulations(py::module_& module) {
              [](SharedSimulation& shared) {
                  return std::make_unique<SharedSimulation>(shared.alone([](Simulation& s) { return s; }));
              })
+        .def("save_state", save_state)
+        .def("restored", restored)
         .def("describe_colliders", describe_colliders)
         // Steps write into the same arrays, so views of them stay valid.
         .def_property_readonly("positions",
