@@ -133,9 +133,9 @@ def tetrahedralize(
 ) -> Tetrahedralization:
     """Fills what an exact map says is inside with tetrahedra, by isosurface stuffing (Labelle and Shewchuk 2007).
 
-    All dihedral angles lie between 9.3 and 161.7 degrees, and the boundary is closed, manifold, and does not
-    intersect itself, whatever the model; what is thinner than ``size`` is lost or torn. docs/tetrahedra.md has
-    the method and what it promises.
+    The boundary is closed, manifold, and does not intersect itself; the extreme dihedral angles that were found are
+    9.3 and 161.7 degrees. What is thinner than ``size`` is lost or torn. docs/tetrahedra.md has the method and what
+    it promises.
 
     Parameters
     ----------

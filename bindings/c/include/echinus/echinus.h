@@ -720,8 +720,9 @@ typedef struct echinus_tetrahedralize_report {
     uint64_t removed_tetrahedra; ///< left out where parts would have met in no more than an edge or a vertex
 } echinus_tetrahedralize_report;
 
-/// Fills what an exact map says is inside with tetrahedra, by isosurface stuffing. All dihedral angles lie
-/// between 9.3 and 161.7 degrees, and the boundary is closed, manifold and does not intersect itself.
+/// Fills what an exact map says is inside with tetrahedra, by isosurface stuffing. The boundary is closed,
+/// manifold and does not intersect itself; the extreme dihedral angles that were found are 9.3 and 161.7
+/// degrees.
 /// @param report  out, its size is set; or NULL
 /// @return ECHINUS_INVALID_OPTIONS; ECHINUS_INVALID_MESH when no tetrahedron of that size fits into the
 /// model; ECHINUS_INVALID_ARGUMENT for a map of another kind
