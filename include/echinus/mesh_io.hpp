@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 ECHINUS_EXPORT_BEGIN
@@ -82,16 +83,28 @@ TetrahedraFile read_tetrahedra(const std::filesystem::path& path);
 /// require_valid_tetrahedra() does
 void write_tetrahedra(const std::filesystem::path& path, const TetrahedralMesh& mesh);
 
-/// Reads the vertices of a model over time: a PC2 point cache, or a folder of OBJ files, one each, in the
-/// order of their names. PC2 says at which frames its samples were taken; those of a folder are frames 0, 1,
-/// 2 ...
+/// Reads the vertices of a model over time: a PC2 point cache; a folder of OBJ files, one each, in the order
+/// of their names; or a glTF, GLB or 3DS file with an animation, the model's own. PC2 says at which frames
+/// its samples were taken; those of a folder are frames 0, 1, 2 ...
+///
+/// Of an animation a sample is taken in each frame from 0 s to the first frame that has all keys behind it.
+/// Meshes with bones are skinned (linear blend skinning; the weights of a vertex are made to sum to 1),
+/// others move with their nodes; morph targets are applied before. Between two keys, positions, scales and
+/// weights of morph targets go evenly and rotations about one axis, the shorter way round: handles of splines
+/// and steps are not kept. Takes 12 bytes for a vertex in a
+/// sample.
 ///
 /// @param mesh               the model, as read_mesh() gives it
 /// @param frames_per_second  positive
-/// @throws Error as read_mesh() does; InvalidMesh when the number of vertices, or a face of a folder's mesh,
-/// is not the model's; the sentence begins with the path
+/// @param animation          the name of the animation; may be empty where the file has only one
+/// @throws Error as read_mesh() does; InvalidMesh when the number of vertices, or a face of a folder's mesh
+/// or of a file with an animation, is not the model's; when there is no animation or several to choose from,
+/// it moves no vertex, has keys out of order or numbers that are not finite, or a vertex of a mesh with bones
+/// has none; or when there are more than 2^28 positions. WrongFormat when a glTF file has more than four
+/// bones for a vertex, or weights or values of an animation in whole numbers. The sentence begins with the
+/// path
 VertexCache read_vertex_cache(const std::filesystem::path& path, const TriangleMesh& mesh,
-                              double frames_per_second);
+                              double frames_per_second, std::string_view animation = {});
 
 } // namespace echinus
 

@@ -86,6 +86,7 @@ struct ClothMeshes {
 struct CacheFile {
     std::string name; ///< as written in the scene; see find_model()
     double frames_per_second = 24;
+    std::string animation = {}; ///< its name; empty: the only one of the file, or a file without any
 };
 
 /// A model in the world, and how it moves.

@@ -1,3 +1,5 @@
+#include "mesh/weld.hpp"
+
 #include "geometry/bit_cast.hpp"
 #include "mesh/require_valid.hpp"
 
@@ -38,7 +40,7 @@ std::vector<std::uint32_t> first_at_same_position(const std::vector<Vec3f>& vert
 
 } // namespace
 
-TriangleMesh weld(const TriangleMesh& mesh) {
+WeldedMesh weld_with_sources(const TriangleMesh& mesh) {
     const std::vector<std::uint32_t> first = first_at_same_position(mesh.vertices);
     std::vector<std::uint32_t> new_index(mesh.vertices.size(), kUnused);
     for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
@@ -46,17 +48,22 @@ TriangleMesh weld(const TriangleMesh& mesh) {
         for (std::uint32_t vertex : mesh.faces[face]) new_index[first[vertex]] = 0;
     }
 
-    TriangleMesh welded;
+    WeldedMesh welded;
     for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex)
         if (new_index[vertex] != kUnused) {
-            new_index[vertex] = static_cast<std::uint32_t>(welded.vertices.size());
-            welded.vertices.push_back(mesh.vertices[vertex]);
+            new_index[vertex] = static_cast<std::uint32_t>(welded.sources.size());
+            welded.sources.push_back(static_cast<std::uint32_t>(vertex));
+            welded.mesh.vertices.push_back(mesh.vertices[vertex]);
         }
-    welded.faces.reserve(mesh.faces.size());
+    welded.mesh.faces.reserve(mesh.faces.size());
     for (const Triangle& face : mesh.faces)
-        welded.faces.push_back(
+        welded.mesh.faces.push_back(
             {new_index[first[face[0]]], new_index[first[face[1]]], new_index[first[face[2]]]});
     return welded;
+}
+
+TriangleMesh weld(const TriangleMesh& mesh) {
+    return weld_with_sources(mesh).mesh;
 }
 
 } // namespace echinus

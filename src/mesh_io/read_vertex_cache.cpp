@@ -1,4 +1,6 @@
+#include "mesh_io/mesh_source.hpp"
 #include "mesh_io/point_cache.hpp"
+#include "mesh_io/read_animation.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/mesh_io.hpp>
@@ -67,7 +69,13 @@ VertexCache from_folder(const fs::path& folder, const TriangleMesh& mesh, double
 
 } // namespace
 
-VertexCache read_vertex_cache(const fs::path& path, const TriangleMesh& mesh, double frames_per_second) {
+VertexCache read_vertex_cache(const fs::path& path, const TriangleMesh& mesh, double frames_per_second,
+                              std::string_view animation) {
+    if (!fs::is_directory(path) && has_animations(path))
+        return read_animation(path, mesh, frames_per_second, animation);
+    if (!animation.empty())
+        refuse(path,
+               "has no animation " + in_quotes(animation) + ", since only glTF, GLB and 3DS files have any");
     return fs::is_directory(path) ? from_folder(path, mesh, frames_per_second)
                                   : from_point_cache(path, mesh, frames_per_second);
 }

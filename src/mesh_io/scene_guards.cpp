@@ -1,6 +1,7 @@
 #include "mesh_io/scene_guards.hpp"
 
 #include "mesh_io/byte_reader.hpp"
+#include "mesh_io/gltf_animation.hpp"
 #include "mesh_io/gltf_indices.hpp"
 #include "mesh_io/json_view.hpp"
 
@@ -136,6 +137,8 @@ void require_vertices_of_object(const MeshSource& source, std::size_t begin, std
                    });
 }
 
+constexpr std::size_t kJsonBegin = 20; // after magic, version, length, and the chunk's length and type
+
 /// The content of the chunk after the JSON, if there is one.
 std::string_view binary_chunk(const MeshSource& source, std::size_t begin) {
     constexpr std::size_t kHeadSize = 8; // length and type
@@ -169,10 +172,10 @@ void require_readable_gltf(const MeshSource& source) {
     require_beginning_of_gltf(source);
     require_readable_json(source.bytes, source);
     require_gltf_vertices(source, source.bytes, {});
+    require_whole_gltf_animations(source, source.bytes);
 }
 
 void require_readable_glb(const MeshSource& source) {
-    constexpr std::size_t kJsonBegin = 20; // after magic, version, length, and the chunk's length and type
     require_beginning_of_glb(source);
     ByteReader head(source, 8, ByteOrder::LittleEndian);
     const std::size_t length = head.next<std::uint32_t>();
@@ -185,6 +188,7 @@ void require_readable_glb(const MeshSource& source) {
     const std::string_view json = source.bytes.substr(kJsonBegin, json_length);
     require_readable_json(json, source);
     require_gltf_vertices(source, json, binary_chunk(source, kJsonBegin + json_length));
+    require_whole_gltf_animations(source, json);
 }
 
 void require_readable_3ds(const MeshSource& source) {
@@ -210,6 +214,13 @@ void require_readable_3ds(const MeshSource& source) {
                                require_vertices_of_object(source, object_begin, object_end);
                        });
     });
+}
+
+std::string_view json_of(const MeshSource& gltf) {
+    if (!gltf.bytes.starts_with("glTF")) return gltf.bytes;
+    ByteReader head(gltf, 12, ByteOrder::LittleEndian);
+    const std::size_t length = head.next<std::uint32_t>();
+    return gltf.bytes.substr(std::min(kJsonBegin, gltf.bytes.size()), length);
 }
 
 } // namespace echinus

@@ -239,6 +239,7 @@ std::optional<CacheFile> read_cache(JsonObject& collider) {
     object->require("file");
     cache.name = *object->read_string("file");
     object->read("frames_per_second", cache.frames_per_second, {1e-9, 1e9});
+    if (object->has("animation")) cache.animation = *object->read_string("animation");
     object->finish();
     return cache;
 }

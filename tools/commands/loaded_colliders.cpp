@@ -49,7 +49,8 @@ LoadedColliders load_colliders(const Scene& scene, const fs::path& scene_path,
         if (collider.cache) {
             const fs::path path = cache_path(*collider.cache, scene_path, folders);
             loaded.files.push_back(path);
-            cache = read_vertex_cache(path, mesh, collider.cache->frames_per_second);
+            cache =
+                read_vertex_cache(path, mesh, collider.cache->frames_per_second, collider.cache->animation);
             mesh.vertices = vertices_at(cache, 0);
         }
         const AnyMap map =

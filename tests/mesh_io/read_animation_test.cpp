@@ -1,0 +1,272 @@
+#include "support/expect_error.hpp"
+#include "support/temporary_folder.hpp"
+
+#include <echinus/geometry.hpp>
+#include <echinus/mesh_io.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace echinus;
+using namespace echinus::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path kModels = "/usr/share/assimp/models"; // of Debian's assimp-testmodels
+
+std::string base64(const std::string& bytes) {
+    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t group = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+        for (unsigned k = 0; k < 4; ++k)
+            text += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63U];
+    }
+    return text;
+}
+
+/// A bar of two boxes' height along y whose upper half a second bone, at (0, 1, 0), leads. The middle ring
+/// has half of its weight on either bone.
+struct Bar {
+    std::vector<float> positions{0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 1, 1,
+                                 0, 0, 1, 1, 0, 2, 0, 1, 2, 0, 0, 2, 1};
+    std::vector<float> weights; ///< 4 of each vertex
+    std::vector<float> times{0, 1, 2};
+    std::vector<float> rotations; ///< x, y, z, w of the upper bone: a turn about z
+    std::string mesh_node = R"({"mesh":0,"skin":0})";
+    std::string skins = R"("skins":[{"joints":[1,2],"inverseBindMatrices":3}],)";
+    std::string path = "rotation";
+    std::string animations; ///< in place of the one above
+    std::map<std::string, std::string> replacements;
+
+    Bar() {
+        for (int vertex = 0; vertex < 9; ++vertex) {
+            const float upper = vertex < 3 ? 0.0F : vertex < 6 ? 0.5F : 1.0F;
+            for (const float weight : {1 - upper, upper, 0.0F, 0.0F}) weights.push_back(weight);
+        }
+        for (const double angle : {0.0, 0.5, 2.0})
+            for (const double component : {0.0, 0.0, std::sin(angle / 2), std::cos(angle / 2)})
+                rotations.push_back(static_cast<float>(component));
+    }
+
+    std::string text() const {
+        std::string binary, views, accessors;
+        const auto add = [&](const auto& values, int type, const char* kind, std::size_t width) {
+            const std::string bytes(reinterpret_cast<const char*>(values.data()),
+                                    values.size() * sizeof(values[0]));
+            const std::string comma = views.empty() ? "" : ",";
+            views += comma + R"({"buffer":0,"byteOffset":)" + std::to_string(binary.size()) +
+                     R"(,"byteLength":)" + std::to_string(bytes.size()) + "}";
+            const std::size_t number =
+                static_cast<std::size_t>(std::count(accessors.begin(), accessors.end(), '{'));
+            accessors += comma + R"({"bufferView":)" + std::to_string(number) + R"(,"componentType":)" +
+                         std::to_string(type) + R"(,"count":)" + std::to_string(values.size() / width) +
+                         R"(,"type":")" + kind + "\"}";
+            binary += bytes;
+        };
+        std::vector<std::uint16_t> joints, indices;
+        for (int vertex = 0; vertex < 9; ++vertex)
+            for (const std::uint16_t joint : {0, 1, 0, 0}) joints.push_back(joint);
+        for (const std::uint16_t ring : {0, 3})
+            for (std::uint16_t i = 0; i < 3; ++i)
+                for (const int corner : {ring + i, ring + (i + 1) % 3, ring + 3 + i})
+                    indices.push_back(static_cast<std::uint16_t>(corner));
+        std::vector<float> inverse_binds(32);
+        for (const std::size_t i : {0, 5, 10, 15, 16, 21, 26, 31}) inverse_binds[i] = 1;
+        inverse_binds[29] = -1; // the second bone is at y = 1
+        add(positions, 5126, "VEC3", 3);
+        add(joints, 5123, "VEC4", 4);
+        add(weights, 5126, "VEC4", 4);
+        add(inverse_binds, 5126, "MAT4", 16);
+        add(times, 5126, "SCALAR", 1);
+        add(rotations, 5126, path == "rotation" ? "VEC4" : "VEC3", path == "rotation" ? 4 : 3);
+        add(indices, 5123, "SCALAR", 1);
+        const std::string one =
+            R"({"name":"bend","samplers":[{"input":4,"output":5}],"channels":[{"sampler":0,)"
+            R"("target":{"node":2,"path":")" +
+            path + R"("}}]})";
+        std::string json =
+            R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],"nodes":[)" + mesh_node +
+            R"(,{"name":"lower","children":[2]},{"name":"upper","translation":[0,1,0]}],)" + skins +
+            R"("meshes":[{"name":"bar","primitives":[{"attributes":{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2},)"
+            R"("indices":6}]}],"animations":[)" +
+            (animations.empty()    ? one
+             : animations == "two" ? one + "," + one
+                                   : "") +
+            R"(],"accessors":[)" + accessors + R"(],"bufferViews":[)" + views +
+            R"(],"buffers":[{"byteLength":)" + std::to_string(binary.size()) +
+            R"(,"uri":"data:application/octet-stream;base64,)" + base64(binary) + "\"}]}";
+        for (const auto& [from, to] : replacements) json.replace(json.find(from), from.size(), to);
+        return json;
+    }
+};
+
+/// Where skinning by the sum of weights leads a vertex of the bar, when the upper bone is turned by an angle.
+Vec3d bent(const Vec3f& p, double upper_weight, double angle) {
+    const Vec3d rest{p.x, p.y, p.z};
+    const Vec3d turned = Rotation::about({0, 0, 1}, angle).apply(rest - Vec3d{0, 1, 0}) + Vec3d{0, 1, 0};
+    return rest * (1 - upper_weight) + turned * upper_weight;
+}
+
+class ReadAnimation : public TemporaryFolderTest {
+  protected:
+    VertexCache read(const Bar& bar, double frames_per_second = 4, const std::string& animation = {}) const {
+        const fs::path file = write("bar.gltf", bar.text());
+        return read_vertex_cache(file, read_mesh(file), frames_per_second, animation);
+    }
+    void expect_refused(ErrorCode code, const std::string& words, const Bar& bar) const {
+        expect_error(code, path("bar.gltf").string() + ": ", [&] { read(bar); });
+        expect_error(code, words, [&] { read(bar); });
+    }
+};
+
+} // namespace
+
+TEST_F(ReadAnimation, ASkinOfTwoBonesBendsAsTheSumOfItsWeightsSays) {
+    const VertexCache cache = read({});
+    const TriangleMesh mesh = read_mesh(path("bar.gltf"));
+    ASSERT_EQ(mesh.vertices.size(), 9U);
+    EXPECT_EQ(cache.sample_count(), 9U);
+    EXPECT_NEAR(cache.end_time(), 2, 1e-12);
+    for (const double time : {0.0, 0.25, 1.0, 1.5, 2.0}) {
+        const double angle = time <= 1 ? 0.5 * time : 0.5 + 1.5 * (time - 1);
+        const std::vector<Vec3f> vertices = vertices_at(cache, time);
+        for (std::size_t i = 0; i < 9; ++i) {
+            const Vec3d expected = bent(mesh.vertices[i], mesh.vertices[i].y / 2, angle);
+            EXPECT_NEAR(length(Vec3d(vertices[i]) - expected), 0, 1e-6) << "vertex " << i << " at " << time;
+        }
+    }
+}
+
+TEST_F(ReadAnimation, TheVerticesAreThoseOfReadMeshAlsoWhereSomeAreEqualOrUnused) {
+    Bar bar;
+    for (const std::size_t k : {0U, 1U, 2U})
+        bar.positions[9 + k] = bar.positions[k]; // one place, two vertices
+    const VertexCache cache = read(bar);
+    const TriangleMesh mesh = read_mesh(path("bar.gltf"));
+    ASSERT_EQ(mesh.vertices.size(), 8U);
+    ASSERT_EQ(cache.vertex_count, 8U);
+    EXPECT_EQ(vertices_at(cache, 0), mesh.vertices);
+}
+
+TEST_F(ReadAnimation, AMeshWithoutBonesMovesWithItsNode) {
+    Bar bar;
+    bar.skins = "";
+    bar.mesh_node = R"({"name":"other"})";
+    bar.replacements[R"("name":"upper",)"] = R"("name":"upper","mesh":0,)";
+    bar.path = "translation";
+    bar.rotations = {0, 1, 0, 0, 1, 3, 2, 1, 3};
+    const VertexCache cache = read(bar, 2);
+    const TriangleMesh mesh = read_mesh(path("bar.gltf"));
+    EXPECT_EQ(vertices_at(cache, 0), mesh.vertices);
+    for (std::size_t i = 0; i < 9; ++i) {
+        EXPECT_EQ(vertices_at(cache, 0.5)[i], mesh.vertices[i] + Vec3f(0, 0, 1.5F));
+        EXPECT_EQ(vertices_at(cache, 9)[i], mesh.vertices[i] + Vec3f(2, 0, 3));
+    }
+}
+
+TEST_F(ReadAnimation, OfSeveralAnimationsOneIsNamed) {
+    Bar bar;
+    bar.animations = "two";
+    bar.replacements[R"(},{"name":"bend")"] = R"(},{"name":"other")";
+    expect_error(ErrorCode::InvalidMesh, "has 2 animations; say which: 'bend', 'other'", [&] { read(bar); });
+    expect_error(ErrorCode::InvalidMesh, "no animation 'third'", [&] { read(bar, 4, "third"); });
+    EXPECT_EQ(read(bar, 4, "other").sample_count(), 9U);
+}
+
+TEST_F(ReadAnimation, WhatCannotBeFollowedIsRefusedWithItsReason) {
+    const auto with = [](auto&& change) {
+        Bar bar;
+        change(bar);
+        return bar;
+    };
+    expect_refused(ErrorCode::InvalidMesh, "keys out of order: of the rotations of the node 'upper', key 2",
+                   with([](Bar& bar) {
+                       bar.times = {0, 2, 1};
+                   }));
+    expect_refused(ErrorCode::InvalidMesh, "key 1 of the rotations of the node 'upper' is not finite",
+                   with([](Bar& bar) { bar.rotations[4] = std::numeric_limits<float>::quiet_NaN(); }));
+    expect_refused(ErrorCode::InvalidMesh, "key 0 of the rotations of the node 'upper' is not finite",
+                   with([](Bar& bar) { bar.times[0] = -std::numeric_limits<float>::infinity(); }));
+    expect_refused(ErrorCode::InvalidMesh, "the animation moves no vertex", with([](Bar& bar) {
+                       bar.skins = "";
+                       bar.mesh_node = R"({"mesh":0})";
+                   }));
+    expect_refused(ErrorCode::InvalidMesh, "the file has no animation; export it with one",
+                   with([](Bar& bar) { bar.animations = "none"; }));
+    expect_refused(ErrorCode::InvalidMesh, "vertex 4 of the mesh 'bar' has no bone",
+                   with([](Bar& bar) { bar.weights[16] = bar.weights[17] = 0; }));
+    expect_refused(ErrorCode::InvalidMesh, "has a channel with 3 values for 2 keys", with([](Bar& bar) {
+                       bar.times = {0, 1};
+                   }));
+    expect_refused(ErrorCode::InvalidMesh, "WEIGHTS_0 of mesh 0 has 8 entries, but needs 9",
+                   with([](Bar& bar) { bar.weights.resize(32); }));
+    expect_refused(ErrorCode::InvalidMesh, "inverseBindMatrices of skin 0 has 2 entries, but needs 3",
+                   with([](Bar& bar) { bar.replacements["[1,2]"] = "[1,2,0]"; }));
+    expect_refused(ErrorCode::WrongFormat, "the weights of mesh 0 are not of the type that is read",
+                   with([](Bar& bar) {
+                       bar.replacements[R"({"bufferView":2,"componentType":5126)"] =
+                           R"({"bufferView":2,"componentType":5123)";
+                   }));
+    expect_refused(ErrorCode::WrongFormat, "is written with \\u in place of letters",
+                   with([](Bar& bar) { bar.replacements["JOINTS_0"] = "JOINTS\\u005f0"; }));
+}
+
+TEST_F(ReadAnimation, OfAnotherModelOrOfTooManyPositionsIsRefused) {
+    const fs::path file = write("bar.gltf", Bar().text());
+    expect_error(ErrorCode::InvalidMesh, "bar.gltf: has other faces than the model: 6 of 9 vertices", [&] {
+        read_vertex_cache(file, make_box({1, 1, 1}, 1), 24);
+    });
+    expect_error(ErrorCode::InvalidMesh, "at most 268435456 positions are kept",
+                 [&] { read_vertex_cache(file, read_mesh(file), 1e8); });
+}
+
+TEST_F(ReadAnimation, SpoiltBytesAreRefusedOrGiveAWholeCache) {
+    const std::string whole = Bar().text();
+    const TriangleMesh mesh = read_mesh(write("bar.gltf", whole));
+    std::mt19937 random(1);
+    std::size_t taken = 0;
+    for (int round = 0; round < 300; ++round) {
+        std::string spoilt = whole;
+        for (unsigned i = 0, count = 1 + random() % 3; i < count; ++i) {
+            char& c = spoilt[random() % spoilt.size()];
+            c = c >= '0' && c <= '9' ? static_cast<char>('0' + random() % 10) : static_cast<char>(random());
+        }
+        const fs::path file = write("spoilt.gltf", spoilt);
+        try {
+            const VertexCache cache = read_vertex_cache(file, mesh, 4);
+            EXPECT_EQ(cache.samples->size(), cache.sample_count() * mesh.vertices.size());
+            ++taken;
+        } catch (const Error& error) {
+            EXPECT_TRUE(std::string(error.what()).starts_with(file.string() + ": ")) << error.what();
+        }
+    }
+    EXPECT_GT(taken, 0U);
+}
+
+TEST_F(ReadAnimation, TheSampleModelsMove) {
+    const fs::path skin = kModels / "glTF2/simple_skin/simple_skin.gltf";
+    const fs::path morph = kModels / "glTF2/glTF-Sample-Models/AnimatedMorphCube-glTF/AnimatedMorphCube.gltf";
+    if (!fs::exists(skin) || !fs::exists(morph))
+        GTEST_SKIP() << "Debian's assimp-testmodels is not installed";
+    for (const fs::path& file : {skin, morph}) {
+        SCOPED_TRACE(file);
+        const TriangleMesh mesh = read_mesh(file);
+        const VertexCache cache = read_vertex_cache(file, mesh, 30);
+        EXPECT_EQ(cache.vertex_count, mesh.vertices.size());
+        EXPECT_GT(cache.sample_count(), 60U);
+        EXPECT_NE(vertices_at(cache, 1), vertices_at(cache, 0));
+    }
+}
