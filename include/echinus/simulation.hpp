@@ -235,6 +235,9 @@ struct SimulationOptions {
     /// A particle farther than this from the middle of where the deformable began ends the simulation as
     /// diverged, units. 0: 10 000 times the deformable's extent at the start.
     double bound = 0;
+    /// Threads that compute a frame; 0: all cores. The bits do not depend on it. More than one are worth it
+    /// from some thousand particles on (docs/performance.md), and need oneTBB.
+    unsigned thread_count = 1;
 };
 
 /// What bears on a collider, in the world's axes.

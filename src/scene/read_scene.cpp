@@ -474,6 +474,7 @@ void read_solver(JsonObject& root, Scene& scene) {
         root.read("substeps", options.substep_count, {1, 1e6});
     }
     root.read("iterations", options.iteration_count, {1, 1e6});
+    root.read("thread_count", options.thread_count, {0, 1024});
 }
 
 void read_end(JsonObject& root, Scene& scene) {

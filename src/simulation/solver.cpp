@@ -94,7 +94,7 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
     : deformable(valid_start(std::move(deformable_in), colliders_in, options_in)),
       colliders(with_unit_rotations(std::move(colliders_in))), motions(colliders.size()),
       options(with_thickness(options_in, deformable)), largest_speed(std::numeric_limits<double>::infinity()),
-      particles_(deformable), sticks_(weighted_sticks(deformable, options)),
+      workers_(options.thread_count), particles_(deformable), sticks_(weighted_sticks(deformable, options)),
       folds_(weighted_folds(deformable, options)), tetrahedra_(weighted_tetrahedra(deformable, options)),
       attachments_(deformable, colliders), deforming_(colliders.size()), surface_motions_(colliders.size()),
       clearances_(particles_.count()), collisions_(colliders, particles_, options),
@@ -115,6 +115,7 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
 }
 
 void Simulation::Solver::step() {
+    const Workers::Session session(workers_);
     begin_frame();
     begin_collisions();
     for (std::uint32_t substep = 0; substep < options.substep_count; ++substep) {
@@ -159,12 +160,12 @@ void Simulation::Solver::begin_collisions() {
     const Stopwatch stopwatch(profile.collision_seconds);
     deform();
     collisions_.begin_frame(colliders, surface_motions_, particles_, options);
-    if (surfaces_) surfaces_->begin_frame(colliders, surface_motions_, collisions_, particles_);
+    if (surfaces_) surfaces_->begin_frame(colliders, surface_motions_, collisions_, particles_, workers_);
 }
 
 void Simulation::Solver::look_ahead() {
     const Stopwatch stopwatch(profile.collision_seconds);
-    if (surfaces_) surfaces_->look_ahead(colliders, particles_);
+    if (surfaces_) surfaces_->look_ahead(colliders, particles_, workers_);
 }
 
 /// @param share_kept  of the velocity
@@ -227,12 +228,12 @@ void Simulation::Solver::relax_stretched_part() {
 void Simulation::Solver::keep_free() {
     const Stopwatch stopwatch(profile.collision_seconds);
     for (const std::size_t collider : collisions_.meet_late(colliders, particles_))
-        if (surfaces_) surfaces_->meet_late(collider, colliders[collider], particles_);
+        if (surfaces_) surfaces_->meet_late(collider, colliders[collider], particles_, workers_);
     LoadMeter* const meter = meter_ ? &*meter_ : nullptr;
     if (meter != nullptr) meter->note(particles_);
     if (!surfaces_) return collisions_.keep_free(particles_, profile, meter);
     const std::uint64_t squeezed_before = profile.squeezed_count;
-    surfaces_->end_frame(particles_, profile, meter);
+    surfaces_->end_frame(particles_, profile, meter, workers_);
     collisions_.end_frame(particles_, profile.squeezed_count > squeezed_before, profile);
 }
 

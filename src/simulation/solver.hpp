@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/workers.hpp"
 #include "simulation/attachments.hpp"
 #include "simulation/collider_motions.hpp"
 #include "simulation/collisions.hpp"
@@ -72,6 +73,7 @@ class Simulation::Solver {
     void judge_frame();
     void archive_colliders(StateArchive& state);
 
+    Workers workers_;
     Particles particles_;
     StickArrays sticks_;
     FoldArrays folds_;

@@ -136,6 +136,7 @@ TEST(CSimulations, TakeEveryOption) {
     fall.options.surface_collision = fall.options.self_collision = 1;
     fall.options.untangle = 1;
     fall.options.measure_loads = 1;
+    fall.options.thread_count = 2;
     fall.options.self_thickness = 0.015;
     fall.by_cpp_options = {.solver = SolverKind::Xpbd,
                            .time_step = 1.0 / 120,
@@ -152,7 +153,8 @@ TEST(CSimulations, TakeEveryOption) {
                            .self_thickness = 0.015,
                            .untangle = true,
                            .measure_loads = true,
-                           .bound = 50};
+                           .bound = 50,
+                           .thread_count = 2};
     const CSimulation simulation = fall.make(c_small_sheet());
     Simulation by_cpp = fall.make_by_cpp(make_cloth(small_sheet()));
     step(simulation.get(), 25);

@@ -148,6 +148,7 @@ TEST(CStructs, AreFilledWithTheDefaultsOfCpp) {
     EXPECT_EQ(simulation.keep_free, 1);
     EXPECT_EQ(simulation.surface_collision, 0);
     EXPECT_EQ(simulation.bound, defaults.bound);
+    EXPECT_EQ(simulation.thread_count, defaults.thread_count);
 }
 
 } // namespace

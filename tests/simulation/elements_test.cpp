@@ -25,6 +25,8 @@ using namespace echinus::test;
 
 namespace {
 
+const Workers kOneThread;
+
 std::size_t edge_count_of(const Element& element) {
     return element.vertex_count == 3 ? 3 : element.vertex_count - 1u;
 }
@@ -137,7 +139,7 @@ TEST(ElementTree, VisitsWhatABoxTouchesOnceAlsoAfterItsElementsMoved) {
         ElementTree tree(scattered.elements, scattered.positions);
         scattered.move(0.5F);
         tree.refit(scattered.elements, scattered.positions,
-                   std::vector<std::uint8_t>(tree.group_count(), 0xFF));
+                   std::vector<std::uint8_t>(tree.group_count(), 0xFF), kOneThread);
         Random random(2);
         for (int i = 0; i < 100; ++i) {
             Box box = box_of({}, arrays_of({in_cube(random, 1)}));
@@ -172,8 +174,8 @@ struct Moving {
     explicit Moving(std::size_t count, std::uint32_t seed) : at_start(count, seed), at_end(at_start) {
         at_end.move(0.3F);
         tree = MovingTree(at_start.elements, at_start.positions);
-        tree.want([](std::uint32_t) { return true; });
-        tree.refit(at_start.elements, at_start.positions, at_end.positions);
+        tree.want([](std::uint32_t) { return true; }, kOneThread);
+        tree.refit(at_start.elements, at_start.positions, at_end.positions, kOneThread);
     }
 
     bool may_come_near(std::uint32_t i, const Moving& other, std::uint32_t j, float reach) const {
@@ -201,6 +203,10 @@ struct Moving {
 
 using Found = std::vector<std::array<std::uint32_t, 2>>;
 
+void find_all_near(const MovingTree& a, const MovingTree& b, float reach, Found& found) {
+    for (std::size_t piece = 0; piece < a.piece_count(); ++piece) find_near(a, b, reach, piece, found);
+}
+
 Found sorted(Found found) {
     std::sort(found.begin(), found.end());
     return found;
@@ -215,7 +221,7 @@ TEST(NearElements, AreThoseThatMayComeNearOnTheirWaysUnderEveryInstructionSet) {
         const float reach = 0.07F;
         for (const std::uint32_t every : {1, 3}) {
             const auto is_wanted = [&](std::uint32_t i) { return i % every == 0; };
-            a.tree.want(is_wanted);
+            a.tree.want(is_wanted, kOneThread);
             Found expected, expected_own;
             for (std::uint32_t i = 0; i < count; ++i) {
                 for (std::uint32_t j = 0; is_wanted(i) && j < 2 * count; ++j)
@@ -228,8 +234,8 @@ TEST(NearElements, AreThoseThatMayComeNearOnTheirWaysUnderEveryInstructionSet) {
             Found first;
             under_each_instruction_set([&](std::string_view) {
                 Found found, found_own;
-                find_near(a.tree, b.tree, reach, found);
-                find_near(a.tree, a.tree, reach, found_own);
+                find_all_near(a.tree, b.tree, reach, found);
+                find_all_near(a.tree, a.tree, reach, found_own);
                 if (first.empty()) first = found;
                 EXPECT_EQ(found, first) << "in another order";
                 EXPECT_EQ(sorted(found), expected);
@@ -248,12 +254,13 @@ TEST(NearElements, AreNotThoseThatMoveAlike) {
             moving.at_start.positions.set(v, moving.at_start.positions[v] + offset);
             moving.at_end.positions.set(v, moving.at_start.positions[v] + Vec3f{100, 100, 100});
         }
-        moving.tree.refit(moving.at_start.elements, moving.at_start.positions, moving.at_end.positions);
+        moving.tree.refit(moving.at_start.elements, moving.at_start.positions, moving.at_end.positions,
+                          kOneThread);
     };
     fly(far, {});
     fly(beside, {20, 20, 20});
     Found found;
-    find_near(far.tree, beside.tree, 1, found);
+    find_all_near(far.tree, beside.tree, 1, found);
     EXPECT_TRUE(found.empty());
 }
 

@@ -29,8 +29,10 @@ struct KindOfSimulation {
     /// What a host does before each frame.
     std::function<void(Simulation&)> steer = [](Simulation&) {};
 
-    Simulation make() const {
-        Simulation simulation(deformable, colliders, options);
+    Simulation make(unsigned thread_count = 1) const {
+        SimulationOptions with_threads = options;
+        with_threads.thread_count = thread_count;
+        Simulation simulation(deformable, colliders, with_threads);
         begin(simulation);
         return simulation;
     }

@@ -39,7 +39,9 @@ struct SimulateArguments {
     std::vector<fs::path> model_folders;
     std::optional<std::uint32_t> frame_limit;
     std::optional<std::uint32_t> stride;
-    unsigned thread_count = 0;
+    std::optional<unsigned> thread_count; ///< in place of the scene's key, and for what is done on all cores
+
+    unsigned threads_around() const { return thread_count.value_or(0); }
     std::optional<bool> surfaces, self; ///< in place of the scene's keys
     bool obj = false;
     bool json = false;
@@ -224,6 +226,7 @@ void simulate(const SimulateArguments& arguments) {
     require_target(arguments);
     Scene scene = read_scene(arguments.scene);
     if (arguments.frame_limit) scene.frame_limit = *arguments.frame_limit;
+    scene.simulation.thread_count = arguments.thread_count.value_or(scene.simulation.thread_count);
     choose_collision(arguments, scene);
     require_playable_colliders(arguments, scene);
     // A page takes its frames from all, and so its last is the end; a folder's last must be one that is
@@ -234,7 +237,7 @@ void simulate(const SimulateArguments& arguments) {
     open(results, arguments, scene, cloth);
 
     const LoadedColliders colliders =
-        load_colliders(scene, arguments.scene, arguments.model_folders, arguments.thread_count);
+        load_colliders(scene, arguments.scene, arguments.model_folders, arguments.threads_around());
     for (const fs::path& file : colliders.files) require_another_file(file, arguments.page);
     Simulation simulation = made_as_scene_says(arguments.scene, "cloth", [&] {
         return make_simulation(scene, colliders.maps, cloth, colliders.caches);
@@ -249,13 +252,13 @@ void simulate(const SimulateArguments& arguments) {
 
     const std::string scene_name = arguments.scene.string();
     const double seconds = simulation.frame() * simulation.options().time_step;
-    const SimulationResult result{
-        .scene_name = scene_name,
-        .simulation = simulation,
-        .colliders = results_of(colliders, course),
-        .verdict =
-            judge(simulation, colliders.judged_at(seconds, arguments.thread_count), arguments.thread_count),
-        .most_truncated = course.most_truncated};
+    const SimulationResult result{.scene_name = scene_name,
+                                  .simulation = simulation,
+                                  .colliders = results_of(colliders, course),
+                                  .verdict = judge(simulation,
+                                                   colliders.judged_at(seconds, arguments.threads_around()),
+                                                   arguments.threads_around()),
+                                  .most_truncated = course.most_truncated};
     const Json report = to_json(result);
     std::vector<TriangleMesh> placed;
     for (std::size_t c = 0; c < colliders.maps.size(); ++c) placed.push_back(colliders.mesh_at(c, 0));
@@ -320,10 +323,11 @@ void add_options(Command command, SimulateArguments& arguments) {
                "Whether the cloth collides with itself, in place of the scene's self_collision");
     command
         .add("--threads", &arguments.thread_count,
-             "Threads to build the map and judge the end on; 0: all cores. The simulation runs on one")
+             "Threads to build the map, simulate and judge the end on; 0: all cores. Without it all cores, "
+             "and "
+             "for the simulation what the scene says")
         .range(0, 1024)
-        .type_name("COUNT")
-        .show_default();
+        .type_name("COUNT");
     command.add_flag("--obj", arguments.obj, "Write frames/cloth_NUMBER.obj in place of cloth.pc2");
     command.add_flag("--json", arguments.json, "Print the report as one JSON object");
 }

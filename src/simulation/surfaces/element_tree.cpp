@@ -116,32 +116,42 @@ ElementTree::ElementTree(std::span<const Element> elements, const PointArrays& p
         levels_.emplace_back().resize(count);
         count = (count + kWidth - 1) / kWidth;
     } while (count > 1);
-    refit(elements, positions, std::vector<std::uint8_t>(group_count(), 0xFF));
+    refit(elements, positions, std::vector<std::uint8_t>(group_count(), 0xFF), Workers());
 }
 
 void ElementTree::refit(std::span<const Element> elements, const PointArrays& positions,
-                        std::span<const std::uint8_t> groups) {
-    for (std::size_t i = 0; i < order_.size(); ++i)
-        if (((groups[i / kWidth] >> (i % kWidth)) & 1U) != 0)
-            levels_[0].set(i, box_of(elements[order_[i]], positions));
-    refit_groups(groups);
+                        std::span<const std::uint8_t> groups, const Workers& workers) {
+    refit_groups(groups, workers, [&](std::uint32_t e) { return echinus::box_of(elements[e], positions); });
 }
 
-void ElementTree::refit(std::span<const Element> elements, const PointArrays& from, const PointArrays& to) {
-    for (std::size_t i = 0; i < order_.size(); ++i) {
-        const Element& element = elements[order_[i]];
-        levels_[0].set(i, box_of_both(box_of(element, from), box_of(element, to)));
-    }
-    refit_groups({});
+void ElementTree::refit(std::span<const Element> elements, const PointArrays& from, const PointArrays& to,
+                        const Workers& workers) {
+    const std::vector<std::uint8_t> all(group_count(), 0xFF);
+    refit_groups(all, workers, [&](std::uint32_t e) {
+        return box_of_both(echinus::box_of(elements[e], from), echinus::box_of(elements[e], to));
+    });
 }
 
-/// @param groups  [group_count()] those whose elements have changed, or none: all
-void ElementTree::refit_groups(std::span<const std::uint8_t> groups) {
-    for (std::size_t level = 1, count = order_.size(); level < levels_.size(); ++level) {
+/// The boxes of elements and of their groups, piece by piece, and those of larger groups, which are few.
+template <typename BoxOf>
+void ElementTree::refit_groups(std::span<const std::uint8_t> groups, const Workers& workers,
+                               const BoxOf& box_of) {
+    constexpr std::size_t kGroupsPerPiece = 128;
+    const auto refit_group = [&](std::size_t group) {
+        if (groups[group] == 0) return;
+        for (std::size_t i = group * kWidth; i < std::min((group + 1) * kWidth, order_.size()); ++i)
+            if (((groups[group] >> (i % kWidth)) & 1U) != 0) levels_[0].set(i, box_of(order_[i]));
+        if (levels_.size() > 1) levels_[1].set(group, levels_[0].box_of_group(group * kWidth));
+    };
+    workers.for_ranges(groups.size(), kGroupsPerPiece,
+                       [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
+                           for (std::size_t group = begin; group < end; ++group) refit_group(group);
+                       });
+    std::size_t count = groups.size();
+    for (std::size_t level = 2; level < levels_.size(); ++level) {
         count = (count + kWidth - 1) / kWidth;
         for (std::size_t i = 0; i < count; ++i)
-            if (level > 1 || groups.empty() || groups[i] != 0)
-                levels_[level].set(i, levels_[level - 1].box_of_group(i * kWidth));
+            levels_[level].set(i, levels_[level - 1].box_of_group(i * kWidth));
     }
 }
 

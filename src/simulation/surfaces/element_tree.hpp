@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/workers.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/state/state_archive.hpp"
 #include "simulation/surfaces/elements.hpp"
@@ -41,9 +42,10 @@ class ElementTree {
 
     /// To elements that have moved. @param groups  [group_count()] one bit for each that may have
     void refit(std::span<const Element> elements, const PointArrays& positions,
-               std::span<const std::uint8_t> groups);
+               std::span<const std::uint8_t> groups, const Workers& workers);
     /// All of them, to the ways from here to there.
-    void refit(std::span<const Element> elements, const PointArrays& from, const PointArrays& to);
+    void refit(std::span<const Element> elements, const PointArrays& from, const PointArrays& to,
+               const Workers& workers);
     std::size_t group_count() const { return levels_.empty() ? 0 : levels_[0].group_count(); }
 
     /// Calls visit(element) for each element whose box touches this one.
@@ -93,7 +95,8 @@ class ElementTree {
                 visit_group(level - 1, first + k, box, visit);
         }
     }
-    void refit_groups(std::span<const std::uint8_t> groups);
+    template <typename BoxOf>
+    void refit_groups(std::span<const std::uint8_t> groups, const Workers& workers, const BoxOf& box_of);
     void shorten(std::size_t level, std::size_t group, const Box& box, float& distance_sq) const;
 
     std::vector<std::uint32_t> order_; ///< the elements, group by group

@@ -47,11 +47,12 @@ void ModelSurface::to_body(const PointArrays& places, PointArrays& result) const
 }
 
 void ModelSurface::begin_frame(const Collider& collider, const SurfaceMotion* motion,
-                               const PointArrays& starts, std::span<const float> clearances) {
+                               const PointArrays& starts, std::span<const float> clearances,
+                               const Workers& workers) {
     now_ = FrameChange(collider.pose, {1, 1, 1});
     at_origin_ = is_identity(collider.pose);
     if (motion == nullptr) return begin_pass(starts, clearances);
-    deform(*motion);
+    deform(*motion, workers);
     motion_ = motion;
     to_body(starts, starts_);
     for (std::size_t v = 0; v < own_->vertex_count(); ++v) bases_.set(v, starts_[v] + motion->carried[v]);
@@ -60,13 +61,13 @@ void ModelSurface::begin_frame(const Collider& collider, const SurfaceMotion* mo
 }
 
 /// The tree covers the ways of this frame, and therefore also where they end.
-void ModelSurface::deform(const SurfaceMotion& motion) {
+void ModelSurface::deform(const SurfaceMotion& motion, const Workers& workers) {
     if (!deformed_) {
         deformed_.emplace();
         deformed_->tree = shape_->tree;
     }
     deformed_->positions = motion.to;
-    deformed_->tree.refit(shape_->elements.all, motion.from, motion.to);
+    deformed_->tree.refit(shape_->elements.all, motion.from, motion.to, workers);
 }
 
 void ModelSurface::begin_pass(const PointArrays& starts, std::span<const float> clearances) {
@@ -77,12 +78,13 @@ void ModelSurface::begin_pass(const PointArrays& starts, std::span<const float> 
     pairs_.begin({&shape_->elements, &shape.tree, &shape.positions}, starts_, bases_, clearances);
 }
 
-void ModelSurface::look_ahead(const Collider& collider_at_end, const PointArrays& goals) {
+void ModelSurface::look_ahead(const Collider& collider_at_end, const PointArrays& goals,
+                              const Workers& workers) {
     now_ = FrameChange(collider_at_end.pose, {1, 1, 1});
     at_origin_ = is_identity(collider_at_end.pose);
     set_goals(goals);
     pairs_.look_ahead(
-        goals_, [&](std::span<const std::uint32_t> elements) { forget_contacts(elements); },
+        goals_, workers, [&](std::span<const std::uint32_t> elements) { forget_contacts(elements); },
         [&](std::uint32_t element, const Pair& pair, const Separation& apart) {
             return consider(element, pair, apart);
         });

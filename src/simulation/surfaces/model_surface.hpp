@@ -33,9 +33,9 @@ class ModelSurface {
     /// @param clearances  [vertex_count] lower bounds of the vertices' distances from the model, or none
     /// @param motion  how the surface deforms in this frame, or null
     void begin_frame(const Collider& collider, const SurfaceMotion* motion, const PointArrays& starts,
-                     std::span<const float> clearances);
+                     std::span<const float> clearances, const Workers& workers);
     /// Looks for contacts on the way to where the frame would lead the particles.
-    void look_ahead(const Collider& collider_at_end, const PointArrays& goals);
+    void look_ahead(const Collider& collider_at_end, const PointArrays& goals, const Workers& workers);
     void begin_substep(const Collider& collider, const RigidTransform& previous_pose, std::uint32_t substeps);
     /// @param chosen  [particle_count] if not empty, only contacts of particles that have 1 here
     void relax(Particles& particles, std::span<const float> inverse_masses, SimulationProfile& profile,
@@ -47,8 +47,10 @@ class ModelSurface {
     void set_goals(const PointArrays& goals);
     /// Begins another pass from here, with the collider at rest.
     void begin_pass(const PointArrays& starts, std::span<const float> clearances = {});
-    std::span<const std::uint32_t> find_leaving() { return pairs_.find_leaving(goals_); }
-    bool renew(std::uint32_t vertex) { return pairs_.renew(vertex); }
+    std::span<const std::uint32_t> find_leaving(const Workers& workers) {
+        return pairs_.find_leaving(goals_, workers);
+    }
+    bool renew(std::uint32_t vertex, const Workers& workers) { return pairs_.renew(vertex, workers); }
     /// @param from  in the world, at the end of the frame; none for one that is carried along
     Shares allowed(std::uint32_t vertex, const Vec3f* from) const {
         return pairs_.allowed(vertex, from != nullptr ? now_.point_to_local(*from) : bases_[vertex],
@@ -85,7 +87,7 @@ class ModelSurface {
     };
 
     void to_body(const PointArrays& places, PointArrays& result) const;
-    void deform(const SurfaceMotion& motion);
+    void deform(const SurfaceMotion& motion, const Workers& workers);
     void forget_contacts(std::span<const std::uint32_t> elements);
     float consider(std::uint32_t element, const Pair& pair, const Separation& apart);
     void add_contact(std::uint32_t element, const Pair& pair, const Separation& apart);

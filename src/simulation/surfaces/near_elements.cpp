@@ -78,8 +78,10 @@ struct GroupSearch {
     std::size_t group = 0; ///< of `a`
     std::array<MovingBox, ElementTree::kWidth> boxes{};
 
-    void search_all() {
-        for (group = 0; group < a.wanted.size(); ++group)
+    void search_piece(std::size_t piece) {
+        const std::size_t first = piece * MovingTree::kGroupsPerPiece;
+        const std::size_t end = std::min(first + MovingTree::kGroupsPerPiece, a.wanted.size());
+        for (group = first; group < end; ++group)
             if (a.wanted[group] != 0) search_group();
     }
 
@@ -133,9 +135,9 @@ struct GroupSearch {
     }
 };
 
-void find_near_lanes(const MovingTree& a, const MovingTree& b, float reach,
+void find_near_lanes(const MovingTree& a, const MovingTree& b, float reach, std::size_t piece,
                      std::vector<std::array<std::uint32_t, 2>>& near) {
-    GroupSearch{.a = a, .b = b, .is_same = &a == &b, .reach = reach, .near = near}.search_all();
+    GroupSearch{.a = a, .b = b, .is_same = &a == &b, .reach = reach, .near = near}.search_piece(piece);
 }
 
 } // namespace HWY_NAMESPACE
@@ -149,10 +151,10 @@ namespace {
 HWY_EXPORT(find_near_lanes);
 } // namespace
 
-void find_near(const MovingTree& a, const MovingTree& b, float reach,
+void find_near(const MovingTree& a, const MovingTree& b, float reach, std::size_t piece,
                std::vector<std::array<std::uint32_t, 2>>& near) {
     if (a.from.order().empty() || b.from.order().empty()) return;
-    ECHINUS_DISPATCH(find_near_lanes)(a, b, reach, near);
+    ECHINUS_DISPATCH(find_near_lanes)(a, b, reach, piece, near);
 }
 
 } // namespace echinus

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/workers.hpp"
 #include "simulation/surfaces/element_tree.hpp"
 
 #include <array>
@@ -21,16 +22,32 @@ struct MovingTree {
 
     /// @param is_wanted  (element)
     template <typename IsWanted>
-    void want(const IsWanted& is_wanted) {
-        std::fill(wanted.begin(), wanted.end(), std::uint8_t{0});
-        for (std::size_t i = 0; i < from.order().size(); ++i)
-            if (is_wanted(from.order()[i]))
-                wanted[i / ElementTree::kWidth] |= static_cast<std::uint8_t>(1U << (i % ElementTree::kWidth));
+    void want(const IsWanted& is_wanted, const Workers& workers) {
+        workers.for_ranges(wanted.size(), kGroupsPerPiece,
+                           [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
+                               for (std::size_t group = begin; group < end; ++group)
+                                   wanted[group] = wanted_of(group, is_wanted);
+                           });
     }
     /// To wanted elements, whose ways have changed.
-    void refit(std::span<const Element> elements, const PointArrays& at_start, const PointArrays& at_end) {
-        from.refit(elements, at_start, wanted);
-        to.refit(elements, at_end, wanted);
+    void refit(std::span<const Element> elements, const PointArrays& at_start, const PointArrays& at_end,
+               const Workers& workers) {
+        from.refit(elements, at_start, wanted, workers);
+        to.refit(elements, at_end, wanted, workers);
+    }
+    std::size_t piece_count() const { return Workers::piece_count(wanted.size(), kGroupsPerPiece); }
+
+    static constexpr std::size_t kGroupsPerPiece = 32;
+
+  private:
+    template <typename IsWanted>
+    std::uint8_t wanted_of(std::size_t group, const IsWanted& is_wanted) const {
+        const std::size_t first = group * ElementTree::kWidth;
+        const std::size_t count = std::min(ElementTree::kWidth, from.order().size() - first);
+        unsigned mask = 0;
+        for (std::size_t k = 0; k < count; ++k)
+            if (is_wanted(from.order()[first + k])) mask |= 1U << k;
+        return static_cast<std::uint8_t>(mask);
     }
 };
 
@@ -39,7 +56,8 @@ struct MovingTree {
 /// the end: the distance along an axis is linear in time. So motion that two elements have in common does not
 /// bring them together. Where `a` and `b` are the same tree, each pair comes once, in either order, and none
 /// with itself.
-void find_near(const MovingTree& a, const MovingTree& b, float reach,
+/// @param piece  of the groups of `a`, below a.piece_count()
+void find_near(const MovingTree& a, const MovingTree& b, float reach, std::size_t piece,
                std::vector<std::array<std::uint32_t, 2>>& near);
 
 } // namespace echinus

@@ -4,6 +4,7 @@
 #include "simulation/surfaces/shares.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -13,6 +14,9 @@ namespace echinus {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// Of loops over vertices and over pairs.
+constexpr std::size_t kVerticesPerPiece = 1024, kPairsPerPiece = 512;
 
 /// After so many rounds a way that is still too long is given up.
 constexpr int kRounds = 12;
@@ -135,8 +139,9 @@ void SelfSurface::archive(StateArchive& state) {
     state.value(searched_count);
     state.value(measured_count);
     if (!state.reads() || !has_window_) return;
-    want(true);
-    refit_trees();
+    const Workers alone;
+    want(true, alone);
+    refit_trees(alone);
 }
 
 // ---- The frame
@@ -228,52 +233,60 @@ void SelfSurface::expect(std::uint32_t v) {
 }
 
 /// Which pairs are listed depends on what is expected of each vertex.
-void SelfSurface::list_pairs() {
-    std::size_t moved_count = 0;
-    for (const std::uint32_t v : surface_) {
-        has_moved_[v] = is_elsewhere(v) ? 1 : 0;
-        if (has_moved_[v] == 0) continue;
-        ++moved_count;
-        expect(v);
-    }
-    if (moved_count == 0) return;
+void SelfSurface::list_pairs(const Workers& workers) {
+    std::atomic<bool> any_moved = false;
+    workers.for_ranges(surface_.size(), kVerticesPerPiece,
+                       [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
+                           bool has_one_moved = false;
+                           for (const std::uint32_t v : std::span(surface_).subspan(begin, end - begin)) {
+                               has_moved_[v] = is_elsewhere(v) ? 1 : 0;
+                               if (has_moved_[v] == 0) continue;
+                               expect(v);
+                               has_one_moved = true;
+                           }
+                           if (has_one_moved) any_moved = true;
+                       });
+    if (!any_moved) return;
     is_measured_ = false;
     has_searched_ = true;
-    set_window();
-    search();
-    keep_near();
+    set_window(workers);
+    search(workers);
 }
 
 /// Ways are looked at from the first of the frames to the end of the last one. A vertex that is expected
 /// elsewhere since goes a straight way too, which may well be followed backwards.
-void SelfSurface::set_window() {
+void SelfSurface::set_window(const Workers& workers) {
     // What is found in a later pass holds for this one, in which the other vertices rest.
     const bool is_new = !is_first_pass_ || !has_window_ || frame_number_ > last_frame_;
     has_window_ = is_first_pass_;
     if (is_new) first_frame_ = frame_number_;
     if (frame_number_ > last_frame_) last_frame_ = frame_number_ + frames_to_list() - 1;
-    for (const std::uint32_t v : surface_) {
-        if (!is_new && has_moved_[v] == 0) continue;
-        from_.set(v, is_first_pass_ ? expected_in(v, first_frame_) : expected(v, false));
-        to_.set(v, is_first_pass_ ? expected_in(v, last_frame_ + 1) : expected(v, true));
-    }
-    want(is_new);
-    refit_trees();
-    if (is_new) want(false);
+    workers.for_ranges(
+        surface_.size(), kVerticesPerPiece,
+        [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
+            for (const std::uint32_t v : std::span(surface_).subspan(begin, end - begin)) {
+                if (!is_new && has_moved_[v] == 0) continue;
+                from_.set(v, is_first_pass_ ? expected_in(v, first_frame_) : expected(v, false));
+                to_.set(v, is_first_pass_ ? expected_in(v, last_frame_ + 1) : expected(v, true));
+            }
+        });
+    want(is_new, workers);
+    refit_trees(workers);
+    if (is_new) want(false, workers);
 }
 
 /// In the trees, what has moved.
-void SelfSurface::want(bool all) {
-    face_tree_.want([&](std::uint32_t f) { return all || has_moved(faces_[f]); });
-    edge_tree_.want([&](std::uint32_t e) { return all || has_moved(edges_[e]); });
-    vertex_tree_.want([&](std::uint32_t i) { return all || has_moved_[surface_[i]] != 0; });
+void SelfSurface::want(bool all, const Workers& workers) {
+    face_tree_.want([&](std::uint32_t f) { return all || has_moved(faces_[f]); }, workers);
+    edge_tree_.want([&](std::uint32_t e) { return all || has_moved(edges_[e]); }, workers);
+    vertex_tree_.want([&](std::uint32_t i) { return all || has_moved_[surface_[i]] != 0; }, workers);
 }
 
 /// To the ways of what is wanted.
-void SelfSurface::refit_trees() {
-    face_tree_.refit(faces_, from_, to_);
-    edge_tree_.refit(edges_, from_, to_);
-    vertex_tree_.refit(vertices_, from_, to_);
+void SelfSurface::refit_trees(const Workers& workers) {
+    face_tree_.refit(faces_, from_, to_, workers);
+    edge_tree_.refit(edges_, from_, to_, workers);
+    vertex_tree_.refit(vertices_, from_, to_, workers);
 }
 
 std::uint32_t SelfSurface::frames_to_list() const {
@@ -290,47 +303,68 @@ bool SelfSurface::has_moved(const Element& element) const {
 }
 
 /// For what is near the vertices that have moved. The pairs of the others stay listed.
-void SelfSurface::search() {
-    candidates_.clear();
+void SelfSurface::search(const Workers& workers) {
     std::erase_if(pairs_, [&](const Pair& pair) {
         return std::any_of(pair.points.begin(), pair.points.end(),
                            [&](std::uint32_t v) { return has_moved_[v] != 0; });
     });
-    const float reach = reach_.near + 2 * reach_.slack;
-    near_.clear();
-    find_near(vertex_tree_, face_tree_, reach, near_);
-    for (const auto& [i, face] : near_) add_vertex_face(surface_[i], face);
-    near_.clear();
-    find_near(face_tree_, vertex_tree_, reach, near_);
-    for (const auto& [face, i] : near_)
-        if (has_moved_[surface_[i]] == 0) add_vertex_face(surface_[i], face);
-    near_.clear();
-    find_near(edge_tree_, edge_tree_, reach, near_);
-    for (const auto& [a, b] : near_) add_edge_edge(a, b);
+    const std::size_t piece_count =
+        vertex_tree_.piece_count() + face_tree_.piece_count() + edge_tree_.piece_count();
+    searches_.resize(workers.count());
+    found_.begin(workers, piece_count);
+    workers.for_pieces(piece_count, [&](std::size_t worker, std::size_t piece) {
+        found_.add(worker, piece, [&](std::vector<Pair>& found) {
+            search_piece(piece, searches_[worker]);
+            keep_near(searches_[worker], found);
+        });
+    });
+    found_.append_to(pairs_);
     for (const std::uint8_t mask : face_tree_.wanted)
         searched_count += static_cast<std::uint64_t>(std::popcount(mask));
 }
 
-void SelfSurface::add_vertex_face(std::uint32_t vertex, std::uint32_t face) {
-    const auto& corners = faces_[face].vertices;
-    if (!faces_[face].has(vertex))
-        candidates_.push_back({{vertex, corners[0], corners[1], corners[2]}, PairKind::VertexFace});
+/// Pieces of the vertices, then of the faces, then of the edges.
+void SelfSurface::search_piece(std::size_t piece, Search& search) const {
+    const float reach = reach_.near + 2 * reach_.slack;
+    search.near.clear();
+    search.candidates.clear();
+    if (piece < vertex_tree_.piece_count()) {
+        find_near(vertex_tree_, face_tree_, reach, piece, search.near);
+        for (const auto& [i, face] : search.near) add_vertex_face(surface_[i], face, search.candidates);
+        return;
+    }
+    piece -= vertex_tree_.piece_count();
+    if (piece < face_tree_.piece_count()) {
+        find_near(face_tree_, vertex_tree_, reach, piece, search.near);
+        for (const auto& [face, i] : search.near)
+            if (has_moved_[surface_[i]] == 0) add_vertex_face(surface_[i], face, search.candidates);
+        return;
+    }
+    find_near(edge_tree_, edge_tree_, reach, piece - face_tree_.piece_count(), search.near);
+    for (const auto& [a, b] : search.near) add_edge_edge(a, b, search.candidates);
 }
 
-void SelfSurface::add_edge_edge(std::uint32_t a, std::uint32_t b) {
+void SelfSurface::add_vertex_face(std::uint32_t vertex, std::uint32_t face,
+                                  std::vector<Pair>& candidates) const {
+    const auto& corners = faces_[face].vertices;
+    if (!faces_[face].has(vertex))
+        candidates.push_back({{vertex, corners[0], corners[1], corners[2]}, PairKind::VertexFace});
+}
+
+void SelfSurface::add_edge_edge(std::uint32_t a, std::uint32_t b, std::vector<Pair>& candidates) const {
     const auto& p = edges_[a].vertices;
     const auto& q = edges_[b].vertices;
     if (p[0] != q[0] && p[0] != q[1] && p[1] != q[0] && p[1] != q[1])
-        candidates_.push_back({{p[0], p[1], q[0], q[1]}, PairKind::EdgeEdge});
+        candidates.push_back({{p[0], p[1], q[0], q[1]}, PairKind::EdgeEdge});
 }
 
 /// Of the candidates, those that may come near on their ways, which they go together.
-void SelfSurface::keep_near() {
-    separations_.resize(candidates_.size());
-    separations(candidates_, from_, from_, separations_);
-    for (std::size_t i = 0; i < candidates_.size(); ++i) {
-        const Pair& pair = candidates_[i];
-        const Vec3f normal = separations_[i].normal;
+void SelfSurface::keep_near(Search& search, std::vector<Pair>& found) const {
+    search.separations.resize(search.candidates.size());
+    separations(search.candidates, from_, from_, search.separations);
+    for (std::size_t i = 0; i < search.candidates.size(); ++i) {
+        const Pair& pair = search.candidates[i];
+        const Vec3f normal = search.separations[i].normal;
         const std::size_t own = own_count(pair.kind);
         float least = kInfinity, most = -kInfinity;
         for (std::size_t k = 0; k < 4; ++k) {
@@ -338,31 +372,52 @@ void SelfSurface::keep_near() {
             least = k < own ? std::min(least, height) : least;
             most = k < own ? most : std::max(most, height);
         }
-        const float gap = std::min(separations_[i].gap, least - most);
-        if (gap <= reach_.near + 2 * reach_.slack) pairs_.push_back(pair);
+        const float gap = std::min(search.separations[i].gap, least - most);
+        if (gap <= reach_.near + 2 * reach_.slack) found.push_back(pair);
     }
 }
 
+/// Gives each vertex the least of `most` and what radius_of(worker, piece, begin, end, give) gives it by
+/// give(pair, radius) for its pairs. The least of numbers is the same in whatever order.
+template <typename RadiusOf>
+void SelfSurface::lessen(std::vector<float>& radii, float most, const Workers& workers,
+                         const RadiusOf& radius_of) {
+    lessened_.resize(workers.count());
+    for (std::vector<float>& of_worker : lessened_) of_worker.assign(radii.size(), most);
+    workers.for_ranges(pairs_.size(), kPairsPerPiece,
+                       [&](std::size_t worker, std::size_t piece, std::size_t begin, std::size_t end) {
+                           std::vector<float>& lessened = lessened_[worker];
+                           radius_of(worker, piece, begin, end, [&](std::size_t i, float radius) {
+                               for (const std::uint32_t v : pairs_[i].points)
+                                   lessened[v] = std::min(lessened[v], radius);
+                           });
+                       });
+    radii.swap(lessened_[0]);
+    for (std::size_t worker = 1; worker < workers.count(); ++worker)
+        for (std::size_t v = 0; v < radii.size(); ++v) radii[v] = std::min(radii[v], lessened_[worker][v]);
+}
+
 /// Gives every vertex a new room where it is.
-void SelfSurface::measure() {
+void SelfSurface::measure(const Workers& workers) {
     if (is_measured_) return;
     is_measured_ = true;
     separations_.resize(pairs_.size());
-    separations(pairs_, starts_, starts_, separations_);
     measured_count += pairs_.size();
     anchors_ = starts_;
     const float unlisted = usable_gap(reach_.near, reach_.least_gap) / 2;
-    std::fill(rooms_.begin(), rooms_.end(), unlisted);
-    for (std::size_t i = 0; i < pairs_.size(); ++i) {
-        const float by_gap = usable_gap(separations_[i].gap, reach_.least_gap) / 2;
-        for (const std::uint32_t v : pairs_[i].points) rooms_[v] = std::min(rooms_[v], by_gap);
-    }
+    lessen(rooms_, unlisted, workers,
+           [&](std::size_t, std::size_t, std::size_t begin, std::size_t end, const auto& give) {
+               const auto of_piece = std::span(separations_).subspan(begin, end - begin);
+               separations(std::span(pairs_).subspan(begin, end - begin), starts_, starts_, of_piece);
+               for (std::size_t i = begin; i < end; ++i)
+                   give(i, usable_gap(separations_[i].gap, reach_.least_gap) / 2);
+           });
     std::fill(quiet_.begin(), quiet_.end(), -1.0F); // the next frame looks for contacts
 }
 
 // ---- Contacts
 
-void SelfSurface::look_ahead(const RigidTransform* frame, const PointArrays& goals) {
+void SelfSurface::look_ahead(const RigidTransform* frame, const PointArrays& goals, const Workers& workers) {
     set_goals(frame, goals);
     if (all_within(quiet_)) return;
     std::fill(is_alert_.begin(), is_alert_.end(), std::uint8_t{0});
@@ -370,13 +425,17 @@ void SelfSurface::look_ahead(const RigidTransform* frame, const PointArrays& goa
         if (contact.has_pushed)
             for (const std::uint32_t v : contact.pair.particles) is_alert_[v] = 1;
     contacts_.clear();
-    list_pairs();
-    measure();
-    std::fill(quiet_.begin(), quiet_.end(), reach_.near / 2);
-    for (std::size_t i = 0; i < pairs_.size(); ++i) {
-        const float quiet = consider(pairs_[i], separations_[i]);
-        for (const std::uint32_t v : pairs_[i].points) quiet_[v] = std::min(quiet_[v], quiet);
-    }
+    list_pairs(workers);
+    measure(workers);
+    contacts_found_.begin(workers, Workers::piece_count(pairs_.size(), kPairsPerPiece));
+    lessen(quiet_, reach_.near / 2, workers,
+           [&](std::size_t worker, std::size_t piece, std::size_t begin, std::size_t end, const auto& give) {
+               contacts_found_.add(worker, piece, [&](std::vector<Contact>& found) {
+                   for (std::size_t i = begin; i < end; ++i)
+                       give(i, consider(pairs_[i], separations_[i], found));
+               });
+           });
+    contacts_found_.append_to(contacts_);
 }
 
 float SelfSurface::thickness_of(const Pair& pair) const {
@@ -396,14 +455,14 @@ float SelfSurface::closing(const Pair& pair, const Separation& apart) const {
 }
 
 /// @return how far each of the pair's vertices may go before it has to be measured again
-float SelfSurface::consider(const Pair& pair, const Separation& apart) {
+float SelfSurface::consider(const Pair& pair, const Separation& apart, std::vector<Contact>& contacts) const {
     const float thickness = thickness_of(pair);
     const bool is_alert = std::any_of(pair.points.begin(), pair.points.end(),
                                       [&](std::uint32_t v) { return is_alert_[v] != 0; });
     const float ready = thickness * (1 + (is_alert ? kAlertReadiness : kReadiness));
     if (!(apart.gap < ready + closing(pair, apart))) return (apart.gap - thickness) / 2;
     const std::size_t own = own_count(pair.kind);
-    Contact& contact = contacts_.emplace_back();
+    Contact& contact = contacts.emplace_back();
     contact.pair.particles = pair.points;
     for (std::size_t k = 0; k < 4; ++k)
         contact.pair.weights[k] = k < own ? apart.weights[k] : -apart.weights[k];
@@ -426,7 +485,7 @@ void SelfSurface::relax(Particles& particles, std::span<const float> inverse_mas
 /// A vertex that ends early does not drift on with the others: it leaves the way for which its pairs were
 /// listed, and the next round finds what is near its new one.
 std::span<const float> SelfSurface::allowed_shares(const RigidTransform* frame, const PointArrays& goals,
-                                                   const PointArrays* bases) {
+                                                   const PointArrays* bases, const Workers& workers) {
     set_goals(frame, goals);
     stuck_count_ = 0;
     if (all_within(rooms_)) return {};
@@ -434,15 +493,15 @@ std::span<const float> SelfSurface::allowed_shares(const RigidTransform* frame, 
         to_frame(frame, *bases, bases_);
     else
         bases_ = starts_;
-    list_pairs();
-    measure();
+    list_pairs(workers);
+    measure(workers);
     shares_.assign(own_->vertex_count(), 1);
     whole_goals_ = goals_;
-    for (int round = 0; shorten_ways(round); ++round) {
+    for (int round = 0; shorten_ways(round, workers); ++round) {
         for (std::uint32_t v = 0; v < own_->vertex_count(); ++v)
             if (shares_[v] != 1) goals_.set(v, place_at_share(v));
-        list_pairs();
-        measure();
+        list_pairs(workers);
+        measure(workers);
     }
     return shares_;
 }
@@ -451,31 +510,53 @@ Vec3f SelfSurface::place_at_share(std::uint32_t v) const {
     return bases_[v] + (whole_goals_[v] - bases_[v]) * shares_[v];
 }
 
-/// Shortens the ways of pairs that could meet. @return whether there were any
-bool SelfSurface::shorten_ways(int round) {
+SelfSurface::Ending SelfSurface::ending_of(std::size_t i) const {
+    const Pair& pair = pairs_[i];
+    const Separation& apart = separations_[i];
+    const std::size_t own = own_count(pair.kind);
+    const Vec3f origin = starts_[pair.points[0]];
+    float least = kInfinity, most = -kInfinity, least_base = kInfinity, most_base = -kInfinity;
+    bool stays = true;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::uint32_t v = pair.points[k];
+        const float height = dot(apart.normal, place_at_share(v) - origin);
+        const float base = dot(apart.normal, bases_[v] - origin);
+        stays = stays && bases_[v] == starts_[v];
+        least = k < own ? std::min(least, height) : least;
+        most = k < own ? most : std::max(most, height);
+        least_base = k < own ? std::min(least_base, base) : least_base;
+        most_base = k < own ? most_base : std::max(most_base, base);
+    }
+    return {.kept = apart.gap - std::max(usable_gap(apart.gap, reach_.least_gap), 0.0F),
+            .at_end = least - most,
+            .at_base = stays ? apart.gap : least_base - most_base,
+            .stays = stays};
+}
+
+/// Of the ways as they are.
+void SelfSurface::find_meeting(const Workers& workers) {
+    meets_.resize(pairs_.size());
+    workers.for_ranges(pairs_.size(), kPairsPerPiece,
+                       [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
+                           for (std::size_t i = begin; i < end; ++i)
+                               meets_[i] = is_apart(i, ending_of(i)) ? 0 : 1;
+                       });
+    was_shortened_.assign(own_->vertex_count(), 0);
+}
+
+/// Shortens the ways of pairs that could meet, one after the other. @return whether there were any
+bool SelfSurface::shorten_ways(int round, const Workers& workers) {
+    find_meeting(workers);
     bool found = false;
     stuck_count_ = 0;
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
         const Pair& pair = pairs_[i];
-        const Separation& apart = separations_[i];
-        const std::size_t own = own_count(pair.kind);
-        const Vec3f origin = starts_[pair.points[0]];
-        float least = kInfinity, most = -kInfinity, least_base = kInfinity, most_base = -kInfinity;
-        bool stays = true; // where its vertices go none of their ways
-        for (std::size_t k = 0; k < 4; ++k) {
-            const std::uint32_t v = pair.points[k];
-            const float height = dot(apart.normal, place_at_share(v) - origin);
-            const float base = dot(apart.normal, bases_[v] - origin);
-            stays = stays && bases_[v] == starts_[v];
-            least = k < own ? std::min(least, height) : least;
-            most = k < own ? most : std::max(most, height);
-            least_base = k < own ? std::min(least_base, base) : least_base;
-            most_base = k < own ? most_base : std::max(most_base, base);
-        }
-        const float kept = apart.gap - std::max(usable_gap(apart.gap, reach_.least_gap), 0.0F);
-        const float at_end = least - most;
-        const float at_base = stays ? apart.gap : least_base - most_base;
-        if (apart.gap > 0 && at_end >= kept) continue;
+        if (meets_[i] == 0 && std::none_of(pair.points.begin(), pair.points.end(),
+                                           [&](std::uint32_t v) { return was_shortened_[v] != 0; }))
+            continue;
+        const Ending ending = ending_of(i);
+        if (is_apart(i, ending)) continue;
+        const auto& [kept, at_end, at_base, stays] = ending;
         const float share = round < kRounds && at_base > kept
                                 ? std::clamp((at_base - kept) / (at_base - at_end), 0.0F, 1.0F) * kAlmost
                                 : 0.0F;
@@ -484,6 +565,7 @@ bool SelfSurface::shorten_ways(int round) {
             moves = moves || (mobility_[v] == 0 && whole_goals_[v] != starts_[v]);
             if (shares_[v] == 0 || mobility_[v] == 0) continue;
             shares_[v] *= share;
+            was_shortened_[v] = 1;
             can_be_shortened = true;
         }
         found = found || can_be_shortened;

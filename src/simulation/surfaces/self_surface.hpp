@@ -1,6 +1,8 @@
 #pragma once
 
 #include "collider/frame_change.hpp"
+#include "geometry/piecewise_list.hpp"
+#include "geometry/workers.hpp"
 #include "simulation/surfaces/elements.hpp"
 #include "simulation/surfaces/near_elements.hpp"
 #include "simulation/surfaces/separation.hpp"
@@ -47,13 +49,13 @@ class SelfSurface {
     /// @param frame  where the frame stands; none: the world
     void begin_pass(const RigidTransform* frame, const PointArrays& starts, bool is_first);
     /// Looks for contacts on the way to the goals. @param frame  at the end of the frame
-    void look_ahead(const RigidTransform* frame, const PointArrays& goals);
+    void look_ahead(const RigidTransform* frame, const PointArrays& goals, const Workers& workers);
     void relax(Particles& particles, std::span<const float> inverse_masses, SimulationProfile& profile);
 
     /// The shares of the ways to the goals that vertices may go, or none where all may go the whole way.
     /// @param bases  [vertex_count] where the vertices end that go none of their ways, or null: they stay
     std::span<const float> allowed_shares(const RigidTransform* frame, const PointArrays& goals,
-                                          const PointArrays* bases);
+                                          const PointArrays* bases, const Workers& workers);
     /// Pairs that could meet nevertheless, since a vertex is led on while the others stay behind.
     std::uint64_t stuck_count() const { return stuck_count_; }
 
@@ -71,26 +73,46 @@ class SelfSurface {
     void set_goals(const RigidTransform* frame, const PointArrays& goals);
     bool all_within(std::span<const float> radii) const;
 
-    void list_pairs();
+    void list_pairs(const Workers& workers);
     Vec3f expected(std::uint32_t vertex, bool at_end) const;
     Vec3f expected_in(std::uint32_t vertex, std::uint32_t frame) const;
     bool is_elsewhere(std::uint32_t vertex) const;
     void expect(std::uint32_t vertex);
-    void set_window();
-    void want(bool all);
-    void refit_trees();
+    void set_window(const Workers& workers);
+    void want(bool all, const Workers& workers);
+    void refit_trees(const Workers& workers);
     std::uint32_t frames_to_list() const;
     bool has_moved(const Element& element) const;
-    void search();
-    void add_vertex_face(std::uint32_t vertex, std::uint32_t face);
-    void add_edge_edge(std::uint32_t a, std::uint32_t b);
-    void keep_near();
+    /// What a worker needs to search.
+    struct Search {
+        std::vector<std::array<std::uint32_t, 2>> near;
+        std::vector<Pair> candidates;
+        std::vector<Separation> separations;
+    };
+    void search(const Workers& workers);
+    void search_piece(std::size_t piece, Search& search) const;
+    void add_vertex_face(std::uint32_t vertex, std::uint32_t face, std::vector<Pair>& candidates) const;
+    void add_edge_edge(std::uint32_t a, std::uint32_t b, std::vector<Pair>& candidates) const;
+    void keep_near(Search& search, std::vector<Pair>& found) const;
 
-    void measure();
+    void measure(const Workers& workers);
+    template <typename RadiusOf>
+    void lessen(std::vector<float>& radii, float most, const Workers& workers, const RadiusOf& radius_of);
     float thickness_of(const Pair& pair) const;
     float closing(const Pair& pair, const Separation& apart) const;
-    float consider(const Pair& pair, const Separation& apart);
-    bool shorten_ways(int round);
+    float consider(const Pair& pair, const Separation& apart, std::vector<Contact>& contacts) const;
+    /// How a pair would end by the present shares.
+    struct Ending {
+        float kept;            ///< of its gap, at least
+        float at_end, at_base; ///< its gap
+        bool stays;            ///< where its vertices go none of their ways
+    };
+    Ending ending_of(std::size_t pair) const;
+    bool is_apart(std::size_t pair, const Ending& ending) const {
+        return separations_[pair].gap > 0 && ending.at_end >= ending.kept;
+    }
+    void find_meeting(const Workers& workers);
+    bool shorten_ways(int round, const Workers& workers);
     Vec3f place_at_share(std::uint32_t vertex) const;
 
     std::shared_ptr<const Elements> own_;
@@ -121,19 +143,24 @@ class SelfSurface {
     std::vector<std::uint8_t> is_listed_for_pass_; ///< by vertex
     PointArrays from_, to_;                        ///< expected at both ends of these frames
     std::vector<std::uint8_t> has_moved_;          ///< by vertex, while they are listed
-    std::vector<std::array<std::uint32_t, 2>> near_;
-    std::vector<Pair> candidates_, pairs_;
+    std::vector<Pair> pairs_;
     std::vector<Separation> separations_;
+    std::vector<Search> searches_; ///< by worker
+    PiecewiseList<Pair> found_;
     // Rooms
-    PointArrays anchors_;              ///< less the drift
-    std::vector<float> rooms_, quiet_; ///< radii; within the quiet ones no contact begins or changes
-    bool is_measured_ = false;         ///< in this pass
+    PointArrays anchors_;                      ///< less the drift
+    std::vector<float> rooms_, quiet_;         ///< radii; within the quiet ones no contact begins or changes
+    bool is_measured_ = false;                 ///< in this pass
+    std::vector<std::vector<float>> lessened_; ///< by worker: radii
     std::vector<float> shares_;
-    PointArrays bases_;       ///< at a share of 0
-    PointArrays whole_goals_; ///< before any way was shortened
+    std::vector<std::uint8_t> meets_;         ///< by pair, as the ways are when a round begins
+    std::vector<std::uint8_t> was_shortened_; ///< by vertex, in this round
+    PointArrays bases_;                       ///< at a share of 0
+    PointArrays whole_goals_;                 ///< before any way was shortened
     std::uint64_t stuck_count_ = 0;
     // Contacts
     std::vector<Contact> contacts_;
+    PiecewiseList<Contact> contacts_found_;
     std::vector<std::uint8_t> is_alert_; ///< by vertex: a contact has pushed it lately
 };
 

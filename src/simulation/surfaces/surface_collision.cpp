@@ -131,7 +131,8 @@ void SurfaceCollision::for_each_near(const Visit& visit) {
 
 void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders,
                                    std::span<const SurfaceMotion* const> motions,
-                                   const Collisions& collisions, const Particles& particles) {
+                                   const Collisions& collisions, const Particles& particles,
+                                   const Workers& workers) {
     keep_gaps(colliders, particles);
     motions_.assign(motions.begin(), motions.end());
     own_frame_ = models_.size();
@@ -146,12 +147,13 @@ void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders,
     for_each_near([&](std::size_t c, ModelSurface& model) {
         if (near_count == 1 && moves_[c] != 0) own_frame_ = c;
         collisions.known_clearances(c, particles, clearances_[c]);
-        model.begin_frame(colliders[c], motions[c], particles.positions, clearances_[c]);
+        model.begin_frame(colliders[c], motions[c], particles.positions, clearances_[c], workers);
     });
     if (self_) self_->begin_pass(own_pose(), particles.positions, true);
 }
 
-void SurfaceCollision::look_ahead(const std::vector<Collider>& colliders, const Particles& particles) {
+void SurfaceCollision::look_ahead(const std::vector<Collider>& colliders, const Particles& particles,
+                                  const Workers& workers) {
     const auto substeps = static_cast<float>(options_.substep_count);
     for (std::size_t i = 0; i < particles.count(); ++i) {
         const Vec3f start = particles.frame_start[i];
@@ -162,9 +164,9 @@ void SurfaceCollision::look_ahead(const std::vector<Collider>& colliders, const 
         Collider at_end = colliders[c];
         at_end.pose = pose_after(at_end, options_.time_step);
         if (c == own_frame_) own_pose_at_end = at_end.pose;
-        model.look_ahead(at_end, expected_);
+        model.look_ahead(at_end, expected_, workers);
     });
-    if (self_) self_->look_ahead(own_pose() != nullptr ? &own_pose_at_end : nullptr, expected_);
+    if (self_) self_->look_ahead(own_pose() != nullptr ? &own_pose_at_end : nullptr, expected_, workers);
 }
 
 void SurfaceCollision::begin_substep(const std::vector<Collider>& colliders) {
@@ -192,18 +194,20 @@ void SurfaceCollision::relax_part(std::span<const std::uint8_t> chosen, Particle
     });
 }
 
-void SurfaceCollision::meet_late(std::size_t collider, const Collider& at_end, const Particles& particles) {
+void SurfaceCollision::meet_late(std::size_t collider, const Collider& at_end, const Particles& particles,
+                                 const Workers& workers) {
     is_near_[collider] = 1;
     ModelSurface& model = models_[collider];
     model.reset();
     Collider at_start = at_end;
     at_start.pose = start_poses_[collider];
-    model.begin_frame(at_start, motions_[collider], particles.frame_start, {});
-    model.look_ahead(at_end, particles.positions);
+    model.begin_frame(at_start, motions_[collider], particles.frame_start, {}, workers);
+    model.look_ahead(at_end, particles.positions, workers);
     poses_[collider] = at_end.pose;
 }
 
-void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profile, LoadMeter* meter) {
+void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profile, LoadMeter* meter,
+                                 const Workers& workers) {
     if (meter != nullptr) std::fill(stopped_by_.begin(), stopped_by_.end(), kNone);
     goals_ = particles.positions;
     for (int number = 0; number < kMostPasses; ++number) {
@@ -211,7 +215,7 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
             for_each_near([&](std::size_t, ModelSurface& model) { model.begin_pass(particles.positions); });
             if (self_) self_->begin_pass(own_pose(), particles.positions, false);
         }
-        const bool may_go_on = pass(particles, number == 0);
+        const bool may_go_on = pass(particles, number == 0, workers);
         profile.squeezed_count += std::exchange(squeezed_now_, 0);
         if (!may_go_on) break;
     }
@@ -239,15 +243,15 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
 }
 
 /// @return whether another pass may take a vertex farther
-bool SurfaceCollision::pass(Particles& particles, bool is_first) {
+bool SurfaceCollision::pass(Particles& particles, bool is_first, const Workers& workers) {
     for_each_near([&](std::size_t, ModelSurface& model) { model.set_goals(goals_); });
-    find_leaving();
+    find_leaving(workers);
     ends_ = goals_;
     for (const std::uint32_t v : leaving_) {
         ends_.set(v, find_place(v, is_first, particles));
         is_leaving_[v] = 0;
     }
-    if (self_) shorten_ways(is_first, particles);
+    if (self_) shorten_ways(is_first, particles, workers);
     bool may_go_on = false;
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
         is_truncated_[v] = ends_[v] == goals_[v] ? 0 : 1;
@@ -259,7 +263,7 @@ bool SurfaceCollision::pass(Particles& particles, bool is_first) {
 
 /// So that the deformable does not meet itself. What models allow of a way, they allow of a part of it: the
 /// places that they allow are convex.
-void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles) {
+void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles, const Workers& workers) {
     const bool deforms =
         std::any_of(motions_.begin(), motions_.end(), [](const SurfaceMotion* m) { return m != nullptr; });
     const bool moves = std::count(moves_.begin(), moves_.end(), std::uint8_t{1}) != 0;
@@ -267,7 +271,7 @@ void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles) {
     if (!is_one_frame)
         for (std::uint32_t v = 0; v < particles.count(); ++v) bases_.set(v, base_of(v, is_first, particles));
     const std::span<const float> shares =
-        self_->allowed_shares(own_pose(), ends_, is_one_frame ? nullptr : &bases_);
+        self_->allowed_shares(own_pose(), ends_, is_one_frame ? nullptr : &bases_, workers);
     squeezed_now_ += self_->stuck_count();
     if (shares.empty()) return;
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
@@ -286,7 +290,7 @@ void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles) {
 }
 
 /// A vertex that leaves its room beside one model is looked at beside all of them.
-void SurfaceCollision::find_leaving() {
+void SurfaceCollision::find_leaving(const Workers& workers) {
     leaving_.clear();
     const auto add = [&](std::span<const std::uint32_t> vertices) {
         const std::size_t before = leaving_.size();
@@ -296,10 +300,11 @@ void SurfaceCollision::find_leaving() {
     };
     for (bool found = true; found;) {
         found = false;
-        for_each_near([&](std::size_t, ModelSurface& model) { found = add(model.find_leaving()) || found; });
+        for_each_near(
+            [&](std::size_t, ModelSurface& model) { found = add(model.find_leaving(workers)) || found; });
         if (!found || models_.size() == 1) break;
         for (const std::uint32_t v : leaving_)
-            for_each_near([&](std::size_t, ModelSurface& model) { model.renew(v); });
+            for_each_near([&](std::size_t, ModelSurface& model) { model.renew(v, workers); });
     }
 }
 

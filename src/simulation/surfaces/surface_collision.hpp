@@ -31,9 +31,10 @@ class SurfaceCollision {
     ///                    as long as the frame
     /// @param collisions  of the particles with the same colliders, which know some distances already
     void begin_frame(const std::vector<Collider>& colliders, std::span<const SurfaceMotion* const> motions,
-                     const Collisions& collisions, const Particles& particles);
+                     const Collisions& collisions, const Particles& particles, const Workers& workers);
     /// After the first integration of a frame, before its colliders have moved.
-    void look_ahead(const std::vector<Collider>& colliders, const Particles& particles);
+    void look_ahead(const std::vector<Collider>& colliders, const Particles& particles,
+                    const Workers& workers);
     void begin_substep(const std::vector<Collider>& colliders);
     /// @param meter  of the loads on the colliders, or null
     void relax(Particles& particles, SimulationProfile& profile, LoadMeter* meter);
@@ -41,17 +42,19 @@ class SurfaceCollision {
     void relax_part(std::span<const std::uint8_t> chosen, Particles& particles, SimulationProfile& profile,
                     LoadMeter* meter);
     /// A collider that was away in this frame is not any more (BroadPhase), at the end of it.
-    void meet_late(std::size_t collider, const Collider& at_end, const Particles& particles);
+    void meet_late(std::size_t collider, const Collider& at_end, const Particles& particles,
+                   const Workers& workers);
     /// @param meter  has noted the velocities, or null
-    void end_frame(Particles& particles, SimulationProfile& profile, LoadMeter* meter);
+    void end_frame(Particles& particles, SimulationProfile& profile, LoadMeter* meter,
+                   const Workers& workers);
 
     void archive(StateArchive& state);
 
   private:
     void keep_gaps(const std::vector<Collider>& colliders, const Particles& particles);
-    bool pass(Particles& particles, bool is_first);
-    void find_leaving();
-    void shorten_ways(bool is_first, const Particles& particles);
+    bool pass(Particles& particles, bool is_first, const Workers& workers);
+    void find_leaving(const Workers& workers);
+    void shorten_ways(bool is_first, const Particles& particles, const Workers& workers);
     Vec3f find_place(std::uint32_t vertex, bool is_first, const Particles& particles);
     const ModelSurface* carrier_of(std::uint32_t vertex, bool is_first) const;
     Vec3f base_of(std::uint32_t vertex, bool is_first, const Particles& particles) const;

@@ -16,6 +16,8 @@ constexpr float kFarReach = 4;
 
 constexpr float kRounding = 1.0F / (1 << 20);
 
+constexpr std::size_t kElementsPerPiece = 512, kListsPerPiece = 32, kPairsPerPiece = 512;
+
 bool is_near(const Box& a, const Box& b) {
     return a.low[0] <= b.high[0] && a.high[0] >= b.low[0] && a.low[1] <= b.high[1] && a.high[1] >= b.low[1] &&
            a.low[2] <= b.high[2] && a.high[2] >= b.low[2];
@@ -87,13 +89,44 @@ float SurfacePairs::moved_since_listed(std::uint32_t element) const {
     return std::sqrt(moved_sq) * (1 + kRounding);
 }
 
-/// The list of an element beside a model is made anew when it is needed and no longer reaches far enough.
-void SurfacePairs::keep_list(std::uint32_t element) {
-    if (list_reaches_[element] - moved_since_listed(element) >= reach_.listed - reach_.slack) return;
-    for (std::size_t k = 0; k < 3; ++k)
-        element_listed_at_[element][k] = (*starts_)[own_->all[element].vertices[k]];
-    lists_.clear(element);
-    list(element);
+/// Does it no longer reach far enough?
+bool SurfacePairs::is_list_outdated(std::uint32_t element) const {
+    return !(list_reaches_[element] - moved_since_listed(element) >= reach_.listed - reach_.slack);
+}
+
+/// The list of an element beside a model is made anew when it is needed and outdated.
+void SurfacePairs::keep_lists(const Workers& workers) {
+    outdated_.begin(workers, Workers::piece_count(measuring_.size(), kElementsPerPiece));
+    workers.for_ranges(measuring_.size(), kElementsPerPiece,
+                       [&](std::size_t worker, std::size_t piece, std::size_t begin, std::size_t end) {
+                           outdated_.add(worker, piece, [&](std::vector<std::uint32_t>& outdated) {
+                               for (std::size_t i = begin; i < end; ++i)
+                                   if (is_list_outdated(measuring_[i])) outdated.push_back(measuring_[i]);
+                           });
+                       });
+    listing_.clear();
+    outdated_.append_to(listing_);
+    listings_.resize(workers.count());
+    found_counts_.resize(listing_.size());
+    found_.begin(workers, Workers::piece_count(listing_.size(), kListsPerPiece));
+    workers.for_ranges(listing_.size(), kListsPerPiece,
+                       [&](std::size_t worker, std::size_t piece, std::size_t begin, std::size_t end) {
+                           found_.add(worker, piece, [&](std::vector<Pair>& found) {
+                               for (std::size_t i = begin; i < end; ++i) {
+                                   const std::size_t before = found.size();
+                                   list(listing_[i], listings_[worker], found);
+                                   found_counts_[i] = static_cast<std::uint32_t>(found.size() - before);
+                               }
+                           });
+                       });
+    listed_count += listing_.size();
+    for (const std::uint32_t element : listing_) lists_.clear(element);
+    std::size_t i = 0, left = listing_.empty() ? 0 : found_counts_[0];
+    found_.for_each([&](const Pair& pair) {
+        while (left == 0) left = found_counts_[++i];
+        --left;
+        lists_.add(listing_[i], pair);
+    });
 }
 
 /// Every point of an element lies within its longest edge of each of its vertices.
@@ -108,8 +141,10 @@ float SurfacePairs::clearance_of(const Element& element) const {
     return best * (1 - kRounding);
 }
 
-void SurfacePairs::list(std::uint32_t element) {
-    ++listed_count;
+/// @param found  pairs are added here
+void SurfacePairs::list(std::uint32_t element, Listing& listing, std::vector<Pair>& found) {
+    for (std::size_t k = 0; k < 3; ++k)
+        element_listed_at_[element][k] = (*starts_)[own_->all[element].vertices[k]];
     const float clearance = clearance_of(own_->all[element]) - 2 * opponent_.most;
     if (clearance > reach_.listed) {
         list_reaches_[element] = clearance;
@@ -117,22 +152,23 @@ void SurfacePairs::list(std::uint32_t element) {
     }
     Box box = box_of_both(box_of(own_->all[element], *starts_), box_of(own_->all[element], *bases_));
     box.grow(reach_.listed);
-    near_pairs_.clear();
-    bool found = false;
+    listing.near.clear();
+    bool touches = false;
     opponent_.tree->visit_touching(box, [&](std::uint32_t other) {
-        found = true;
-        list_pairs(element, other);
+        touches = true;
+        list_pairs(element, other, listing.near);
     });
-    keep_near(element);
+    keep_near(listing, found);
     list_reaches_[element] = reach_.listed;
-    if (!found) {
+    if (!touches) {
         box.grow(-reach_.listed);
         list_reaches_[element] =
             std::max(reach_.listed, opponent_.tree->distance(box, kFarReach * reach_.listed));
     }
 }
 
-void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_number) {
+void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_number,
+                              std::vector<Pair>& near) const {
     const Element& own = own_->all[own_number];
     const Element& other = opponent_.elements->all[other_number];
     // Each point's way, a box.
@@ -151,15 +187,14 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
         reached.grow(reach_.listed);
         for (std::size_t k = 0; k < own.vertex_count; ++k)
             if (own.owns_vertex(k) && is_near(a[k], reached))
-                near_pairs_.push_back(
-                    {{own.vertices[k], other.vertices[0], other.vertices[1], other.vertices[2]},
-                     PairKind::VertexFace});
+                near.push_back({{own.vertices[k], other.vertices[0], other.vertices[1], other.vertices[2]},
+                                PairKind::VertexFace});
     }
     if (own.is_face())
         for (std::size_t k = 0; k < other.vertex_count; ++k)
             if (other.owns_vertex(k) && is_near(b[k], own_box))
-                near_pairs_.push_back({{own.vertices[0], own.vertices[1], own.vertices[2], other.vertices[k]},
-                                       PairKind::FaceVertex});
+                near.push_back({{own.vertices[0], own.vertices[1], own.vertices[2], other.vertices[k]},
+                                PairKind::FaceVertex});
     const auto edge_count = [](const Element& e) { return e.vertex_count == 3 ? 3U : e.vertex_count - 1U; };
     for (std::size_t i = 0; i < edge_count(own); ++i) {
         if (!own.owns_edge(i)) continue;
@@ -171,27 +206,26 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
             const std::size_t j_next = (j + 1) % 3;
             const std::array<std::uint32_t, 4> points{own.vertices[i], own.vertices[i_next],
                                                       other.vertices[j], other.vertices[j_next]};
-            if (is_near(edge_box, box_of_both(b[j], b[j_next])))
-                near_pairs_.push_back({points, PairKind::EdgeEdge});
+            if (is_near(edge_box, box_of_both(b[j], b[j_next]))) near.push_back({points, PairKind::EdgeEdge});
         }
     }
 }
 
 /// Of the pairs whose boxes are near, those that are near, or get so on the way to the bases.
-void SurfacePairs::keep_near(std::uint32_t element) {
-    separations_.resize(near_pairs_.size());
-    separations(near_pairs_, *starts_, *opponent_.positions, separations_);
-    for (std::size_t i = 0; i < near_pairs_.size(); ++i) {
-        float gap = separations_[i].gap;
-        if (opponent_.ends != nullptr) gap -= std::max(closing(near_pairs_[i], separations_[i].normal), 0.0F);
-        if (gap > reach_.listed) continue;
-        lists_.add(element, near_pairs_[i]);
+void SurfacePairs::keep_near(Listing& listing, std::vector<Pair>& found) const {
+    listing.separations.resize(listing.near.size());
+    separations(listing.near, *starts_, *opponent_.positions, listing.separations);
+    for (std::size_t i = 0; i < listing.near.size(); ++i) {
+        const Separation& apart = listing.separations[i];
+        float gap = apart.gap;
+        if (opponent_.ends != nullptr) gap -= std::max(closing(listing.near[i], apart.normal), 0.0F);
+        if (!(gap > reach_.listed)) found.push_back(listing.near[i]);
     }
 }
 
 /// The pairs of the elements to be measured, and how far apart they are now.
-void SurfacePairs::gather_measured() {
-    for (const std::uint32_t element : measuring_) keep_list(element);
+void SurfacePairs::gather_measured(const Workers& workers) {
+    keep_lists(workers);
     measured_pairs_.clear();
     measured_elements_.clear();
     for (const std::uint32_t element : measuring_) {
@@ -203,7 +237,12 @@ void SurfacePairs::gather_measured() {
         measured_elements_.insert(measured_elements_.end(), pairs.size(), element);
     }
     separations_.resize(measured_pairs_.size());
-    separations(measured_pairs_, *starts_, *opponent_.positions, separations_);
+    workers.for_ranges(measured_pairs_.size(), kPairsPerPiece,
+                       [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
+                           separations(std::span(measured_pairs_).subspan(begin, end - begin), *starts_,
+                                       *opponent_.positions,
+                                       std::span(separations_).subspan(begin, end - begin));
+                       });
 }
 
 // ---- Rooms
@@ -261,9 +300,9 @@ void SurfacePairs::collect_measured() {
 }
 
 /// Not to look for contacts: it is too late for them in this frame, so the next one does.
-void SurfacePairs::measure_woken() {
+void SurfacePairs::measure_woken(const Workers& workers) {
     collect_measured();
-    measure_collected([](std::uint32_t, const Pair&, const Separation&) { return -kInfinity; });
+    measure_collected([](std::uint32_t, const Pair&, const Separation&) { return -kInfinity; }, workers);
 }
 
 void SurfacePairs::shrink(std::uint32_t vertex, float room, float quiet) {
@@ -273,7 +312,7 @@ void SurfacePairs::shrink(std::uint32_t vertex, float room, float quiet) {
     quiet_[vertex] = std::min(quiet_[vertex], quiet - used);
 }
 
-std::span<const std::uint32_t> SurfacePairs::find_leaving(const PointArrays& goals) {
+std::span<const std::uint32_t> SurfacePairs::find_leaving(const PointArrays& goals, const Workers& workers) {
     for (;;) {
         leaving_.clear();
         for (std::uint32_t v = 0; v < own_->vertex_count(); ++v) {
@@ -287,17 +326,17 @@ std::span<const std::uint32_t> SurfacePairs::find_leaving(const PointArrays& goa
                 wake(v);
         }
         if (woken_.empty()) break;
-        measure_woken();
+        measure_woken(workers);
     }
     // Their next way may lead back in from outside.
     for (const std::uint32_t v : leaving_) rooms_[v] = quiet_[v] = -1;
     return leaving_;
 }
 
-bool SurfacePairs::renew(std::uint32_t vertex) {
+bool SurfacePairs::renew(std::uint32_t vertex, const Workers& workers) {
     if (renewed_in_[vertex] == frame_) return false;
     wake(vertex);
-    measure_woken();
+    measure_woken(workers);
     return true;
 }
 

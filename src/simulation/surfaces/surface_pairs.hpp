@@ -1,5 +1,7 @@
 #pragma once
 
+#include "geometry/piecewise_list.hpp"
+#include "geometry/workers.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/surfaces/element_tree.hpp"
 #include "simulation/surfaces/elements.hpp"
@@ -73,18 +75,19 @@ class SurfacePairs {
     /// pair's vertices may go before it has to be measured again. The separation's gap is what is left of it
     /// for ways from the bases.
     template <typename Forget, typename Visit>
-    void look_ahead(const PointArrays& goals, const Forget& forget, const Visit& visit) {
+    void look_ahead(const PointArrays& goals, const Workers& workers, const Forget& forget,
+                    const Visit& visit) {
         for (std::uint32_t v = 0; v < own_->vertex_count(); ++v)
             if (is_beyond(v, goals[v], quiet_[v])) wake(v);
         collect_measured();
         forget(std::span<const std::uint32_t>(measuring_));
-        measure_collected(visit);
+        measure_collected(visit, workers);
     }
 
     /// The vertices that leave their rooms for the goals though their rooms are new.
-    std::span<const std::uint32_t> find_leaving(const PointArrays& goals);
+    std::span<const std::uint32_t> find_leaving(const PointArrays& goals, const Workers& workers);
     /// Gives a vertex a new room in this frame. @return whether it had none
-    bool renew(std::uint32_t vertex);
+    bool renew(std::uint32_t vertex, const Workers& workers);
 
     /// The shares of the way of one of them that nothing forbids.
     /// @param from, to  the way's ends, in this frame
@@ -110,22 +113,28 @@ class SurfacePairs {
     float bound_of(std::uint32_t element) const;
     bool is_beyond(std::uint32_t vertex, const Vec3f& goal, float radius) const;
     void wake(std::uint32_t vertex);
-    void measure_woken();
+    void measure_woken(const Workers& workers);
     void collect_measured();
     template <typename Visit>
-    void measure_collected(const Visit& visit);
-    void gather_measured();
+    void measure_collected(const Visit& visit, const Workers& workers);
+    void gather_measured(const Workers& workers);
     void shrink(std::uint32_t vertex, float room, float quiet);
     std::array<Vec3f, 4> points_of(const Pair& pair) const;
     float advance(const Pair& pair, const Vec3f& normal) const;
     float closing(const Pair& pair, const Vec3f& normal) const;
 
-    void keep_list(std::uint32_t element);
+    /// What a worker needs to list pairs.
+    struct Listing {
+        std::vector<Pair> near;
+        std::vector<Separation> separations;
+    };
+    bool is_list_outdated(std::uint32_t element) const;
     float moved_since_listed(std::uint32_t element) const;
-    void list(std::uint32_t element);
+    void keep_lists(const Workers& workers);
+    void list(std::uint32_t element, Listing& listing, std::vector<Pair>& found);
     float clearance_of(const Element& element) const;
-    void list_pairs(std::uint32_t own, std::uint32_t other);
-    void keep_near(std::uint32_t element);
+    void list_pairs(std::uint32_t own, std::uint32_t other, std::vector<Pair>& near) const;
+    void keep_near(Listing& listing, std::vector<Pair>& found) const;
 
     const Elements* own_;
     PairReach reach_;
@@ -149,15 +158,20 @@ class SurfacePairs {
     std::vector<std::uint32_t> measured_in_; ///< by element, in wakes: so that none is measured twice
     std::uint32_t wake_ = 0;
     std::vector<std::uint32_t> woken_, measuring_, leaving_;
-    std::vector<Pair> measured_pairs_, near_pairs_;
+    PiecewiseList<std::uint32_t> outdated_;   ///< elements,
+    std::vector<std::uint32_t> listing_;      ///< the same
+    std::vector<Listing> listings_;           ///< by worker
+    PiecewiseList<Pair> found_;               ///< in their lists,
+    std::vector<std::uint32_t> found_counts_; ///< so many in each
+    std::vector<Pair> measured_pairs_;
     std::vector<std::uint32_t> measured_elements_; ///< by measured pair
     std::vector<Separation> separations_;          ///< the same
 };
 
 /// @param visit  returns how far the pair's vertices may go quietly
 template <typename Visit>
-void SurfacePairs::measure_collected(const Visit& visit) {
-    gather_measured();
+void SurfacePairs::measure_collected(const Visit& visit, const Workers& workers) {
+    gather_measured(workers);
     for (std::size_t i = 0; i < measured_pairs_.size(); ++i) {
         const Pair& pair = measured_pairs_[i];
         Separation apart = separations_[i];

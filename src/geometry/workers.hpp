@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+
+namespace echinus {
+
+/// Threads that share the work of many short loops, one loop after the other.
+///
+/// Work is cut into pieces by its size, never by the number of threads. Where a loop gathers results, it does
+/// so piece by piece, in their order: then the threads do not decide any bits.
+///
+/// Loops are shared while a session lasts. In it, threads that have nothing to do wait awake for the next
+/// loop, since to wake one takes longer than many loops do. They are oneTBB's; one that has not come yet is
+/// not waited for.
+class Workers {
+  public:
+    /// @param thread_count  0: all cores. Without oneTBB there is one
+    explicit Workers(unsigned thread_count = 1);
+    /// As many of its own, without a session.
+    Workers(const Workers& other) : Workers(static_cast<unsigned>(other.count_)) {}
+    Workers& operator=(const Workers&) = delete;
+    ~Workers();
+
+    std::size_t count() const { return count_; }
+
+    /// While it lives, loops are shared. One at a time.
+    class Session {
+      public:
+        explicit Session(const Workers& workers) : workers_(workers) { workers_.begin_session(); }
+        Session(const Session&) = delete;
+        Session& operator=(const Session&) = delete;
+        ~Session() { workers_.end_session(); }
+
+      private:
+        const Workers& workers_;
+    };
+
+    /// Calls body(worker, piece) for each piece below piece_count, in any order, with worker < count(). No
+    /// two calls with the same worker overlap in time, so each can have its own memory. Exceptions reach the
+    /// caller. A single worker allocates nothing, and takes the pieces in order.
+    /// @pre the body starts no loop itself
+    template <typename Body>
+    void for_pieces(std::size_t piece_count, const Body& body) const {
+        if (count_ == 1 || piece_count < 2) {
+            for (std::size_t piece = 0; piece < piece_count; ++piece) body(std::size_t{0}, piece);
+            return;
+        }
+        run(piece_count, std::cref(body));
+    }
+    /// Calls body(worker, piece, begin, end) for ranges of piece_size, the last of which may be shorter, that
+    /// together cover [0, count).
+    template <typename Body>
+    void for_ranges(std::size_t count, std::size_t piece_size, const Body& body) const {
+        for_pieces(piece_count(count, piece_size), [&](std::size_t worker, std::size_t piece) {
+            const std::size_t begin = piece * piece_size;
+            body(worker, piece, begin, count - begin < piece_size ? count : begin + piece_size);
+        });
+    }
+    static std::size_t piece_count(std::size_t count, std::size_t piece_size) {
+        return (count + piece_size - 1) / piece_size;
+    }
+
+  private:
+    struct Team;
+
+    void begin_session() const;
+    void end_session() const noexcept;
+    void run(std::size_t piece_count, const std::function<void(std::size_t, std::size_t)>& body) const;
+
+    std::size_t count_;
+    std::unique_ptr<Team> team_; ///< none for a single worker
+};
+
+} // namespace echinus
