@@ -235,8 +235,8 @@ struct SimulationOptions {
     /// A particle farther than this from the middle of where the deformable began ends the simulation as
     /// diverged, units. 0: 10 000 times the deformable's extent at the start.
     double bound = 0;
-    /// Threads that compute a frame; 0: all cores. The bits do not depend on it. More than one are worth it
-    /// from some thousand particles on (docs/performance.md), and need oneTBB.
+    /// Threads that compute a frame; 0: all cores. The bits do not depend on it. More than one share the
+    /// contact of surfaces (docs/surfaces.md), wait awake while a frame lasts, and need oneTBB.
     unsigned thread_count = 1;
 };
 
@@ -276,7 +276,7 @@ struct SimulationProfile {
 };
 
 /// A deformable among colliders. The same input gives the same positions bit for bit, on every run and with
-/// every instruction set; tested on x86-64 and WebAssembly. It runs on one thread. Copies are independent.
+/// every instruction set and number of threads; tested on x86-64 and WebAssembly. Copies are independent.
 class Simulation {
   public:
     /// Allocates all that step() needs. Rotations whose quaternion is off the unit length by no more than

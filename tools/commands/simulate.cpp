@@ -222,6 +222,16 @@ void require_playable_colliders(const SimulateArguments& arguments, const Scene&
                                          collider.cache->name + " makes it do; write a folder with -o DIR");
 }
 
+/// A state of another scene is a wrong file, not a wrong option.
+void go_on_from(const fs::path& state, Simulation& simulation) {
+    try {
+        simulation.restore_state(state);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::InvalidOptions) throw;
+        throw Error(ErrorCode::WrongFormat, error.what());
+    }
+}
+
 void simulate(const SimulateArguments& arguments) {
     require_target(arguments);
     Scene scene = read_scene(arguments.scene);
@@ -243,7 +253,7 @@ void simulate(const SimulateArguments& arguments) {
         return make_simulation(scene, colliders.maps, cloth, colliders.caches);
     });
     if (results.folder) results.folder->begin(simulation.deformable(), colliders, stride);
-    if (!arguments.from_state.empty()) simulation.restore_state(arguments.from_state);
+    if (!arguments.from_state.empty()) go_on_from(arguments.from_state, simulation);
     std::vector<ExactMap> judges;
     for (const JudgedModel& model : colliders.judged) judges.push_back(model.map);
     if (results.page) results.page->recording.emplace(std::move(judges), page_stride(arguments, scene));
