@@ -81,6 +81,7 @@ std::uint64_t hash_of(const ColliderMap& map, const Vec3d& scale, const RigidTra
                std::uint64_t{map.kind.index()});
     if (const auto* exact = std::get_if<ExactMap>(&map.kind)) hasher.add(exact->source_hash());
     if (const auto* distance = std::get_if<DistanceMap>(&map.kind)) hasher.add(distance->source_hash());
+    if (map.surface) hasher.add(map.surface->source_hash());
     return hasher.hash();
 }
 
