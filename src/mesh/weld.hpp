@@ -1,9 +1,12 @@
 #pragma once
 
+#include <echinus/export.hpp>
 #include <echinus/mesh.hpp>
 
 #include <cstdint>
 #include <vector>
+
+ECHINUS_EXPORT_BEGIN
 
 namespace echinus {
 
@@ -18,3 +21,5 @@ struct WeldedMesh {
 WeldedMesh weld_with_sources(const TriangleMesh& mesh);
 
 } // namespace echinus
+
+ECHINUS_EXPORT_END
