@@ -3,6 +3,7 @@
 #include "mesh_io/mesh_source.hpp"
 #include "mesh_io/polygon_mesh.hpp"
 
+#include <assimp/Importer.hpp>
 #include <assimp/matrix4x4.h>
 
 #include <cstddef>
@@ -13,10 +14,6 @@
 struct aiMesh;
 struct aiNode;
 struct aiScene;
-
-namespace Assimp {
-class Importer;
-}
 
 namespace echinus {
 
