@@ -121,6 +121,9 @@ def test_surfaces_collide_where_it_is_said():
     assert not (particles_only.surface_collision or particles_only.self_collision or particles_only.untangle)
     sampled = ech.DistanceMap(ech.make_torus())
     assert not ech.Simulation.from_scene(by_default, model=sampled).options.surface_collision
+    beside = ech.Simulation.from_scene({**SHEET, "map": {"kind": "distance"}}, surface_collision=True)
+    beside.step(200)
+    assert len(ech.intersecting_pairs(beside.mesh, ech.make_torus())) == 0
 
 
 def test_a_start_that_intersects_is_parted_where_it_is_said():

@@ -30,7 +30,7 @@ class Meshes {
     VertexCache cache(const SceneCollider& collider, const TriangleMesh& model) const {
         if (!collider.cache) return {};
         return read_vertex_cache(find_cache(*collider.cache, folders_), model,
-                                 collider.cache->frames_per_second);
+                                 collider.cache->frames_per_second, collider.cache->animation);
     }
     ClothMeshes deformables(const Scene& scene) const {
         ClothMeshes meshes;

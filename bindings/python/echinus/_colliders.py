@@ -174,20 +174,22 @@ class VertexCache:
         return f"<echinus.VertexCache: {count} samples of {vertices} vertices, {self.start_time} to {self.end_time} s>"
 
 
-def read_vertex_cache(path: Path, mesh: MeshLike, *, frames_per_second: float) -> VertexCache:
-    """Reads a PC2 point cache, or a folder of OBJ files, one for each frame in the order of their names.
+def read_vertex_cache(path: Path, mesh: MeshLike, *, frames_per_second: float, animation: str = "") -> VertexCache:
+    """Reads a PC2 point cache, a folder of OBJ files, one for each frame in the order of their names, or an animation.
 
     Parameters
     ----------
     mesh
         The model, as :func:`read_mesh` gives it.
+    animation
+        Of a glTF, GLB or 3DS file: its name, where there are several.
 
     Raises
     ------
     Error
         As :func:`read_mesh`; ``invalid_mesh`` when the number of vertices, or a face in a folder, is not the model's.
     """
-    return VertexCache._of(_core.VertexCache.read(path, *arrays_of(mesh), frames_per_second))
+    return VertexCache._of(_core.VertexCache.read(path, *arrays_of(mesh), frames_per_second, animation))
 
 
 def vector_of(values: Sequence[float]) -> Vector:

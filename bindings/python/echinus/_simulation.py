@@ -516,20 +516,20 @@ class _Files:
             return arrays_of(given), []
         return (None, []) if name is None else _core.read_mesh_and_edges(self.find(name))
 
-    def cache(self, cache: tuple[str, float], mesh: _core.Arrays) -> _core.VertexCache:
-        name, frames_per_second = cache
-        return _core.VertexCache.read(_core.find_cache(name, self.folders), *mesh, frames_per_second)
+    def cache(self, cache: tuple[str, float, str], mesh: _core.Arrays) -> _core.VertexCache:
+        name, frames_per_second, animation = cache
+        return _core.VertexCache.read(_core.find_cache(name, self.folders), *mesh, frames_per_second, animation)
 
 
 def _load_collider(
     scene: _core.Scene, index: int, given: _Model, files: _Files, threads: int
-) -> tuple[_core.ExactMap | _core.DistanceMap, _core.VertexCache | None]:
+) -> tuple[_core.ColliderMap, _core.VertexCache | None]:
     """The map of a collider, and the cache by which it deforms."""
     file, cache_file = scene.model_file(index), scene.cache_file(index)
     if isinstance(given, (ExactMap, DistanceMap)):
         if cache_file is not None:
             raise ValueError(f"collider {index} has a vertex cache, which takes a mesh as its model, not a map")
-        return given._built, None
+        return _core.ColliderMap(given._built), None
     if given is not None:
         arrays = arrays_of(given)
     else:

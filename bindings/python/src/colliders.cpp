@@ -105,11 +105,13 @@ void bind_colliders(py::module_& module) {
         .def(py::init(&cache_of))
         .def_static("read",
                     [](const std::filesystem::path& path, const py::array_t<float>& vertices,
-                       const py::array_t<std::uint32_t>& faces, double frames_per_second) {
+                       const py::array_t<std::uint32_t>& faces, double frames_per_second,
+                       const std::string& animation) {
                         if (!std::isfinite(frames_per_second) || !(frames_per_second > 0))
                             throw py::value_error("frames_per_second must be positive and finite");
                         const TriangleMesh mesh = mesh_of(vertices, faces);
-                        return unlocked([&] { return read_vertex_cache(path, mesh, frames_per_second); });
+                        return unlocked(
+                            [&] { return read_vertex_cache(path, mesh, frames_per_second, animation); });
                     })
         .def_readonly("start_time", &VertexCache::start_time)
         .def_readonly("sample_seconds", &VertexCache::sample_seconds)

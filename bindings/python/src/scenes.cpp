@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -46,11 +47,12 @@ std::vector<std::optional<std::string>> body_files(const Scene& scene) {
     return files;
 }
 
-/// (name, frames per second), or nothing
-std::optional<std::pair<std::string, double>> cache_file(const Scene& scene, std::size_t collider) {
+/// (name, frames per second, animation), or nothing
+std::optional<std::tuple<std::string, double, std::string>> cache_file(const Scene& scene,
+                                                                       std::size_t collider) {
     const std::optional<CacheFile>& cache = scene.colliders.at(collider).cache;
     if (!cache) return std::nullopt;
-    return std::pair(cache->name, cache->frames_per_second);
+    return std::tuple(cache->name, cache->frames_per_second, cache->animation);
 }
 
 TriangleMesh shape_of(const ModelFile& file) {
@@ -72,10 +74,10 @@ py::tuple repair_model(const Scene& scene, std::size_t collider, const Vertices&
     return arrays_of(unlocked([&] { return repair(mesh, scene.colliders.at(collider).repair).mesh; }));
 }
 
-AnyMap build_model_map(const Scene& scene, const Vertices& vertices, const Faces& faces, int threads) {
+ColliderMap build_model_map(const Scene& scene, const Vertices& vertices, const Faces& faces, int threads) {
     const unsigned workers = thread_count(threads);
     const TriangleMesh mesh = mesh_of(vertices, faces);
-    return unlocked([&] { return build_map(mesh, scene.map, workers); });
+    return unlocked([&] { return make_collider_map(scene, mesh, workers); });
 }
 
 /// The tetrahedra of a body from a file: those in it, or those that fill its surface.
@@ -88,7 +90,7 @@ TetrahedralMesh read_body(const SceneBody& body, const std::filesystem::path& pa
 /// What the scene's simulation takes besides the scene. None where the scene does not name a file, and for
 /// colliders without a cache.
 std::unique_ptr<SharedSimulation>
-simulation_of_scene(const Scene& scene, const std::vector<py::object>& model_maps,
+simulation_of_scene(const Scene& scene, const std::vector<ColliderMap>& maps,
                     const std::vector<std::optional<VertexCache>>& model_caches,
                     const std::optional<Arrays>& cloth, const std::optional<Arrays>& rest,
                     std::vector<std::array<std::uint32_t, 2>> threads,
@@ -97,8 +99,6 @@ simulation_of_scene(const Scene& scene, const std::vector<py::object>& model_map
         return arrays ? mesh_of(arrays->first, arrays->second) : TriangleMesh{};
     };
     ClothMeshes meshes{.mesh = mesh(cloth), .rest_mesh = mesh(rest), .threads = std::move(threads)};
-    std::vector<ColliderMap> maps;
-    for (const py::object& map : model_maps) maps.emplace_back(map_of(map));
     std::vector<VertexCache> caches;
     for (const std::optional<VertexCache>& cache : model_caches)
         caches.push_back(cache.value_or(VertexCache{}));
@@ -126,6 +126,9 @@ void bind_options(py::class_<Scene>& scene) {
 } // namespace
 
 void bind_scenes(py::module_& module) {
+    py::class_<ColliderMap>(module, "ColliderMap").def(py::init([](const py::object& map) {
+        return ColliderMap(map_of(map));
+    }));
     py::class_<Scene> scene(module, "Scene");
     scene.def_static("read", [](const std::filesystem::path& path) { return read_scene(path); })
         .def_static("parse",
