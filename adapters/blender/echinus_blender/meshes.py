@@ -1,0 +1,167 @@
+"""Objects of Blender as arrays."""
+
+import contextlib
+
+import bpy
+import numpy as np
+
+from .refusal import Refusal
+
+#: Modifiers that move vertices and leave their number alone; a cloth's motion comes after the last of them.
+DEFORMING = {
+    "ARMATURE",
+    "CAST",
+    "CLOTH",
+    "COLLISION",
+    "CORRECTIVE_SMOOTH",
+    "CURVE",
+    "DISPLACE",
+    "HOOK",
+    "LAPLACIANDEFORM",
+    "LAPLACIANSMOOTH",
+    "LATTICE",
+    "MESH_CACHE",
+    "MESH_DEFORM",
+    "SHRINKWRAP",
+    "SIMPLE_DEFORM",
+    "SMOOTH",
+    "SOFT_BODY",
+    "SURFACE_DEFORM",
+    "WARP",
+    "WAVE",
+}
+
+
+def require_mesh(candidate, what):
+    """
+    Raises
+    ------
+    Refusal
+        There is no such object, or it is no mesh with faces.
+    """
+    if candidate is None:
+        raise Refusal(f"Choose a mesh as the {what}")
+    if candidate.type != "MESH":
+        raise Refusal(f"{candidate.name} is not a mesh")
+    if not candidate.data.polygons:
+        raise Refusal(f"{candidate.name} has no faces")
+
+
+def leave_edit_mode(context):
+    """So that the data of the object in edit mode are what the user sees."""
+    if context.object and context.object.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def vertices_of(mesh):
+    """(vertex_count, 3) float32, in the object's frame."""
+    vertices = np.empty((len(mesh.vertices), 3), np.float32)
+    mesh.vertices.foreach_get("co", vertices.ravel())
+    return vertices
+
+
+def triangles_of(mesh):
+    """The triangles that Blender draws, (triangle_count, 3) int32, and the polygon of each."""
+    mesh.calc_loop_triangles()
+    triangles = np.empty((len(mesh.loop_triangles), 3), np.int32)
+    polygons = np.empty(len(mesh.loop_triangles), np.int32)
+    mesh.loop_triangles.foreach_get("vertices", triangles.ravel())
+    mesh.loop_triangles.foreach_get("polygon_index", polygons)
+    return triangles, polygons
+
+
+def loose_edges_of(mesh):
+    """(count, 2) int32: edges that no polygon has."""
+    edges = np.empty((len(mesh.edges), 2), np.int32)
+    mesh.edges.foreach_get("vertices", edges.ravel())
+    is_loose = np.empty(len(mesh.edges), bool)
+    mesh.edges.foreach_get("is_loose", is_loose)
+    return edges[is_loose]
+
+
+def matrix_of(evaluated):
+    """(4, 4) float64: from the object's frame to the world's."""
+    return np.array(evaluated.matrix_world, float)
+
+
+@contextlib.contextmanager
+def evaluated_mesh(context, thing):
+    """The object and its mesh at the present frame, with the modifiers that the view shows.
+
+    Raises
+    ------
+    Refusal
+        It is hidden: Blender need not have computed it.
+    """
+    if not thing.visible_get():
+        raise Refusal(f"{thing.name} is hidden: show it in the viewport")
+    evaluated = thing.evaluated_get(context.evaluated_depsgraph_get())
+    mesh = evaluated.to_mesh()
+    try:
+        yield evaluated, mesh
+    finally:
+        evaluated.to_mesh_clear()
+
+
+@contextlib.contextmanager
+def without(modifiers):
+    """The view does not show these modifiers meanwhile."""
+    shown = [modifier for modifier in modifiers if modifier.show_viewport]
+    for modifier in shown:
+        modifier.show_viewport = False
+    try:
+        yield
+    finally:
+        for modifier in shown:
+            modifier.show_viewport = True
+
+
+def modifiers_after_deformation(thing):
+    """The first modifier that may change the number of vertices, and all after it."""
+    kinds = [modifier.type in DEFORMING for modifier in thing.modifiers]
+    return thing.modifiers[kinds.index(False) :] if False in kinds else []
+
+
+def world_mesh(context, thing):
+    """The object as the view shows it: vertices in the world (n, 3) float64, and triangles that look outwards there.
+
+    Raises
+    ------
+    Refusal
+        Its modifiers leave no face.
+    """
+    with evaluated_mesh(context, thing) as (evaluated, mesh):
+        triangles, _ = triangles_of(mesh)
+        if len(triangles) == 0:
+            raise Refusal(f"{thing.name} has no faces once its modifiers have worked")
+        matrix = matrix_of(evaluated)
+        return in_world(vertices_of(mesh), matrix), outwards(triangles, matrix)
+
+
+def in_world(vertices, matrix):
+    """(n, 3) float64"""
+    return vertices @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def outwards(triangles, matrix):
+    """A matrix that mirrors turns faces round."""
+    return triangles[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0 else triangles
+
+
+def bodies_of(settings):
+    """The objects that a cloth collides with, each once.
+
+    Raises
+    ------
+    Refusal
+        There is none, or one without faces.
+    """
+    chosen = [settings.body] if settings.body else []
+    if settings.more_bodies:
+        chosen += [each for each in settings.more_bodies.all_objects if each.type == "MESH"]
+    bodies = [each for each in dict.fromkeys(chosen) if each != settings.cloth]
+    if not bodies:
+        raise Refusal("Choose a mesh other than the cloth as the body")
+    for body in bodies:
+        require_mesh(body, "body")
+    return bodies

@@ -1,0 +1,26 @@
+"""Errors in Blender's way: shown in its window, a RuntimeError for scripts."""
+
+from . import library
+from .refusal import Refusal
+
+
+class Reporting:
+    """For operators: a method that refuses its work ends the operator, and Blender shows the sentence."""
+
+    def refused_by(self, function, *arguments):
+        """(the function's result, False), or (None, True) once Blender has been told why there is none."""
+        try:
+            echinus = library.load()
+        except Refusal as refusal:
+            self.report({"ERROR"}, str(refusal))
+            return None, True
+        try:
+            return function(echinus, *arguments), False
+        except (Refusal, echinus.Error, OSError) as error:
+            self.report({"ERROR"}, str(error))
+            return None, True
+
+    def tell(self, context, sentence, is_bad=False):
+        """Shows a result, and keeps it for the panel and for scripts."""
+        context.scene.echinus.result = sentence
+        self.report({"WARNING" if is_bad else "INFO"}, sentence)

@@ -1,0 +1,137 @@
+"""A simulation of a cloth among bodies, frame by frame. No Blender is needed here."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .motions import motion_of
+from .refusal import Refusal
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """The settings of the panel, in the units of the scene.
+
+    Attributes
+    ----------
+    thickness
+        0: chosen by the library.
+    """
+
+    steps_per_second: int = 240
+    gravity: tuple = (0, 0, -9.81)
+    thickness: float = 0
+    friction: float = 0.5
+    drag: float = 0.005
+    bending: float = 0.3
+    self_collision: bool = True
+    untangle: bool = False
+    pins_follow_body: bool = False
+
+
+@dataclass(frozen=True)
+class Garment:
+    """The cloth as it begins, in the world.
+
+    Attributes
+    ----------
+    threads
+        (k, 2) edges that no face has.
+    pins
+        Vertices that are held.
+    """
+
+    name: str
+    vertices: np.ndarray
+    triangles: np.ndarray
+    threads: np.ndarray
+    pins: list
+
+
+class Run:
+    """The frames of a simulation, computed step by step.
+
+    Parameters
+    ----------
+    echinus
+        The module.
+    bodies : list of BodySamples
+    frame_count
+        Frames to compute after the first.
+    frames_per_second
+        Of the scene.
+
+    Raises
+    ------
+    Refusal, echinus.Error
+        What is at fault, in one sentence.
+    """
+
+    def __init__(self, echinus, garment, bodies, options, frame_count, frames_per_second):
+        self.frame_count = frame_count
+        self.steps_per_frame = max(1, round(options.steps_per_second / frames_per_second))
+        motions = [motion_of(body) for body in bodies]
+        colliders = [_collider(echinus, body, motion) for body, motion in zip(bodies, motions)]
+        holds = garment.pins and options.pins_follow_body
+        cloth = echinus.make_cloth_of_mesh(
+            echinus.Mesh(garment.vertices, garment.triangles),
+            threads=garment.threads,
+            pins=[] if holds else garment.pins,
+            attachments=_nearest_colliders(garment, colliders) if holds else [],
+        )
+        try:
+            self.simulation = echinus.Simulation(
+                cloth,
+                colliders,
+                time_step=1 / (frames_per_second * self.steps_per_frame),
+                gravity=options.gravity,
+                thickness=options.thickness or None,
+                friction=options.friction,
+                drag=options.drag,
+                stiffness=(1, 1, options.bending),
+                self_collision=options.self_collision,
+                untangle=options.untangle,
+            )
+        except echinus.Error as error:
+            raise Refusal(f"{garment.name}: {error}. {START_HINT}") from error
+        for index, motion in enumerate(motions):
+            _set_motion(echinus, self.simulation, index, motion, frames_per_second)
+        self.recorded = [self.simulation.positions.copy()]
+
+    @property
+    def is_done(self):
+        return len(self.recorded) > self.frame_count
+
+    @property
+    def share_done(self):
+        """0 to 1"""
+        return self.simulation.frame / max(1, self.frame_count * self.steps_per_frame)
+
+    def step(self):
+        """A part of a frame; records the frame with its last part."""
+        self.simulation.step()
+        if self.simulation.frame % self.steps_per_frame == 0:
+            self.recorded.append(self.simulation.positions.copy())
+
+
+START_HINT = 'Check Collisions shows where a start intersects; "Part the Start" moves the cloth out'
+
+
+def _collider(echinus, body, motion):
+    exact = echinus.ExactMap(echinus.Mesh(motion.vertices, body.triangles))
+    return echinus.Collider(exact, position=motion.origin, name=body.name)
+
+
+def _set_motion(echinus, simulation, index, motion, frames_per_second):
+    if motion.shapes is not None:
+        simulation.set_collider_cache(index, echinus.VertexCache(motion.shapes, 1 / frames_per_second))
+    elif motion.poses:
+        keys = [echinus.PoseKey(i / frames_per_second, *pose) for i, pose in enumerate(motion.poses)]
+        simulation.set_collider_keyframes(index, keys)
+
+
+def _nearest_colliders(garment, colliders):
+    """(vertex, collider) for each pin."""
+    points = garment.vertices[garment.pins]
+    distances = [abs(each.map.signed_distance(points - each.position)) for each in colliders]
+    return np.stack([garment.pins, np.argmin(distances, axis=0)], axis=1)

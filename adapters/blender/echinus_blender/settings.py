@@ -1,0 +1,79 @@
+"""What the panel shows and operators read, kept in each scene."""
+
+import bpy
+
+from .run import RunOptions
+
+DEFAULTS = RunOptions()
+
+
+def is_mesh(settings, candidate):
+    return candidate.type == "MESH"
+
+
+class Settings(bpy.types.PropertyGroup):
+    cloth: bpy.props.PointerProperty(
+        name="Cloth", description="The mesh that falls and folds", type=bpy.types.Object, poll=is_mesh
+    )
+    body: bpy.props.PointerProperty(
+        name="Body",
+        description="The mesh that the cloth collides with. It may move and deform",
+        type=bpy.types.Object,
+        poll=is_mesh,
+    )
+    more_bodies: bpy.props.PointerProperty(
+        name="More Bodies", description="All meshes of a collection, besides", type=bpy.types.Collection
+    )
+
+    steps_per_second: bpy.props.IntProperty(
+        name="Steps per Second",
+        description="More make the cloth stiffer, and take longer",
+        default=DEFAULTS.steps_per_second,
+        min=24,
+        soft_max=1000,
+    )
+    thickness: bpy.props.FloatProperty(
+        name="Thickness",
+        description="What the cloth keeps from bodies. 0: chosen by the size of its faces",
+        subtype="DISTANCE",
+        default=0,
+        min=0,
+    )
+    friction: bpy.props.FloatProperty(
+        name="Friction", description="Coulomb's coefficient", default=DEFAULTS.friction, min=0, soft_max=1
+    )
+    drag: bpy.props.FloatProperty(
+        name="Air Drag",
+        description="The share of its speed that the cloth loses in a step",
+        default=DEFAULTS.drag,
+        min=0,
+        max=1,
+    )
+    bending: bpy.props.FloatProperty(
+        name="Bending", description="How stiffly the cloth resists folds", default=DEFAULTS.bending, min=0, max=1
+    )
+    self_collision: bpy.props.BoolProperty(
+        name="Self Collision", description="Faces of the cloth do not meet each other", default=DEFAULTS.self_collision
+    )
+    untangle: bpy.props.BoolProperty(
+        name="Part the Start",
+        description="Move a cloth that begins inside a body, or in itself, until nothing intersects",
+        default=DEFAULTS.untangle,
+    )
+    pin_group: bpy.props.StringProperty(
+        name="Pin Group", description="Vertices of the cloth with a weight of at least a half are held"
+    )
+    pins_follow_body: bpy.props.BoolProperty(
+        name="Pins Follow Bodies",
+        description="Held vertices move with the nearest body. Otherwise they stay where they begin",
+        default=False,
+    )
+    cache_path: bpy.props.StringProperty(
+        name="Cache",
+        description="The PC2 file that takes the motion. Empty: in a folder beside the blend file",
+        subtype="FILE_PATH",
+    )
+
+    result: bpy.props.StringProperty(
+        name="Result", description="What the last operator found", options={"SKIP_SAVE", "HIDDEN"}
+    )

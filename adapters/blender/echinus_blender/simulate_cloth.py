@@ -1,0 +1,209 @@
+"""The operator that simulates a cloth: sample the scene, compute in a thread, play the result."""
+
+import threading
+import time
+
+import bpy
+
+from .meshes import leave_edit_mode
+from .playing import cache_path_of, play
+from .refusal import Refusal
+from .reporting import Reporting
+from .run import Run, RunOptions
+from .sampling import sample
+
+#: How long the interface may wait for samples at a time.
+SAMPLING_SECONDS = 0.05
+
+
+class SimulateCloth(Reporting, bpy.types.Operator):
+    """Simulate the cloth from the scene's first frame to its last. Esc cancels"""
+
+    bl_idname = "echinus.simulate_cloth"
+    bl_label = "Simulate Cloth"
+    bl_options = {"REGISTER", "UNDO"}
+
+    is_running = False
+
+    @classmethod
+    def poll(cls, context):
+        cls.poll_message_set("A simulation is running; Esc cancels it")
+        return not SimulateCloth.is_running
+
+    def execute(self, context):
+        """All at once: for scripts."""
+        leave_edit_mode(context)
+        began = time.monotonic()
+        done, refused = self.refused_by(compute_at_once, context)
+        if refused:
+            return {"CANCELLED"}
+        return self.finish(context, *done, time.monotonic() - began)
+
+    def invoke(self, context, event):
+        if bpy.app.background:
+            return self.execute(context)
+        leave_edit_mode(context)
+        self.began = time.monotonic()
+        self.sampling, self.computing = sample(context), None
+        self.timer = context.window_manager.event_timer_add(0.05, window=context.window)
+        context.window_manager.progress_begin(0, 100)
+        context.window_manager.modal_handler_add(self)
+        SimulateCloth.is_running = True
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        if event.type == "ESC":
+            self.cancel(context)
+            self.report({"INFO"}, "Simulation cancelled")
+            return {"CANCELLED"}
+        if event.type != "TIMER":
+            # While the frames of the scene go by, it must not change.
+            return {"PASS_THROUGH"} if self.computing else {"RUNNING_MODAL"}
+        try:
+            done, refused = self.refused_by(self.advance, context)
+        except Exception:  # Blender shows it, and forgets the operator
+            self.cancel(context)
+            raise
+        if refused:
+            self.cancel(context)
+            return {"CANCELLED"}
+        if done is None:
+            return {"RUNNING_MODAL"}
+        self.end(context)
+        return self.finish(context, *done, time.monotonic() - self.began)
+
+    def cancel(self, context):
+        """Also called by Blender, when it closes or loads a file."""
+        self.sampling.close()
+        if self.computing:
+            self.computing.cancel()
+        self.end(context)
+
+    def end(self, context):
+        SimulateCloth.is_running = False
+        context.window_manager.event_timer_remove(self.timer)
+        context.window_manager.progress_end()
+        if context.workspace:
+            context.workspace.status_text_set(None)
+
+    def advance(self, echinus, context):
+        """Goes on for a moment; the sampled scene and the run once that is done, else None."""
+        if self.computing is None:
+            until = time.monotonic() + SAMPLING_SECONDS
+            share = 0
+            for share, self.sampled in self.sampling:
+                if self.sampled:
+                    make = run_maker(echinus, context, self.sampled)
+                    self.computing = Computation(make)
+                    break
+                if time.monotonic() > until:
+                    break
+            self.show(context, f"Echinus reads frame {context.scene.frame_current}", share / 10)
+            return None
+        run = self.computing.result()
+        if run:
+            return self.sampled, run
+        share = self.computing.share_done
+        self.show(context, f"Echinus simulates {self.sampled.garment.name}: {share:.0%}", 0.1 + 0.9 * share)
+        return None
+
+    def show(self, context, sentence, share):
+        context.window_manager.progress_update(round(100 * share))
+        context.workspace.status_text_set(f"{sentence}; Esc cancels")
+
+    def finish(self, context, sampled, run, seconds):
+        _, refused = self.refused_by(self.keep, context, sampled, run, seconds)
+        return {"CANCELLED"} if refused else {"FINISHED"}
+
+    def keep(self, echinus, context, sampled, run, seconds):
+        scene = context.scene
+        name = sampled.garment.name
+        cloth = scene.objects.get(name)
+        if cloth is None or len(cloth.data.vertices) != len(sampled.garment.vertices):
+            raise Refusal(f"{name} is no longer what it was when the simulation began")
+        path, lasts = cache_path_of(scene.echinus)
+        play(cloth, run.recorded, sampled.matrices, path, scene.frame_start)
+        profile = run.simulation.profile
+        sentence = f"{name}: {len(run.recorded)} frames in {seconds:.1f} s"
+        if profile.lost_count or profile.squeezed_count:
+            sentence += f"; no room {profile.squeezed_count} times, {profile.lost_count} vertices lost"
+        if not lasts:
+            sentence += "; the cache is temporary: save the file and simulate again to keep it"
+        is_bad = bool(profile.lost_count or profile.squeezed_count)
+        self.tell(context, sentence, is_bad)
+
+
+class Computation:
+    """A run made and computed in a thread, which touches nothing of Blender."""
+
+    def __init__(self, make_run):
+        self._cancelled = threading.Event()
+        self._run, self._error, self._is_done = None, None, False
+        self._thread = threading.Thread(target=self._compute, args=(make_run,), name="Echinus", daemon=True)
+        self._thread.start()
+
+    def _compute(self, make_run):
+        try:
+            self._run = make_run()
+            while not self._run.is_done and not self._cancelled.is_set():
+                self._run.step()
+        except Exception as error:  # the thread that asks for the result raises it
+            self._error = error
+        self._is_done = True
+
+    @property
+    def share_done(self):
+        return self._run.share_done if self._run else 0
+
+    def result(self):
+        """The run once it is done; None before.
+
+        Raises
+        ------
+        Exception
+            The one that ended the computation.
+        """
+        if not self._is_done:
+            return None
+        self._thread.join()
+        if self._error:
+            raise self._error
+        return self._run
+
+    def cancel(self):
+        self._cancelled.set()
+        self._thread.join()
+
+
+def compute_at_once(echinus, context):
+    for _, sampled in sample(context):
+        pass
+    run = run_maker(echinus, context, sampled)()
+    while not run.is_done:
+        run.step()
+    return sampled, run
+
+
+def run_maker(echinus, context, sampled):
+    """A function that makes the run, of values alone: a thread may call it."""
+    scene = context.scene
+    options = options_of(scene)
+    frame_count = scene.frame_end - scene.frame_start
+    frames_per_second = scene.render.fps / scene.render.fps_base
+    return lambda: Run(echinus, sampled.garment, sampled.bodies, options, frame_count, frames_per_second)
+
+
+def options_of(scene):
+    """As Blender's own cloth takes gravity: in units of the scene."""
+    settings = scene.echinus
+    return RunOptions(
+        steps_per_second=settings.steps_per_second,
+        gravity=tuple(scene.gravity) if scene.use_gravity else (0, 0, 0),
+        thickness=settings.thickness,
+        friction=settings.friction,
+        drag=settings.drag,
+        bending=settings.bending,
+        self_collision=settings.self_collision,
+        untangle=settings.untangle,
+        pins_follow_body=settings.pins_follow_body,
+    )

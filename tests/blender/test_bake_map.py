@@ -1,0 +1,33 @@
+"""Bake Map, in Blender."""
+
+import bpy
+import pytest
+
+import echinus as ech
+from objects import activate, add, add_sphere, result, shown
+
+
+def test_the_map_is_that_of_the_object_where_it_stands(tmp_path):
+    sphere = add_sphere(location=(1, 2, 3), scale=(1, 2, -0.5), rotation_euler=(0, 0, 1))
+    sphere.modifiers.new("Finer", "SUBSURF")
+    activate(sphere)
+    path = tmp_path / "sphere.ech"
+    assert bpy.ops.echinus.bake_map(filepath=str(path)) == {"FINISHED"}
+    mesh, baked = shown(sphere), ech.load(path)
+    assert baked.statistics.face_count == len(mesh.faces)
+    assert baked.contains([(1, 2, 3), (1, 2, 3.6)]).tolist() == [True, False]
+    assert abs(baked.signed_distance(mesh.vertices)).max() < 1e-5
+    assert result().startswith(f"sphere.ech: {len(mesh.faces)} faces, ")
+
+
+def test_an_open_mesh_is_baked_and_said_to_be_open(tmp_path):
+    sphere = ech.make_sphere(1, 16, 8)
+    activate(add("Torn", ech.Mesh(sphere.vertices, sphere.faces[1:])))
+    bpy.ops.echinus.bake_map(filepath=str(tmp_path / "torn.ech"))
+    assert result().endswith("; not closed, where inside is a guess")
+
+
+def test_a_place_that_cannot_be_written_is_refused(tmp_path):
+    activate(add_sphere())
+    with pytest.raises(RuntimeError, match="nowhere"):
+        bpy.ops.echinus.bake_map(filepath=str(tmp_path / "nowhere" / "sphere.ech"))
