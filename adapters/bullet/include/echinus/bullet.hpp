@@ -1,0 +1,380 @@
+#pragma once
+
+#include <echinus/collider.hpp>
+#include <echinus/error.hpp>
+#include <echinus/exact_map.hpp>
+
+#include <BulletCollision/BroadphaseCollision/btCollisionAlgorithm.h>
+#include <BulletCollision/CollisionDispatch/btCollisionCreateFunc.h>
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <BulletCollision/CollisionShapes/btConcaveShape.h>
+#include <BulletSoftBody/btDefaultSoftBodySolver.h>
+#include <BulletSoftBody/btSoftBody.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+/// Bullet's soft bodies among exact maps, without a change of Bullet (docs/bullet.md): a MapShape in place of
+/// a mesh shape, and a Solver in place of Bullet's own.
+///
+/// Header-only, written against Bullet 3.24. Bullet may be built with floats or with doubles; positions are
+/// rounded to float for queries.
+namespace echinus::bullet {
+
+// ---- Numbers of Bullet's
+
+inline Vec3d to_echinus(const btVector3& v) {
+    return {double{v.x()}, double{v.y()}, double{v.z()}};
+}
+inline btVector3 to_bullet(const Vec3f& v) {
+    return {btScalar(v.x), btScalar(v.y), btScalar(v.z)};
+}
+inline RigidTransform to_echinus(const btTransform& pose) {
+    const btQuaternion q = pose.getRotation();
+    const Rotation rotation{double{q.w()}, double{q.x()}, double{q.y()}, double{q.z()}};
+    return {rotation.normalised(), to_echinus(pose.getOrigin())};
+}
+
+/// A closed surface as a shape of Bullet's, for static, kinematic and dynamic objects, and in compounds. Soft
+/// bodies meet it in a world with a Solver. Any number of objects may share it.
+///
+/// Margin: added to that of the soft body; 0 unless set.
+class MapShape : public btConcaveShape {
+  public:
+    /// @param for_rigid_bodies  what rigid bodies and rays meet instead, such as a btBvhTriangleMeshShape of
+    ///                          the same mesh; has to outlive this shape. Null: they meet nothing
+    /// @throws Error InvalidMesh for the map of an open surface
+    explicit MapShape(ExactMap map, const btConcaveShape* for_rigid_bodies = nullptr)
+        : collider_{.map = std::move(map)}, for_rigid_bodies_(for_rigid_bodies) {
+        if (!this->map().view().border.empty())
+            throw Error(ErrorCode::InvalidMesh,
+                        "the surface is open, so what is inside is not certain; close it with repair()");
+        // A type for foreign meshes that Bullet itself gives to no shape. CUSTOM_CONCAVE_SHAPE_TYPE is also
+        // that of btSdfCollisionShape, to which Bullet casts without a question.
+        m_shapeType = FAST_CONCAVE_MESH_PROXYTYPE;
+    }
+
+    const ExactMap& map() const { return std::get<ExactMap>(collider_.map.kind); }
+    Collider at(const btTransform& pose) const {
+        Collider placed = collider_;
+        placed.pose = to_echinus(pose);
+        return placed;
+    }
+    /// The radius of a ball around all of the scaled surface.
+    btScalar radius() const {
+        return btScalar(map().view().radius) * scale_.absolute()[scale_.absolute().maxAxis()];
+    }
+
+    /// The box of the bounding sphere.
+    void getAabb(const btTransform& pose, btVector3& low, btVector3& high) const override {
+        const btVector3 centre = pose(to_bullet(map().view().centre) * scale_);
+        const btScalar reach = radius() + getMargin();
+        low = centre - btVector3(reach, reach, reach);
+        high = centre + btVector3(reach, reach, reach);
+    }
+    void processAllTriangles(btTriangleCallback* callback, const btVector3& low,
+                             const btVector3& high) const override {
+        if (for_rigid_bodies_ != nullptr) for_rigid_bodies_->processAllTriangles(callback, low, high);
+    }
+    /// Of soft bodies' collider only: set the scale of the shape for rigid bodies, too. Negative numbers
+    /// mirror. @throws Error InvalidOptions for 0 or a number that is not finite
+    void setLocalScaling(const btVector3& scale) override {
+        const Vec3d numbers = to_echinus(scale);
+        if (!is_finite(numbers) || numbers.x == 0 || numbers.y == 0 || numbers.z == 0)
+            throw Error(ErrorCode::InvalidOptions, "the scale of a shape is 0 or not finite along an axis");
+        scale_ = scale;
+        collider_.scale = numbers;
+    }
+    const btVector3& getLocalScaling() const override { return scale_; }
+    /// That of a solid ball of the bounding radius; a body may be given a better one.
+    void calculateLocalInertia(btScalar mass, btVector3& inertia) const override {
+        const btScalar moment = btScalar(0.4) * mass * radius() * radius();
+        inertia.setValue(moment, moment, moment);
+    }
+    const char* getName() const override { return "ExactMap"; }
+
+  private:
+    Collider collider_;
+    const btConcaveShape* for_rigid_bodies_;
+    btVector3 scale_{1, 1, 1};
+};
+
+/// One soft body beside one object with a MapShape: its contacts, and the poses between which its nodes move.
+/// The Solver holds one for each pair that the broad phase reports.
+class SoftBodyPair {
+  public:
+    /// Adds contacts to the soft body for Bullet's solver, as Bullet does for its convex shapes: of all nodes
+    /// within the margin at their predicted places, with the friction and the hardness that Bullet gives
+    /// them.
+    void add_contacts(btSoftBody& body, const btCollisionObjectWrapper& collider) {
+        const btCollisionObject& object = *collider.getCollisionObject();
+        const bool wanted = (body.m_cfg.collisions & btSoftBody::fCollision::RVSmask) != 0 &&
+                            body.m_collisionDisabledObjects.findLinearSearch(&object) ==
+                                body.m_collisionDisabledObjects.size();
+        if (!wanted || body.m_nodes.size() == 0) return;
+        body_ = &body;
+        object_ = &object;
+        shape_ = static_cast<const MapShape*>(collider.getCollisionShape());
+        in_object_ = shape_ == object.getCollisionShape()
+                         ? btTransform::getIdentity()
+                         : object.getWorldTransform().inverseTimes(collider.getWorldTransform());
+        const Collider placed = shape_->at(collider.getWorldTransform());
+        if (!last_pose_) last_pose_ = pose_before(placed);
+        // Contacts with a link of a multibody need Jacobians that its solver keeps to itself.
+        if (object.getInternalType() == btCollisionObject::CO_FEATHERSTONE_LINK) return;
+        contacts_.resize(static_cast<std::size_t>(body.m_nodes.size()));
+        contacts_batch(placed, positions(), static_cast<float>(margin()), contacts_);
+        for (int i = 0; i < body.m_nodes.size(); ++i)
+            if (contacts_[static_cast<std::size_t>(i)].found())
+                add(body.m_nodes[i], contacts_[static_cast<std::size_t>(i)]);
+    }
+
+    /// Puts nodes that passed the surface during the step, or ended inside, back to it.
+    /// @return false when there was none
+    bool keep_outside() {
+        if (body_ == nullptr || !body_->hasContactResponse() || !object_->hasContactResponse()) return false;
+        const Collider now = shape_->at(object_->getWorldTransform() * in_object_);
+        inside_.resize(static_cast<std::size_t>(body_->m_nodes.size()));
+        contains_batch(now, positions(), inside_);
+        bool moved = false;
+        for (int i = 0; i < body_->m_nodes.size(); ++i)
+            if (keep_outside(body_->m_nodes[i], now, inside_[static_cast<std::size_t>(i)] != 0)) moved = true;
+        if (moved) body_->activate();
+        return moved;
+    }
+
+    /// Nodes are where the next step begins.
+    void end_step() {
+        if (body_ != nullptr) last_pose_ = to_echinus(object_->getWorldTransform() * in_object_);
+        body_ = nullptr;
+    }
+
+  private:
+    btScalar margin() const { return body_->getCollisionShape()->getMargin() + shape_->getMargin(); }
+
+    /// How far from the surface a node is put: enough for floats, and not so much that one sees it.
+    float gap() const {
+        const auto radius = static_cast<float>(shape_->radius());
+        return std::clamp(static_cast<float>(margin()), 1e-5F * radius, 1e-3F * radius);
+    }
+
+    static bool is_held(const btSoftBody::Node& node) { return node.m_im == 0 || node.m_battach != 0; }
+
+    /// Of all nodes: in place where Bullet has floats, else rounded.
+    StridedSpan<const Vec3f> positions() {
+        const auto& nodes = body_->m_nodes;
+        const auto count = static_cast<std::size_t>(nodes.size());
+        if constexpr (std::is_same_v<btScalar, float>)
+            return {reinterpret_cast<const Vec3f*>(&nodes[0].m_x), count, sizeof(btSoftBody::Node)};
+        rounded_.resize(count);
+        for (std::size_t i = 0; i < count; ++i)
+            rounded_[i] = Vec3f(to_echinus(nodes[static_cast<int>(i)].m_x));
+        return rounded_;
+    }
+
+    /// Where the collider was when the step began, as far as a new pair can know. Bullet leads a kinematic
+    /// object to its new pose before the step, and integrates a dynamic one after the contacts are found.
+    RigidTransform pose_before(Collider placed) const {
+        const btRigidBody* rigid = btRigidBody::upcast(object_);
+        if (rigid == nullptr || !rigid->isKinematicObject()) return placed.pose;
+        const btVector3 arm = (object_->getWorldTransform() * in_object_).getOrigin() -
+                              object_->getWorldTransform().getOrigin();
+        placed.linear_velocity = to_echinus(rigid->getVelocityInLocalPoint(arm));
+        placed.angular_velocity = to_echinus(rigid->getAngularVelocity());
+        return pose_after(placed, -double{body_->m_sst.sdt});
+    }
+
+    btVector3 velocity_at(const btVector3& point) const {
+        const btRigidBody* rigid = btRigidBody::upcast(object_);
+        if (rigid == nullptr) return {0, 0, 0};
+        return rigid->getVelocityInLocalPoint(point - rigid->getCenterOfMassPosition());
+    }
+
+    // Bullet 3.24 fills the members in this way for its own shapes; PSolve_RContacts() reads them.
+    void add(btSoftBody::Node& node, const Contact& found) {
+        if (node.m_battach != 0) return;
+        const btRigidBody* rigid = btRigidBody::upcast(object_);
+        if (rigid != nullptr && rigid->isStaticOrKinematicObject()) rigid = nullptr;
+        if (node.m_im == 0 && rigid == nullptr) return;
+        const btScalar seconds = body_->m_sst.sdt;
+        const btVector3 normal = to_bullet(found.normal);
+        const btVector3 slip = node.m_x - node.m_q - velocity_at(node.m_x) * seconds;
+        const btScalar approach = slip.dot(normal);
+        const btScalar friction = body_->m_cfg.kDF * object_->getFriction();
+        btSoftBody::RContact contact;
+        for (btVector3* unused : {&contact.m_cti.m_bary, &contact.t1, &contact.t2}) unused->setZero();
+        contact.m_cti.m_colObj = object_;
+        contact.m_cti.m_normal = normal;
+        contact.m_cti.m_offset = -normal.dot(to_bullet(found.point)) - margin();
+        contact.m_node = &node;
+        contact.m_c1 = node.m_x - object_->getWorldTransform().getOrigin();
+        contact.m_c0 = impulse_matrix(node.m_im, rigid, contact.m_c1, seconds);
+        contact.m_c2 = node.m_im * seconds;
+        const bool sticks = (slip - normal * approach).length2() < approach * approach * friction * friction;
+        contact.m_c3 = sticks ? btScalar(0) : 1 - friction;
+        contact.m_c4 = object_->isStaticOrKinematicObject() ? body_->m_cfg.kKHR : body_->m_cfg.kCHR;
+        body_->m_rcontacts.push_back(contact);
+        if (rigid != nullptr) rigid->activate();
+    }
+
+    /// The impulse that parts node and body, for each unit of way in one step.
+    static btMatrix3x3 impulse_matrix(btScalar inverse_mass, const btRigidBody* rigid, const btVector3& arm,
+                                      btScalar seconds) {
+        const btScalar sum = inverse_mass + (rigid != nullptr ? rigid->getInvMass() : btScalar(0));
+        btMatrix3x3 mobility(sum, 0, 0, 0, sum, 0, 0, 0, sum);
+        if (rigid != nullptr) {
+            const btMatrix3x3 lever(0, -arm.z(), arm.y(), arm.z(), 0, -arm.x(), -arm.y(), arm.x(), 0);
+            mobility -= lever * rigid->getInvInertiaTensorWorld() * lever;
+        }
+        return mobility.inverse() * (1 / seconds);
+    }
+
+    bool keep_outside(btSoftBody::Node& node, const Collider& now, bool inside) {
+        if (is_held(node)) return false;
+        const Vec3f to(to_echinus(node.m_x));
+        const Vec3f from = body_->isActive() ? Vec3f(to_echinus(node.m_q)) : to; // a body that sleeps stays
+        const SweepHit hit = sweep(now, *last_pose_, from, to);
+        if (hit.found() && hit.entering) {
+            put(node, free_place(now, from, to, hit), hit.normal);
+        } else if (inside) { // and was when the step began
+            const Contact out = contact(now, to);
+            put(node, out.point + out.normal * gap(), out.normal);
+        } else {
+            return false;
+        }
+        return true;
+    }
+
+    /// Near where the node was going: along the face that it met, or where it met it, or where it came from,
+    /// carried along with the collider. A place is free when no surface lies on the way there.
+    Vec3f free_place(const Collider& now, const Vec3f& from, const Vec3f& to, const SweepHit& hit) const {
+        const Vec3f beside = hit.point + hit.normal * gap();
+        const Vec3f along = to + hit.normal * dot(hit.normal, beside - to);
+        for (const Vec3f& place : std::array{along, beside})
+            if (!sweep(now, *last_pose_, from, place).found()) return place;
+        return Vec3f(now.pose.to_world(last_pose_->to_local(Vec3d(from))));
+    }
+
+    /// The node is there and no longer moves into the surface.
+    void put(btSoftBody::Node& node, const Vec3f& place, const Vec3f& out) const {
+        const btVector3 normal = to_bullet(out);
+        node.m_x = to_bullet(place);
+        const btScalar speed = (node.m_v - velocity_at(node.m_x)).dot(normal);
+        if (speed < 0) node.m_v -= normal * speed;
+    }
+
+    btSoftBody* body_ = nullptr; ///< null where this step has no contact between the two
+    const btCollisionObject* object_ = nullptr;
+    const MapShape* shape_ = nullptr;
+    btTransform in_object_;                   ///< of the shape; not the identity in a compound
+    std::optional<RigidTransform> last_pose_; ///< of the shape, at the end of the last step
+    std::vector<Contact> contacts_;           // [nodes]
+    std::vector<std::uint8_t> inside_;        // [nodes]
+    std::vector<Vec3f> rounded_;              // [nodes]
+};
+
+/// Bullet's default solver of soft bodies, which after each step puts nodes that got into a MapShape back to
+/// its surface. Give it to btSoftRigidDynamicsWorld as its last argument:
+///
+///     echinus::bullet::Solver solver(dispatcher);
+///     btSoftRigidDynamicsWorld world(&dispatcher, &broadphase, &rigid_solver, &configuration, &solver);
+///
+/// So no node ends a step inside, or on the other side of something thin, however fast it is: each is swept
+/// from where the step began to where it ended, as the moving collider sees it. Exceptions: nodes that are
+/// pinned or anchored; nodes that several colliders squeeze; a collider that is put elsewhere without being
+/// kinematic, in the first step beside it. A node that begins inside is put to the nearest surface point.
+///
+/// It has to outlive the world, and the dispatcher must not be used without it. As Bullet's soft bodies
+/// themselves it is for one thread: not with btCollisionDispatcherMt, nor in a deformable world
+/// (btDeformableMultiBodyDynamicsWorld), which has a solver of another kind.
+class Solver : public btDefaultSoftBodySolver {
+  public:
+    /// Registers itself for soft bodies beside shapes of MapShape's type.
+    explicit Solver(btCollisionDispatcher& dispatcher) : create_(*this) {
+        dispatcher.registerCollisionCreateFunc(SOFTBODY_SHAPE_PROXYTYPE, FAST_CONCAVE_MESH_PROXYTYPE,
+                                               &create_);
+        dispatcher.registerCollisionCreateFunc(FAST_CONCAVE_MESH_PROXYTYPE, SOFTBODY_SHAPE_PROXYTYPE,
+                                               &create_);
+    }
+    Solver(const Solver&) = delete;
+    Solver& operator=(const Solver&) = delete;
+
+    /// Bullet's boxes hold where nodes are going. Where they come from has to be in them too, or the broad
+    /// phase overlooks what lies between.
+    void predictMotion(btScalar seconds) override {
+        btDefaultSoftBodySolver::predictMotion(seconds);
+        for (int i = 0; i < m_softBodySet.size(); ++i) {
+            btSoftBody& body = *m_softBodySet[i];
+            for (int n = 0; n < body.m_nodes.size(); ++n) {
+                body.m_bounds[0].setMin(body.m_nodes[n].m_q);
+                body.m_bounds[1].setMax(body.m_nodes[n].m_q);
+            }
+        }
+    }
+
+    void solveConstraints(btScalar seconds) override {
+        btDefaultSoftBodySolver::solveConstraints(seconds);
+        // What one collider pushed, another may have to push back.
+        bool moved = true;
+        for (int pass = 0; pass < kMostPasses && moved; ++pass) {
+            moved = false;
+            for (SoftBodyPair* pair : pairs_) moved = pair->keep_outside() || moved;
+            if (pairs_.size() < 2) break;
+        }
+        for (SoftBodyPair* pair : pairs_) pair->end_step();
+    }
+
+  private:
+    static constexpr int kMostPasses = 4;
+
+    /// Bullet keeps one for each pair, in memory whose pieces are as large as its own largest algorithm.
+    class Algorithm : public btCollisionAlgorithm {
+      public:
+        Algorithm(const btCollisionAlgorithmConstructionInfo& info, Solver& solver)
+            : btCollisionAlgorithm(info), solver_(solver), pair_(std::make_unique<SoftBodyPair>()) {
+            solver_.pairs_.push_back(pair_.get());
+        }
+        ~Algorithm() override { std::erase(solver_.pairs_, pair_.get()); }
+        Algorithm(const Algorithm&) = delete;
+        Algorithm& operator=(const Algorithm&) = delete;
+
+        void processCollision(const btCollisionObjectWrapper* first, const btCollisionObjectWrapper* second,
+                              const btDispatcherInfo&, btManifoldResult*) override {
+            if (!first->getCollisionShape()->isSoftBody()) std::swap(first, second);
+            auto* object = const_cast<btCollisionObject*>(first->getCollisionObject());
+            pair_->add_contacts(*btSoftBody::upcast(object), *second);
+        }
+        btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
+                                       btManifoldResult*) override {
+            return 1;
+        }
+        void getAllContactManifolds(btManifoldArray&) override {}
+
+      private:
+        Solver& solver_;
+        std::unique_ptr<SoftBodyPair> pair_;
+    };
+
+    struct Create : btCollisionAlgorithmCreateFunc {
+        explicit Create(Solver& solver) : solver_(solver) {}
+        btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                       const btCollisionObjectWrapper*,
+                                                       const btCollisionObjectWrapper*) override {
+            return new (info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(Algorithm)))
+                Algorithm(info, solver_);
+        }
+        Solver& solver_;
+    };
+
+    Create create_;
+    std::vector<SoftBodyPair*> pairs_; ///< that the broad phase reports; each belongs to an Algorithm
+};
+
+} // namespace echinus::bullet
