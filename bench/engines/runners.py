@@ -58,8 +58,8 @@ RUNNERS = (
     _node("MuJoCo", "mujoco.mjs"),
     Runner("Blender", ("blender", "--background", "--factory-startup", "--python-exit-code", "1", "--python",
                        f"{FOLDER}/blender/cloth.py", "--")),
-    _native("Echinus, particles only", "--engine", "particles"),
+    _native("Echinus particles only", "--engine", "particles"),
     _native("Echinus", "--engine", "surfaces"),
-    _node("Echinus, particles only, wasm", "echinus.mjs", "--particles"),
-    _node("Echinus, wasm", "echinus.mjs"),
+    _node("Echinus particles only wasm", "echinus.mjs", "--particles"),
+    _node("Echinus wasm", "echinus.mjs"),
 )

@@ -100,6 +100,37 @@ def surfaces(folder):
             "surfaces commit": results.commit}
 
 
+def engines(folder):
+    results = Results(folder, "engines")
+    values = {"engines machine": results.machine, "engines commit": results.commit}
+    for model in results.distinct("model"):
+        values[f"engines {model}"] = "\n\n".join(
+            f"{side} x {side} particles, {setup}:\n\n{engines_table(results.where(model=model, side=side, setup=setup))}"
+            for side in sorted(results.distinct("side", model=model), key=int) for setup in results.distinct("setup", model=model, side=side))
+    how = [["engine, setup", "version", "steps a frame", "settings"]]
+    for name in results.distinct("engine"):
+        for setup in results.distinct("setup", engine=name):
+            done = results.where(engine=name, setup=setup, status="done")
+            how += [[f"{name}, {setup}", r["version"], r["substeps"], r["settings"]] for r in done[:1]]
+    values["engines settings"] = table(how).replace("| --: |", "| --- |")
+    return values
+
+
+def engines_table(records):
+    """At the end, and in brackets in the worst frame judged."""
+    rows = [["engine", "inside", "deepest, R", "pairs with the model", "own pairs", "stretch, %", "lost", "rests from frame", "ms a frame, native",
+             "wasm"]]
+    for r in records:
+        if r["status"] != "done":
+            rows.append([r["engine"], r["status"]] + [""] * (len(rows[0]) - 2))
+            continue
+        times = [number(r["frame_ms"]) if r["platform"] == platform else "" for platform in ("native", "wasm")]
+        pairs = [f"{r[c]} ({r[f'{c}_worst']})" if r[c] else "" for c in ("inside", "model_pairs", "own_pairs")]
+        deepest = f"{number(r['deepest'])} ({number(r['deepest_worst'])})" if r["deepest"] else ""
+        rows.append([r["engine"], pairs[0], deepest, pairs[1], pairs[2], number(r["stretch"], 100), r["lost"], r["rest_frame"] or "not", *times])
+    return table(rows)
+
+
 def figures(folder):
     results = Results(folder, "figures")
     values = {"figures machine": results.machine, "figures commit": results.commit}
@@ -205,6 +236,7 @@ TASKS = {
     "cloth": (["cloth_on_each.md"], cloth),
     "triangles": (["performance_tables.md"], triangles),
     "surfaces": (["surfaces_measured.md"], surfaces),
+    "engines": (["engines.md"], engines),
     "labels": (["labels_measured.md"], labels),
     "figures": (["figures.md", "../README.md"], figures),
     "reproduction": (["reproduction.md"], reproduction),

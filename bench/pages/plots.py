@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the plots of docs/performance_tables.md and docs/surfaces_measured.md from bench/results/: time against error,
+"""Draws the plots of docs/performance_tables.md, docs/surfaces_measured.md and docs/engines.md from bench/results/: time against error,
 time and error against bytes, build time against faces, time of a frame against particles. scripts/bench runs it."""
 
 import argparse
@@ -81,11 +81,18 @@ def draw(task, folder, images):
         for r in falls:
             curves.setdefault(r["method"], ([], True))[0].append((float(r["particles"]), float(r["frame_ms"])))
         plot(curves, "particles", "ms a frame", images / "surfaces_particles.svg")
+    elif task == "engines":
+        curves = {}
+        for r in rows:
+            if (r["model"], r["setup"], r["status"]) == ("horse", "recommended", "done"):
+                point = (float(r["side"]) ** 2, float(r["frame_ms"]))
+                curves.setdefault(r["engine"], ([], "Echinus" in r["engine"]))[0].append(point)
+        plot(curves, "particles", "ms a frame", images / "engines_particles.svg")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("task", choices=["contains", "contacts", "bytes", "build", "surfaces"])
+    parser.add_argument("task", choices=["contains", "contacts", "bytes", "build", "surfaces", "engines"])
     parser.add_argument("--results", type=pathlib.Path, required=True)
     parser.add_argument("--images", type=pathlib.Path, required=True)
     arguments = parser.parse_args()
