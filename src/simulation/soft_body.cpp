@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <set>
 #include <string>
 #include <utility>
@@ -124,6 +126,22 @@ void append(std::vector<Item>& to, const std::vector<Item>& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
+/// A part that names a particle which it does not have would name one of the next part's.
+void require_part(const Deformable& part, std::size_t number, std::size_t particles_before) {
+    const std::string name = "part " + std::to_string(number) + " of what is combined: ";
+    try {
+        require_valid(part);
+    } catch (const Error& error) {
+        throw Error(error.code(), name + error.what());
+    }
+    for (const Attachment& attachment : part.attachments)
+        require_option(attachment.particle < part.particle_count(),
+                       name + "an attachment names particle " + std::to_string(attachment.particle) +
+                           "; the last one is " + std::to_string(part.particle_count() - 1));
+    require_option(part.particle_count() <= std::numeric_limits<std::uint32_t>::max() - particles_before,
+                   name + "it would have particles beyond number 4294967295");
+}
+
 void append(Deformable& to, const Deformable& part) {
     const auto first = static_cast<std::uint32_t>(to.particle_count());
     append(to.positions, part.positions);
@@ -162,7 +180,10 @@ Deformable make_soft_body(const TetrahedralMesh& mesh, const SoftBodyOptions& op
 
 Deformable combine(std::span<const Deformable> parts) {
     Deformable all;
-    for (const Deformable& part : parts) append(all, part);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        require_part(parts[i], i, all.particle_count());
+        append(all, parts[i]);
+    }
     return all;
 }
 

@@ -130,6 +130,32 @@ TEST(CSoftBodies, FallAsInCpp) {
     pair.expect_same_after(40);
 }
 
+TEST(CSoftBodies, GoOnFromASavedStateWithTheSameBits) {
+    Pair pair;
+    pair.expect_same_after(10);
+    CArray state;
+    expect_ok(echinus_simulation_save_state(pair.in_c.get(), out(state)));
+    const auto bytes = values_of<std::byte>(state);
+    EXPECT_TRUE(same_bits(bytes, std::span<const std::byte>(pair.by_cpp.save_state())));
+    pair.expect_same_after(10);
+    CSimulation again;
+    expect_ok(echinus_simulation_restored(pair.in_c.get(), bytes.data(), bytes.size(), out(again)));
+    EXPECT_EQ(echinus_simulation_frame(again.get()), 10U);
+    for (int i = 0; i < 10; ++i) expect_ok(echinus_simulation_step(again.get()));
+    EXPECT_EQ(echinus_simulation_state_hash(again.get()), pair.by_cpp.state_hash());
+
+    expect_refused(echinus_simulation_restored(pair.in_c.get(), bytes.data(), bytes.size() - 1, out(again)),
+                   ECHINUS_DAMAGED, "the saved state");
+    EXPECT_EQ(again, nullptr);
+    expect_refused(echinus_simulation_restored(pair.in_c.get(), nullptr, 1, out(again)),
+                   ECHINUS_INVALID_ARGUMENT, "bytes is NULL");
+    expect_refused(echinus_simulation_restored(nullptr, nullptr, 0, out(again)), ECHINUS_INVALID_ARGUMENT,
+                   "simulation is NULL");
+    expect_refused(echinus_simulation_save_state(pair.in_c.get(), nullptr), ECHINUS_INVALID_ARGUMENT,
+                   "the place for the result is NULL");
+    pair.expect_same_after(1);
+}
+
 TEST(CSoftBodies, GoThroughTheirArraysUnchanged) {
     const Deformable expected = make_soft_body(block(), body_options());
     const CDeformable body = c_soft_body();

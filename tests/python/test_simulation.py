@@ -69,6 +69,20 @@ def test_the_same_scene_gives_the_same_bits():
     assert a.state_hash == b.state_hash
 
 
+def test_threads_decide_no_bits():
+    def made(threads: int) -> ech.Simulation:
+        sheet = ech.make_cloth(column_count=16, row_count=16, width=3, height=3, position=(0, 0, 0.5))
+        return ech.Simulation(sheet, [ech.Collider(ech.ExactMap(ech.make_torus()))], threads=threads)
+
+    one, two = made(1), made(2)
+    assert (one.options.threads, two.options.threads) == (1, 2)
+    one.step(40)
+    two.step(40)
+    assert one.profile.contact_count > 0 and one.state_hash == two.state_hash
+    with pytest.raises(ValueError, match="threads is -1"):
+        made(-1)
+
+
 def test_copies_are_independent():
     a = ech.Simulation.from_scene(SHEET)
     b = copy.copy(a)

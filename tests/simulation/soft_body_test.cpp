@@ -81,6 +81,20 @@ TEST(SoftBody, IsCombinedWithOthersAndWithCloth) {
     EXPECT_EQ(all.faces.back()[0], body.faces.back()[0] + 20 + count);
 }
 
+TEST(SoftBody, IsNotCombinedWithAPartThatNamesParticlesOfTheNext) {
+    const Deformable sound = cube(1, {});
+    const auto expect_refused = [&](const char* words, const Deformable& part) {
+        test::expect_error(ErrorCode::InvalidOptions, words, [&] { combine(std::vector{sound, part, sound}); });
+    };
+    Deformable broken = sound;
+    broken.faces.back()[2] = 8;
+    expect_refused("part 1 of what is combined: face 11 names particle 8; the last one is 7", broken);
+    broken = sound;
+    broken.attachments.push_back({9, 0});
+    expect_refused("part 1 of what is combined: an attachment names particle 9", broken);
+    expect_refused("part 1 of what is combined: the deformable has no particles", {});
+}
+
 TEST(SoftBody, OfImpossibleMeshesAndOptionsIsRefused) {
     const TetrahedralMesh box = make_solid_box({1, 1, 1}, {1, 1, 1});
     const auto expect_refused = [&](const char* words, const SoftBodyOptions& options) {

@@ -171,6 +171,19 @@ void echinus_simulation_destroy(echinus_simulation* simulation) {
     delete simulation;
 }
 
+echinus_status echinus_simulation_save_state(const echinus_simulation* simulation, echinus_array** state) {
+    return make(__func__, state, [&] { return array_of(simulation_at(simulation).save_state()); });
+}
+
+echinus_status echinus_simulation_restored(const echinus_simulation* simulation, const void* bytes,
+                                           size_t byte_count, echinus_simulation** restored) {
+    return make(__func__, restored, [&] {
+        Simulation copy = simulation_at(simulation);
+        copy.restore_state(values_at(static_cast<const std::byte*>(bytes), byte_count, "bytes"));
+        return copy;
+    });
+}
+
 echinus_status echinus_simulation_step(echinus_simulation* simulation) {
     const echinus_status status = guarded(__func__, [&] { running_at(simulation).step(); });
     if (status != ECHINUS_OK && simulation != nullptr) simulation->failed = true;

@@ -49,6 +49,7 @@ class SimulationOptions:
     keep_free: bool
     measure_loads: bool
     bound: float
+    threads: int
 
 
 @dataclass(frozen=True)
@@ -133,6 +134,8 @@ class Simulation:
         Keep account for :meth:`load_on`.
     bound
         Beyond it the simulation has diverged; 0: 10 000 times the extent at the start.
+    threads
+        That compute a frame; 0: all cores. More than one share the contact of surfaces. The bits do not depend on it.
     frame_limit
         Of :meth:`run`.
 
@@ -171,6 +174,7 @@ class Simulation:
         untangle: bool = False,
         measure_loads: bool = False,
         bound: float = 0,
+        threads: int = 1,
         frame_limit: int = 3000,
     ) -> None:
         if solver not in (None, "verlet", "xpbd"):
@@ -199,6 +203,7 @@ class Simulation:
             "untangle": untangle,
             "measure_loads": measure_loads,
             "bound": bound,
+            "threads": threads,
         }
         self._simulation = _core.Simulation(deformable._deformable, [c._arguments() for c in colliders], options)
         self._frame_limit = frame_limit

@@ -34,6 +34,8 @@ constexpr const char* kWanted<bool> = "True or False";
 template <>
 constexpr const char* kWanted<std::uint32_t> = "a whole number from 0 to 4294967295";
 template <>
+constexpr const char* kWanted<int> = "a whole number";
+template <>
 constexpr const char* kWanted<Vector> = "three numbers";
 template <>
 constexpr const char* kWanted<std::optional<double>> = "a number or None";
@@ -79,7 +81,8 @@ SimulationOptions options_of(const py::dict& values) {
             .self_thickness = given.get<std::optional<double>>("self_thickness"),
             .untangle = given.get<bool>("untangle"),
             .measure_loads = given.get<bool>("measure_loads"),
-            .bound = given.get<double>("bound")};
+            .bound = given.get<double>("bound"),
+            .thread_count = thread_count(given.get<int>("threads"))};
 }
 
 std::unique_ptr<SharedSimulation> simulation_of(const Deformable& deformable,
@@ -157,6 +160,7 @@ py::dict describe(const SimulationOptions& o) {
     result["keep_free"] = o.keep_free;
     result["measure_loads"] = o.measure_loads;
     result["bound"] = o.bound;
+    result["threads"] = o.thread_count;
     return result;
 }
 

@@ -1019,6 +1019,19 @@ ECHINUS_API echinus_status echinus_simulation_copy(const echinus_simulation* sim
 
 ECHINUS_API void echinus_simulation_destroy(echinus_simulation* simulation);
 
+/// All that decides how a simulation goes on, but for what it was made of (docs/saved_states.md).
+/// @param state  out, unsigned char
+ECHINUS_API echinus_status echinus_simulation_save_state(const echinus_simulation* simulation,
+                                                         echinus_array** state);
+/// Another simulation, made of the same as the one given, that goes on from a saved state with the same bits.
+/// The one given stays as it is.
+/// @param bytes  [byte_count]; checked before use, whatever they are
+/// @return ECHINUS_WRONG_FORMAT, ECHINUS_UNSUPPORTED_VERSION or ECHINUS_DAMAGED for bytes that are no state
+/// of this version; ECHINUS_INVALID_OPTIONS for a state of another simulation, saying what differs
+ECHINUS_API echinus_status echinus_simulation_restored(const echinus_simulation* simulation,
+                                                       const void* bytes, size_t byte_count,
+                                                       echinus_simulation** restored);
+
 /// Computes one frame.
 /// @return ECHINUS_DIVERGED, naming the frame; from then on the simulation can only be read
 ECHINUS_API echinus_status echinus_simulation_step(echinus_simulation* simulation);
