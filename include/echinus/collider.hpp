@@ -124,6 +124,27 @@ void contains_batch(const Collider& collider, StridedSpan<const Vec3f> points_wo
 void contacts_batch(const Collider& collider, StridedSpan<const Vec3f> points_world, float margin_world,
                     std::span<Contact> contacts) noexcept;
 
+/// Where contacts_into() writes: the contacts alone, one after the other, each member an array of its own. An
+/// empty array is not wanted; the others have room for a contact of each point. Members as in Contact.
+struct ContactArrays {
+    std::span<std::uint32_t> particles; ///< the contact's point, by its number; ascending
+    std::span<Vec3f> points{}, normals{};
+    std::span<float> depths{};
+    std::span<std::int32_t> faces{};
+    std::span<std::uint8_t> inside{}; ///< 1 inside, 0 outside within the margin
+};
+
+/// The contacts that contacts_batch() finds, bit for bit, without the points that have none: for solvers that
+/// keep separate arrays, or have many points and few contacts.
+/// @param points_world  [n]
+/// @param contacts      out: arrays of at least n, or empty; beyond the contacts they are left as they are.
+/// No
+///                      overlap with points_world or each other
+/// @returns how many contacts there are
+/// Allocates nothing beyond what a custom map does. Takes 170 KB of the stack, and with a custom map 350 KB.
+std::size_t contacts_into(const Collider& collider, StridedSpan<const Vec3f> points_world, float margin_world,
+                          const ContactArrays& contacts) noexcept;
+
 /// Where a particle first meets a collider that moves and turns while the particle moves: the first crossing
 /// of the chord between the particle's local position under the previous pose and the one under the present
 /// pose. Over a frame in which the collider turns by the angle a, chord and true path differ by at most a^2 /

@@ -31,6 +31,18 @@ auto with_queries(const Collider& collider, const FrameChange& frame, float marg
                       collider.map.kind);
 }
 
+void append(const Contact& contact, std::size_t particle, std::size_t at, const ContactArrays& arrays) {
+    const auto write = [at](const auto& array, const auto& value) {
+        if (!array.empty()) array[at] = value;
+    };
+    write(arrays.particles, static_cast<std::uint32_t>(particle));
+    write(arrays.points, contact.point);
+    write(arrays.normals, contact.normal);
+    write(arrays.depths, contact.depth);
+    write(arrays.faces, contact.face);
+    write(arrays.inside, static_cast<std::uint8_t>(contact.inside ? 1 : 0));
+}
+
 } // namespace
 
 bool contains(const Collider& collider, Vec3f point_world) noexcept {
@@ -71,6 +83,23 @@ void contacts_batch(const Collider& collider, StridedSpan<const Vec3f> points_wo
                 queries.to_world(piece[i], points_local[i], points_world[begin + i]);
         });
     });
+}
+
+std::size_t contacts_into(const Collider& collider, StridedSpan<const Vec3f> points_world, float margin_world,
+                          const ContactArrays& contacts) noexcept {
+    const FrameChange frame(collider);
+    std::size_t count = 0;
+    with_queries(collider, frame, margin_world, [&]<typename Queries>(const Queries& queries) {
+        std::array<Contact, Queries::kPieceSize> found;
+        for_each_piece<Queries::kPieceSize>(frame, points_world, [&](std::size_t begin, auto points_local) {
+            queries.ask_contacts(points_local, std::span(found.data(), points_local.size()));
+            for (std::size_t i = 0; i < points_local.size(); ++i) {
+                queries.to_world(found[i], points_local[i], points_world[begin + i]);
+                if (found[i].found()) append(found[i], begin + i, count++, contacts);
+            }
+        });
+    });
+    return count;
 }
 
 SweepHit sweep(const Collider& collider, const RigidTransform& previous_pose, Vec3f from_world,

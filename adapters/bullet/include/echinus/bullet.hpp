@@ -129,11 +129,14 @@ class SoftBodyPair {
         if (!last_pose_) last_pose_ = pose_before(placed);
         // Contacts with a link of a multibody need Jacobians that its solver keeps to itself.
         if (object.getInternalType() == btCollisionObject::CO_FEATHERSTONE_LINK) return;
-        contacts_.resize(static_cast<std::size_t>(body.m_nodes.size()));
-        contacts_batch(placed, positions(), static_cast<float>(margin()), contacts_);
-        for (int i = 0; i < body.m_nodes.size(); ++i)
-            if (contacts_[static_cast<std::size_t>(i)].found())
-                add(body.m_nodes[i], contacts_[static_cast<std::size_t>(i)]);
+        const auto node_count = static_cast<std::size_t>(body.m_nodes.size());
+        found_.resize(node_count);
+        points_.resize(node_count);
+        normals_.resize(node_count);
+        const std::size_t count =
+            contacts_into(placed, positions(), static_cast<float>(margin()), {found_, points_, normals_});
+        for (std::size_t k = 0; k < count; ++k)
+            add(body.m_nodes[static_cast<int>(found_[k])], to_bullet(points_[k]), to_bullet(normals_[k]));
     }
 
     /// Puts nodes that passed the surface during the step, or ended inside, back to it.
@@ -198,13 +201,12 @@ class SoftBodyPair {
     }
 
     // Bullet 3.24 fills the members in this way for its own shapes; PSolve_RContacts() reads them.
-    void add(btSoftBody::Node& node, const Contact& found) {
+    void add(btSoftBody::Node& node, const btVector3& point, const btVector3& normal) {
         if (node.m_battach != 0) return;
         const btRigidBody* rigid = btRigidBody::upcast(object_);
         if (rigid != nullptr && rigid->isStaticOrKinematicObject()) rigid = nullptr;
         if (node.m_im == 0 && rigid == nullptr) return;
         const btScalar seconds = body_->m_sst.sdt;
-        const btVector3 normal = to_bullet(found.normal);
         const btVector3 slip = node.m_x - node.m_q - velocity_at(node.m_x) * seconds;
         const btScalar approach = slip.dot(normal);
         const btScalar friction = body_->m_cfg.kDF * object_->getFriction();
@@ -212,7 +214,7 @@ class SoftBodyPair {
         for (btVector3* unused : {&contact.m_cti.m_bary, &contact.t1, &contact.t2}) unused->setZero();
         contact.m_cti.m_colObj = object_;
         contact.m_cti.m_normal = normal;
-        contact.m_cti.m_offset = -normal.dot(to_bullet(found.point)) - margin();
+        contact.m_cti.m_offset = -normal.dot(point) - margin();
         contact.m_node = &node;
         contact.m_c1 = node.m_x - object_->getWorldTransform().getOrigin();
         contact.m_c0 = impulse_matrix(node.m_im, rigid, contact.m_c1, seconds);
@@ -275,7 +277,8 @@ class SoftBodyPair {
     const MapShape* shape_ = nullptr;
     btTransform in_object_;                   ///< of the shape; not the identity in a compound
     std::optional<RigidTransform> last_pose_; ///< of the shape, at the end of the last step
-    std::vector<Contact> contacts_;           // [nodes]
+    std::vector<std::uint32_t> found_;        ///< [nodes] of them the first: nodes in contact
+    std::vector<Vec3f> points_, normals_;     ///< [nodes] of the surface there
     std::vector<std::uint8_t> inside_;        // [nodes]
     std::vector<Vec3f> rounded_;              // [nodes]
 };
