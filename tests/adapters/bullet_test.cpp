@@ -209,6 +209,20 @@ TEST(BulletAdapter, FrictionOfBothDecidesWhetherAClothSlides) {
     EXPECT_GT(slid(0), btScalar(0.5));
 }
 
+TEST(BulletAdapter, FrictionHoldsNodesThatWerePutBackBeforeTheyHadAContact) {
+    bullet::MapShape shape(ExactMap::build(make_box({2, 2, 0.002})));
+    const auto slid = [&](btScalar friction) {
+        World world;
+        world.add(shape).setFriction(friction);
+        btSoftBody& cloth = world.add_cloth(1, btScalar(0.5));
+        cloth.setVelocity({20, 0, -200}); // in one step past the plate
+        world.step(1);
+        return mean_of(cloth, 0);
+    };
+    EXPECT_NEAR(slid(1), 0, btScalar(0.01));
+    EXPECT_NEAR(slid(0), btScalar(20) / 60, btScalar(0.01));
+}
+
 TEST(BulletAdapter, ClothRestsAtTheMarginOfBoth) {
     const TriangleMesh box = make_box({3, 3, 1});
     for (const btScalar own : {btScalar(0), btScalar(0.05)}) {

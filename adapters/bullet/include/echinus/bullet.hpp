@@ -162,6 +162,8 @@ class SoftBodyPair {
   private:
     btScalar margin() const { return body_->getCollisionShape()->getMargin() + shape_->getMargin(); }
 
+    btScalar friction() const { return body_->m_cfg.kDF * object_->getFriction(); }
+
     /// How far from the surface a node is put: enough for floats, and not so much that one sees it.
     float gap() const {
         const auto radius = static_cast<float>(shape_->radius());
@@ -209,7 +211,6 @@ class SoftBodyPair {
         const btScalar seconds = body_->m_sst.sdt;
         const btVector3 slip = node.m_x - node.m_q - velocity_at(node.m_x) * seconds;
         const btScalar approach = slip.dot(normal);
-        const btScalar friction = body_->m_cfg.kDF * object_->getFriction();
         btSoftBody::RContact contact;
         for (btVector3* unused : {&contact.m_cti.m_bary, &contact.t1, &contact.t2}) unused->setZero();
         contact.m_cti.m_colObj = object_;
@@ -219,8 +220,9 @@ class SoftBodyPair {
         contact.m_c1 = node.m_x - object_->getWorldTransform().getOrigin();
         contact.m_c0 = impulse_matrix(node.m_im, rigid, contact.m_c1, seconds);
         contact.m_c2 = node.m_im * seconds;
-        const bool sticks = (slip - normal * approach).length2() < approach * approach * friction * friction;
-        contact.m_c3 = sticks ? btScalar(0) : 1 - friction;
+        const bool sticks =
+            (slip - normal * approach).length2() < approach * approach * friction() * friction();
+        contact.m_c3 = sticks ? btScalar(0) : 1 - friction();
         contact.m_c4 = object_->isStaticOrKinematicObject() ? body_->m_cfg.kKHR : body_->m_cfg.kCHR;
         body_->m_rcontacts.push_back(contact);
         if (rigid != nullptr) rigid->activate();
@@ -257,19 +259,29 @@ class SoftBodyPair {
     /// Near where the node was going: along the face that it met, or where it met it, or where it came from,
     /// carried along with the collider. A place is free when no surface lies on the way there.
     Vec3f free_place(const Collider& now, const Vec3f& from, const Vec3f& to, const SweepHit& hit) const {
+        const Vec3f carried(now.pose.to_world(last_pose_->to_local(Vec3d(from))));
         const Vec3f beside = hit.point + hit.normal * gap();
         const Vec3f along = to + hit.normal * dot(hit.normal, beside - to);
-        for (const Vec3f& place : std::array{along, beside})
+        for (const Vec3f& place :
+             std::array{along - rubbed(along - carried, hit.normal, length(along - to)), beside})
             if (!sweep(now, *last_pose_, from, place).found()) return place;
-        return Vec3f(now.pose.to_world(last_pose_->to_local(Vec3d(from))));
+        return carried;
     }
 
-    /// The node is there and no longer moves into the surface.
+    /// What Coulomb's friction takes of a way along the surface, after a push of this length.
+    Vec3f rubbed(const Vec3f& way, const Vec3f& normal, float push) const {
+        const Vec3f slip = way - normal * dot(normal, way);
+        const float size = length(slip);
+        return size > 0 ? slip * std::min(1.0F, static_cast<float>(friction()) * push / size) : Vec3f{};
+    }
+
+    /// The node is there, has the velocity of its corrected way along the surface, and no longer moves in.
     void put(btSoftBody::Node& node, const Vec3f& place, const Vec3f& out) const {
-        const btVector3 normal = to_bullet(out);
+        const btVector3 normal = to_bullet(out), shift = to_bullet(place) - node.m_x;
         node.m_x = to_bullet(place);
-        const btScalar speed = (node.m_v - velocity_at(node.m_x)).dot(normal);
-        if (speed < 0) node.m_v -= normal * speed;
+        node.m_v += (shift - normal * shift.dot(normal)) / body_->m_sst.sdt;
+        const btScalar inwards = btMin((node.m_v - velocity_at(node.m_x)).dot(normal), btScalar(0));
+        node.m_v -= normal * inwards;
     }
 
     btSoftBody* body_ = nullptr; ///< null where this step has no contact between the two
