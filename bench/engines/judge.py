@@ -9,7 +9,7 @@ import echinus as ech
 
 HEADER = 32  # bytes of PC2
 JUDGED_EVERY = 15  # frames, and the last
-REST_SPEED, REST_FRAMES = 0.02, 30  # R/s, of all but 1 % of the particles; frames to the end
+REST_SPEED, REST_FRAMES = 0.1, 15  # R/s, of all but 1 % of the particles; frames to the end
 LOST = 2.0  # R from the model's middle
 
 COLUMNS = ("inside", "inside_worst", "deepest", "deepest_worst", "model_pairs", "model_pairs_worst", "own_pairs", "own_pairs_worst",

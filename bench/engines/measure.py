@@ -30,6 +30,7 @@ COLUMNS = ("model", "side", "setup", "engine", "platform", "version", "substeps"
            "frame_ms_99", "settings")
 PICTURED = (50, "recommended")
 SHEET_COLUMNS = 4
+BULLET_FRAME = 16  # of the picture in docs/bullet.md: its own cloth is halfway through
 
 
 @dataclasses.dataclass(frozen=True)
@@ -179,15 +180,31 @@ def draw(options, names):
                 pictures[runner.name] = folder / "end.png"
         for picture in pictures.values():
             if not picture.exists():
-                subprocess.run([options.program, "render", "moment", picture.parent, "-o", picture, "--width", "420", "--height", "360",
-                                "--view", "35,15", "--close-up", "0,0,0,1.3", "--samples", "48"], check=True)
+                render(options, picture)
         if pictures:
             write_sheet(options.images / f"engines_{name}.png", pictures)
+    draw_bullet(options, side)
+
+
+def render(options, picture, *more):
+    subprocess.run([options.program, "render", "moment", picture.parent, "-o", picture, "--width", "420", "--height", "360", "--view",
+                    "35,15", "--close-up", "0,0,0,1.05", "--samples", "48", *more], check=True)
+
+
+def draw_bullet(options, side):
+    """For docs/bullet.md: the same moment with Bullet's own shape and with a map."""
+    captions = {"Bullet": "btBvhTriangleMeshShape", "Bullet with Echinus": "echinus::bullet::MapShape"}
+    folders = {r.name: options.work / Run("torus", side, "matched", r).folder for r in RUNNERS if r.name in captions}
+    if all((folder / "report.json").exists() for folder in folders.values()):
+        for folder in folders.values():
+            render(options, folder / "falling.png", "--frame", str(BULLET_FRAME))
+        write_sheet(options.images / "bullet_torus.png", {captions[name]: folder / "falling.png" for name, folder in folders.items()})
 
 
 def write_sheet(path, pictures):
-    rows = -(-len(pictures) // SHEET_COLUMNS)
-    figure, places = pyplot.subplots(rows, SHEET_COLUMNS, figsize=(2.8 * SHEET_COLUMNS, 2.7 * rows), layout="constrained", squeeze=False)
+    columns = min(len(pictures), SHEET_COLUMNS)
+    rows = -(-len(pictures) // columns)
+    figure, places = pyplot.subplots(rows, columns, figsize=(2.8 * columns, 2.7 * rows), layout="constrained", squeeze=False)
     for place in places.flat:
         place.set_axis_off()
     for place, (name, picture) in zip(places.flat, pictures.items()):

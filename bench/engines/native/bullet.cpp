@@ -123,7 +123,7 @@ class BulletEngine : public Engine {
         btSoftBody::Material* bending = cloth_.appendMaterial();
         if (is_matched_) {
             bending->m_kLST = btScalar(0.3);
-            cloth_.m_cfg.kKHR = 1; // with less, the margin is not kept
+            cloth_.m_cfg.kKHR = btScalar(0.3); // less does not keep the margin, and more lets cloth hop
         }
         const Links links = links_of(mesh);
         for (const auto& [a, b] : links.edges) cloth_.appendLink(a, b, cloth_.m_materials[0]);
