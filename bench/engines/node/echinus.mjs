@@ -1,0 +1,28 @@
+// The cloth in Echinus itself, as WebAssembly: surfaces collide, or with --particles only particles.
+import { FRAME_SECONDS, FRICTION, GRAVITY, THICKNESS, cloth, engine, isMatched, model, particlesOnly, record, versionOf } from './runner.mjs';
+
+const { load } = await engine('echinus');
+const echinus = await load();
+
+const substeps = isMatched ? 1 : 4; // four: the time step of a scene unless it says otherwise
+const map = echinus.buildMap(echinus.makeMesh(model.vertices, model.faces));
+const scene = echinus.parseScene({
+    model: 'model.obj',
+    cloth: { mesh: 'cloth.obj', ...(isMatched && { thickness: THICKNESS }) },
+    material: { friction: FRICTION },
+    gravity: GRAVITY,
+    time_step: FRAME_SECONDS / substeps,
+    iterations: 10,
+    surface_collision: !particlesOnly,
+    self_collision: !particlesOnly,
+});
+const simulation = scene.makeSimulation(map, { cloth: echinus.makeMesh(cloth.vertices, cloth.faces) });
+
+record(
+    {
+        engine: 'Echinus', version: versionOf('echinus'), configuration: particlesOnly ? 'particles only' : '', substeps,
+        settings: { iterations: '10', thickness: isMatched ? String(THICKNESS) : 'half an edge' },
+    },
+    () => simulation.step(substeps),
+    () => simulation.positions,
+);
