@@ -1,13 +1,13 @@
 #include "directions/lattice.hpp"
 
 #include "directions/face_cone.hpp"
+#include "geometry/number_text.hpp"
 
 #include <echinus/error.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 namespace echinus {
 
@@ -33,10 +33,9 @@ void require_usable(float radius) {
     constexpr float kSmallest = 1e-15F;
     constexpr float kLargest = 1e15F;
     if (radius >= kSmallest && radius <= kLargest) return;
-    std::ostringstream sentence;
-    sentence << "the mesh has a bounding radius of " << radius << ", outside [" << kSmallest << ", "
-             << kLargest << "]; choose another unit";
-    throw Error(ErrorCode::InvalidMesh, sentence.str());
+    throw Error(ErrorCode::InvalidMesh, "the mesh has a bounding radius of " + number_text(radius) +
+                                            ", outside [" + number_text(kSmallest) + ", " +
+                                            number_text(kLargest) + "]; choose another unit");
 }
 
 /// Does the origin lie on the line of one of the face's edges, or on the face itself?

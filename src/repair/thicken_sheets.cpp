@@ -1,3 +1,4 @@
+#include "geometry/number_text.hpp"
 #include "mesh/components.hpp"
 #include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
@@ -11,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 namespace echinus {
 
@@ -35,11 +35,10 @@ void require_suitable(const TriangleMesh& mesh, double thickness) {
     const double radius = smallest_enclosing_sphere(positions).radius;
     const double least = std::max(radius * 0x1p-15, farthest * 0x1p-20); // 16 steps of a map or of floats
     if (thickness >= least && thickness <= radius) return;
-    std::ostringstream sentence;
-    sentence << "sheets cannot get the thickness " << thickness << "; for this mesh it must be " << least
-             << " to " << radius
-             << ", from what its coordinates resolve to the radius of its bounding sphere";
-    throw Error(ErrorCode::InvalidOptions, sentence.str());
+    throw Error(ErrorCode::InvalidOptions,
+                "sheets cannot get the thickness " + number_text(thickness) + "; for this mesh it must be " +
+                    number_text(least) + " to " + number_text(radius) +
+                    ", from what its coordinates resolve to the radius of its bounding sphere");
 }
 
 /// The sheets of a mesh: faces of open components, joined across every edge at which just two of them meet

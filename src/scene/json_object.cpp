@@ -1,12 +1,13 @@
 #include "scene/json_object.hpp"
 
+#include "geometry/number_text.hpp"
+
 #include <echinus/error.hpp>
 
 #include <algorithm>
 #include <limits>
 #include <numeric>
 #include <set>
-#include <sstream>
 
 namespace echinus {
 
@@ -56,16 +57,10 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
-std::string as_text(double number) {
-    std::ostringstream text;
-    text << number;
-    return text.str();
-}
-
 std::string expected_number(const char* kind, Range range) {
     if (range.most == std::numeric_limits<double>::infinity())
-        return std::string(kind) + " of at least " + as_text(range.least);
-    return std::string(kind) + " from " + as_text(range.least) + " to " + as_text(range.most);
+        return std::string(kind) + " of at least " + number_text(range.least);
+    return std::string(kind) + " from " + number_text(range.least) + " to " + number_text(range.most);
 }
 
 std::string expected_array(std::size_t size, const std::string& element) {
