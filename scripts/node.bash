@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# For scripts that build the page: Vite needs Node 20.19, 22.12 or newer, but Debian 12 has 18. Sourced from the
-# repository's root.
+# For scripts that use packages of the npm registry. Sourced from the repository's root. Vite needs Node 20.19, 22.12 or
+# newer, but Debian 12 has 18.
 
 node_is_recent() {
     local major minor
@@ -29,4 +29,11 @@ use_recent_node() {
         touch "$folder/complete"
     fi
     PATH=$folder/node_modules/node-linux-$platform/bin:$folder/node_modules/.bin:$PATH
+}
+
+# install_packages FOLDER: what its package-lock.json lists; again only when that has changed.
+install_packages() {
+    cmp --silent "$1/package-lock.json" "$1/node_modules/.installed" && return
+    npm --prefix "$1" ci --install-links=false --no-audit --no-fund --loglevel=error
+    cp "$1/package-lock.json" "$1/node_modules/.installed"
 }

@@ -10,7 +10,6 @@ export default defineConfig({
     base: './', // dist works in any folder of any host
     publicDir,
     define: { HAS_HORSE: existsSync(`${publicDir}/models/horse.3ds`) },
-    resolve: { alias: { echinus: inProject('build/wasm/echinus/echinus.mjs') } },
     worker: { format: 'es' },
     // Every browser with WebAssembly SIMD runs this.
     build: { target: 'es2022', chunkSizeWarningLimit: 1000 },

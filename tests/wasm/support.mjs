@@ -8,7 +8,7 @@ const buildFolder = process.env.ECHINUS_WASM_BUILD ?? join(sourceFolder, 'build/
 export const moduleFolder = join(buildFolder, 'echinus');
 export const referenceFolder = join(buildFolder, 'reference');
 
-export const module = await import(pathToFileURL(join(moduleFolder, 'echinus.mjs')));
+export const module = await import(pathToFileURL(join(moduleFolder, 'node.mjs')));
 export const compiled = await WebAssembly.compile(readFileSync(join(moduleFolder, 'echinus.wasm')));
 
 /** A fresh instance. */

@@ -1,3 +1,5 @@
+/// <reference lib="esnext.disposable" />
+
 /**
  * Echinus for JavaScript: maps of rigid meshes, queries for many particles, and cloth. docs/wasm.md is the guide.
  *
@@ -40,7 +42,9 @@ export function missingFeatures(): string[];
 /**
  * Loads the module. Each call makes an instance with its own memory; a compiled module loads again quickly and can be
  * posted to workers.
- * @param source  where echinus.wasm is; by default beside echinus.mjs
+ * @param source  where echinus.wasm is, by default beside this module: what fetch() takes, so that a relative address is
+ *                relative to the page or the worker; in Node also the path of a file. Or its bytes, or the module compiled
+ * @throws Unsupported, or Unreadable when it is not there
  */
 export function load(source?: URL | string | Response | Promise<Response> | BufferSource | WebAssembly.Module): Promise<Echinus>;
 
@@ -105,6 +109,12 @@ export class Echinus {
      * @throws WrongFormat, UnsupportedVersion, Damaged
      */
     loadMap(bytes: ArrayBuffer | ArrayBufferView, name?: string): AnyMap;
+
+    /**
+     * Collision for particles that another solver moves.
+     * @throws InvalidOptions as for the options of a scene, and with `surfaces` for a start that intersects
+     */
+    makeCollision(options: CollisionOptions): Collision;
 
     /**
      * @param scene  as in docs/scenes.md, as an object or as a JSON text, which may have comments
@@ -400,6 +410,64 @@ export interface DistanceMapDescription extends MapDescription {
     correctedEntries: number;
     clampedEntries: number;
     wrongParityShare: number;
+}
+
+// ---- Collision in another engine
+
+/** Where a model stands: point_world = rotation applied to (scale * point_local), + position. */
+export interface PlacedMap {
+    map: AnyMap;
+    position?: Vec3;
+    /** A unit quaternion w, x, y, z. */
+    rotation?: readonly number[];
+    scale?: number | Vec3;
+}
+
+export interface CollisionOptions {
+    /** [3 particle_count] where the particles begin; outside the models. */
+    positions: ArrayLike<number>;
+    colliders: readonly PlacedMap[];
+    /** The distance that particles keep from the models, units. */
+    thickness: number;
+    /** Coulomb's coefficient. Default: 0.5. */
+    friction?: number;
+    /** With `surfaces`: [3 face_count] particles of each face. */
+    faces?: ArrayLike<number>;
+    /** No face meets a model, not only no particle (docs/surfaces.md). Needs exact maps. Default: false. */
+    surfaces?: boolean;
+    /** With `surfaces`: nor do the faces meet each other. Default: false. */
+    selfCollision?: boolean;
+    /** Accept the exact map of an open mesh, near whose gaps particles get in and out. Default: false. */
+    allowOpenColliders?: boolean;
+}
+
+/**
+ * Keeps particles that another solver moves out of models: of each of its steps what led a particle inside, or through a
+ * model, is taken back. A particle that began outside of exact maps is outside after every correct(), however fast it or
+ * the model moved; the limits are those of Simulation::step() in echinus/simulation.hpp.
+ *
+ * After each step of the solver: write where it put the particles into `positions`, call correct(), and give the solver
+ * the positions and velocities of the particles in `corrected`. The views last as those of a buffer.
+ */
+export class Collision extends Deletable {
+    readonly particleCount: number;
+    readonly colliderCount: number;
+    /** [3 particleCount] world units. A particle whose place is not finite stays where it was, for others to meet. */
+    readonly positions: Float32Array;
+    /** [3 particleCount] units per second, of the particles in `corrected`. */
+    readonly velocities: Float32Array;
+    /** The particles that the last correct() moved, ascending. */
+    readonly corrected: Uint32Array;
+    /** With `surfaces`: how often no place for a particle was proven. Only then may faces intersect: 0. */
+    readonly squeezedCount: number;
+
+    /**
+     * Where the solver's next step leads a collider, evenly and the shorter way round; then it rests.
+     * @param rotation  a unit quaternion w, x, y, z
+     */
+    setColliderPose(collider: number, position: Vec3, rotation?: readonly number[]): void;
+    /** @param seconds  that the solver's step took  @returns how many particles were moved */
+    correct(seconds: number): number;
 }
 
 // ---- Scenes and simulations

@@ -1,12 +1,13 @@
 /** Echinus for JavaScript: docs/wasm.md explains it, echinus.d.ts is the contract. */
 import { ContactBuffer, FlagBuffer, PointBuffer } from './buffers.mjs';
+import { Collision } from './collision.mjs';
 import { Core } from './core.mjs';
 import { EchinusError, refuse } from './errors.mjs';
 import { DistanceMap, ExactMap, buildMap, loadMap } from './maps.mjs';
 import { Mesh } from './mesh.mjs';
 import { Scene, Simulation } from './simulation.mjs';
 
-export { ContactBuffer, DistanceMap, EchinusError, ExactMap, FlagBuffer, Mesh, PointBuffer, Scene, Simulation };
+export { Collision, ContactBuffer, DistanceMap, EchinusError, ExactMap, FlagBuffer, Mesh, PointBuffer, Scene, Simulation };
 
 // The smallest modules that need a vector instruction (i8x16.splat) and a handler of exceptions (try, catch_all).
 const MAGIC = [0, 97, 115, 109, 1, 0, 0, 0];
@@ -21,7 +22,7 @@ export function missingFeatures() {
 }
 
 /** Loads echinus.wasm from beside this file, or from `source`. */
-export async function load(source = new URL('echinus.wasm', import.meta.url)) {
+export async function load(source = new URL('./echinus.wasm', import.meta.url)) {
     const missing = missingFeatures();
     if (missing.length > 0) throw new EchinusError('Unsupported', `this browser lacks ${missing.join(' and ')}, which Echinus needs`);
     return new Echinus(await Core.start(await compile(await source)));
@@ -31,10 +32,7 @@ async function compile(source) {
     if (source instanceof WebAssembly.Module) return source;
     if (typeof Response === 'function' && source instanceof Response) return compileResponse(source);
     if (source instanceof ArrayBuffer || ArrayBuffer.isView(source)) return WebAssembly.compile(source);
-    const url = source instanceof URL ? source : new URL(source, import.meta.url);
-    if (url.protocol !== 'file:') return compileResponse(await fetch(url));
-    const { readFile } = await import(/* @vite-ignore */ 'node:fs/promises');
-    return WebAssembly.compile(await readFile(url));
+    return compileResponse(await fetch(source));
 }
 
 async function compileResponse(response) {
@@ -97,6 +95,10 @@ export class Echinus {
     }
     loadMap(bytes, name = 'the map') {
         return loadMap(this.#core, bytes, name);
+    }
+
+    makeCollision(options) {
+        return new Collision(this.#core, options);
     }
 
     parseScene(scene, name = 'the scene') {

@@ -104,12 +104,12 @@ export class Mesh extends Handle {
     }
 }
 
-function asVertices(values) {
+export function asVertices(values) {
     if (values?.length === undefined || values.length % 3 !== 0) refuse('vertices must be an array of three numbers for each vertex');
     return values instanceof Float32Array ? values : Float32Array.from(values);
 }
 
-function asIndices(values, what, multiple) {
+export function asIndices(values, what, multiple) {
     if (values?.length === undefined || values.length % multiple !== 0)
         refuse(`${what} must be an array of whole numbers${multiple > 1 ? `, ${multiple} for each` : ''}`);
     if (values instanceof Uint32Array) return values;

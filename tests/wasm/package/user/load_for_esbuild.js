@@ -1,0 +1,4 @@
+import { load as loadFrom } from 'echinus';
+import wasm from 'echinus/echinus.wasm';
+
+export const load = () => loadFrom(wasm);
