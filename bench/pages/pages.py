@@ -117,14 +117,14 @@ def engines(folder):
 
 
 def engines_table(records):
-    """At the end, and in brackets in the worst frame judged."""
+    """At the end, and in brackets in the worst frame judged; times of the first half second, and in brackets of all frames."""
     rows = [["engine", "inside", "deepest, R", "pairs with the model", "own pairs", "stretch, %", "lost", "rests from frame", "ms a frame, native",
              "wasm"]]
     for r in records:
         if r["status"] != "done":
             rows.append([r["engine"], r["status"]] + [""] * (len(rows[0]) - 2))
             continue
-        times = [number(r["frame_ms"]) if r["platform"] == platform else "" for platform in ("native", "wasm")]
+        times = [f"{number(r['contact_ms'])} ({number(r['frame_ms'])})" if r["platform"] == platform else "" for platform in ("native", "wasm")]
         pairs = [f"{r[c]} ({r[f'{c}_worst']})" if r[c] else "" for c in ("inside", "model_pairs", "own_pairs")]
         deepest = f"{number(r['deepest'])} ({number(r['deepest_worst'])})" if r["deepest"] else ""
         rows.append([r["engine"], pairs[0], deepest, pairs[1], pairs[2], number(r["stretch"], 100), r["lost"], r["rest_frame"] or "not", *times])
