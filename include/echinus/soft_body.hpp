@@ -39,7 +39,8 @@ Deformable make_soft_body(const TetrahedralMesh& mesh, const SoftBodyOptions& op
 /// Several deformables as one: cloth and organ, two organs. With self_collision they collide with each other.
 /// The particles, and all that names them, follow one part after the other. Masses stay as they are, so they
 /// must be in one unit: see with_masses_times(). Time O(n).
-/// @throws Error InvalidOptions for a part that no simulation would take, naming the part and what is at fault
+/// @throws Error InvalidOptions for a part that no simulation would take, naming the part and what is at
+/// fault
 Deformable combine(std::span<const Deformable> parts);
 
 /// The same deformable, with all masses times a factor, finite and positive. A cloth's particles have the

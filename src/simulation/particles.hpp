@@ -46,8 +46,11 @@ struct Placement {
 /// The particles of a deformable while a frame is computed.
 struct Particles {
     PointArrays positions;
-    PointArrays previous;        ///< one substep ago
-    PointArrays frame_start;     ///< where they were when the frame began
+    PointArrays previous;    ///< one substep ago
+    PointArrays frame_start; ///< where they were when the frame began
+    /// What rounding took off the last ways. In small steps gravity adds little more than a position's last
+    /// digit; taken along, it is not lost.
+    PointArrays remainders;
     std::vector<float> mobility; ///< 1, or 0 for a particle that is pinned
 
     explicit Particles(const Deformable& deformable) {
@@ -56,6 +59,7 @@ struct Particles {
         positions.load(deformable.positions);
         previous.load(deformable.previous_positions);
         frame_start = positions;
+        remainders.resize(count());
     }
     std::size_t count() const { return mobility.size(); }
     bool pinned(std::size_t i) const { return mobility[i] == 0; }

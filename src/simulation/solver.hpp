@@ -70,6 +70,7 @@ class Simulation::Solver {
     void relax_stretched_part();
     void keep_free();
     void publish();
+    void require_in_bounds() const;
     void judge_frame();
     void archive_colliders(StateArchive& state);
 

@@ -84,3 +84,23 @@ TEST(SoftBodyPhysics, SlidesDownASlopeOnlyBeyondTheAngleOfFrictionAndThenAsFastA
         EXPECT_NEAR(slide.distance, slide.expected, 0.05 * slide.expected) << degrees;
     }
 }
+
+TEST(SoftBodyPhysics, FallsAsFastFarFromTheOriginAndInSmallStepsAsNearIt) {
+    for (const float height : {0.5F, 2.0F, 8.0F})
+        for (const std::uint32_t substeps : {5U, 10U, 20U}) {
+            const Deformable body =
+                make_soft_body(make_solid_box({0.3, 0.3, 0.3}, {2, 2, 2}), {.pose = {{}, {0, 0, height}}});
+            Simulation simulation(
+                body, {},
+                {.solver = SolverKind::Xpbd, .iteration_count = 1, .substep_count = substeps, .drag = 0});
+            for (int frame = 0; frame < 60; ++frame) simulation.step();
+            double fallen = 0;
+            for (std::size_t i = 0; i < body.particle_count(); ++i)
+                fallen += double{body.positions[i].z} - double{simulation.positions()[i].z};
+            const double n = 60.0 * substeps, seconds = 60 * simulation.options().time_step / n;
+            EXPECT_NEAR(fallen / static_cast<double>(body.particle_count()) /
+                            (9.81 * seconds * seconds * n * (n + 1) / 2),
+                        1, 0.005)
+                << height << ' ' << substeps;
+        }
+}

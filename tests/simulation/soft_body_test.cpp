@@ -84,7 +84,9 @@ TEST(SoftBody, IsCombinedWithOthersAndWithCloth) {
 TEST(SoftBody, IsNotCombinedWithAPartThatNamesParticlesOfTheNext) {
     const Deformable sound = cube(1, {});
     const auto expect_refused = [&](const char* words, const Deformable& part) {
-        test::expect_error(ErrorCode::InvalidOptions, words, [&] { combine(std::vector{sound, part, sound}); });
+        test::expect_error(ErrorCode::InvalidOptions, words, [&] {
+            combine(std::vector{sound, part, sound});
+        });
     };
     Deformable broken = sound;
     broken.faces.back()[2] = 8;
@@ -137,6 +139,15 @@ TEST(SoftBody, NeedsXpbdAndFittingTetrahedra) {
     wrong.tetrahedra[1].mu = 0;
     test::expect_error(ErrorCode::InvalidOptions, "tetrahedron 1 has a rest shape",
                        [&] { Simulation(wrong, {}, {.solver = SolverKind::Xpbd}); });
+}
+
+TEST(SoftBody, ThrownOutOfAllBoundsDivergesWhateverItCollidesWith) {
+    for (const float speed : {1e7F, 1e20F, 3e37F}) {
+        Deformable body = cube(3, {.pose = {{}, {0, 0, 0.4}}});
+        for (Vec3f& before : body.previous_positions) before.x -= speed;
+        Simulation simulation(body, test::colliders_of({make_sphere(0.15, 24, 12)}), with_surfaces());
+        test::expect_error(ErrorCode::Diverged, "in frame 1", [&] { simulation.step(); });
+    }
 }
 
 TEST(SoftBody, IsNotMovedByItsOwnThickness) {

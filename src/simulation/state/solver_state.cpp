@@ -25,6 +25,7 @@ void Simulation::Solver::archive(StateArchive& state) {
         state.value(*count);
     state.points(particles_.positions);
     state.points(particles_.previous);
+    state.points(particles_.remainders);
     rest_.archive(state);
     if (stretched_part_) stretched_part_->archive(state, sticks_.count());
     if (meter_) meter_->archive(state);
