@@ -34,8 +34,8 @@ class WrongUse : public std::runtime_error {
 /// takes one argument or more.
 using ArgumentTarget =
     std::variant<std::string*, std::filesystem::path*, std::vector<std::filesystem::path>*, double*, float*,
-                 std::uint32_t*, std::uint64_t*, std::optional<std::uint32_t>*, std::optional<std::int64_t>*,
-                 std::function<bool(const std::string&)>>;
+                 std::uint32_t*, std::uint64_t*, std::optional<double>*, std::optional<std::uint32_t>*,
+                 std::optional<std::int64_t>*, std::function<bool(const std::string&)>>;
 
 /// An option or positional argument of a command, which it refers to.
 class Option {

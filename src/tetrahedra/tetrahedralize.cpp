@@ -166,15 +166,19 @@ Tetrahedralization stuff(const ExactMapView& map, const Box& box, double size,
 Tetrahedralization stuff_count(const ExactMapView& map, const Box& box,
                                const TetrahedralizeOptions& options) {
     constexpr int kMostTries = 16;
-    constexpr double kTolerance = 0.05;
+    constexpr double kTolerance = 0.05, kMostVerticesTried = 1 << 22;
     const auto wanted = static_cast<double>(options.count);
+    // A thin model needs sizes at which its box holds far more elements than it does itself.
+    const double most_vertices = std::max(kMostVerticesTried, 256 * wanted);
     const auto miss = [&](const Tetrahedralization& body) {
+        if (body.mesh.tetrahedra.empty()) return std::numeric_limits<double>::infinity();
         return std::abs(static_cast<double>(body.mesh.tetrahedra.size()) / wanted - 1);
     };
     // As if the model filled its box, where twelve tetrahedra fill a cube: too large at first, not too small.
     double size = std::max(std::cbrt(12 * box.volume() / wanted), box.largest_coordinate() / 2048);
     Tetrahedralization best;
     for (int i = 0; i < kMostTries; ++i) {
+        if (i > 0 && BodyLattice::vertex_count_around(box.low, box.high, size) > most_vertices) break;
         Tetrahedralization body = stuff(map, box, size, options);
         const auto count = static_cast<double>(body.mesh.tetrahedra.size());
         size *= std::clamp(std::cbrt(count / wanted), 0.5, 2.0);
@@ -191,12 +195,16 @@ Tetrahedralization tetrahedralize(const ExactMapView& model, const Tetrahedraliz
     const Box box = box_of(model);
     Tetrahedralization body =
         options.count > 0 ? stuff_count(model, box, options) : stuff(model, box, options.size, options);
-    if (body.mesh.tetrahedra.empty())
-        throw Error(
-            ErrorCode::InvalidMesh,
-            "no tetrahedra of the size " + std::to_string(body.size) +
-                " fit into the model: it is thinner than that, or encloses nothing; choose a smaller size");
-    return body;
+    if (!body.mesh.tetrahedra.empty()) return body;
+    if (options.count > 0)
+        throw Error(ErrorCode::InvalidMesh,
+                    "no size was found at which about " + std::to_string(options.count) +
+                        " tetrahedra fit into the model: it is too thin for so few, or encloses nothing; "
+                        "choose a larger count, or a size");
+    throw Error(
+        ErrorCode::InvalidMesh,
+        "no tetrahedra of the size " + std::to_string(body.size) +
+            " fit into the model: it is thinner than that, or encloses nothing; choose a smaller size");
 }
 
 } // namespace echinus

@@ -115,6 +115,12 @@ TEST(Tetrahedralize, MeetsACount) {
     }
 }
 
+TEST(Tetrahedralize, PrefersTooManyTetrahedraToNone) {
+    const ExactMap map = ExactMap::build(make_sphere(1, 40, 20));
+    for (const std::size_t count : {1U, 5U})
+        EXPECT_LT(tetrahedralize(map, {.count = count}).mesh.tetrahedra.size(), 200U) << count;
+}
+
 TEST(Tetrahedralize, GivesTheSameBytesForAnyNumberOfThreads) {
     const ExactMap map = ExactMap::build(two_spheres());
     const TetrahedralMesh one = tetrahedralize(map, {.size = 0.07, .thread_count = 1}).mesh;
@@ -157,5 +163,9 @@ TEST(Tetrahedralize, RefusesWhatItCannotDo) {
     expect_refused("vertices, more than the limit", {.size = 0.001});
     expect_error(ErrorCode::InvalidMesh, "choose a smaller size", [] {
         tetrahedralize_mesh(make_box({2, 2, 0.001}), {.size = 0.33});
+    });
+    // Sizes at which such a plate has elements at all make millions of them.
+    expect_error(ErrorCode::InvalidMesh, "at which about 500 tetrahedra fit into the model", [] {
+        tetrahedralize_mesh(make_box({2, 2, 0.001}), {.count = 500});
     });
 }

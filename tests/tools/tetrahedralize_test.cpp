@@ -63,6 +63,8 @@ TEST_F(TetrahedralizeCommand, RefusesWhatItCannotDo) {
     expect_failure(1, "torus.obj: no tetrahedra of the size 5",
                    {"tetrahedralize", "torus.obj", "-o", "a.msh", "--size", "5"});
     expect_failure(2, "finite and positive", {"tetrahedralize", "torus.obj", "-o", "a.msh", "--size", "-1"});
+    expect_failure(2, "must be given, and positive",
+                   {"tetrahedralize", "torus.obj", "-o", "a.msh", "--size", "0"});
     expect_failure(2, "more tetrahedra than the limit of 50",
                    {"tetrahedralize", "torus.obj", "-o", "a.msh", "--size", "0.1", "--most", "50"});
     expect_failure(2, "--count",

@@ -14,6 +14,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 
 using namespace echinus;
 
@@ -23,6 +24,7 @@ struct TetrahedralizeArguments {
     MeshArgument mesh;
     std::filesystem::path target;
     TetrahedralizeOptions options;
+    std::optional<double> size;
     std::uint32_t count = 0, most = 10'000'000;
     bool repair = false;
     bool allow_open = false;
@@ -149,7 +151,7 @@ void add_tetrahedralize_command(Command program) {
         .required()
         .type_name("BODY");
     command
-        .add("--size", &arguments->options.size,
+        .add("--size", &arguments->size,
              "Longest edge of the tetrahedra inside, in the unit of the mesh; features finer than that are "
              "lost")
         .type_name("LENGTH");
@@ -176,7 +178,8 @@ void add_tetrahedralize_command(Command program) {
     command.footer("Example:\n  echinus tetrahedralize liver.off -o liver.msh --count 10000");
     command.action([arguments] {
         arguments->mesh.require_format();
-        if (arguments->options.size == 0 && arguments->count == 0) arguments->count = 10'000;
+        if (!arguments->size && arguments->count == 0) arguments->count = 10'000;
+        arguments->options.size = arguments->size.value_or(0);
         run(*arguments);
     });
 }
