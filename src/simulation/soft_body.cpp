@@ -1,3 +1,4 @@
+#include "geometry/number_text.hpp"
 #include "simulation/disjoint.hpp"
 #include "simulation/validation.hpp"
 
@@ -18,9 +19,9 @@ namespace echinus {
 namespace {
 
 void require_within(const char* name, double value, double least, double most) {
-    require_option(value >= least && value <= most,
-                   std::string("the soft body's ") + name + " is " + std::to_string(value) +
-                       "; it must lie in [" + std::to_string(least) + ", " + std::to_string(most) + "]");
+    require_option(value >= least && value <= most, std::string("the soft body's ") + name + " is " +
+                                                        number_text(value) + "; it must lie in [" +
+                                                        number_text(least) + ", " + number_text(most) + "]");
 }
 
 void require_possible(const TetrahedralMesh& mesh, const SoftBodyOptions& options) {

@@ -1,5 +1,7 @@
 #include "simulation/validation.hpp"
 
+#include "geometry/number_text.hpp"
+
 #include <echinus/error.hpp>
 
 #include <algorithm>
@@ -21,8 +23,8 @@ namespace {
 /// NaN fails every comparison, so it is refused too.
 void require_within(const char* name, double value, double least, double most) {
     if (value >= least && value <= most) return;
-    fail(std::string("simulation option ") + name + " is " + std::to_string(value) + "; it must lie in [" +
-         std::to_string(least) + ", " + std::to_string(most) + "]");
+    fail(std::string("simulation option ") + name + " is " + number_text(value) + "; it must lie in [" +
+         number_text(least) + ", " + number_text(most) + "]");
 }
 
 double length(const Rotation& r) {
@@ -30,8 +32,8 @@ double length(const Rotation& r) {
 }
 
 std::string as_text(const Rotation& r) {
-    return "[" + std::to_string(r.w) + ", " + std::to_string(r.x) + ", " + std::to_string(r.y) + ", " +
-           std::to_string(r.z) + "]";
+    return std::string("[") + number_text(r.w) + ", " + number_text(r.x) + ", " + number_text(r.y) + ", " +
+           number_text(r.z) + "]";
 }
 
 } // namespace
