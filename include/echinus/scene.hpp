@@ -153,6 +153,10 @@ Collider make_collider(const SceneCollider& collider, const ColliderMap& map);
 /// @throws Error as build_map()
 ColliderMap make_collider_map(const Scene& scene, const TriangleMesh& mesh, unsigned thread_count = 0);
 
+/// The tetrahedra that fill a closed surface, with the longest edge inside that the body asks for.
+/// @throws Error InvalidMesh for an open surface, InvalidOptions; as tetrahedralize()
+TetrahedralMesh fill_body(const SceneBody& body, const TriangleMesh& surface);
+
 /// The scene's cloth where it starts, at rest.
 /// @param meshes  of a cloth that is made of files
 /// @throws Error as the two make_cloth() do; for a mesh the sentence begins with its name. InvalidOptions

@@ -12,6 +12,11 @@ namespace echinus {
 
 namespace {
 
+TetrahedralMesh fill(const TriangleMesh& surface, double element) {
+    const ExactMap map = ExactMap::build(surface);
+    return tetrahedralize(map, {.size = element}).mesh;
+}
+
 /// Cuboids of about this size.
 TetrahedralMesh solid_box(const BoxModel& box, double element) {
     const auto segments = [&](double side) {
@@ -28,10 +33,7 @@ struct Filling {
                     "its mesh is the file " + file.name + ": read it and pass its tetrahedra");
     }
     TetrahedralMesh operator()(const BoxModel& box) const { return solid_box(box, element); }
-    TetrahedralMesh operator()(const auto& shape) const {
-        const ExactMap map = ExactMap::build(make_mesh(shape));
-        return tetrahedralize(map.view(), {.size = element}).mesh;
-    }
+    TetrahedralMesh operator()(const auto& shape) const { return fill(make_mesh(shape), element); }
 };
 
 void set_velocity(const Vec3d& velocity, const SimulationOptions& options, Deformable& deformable) {
@@ -73,6 +75,15 @@ Deformable make_body(const SceneBody& body, const TetrahedralMesh* read,
 }
 
 } // namespace
+
+TetrahedralMesh fill_body(const SceneBody& body, const TriangleMesh& surface) {
+    if (!inspect(surface).closed)
+        throw Error(ErrorCode::InvalidMesh,
+                    "the surface of the body is not closed, so what it encloses would be a guess; close it "
+                    "with `echinus mesh repair`, or name the file of tetrahedra that `echinus tetrahedralize "
+                    "--allow-open` makes of it");
+    return fill(surface, body.element);
+}
 
 TetrahedralMesh make_solid(const SceneModel& shape, double element) {
     return std::visit(Filling{element}, shape);

@@ -233,11 +233,15 @@ std::vector<PoseKey> read_keyframes(JsonObject& collider) {
 /// A name, or an object with one.
 std::optional<CacheFile> read_cache(JsonObject& collider) {
     if (!collider.has("cache")) return std::nullopt;
-    if (collider.is_string("cache")) return CacheFile{.name = *collider.read_string("cache")};
+    if (collider.is_string("cache")) {
+        if (collider.read_string("cache")->empty()) collider.refuse("cache", "the name of a file or folder");
+        return CacheFile{.name = *collider.read_string("cache")};
+    }
     auto object = collider.object("cache");
     CacheFile cache;
     object->require("file");
     cache.name = *object->read_string("file");
+    if (cache.name.empty()) object->refuse("file", "the name of a file or folder");
     object->read("frames_per_second", cache.frames_per_second, {1e-9, 1e9});
     if (object->has("animation")) cache.animation = *object->read_string("animation");
     object->finish();

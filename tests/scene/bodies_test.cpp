@@ -55,6 +55,14 @@ TEST(SceneBodies, FillGeneratedShapes) {
     EXPECT_NEAR(mass_of(body, 0, body.particle_count()), 4 * 3.14159 / 3 / 8, 0.05);
 }
 
+TEST(SceneBodies, FillNoSurfaceThatIsOpen) {
+    const SceneBody body = scene_with(R"("bodies": [{"mesh": "ball.off", "element": 0.3}])").bodies[0];
+    TriangleMesh ball = make_sphere(1, 20, 10);
+    EXPECT_FALSE(fill_body(body, ball).tetrahedra.empty());
+    ball.faces.pop_back();
+    test::expect_error(ErrorCode::InvalidMesh, "is not closed", [&] { fill_body(body, ball); });
+}
+
 TEST(SceneBodies, FollowTheClothWhoseDensityIsThenGiven) {
     const Scene scene = scene_with(R"("cloth": {"size": [2, 1], "particles": [4, 3], "density": 0.2},
         "bodies": [{"mesh": "ball.off", "element": 1, "position": [0, 0, 3]}, {"mesh": {"box": {}}, "element": 1}])");

@@ -562,6 +562,10 @@ TEST(Scene, NamesTheCacheThatDeformsACollider) {
     EXPECT_EQ(scene.colliders.front().cache->frames_per_second, 30);
     EXPECT_EQ(refusal(with_collider(R"({"cache": {"frames_per_second": 30}})")),
               "a.json: the key collider.cache.file is missing");
+    EXPECT_EQ(refusal(with_collider(R"({"cache": ""})")),
+              "a.json: collider.cache is \"\"; it must be the name of a file or folder");
+    EXPECT_EQ(refusal(with_collider(R"({"cache": {"file": ""}})")),
+              "a.json: collider.cache.file is \"\"; it must be the name of a file or folder");
     EXPECT_NE(refusal(R"({"model": "a", "cloth": {"size": [1, 1]}, "surface_collision": false,
                           "collider": {"cache": "b"}})")
                   .find("since a collider has a vertex cache"),

@@ -5,7 +5,6 @@
 #include "input.hpp"
 
 #include <echinus/error.hpp>
-#include <echinus/exact_map.hpp>
 #include <echinus/mesh_io.hpp>
 
 #include <string>
@@ -106,10 +105,8 @@ TetrahedralMesh load_body(const SceneBody& body, const fs::path& scene_path,
     const std::optional<fs::path> file = model_file(body.mesh, scene_path, folders);
     if (!file) return {};
     if (body.element == 0) return read_tetrahedra(*file).mesh;
-    return naming_file(file->string(), ErrorCode::InvalidMesh, [&] {
-        const ExactMap map = ExactMap::build(read_mesh(*file));
-        return tetrahedralize(map.view(), {.size = body.element}).mesh;
-    });
+    return naming_file(file->string(), ErrorCode::InvalidMesh,
+                       [&] { return fill_body(body, read_mesh(*file)); });
 }
 
 } // namespace

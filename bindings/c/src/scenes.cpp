@@ -52,8 +52,7 @@ class Meshes {
         if (file == nullptr) return {};
         const fs::path path = find_model(*file, folders_);
         if (body.element == 0) return read_tetrahedra(path).mesh;
-        const ExactMap map = ExactMap::build(read_mesh(path));
-        return tetrahedralize(map.view(), {.size = body.element}).mesh;
+        return fill_body(body, read_mesh(path));
     }
 
     MeshAndEdges from_file(const std::optional<SceneModel>& model) const {

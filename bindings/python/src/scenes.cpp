@@ -83,8 +83,7 @@ ColliderMap build_model_map(const Scene& scene, const Vertices& vertices, const 
 /// The tetrahedra of a body from a file: those in it, or those that fill its surface.
 TetrahedralMesh read_body(const SceneBody& body, const std::filesystem::path& path) {
     if (body.element == 0) return read_tetrahedra(path).mesh;
-    const ExactMap map = ExactMap::build(read_mesh(path));
-    return tetrahedralize(map.view(), {.size = body.element}).mesh;
+    return fill_body(body, read_mesh(path));
 }
 
 /// What the scene's simulation takes besides the scene. None where the scene does not name a file, and for
