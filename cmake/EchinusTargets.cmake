@@ -20,8 +20,9 @@ endif()
 add_library(echinus_options INTERFACE)
 target_compile_options(echinus_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual -Wimplicit-fallthrough
-  # GCC 12 warns about its own std::string when optimising: gcc.gnu.org/PR105651.
+  # GCC 12 warns about its own std::string when optimising, the more with precompiled headers: gcc.gnu.org/PR105651.
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-stringop-overflow>
   $<$<BOOL:${ECHINUS_WARNINGS_AS_ERRORS}>:-Werror>
   # The same bits on every machine: a fused multiply-add rounds once where the source rounds twice.
   -ffp-contract=off
