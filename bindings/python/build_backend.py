@@ -19,7 +19,7 @@ import tomllib
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SOURCES = ["CMakeLists.txt", "LICENSE", "README.md", "bindings/python", "cmake", "include", "pyproject.toml", "src"]
+SOURCES = ["CMakeLists.txt", "LICENSE", "README.md", "adapters/bullet", "bindings/python", "cmake", "include", "pyproject.toml", "src"]
 PARTS_NOT_NEEDED = ["C", "RENDER", "TOOLS", "RIVALS", "TESTS", "EXAMPLES"]
 
 
