@@ -74,6 +74,9 @@ Deformable valid_start(Deformable deformable, const std::vector<Collider>& colli
     return deformable;
 }
 
+/// Lengths whose squares are floats, too.
+constexpr double kLongestWay = 1e18;
+
 /// x' = x + (1 - drag) (x - x_previous) + a dt^2 (Jakobsen 2001, section 2), of one coordinate. Plain arrays
 /// that do not overlap and no branch, for the compiler's vectors.
 /// @param mobility  1, or 0 of a particle that is pinned
@@ -144,9 +147,11 @@ void Simulation::Solver::step() {
             collide();
         }
     }
-    require_in_bounds();
+    // What would be far out may be stopped on its way, but the way has to be one.
+    require_within(kLongestWay);
     keep_free();
     publish();
+    require_within(bound_);
     ++frame;
     judge_frame();
 }
@@ -268,13 +273,12 @@ void Simulation::Solver::publish() {
     particles_.previous.store(deformable.previous_positions);
 }
 
-/// Before anything asks for the ways of the frame as a whole, which have to be finite.
-void Simulation::Solver::require_in_bounds() const {
-    const double bound_sq = bound_ * bound_;
+/// @param most  distance of a particle from the middle of where the deformable began
+void Simulation::Solver::require_within(double most) const {
     for (std::size_t i = 0; i < particles_.count(); ++i) {
         const Vec3d from_start = Vec3d(particles_.positions[i]) - start_centre_;
         // Written so that NaN fails it.
-        if (!(dot(from_start, from_start) <= bound_sq))
+        if (!(dot(from_start, from_start) <= most * most))
             throw Error(ErrorCode::Diverged, "the simulation diverged in frame " + std::to_string(frame + 1) +
                                                  ": particle " + std::to_string(i) +
                                                  " left all bounds; try a smaller time step or stiffness");

@@ -70,7 +70,7 @@ class Simulation::Solver {
     void relax_stretched_part();
     void keep_free();
     void publish();
-    void require_in_bounds() const;
+    void require_within(double most) const;
     void judge_frame();
     void archive_colliders(StateArchive& state);
 
