@@ -1,3 +1,4 @@
+import signal
 import sys
 
 import hypothesis
@@ -15,3 +16,6 @@ def huge_switch_interval():
     sys.setswitchinterval(1000)
     yield
     sys.setswitchinterval(before)
+
+# What a shell starts in the background ignores Ctrl-C, and so would its children: tests of it would never end.
+signal.signal(signal.SIGINT, signal.default_int_handler)
