@@ -30,7 +30,21 @@ struct Arguments {
     std::string task, instruction_set, commit;
     Setting setting;
     fs::path target, recorded;
+    bool resumes = false;
 };
+
+/// The machine and the commit; of records that were resumed, those that the earlier ones are from, too.
+std::vector<std::string> comments_of(const Arguments& arguments) {
+    const std::string machine = comparison::describe_machine();
+    if (!arguments.setting.earlier) return {machine, arguments.commit};
+    std::vector<std::string> comments = arguments.setting.earlier->comments();
+    const auto add = [](std::string& to, const std::string& text) {
+        if (to.find(text) == std::string::npos) to += "; " + text;
+    };
+    add(comments.at(0), machine);
+    add(comments.at(1), arguments.commit);
+    return comments;
+}
 
 int run(Arguments& arguments) {
     Setting& setting = arguments.setting;
@@ -43,8 +57,10 @@ int run(Arguments& arguments) {
     if (!arguments.instruction_set.empty()) use_instruction_set(arguments.instruction_set);
     pin_to_one_core();
     if (arguments.task == "guard") return guard(setting, arguments.recorded);
-    kTasks.at(arguments.task)(setting).write(arguments.target,
-                                             {comparison::describe_machine(), arguments.commit});
+    if (arguments.resumes && fs::exists(arguments.target)) setting.earlier = Records::read(arguments.target);
+    const std::vector<std::string> comments = comments_of(arguments);
+    setting.store = [&](const Records& records) { records.write(arguments.target, comments); };
+    setting.store(kTasks.at(arguments.task)(setting));
     return 0;
 }
 
@@ -66,6 +82,7 @@ int main(int argument_count, char** argument_values) {
     app.add_option("--recorded", arguments.recorded, "CSV file that the guard compares with");
     app.add_option("--commit", arguments.commit, "That is measured, and when: a comment of the CSV file");
     app.add_option("-o,--output", arguments.target, "CSV file");
+    app.add_flag("--resume", arguments.resumes, "Task surfaces: keep the falls that the CSV file has");
     CLI11_PARSE(app, argument_count, argument_values);
     try {
         return run(arguments);

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 /// The settings of a task.
@@ -15,6 +16,9 @@ struct Setting {
     std::size_t large_point_count = 200'000; ///< of a set around a large mesh
     echinus::comparison::Effort effort{.passes = 5, .enough_seconds = 3, .patience_seconds = 10};
     std::function<void(const std::string& what, double fraction)> report_progress;
+    /// For tasks of hours: writes what there is so far, and what an earlier run wrote, to go on from.
+    std::function<void(const Records& so_far)> store;
+    std::optional<Records> earlier;
 };
 
 // One function and one file a task; each returns the records of its CSV file.

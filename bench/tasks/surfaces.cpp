@@ -2,6 +2,7 @@
 // its faces with each other too. Judged exactly, on published positions.
 
 #include "cloth_run.hpp"
+#include "oracle/intersection_judge.hpp"
 #include "rivals/compare/clock.hpp"
 #include "task.hpp"
 
@@ -14,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <vector>
@@ -22,7 +24,8 @@ using namespace echinus;
 
 namespace {
 
-constexpr std::uint32_t kTurn = 10; // frames
+constexpr std::uint32_t kTurn = 10;       // frames
+constexpr std::uint32_t kCgalStride = 10; // of the frames that CGAL judges, too
 
 /// A cloth and its models, ready to be simulated with one contact or another.
 struct Fall {
@@ -304,8 +307,8 @@ Gap gap_of(const Simulation& simulation) {
 /// One cloth on its way.
 class Runner {
   public:
-    Runner(const Fall& fall, const Method& method, std::uint32_t judged_stride)
-        : fall_(fall), judged_stride_(judged_stride),
+    Runner(const Fall& fall, const Method& method)
+        : fall_(fall), judged_stride_(method.with_model ? 1 : kCgalStride),
           simulation_(fall.cloth, fall.colliders, options_of(fall, method)) {}
 
     bool is_done() const { return simulation_.at_rest() || simulation_.frame() >= fall_.frame_limit; }
@@ -335,6 +338,8 @@ class Runner {
             {"model_pairs", fmt::format("{}", model_pairs_)},
             {"own_pairs", fmt::format("{}", own_pairs_)},
             {"judged_frames", fmt::format("{}", judged_frames_)},
+            {"cgal_frames", fmt::format("{}", cgal_frames_)},
+            {"judges_differ", fmt::format("{}", judges_differ_)},
             {"frames", fmt::format("{}", simulation_.frame())},
             {"rested", simulation_.at_rest() ? "yes" : "no"},
             {"strain", fmt::format("{:.4g}", strains.back())},
@@ -371,14 +376,29 @@ class Runner {
     void judge() {
         const Deformable& cloth = simulation_.deformable();
         const TriangleMesh surface{cloth.positions, cloth.faces};
+        const bool asks_cgal = simulation_.frame() % kCgalStride == 0 || is_done() || gap_got_less();
         std::size_t model_pairs = 0;
-        for (std::size_t c = 0; c < fall_.models.size(); ++c)
-            model_pairs +=
-                intersecting_pairs(surface, placed(fall_.models[c], simulation_.colliders()[c])).size();
+        for (std::size_t c = 0; c < fall_.models.size(); ++c) {
+            const TriangleMesh model = placed(fall_.models[c], simulation_.colliders()[c]);
+            const std::vector<FacePair> pairs = intersecting_pairs(surface, model);
+            if (asks_cgal) judges_differ_ += pairs != test::intersecting_pairs_by_cgal(surface, model);
+            model_pairs += pairs.size();
+        }
+        const std::vector<FacePair> own_pairs = self_intersecting_pairs(surface);
+        if (asks_cgal) judges_differ_ += own_pairs != test::self_intersecting_pairs_by_cgal(surface);
         model_pairs_ = std::max(model_pairs_, model_pairs);
-        own_pairs_ = std::max(own_pairs_, self_intersecting_pairs(surface).size());
+        own_pairs_ = std::max(own_pairs_, own_pairs.size());
         strain_ever_ = std::max(strain_ever_, strains_of(cloth).back());
         ++judged_frames_;
+        cgal_frames_ += asks_cgal;
+    }
+
+    /// Is the least gap of this frame the least so far?
+    bool gap_got_less() {
+        const double gap = gap_of(simulation_).least;
+        if (!(gap < gap_least_ever_)) return false;
+        gap_least_ever_ = gap;
+        return true;
     }
 
     const Fall& fall_;
@@ -386,15 +406,24 @@ class Runner {
     Simulation simulation_;
     std::vector<double> frame_ms_;
     std::size_t model_pairs_ = 0, own_pairs_ = 0; ///< of the worst frame
-    std::uint32_t judged_frames_ = 0;
+    std::uint32_t judged_frames_ = 0, cgal_frames_ = 0;
+    std::uint32_t judges_differ_ = 0; ///< surfaces of a frame about which CGAL says otherwise
     std::uint64_t truncated_most_ = 0;
-    double strain_ever_ = 0;
+    double strain_ever_ = 0, gap_least_ever_ = std::numeric_limits<double>::infinity();
 };
+
+bool has(const Records& records, const Fall& fall) {
+    const std::string particles = fmt::format("{}", fall.cloth.particle_count());
+    return std::ranges::any_of(records.all(), [&](const Records::Record& record) {
+        return record.at("scene") == fall.name && record.at("particles") == particles;
+    });
+}
 
 /// The methods take turns of a few frames, so that other load on the machine slows all alike.
 void add_fall(const Fall& fall, const Setting& setting, Records& records) {
+    if (has(records, fall)) return;
     std::vector<Runner> runners;
-    for (const Method& method : kMethods) runners.emplace_back(fall, method, setting.is_short ? 1 : 10);
+    for (const Method& method : kMethods) runners.emplace_back(fall, method);
     while (!std::ranges::all_of(runners, &Runner::is_done)) {
         double progress = 1;
         for (Runner& runner : runners) {
@@ -409,15 +438,18 @@ void add_fall(const Fall& fall, const Setting& setting, Records& records) {
         record["ratio"] = fmt::format("{:.4g}", runners[k].mean_ms() / runners[0].mean_ms());
         records.add(std::move(record));
     }
+    setting.store(records);
 }
 
 } // namespace
 
 Records measure_surfaces(const Setting& setting) {
-    Records records(
-        {"scene",  "particles", "method",    "model_pairs", "own_pairs",      "judged_frames",  "frames",
-         "rested", "strain",    "strain_99", "strain_ever", "truncated_mean", "truncated_most", "squeezed",
-         "lost",   "gap_mean",  "gap_least", "frame_ms",    "frame_ms_99",    "frame_ms_worst", "ratio"});
+    Records records({"scene",         "particles",      "method",        "model_pairs",    "own_pairs",
+                     "judged_frames", "cgal_frames",    "judges_differ", "frames",         "rested",
+                     "strain",        "strain_99",      "strain_ever",   "truncated_mean", "truncated_most",
+                     "squeezed",      "lost",           "gap_mean",      "gap_least",      "frame_ms",
+                     "frame_ms_99",   "frame_ms_worst", "ratio"});
+    if (setting.earlier) records = *setting.earlier;
     for (const SceneRun& run : scene_runs()) add_fall(fall_of(run, setting), setting, records);
     for (const Fall& fall : other_falls(setting)) add_fall(fall, setting, records);
     return records;
