@@ -211,17 +211,18 @@ void relax(StickArrays& sticks, std::span<const std::uint32_t> chosen, PointArra
     for (const std::uint32_t i : chosen) relax_one(sticks, i, positions);
 }
 
-void relax(StickArrays& sticks, PointArrays& positions) noexcept {
-    if (!use_kernels()) return relax_one_by_one(sticks, 0, sticks.count(), positions);
-    for (const StickRun& run : sticks.runs) {
-        if (run.shape == RunShape::Disjoint || run.shape == RunShape::Scattered) {
-            const std::size_t done = run.shape == RunShape::Disjoint
-                                         ? ECHINUS_DISPATCH(relax_disjoint)(run, sticks, positions)
-                                         : 0;
-            relax_one_by_one(sticks, run.first + done, run.count - done, positions);
-        } else {
+void relax(StickArrays& sticks, PointArrays& positions, RunOrder order) noexcept {
+    const bool in_lanes = use_kernels();
+    for (std::size_t r = 0; r < sticks.runs.size(); ++r) {
+        const StickRun& run = sticks.runs[order == RunOrder::Forwards ? r : sticks.runs.size() - 1 - r];
+        const bool any_order = run.shape == RunShape::Disjoint || run.shape == RunShape::Scattered;
+        if (in_lanes && !any_order) {
             ECHINUS_DISPATCH(relax_run)(run, sticks, positions);
+            continue;
         }
+        const bool gathered = in_lanes && run.shape == RunShape::Disjoint;
+        const std::size_t done = gathered ? ECHINUS_DISPATCH(relax_disjoint)(run, sticks, positions) : 0;
+        relax_one_by_one(sticks, run.first + done, run.count - done, positions);
     }
 }
 

@@ -58,8 +58,11 @@ struct StickArrays {
 /// By the solver that the options choose, in the deformable's order.
 StickArrays weighted_sticks(const Deformable& deformable, const SimulationOptions& options);
 
-/// One relaxation of all sticks, in order. The same bits under every instruction set.
-void relax(StickArrays& sticks, PointArrays& positions) noexcept;
+/// The order of the runs; within a run it is always that of its sticks.
+enum class RunOrder : std::uint8_t { Forwards, Backwards };
+
+/// One relaxation of all sticks. The same bits under every instruction set.
+void relax(StickArrays& sticks, PointArrays& positions, RunOrder order = RunOrder::Forwards) noexcept;
 
 /// The same of some sticks, by their numbers.
 void relax(StickArrays& sticks, std::span<const std::uint32_t> chosen, PointArrays& positions) noexcept;
