@@ -267,14 +267,24 @@ TriangleMesh placed(TriangleMesh mesh, const Collider& collider) {
     return mesh;
 }
 
-/// How far the structural sticks are from their rest length, as shares of it; ascending.
+/// How far a structural stick is from its rest length, as a share of it; 0 for other sticks.
+double strain_of(const Stick& stick, const Deformable& cloth) {
+    if (stick.kind != StickKind::Structural) return 0;
+    const double now = length(cloth.positions[stick.b] - cloth.positions[stick.a]);
+    return std::fabs(now / stick.rest_length - 1);
+}
+
+double largest_strain(const Deformable& cloth) {
+    double largest = 0;
+    for (const Stick& stick : cloth.sticks) largest = std::max(largest, strain_of(stick, cloth));
+    return largest;
+}
+
+/// Of the structural sticks, ascending.
 std::vector<double> strains_of(const Deformable& cloth) {
     std::vector<double> strains;
-    for (const Stick& stick : cloth.sticks) {
-        if (stick.kind != StickKind::Structural) continue;
-        const double now = length(cloth.positions[stick.b] - cloth.positions[stick.a]);
-        strains.push_back(std::fabs(now / stick.rest_length - 1));
-    }
+    for (const Stick& stick : cloth.sticks)
+        if (stick.kind == StickKind::Structural) strains.push_back(strain_of(stick, cloth));
     std::ranges::sort(strains);
     return strains;
 }
@@ -308,7 +318,8 @@ Gap gap_of(const Simulation& simulation) {
 class Runner {
   public:
     Runner(const Fall& fall, const Method& method)
-        : fall_(fall), judged_stride_(method.with_model ? 1 : kCgalStride),
+        : fall_(fall), model_stride_(method.with_model ? 1 : kCgalStride),
+          own_stride_(method.with_itself ? 1 : kCgalStride),
           simulation_(fall.cloth, fall.colliders, options_of(fall, method)) {}
 
     bool is_done() const { return simulation_.at_rest() || simulation_.frame() >= fall_.frame_limit; }
@@ -370,13 +381,15 @@ class Runner {
         simulation_.step();
         frame_ms_.push_back(1e3 * (comparison::thread_seconds() - start));
         truncated_most_ = std::max(truncated_most_, simulation_.profile().truncated_count - truncated_before);
-        if (simulation_.frame() % judged_stride_ == 0 || is_done()) judge();
+        if (is_due(model_stride_)) judge();
     }
+
+    bool is_due(std::uint32_t stride) const { return simulation_.frame() % stride == 0 || is_done(); }
 
     void judge() {
         const Deformable& cloth = simulation_.deformable();
         const TriangleMesh surface{cloth.positions, cloth.faces};
-        const bool asks_cgal = simulation_.frame() % kCgalStride == 0 || is_done() || gap_got_less();
+        const bool asks_cgal = gap_got_less() || is_due(kCgalStride);
         std::size_t model_pairs = 0;
         for (std::size_t c = 0; c < fall_.models.size(); ++c) {
             const TriangleMesh model = placed(fall_.models[c], simulation_.colliders()[c]);
@@ -384,11 +397,13 @@ class Runner {
             if (asks_cgal) judges_differ_ += pairs != test::intersecting_pairs_by_cgal(surface, model);
             model_pairs += pairs.size();
         }
-        const std::vector<FacePair> own_pairs = self_intersecting_pairs(surface);
-        if (asks_cgal) judges_differ_ += own_pairs != test::self_intersecting_pairs_by_cgal(surface);
         model_pairs_ = std::max(model_pairs_, model_pairs);
-        own_pairs_ = std::max(own_pairs_, own_pairs.size());
-        strain_ever_ = std::max(strain_ever_, strains_of(cloth).back());
+        if (asks_cgal || is_due(own_stride_)) {
+            const std::vector<FacePair> pairs = self_intersecting_pairs(surface);
+            if (asks_cgal) judges_differ_ += pairs != test::self_intersecting_pairs_by_cgal(surface);
+            own_pairs_ = std::max(own_pairs_, pairs.size());
+        }
+        strain_ever_ = std::max(strain_ever_, largest_strain(cloth));
         ++judged_frames_;
         cgal_frames_ += asks_cgal;
     }
@@ -402,7 +417,7 @@ class Runner {
     }
 
     const Fall& fall_;
-    std::uint32_t judged_stride_;
+    std::uint32_t model_stride_, own_stride_; ///< of the frames that are judged
     Simulation simulation_;
     std::vector<double> frame_ms_;
     std::size_t model_pairs_ = 0, own_pairs_ = 0; ///< of the worst frame
