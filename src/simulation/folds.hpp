@@ -44,6 +44,7 @@ struct FoldArrays {
 FoldArrays weighted_folds(const Deformable& deformable, const SimulationOptions& options);
 
 /// One relaxation of all folds, in order. The same bits under every instruction set.
-void relax(FoldArrays& folds, PointArrays& positions) noexcept;
+/// @param remainders  what rounding took off the positions, taken along; null: it is lost
+void relax(FoldArrays& folds, PointArrays& positions, PointArrays* remainders = nullptr) noexcept;
 
 } // namespace echinus

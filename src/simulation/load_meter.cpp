@@ -31,8 +31,7 @@ void LoadMeter::begin_frame(const std::vector<Collider>& colliders) {
 }
 
 void LoadMeter::note(const Particles& particles) {
-    for (std::size_t i = 0; i < masses_.size(); ++i)
-        noted_.set(i, particles.positions[i] - particles.previous[i]);
+    for (std::size_t i = 0; i < masses_.size(); ++i) noted_.set(i, particles.step(i));
 }
 
 void LoadMeter::charge(std::size_t collider, const Particles& particles) {
@@ -40,7 +39,7 @@ void LoadMeter::charge(std::size_t collider, const Particles& particles) {
 }
 
 void LoadMeter::charge(std::size_t collider, std::uint32_t i, const Particles& particles) {
-    const Vec3f change = particles.positions[i] - particles.previous[i] - noted_[i];
+    const Vec3f change = particles.step(i) - noted_[i];
     if (change == Vec3f{} || masses_[i] == 0) return;
     const Vec3d given = Vec3d(change) * masses_[i];
     sums_[collider].motion += given;

@@ -48,24 +48,41 @@ struct Particles {
     PointArrays positions;
     PointArrays previous;    ///< one substep ago
     PointArrays frame_start; ///< where they were when the frame began
-    /// What rounding took off the last ways. In small steps gravity adds little more than a position's last
-    /// digit; taken along, it is not lost.
-    PointArrays remainders;
+    /// What rounding took off positions and previous ones, with XPBD: a place is the sum of both. In small
+    /// steps gravity and constraints move a particle by little more than a position's last digit.
+    PointArrays remainders, previous_remainders;
+    bool keeps_remainders;       ///< else they are 0
     std::vector<float> mobility; ///< 1, or 0 for a particle that is pinned
 
-    explicit Particles(const Deformable& deformable) {
+    explicit Particles(const Deformable& deformable, SolverKind solver = SolverKind::Verlet)
+        : keeps_remainders(solver == SolverKind::Xpbd) {
         for (const float inverse_mass : deformable.inverse_masses)
             mobility.push_back(inverse_mass == 0 ? 0.0F : 1.0F);
         positions.load(deformable.positions);
         previous.load(deformable.previous_positions);
         frame_start = positions;
-        remainders.resize(count());
+        for (PointArrays* points : {&remainders, &previous_remainders}) points->resize(count());
     }
     std::size_t count() const { return mobility.size(); }
     bool pinned(std::size_t i) const { return mobility[i] == 0; }
+    /// What the particle has moved in this substep.
+    Vec3f step(std::size_t i) const {
+        return (positions[i] - previous[i]) + (remainders[i] - previous_remainders[i]);
+    }
     void put(std::size_t i, const Placement& place) {
         positions.set(i, place.position);
         previous.set(i, place.previous);
+        remainders.set(i, {});
+        previous_remainders.set(i, {});
+    }
+    void move(std::size_t i, const Vec3f& way) { move(positions, remainders, i, way); }
+    void move_previous(std::size_t i, const Vec3f& way) { move(previous, previous_remainders, i, way); }
+
+  private:
+    void move(PointArrays& places, PointArrays& lost, std::size_t i, const Vec3f& way) const {
+        const Vec3f place = places[i], whole = way + lost[i], next = place + whole;
+        places.set(i, next);
+        if (keeps_remainders) lost.set(i, whole - (next - place));
     }
 };
 

@@ -10,7 +10,7 @@
 #include "simd/dispatch.hpp"
 #include "simd/lanes-inl.hpp"
 #include "simulation/folds.hpp"
-#include "simulation/gathered_points-inl.hpp"
+#include "simulation/places-inl.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -37,17 +37,17 @@ namespace echinus {
 namespace HWY_NAMESPACE {
 
 /// relax_one() of the folds from i on.
-HWY_INLINE void relax_lanes(FoldArrays& folds, std::size_t i, PointArrays& positions) {
+template <typename Places>
+HWY_INLINE void relax_lanes(FoldArrays& folds, std::size_t i, const Places& places) {
     const FloatLanes one = splat(1), zero = splat(0);
-    const IntLanes at_a = load_indices(&folds.a[i]), at_b = load_indices(&folds.b[i]),
-                   at_c = load_indices(&folds.c[i]), at_d = load_indices(&folds.d[i]);
-    const PointLanes a = gather(positions, at_a), b = gather(positions, at_b), c = gather(positions, at_c),
-                     d = gather(positions, at_d);
+    const GatheredParticles at_a{load_indices(&folds.a[i])}, at_b{load_indices(&folds.b[i])},
+        at_c{load_indices(&folds.c[i])}, at_d{load_indices(&folds.d[i])};
+    const auto a = places.load(at_a), b = places.load(at_b), c = places.load(at_c), d = places.load(at_d);
     const FloatLanes mass_a = hn::LoadU(kFloat, &folds.inverse_mass_a[i]),
                      mass_b = hn::LoadU(kFloat, &folds.inverse_mass_b[i]),
                      mass_c = hn::LoadU(kFloat, &folds.inverse_mass_c[i]),
                      mass_d = hn::LoadU(kFloat, &folds.inverse_mass_d[i]);
-    const PointLanes edge = b - a, to_c = c - a, to_d = d - a;
+    const PointLanes edge = b.from(a), to_c = c.from(a), to_d = d.from(a);
     const PointLanes area_c = cross(edge, to_c), area_d = cross(to_d, edge);
     const FloatLanes edge_length = length(edge);
     const FloatLanes size_c = length(area_c), size_d = length(area_d);
@@ -69,9 +69,11 @@ HWY_INLINE void relax_lanes(FoldArrays& folds, std::size_t i, PointArrays& posit
     const FloatLanes wanted = (goal - angle) * splat(folds.stiffness) / (rate + compliance);
     const FloatLanes most = splat(kLargestTurn) / rate, least = zero - most;
     const FloatLanes bounded = choose(wanted < least, least, choose(most < wanted, most, wanted));
-    const auto put = [&](const PointLanes& before, const PointLanes& gradient, const FloatLanes& mass,
-                         const IntLanes& at) HWY_ATTR {
-        scatter(choose(has_angle, before + gradient * (bounded * mass), before), positions, at);
+    const auto put = [&](const auto& before, const PointLanes& gradient, const FloatLanes& mass,
+                         const GatheredParticles& at) HWY_ATTR {
+        auto moved = before;
+        moved.move(gradient * (bounded * mass));
+        places.store(choose(has_angle, moved, before), at);
     };
     put(a, gradient_a, mass_a, at_a);
     put(b, gradient_b, mass_b, at_b);
@@ -80,12 +82,19 @@ HWY_INLINE void relax_lanes(FoldArrays& folds, std::size_t i, PointArrays& posit
     hn::StoreU(choose(has_angle, goal - bounded * compliance, goal), kFloat, &folds.goal_angles[i]);
 }
 
-/// Relaxes as many folds of the run as fill whole vectors. @return how many
-std::size_t relax_fold_run(const ConstraintRun& run, FoldArrays& folds, PointArrays& positions) {
+template <typename Places>
+std::size_t relax_whole_vectors(const ConstraintRun& run, FoldArrays& folds, const Places& places) {
     const std::size_t lanes = hn::Lanes(kFloat);
     std::size_t i = 0;
-    for (; i + lanes <= run.count; i += lanes) relax_lanes(folds, run.first + i, positions);
+    for (; i + lanes <= run.count; i += lanes) relax_lanes(folds, run.first + i, places);
     return i;
+}
+
+/// Relaxes as many folds of the run as fill whole vectors. @return how many
+std::size_t relax_fold_run(const ConstraintRun& run, FoldArrays& folds, PointArrays& positions,
+                           PointArrays* remainders) {
+    return remainders != nullptr ? relax_whole_vectors(run, folds, CompensatedPlaces{positions, *remainders})
+                                 : relax_whole_vectors(run, folds, RoundedPlaces{positions});
 }
 
 } // namespace HWY_NAMESPACE
@@ -105,8 +114,8 @@ struct FoldNow {
     Vec3f normal_c, normal_d;
     float rate_c, rate_d; ///< 1 / height over the edge
 
-    FoldNow(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d)
-        : edge(b - a), to_c(c - a), to_d(d - a) {
+    FoldNow(const Vec3f& edge_in, const Vec3f& to_c_in, const Vec3f& to_d_in)
+        : edge(edge_in), to_c(to_c_in), to_d(to_d_in) {
         const Vec3f area_c = cross(edge, to_c), area_d = cross(to_d, edge);
         const float edge_length = length(edge);
         const float size_c = length(area_c), size_d = length(area_d);
@@ -118,12 +127,14 @@ struct FoldNow {
     float angle() const { return atan2_polynomial(dot(normal_c, to_d) * rate_d, dot(normal_c, normal_d)); }
 };
 
-void relax_one(FoldArrays& folds, std::size_t i, PointArrays& positions) {
-    const Vec3f a = positions[folds.a[i]], b = positions[folds.b[i]], c = positions[folds.c[i]],
-                d = positions[folds.d[i]];
+template <typename Places>
+void relax_one(FoldArrays& folds, std::size_t i, const Places& places) {
+    using HWY_NAMESPACE::OneParticle;
+    const OneParticle at_a{folds.a[i]}, at_b{folds.b[i]}, at_c{folds.c[i]}, at_d{folds.d[i]};
+    auto a = places.load(at_a), b = places.load(at_b), c = places.load(at_c), d = places.load(at_d);
     const float mass_a = folds.inverse_mass_a[i], mass_b = folds.inverse_mass_b[i],
                 mass_c = folds.inverse_mass_c[i], mass_d = folds.inverse_mass_d[i];
-    const FoldNow fold(a, b, c, d);
+    const FoldNow fold(b.from(a), c.from(a), d.from(a));
     const float per_length_sq = 1 / dot(fold.edge, fold.edge);
     const float foot_c = dot(fold.to_c, fold.edge) * per_length_sq;
     const float foot_d = dot(fold.to_d, fold.edge) * per_length_sq;
@@ -139,25 +150,34 @@ void relax_one(FoldArrays& folds, std::size_t i, PointArrays& positions) {
     const float wanted = (goal - fold.angle()) * folds.stiffness / (rate + folds.compliances[i]);
     const float most = kLargestTurn / rate;
     const float step = std::clamp(wanted, -most, most);
-    positions.set(folds.a[i], a + gradient_a * (step * mass_a));
-    positions.set(folds.b[i], b + gradient_b * (step * mass_b));
-    positions.set(folds.c[i], c + gradient_c * (step * mass_c));
-    positions.set(folds.d[i], d + gradient_d * (step * mass_d));
+    const auto put = [&](auto& place, const Vec3f& gradient, float mass, const OneParticle& at) {
+        place.move(gradient * (step * mass));
+        places.store(place, at);
+    };
+    put(a, gradient_a, mass_a, at_a);
+    put(b, gradient_b, mass_b, at_b);
+    put(c, gradient_c, mass_c, at_c);
+    put(d, gradient_d, mass_d, at_d);
     goal = goal - step * folds.compliances[i];
 }
 
 } // namespace
 
 float fold_angle(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d) {
-    const FoldNow fold(a, b, c, d);
+    const FoldNow fold(b - a, c - a, d - a);
     const bool has_angle = fold.rate_c <= kMostRate && fold.rate_d <= kMostRate;
     return has_angle ? fold.angle() : 0;
 }
 
-void relax(FoldArrays& folds, PointArrays& positions) noexcept {
+void relax(FoldArrays& folds, PointArrays& positions, PointArrays* remainders) noexcept {
     for (const ConstraintRun& run : folds.runs) {
-        const std::size_t done = use_kernels() ? ECHINUS_DISPATCH(relax_fold_run)(run, folds, positions) : 0;
-        for (std::size_t i = done; i < run.count; ++i) relax_one(folds, run.first + i, positions);
+        const std::size_t done =
+            use_kernels() ? ECHINUS_DISPATCH(relax_fold_run)(run, folds, positions, remainders) : 0;
+        for (std::size_t i = run.first + done; i < run.first + run.count; ++i)
+            if (remainders != nullptr)
+                relax_one(folds, i, HWY_NAMESPACE::CompensatedPlaces{positions, *remainders});
+            else
+                relax_one(folds, i, HWY_NAMESPACE::RoundedPlaces{positions});
     }
 }
 

@@ -8,7 +8,7 @@
 // After foreach_target.h, which includes this file once for each instruction set.
 #include "simd/dispatch.hpp"
 #include "simd/lanes-inl.hpp"
-#include "simulation/gathered_points-inl.hpp"
+#include "simulation/places-inl.hpp"
 #include "simulation/sticks.hpp"
 
 #include <algorithm>
@@ -30,16 +30,17 @@ class LaneStick {
           gives_way_(!hn::AllTrue(Floats(), yield == hn::Zero(Floats()))) {}
 
     /// The same operations as relax_one(). @param left  sticks from the first lane on
-    void operator()(PointLanes& a, PointLanes& b, float* goal_lengths, std::size_t left) const {
+    template <typename Place>
+    HWY_INLINE void operator()(Place& a, Place& b, float* goal_lengths, std::size_t left) const {
         const Floats d;
-        const PointLanes across = b - a;
+        const PointLanes across = b.from(a);
         const FloatLanes least = hn::Set(d, std::numeric_limits<float>::min());
         const FloatLanes distance = hn::Sqrt(dot(across, across) + least);
         const FloatLanes goal = hn::LoadU(d, goal_lengths);
         const FloatLanes factor = hn::Set(d, 1.0F) - goal / distance;
         const PointLanes correction = across * factor;
-        a = a + correction * share_a_;
-        b = b - correction * share_b_;
+        a.move(correction * share_a_);
+        b.move(-(correction * share_b_));
         if (!gives_way_) return;
         const FloatMask in_run = hn::FirstN(d, std::min(left, hn::Lanes(d)));
         hn::BlendedStore(goal + (distance - goal) * yield_, in_run, d, goal_lengths);
@@ -52,17 +53,29 @@ class LaneStick {
 
 /// Particles that follow each other.
 struct Row {
-    static PointLanes load(const PointArrays& p, std::size_t i) {
+    using Point = PointLanes;
+    std::size_t i;
+
+    HWY_INLINE PointLanes load(const PointArrays& p) const {
         const Floats d;
         return {hn::LoadU(d, &p.x[i]), hn::LoadU(d, &p.y[i]), hn::LoadU(d, &p.z[i])};
     }
-    static void store(const PointLanes& points, PointArrays& p, std::size_t i) {
+    HWY_INLINE void store(const PointLanes& points, PointArrays& p) const {
         const Floats d;
         hn::StoreU(points.x, d, &p.x[i]);
         hn::StoreU(points.y, d, &p.y[i]);
         hn::StoreU(points.z, d, &p.z[i]);
     }
-    static void store(const PointLanes& points, const FloatMask& mask, PointArrays& p, std::size_t i) {
+};
+
+/// Of which only some are stored.
+struct PartOfRow {
+    using Point = PointLanes;
+    std::size_t i;
+    FloatMask mask;
+
+    HWY_INLINE PointLanes load(const PointArrays& p) const { return Row{i}.load(p); }
+    HWY_INLINE void store(const PointLanes& points, PointArrays& p) const {
         const Floats d;
         hn::BlendedStore(points.x, mask, d, &p.x[i]);
         hn::BlendedStore(points.y, mask, d, &p.y[i]);
@@ -70,110 +83,186 @@ struct Row {
     }
 };
 
-void relax_side_by_side(const StickRun& run, float* goal_lengths, PointArrays& p) {
+/// @param a, b  the particles of the sticks whose goals these are
+template <typename Places, typename Where>
+HWY_INLINE void relax_at(const Where& a, const Where& b, const LaneStick& stick, float* goal_lengths,
+                         std::size_t left, const Places& places) {
+    auto place_a = places.load(a), place_b = places.load(b);
+    stick(place_a, place_b, goal_lengths, left);
+    places.store(place_a, a);
+    places.store(place_b, b);
+}
+
+template <typename Places>
+void relax_side_by_side(const StickRun& run, float* goal_lengths, const Places& places) {
     const Floats d;
     const LaneStick stick(run);
     const std::size_t lanes = hn::Lanes(d);
     std::size_t i = 0;
-    for (; i + lanes <= run.count; i += lanes) {
-        PointLanes a = Row::load(p, run.a + i), b = Row::load(p, run.b + i);
-        stick(a, b, goal_lengths + i, run.count - i);
-        Row::store(a, p, run.a + i);
-        Row::store(b, p, run.b + i);
-    }
+    for (; i + lanes <= run.count; i += lanes)
+        relax_at(Row{run.a + i}, Row{run.b + i}, stick, goal_lengths + i, run.count - i, places);
     if (i == run.count) return;
     const FloatMask rest = hn::FirstN(d, run.count - i);
-    PointLanes a = Row::load(p, run.a + i), b = Row::load(p, run.b + i);
-    stick(a, b, goal_lengths + i, run.count - i);
-    Row::store(a, rest, p, run.a + i);
-    Row::store(b, rest, p, run.b + i);
+    relax_at(PartOfRow{run.a + i, rest}, PartOfRow{run.b + i, rest}, stick, goal_lengths + i, run.count - i,
+             places);
 }
 
-/// Elements of kWidth floats each, in turn those of ends a and ends b.
+/// Both ends of sticks, in turn those of ends a and ends b.
+/// @tparam Element  kWidth floats
 template <typename Element>
 struct Alternating {
-    using ElementTag = hn::Repartition<Element, Floats>;
-
-    static void load(const float* from, FloatLanes& a, FloatLanes& b) {
-        const ElementTag d;
-        hn::Vec<ElementTag> elements_a, elements_b;
-        hn::LoadInterleaved2(d, reinterpret_cast<const Element*>(from), elements_a, elements_b);
-        a = hn::BitCast(Floats(), elements_a);
-        b = hn::BitCast(Floats(), elements_b);
-    }
-    static void store(const FloatLanes& a, const FloatLanes& b, float* to) {
-        const ElementTag d;
-        hn::StoreInterleaved2(hn::BitCast(d, a), hn::BitCast(d, b), d, reinterpret_cast<Element*>(to));
-    }
-    struct Points {
+    struct Point {
         PointLanes a, b;
     };
-    static Points load(const PointArrays& p, std::size_t i) {
+    using ElementTag = hn::Repartition<Element, Floats>;
+    std::size_t i;
+
+    HWY_INLINE Point load(const PointArrays& p) const {
         FloatLanes ax, ay, az, bx, by, bz;
         load(&p.x[i], ax, bx);
         load(&p.y[i], ay, by);
         load(&p.z[i], az, bz);
         return {{ax, ay, az}, {bx, by, bz}};
     }
-    static void store(const PointLanes& a, const PointLanes& b, PointArrays& p, std::size_t i) {
-        store(a.x, b.x, &p.x[i]);
-        store(a.y, b.y, &p.y[i]);
-        store(a.z, b.z, &p.z[i]);
+    HWY_INLINE void store(const Point& ends, PointArrays& p) const {
+        store(ends.a.x, ends.b.x, &p.x[i]);
+        store(ends.a.y, ends.b.y, &p.y[i]);
+        store(ends.a.z, ends.b.z, &p.z[i]);
+    }
+
+  private:
+    static HWY_INLINE void load(const float* from, FloatLanes& a, FloatLanes& b) {
+        const ElementTag d;
+        hn::Vec<ElementTag> elements_a, elements_b;
+        hn::LoadInterleaved2(d, reinterpret_cast<const Element*>(from), elements_a, elements_b);
+        a = hn::BitCast(Floats(), elements_a);
+        b = hn::BitCast(Floats(), elements_b);
+    }
+    static HWY_INLINE void store(const FloatLanes& a, const FloatLanes& b, float* to) {
+        const ElementTag d;
+        hn::StoreInterleaved2(hn::BitCast(d, a), hn::BitCast(d, b), d, reinterpret_cast<Element*>(to));
     }
 };
 
+/// Of which only some are stored.
 template <typename Element>
-void relax_alternating(const StickRun& run, float* goal_lengths, PointArrays& p) {
-    using Ends = Alternating<Element>;
+struct PartOfAlternating {
+    using Point = typename Alternating<Element>::Point;
+    Alternating<Element> all;
+    FloatMask mask;
+
+    HWY_INLINE Point load(const PointArrays& p) const { return all.load(p); }
+    HWY_INLINE void store(const Point& ends, PointArrays& p) const {
+        const Point before = all.load(p);
+        all.store({choose(mask, ends.a, before.a), choose(mask, ends.b, before.b)}, p);
+    }
+};
+
+template <typename Ends>
+HWY_INLINE RoundedPlace<PointLanes> one_end(const RoundedPlace<Ends>& both, PointLanes Ends::*end) {
+    return {both.position.*end};
+}
+template <typename Ends>
+HWY_INLINE CompensatedPlace<PointLanes> one_end(const CompensatedPlace<Ends>& both, PointLanes Ends::*end) {
+    return {both.position.*end, both.remainder.*end};
+}
+template <typename Ends>
+HWY_INLINE void join(const RoundedPlace<PointLanes>& a, const RoundedPlace<PointLanes>& b,
+                     RoundedPlace<Ends>& both) {
+    both.position = {a.position, b.position};
+}
+template <typename Ends>
+HWY_INLINE void join(const CompensatedPlace<PointLanes>& a, const CompensatedPlace<PointLanes>& b,
+                     CompensatedPlace<Ends>& both) {
+    both.position = {a.position, b.position};
+    both.remainder = {a.remainder, b.remainder};
+}
+
+template <typename Where, typename Places>
+HWY_INLINE void relax_ends_at(const Where& where, const LaneStick& stick, float* goal_lengths,
+                              std::size_t left, const Places& places) {
+    using Ends = typename Where::Point;
+    auto both = places.load(where);
+    auto a = one_end(both, &Ends::a), b = one_end(both, &Ends::b);
+    stick(a, b, goal_lengths, left);
+    join(a, b, both);
+    places.store(both, where);
+}
+
+template <typename Element, typename Places>
+void relax_alternating(const StickRun& run, float* goal_lengths, const Places& places) {
     const Floats d;
     const LaneStick stick(run);
     const std::size_t lanes = hn::Lanes(d);
-    for (std::size_t i = 0; i < run.count; i += lanes) {
-        const auto [a, b] = Ends::load(p, run.a + 2 * i);
-        PointLanes new_a = a, new_b = b;
-        stick(new_a, new_b, goal_lengths + i, run.count - i);
-        if (i + lanes > run.count) {
-            const FloatMask rest = hn::FirstN(d, run.count - i);
-            new_a = choose(rest, new_a, a);
-            new_b = choose(rest, new_b, b);
-        }
-        Ends::store(new_a, new_b, p, run.a + 2 * i);
-    }
+    std::size_t i = 0;
+    for (; i + lanes <= run.count; i += lanes)
+        relax_ends_at(Alternating<Element>{run.a + 2 * i}, stick, goal_lengths + i, run.count - i, places);
+    if (i == run.count) return;
+    const FloatMask rest = hn::FirstN(d, run.count - i);
+    relax_ends_at(PartOfAlternating<Element>{{run.a + 2 * i}, rest}, stick, goal_lengths + i, run.count - i,
+                  places);
 }
 
 /// Relaxes as many sticks as fill whole vectors. @return how many
-std::size_t relax_disjoint(const StickRun& run, StickArrays& sticks, PointArrays& p) {
+template <typename Places>
+std::size_t relax_disjoint_sticks(const StickRun& run, StickArrays& sticks, const Places& places) {
     const Floats d;
     const std::size_t lanes = hn::Lanes(d);
     std::size_t done = 0;
     for (; done + lanes <= run.count; done += lanes) {
         const std::size_t i = run.first + done;
-        const IntLanes at_a = load_indices(&sticks.a[i]), at_b = load_indices(&sticks.b[i]);
-        PointLanes a = gather(p, at_a), b = gather(p, at_b);
         const LaneStick stick(hn::LoadU(d, &sticks.share_a[i]), hn::LoadU(d, &sticks.share_b[i]),
                               hn::LoadU(d, &sticks.yield[i]));
-        stick(a, b, &sticks.goal_lengths[i], lanes);
-        scatter(a, p, at_a);
-        scatter(b, p, at_b);
+        relax_at(GatheredParticles{load_indices(&sticks.a[i])}, GatheredParticles{load_indices(&sticks.b[i])},
+                 stick, &sticks.goal_lengths[i], lanes, places);
     }
     return done;
 }
 
-void relax_run(const StickRun& run, StickArrays& sticks, PointArrays& positions) {
+template <typename Places>
+std::size_t relax_lanes(const StickRun& run, StickArrays& sticks, const Places& places) {
     float* goal_lengths = &sticks.goal_lengths[run.first];
     switch (run.shape) {
     case RunShape::SideBySide:
-        return relax_side_by_side(run, goal_lengths, positions);
+        relax_side_by_side(run, goal_lengths, places);
+        return run.count;
     case RunShape::Neighbours:
-        return relax_alternating<float>(run, goal_lengths, positions);
+        relax_alternating<float>(run, goal_lengths, places);
+        return run.count;
     case RunShape::EverySecond:
 #if HWY_TARGET != HWY_SCALAR // compiled by Highway, never chosen by dispatch.hpp, and too narrow for a pair
-        return relax_alternating<double>(run, goal_lengths, positions);
+        relax_alternating<double>(run, goal_lengths, places);
+        return run.count;
 #endif
     case RunShape::Disjoint:
+        return relax_disjoint_sticks(run, sticks, places);
     case RunShape::Scattered:
         break;
     }
+    return 0;
+}
+
+/// Relaxes the sticks of a run, from the first on. @return how many
+std::size_t relax_run(const StickRun& run, StickArrays& sticks, PointArrays& positions,
+                      PointArrays* remainders) {
+    return remainders != nullptr ? relax_lanes(run, sticks, CompensatedPlaces{positions, *remainders})
+                                 : relax_lanes(run, sticks, RoundedPlaces{positions});
+}
+
+template <typename Places>
+HWY_INLINE void relax_one(StickArrays& sticks, std::size_t i, const Places& places) {
+    const OneParticle at_a{sticks.a[i]}, at_b{sticks.b[i]};
+    auto a = places.load(at_a), b = places.load(at_b);
+    const Vec3f across = b.from(a);
+    // The smallest float keeps particles at one place from dividing by zero and is lost in all else.
+    const float distance = std::sqrt(dot(across, across) + std::numeric_limits<float>::min());
+    float& goal = sticks.goal_lengths[i];
+    const Vec3f correction = across * (1 - goal / distance);
+    a.move(correction * sticks.share_a[i]);
+    b.move(-(correction * sticks.share_b[i]));
+    places.store(a, at_a);
+    places.store(b, at_b);
+    if (sticks.yield[i] != 0) goal = goal + (distance - goal) * sticks.yield[i];
 }
 
 } // namespace HWY_NAMESPACE
@@ -186,43 +275,31 @@ namespace echinus {
 namespace {
 
 HWY_EXPORT(relax_run);
-HWY_EXPORT(relax_disjoint);
 
-void relax_one(StickArrays& sticks, std::size_t i, PointArrays& positions) {
-    const Vec3f a = positions[sticks.a[i]];
-    const Vec3f b = positions[sticks.b[i]];
-    const Vec3f across = b - a;
-    // The smallest float keeps particles at one place from dividing by zero and is lost in all else.
-    const float distance = std::sqrt(dot(across, across) + std::numeric_limits<float>::min());
-    float& goal = sticks.goal_lengths[i];
-    const Vec3f correction = across * (1 - goal / distance);
-    positions.set(sticks.a[i], a + correction * sticks.share_a[i]);
-    positions.set(sticks.b[i], b - correction * sticks.share_b[i]);
-    if (sticks.yield[i] != 0) goal = goal + (distance - goal) * sticks.yield[i];
-}
-
-void relax_one_by_one(StickArrays& sticks, std::size_t first, std::size_t count, PointArrays& positions) {
-    for (std::size_t i = first; i < first + count; ++i) relax_one(sticks, i, positions);
+template <typename Places>
+void relax_one_by_one(StickArrays& sticks, std::size_t first, std::size_t count, const Places& places) {
+    for (std::size_t i = first; i < first + count; ++i) HWY_NAMESPACE::relax_one(sticks, i, places);
 }
 
 } // namespace
 
 void relax(StickArrays& sticks, std::span<const std::uint32_t> chosen, PointArrays& positions) noexcept {
-    for (const std::uint32_t i : chosen) relax_one(sticks, i, positions);
+    for (const std::uint32_t i : chosen)
+        HWY_NAMESPACE::relax_one(sticks, i, HWY_NAMESPACE::RoundedPlaces{positions});
 }
 
-void relax(StickArrays& sticks, PointArrays& positions, RunOrder order) noexcept {
-    const bool in_lanes = use_kernels();
-    for (std::size_t r = 0; r < sticks.runs.size(); ++r) {
-        const StickRun& run = sticks.runs[order == RunOrder::Forwards ? r : sticks.runs.size() - 1 - r];
-        const bool any_order = run.shape == RunShape::Disjoint || run.shape == RunShape::Scattered;
-        if (in_lanes && !any_order) {
-            ECHINUS_DISPATCH(relax_run)(run, sticks, positions);
-            continue;
-        }
-        const bool gathered = in_lanes && run.shape == RunShape::Disjoint;
-        const std::size_t done = gathered ? ECHINUS_DISPATCH(relax_disjoint)(run, sticks, positions) : 0;
-        relax_one_by_one(sticks, run.first + done, run.count - done, positions);
+void relax(StickArrays& sticks, PointArrays& positions, PointArrays* remainders, RunOrder order) noexcept {
+    const std::size_t run_count = sticks.runs.size();
+    for (std::size_t r = 0; r < run_count; ++r) {
+        const StickRun& run = sticks.runs[order == RunOrder::Forwards ? r : run_count - 1 - r];
+        const std::size_t done =
+            use_kernels() ? ECHINUS_DISPATCH(relax_run)(run, sticks, positions, remainders) : 0;
+        const std::size_t left = run.count - done;
+        if (remainders != nullptr)
+            relax_one_by_one(sticks, run.first + done, left,
+                             HWY_NAMESPACE::CompensatedPlaces{positions, *remainders});
+        else
+            relax_one_by_one(sticks, run.first + done, left, HWY_NAMESPACE::RoundedPlaces{positions});
     }
 }
 

@@ -14,40 +14,41 @@ HWY_BEFORE_NAMESPACE();
 namespace echinus {
 namespace HWY_NAMESPACE {
 
+/// Where the substep began only turns the corrections: rounded is enough.
 template <typename Kind>
-HWY_INLINE void relax_at(std::size_t i, TetrahedronArrays& all, PointArrays& positions,
-                         const PointArrays& previous) {
-    Tetrahedra<Kind> now(all, i, positions, previous);
+HWY_INLINE void relax_at(std::size_t i, TetrahedronArrays& all, Particles& particles) {
+    const CompensatedPlaces places{particles.positions, particles.remainders};
+    Tetrahedra<Kind> now(all, i, places, RoundedPlaces{particles.previous});
     auto shape = Kind::load(all.shape_multipliers, i), volume = Kind::load(all.volume_multipliers, i);
     now.relax_shape(Kind::load(all.shape_stiffnesses, i), shape);
     now.relax_volume(Kind::load(all.volume_stiffnesses, i), volume);
-    now.store(all, i, positions);
+    now.store(places);
     if (!all.keeps_multipliers) return;
     Kind::store(shape, all.shape_multipliers, i);
     Kind::store(volume, all.volume_multipliers, i);
 }
 
 template <typename Kind>
-HWY_INLINE void damp_at(std::size_t i, const TetrahedronArrays& all, PointArrays& positions,
-                        const PointArrays& previous) {
-    Tetrahedra<Kind> now(all, i, positions, previous);
+HWY_INLINE void damp_at(std::size_t i, const TetrahedronArrays& all, Particles& particles) {
+    const CompensatedPlaces places{particles.positions, particles.remainders};
+    Tetrahedra<Kind> now(all, i, places,
+                         CompensatedPlaces{particles.previous, particles.previous_remainders});
     now.damp(Kind::load(all.viscosities, i));
-    now.store(all, i, positions);
+    now.store(places);
 }
 
 /// As many of the run as fill whole vectors. @return how many
-std::size_t relax_tetrahedron_run(const ConstraintRun& run, TetrahedronArrays& all, PointArrays& positions,
-                                  const PointArrays& previous) {
+std::size_t relax_tetrahedron_run(const ConstraintRun& run, TetrahedronArrays& all, Particles& particles) {
     const std::size_t lanes = hn::Lanes(kFloat);
     std::size_t i = 0;
-    for (; i + lanes <= run.count; i += lanes) relax_at<InLanes>(run.first + i, all, positions, previous);
+    for (; i + lanes <= run.count; i += lanes) relax_at<InLanes>(run.first + i, all, particles);
     return i;
 }
 std::size_t damp_tetrahedron_run(const ConstraintRun& run, const TetrahedronArrays& all,
-                                 PointArrays& positions, const PointArrays& previous) {
+                                 Particles& particles) {
     const std::size_t lanes = hn::Lanes(kFloat);
     std::size_t i = 0;
-    for (; i + lanes <= run.count; i += lanes) damp_at<InLanes>(run.first + i, all, positions, previous);
+    for (; i + lanes <= run.count; i += lanes) damp_at<InLanes>(run.first + i, all, particles);
     return i;
 }
 
@@ -65,22 +66,22 @@ HWY_EXPORT(damp_tetrahedron_run);
 
 } // namespace
 
-void damp(const TetrahedronArrays& all, PointArrays& positions, const PointArrays& previous) noexcept {
+void damp(const TetrahedronArrays& all, Particles& particles) noexcept {
     if (!all.is_viscous) return;
     for (const ConstraintRun& run : all.runs) {
         const std::size_t done =
-            use_kernels() ? ECHINUS_DISPATCH(damp_tetrahedron_run)(run, all, positions, previous) : 0;
+            use_kernels() ? ECHINUS_DISPATCH(damp_tetrahedron_run)(run, all, particles) : 0;
         for (std::size_t i = done; i < run.count; ++i)
-            HWY_NAMESPACE::damp_at<HWY_NAMESPACE::OneByOne>(run.first + i, all, positions, previous);
+            HWY_NAMESPACE::damp_at<HWY_NAMESPACE::OneByOne>(run.first + i, all, particles);
     }
 }
 
-void relax(TetrahedronArrays& all, PointArrays& positions, const PointArrays& previous) noexcept {
+void relax(TetrahedronArrays& all, Particles& particles) noexcept {
     for (const ConstraintRun& run : all.runs) {
         const std::size_t done =
-            use_kernels() ? ECHINUS_DISPATCH(relax_tetrahedron_run)(run, all, positions, previous) : 0;
+            use_kernels() ? ECHINUS_DISPATCH(relax_tetrahedron_run)(run, all, particles) : 0;
         for (std::size_t i = done; i < run.count; ++i)
-            HWY_NAMESPACE::relax_at<HWY_NAMESPACE::OneByOne>(run.first + i, all, positions, previous);
+            HWY_NAMESPACE::relax_at<HWY_NAMESPACE::OneByOne>(run.first + i, all, particles);
     }
 }
 

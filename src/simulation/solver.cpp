@@ -90,17 +90,18 @@ void integrate_coordinate(float* __restrict positions, float* __restrict previou
     }
 }
 
-/// The same, with compensated summation (Kahan 1965): the velocity after n steps is off by one rounding of a
-/// position, not by n.
+/// The same, with compensated summation (Kahan 1965) of places and of velocities.
 void integrate_compensated(float* __restrict positions, float* __restrict previous,
-                           float* __restrict remainders, const float* __restrict mobility, std::size_t count,
-                           float keep, float fall) {
+                           float* __restrict remainders, float* __restrict previous_remainders,
+                           const float* __restrict mobility, std::size_t count, float keep, float fall) {
     for (std::size_t i = 0; i < count; ++i) {
-        const float position = positions[i];
-        const float way = ((position - previous[i]) * keep + fall + remainders[i]) * mobility[i];
+        const float position = positions[i], remainder = remainders[i];
+        const float step = (position - previous[i]) + (remainder - previous_remainders[i]);
+        const float way = (step * keep + fall) * mobility[i] + remainder;
         const float next = position + way;
-        remainders[i] = way - (next - position);
         previous[i] = position;
+        previous_remainders[i] = remainder;
+        remainders[i] = way - (next - position);
         positions[i] = next;
     }
 }
@@ -112,12 +113,12 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
     : deformable(valid_start(std::move(deformable_in), colliders_in, options_in)),
       colliders(with_unit_rotations(std::move(colliders_in))), motions(colliders.size()),
       options(with_thickness(options_in, deformable)), largest_speed(std::numeric_limits<double>::infinity()),
-      workers_(options.thread_count), particles_(deformable), sticks_(weighted_sticks(deformable, options)),
-      folds_(weighted_folds(deformable, options)), tetrahedra_(weighted_tetrahedra(deformable, options)),
-      attachments_(deformable, colliders), deforming_(colliders.size()), surface_motions_(colliders.size()),
-      clearances_(particles_.count()), collisions_(colliders, particles_, options),
-      rest_(options.rest, deformable.positions), goals_give_way_(sticks_.gives_way()),
-      substep_seconds_(options.time_step / options.substep_count),
+      workers_(options.thread_count), particles_(deformable, options.solver),
+      sticks_(weighted_sticks(deformable, options)), folds_(weighted_folds(deformable, options)),
+      tetrahedra_(weighted_tetrahedra(deformable, options)), attachments_(deformable, colliders),
+      deforming_(colliders.size()), surface_motions_(colliders.size()), clearances_(particles_.count()),
+      collisions_(colliders, particles_, options), rest_(options.rest, deformable.positions),
+      goals_give_way_(sticks_.gives_way()), substep_seconds_(options.time_step / options.substep_count),
       start_hash_(hash_of(deformable.positions)) {
     for (const Collider& collider : colliders) start_poses_.push_back(collider.pose);
     if (options.surface_collision) {
@@ -197,12 +198,13 @@ void Simulation::Solver::integrate(double share_kept) {
     PointArrays& now = particles_.positions;
     PointArrays& before = particles_.previous;
     PointArrays& lost = particles_.remainders;
+    PointArrays& lost_before = particles_.previous_remainders;
     const float* mobility = particles_.mobility.data();
     const auto integrate_along = [&](std::vector<float> PointArrays::*axis, float fall_along) {
         float *const positions = (now.*axis).data(), *const previous = (before.*axis).data();
-        if (options.solver == SolverKind::Xpbd)
-            integrate_compensated(positions, previous, (lost.*axis).data(), mobility, particles_.count(),
-                                  keep, fall_along);
+        if (particles_.keeps_remainders)
+            integrate_compensated(positions, previous, (lost.*axis).data(), (lost_before.*axis).data(),
+                                  mobility, particles_.count(), keep, fall_along);
         else // whole frames, whose ways are far longer than what is rounded
             integrate_coordinate(positions, previous, mobility, particles_.count(), keep, fall_along);
     };
@@ -226,7 +228,7 @@ void Simulation::Solver::begin_constraints() {
         std::copy(sticks_.rest_lengths.begin(), sticks_.rest_lengths.end(), sticks_.goal_lengths.begin());
     folds_.restore_goals();
     tetrahedra_.begin_substep();
-    damp(tetrahedra_, particles_.positions, particles_.previous);
+    damp(tetrahedra_, particles_);
 }
 
 /// Relaxed in one order for ever, a slack sheet that hangs between two places does not come to rest: each
@@ -240,9 +242,10 @@ RunOrder Simulation::Solver::order_of(std::uint64_t relaxation) const {
 void Simulation::Solver::relax_constraints(RunOrder order) {
     const Stopwatch stopwatch(profile.constraint_seconds);
     if (meter_) meter_->note(particles_);
-    relax(folds_, particles_.positions);
-    relax(sticks_, particles_.positions, order);
-    relax(tetrahedra_, particles_.positions, particles_.previous);
+    PointArrays* const remainders = particles_.keeps_remainders ? &particles_.remainders : nullptr;
+    relax(folds_, particles_.positions, remainders);
+    relax(sticks_, particles_.positions, remainders, order);
+    relax(tetrahedra_, particles_);
     if (meter_) meter_->charge_holder(particles_);
 }
 
@@ -346,8 +349,12 @@ Load Simulation::Solver::load_on(std::size_t collider) const {
 /// The velocity is what the particle moved in the last substep.
 void Simulation::Solver::set_particle_velocity(std::size_t particle, const Vec3d& velocity) {
     if (particles_.pinned(particle)) return;
-    const Vec3f before(Vec3d(particles_.positions[particle]) - velocity * substep_seconds_);
+    const Vec3d exact = Vec3d(particles_.positions[particle]) - velocity * substep_seconds_;
+    const Vec3f before(exact);
     particles_.previous.set(particle, before);
+    if (particles_.keeps_remainders)
+        particles_.previous_remainders.set(
+            particle, Vec3f(exact - Vec3d(before) + Vec3d(particles_.remainders[particle])));
     deformable.previous_positions[particle] = before;
 }
 

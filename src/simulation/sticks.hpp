@@ -62,9 +62,11 @@ StickArrays weighted_sticks(const Deformable& deformable, const SimulationOption
 enum class RunOrder : std::uint8_t { Forwards, Backwards };
 
 /// One relaxation of all sticks. The same bits under every instruction set.
-void relax(StickArrays& sticks, PointArrays& positions, RunOrder order = RunOrder::Forwards) noexcept;
+/// @param remainders  what rounding took off the positions, taken along; null: it is lost
+void relax(StickArrays& sticks, PointArrays& positions, PointArrays* remainders = nullptr,
+           RunOrder order = RunOrder::Forwards) noexcept;
 
-/// The same of some sticks, by their numbers.
+/// The same of some sticks, by their numbers, without remainders.
 void relax(StickArrays& sticks, std::span<const std::uint32_t> chosen, PointArrays& positions) noexcept;
 
 } // namespace echinus

@@ -14,7 +14,7 @@
 #endif
 
 #include "simd/lanes-inl.hpp"
-#include "simulation/gathered_points-inl.hpp"
+#include "simulation/places-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace echinus {
@@ -64,13 +64,9 @@ struct OneByOne {
     static HWY_INLINE float number(float value) { return value; }
     static HWY_INLINE float load(const std::vector<float>& from, std::size_t i) { return from[i]; }
     static HWY_INLINE void store(float value, std::vector<float>& to, std::size_t i) { to[i] = value; }
-    static HWY_INLINE Vec3f load(const PointArrays& from, const std::vector<std::uint32_t>& at,
-                                 std::size_t i) {
-        return from[at[i]];
-    }
-    static HWY_INLINE void store(const Vec3f& point, PointArrays& to, const std::vector<std::uint32_t>& at,
-                                 std::size_t i) {
-        to.set(at[i], point);
+    using Where = OneParticle;
+    static HWY_INLINE OneParticle where(const std::vector<std::uint32_t>& particles, std::size_t i) {
+        return {particles[i]};
     }
 };
 struct InLanes {
@@ -83,13 +79,9 @@ struct InLanes {
     static HWY_INLINE void store(FloatLanes value, std::vector<float>& to, std::size_t i) {
         hn::StoreU(value, kFloat, &to[i]);
     }
-    static HWY_INLINE PointLanes load(const PointArrays& from, const std::vector<std::uint32_t>& at,
-                                      std::size_t i) {
-        return gather(from, load_indices(&at[i]));
-    }
-    static HWY_INLINE void store(const PointLanes& points, PointArrays& to,
-                                 const std::vector<std::uint32_t>& at, std::size_t i) {
-        scatter(points, to, load_indices(&at[i]));
+    using Where = GatheredParticles;
+    static HWY_INLINE GatheredParticles where(const std::vector<std::uint32_t>& particles, std::size_t i) {
+        return {load_indices(&particles[i])};
     }
 };
 
@@ -137,14 +129,23 @@ class Tetrahedra {
     using Real = typename Kind::Real;
     using Point = typename Kind::Point;
 
-    HWY_INLINE Tetrahedra(const TetrahedronArrays& all, std::size_t i, const PointArrays& positions,
-                          const PointArrays& previous)
-        : points_{Kind::load(positions, all.particles[0], i), Kind::load(positions, all.particles[1], i),
-                  Kind::load(positions, all.particles[2], i), Kind::load(positions, all.particles[3], i)},
-          b_{gradient(all, i, 0), gradient(all, i, 3), gradient(all, i, 6)},
+    using Where = typename Kind::Where;
+    using Place = CompensatedPlace<Point>;
+
+    /// @param previous  places when the substep began
+    template <typename PreviousPlaces>
+    HWY_INLINE Tetrahedra(const TetrahedronArrays& all, std::size_t i, const CompensatedPlaces& places,
+                          const PreviousPlaces& previous)
+        : where_{Kind::where(all.particles[0], i), Kind::where(all.particles[1], i),
+                 Kind::where(all.particles[2], i), Kind::where(all.particles[3], i)},
+          places_{places.load(where_[0]), places.load(where_[1]), places.load(where_[2]),
+                  places.load(where_[3])},
+          edges_{places_[1].from(places_[0]), places_[2].from(places_[0]), places_[3].from(places_[0])},
+          ways_{none(), none(), none(), none()}, b_{gradient(all, i, 0), gradient(all, i, 3),
+                                                    gradient(all, i, 6)},
           masses_{Kind::load(all.inverse_masses[0], i), Kind::load(all.inverse_masses[1], i),
                   Kind::load(all.inverse_masses[2], i), Kind::load(all.inverse_masses[3], i)},
-          spread_(Kind::load(all.spreads, i)), before_(deformation_of(all, i, previous)) {}
+          spread_(Kind::load(all.spreads, i)), before_(deformation_of(previous)) {}
 
     /// @param stiffness, multiplier  of the constraint
     HWY_INLINE void relax_shape(const Real& stiffness, Real& multiplier) {
@@ -196,11 +197,15 @@ class Tetrahedra {
                 viscosity, multiplier);
     }
 
-    HWY_INLINE void store(const TetrahedronArrays& all, std::size_t i, PointArrays& positions) const {
-        for (std::size_t k = 0; k < 4; ++k) Kind::store(points_[k], positions, all.particles[k], i);
+    HWY_INLINE void store(const CompensatedPlaces& places) {
+        for (std::size_t k = 0; k < 4; ++k) {
+            places_[k].move(ways_[k]);
+            places.store(places_[k], where_[k]);
+        }
     }
 
   private:
+    static HWY_INLINE Point none() { return {Kind::number(0), Kind::number(0), Kind::number(0)}; }
     static HWY_INLINE Point gradient(const TetrahedronArrays& all, std::size_t i, std::size_t first) {
         return {Kind::load(all.gradients[first], i), Kind::load(all.gradients[first + 1], i),
                 Kind::load(all.gradients[first + 2], i)};
@@ -213,20 +218,17 @@ class Tetrahedra {
         return choose(zero < value, value, zero);
     }
 
-    HWY_INLINE Columns<Point> deformation(const Point& p, const Point& a, const Point& b,
-                                          const Point& c) const {
-        const Point to_a = a - p, to_b = b - p, to_c = c - p;
+    HWY_INLINE Columns<Point> deformation(const Point& to_a, const Point& to_b, const Point& to_c) const {
         return {to_a * b_[0].x + to_b * b_[1].x + to_c * b_[2].x,
                 to_a * b_[0].y + to_b * b_[1].y + to_c * b_[2].y,
                 to_a * b_[0].z + to_b * b_[1].z + to_c * b_[2].z};
     }
-    HWY_INLINE Columns<Point> deformation() const {
-        return deformation(points_[0], points_[1], points_[2], points_[3]);
-    }
-    HWY_INLINE Columns<Point> deformation_of(const TetrahedronArrays& all, std::size_t i,
-                                             const PointArrays& places) const {
-        return deformation(Kind::load(places, all.particles[0], i), Kind::load(places, all.particles[1], i),
-                           Kind::load(places, all.particles[2], i), Kind::load(places, all.particles[3], i));
+    HWY_INLINE Columns<Point> deformation() const { return deformation(edges_[0], edges_[1], edges_[2]); }
+    template <typename Places>
+    HWY_INLINE Columns<Point> deformation_of(const Places& places) const {
+        const auto first = places.load(where_[0]);
+        return deformation(places.load(where_[1]).from(first), places.load(where_[2]).from(first),
+                           places.load(where_[3]).from(first));
     }
 
     /// |F|^2 + J^2 - 4 J. @param growth  J - 1
@@ -253,7 +255,13 @@ class Tetrahedra {
                dot(a[3], b[3]) * masses_[3];
     }
     HWY_INLINE void move(const std::array<Point, 4>& forces, const Real& size) {
-        for (std::size_t k = 0; k < 4; ++k) points_[k] = points_[k] + forces[k] * (size * masses_[k]);
+        const Point first = forces[0] * (size * masses_[0]);
+        ways_[0] = ways_[0] + first;
+        for (std::size_t k = 1; k < 4; ++k) {
+            const Point way = forces[k] * (size * masses_[k]);
+            ways_[k] = ways_[k] + way;
+            edges_[k - 1] = edges_[k - 1] + (way - first);
+        }
     }
 
     /// @param gradient, turned  of the constraint times its value, where `per_value` is not 1
@@ -279,7 +287,10 @@ class Tetrahedra {
         multiplier = multiplier + step;
     }
 
-    std::array<Point, 4> points_;
+    std::array<Where, 4> where_;
+    std::array<Place, 4> places_; ///< when the relaxation began
+    std::array<Point, 3> edges_;  ///< from the first particle to the others, now
+    std::array<Point, 4> ways_;   ///< of the particles, so far
     std::array<Point, 3> b_;
     std::array<Real, 4> masses_;
     Real spread_;

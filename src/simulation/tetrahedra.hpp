@@ -61,10 +61,11 @@ struct TetrahedronArrays {
 TetrahedronArrays weighted_tetrahedra(const Deformable& deformable, const SimulationOptions& options);
 
 /// Takes off a share of the strain that each tetrahedron gains in this substep, as viscosity does; once in a
-/// substep, before relaxations. @param previous  positions when the substep began
-void damp(const TetrahedronArrays& tetrahedra, PointArrays& positions, const PointArrays& previous) noexcept;
+/// substep, before relaxations. @pre the particles keep remainders
+void damp(const TetrahedronArrays& tetrahedra, Particles& particles) noexcept;
 
 /// One relaxation of all tetrahedra, in order. The same bits under every instruction set.
-void relax(TetrahedronArrays& tetrahedra, PointArrays& positions, const PointArrays& previous) noexcept;
+/// @pre the particles keep remainders
+void relax(TetrahedronArrays& tetrahedra, Particles& particles) noexcept;
 
 } // namespace echinus

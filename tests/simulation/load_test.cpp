@@ -1,6 +1,7 @@
 // What deformables put on colliders: weights, friction, moments and momentum.
 
 #include "support/draping.hpp"
+#include "support/soft_bodies.hpp"
 #include "support/surface_judge.hpp"
 
 #include <echinus/simulation.hpp>
@@ -70,6 +71,23 @@ TEST(Load, OfAClothAtRestIsItsWeight) {
             const Load load = mean_load(simulation, 0);
             EXPECT_NEAR(load.force.z, -weight, 0.02 * weight);
             EXPECT_NEAR(std::hypot(load.force.x, load.force.y), 0, 0.02 * weight);
+        }
+}
+
+TEST(Load, OfASoftBodyAtRestIsItsWeightWhereverItLies) {
+    for (const bool surfaces : {false, true})
+        for (const Vec3d& place : {Vec3d{}, Vec3d{0, 0, 2}, Vec3d{4, -3, 5}, Vec3d{-20, 0, 0}}) {
+            const Deformable body = make_soft_body(
+                make_solid_box({0.2, 0.2, 0.2}, {4, 4, 4}),
+                {.young_modulus = 2e4, .damping = 0.02, .pose = {{}, place + Vec3d{0, 0, 0.165}}});
+            std::vector<Collider> plate = colliders_of({make_box({1, 1, 0.1})});
+            plate[0].pose.translation = place;
+            Simulation simulation(body, plate, measured(surfaces, true));
+            for (int i = 0; i < 240; ++i) simulation.step();
+            const double weight = mass_of(simulation) * kGravity;
+            const Load load = mean_load(simulation, 0, 240);
+            EXPECT_NEAR(load.force.z, -weight, 0.005 * weight) << "at " << place.x << ' ' << place.z;
+            EXPECT_NEAR(std::hypot(load.force.x, load.force.y), 0, 0.005 * weight);
         }
 }
 

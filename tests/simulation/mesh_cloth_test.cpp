@@ -23,7 +23,7 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 /// That adds up over some frames in coordinates around 1.
-constexpr double kRounding = 2e-5;
+constexpr double kRounding = 1e-5;
 const SimulationOptions kWeightless{.gravity = {}};
 
 std::size_t count_of(const Deformable& cloth, StickKind kind) {

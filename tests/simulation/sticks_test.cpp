@@ -33,7 +33,7 @@ void expect_same_bits_under_each_instruction_set(const Deformable& cloth,
         PointArrays positions;
         positions.load(cloth.positions);
         for (int i = 0; i < 3; ++i)
-            relax(sticks, positions, i == 1 ? RunOrder::Backwards : RunOrder::Forwards);
+            relax(sticks, positions, nullptr, i == 1 ? RunOrder::Backwards : RunOrder::Forwards);
         std::vector<Vec3f> result(cloth.particle_count());
         positions.store(result);
         results.push_back(result);
@@ -177,7 +177,7 @@ TEST(Sticks, AreRelaxedBackwardsRunByRun) {
     PointArrays backwards, expected;
     backwards.load(cloth.positions);
     expected.load(cloth.positions);
-    relax(sticks, backwards, RunOrder::Backwards);
+    relax(sticks, backwards, nullptr, RunOrder::Backwards);
     for (std::size_t r = sticks.runs.size(); r-- > 0;) {
         one_run.runs = {sticks.runs[r]};
         relax(one_run, expected);

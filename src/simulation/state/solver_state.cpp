@@ -26,6 +26,7 @@ void Simulation::Solver::archive(StateArchive& state) {
     state.points(particles_.positions);
     state.points(particles_.previous);
     state.points(particles_.remainders);
+    state.points(particles_.previous_remainders);
     rest_.archive(state);
     if (stretched_part_) stretched_part_->archive(state, sticks_.count());
     if (meter_) meter_->archive(state);

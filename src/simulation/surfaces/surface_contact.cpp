@@ -32,8 +32,8 @@ bool relax(const SurfaceContact& contact, std::span<const float> inverse_masses,
     for (std::size_t k = 0; k < 4; ++k) {
         const std::uint32_t i = contact.particles[k];
         const float share = contact.weights[k] * inverse_masses[i] / mobility;
-        particles.positions.set(i, particles.positions[i] + change * share);
-        particles.previous.set(i, particles.previous[i] + excess * share);
+        particles.move(i, change * share);
+        particles.move_previous(i, excess * share);
     }
     return true;
 }
