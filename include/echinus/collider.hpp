@@ -83,6 +83,7 @@ struct VertexCache {
     double sample_seconds = 1;                         ///< from one sample to the next; positive
     std::size_t vertex_count = 0;                      ///< of the model
     std::shared_ptr<const std::vector<Vec3f>> samples; ///< vertex_count positions each, local; at least one
+    std::string name{};                                ///< for errors, such as its file; may be empty
 
     std::size_t sample_count() const { return vertex_count > 0 ? samples->size() / vertex_count : 0; }
     double end_time() const { return start_time + sample_seconds * static_cast<double>(sample_count() - 1); }

@@ -71,13 +71,15 @@ VertexCache from_folder(const fs::path& folder, const TriangleMesh& mesh, double
 
 VertexCache read_vertex_cache(const fs::path& path, const TriangleMesh& mesh, double frames_per_second,
                               std::string_view animation) {
-    if (!fs::is_directory(path) && has_animations(path))
-        return read_animation(path, mesh, frames_per_second, animation);
-    if (!animation.empty())
+    const bool is_folder = fs::is_directory(path), is_animated = !is_folder && has_animations(path);
+    if (!is_animated && !animation.empty())
         refuse(path,
                "has no animation " + in_quotes(animation) + ", since only glTF, GLB and 3DS files have any");
-    return fs::is_directory(path) ? from_folder(path, mesh, frames_per_second)
-                                  : from_point_cache(path, mesh, frames_per_second);
+    VertexCache cache = is_animated ? read_animation(path, mesh, frames_per_second, animation)
+                        : is_folder ? from_folder(path, mesh, frames_per_second)
+                                    : from_point_cache(path, mesh, frames_per_second);
+    cache.name = path.string();
+    return cache;
 }
 
 } // namespace echinus

@@ -1,6 +1,7 @@
 #include "simulation/deforming_collider.hpp"
 
 #include "collider/frame_change.hpp"
+#include "geometry/number_text.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
 #include "simulation/validation.hpp"
 
@@ -47,6 +48,16 @@ std::array<float, 3> shares_in(const std::array<Vec3f, 3>& corners, const Vec3f&
     return {1 - b - c, b, c};
 }
 
+/// Calls build(). In the sentence of its error is whose map could not be built.
+template <typename Build>
+ExactMap DeformingCollider::naming_it(const std::string& vertices, const Build& build) const {
+    try {
+        return build();
+    } catch (const Error& error) {
+        throw Error(error.code(), name_ + vertices + ": " + error.what());
+    }
+}
+
 DeformingCollider::DeformingCollider(const ExactMap& map, std::string name)
     : name_(std::move(name)), first_map_(map) {
     const ExactMapView& view = map.view();
@@ -73,7 +84,7 @@ void DeformingCollider::lead_to(std::span<const Vec3f> vertices_local) {
         if (!is_finite(vertices_local[i]))
             throw Error(ErrorCode::InvalidOptions,
                         name_ + ": the place of vertex " + std::to_string(i) + " is not finite");
-    next_map_ = built_of(vertices_local);
+    next_map_ = naming_it(", with the vertices that it was given", [&] { return built_of(vertices_local); });
     next_vertices_.assign(vertices_local.begin(), vertices_local.end());
 }
 
@@ -103,8 +114,13 @@ bool DeformingCollider::has_arrived(double time) const {
 void DeformingCollider::begin_frame(Collider& collider, double end_time, const Particles& particles,
                                     std::span<const float> clearances, float reach) {
     if (cache_) {
-        const std::vector<Vec3f> goal = vertices_at(*cache_, end_time);
-        if (goal != vertices_) lead_to(goal);
+        std::vector<Vec3f> goal = vertices_at(*cache_, end_time);
+        if (goal != vertices_) {
+            next_map_ = naming_it(", with the vertices of " + name_of(*cache_) + " at " +
+                                      number_text(end_time) + " s",
+                                  [&] { return built_of(goal); });
+            next_vertices_ = std::move(goal);
+        }
     }
     deforms_ = next_map_.has_value() && next_vertices_ != vertices_;
     if (deforms_) {

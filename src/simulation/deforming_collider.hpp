@@ -36,6 +36,7 @@ class DeformingCollider {
     void follow(VertexCache cache);
 
     /// Gives the collider the map of the frame's end.
+    /// @throws Error as ExactMapBuilder::rebuild() of the cache's vertices
     /// @param end_time    when the frame ends, seconds since the simulation began
     /// @param clearances  lower bounds of the particles' distances from the surface
     /// @param reach       particles so near are beside it
@@ -60,6 +61,8 @@ class DeformingCollider {
 
   private:
     ExactMap built_of(std::span<const Vec3f> vertices);
+    template <typename Build>
+    ExactMap naming_it(const std::string& vertices, const Build& build) const;
     void find_motion(const Collider& collider);
     void find_carried(const Collider& collider, const Particles& particles, std::span<const float> clearances,
                       float reach);

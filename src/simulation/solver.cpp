@@ -172,8 +172,12 @@ void Simulation::Solver::deform() {
         surface_motions_[c] = nullptr;
         if (!deforming_[c]) continue;
         collisions_.known_clearances(c, particles_, clearances_);
-        deforming_[c]->begin_frame(colliders[c], (frame + 1.0) * options.time_step, particles_, clearances_,
-                                   surfaces_->carry_reach(c));
+        try {
+            deforming_[c]->begin_frame(colliders[c], (frame + 1.0) * options.time_step, particles_,
+                                       clearances_, surfaces_->carry_reach(c));
+        } catch (const Error& error) {
+            throw Error(error.code(), "in frame " + std::to_string(frame + 1) + ": " + error.what());
+        }
         surface_motions_[c] = deforming_[c]->motion();
     }
 }

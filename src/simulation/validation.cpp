@@ -205,22 +205,28 @@ void require_valid(const Collider& collider, const SimulationOptions& options, c
 
 } // namespace
 
+std::string name_of(const VertexCache& cache) {
+    std::string name = "its vertex cache";
+    if (!cache.name.empty()) name += " " + cache.name;
+    return name;
+}
+
 void require_valid(const VertexCache& cache, std::size_t vertex_count, const std::string& owner) {
+    const std::string name = name_of(cache);
     if (!std::isfinite(cache.start_time) || !std::isfinite(cache.sample_seconds) ||
         !(cache.sample_seconds > 0))
-        fail(owner +
-             ": the times of its vertex cache are not finite, or the samples not a positive time apart");
+        fail(owner + ": the times of " + name + " are not finite, or the samples not a positive time apart");
     if (cache.vertex_count != vertex_count)
-        fail(owner + " has " + std::to_string(vertex_count) + " vertices, and its vertex cache " +
+        fail(owner + " has " + std::to_string(vertex_count) + " vertices, and " + name + " " +
              std::to_string(cache.vertex_count) + "; a cache has to be made of the same mesh");
     if (cache.samples == nullptr || cache.samples->empty() || cache.samples->size() % vertex_count != 0)
-        fail(owner + ": its vertex cache has no samples, or the last one is not complete");
+        fail(owner + ": " + name + " has no samples, or the last one is not complete");
     const auto bad = std::find_if(cache.samples->begin(), cache.samples->end(),
                                   [](const Vec3f& p) { return !is_finite(p); });
     if (bad != cache.samples->end())
         fail(owner + ": vertex " +
-             std::to_string(static_cast<std::size_t>(bad - cache.samples->begin()) % vertex_count) +
-             " of its vertex cache is not finite in sample " +
+             std::to_string(static_cast<std::size_t>(bad - cache.samples->begin()) % vertex_count) + " of " +
+             name + " is not finite in sample " +
              std::to_string(static_cast<std::size_t>(bad - cache.samples->begin()) / vertex_count));
 }
 

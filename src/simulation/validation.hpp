@@ -27,6 +27,8 @@ void require_valid_attachments(const Deformable& deformable, std::size_t collide
 /// @param owner  of the pose, as the sentence begins: "collider 0"
 void require_valid(const RigidTransform& pose, const std::string& owner);
 
+/// How errors call the cache of a collider.
+std::string name_of(const VertexCache& cache);
 /// @param vertex_count  of the collider's mesh
 void require_valid(const VertexCache& cache, std::size_t vertex_count, const std::string& owner);
 

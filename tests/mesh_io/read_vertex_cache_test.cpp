@@ -43,6 +43,7 @@ class VertexCacheFiles : public TemporaryFolderTest {
 TEST_F(VertexCacheFiles, APointCacheHasItsSamplesAtItsFrames) {
     const VertexCache cache = read_vertex_cache(write_pc2(mesh_.vertices.size(), 2), mesh_, 30);
     EXPECT_EQ(cache.sample_count(), 3u);
+    EXPECT_TRUE(cache.name.ends_with(".pc2"));
     EXPECT_NEAR(cache.end_time(), 4.0 / 30, 1e-12);
     EXPECT_EQ(vertices_at(cache, 0), mesh_.vertices);
     EXPECT_EQ(vertices_at(cache, 1), ball(3).vertices);
