@@ -136,6 +136,52 @@ TEST_F(SimulateCommand, GoesOnFromASavedStateToTheSameEnd) {
                    {"simulate", "other.json", "-o", "run", "--from-state", "middle.state"});
 }
 
+TEST_F(SimulateCommand, RefusesAStateThatIsNotBeforeTheLastFrame) {
+    write("scene.json", kFallingSheet);
+    simulate("scene.json", {"--frames", "4", "--save-state", "middle.state"});
+    for (const char* frames : {"3", "4"})
+        expect_failure(
+            2, "--from-state: middle.state is of frame 4, and the run ends at frame " + std::string(frames),
+            {"simulate", "scene.json", "-o", "none", "--frames", frames, "--from-state", "middle.state"});
+    EXPECT_FALSE(fs::exists(path("none")));
+}
+
+TEST_F(SimulateCommand, WritesAStateToStandardOutputAndNothingElse) {
+    write("scene.json", kFallingSheet);
+    const std::string state = expect_success({"simulate", "scene.json", "-o", "run", "--save-state", "-"});
+    EXPECT_TRUE(state.starts_with("ECHSTATE"));
+    EXPECT_FALSE(fs::exists(path("-")));
+    simulate("scene.json", {"--save-state", "file.state"});
+    EXPECT_EQ(state, content("file.state"));
+    expect_failure(2, "--json", {"simulate", "scene.json", "-o", "run", "--save-state", "-", "--json"});
+    expect_failure(2, "--save-state", {"simulate", "scene.json", "--html", "-", "--save-state", "-"});
+    expect_failure(2, "--from-state", {"simulate", "scene.json", "-o", "run", "--from-state", "-"});
+}
+
+TEST_F(SimulateCommand, WritesNoStateOfARunWhoseFolderCannotBeWritten) {
+    write("scene.json", kFallingSheet);
+    write("run", "a file");
+    expect_failure(1, "is not a folder",
+                   {"simulate", "scene.json", "-o", "run", "--save-state", "end.state"});
+    EXPECT_FALSE(fs::exists(path("end.state")));
+}
+
+TEST_F(SimulateCommand, CountsTheFacesThatIntersectInTheWorstSavedFrame) {
+    // Only particles collide, and the four of the sheet fall past the post between them.
+    write("scene.json", R"({"model": {"box": {"size": [0.2, 0.2, 1]}},
+        "cloth": {"particles": [2, 2], "size": [4, 4], "position": [0, 0, 0.501], "velocity": [0, 0, -9]},
+        "frame_limit": 60, "surface_collision": false})");
+    EXPECT_TRUE(simulate("scene.json").at("worst_frames").is_null());
+    const nlohmann::json report = simulate("scene.json", {"--judge", "all", "--every", "10"});
+    const nlohmann::json& worst = report.at("worst_frames");
+    EXPECT_EQ(worst.at("judged"), 7);
+    EXPECT_GT(worst.at("intersecting_pairs").at("pairs"), 0);
+    EXPECT_EQ(report.at("intersecting_pairs"), 0);
+    EXPECT_GT(worst.at("intersecting_pairs").at("frame"), 0);
+    EXPECT_EQ(worst.at("self_intersecting_pairs").at("pairs"), 0);
+    EXPECT_TRUE(worst.at("self_intersecting_pairs").at("frame").is_null());
+}
+
 TEST_F(SimulateCommand, CountsTheFacesThatIntersectAtTheEnd) {
     write("apart.json", kFallingSheet);
     const nlohmann::json apart = simulate("apart.json");
@@ -224,7 +270,7 @@ TEST_F(SimulateCommand, TakesABodyFromAFileOfTetrahedra) {
 
 TEST_F(SimulateCommand, NamesTheModelThatAClothBeginsIn) {
     write("scene.json", R"({"model": {"box": {}}, "cloth": {"size": [2, 2], "particles": [5, 5]}})");
-    expect_failure(1, "scene.json: \"cloth\": the deformable begins intersecting the box in",
+    expect_failure(1, "scene.json: the deformable begins intersecting the box in",
                    {"simulate", "scene.json", "-o", "run"});
     write("scene.json",
           R"({"model": {"box": {}}, "cloth": {"size": [0.2, 0.2], "particles": [2, 2], "pins": [[0, 0]]}})");
@@ -242,7 +288,7 @@ TEST_F(SimulateCommand, NamesTheMeshOfAClothAndTheFaceAtFault) {
     write("scene.json", R"({"model": {"box": {}}, "cloth": {"mesh": "nowhere.obj"}})");
     expect_failure(1, "scene.json: the mesh nowhere.obj is in none", {"simulate", "scene.json", "-o", "run"});
     write("scene.json", R"({"model": {"box": {}}, "cloth": {"mesh": {"box": {}}, "pins": [8]}})");
-    expect_failure(1, "scene.json: \"cloth\": cloth.mesh: a pin names vertex 8",
+    expect_failure(1, "scene.json: cloth.mesh: a pin names vertex 8",
                    {"simulate", "scene.json", "-o", "run"});
 }
 

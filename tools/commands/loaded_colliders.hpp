@@ -31,14 +31,15 @@ struct LoadedColliders {
 LoadedColliders load_colliders(const echinus::Scene& scene, const std::filesystem::path& scene_path,
                                const std::vector<std::filesystem::path>& folders, unsigned thread_count);
 
-/// Reports errors in the options that a key of the scene gives as errors of the scene.
+/// Reports errors in the options that a scene gives as errors of the scene.
+/// @param key  whose options they are, where their sentences do not say so
 template <typename Make>
-auto made_as_scene_says(const std::filesystem::path& scene, const char* key, const Make& make) {
+auto made_as_scene_says(const std::filesystem::path& scene, const std::string& key, const Make& make) {
     try {
         return make();
     } catch (const echinus::Error& error) {
         if (error.code() != echinus::ErrorCode::InvalidOptions) throw;
-        throw echinus::Error(echinus::ErrorCode::InvalidScene,
-                             scene.string() + ": \"" + key + "\": " + error.what());
+        const std::string place = key.empty() ? "" : "\"" + key + "\": ";
+        throw echinus::Error(echinus::ErrorCode::InvalidScene, scene.string() + ": " + place + error.what());
     }
 }

@@ -43,6 +43,7 @@ struct SimulateArguments {
 
     unsigned threads_around() const { return thread_count.value_or(0); }
     std::optional<bool> surfaces, self; ///< in place of the scene's keys
+    bool judges_all = false;            ///< saved frames, not only the last
     bool obj = false;
     bool json = false;
 };
@@ -114,10 +115,11 @@ struct Page {
     std::optional<Recording> recording;
 };
 
-/// The output of a simulation: a folder, a page, or both.
+/// The output of a simulation: a folder, a page, or both, and a state to go on from.
 struct Results {
     std::optional<ResultFolder> folder;
     std::optional<Page> page;
+    std::optional<Output> state;
 
     /// Call at the start and after each step.
     void watch(const Simulation& simulation, std::uint32_t stride) {
@@ -129,6 +131,7 @@ struct Results {
 struct Course {
     std::vector<std::vector<SavedPose>> poses; ///< by collider
     std::uint64_t most_truncated = 0;          ///< vertices in one frame
+    std::optional<WorstFrames> worst;
 };
 
 bool has_moved(const RigidTransform& from, const RigidTransform& to) {
@@ -136,14 +139,40 @@ bool has_moved(const RigidTransform& from, const RigidTransform& to) {
     return from.translation != to.translation || a.w != b.w || a.x != b.x || a.y != b.y || a.z != b.z;
 }
 
+/// Counts the pairs of faces that intersect in a frame.
+class FrameJudge {
+  public:
+    explicit FrameJudge(const LoadedColliders& colliders) : colliders_(&colliders) {
+        for (std::size_t c = 0; c < colliders.maps.size(); ++c) models_.push_back(colliders.mesh_at(c, 0));
+    }
+
+    PairCounts count(const Simulation& simulation) {
+        const double seconds = simulation.frame() * simulation.options().time_step;
+        for (std::size_t c = 0; c < models_.size(); ++c)
+            if (colliders_->deforms(c)) models_[c] = colliders_->mesh_at(c, seconds);
+        return count_pairs(simulation, models_);
+    }
+
+  private:
+    const LoadedColliders* colliders_;
+    std::vector<TriangleMesh> models_; ///< scaled, not moved
+};
+
 /// Steps until the cloth rests or the frame limit is reached; stops only after a frame that was saved, so
 /// that the last sample is the end.
-Course run(Simulation& simulation, Results& results, std::uint32_t frame_limit, std::uint32_t stride) {
+/// @param judge  of the frames that are saved, or none
+Course run(Simulation& simulation, Results& results, std::uint32_t frame_limit, std::uint32_t stride,
+           std::optional<FrameJudge> judge) {
     ProgressBar progress("simulating");
     const std::vector<Collider>& colliders = simulation.colliders();
     Course course;
+    if (judge) course.worst.emplace();
+    const auto judge_frame = [&] {
+        if (judge) course.worst->judge(simulation.frame(), judge->count(simulation));
+    };
     for (const Collider& collider : colliders) course.poses.push_back({{simulation.frame(), collider.pose}});
     results.watch(simulation, stride);
+    judge_frame();
     while (simulation.frame() < frame_limit && !simulation.at_rest()) {
         do {
             const std::uint64_t truncated_before = simulation.profile().truncated_count;
@@ -152,6 +181,7 @@ Course run(Simulation& simulation, Results& results, std::uint32_t frame_limit, 
                 std::max(course.most_truncated, simulation.profile().truncated_count - truncated_before);
             results.watch(simulation, stride);
         } while (simulation.frame() % stride != 0);
+        judge_frame();
         for (std::size_t c = 0; c < colliders.size(); ++c)
             if (has_moved(course.poses[c].back().pose, colliders[c].pose))
                 course.poses[c].push_back({simulation.frame(), colliders[c].pose});
@@ -172,6 +202,12 @@ void require_target(const SimulateArguments& arguments) {
     if (!arguments.from_state.empty() && !arguments.page.empty())
         throw WrongUse("--from-state", "does not go with --html, whose page shows all frames from the first");
     require_one_result(arguments.page, arguments.json);
+    require_one_result(arguments.save_state, arguments.json);
+    if (arguments.page == kStandardStream && arguments.save_state == kStandardStream)
+        throw WrongUse("--save-state", "and --html cannot both go to standard output (-)");
+    if (arguments.from_state == kStandardStream)
+        throw WrongUse("--from-state", "cannot be standard input (-); name a file");
+    require_another_file(arguments.scene, arguments.save_state);
     require_another_file(arguments.scene, arguments.page);
 }
 
@@ -184,10 +220,11 @@ std::uint32_t page_stride(const SimulateArguments& arguments, const Scene& scene
 void open(Results& results, const SimulateArguments& arguments, const Scene& scene,
           const ClothMeshes& cloth) {
     if (!arguments.target.empty()) results.folder.emplace(arguments.target, arguments.obj);
+    if (!arguments.save_state.empty()) results.state.emplace(arguments.save_state);
     if (!arguments.page.empty()) {
         const auto make = [&] { return make_deformable(scene, cloth); };
-        require_playable(made_as_scene_says(arguments.scene, "cloth", make).particle_count(),
-                         scene.frame_limit, page_stride(arguments, scene));
+        require_playable(made_as_scene_says(arguments.scene, "", make).particle_count(), scene.frame_limit,
+                         page_stride(arguments, scene));
         results.page.emplace(arguments.page, arguments.player);
     }
 }
@@ -223,13 +260,23 @@ void require_playable_colliders(const SimulateArguments& arguments, const Scene&
 }
 
 /// A state of another scene is a wrong file, not a wrong option.
-void go_on_from(const fs::path& state, Simulation& simulation) {
+void go_on_from(const fs::path& state, std::uint32_t frame_limit, Simulation& simulation) {
     try {
         simulation.restore_state(state);
     } catch (const Error& error) {
         if (error.code() != ErrorCode::InvalidOptions) throw;
         throw Error(ErrorCode::WrongFormat, error.what());
     }
+    if (simulation.frame() >= frame_limit)
+        throw WrongUse("--from-state",
+                       fmt::format("{} is of frame {}, and the run ends at frame {}; give a larger --frames",
+                                   state.string(), simulation.frame(), frame_limit));
+}
+
+void write_state(const Simulation& simulation, Output& output) {
+    const std::vector<std::byte> state = simulation.save_state();
+    output.write(state.data(), state.size());
+    output.commit();
 }
 
 void simulate(const SimulateArguments& arguments) {
@@ -249,16 +296,18 @@ void simulate(const SimulateArguments& arguments) {
     const LoadedColliders colliders =
         load_colliders(scene, arguments.scene, arguments.model_folders, arguments.threads_around());
     for (const fs::path& file : colliders.files) require_another_file(file, arguments.page);
-    Simulation simulation = made_as_scene_says(arguments.scene, "cloth", [&] {
-        return make_simulation(scene, colliders.maps, cloth, colliders.caches);
-    });
+    Simulation simulation = made_as_scene_says(
+        arguments.scene, "", [&] { return make_simulation(scene, colliders.maps, cloth, colliders.caches); });
     if (results.folder) results.folder->begin(simulation.deformable(), colliders, stride);
-    if (!arguments.from_state.empty()) go_on_from(arguments.from_state, simulation);
+    if (!arguments.from_state.empty()) go_on_from(arguments.from_state, scene.frame_limit, simulation);
     std::vector<ExactMap> judges;
     for (const JudgedModel& model : colliders.judged) judges.push_back(model.map);
     if (results.page) results.page->recording.emplace(std::move(judges), page_stride(arguments, scene));
-    Course course = naming_file(arguments.scene.string(), ErrorCode::Diverged,
-                                [&] { return run(simulation, results, scene.frame_limit, stride); });
+    std::optional<FrameJudge> frame_judge;
+    if (arguments.judges_all) frame_judge.emplace(colliders);
+    Course course = naming_file(arguments.scene.string(), ErrorCode::Diverged, [&] {
+        return run(simulation, results, scene.frame_limit, stride, std::move(frame_judge));
+    });
 
     const std::string scene_name = arguments.scene.string();
     const double seconds = simulation.frame() * simulation.options().time_step;
@@ -268,7 +317,8 @@ void simulate(const SimulateArguments& arguments) {
                                   .verdict = judge(simulation,
                                                    colliders.judged_at(seconds, arguments.threads_around()),
                                                    arguments.threads_around()),
-                                  .most_truncated = course.most_truncated};
+                                  .most_truncated = course.most_truncated,
+                                  .worst = course.worst};
     const Json report = to_json(result);
     std::vector<TriangleMesh> placed;
     for (std::size_t c = 0; c < colliders.maps.size(); ++c) placed.push_back(colliders.mesh_at(c, 0));
@@ -280,11 +330,11 @@ void simulate(const SimulateArguments& arguments) {
                            .model_name = colliders.names,
                            .notice = colliders.notice,
                            .colliders = placed});
-    if (!arguments.save_state.empty()) simulation.save_state(arguments.save_state);
     if (results.folder) results.folder->commit(report);
+    if (results.state) write_state(simulation, *results.state);
     if (arguments.json)
         print(report.indented());
-    else if (arguments.page != kStandardStream)
+    else if (arguments.page != kStandardStream && arguments.save_state != kStandardStream)
         print(to_text(result));
 }
 
@@ -323,7 +373,9 @@ void add_options(Command command, SimulateArguments& arguments) {
              "Go on from a state that --save-state wrote, of the same scene with the same options")
         .not_empty()
         .type_name("FILE");
-    command.add("--save-state", &arguments.save_state, "Write the state at the end, to go on from it")
+    command
+        .add("--save-state", &arguments.save_state,
+             "Write the state at the end, to go on from it, to a file or -")
         .not_empty()
         .type_name("FILE");
     const std::vector<std::pair<std::string, std::optional<bool>>> on_or_off{{"on", true}, {"off", false}};
@@ -338,6 +390,9 @@ void add_options(Command command, SimulateArguments& arguments) {
              "for the simulation what the scene says")
         .range(0, 1024)
         .type_name("COUNT");
+    add_choice(command, "--judge", arguments.judges_all,
+               std::vector<std::pair<std::string, bool>>{{"last", false}, {"all", true}},
+               "Which saved frames to judge for faces that intersect");
     command.add_flag("--obj", arguments.obj, "Write frames/cloth_NUMBER.obj in place of cloth.pc2");
     command.add_flag("--json", arguments.json, "Print the report as one JSON object");
 }

@@ -88,6 +88,19 @@ Json to_json(const ContactGap& gap) {
     return {{"particles", gap.particle_count}, {"mean", gap.mean}, {"least", gap.least}};
 }
 
+Json to_json(const WorstFrame& worst) {
+    Json frame = nullptr;
+    if (worst.pair_count != 0) frame = worst.frame;
+    return {{"pairs", worst.pair_count}, {"frame", frame}};
+}
+
+Json to_json(const std::optional<WorstFrames>& worst) {
+    if (!worst) return nullptr;
+    return {{"judged", worst->judged_count},
+            {"intersecting_pairs", to_json(worst->with_models)},
+            {"self_intersecting_pairs", to_json(worst->own)}};
+}
+
 Json to_json(const ColliderResult& collider) {
     Json result{{"mesh", collider.mesh_name},
                 {"faces", collider.model.face_count},
@@ -156,8 +169,9 @@ Json to_json(const SimulationResult& result) {
         {"squeezed", simulation.profile().squeezed_count},
         {"inside_at_rest", result.verdict.inside_count},
         {"deepest", {{"absolute", result.verdict.deepest}, {"in_radii", result.verdict.deepest / radius}}},
-        {"intersecting_pairs", result.verdict.model_pair_count},
-        {"self_intersecting_pairs", result.verdict.own_pair_count},
+        {"intersecting_pairs", result.verdict.pairs.with_models},
+        {"self_intersecting_pairs", result.verdict.pairs.own},
+        {"worst_frames", to_json(result.worst)},
         {"contact_gap", to_json(result.verdict.gap)},
         {"strain",
          {{"mean", strain.mean}, {"percentile_99", strain.percentile_99}, {"largest", strain.largest}}},
@@ -212,10 +226,14 @@ std::string to_text(const SimulationResult& result) {
     if (const ContactGap& gap = result.verdict.gap; gap.particle_count != 0)
         add("contact gap", fmt::format("{:.3f} thicknesses on average, {:.3f} at least; {} particles",
                                        gap.mean / thickness, gap.least / thickness, gap.particle_count));
+    const char* const models = result.colliders.size() == 1 ? "the model" : "the models";
     add("faces that intersect",
-        fmt::format("{} pairs with {}, {} of the cloth's own", result.verdict.model_pair_count,
-                    result.colliders.size() == 1 ? "the model" : "the models",
-                    result.verdict.own_pair_count));
+        fmt::format("{} pairs with {}, {} of the cloth's own", result.verdict.pairs.with_models, models,
+                    result.verdict.pairs.own));
+    if (result.worst)
+        add("in the worst frame",
+            fmt::format("{} with {}, {} of its own, in {} frames", result.worst->with_models.pair_count,
+                        models, result.worst->own.pair_count, result.worst->judged_count));
     add("strain", percent(strain.mean) + " mean, " + percent(strain.percentile_99) + " 99th percentile, " +
                       percent(strain.largest) + " largest");
     add("state hash", fmt::format("{:016x}", simulation.state_hash()));

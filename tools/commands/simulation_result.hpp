@@ -7,6 +7,7 @@
 #include <echinus/simulation.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,27 @@ struct ColliderResult {
     std::vector<SavedPose> poses; ///< one when it stands still
 };
 
+/// Of the frames that were judged, the one with the most pairs of faces that intersect.
+struct WorstFrame {
+    std::size_t pair_count = 0;
+    std::uint32_t frame = 0; ///< the first with so many
+};
+
+/// What was seen on the way.
+struct WorstFrames {
+    std::size_t judged_count = 0;
+    WorstFrame with_models, own;
+
+    void judge(std::uint32_t frame, const PairCounts& pairs) {
+        const auto keep_worse = [frame](WorstFrame& worst, std::size_t pair_count) {
+            if (pair_count > worst.pair_count) worst = {pair_count, frame};
+        };
+        ++judged_count;
+        keep_worse(with_models, pairs.with_models);
+        keep_worse(own, pairs.own);
+    }
+};
+
 /// What `simulate` reports when it is done.
 struct SimulationResult {
     const std::string& scene_name;
@@ -32,6 +54,7 @@ struct SimulationResult {
     std::vector<ColliderResult> colliders; ///< at least one
     Verdict verdict;
     std::uint64_t most_truncated = 0; ///< vertices in one frame
+    std::optional<WorstFrames> worst; ///< none where only the end was judged
 };
 
 /// The object of report.json.

@@ -60,23 +60,31 @@ TriangleMesh scaled(TriangleMesh mesh, const Vec3d& scale) {
     return mesh;
 }
 
-Verdict judge(const Simulation& simulation, std::span<const JudgedModel> models, unsigned thread_count) {
+PairCounts count_pairs(const Simulation& simulation, std::span<const TriangleMesh> models) {
     const TriangleMesh surface{simulation.deformable().positions, surface_of(simulation.deformable())};
+    if (surface.faces.empty()) return {};
+    PairCounts counts{.own = self_intersecting_pairs(surface).size()};
+    for (std::size_t c = 0; c < models.size(); ++c)
+        counts.with_models +=
+            intersecting_pairs(surface, placed(models[c], simulation.colliders()[c].pose)).size();
+    return counts;
+}
+
+Verdict judge(const Simulation& simulation, std::span<const JudgedModel> models, unsigned thread_count) {
     Verdict verdict;
     verdict.gap.least = std::numeric_limits<double>::infinity();
+    std::vector<TriangleMesh> solids;
     for (std::size_t c = 0; c < models.size(); ++c) {
         const Collider& collider = simulation.colliders()[c];
-        const TriangleMesh solid = scaled(models[c].mesh, collider.scale);
+        solids.push_back(scaled(models[c].mesh, collider.scale));
         // An open mesh has no inside.
         if (models[c].map.view().border.empty())
-            judge_particles(simulation.positions(), solid, collider.pose, thread_count, verdict);
-        if (!surface.faces.empty())
-            verdict.model_pair_count += intersecting_pairs(surface, placed(solid, collider.pose)).size();
+            judge_particles(simulation.positions(), solids.back(), collider.pose, thread_count, verdict);
         add_gap(simulation.positions(),
                 {.map = models[c].map, .pose = collider.pose, .scale = collider.scale},
                 simulation.options().thickness.value(), verdict.gap);
     }
-    if (!surface.faces.empty()) verdict.own_pair_count = self_intersecting_pairs(surface).size();
+    verdict.pairs = count_pairs(simulation, solids);
     if (verdict.gap.particle_count != 0) verdict.gap.mean /= static_cast<double>(verdict.gap.particle_count);
     return verdict;
 }

@@ -15,14 +15,23 @@ struct ContactGap {
     double mean = 0, least = 0; ///< units; meaningless without particles
 };
 
+/// How many pairs of faces intersect.
+struct PairCounts {
+    std::size_t with_models = 0; ///< a face of the cloth and one of a model
+    std::size_t own = 0;         ///< two faces of the cloth, beyond what they share
+};
+
 /// How a cloth lies on a model.
 struct Verdict {
-    std::size_t inside_count = 0;     ///< particles inside a model
-    double deepest = 0;               ///< distance of the deepest of them from the surface, units
-    std::size_t model_pair_count = 0; ///< pairs of a cloth face and a model face that intersect
-    std::size_t own_pair_count = 0;   ///< pairs of cloth faces that intersect beyond what they share
+    std::size_t inside_count = 0; ///< particles inside a model
+    double deepest = 0;           ///< distance of the deepest of them from the surface, units
+    PairCounts pairs;
     ContactGap gap;
 };
+
+/// Decided exactly on the positions as they are now, with threads as faces without area.
+/// @param models  [collider_count] as they are now, but not moved
+PairCounts count_pairs(const echinus::Simulation& simulation, std::span<const echinus::TriangleMesh> models);
 
 /// A mesh stretched along its axes. Where that mirrors it, its faces are turned round, so that what was
 /// inside stays inside.
