@@ -1,6 +1,7 @@
 """Deformables, colliders and simulations that are put together in Python."""
 
 import json
+import pickle
 
 import numpy as np
 import pytest
@@ -212,6 +213,62 @@ def test_vertices_that_are_no_numbers_are_refused():
 
 
 @pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: ech.make_cloth(width="wide"), "width must be a number, not 'wide'"),
+        (lambda: ech.make_cloth(column_count=2.5), "column_count must be a whole number, not 2.5"),
+        (lambda: ech.make_cloth(position=3), "position must be three numbers, not 3"),
+        (lambda: ech.make_cloth(rotation=(1, 0, None, 0)), "each of rotation must be a number, not None"),
+        (lambda: soft_box(density=None), "density must be a number, not None"),
+        (lambda: ech.make_soft_body(BALL), "mesh must be of the class TetrahedralMesh, not Mesh; .* tetrahedralize"),
+        (lambda: ech.make_cloth_of_mesh(BOX), "a mesh has .vertices and .faces; TetrahedralMesh does not"),
+        (lambda: ech.combine([soft_box(), BALL]), r"parts\[1\] must be of the class Deformable, not Mesh"),
+        (lambda: ech.with_masses_times("2", soft_box()), "factor must be a number"),
+        (lambda: ech.Simulation(BOX), "deformable must be of the class Deformable, not TetrahedralMesh"),
+        (lambda: ech.Simulation(soft_box(), [FLOOR]), r"colliders\[0\] must be of the class Collider, not ExactMap"),
+        (lambda: ech.Simulation(soft_box(), [ech.Collider(FLOOR_MESH)]), "map must be an ExactMap or a DistanceMap"),
+        (lambda: ech.Simulation(soft_box(), [ech.Collider(FLOOR, scale="2")]), "scale must be a number, not '2'"),
+        (lambda: ech.Simulation(soft_box()).step(1.5), "frame_count must be a whole number, not 1.5"),
+        (lambda: ech.Simulation(soft_box(), [BELOW]).set_collider_pose("0", (0, 0, 0)), "collider must be a whole"),
+        (lambda: ech.Simulation(soft_box(), [BELOW]).set_collider_keyframes(0, [1]), r"keys\[0\] must be of the class"),
+        (lambda: ech.Simulation(soft_box(), [BELOW]).set_collider_cache(0, BALL), "cache must be of the class"),
+        (lambda: ech.Simulation(soft_box()).blow((0, 0, 1), "hard"), "rate must be a number"),
+        (lambda: ech.Simulation(soft_box()).restored("state"), "state must be of the class bytes, not str"),
+        (lambda: ech.VertexCache([BALL.vertices], "1"), "sample_seconds must be a number"),
+        (lambda: ech.pose_at([ech.PoseKey("now", (0, 0, 0))], 0), "time must be a number, not 'now'"),
+        (lambda: ech.rotation_about((0, 0, 1), "right"), "angle_rad must be a number"),
+        (lambda: FLOOR.contains([[0, 0, 0]], threads="all"), "threads must be a whole number, not 'all'"),
+        (lambda: FLOOR.contacts([[0, 0, 0]], margin="far"), "margin must be a number"),
+        (lambda: FLOOR.contacts([[0, 0, 0]], out=np.zeros(1)), "out must be of the class Contacts"),
+        (lambda: ech.read_mesh(5), "a path must be a str or os.PathLike, not int"),
+        (lambda: ech.make_sphere(meridian_count=None), "meridian_count must be a whole number"),
+        (lambda: ech.make_box(size=1), "size must be three numbers"),
+        (lambda: ech.repair(BALL, close_holes="all"), "close_holes must be a whole number"),
+        (lambda: ech.tetrahedralize(BALL, size=1), "model must be of the class ExactMap, not Mesh"),
+    ],
+)
+def test_a_wrong_type_is_refused_by_the_argument_s_name(call, words):
+    with pytest.raises(TypeError, match=words):
+        call()
+
+
+def test_deformables_and_caches_are_pickled_whole():
+    both = ech.combine([cloth(pins=[3], position=(0, 0, 2)), soft_box(attachments=[[0, 0]])])
+    threaded = ech.make_cloth_of_mesh(BALL, position=(0, 0, 1))
+    for deformable in (both, threaded):
+        again = pickle.loads(pickle.dumps(deformable))
+        assert repr(again) == repr(deformable) and again.fold_count == deformable.fold_count
+        runs = [ech.Simulation(d, [BELOW], solver="xpbd") for d in (deformable, again)]
+        for run in runs:
+            run.step(20)
+        assert runs[0].state_hash == runs[1].state_hash
+        assert runs[1].restored(runs[0].save_state()).frame == 20
+    cache = ech.VertexCache([BALL.vertices, BALL.vertices * 2], 0.5, start_time=1)
+    again = pickle.loads(pickle.dumps(cache))
+    assert np.array_equal(again.samples, cache.samples) and repr(again) == repr(cache)
+
+
+@pytest.mark.parametrize(
     "options",
     [
         {"time_step": 0},
@@ -269,7 +326,6 @@ def test_what_steers_no_collider_is_refused_and_changes_nothing():
         lambda: simulation.set_collider_vertices(0, few),
         lambda: simulation.set_collider_vertices(0, bad),
         lambda: simulation.set_collider_cache(0, ech.VertexCache([few], 1)),
-        lambda: simulation.set_collider_cache(0, ech.VertexCache([bad], 1)),
     ):
         assert refusal(call)[0] == "invalid_options"
     untouched = ech.Simulation(soft_box(), [BELOW])
@@ -287,6 +343,10 @@ def test_caches_and_keys_that_have_no_meaning_are_refused():
             ech.VertexCache([BALL.vertices], seconds)
     with pytest.raises(ValueError, match="finite"):
         ech.VertexCache([BALL.vertices], 1).at(np.nan)
+    bad = np.array([BALL.vertices] * 3)
+    bad[2, 5, 1] = np.nan
+    with pytest.raises(ValueError, match="samples must be finite; vertex 5 of sample 2 is not"):
+        ech.VertexCache(bad, 1)
     later, long = ech.PoseKey(1, (0, 0, 0)), ech.PoseKey(0, (0, 0, 0), (2, 0, 0, 0))
     for keys in ([], [later, later._replace(time=0)], [long]):
         with pytest.raises(ValueError, match="key"):

@@ -130,8 +130,10 @@ def test_sizes_and_counts_out_of_range_are_refused():
     assert refusal(body_of_torus, size=0.05, most_tetrahedra=10)[0] == "invalid_options"
     assert refusal(body_of_torus, size=50)[0] == "invalid_mesh"
     assert refusal(ech.make_solid_box, (1, 1, -1))[0] == "invalid_options"
-    with pytest.raises(TypeError):
+    with pytest.raises(ValueError, match="each of segments must be a whole number from 0 to 4294967295, not -1"):
         ech.make_solid_box((1, 1, 1), (1, 1, -1))
+    with pytest.raises(ValueError, match="segments must be three whole numbers"):
+        ech.make_solid_box((1, 1, 1), (1, 1))
 
 
 shapes = strategies.tuples(strategies.integers(1, 8), strategies.just(4))

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from echinus import _core
-from echinus._maps import AnyMap
+from echinus._arguments import kind_name, list_of_kind, number, of_kind, path_of, quaternion, vector
+from echinus._maps import AnyMap, DistanceMap, ExactMap
 from echinus._meshes import MeshLike, Path, arrays_of
 
 Vector = tuple[float, float, float]
@@ -44,15 +45,17 @@ class Collider:
     name: str = ""
 
     def _arguments(self) -> _core.ColliderArguments:
-        x, y, z = np.broadcast_to(np.asarray(self.scale, float), 3).tolist()
+        if not isinstance(self.map, (ExactMap, DistanceMap)):
+            raise TypeError(f"map must be an ExactMap or a DistanceMap, not {kind_name(self.map)}")
+        scale = vector("scale", self.scale) if np.ndim(self.scale) > 0 else (number("scale", self.scale),) * 3
         return (
             self.map._built,
-            vector_of(self.position),
-            quaternion_of(self.rotation),
-            (x, y, z),
-            vector_of(self.linear_velocity),
-            vector_of(self.angular_velocity),
-            self.name,
+            vector("position", self.position),
+            quaternion("rotation", self.rotation),
+            scale,
+            vector("linear_velocity", self.linear_velocity),
+            vector("angular_velocity", self.angular_velocity),
+            of_kind("name", self.name, str),
         )
 
 
@@ -98,7 +101,11 @@ class PoseKey(NamedTuple):
     rotation: Sequence[float] = (1, 0, 0, 0)
 
     def _arguments(self) -> tuple[float, Vector, Quaternion]:
-        return float(self.time), vector_of(self.position), quaternion_of(self.rotation)
+        return number("time", self.time), vector("position", self.position), quaternion("rotation", self.rotation)
+
+
+def key_arguments(keys: Sequence[PoseKey]) -> list[_core.KeyArguments]:
+    return [key._arguments() for key in list_of_kind("keys", keys, PoseKey)]
 
 
 def pose_at(keys: Sequence[PoseKey], seconds: float) -> PoseKey:
@@ -111,12 +118,13 @@ def pose_at(keys: Sequence[PoseKey], seconds: float) -> PoseKey:
     keys
         At least one; their times ascend.
     """
-    return PoseKey(float(seconds), *_core.pose_at([key._arguments() for key in keys], seconds))
+    seconds = number("seconds", seconds)
+    return PoseKey(seconds, *_core.pose_at(key_arguments(keys), seconds))
 
 
 def rotation_about(axis: Sequence[float], angle_rad: float) -> Quaternion:
     """The unit quaternion w, x, y, z that turns by an angle about an axis, counter-clockwise seen against it."""
-    return _core.rotation_about(vector_of(axis), angle_rad)
+    return _core.rotation_about(vector("axis", axis), number("angle_rad", angle_rad))
 
 
 class VertexCache:
@@ -127,7 +135,7 @@ class VertexCache:
     Parameters
     ----------
     samples : array_like (sample_count, vertex_count, 3)
-        Positions in the model's own frame; copied.
+        Finite positions in the model's own frame; copied.
     sample_seconds
         From one sample to the next; positive.
     start_time
@@ -137,7 +145,12 @@ class VertexCache:
     _cache: _core.VertexCache
 
     def __init__(self, samples: ArrayLike, sample_seconds: float, start_time: float = 0) -> None:
-        self._cache = _core.VertexCache(samples, start_time, sample_seconds)
+        self._cache = _core.VertexCache(
+            samples, number("start_time", start_time), number("sample_seconds", sample_seconds)
+        )
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return VertexCache, (self.samples, self.sample_seconds, self.start_time)
 
     @classmethod
     def _of(cls, core: _core.VertexCache) -> VertexCache:
@@ -167,7 +180,7 @@ class VertexCache:
 
     def at(self, seconds: float) -> NDArray[np.float32]:
         """(vertex_count, 3) The vertices at a time, a new array."""
-        return self._cache.at(seconds)
+        return self._cache.at(number("seconds", seconds))
 
     def __repr__(self) -> str:
         count, vertices, _ = self.samples.shape
@@ -189,14 +202,6 @@ def read_vertex_cache(path: Path, mesh: MeshLike, *, frames_per_second: float, a
     Error
         As :func:`read_mesh`; ``invalid_mesh`` when the number of vertices, or a face in a folder, is not the model's.
     """
-    return VertexCache._of(_core.VertexCache.read(path, *arrays_of(mesh), frames_per_second, animation))
-
-
-def vector_of(values: Sequence[float]) -> Vector:
-    x, y, z = values
-    return float(x), float(y), float(z)
-
-
-def quaternion_of(values: Sequence[float]) -> Quaternion:
-    w, x, y, z = values
-    return float(w), float(x), float(y), float(z)
+    rate = number("frames_per_second", frames_per_second)
+    name = of_kind("animation", animation, str)
+    return VertexCache._of(_core.VertexCache.read(path_of(path), *arrays_of(mesh), rate, name))

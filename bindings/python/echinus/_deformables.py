@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from echinus import _core
-from echinus._colliders import Quaternion, Vector, quaternion_of, vector_of
+from echinus._arguments import list_of_kind, number, of_kind, quaternion, vector, whole
 from echinus._meshes import Mesh, MeshLike, arrays_of
 from echinus._tetrahedra import TetrahedralMesh
 
@@ -69,6 +69,9 @@ class Deformable:
     def __len__(self) -> int:
         return len(self.positions)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _deformable_of, (self._deformable.parts(),)
+
     def __repr__(self) -> str:
         return (
             f"<echinus.Deformable: {len(self)} particles, {len(self.faces)} faces, {self.stick_count} sticks,"
@@ -103,10 +106,16 @@ def make_cloth(
     Error
         ``invalid_options``.
     """
-    _require_count("column_count", column_count)
-    _require_count("row_count", row_count)
     return Deformable._of(
-        _core.make_cloth(column_count, row_count, width, height, vector_of(position), quaternion_of(rotation), pins)
+        _core.make_cloth(
+            whole("column_count", column_count, 2),
+            whole("row_count", row_count, 2),
+            number("width", width),
+            number("height", height),
+            vector("position", position),
+            quaternion("rotation", rotation),
+            pins,
+        )
     )
 
 
@@ -152,9 +161,9 @@ def make_cloth_of_mesh(
             None if rest_vertices is None else _core.vertex_array(rest_vertices),
             threads,
             bending == "sticks",
-            vector_of(position),
-            quaternion_of(rotation),
-            scale,
+            vector("position", position),
+            quaternion("rotation", rotation),
+            number("scale", scale),
             pins,
             attachments,
         )
@@ -201,17 +210,18 @@ def make_soft_body(
         ``invalid_mesh`` as :func:`require_valid_tetrahedra`, and when no tetrahedron uses a vertex;
         ``invalid_options`` for numbers out of range and vertices that the mesh does not have.
     """
+    body = of_kind("mesh", mesh, TetrahedralMesh, "; of a surface, tetrahedralize() makes one")
     return Deformable._of(
         _core.make_soft_body(
-            mesh.vertices,
-            mesh.tetrahedra,
-            density,
-            young_modulus,
-            poisson_ratio,
-            damping,
-            vector_of(position),
-            quaternion_of(rotation),
-            scale,
+            body.vertices,
+            body.tetrahedra,
+            number("density", density),
+            number("young_modulus", young_modulus),
+            number("poisson_ratio", poisson_ratio),
+            number("damping", damping),
+            vector("position", position),
+            quaternion("rotation", rotation),
+            number("scale", scale),
             pins,
             attachments,
         )
@@ -224,7 +234,7 @@ def combine(parts: Sequence[Deformable]) -> Deformable:
     The particles follow one part after the other. Masses stay as they are, so they must be in one unit: see
     :func:`with_masses_times`.
     """
-    return Deformable._of(_core.combine([part._deformable for part in parts]))
+    return Deformable._of(_core.combine([part._deformable for part in list_of_kind("parts", parts, Deformable)]))
 
 
 def with_masses_times(factor: float, deformable: Deformable) -> Deformable:
@@ -233,9 +243,9 @@ def with_masses_times(factor: float, deformable: Deformable) -> Deformable:
     A cloth's particles have the mean mass 1, so *mass of the cloth / number of its particles* brings it to the unit of
     that mass.
     """
-    return Deformable._of(_core.with_masses_times(factor, deformable._deformable))
+    core = of_kind("deformable", deformable, Deformable)._deformable
+    return Deformable._of(_core.with_masses_times(number("factor", factor), core))
 
 
-def _require_count(name: str, count: int) -> None:
-    if not 2 <= count < 2**32:
-        raise ValueError(f"{name} must be 2 or more, not {count}")
+def _deformable_of(parts: tuple[bytes, ...]) -> Deformable:
+    return Deformable._of(_core.deformable_of(parts))

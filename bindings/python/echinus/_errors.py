@@ -15,6 +15,12 @@ ErrorCode = Literal[
     "invalid_scene",
     "diverged",
 ]
+"""The kinds of errors, for programs.
+
+``unreadable``, ``unwritable``: the system refused a file; ``wrong_format``, ``damaged``, ``unsupported_version``: what a
+file contains; ``invalid_mesh``, ``invalid_options``, ``invalid_scene``: what was given; ``diverged``: a simulation left all
+bounds.
+"""
 
 
 class Error(Exception):
@@ -24,8 +30,10 @@ class Error(Exception):
 
     Attributes
     ----------
-    code
-        The kind of error, for programs.
+    code : ErrorCode
+        The kind of error, for programs: ``unreadable`` and ``unwritable`` where the system refused a file;
+        ``wrong_format``, ``damaged`` and ``unsupported_version`` for what a file contains; ``invalid_mesh``,
+        ``invalid_options`` and ``invalid_scene`` for what was given; ``diverged`` for a simulation that left all bounds.
     """
 
     code: ErrorCode

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from echinus import _core
+from echinus._arguments import flag, number, of_kind, path_of, threads_of
 from echinus._meshes import MeshLike, Path, arrays_of
 
 Scalar = TypeVar("Scalar", bound=np.generic)
@@ -205,7 +206,7 @@ class _Map(Generic[CoreMap]):
         -------
         ndarray (...) of bool
         """
-        return self._built.contains(points, out, threads)
+        return self._built.contains(points, out, threads_of(threads))
 
     def contacts(
         self, points: ArrayLike, margin: float = 0, *, threads: int = 1, out: Contacts | None = None
@@ -223,7 +224,8 @@ class _Map(Generic[CoreMap]):
         out : Contacts, optional
             Takes the answers, in the place of earlier ones to as many points.
         """
-        return Contacts(self._built.contacts(points, margin, None if out is None else out.array, threads))
+        taken = None if out is None else of_kind("out", out, Contacts).array
+        return Contacts(self._built.contacts(points, number("margin", margin), taken, threads_of(threads)))
 
     def save(self, path: Path) -> None:
         """Writes a map file, whole or not at all; :func:`load` reads it in place.
@@ -233,7 +235,7 @@ class _Map(Generic[CoreMap]):
         Error
             ``unwritable``.
         """
-        self._built.save(path)
+        self._built.save(path_of(path))
 
     @property
     def centre(self) -> tuple[float, float, float]:
@@ -306,7 +308,7 @@ class ExactMap(_Map[_core.ExactMap]):
         threads: int = 0,
     ) -> None:
         options = _options(kind="exact", cells_per_octant=cells_per_octant, budget=budget, rule=rule, centre=centre)
-        built = _core.build_map(*arrays_of(mesh), options, threads)
+        built = _core.build_map(*arrays_of(mesh), options, threads_of(threads))
         assert isinstance(built, _core.ExactMap)
         self._built = built
 
@@ -360,7 +362,7 @@ class ExactMap(_Map[_core.ExactMap]):
         gradients : ndarray (..., 3) of float32
             Only with ``gradient=True``.
         """
-        return self._built.signed_distance(points, gradient, out, threads)
+        return self._built.signed_distance(points, flag("gradient", gradient), out, threads_of(threads))
 
     def sweep(self, start: ArrayLike, end: ArrayLike, *, threads: int = 1) -> SweepHits:
         """Where do segments first cross the surface?
@@ -375,7 +377,7 @@ class ExactMap(_Map[_core.ExactMap]):
         start, end = np.asanyarray(start), np.asanyarray(end)
         if start.shape != end.shape:
             start, end = np.broadcast_arrays(start, end)
-        return SweepHits(self._built.sweep(start, end, threads))
+        return SweepHits(self._built.sweep(start, end, threads_of(threads)))
 
     @property
     def statistics(self) -> ExactMapStatistics:
@@ -435,7 +437,7 @@ class DistanceMap(_Map[_core.DistanceMap]):
             pole_axis=pole_axis,
             centre=centre,
         )
-        built = _core.build_map(*arrays_of(mesh), options, threads)
+        built = _core.build_map(*arrays_of(mesh), options, threads_of(threads))
         assert isinstance(built, _core.DistanceMap)
         self._built = built
 
@@ -457,7 +459,7 @@ def load(path: Path) -> AnyMap:
         ``unreadable``, ``wrong_format``, ``unsupported_version`` or ``damaged``; the sentence begins with the
         path.
     """
-    return wrap(_core.load_map(path))
+    return wrap(_core.load_map(path_of(path)))
 
 
 def wrap(built: _core.ExactMap | _core.DistanceMap) -> AnyMap:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from echinus import _core
+from echinus._arguments import flag, number, path_of, threads_of, vector, whole
 
 Path = str | os.PathLike[str]
 
@@ -19,10 +20,12 @@ class MeshLike(Protocol):
     """Anything with ``vertices`` and ``faces``, for instance a mesh of trimesh or of Open3D's tensor API."""
 
     @property
-    def vertices(self) -> Any: ...
+    def vertices(self) -> Any:
+        """array_like (n, 3) Positions."""
 
     @property
-    def faces(self) -> Any: ...
+    def faces(self) -> Any:
+        """array_like (m, 3) Whole numbers: the vertices of each triangle, counter-clockwise seen from outside."""
 
 
 class Mesh:
@@ -97,7 +100,7 @@ def read_mesh(path: Path) -> Mesh:
     Error
         ``unreadable``, ``wrong_format``, ``damaged`` or ``invalid_mesh``; the sentence begins with the path.
     """
-    return Mesh(*_core.read_mesh(path))
+    return Mesh(*_core.read_mesh(path_of(path)))
 
 
 def write_mesh(path: Path, mesh: MeshLike) -> None:
@@ -108,7 +111,7 @@ def write_mesh(path: Path, mesh: MeshLike) -> None:
     Error
         ``unwritable``, ``wrong_format`` for another extension, or ``invalid_mesh``.
     """
-    _core.write_mesh(path, *arrays_of(mesh))
+    _core.write_mesh(path_of(path), *arrays_of(mesh))
 
 
 @dataclass(frozen=True)
@@ -195,6 +198,7 @@ class RepairReport:
 
     @property
     def changed_anything(self) -> bool:
+        """Is the copy another mesh than the one that was given?"""
         dropped = self.duplicate_faces_dropped + self.doubled_patch_faces_dropped + self.inner_faces_dropped
         return bool(dropped or self.components_flipped or self.faces_added)
 
@@ -242,12 +246,12 @@ def repair(
     """
     arrays, report = _core.repair(
         *arrays_of(mesh),
-        drop_duplicate_faces,
-        drop_doubled_patches,
-        flip_inside_out,
-        close_holes,
-        drop_inner_faces,
-        sheet_thickness,
+        flag("drop_duplicate_faces", drop_duplicate_faces),
+        flag("drop_doubled_patches", drop_doubled_patches),
+        flag("flip_inside_out", flip_inside_out),
+        whole("close_holes", close_holes, 0, 256),
+        flag("drop_inner_faces", drop_inner_faces),
+        number("sheet_thickness", sheet_thickness),
     )
     return Mesh(*arrays), RepairReport(**report)
 
@@ -268,7 +272,7 @@ def winding_number(mesh: MeshLike, points: ArrayLike, *, threads: int = 1) -> ND
     -------
     ndarray (...) of float64
     """
-    return _core.winding_number(*arrays_of(mesh), points, threads)
+    return _core.winding_number(*arrays_of(mesh), points, threads_of(threads))
 
 
 def unsigned_distance(mesh: MeshLike, points: ArrayLike, *, threads: int = 1) -> NDArray[np.float64]:
@@ -276,7 +280,7 @@ def unsigned_distance(mesh: MeshLike, points: ArrayLike, *, threads: int = 1) ->
 
     Infinite for a point that is not finite. Parameters and shapes as for :func:`winding_number`.
     """
-    return _core.unsigned_distance(*arrays_of(mesh), points, threads)
+    return _core.unsigned_distance(*arrays_of(mesh), points, threads_of(threads))
 
 
 def intersecting_pairs(a: MeshLike, b: MeshLike) -> NDArray[np.uint32]:
@@ -305,14 +309,25 @@ def make_torus(
     major_radius: float = 1, minor_radius: float = 0.4, major_segments: int = 60, minor_segments: int = 24
 ) -> Mesh:
     """A torus about the z axis."""
-    return Mesh(*_core.make_torus(major_radius, minor_radius, major_segments, minor_segments))
+    return Mesh(
+        *_core.make_torus(
+            number("major_radius", major_radius),
+            number("minor_radius", minor_radius),
+            whole("major_segments", major_segments),
+            whole("minor_segments", minor_segments),
+        )
+    )
 
 
 def make_sphere(radius: float = 1, meridian_count: int = 60, parallel_count: int = 30) -> Mesh:
     """A sphere of meridians and rows of faces, with its poles on the z axis."""
-    return Mesh(*_core.make_sphere(radius, meridian_count, parallel_count))
+    return Mesh(
+        *_core.make_sphere(
+            number("radius", radius), whole("meridian_count", meridian_count), whole("parallel_count", parallel_count)
+        )
+    )
 
 
 def make_box(size: tuple[float, float, float] = (1, 1, 1), segments: int = 1) -> Mesh:
     """A box around the origin; each side is cut into ``segments`` x ``segments`` squares."""
-    return Mesh(*_core.make_box(size, segments))
+    return Mesh(*_core.make_box(vector("size", size), whole("segments", segments)))

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from echinus import _core
-from echinus._colliders import Collider, ColliderState, Load, PoseKey, Vector, VertexCache, quaternion_of, vector_of
+from echinus._arguments import flag, index, list_of_kind, number, of_kind, path_of, quaternion, threads_of, vector, whole
+from echinus._colliders import Collider, ColliderState, Load, PoseKey, Vector, VertexCache, key_arguments
 from echinus._deformables import Deformable
 from echinus._errors import Error
 from echinus._maps import AnyMap, DistanceMap, ExactMap
@@ -179,8 +180,10 @@ class Simulation:
     ) -> None:
         if solver not in (None, "verlet", "xpbd"):
             raise ValueError(f'solver must be "verlet" or "xpbd", not {solver!r}')
+        of_kind("deformable", deformable, Deformable)
+        models = list_of_kind("colliders", colliders, Collider)
         xpbd = solver == "xpbd" or (solver is None and len(deformable.tetrahedra) > 0)
-        surfaces = _chosen(surface_collision, keep_free and all(isinstance(c.map, ExactMap) for c in colliders))
+        surfaces = _chosen(surface_collision, keep_free and all(isinstance(c.map, ExactMap) for c in models))
         options = {
             "xpbd": xpbd,
             "time_step": time_step,
@@ -205,8 +208,8 @@ class Simulation:
             "bound": bound,
             "threads": threads,
         }
-        self._simulation = _core.Simulation(deformable._deformable, [c._arguments() for c in colliders], options)
-        self._frame_limit = frame_limit
+        self._frame_limit = whole("frame_limit", frame_limit)
+        self._simulation = _core.Simulation(deformable._deformable, [c._arguments() for c in models], options)
 
     @classmethod
     def from_scene(
@@ -260,17 +263,18 @@ class Simulation:
             parsed = _core.Scene.parse(json.dumps(scene), "the scene")
             folder = pathlib.Path()
         else:
-            parsed = _core.Scene.read(scene)
-            folder = pathlib.Path(scene).parent
+            parsed = _core.Scene.read(path_of(scene))
+            folder = pathlib.Path(path_of(scene)).parent
         models = _one_for_each(model, parsed.collider_count)
         if surface_collision is None and any(isinstance(given, DistanceMap) for given in models):
             surface_collision = False
-        surfaces = _chosen(surface_collision, parsed.surface_collision)
+        surfaces = flag("surface_collision", _chosen(surface_collision, parsed.surface_collision))
         parsed.surface_collision = surfaces
-        parsed.self_collision = surfaces and _chosen(self_collision, parsed.self_collision)
-        parsed.untangle = surfaces and _chosen(untangle, parsed.untangle)
-        parsed.allow_open_colliders = allow_open_colliders
-        parsed.measure_loads = measure_loads
+        parsed.self_collision = surfaces and flag("self_collision", _chosen(self_collision, parsed.self_collision))
+        parsed.untangle = surfaces and flag("untangle", _chosen(untangle, parsed.untangle))
+        parsed.allow_open_colliders = flag("allow_open_colliders", allow_open_colliders)
+        parsed.measure_loads = flag("measure_loads", measure_loads)
+        threads = threads_of(threads)
         files = _Files([*map(pathlib.Path, model_folders), folder, folder / ".." / "models", pathlib.Path("models")])
         loaded = [_load_collider(parsed, i, given, files, threads) for i, given in enumerate(models)]
         start, threads_of_cloth = files.cloth(parsed.cloth_file, cloth)
@@ -295,7 +299,7 @@ class Simulation:
         Error
             ``diverged``, naming the frame; afterwards the simulation can only be read.
         """
-        self._simulation.step(frame_count)
+        self._simulation.step(whole("frame_count", frame_count))
 
     def run(self, frame_limit: int | None = None) -> bool:
         """Steps until all rests or there are so many frames, by default the scene's limit.
@@ -305,7 +309,7 @@ class Simulation:
         bool
             Does it rest?
         """
-        limit = self._frame_limit if frame_limit is None else frame_limit
+        limit = self._frame_limit if frame_limit is None else whole("frame_limit", frame_limit)
         while not self.at_rest and self.frame < limit:
             self.step()
         return self.at_rest
@@ -383,7 +387,9 @@ class Simulation:
 
     def set_collider_velocity(self, collider: int, linear: Sequence[float], angular: Sequence[float]) -> None:
         """Steers a model: it keeps these velocities, in units and radians per second, until they are set again."""
-        self._simulation.set_collider_velocity(collider, vector_of(linear), vector_of(angular))
+        self._simulation.set_collider_velocity(
+            index("collider", collider), vector("linear", linear), vector("angular", angular)
+        )
 
     def set_collider_pose(
         self, collider: int, position: Sequence[float], rotation: Sequence[float] = (1, 0, 0, 0)
@@ -395,7 +401,9 @@ class Simulation:
         rotation
             Unit quaternion w, x, y, z; :func:`rotation_about` makes one.
         """
-        self._simulation.set_collider_pose(collider, vector_of(position), quaternion_of(rotation))
+        self._simulation.set_collider_pose(
+            index("collider", collider), vector("position", position), quaternion("rotation", rotation)
+        )
 
     def set_collider_keyframes(self, collider: int, keys: Sequence[PoseKey]) -> None:
         """A model follows the keys: each frame leads it to where :func:`pose_at` has it at the frame's end.
@@ -407,7 +415,7 @@ class Simulation:
         keys
             Their times ascend, in seconds since the simulation began.
         """
-        self._simulation.set_collider_keyframes(collider, [key._arguments() for key in keys])
+        self._simulation.set_collider_keyframes(index("collider", collider), key_arguments(keys))
 
     def set_collider_vertices(self, collider: int, vertices: ArrayLike) -> None:
         """The next frame leads the vertices of a model here, each on a straight way; then they rest.
@@ -424,7 +432,7 @@ class Simulation:
         Error
             ``invalid_options``; then nothing has changed.
         """
-        self._simulation.set_collider_vertices(collider, _core.vertex_array(vertices))
+        self._simulation.set_collider_vertices(index("collider", collider), _core.vertex_array(vertices))
 
     def set_collider_cache(self, collider: int, cache: VertexCache) -> None:
         """Each frame leads the vertices of a model to where the cache has them at the frame's end.
@@ -432,7 +440,8 @@ class Simulation:
         Build its map of ``cache.at(0)``, or the first frame leads it there. Needs what :meth:`set_collider_vertices`
         does.
         """
-        self._simulation.set_collider_cache(collider, cache._cache)
+        core = of_kind("cache", cache, VertexCache)._cache
+        self._simulation.set_collider_cache(index("collider", collider), core)
 
     def load_on(self, collider: int) -> Load:
         """What the deformables put on a model in the last frame, as its mean over the frame; 0 before the first.
@@ -445,11 +454,11 @@ class Simulation:
         ValueError
             The simulation was made without ``measure_loads``.
         """
-        return Load(*self._simulation.load_on(collider))
+        return Load(*self._simulation.load_on(index("collider", collider)))
 
     def set_particle_velocity(self, particle: int, velocity: Sequence[float]) -> None:
         """Gives a particle a velocity, units per second. A pinned particle stays."""
-        self._simulation.set_particle_velocity(particle, vector_of(velocity))
+        self._simulation.set_particle_velocity(index("particle", particle), vector("velocity", velocity))
 
     def blow(self, wind: Sequence[float], rate: float) -> None:
         """Wind for the next frame.
@@ -461,7 +470,7 @@ class Simulation:
         rate
             Per second, not negative: the higher, the lighter the cloth.
         """
-        self._simulation.blow(vector_of(wind), rate)
+        self._simulation.blow(vector("wind", wind), number("rate", rate))
 
     def save_state(self) -> bytes:
         """All that decides how the simulation goes on, but for what it was made of (docs/saved_states.md)."""
@@ -478,7 +487,7 @@ class Simulation:
             ``wrong_format``, ``unsupported_version`` or ``damaged`` for bytes that are no state of this version;
             ``invalid_options`` for one of another simulation, saying what differs.
         """
-        return self._of(self._simulation.restored(state), self._frame_limit)
+        return self._of(self._simulation.restored(of_kind("state", state, bytes)), self._frame_limit)
 
     def __copy__(self) -> Simulation:
         return self._of(self._simulation.copy(), self._frame_limit)

@@ -9,8 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from echinus import _core
+from echinus._arguments import number, of_kind, path_of, threads_of, vector, whole
 from echinus._maps import ExactMap
 from echinus._meshes import Mesh, MeshReport, Path, read_only, report_of
+
+_MOST_COUNT = 2**63 - 1
 
 
 class TetrahedralMesh:
@@ -78,7 +81,7 @@ def read_tetrahedra(path: Path) -> TetrahedraFile:
     Error
         ``unreadable``, ``wrong_format``, ``damaged`` or ``invalid_mesh``; the sentence begins with the path.
     """
-    arrays, turned, dropped = _core.read_tetrahedra(path)
+    arrays, turned, dropped = _core.read_tetrahedra(path_of(path))
     return TetrahedraFile(TetrahedralMesh(*arrays), turned, dropped)
 
 
@@ -90,7 +93,7 @@ def write_tetrahedra(path: Path, mesh: TetrahedralMesh) -> None:
     Error
         ``unwritable``, ``wrong_format`` for another extension, or ``invalid_mesh``.
     """
-    _core.write_tetrahedra(path, mesh.vertices, mesh.tetrahedra)
+    _core.write_tetrahedra(path_of(path), *_arrays_of(mesh))
 
 
 def make_solid_box(
@@ -106,7 +109,10 @@ def make_solid_box(
     Error
         ``invalid_options`` unless lengths are positive and there are 1 to 512 segments along each axis.
     """
-    return TetrahedralMesh(*_core.make_solid_box(size, segments))
+    sides = [whole("each of segments", side) for side in segments]
+    if len(sides) != 3:
+        raise ValueError(f"segments must be three whole numbers, not {segments!r}")
+    return TetrahedralMesh(*_core.make_solid_box(vector("size", size), (sides[0], sides[1], sides[2])))
 
 
 @dataclass(frozen=True)
@@ -160,11 +166,13 @@ def tetrahedralize(
     """
     if (size is None) == (count is None):
         raise ValueError("give either size or count")
-    if count is not None and count < 1:
-        raise ValueError(f"count must be 1 or more, not {count}")
-    if most_tetrahedra < 0:
-        raise ValueError(f"most_tetrahedra must be 0 or more, not {most_tetrahedra}")
-    arrays, found, removed = _core.tetrahedralize(model._built, size or 0.0, count or 0, most_tetrahedra, threads)
+    arrays, found, removed = _core.tetrahedralize(
+        of_kind("model", model, ExactMap)._built,
+        0.0 if size is None else number("size", size),
+        0 if count is None else whole("count", count, 1, _MOST_COUNT),
+        whole("most_tetrahedra", most_tetrahedra, 0, _MOST_COUNT),
+        threads_of(threads),
+    )
     return Tetrahedralization(TetrahedralMesh(*arrays), found, removed)
 
 
@@ -178,7 +186,7 @@ def require_valid_tetrahedra(mesh: TetrahedralMesh) -> None:
     Error
         ``invalid_mesh``, naming the first tetrahedron or vertex at fault.
     """
-    _core.require_valid_tetrahedra(mesh.vertices, mesh.tetrahedra)
+    _core.require_valid_tetrahedra(*_arrays_of(mesh))
 
 
 def boundary(mesh: TetrahedralMesh) -> Mesh:
@@ -189,7 +197,7 @@ def boundary(mesh: TetrahedralMesh) -> Mesh:
     Error
         ``invalid_mesh`` when an index is out of range, or two tetrahedra lie on the same side of a face.
     """
-    return Mesh(*_core.boundary(mesh.vertices, mesh.tetrahedra))
+    return Mesh(*_core.boundary(*_arrays_of(mesh)))
 
 
 @dataclass(frozen=True)
@@ -227,7 +235,7 @@ def inspect_tetrahedra(mesh: TetrahedralMesh) -> TetrahedralReport:
     Error
         ``invalid_mesh`` as :func:`require_valid_tetrahedra`.
     """
-    report = _core.inspect_tetrahedra(mesh.vertices, mesh.tetrahedra)
+    report = _core.inspect_tetrahedra(*_arrays_of(mesh))
     report["boundary"] = report_of(report["boundary"])
     return TetrahedralReport(**report)
 
@@ -244,7 +252,8 @@ class BoundaryDistance:
 
 def measure_distance(mesh: TetrahedralMesh, model: ExactMap, *, threads: int = 0) -> BoundaryDistance:
     """Compares a body's boundary with a model: at the corners of the faces of both, and at points between them."""
-    return BoundaryDistance(*_core.measure_distance(mesh.vertices, mesh.tetrahedra, model._built, threads))
+    core = of_kind("model", model, ExactMap)._built
+    return BoundaryDistance(*_core.measure_distance(*_arrays_of(mesh), core, threads_of(threads)))
 
 
 class Embedding:
@@ -271,7 +280,7 @@ class Embedding:
         -------
         ndarray (n, 3) of float32
         """
-        return self._embedding.carry(positions, out, threads)
+        return self._embedding.carry(positions, out, threads_of(threads))
 
     @property
     def vertices(self) -> NDArray[np.uint32]:
@@ -304,5 +313,10 @@ def embed(mesh: TetrahedralMesh, points: ArrayLike, *, threads: int = 0) -> Embe
         ``invalid_mesh`` as :func:`require_valid_tetrahedra`, and for a point that is not finite.
     """
     embedding = Embedding.__new__(Embedding)
-    embedding._embedding = _core.embed(mesh.vertices, mesh.tetrahedra, points, threads)
+    embedding._embedding = _core.embed(*_arrays_of(mesh), points, threads_of(threads))
     return embedding
+
+
+def _arrays_of(mesh: TetrahedralMesh) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
+    of_kind("mesh", mesh, TetrahedralMesh, "; of a surface, tetrahedralize() makes one")
+    return mesh.vertices, mesh.tetrahedra

@@ -49,10 +49,16 @@ VertexCache cache_of(const py::object& samples, double start_time, double sample
     if (!std::isfinite(start_time) || !std::isfinite(sample_seconds) || !(sample_seconds > 0))
         throw py::value_error("times must be finite, and sample_seconds positive");
     std::vector<Vec3f> copy(points.size());
-    for (std::size_t i = 0; i < copy.size(); ++i) copy[i] = points.span()[i];
+    const auto vertex_count = static_cast<std::size_t>(points.shape()[1]);
+    for (std::size_t i = 0; i < copy.size(); ++i) {
+        copy[i] = points.span()[i];
+        if (!is_finite(copy[i]))
+            throw py::value_error("samples must be finite; vertex " + std::to_string(i % vertex_count) +
+                                  " of sample " + std::to_string(i / vertex_count) + " is not");
+    }
     return {.start_time = start_time,
             .sample_seconds = sample_seconds,
-            .vertex_count = static_cast<std::size_t>(points.shape()[1]),
+            .vertex_count = vertex_count,
             .samples = std::make_shared<const std::vector<Vec3f>>(std::move(copy))};
 }
 

@@ -5,6 +5,10 @@
 
 #include <pybind11/stl.h>
 
+#include <cstddef>
+#include <cstring>
+#include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -75,6 +79,54 @@ Deformable soft_body(const py::array_t<float>& vertices, const py::array_t<std::
     return unlocked([&] { return make_soft_body(mesh, options); });
 }
 
+// ---- Pickles
+
+/// All that a deformable consists of, array by array. What takes it checks it as it checks any deformable.
+template <typename Use>
+void for_each_part(const Use& use) {
+    use(&Deformable::positions);
+    use(&Deformable::previous_positions);
+    use(&Deformable::inverse_masses);
+    use(&Deformable::sticks);
+    use(&Deformable::faces);
+    use(&Deformable::folds);
+    use(&Deformable::attachments);
+    use(&Deformable::tetrahedra);
+}
+constexpr std::size_t kPartCount = 8;
+
+py::tuple parts_of(const Deformable& deformable) {
+    py::tuple parts(kPartCount);
+    std::size_t next = 0;
+    for_each_part([&]<typename T>(std::vector<T> Deformable::*part) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        const std::vector<T>& values = deformable.*part;
+        parts[next++] = py::bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+    });
+    return parts;
+}
+
+Deformable deformable_of(const py::tuple& parts) {
+    const auto require = [](bool condition) {
+        if (!condition) throw py::value_error("these are no parts of a deformable of this version");
+    };
+    require(parts.size() == kPartCount);
+    Deformable deformable;
+    std::size_t next = 0;
+    for_each_part([&]<typename T>(std::vector<T> Deformable::*part) {
+        const py::object bytes = parts[next++];
+        require(py::isinstance<py::bytes>(bytes));
+        const std::string_view text = py::reinterpret_borrow<py::bytes>(bytes);
+        require(text.size() % sizeof(T) == 0);
+        std::vector<T>& values = deformable.*part;
+        values.resize(text.size() / sizeof(T));
+        if (!text.empty()) std::memcpy(values.data(), text.data(), text.size());
+    });
+    require(deformable.previous_positions.size() == deformable.particle_count() &&
+            deformable.inverse_masses.size() == deformable.particle_count());
+    return deformable;
+}
+
 Deformable combined(const std::vector<const Deformable*>& parts) {
     std::vector<Deformable> copies;
     for (const Deformable* part : parts) copies.push_back(*part);
@@ -99,7 +151,9 @@ void bind_deformables(py::module_& module) {
             "tetrahedra",
             [](const py::object& self) { return view_of(self.cast<const Deformable&>().tetrahedra, self); })
         .def_property_readonly("stick_count", [](const Deformable& d) { return d.sticks.size(); })
-        .def_property_readonly("fold_count", [](const Deformable& d) { return d.folds.size(); });
+        .def_property_readonly("fold_count", [](const Deformable& d) { return d.folds.size(); })
+        .def("parts", parts_of);
+    module.def("deformable_of", deformable_of);
     module.def("make_cloth", sheet);
     module.def("make_cloth_of_mesh", cloth_of_mesh);
     module.def("make_soft_body", soft_body);

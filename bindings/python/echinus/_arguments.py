@@ -1,0 +1,96 @@
+"""Arguments as the library takes them.
+
+Wrong types are TypeErrors and wrong values ValueErrors, whose sentences name the argument.
+"""
+
+from __future__ import annotations
+
+import operator
+import os
+from collections.abc import Iterable
+from typing import Any, TypeVar
+
+import numpy as np
+
+Kind = TypeVar("Kind")
+
+_MOST_WHOLE = 2**32 - 1
+_MOST_THREADS = 2**31 - 1
+
+
+def kind_name(value: object) -> str:
+    return type(value).__name__
+
+
+def number(name: str, value: Any) -> float:
+    if isinstance(value, (str, bytes, bytearray)) or not hasattr(value, "__float__"):
+        raise TypeError(f"{name} must be a number, not {value!r}")
+    try:
+        return float(value)
+    except (TypeError, OverflowError, ValueError) as error:  # an array of several numbers, or beyond a double
+        raise type(error)(f"{name} must be one number: {error}") from None
+
+
+def whole(name: str, value: Any, least: int = 0, most: int = _MOST_WHOLE) -> int:
+    try:
+        result = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} must be a whole number, not {value!r}") from None
+    if not least <= result <= most:
+        raise ValueError(f"{name} must be a whole number from {least} to {most}, not {result}")
+    return result
+
+
+def index(name: str, value: Any) -> int:
+    """Of what is counted from 0; whether there is so much, the library knows."""
+    return whole(name, value, -(2**63), 2**63 - 1)
+
+
+def threads_of(value: Any) -> int:
+    """The library refuses negative ones."""
+    return whole("threads", value, -_MOST_THREADS, _MOST_THREADS)
+
+
+def flag(name: str, value: Any) -> bool:
+    if not isinstance(value, (bool, np.bool_)):
+        raise TypeError(f"{name} must be True or False, not {value!r}")
+    return bool(value)
+
+
+def _numbers(name: str, values: Any, count: int, words: str) -> list[float]:
+    sentence = f"{name} must be {words}, not {values!r}"
+    if isinstance(values, (str, bytes, bytearray)) or not isinstance(values, Iterable):
+        raise TypeError(sentence)
+    entries = list(values)
+    if len(entries) != count:
+        raise ValueError(sentence)
+    return [number(f"each of {name}", entry) for entry in entries]
+
+
+def vector(name: str, values: Any) -> tuple[float, float, float]:
+    x, y, z = _numbers(name, values, 3, "three numbers")
+    return x, y, z
+
+
+def quaternion(name: str, values: Any) -> tuple[float, float, float, float]:
+    w, x, y, z = _numbers(name, values, 4, "the four numbers w, x, y, z of a quaternion")
+    return w, x, y, z
+
+
+def of_kind(name: str, value: Any, kind: type[Kind], made_by: str = "") -> Kind:
+    if not isinstance(value, kind):
+        raise TypeError(f"{name} must be of the class {kind.__name__}, not {kind_name(value)}" + made_by)
+    return value
+
+
+def list_of_kind(name: str, values: Any, kind: type[Kind]) -> list[Kind]:
+    if isinstance(values, (str, bytes)) or not isinstance(values, Iterable):
+        raise TypeError(f"{name} must be a list of {kind.__name__}, not {kind_name(values)}")
+    return [of_kind(f"{name}[{i}]", value, kind) for i, value in enumerate(values)]
+
+
+def path_of(value: Any) -> str:
+    """Of a file or folder, as the library takes it."""
+    if not isinstance(value, (str, bytes, os.PathLike)):
+        raise TypeError(f"a path must be a str or os.PathLike, not {kind_name(value)}")
+    return os.fsdecode(value)
