@@ -7,10 +7,11 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 
 using namespace echinus;
 
-int main(int argument_count, char** arguments) {
+int main(int argument_count, char** arguments) try {
     const std::uint32_t segments = argument_count > 1 ? std::atoi(arguments[1]) : 4;
     const double poisson = argument_count > 2 ? std::atof(arguments[2]) : 0.3;
     const double length = 1, height = 0.2, density = 1000, gravity = 10,
@@ -44,4 +45,7 @@ int main(int argument_count, char** arguments) {
     const double shear = density * gravity / young * (12 + 11 * poisson) / 10; // Cowper's coefficient
     std::printf("%zu tetrahedra: the end sinks by %.4f, %.1f %% of what a beam does\n",
                 mesh.tetrahedra.size(), sag, 100 * sag / (bending + shear));
+} catch (const std::exception& error) { // for example 0 cuboids, or a Poisson's ratio of 0.5
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
 }
