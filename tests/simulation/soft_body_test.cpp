@@ -174,6 +174,27 @@ TEST(SoftBody, FallsOnABallAndNoFaceMeetsAnotherInAnyFrame) {
     EXPECT_GT(test::least_volume_ratio(body, simulation.positions()), 0.1);
 }
 
+TEST(SoftBody, PressedBetweenPlatesIsTakenAlongByBothAndMeetsNeither) {
+    // By a centimetre in a frame, from the size of the ball down to eight thicknesses.
+    const ExactMap map = ExactMap::build(make_sphere(0.1, 24, 12));
+    const Deformable ball = make_soft_body(tetrahedralize(map, {.size = 0.02}).mesh,
+                                           {.young_modulus = 2e3, .poisson_ratio = 0.2});
+    const std::vector<TriangleMesh> plates(2, make_box({0.6, 0.6, 0.05}, 4));
+    std::vector<Collider> colliders = test::colliders_of(plates);
+    const double start = 0.1 + kThickness + 0.026, end = 8 * kThickness + 0.05 - start;
+    colliders[0].pose.translation = {0, 0, -start};
+    colliders[1].pose.translation = {0, 0, start};
+    SimulationOptions options = with_surfaces();
+    options.time_step = 1.0 / 60;
+    Simulation simulation(ball, colliders, options);
+    simulation.set_collider_keyframes(1, {{0, colliders[1].pose}, {0.3, {{}, {0, 0, end}}}});
+    for (int frame = 1; frame <= 40; ++frame) {
+        simulation.step();
+        ASSERT_EQ(test::meeting_faces(simulation, plates).size(), 0u) << frame;
+    }
+    EXPECT_EQ(simulation.profile().lost_count, 0u);
+}
+
 TEST(SoftBody, CollidesWithAnotherAndWithClothAsWithItself) {
     const std::vector<TriangleMesh> models{make_box({1, 1, 0.1})};
     const auto at = [](double height, double young) {

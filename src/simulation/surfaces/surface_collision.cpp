@@ -27,6 +27,11 @@ constexpr float kLeastSelfReach = 0.2F;
 /// In thicknesses: pairs this near are listed, since a contact is kept ready before it pushes.
 constexpr float kSelfReach = 1.3F;
 
+/// A model that is nearer than this share of its reach takes a vertex along as if it were so far.
+constexpr float kLeastDistance = 1.0F / 1024;
+/// Models pull at what is within so many of their reaches.
+constexpr float kPullReach = 4;
+
 /// A vertex that is too fast for what is listed goes its way in several passes.
 constexpr int kMostPasses = 8;
 
@@ -149,7 +154,40 @@ void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders,
         collisions.known_clearances(c, particles, clearances_[c]);
         model.begin_frame(colliders[c], motions[c], particles.positions, clearances_[c], workers);
     });
+    find_pulls(colliders, particles);
     if (self_) self_->begin_pass(own_pose(), particles.positions, true);
+}
+
+/// Where several models are near and move, a vertex between them is taken along by all of them, the more the
+/// nearer they are: what goes straight between two plates that approach each other keeps its share of the
+/// room, and so does all that lies between them.
+void SurfaceCollision::find_pulls(const std::vector<Collider>& colliders, const Particles& particles) {
+    has_pulls_ = std::count(moves_.begin(), moves_.end(), std::uint8_t{1}) != 0 &&
+                 std::count(is_near_.begin(), is_near_.end(), std::uint8_t{1}) > 1;
+    if (!has_pulls_) return;
+    pulls_.resize(models_.size());
+    const float reach = kPullReach * *std::max_element(carry_reaches_.begin(), carry_reaches_.end());
+    rest_pull_ = 1 / reach;
+    for_each_near([&](std::size_t c, ModelSurface&) { find_pulls_of(c, colliders[c], reach, particles); });
+}
+
+void SurfaceCollision::find_pulls_of(std::size_t c, const Collider& collider, float reach,
+                                     const Particles& particles) {
+    beside_.clear();
+    places_.clear();
+    for (std::uint32_t v = 0; v < particles.count(); ++v) {
+        if (clearances_[c][v] > reach) continue;
+        beside_.push_back(v);
+        places_.push_back(particles.positions[v]);
+    }
+    contacts_.resize(beside_.size());
+    contacts_batch(collider, places_, reach, contacts_);
+    pulls_[c].assign(particles.count(), 0.0F);
+    for (std::size_t n = 0; n < beside_.size(); ++n) {
+        if (!contacts_[n].found()) continue;
+        const float distance = std::max(std::fabs(contacts_[n].depth), kLeastDistance * reach);
+        pulls_[c][beside_[n]] = std::max(1 / distance - 1 / reach, 0.0F);
+    }
 }
 
 void SurfaceCollision::look_ahead(const std::vector<Collider>& colliders, const Particles& particles,
@@ -308,22 +346,28 @@ void SurfaceCollision::find_leaving(const Workers& workers) {
     }
 }
 
-/// The model that takes a vertex along that would else stay behind, or none: of several, the first that moves
-/// and is near it.
-const ModelSurface* SurfaceCollision::carrier_of(std::uint32_t vertex, bool is_first) const {
-    if (!is_first) return nullptr;
-    for (std::size_t c = 0; c < models_.size(); ++c) {
-        if (moves_[c] == 0 || is_near_[c] == 0) continue;
-        if (c == own_frame_ || models_[c].is_beside(vertex)) return &models_[c];
-    }
-    return nullptr;
+/// The only model that is near and moves, which takes along what would else stay behind; or none.
+const ModelSurface* SurfaceCollision::carrier() const {
+    return own_frame_ < models_.size() ? &models_[own_frame_] : nullptr;
 }
 
 /// Where a vertex ends that goes none of its way.
 Vec3f SurfaceCollision::base_of(std::uint32_t vertex, bool is_first, const Particles& particles) const {
-    const ModelSurface* carrier = carrier_of(vertex, is_first);
-    if (carrier != nullptr) return carrier->carried(vertex);
-    return is_first ? particles.frame_start[vertex] : particles.positions[vertex];
+    if (!is_first) return particles.positions[vertex];
+    if (has_pulls_) return carried_between(vertex, particles.frame_start[vertex]);
+    return carrier() != nullptr ? carrier()->carried(vertex) : particles.frame_start[vertex];
+}
+
+/// The mean of where the models take it.
+Vec3f SurfaceCollision::carried_between(std::uint32_t vertex, const Vec3f& start) const {
+    float sum = rest_pull_;
+    Vec3f way;
+    for (std::size_t c = 0; c < models_.size(); ++c) {
+        if (is_near_[c] == 0 || !(pulls_[c][vertex] > 0)) continue;
+        sum += pulls_[c][vertex];
+        if (moves_[c] != 0) way += (models_[c].carried(vertex) - start) * pulls_[c][vertex];
+    }
+    return start + way * (1 / sum);
 }
 
 Vec3f SurfaceCollision::find_place(std::uint32_t vertex, bool is_first, const Particles& particles) {
@@ -332,18 +376,18 @@ Vec3f SurfaceCollision::find_place(std::uint32_t vertex, bool is_first, const Pa
         ++squeezed_now_;
         return goal;
     }
-    const ModelSurface* carrier = carrier_of(vertex, is_first);
+    const ModelSurface* only = is_first ? carrier() : nullptr;
     const Vec3f from = base_of(vertex, is_first, particles);
     Shares shares;
     for_each_near([&](std::size_t c, ModelSurface& model) {
         const float most = shares.most;
-        shares.keep(model.allowed(vertex, &model == carrier ? nullptr : &from));
+        shares.keep(model.allowed(vertex, &model == only ? nullptr : &from));
         if (shares.most < most || shares.none()) stopped_by_[vertex] = static_cast<std::uint32_t>(c);
     });
     if (shares.none()) ++squeezed_now_;
     const float share = shares.none() ? 0 : std::max(shares.most, 0.0F);
     if (share == 1) return goal;
-    return carrier != nullptr ? carrier->place_at(share, vertex) : from + (goal - from) * share;
+    return only != nullptr ? only->place_at(share, vertex) : from + (goal - from) * share;
 }
 
 } // namespace echinus

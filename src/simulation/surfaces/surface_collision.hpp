@@ -52,11 +52,14 @@ class SurfaceCollision {
 
   private:
     void keep_gaps(const std::vector<Collider>& colliders, const Particles& particles);
+    void find_pulls(const std::vector<Collider>& colliders, const Particles& particles);
+    void find_pulls_of(std::size_t model, const Collider& collider, float reach, const Particles& particles);
     bool pass(Particles& particles, bool is_first, const Workers& workers);
     void find_leaving(const Workers& workers);
     void shorten_ways(bool is_first, const Particles& particles, const Workers& workers);
     Vec3f find_place(std::uint32_t vertex, bool is_first, const Particles& particles);
-    const ModelSurface* carrier_of(std::uint32_t vertex, bool is_first) const;
+    const ModelSurface* carrier() const;
+    Vec3f carried_between(std::uint32_t vertex, const Vec3f& start) const;
     Vec3f base_of(std::uint32_t vertex, bool is_first, const Particles& particles) const;
     template <typename Visit>
     void for_each_near(const Visit& visit);
@@ -81,6 +84,12 @@ class SurfaceCollision {
     std::vector<RigidTransform> start_poses_;   ///< of the colliders
     PointArrays expected_, goals_, ends_, bases_;
     std::vector<std::vector<float>> clearances_; ///< by model and vertex
+    bool has_pulls_ = false;                     ///< in this frame
+    float rest_pull_ = 0;                        ///< how much what is between takes none along
+    std::vector<std::vector<float>> pulls_;      ///< by model and vertex: how much the model takes it along
+    std::vector<std::uint32_t> beside_;          ///< vertices that a model may take along,
+    std::vector<Vec3f> places_;                  ///< where they are,
+    std::vector<Contact> contacts_;              ///< and what is nearest to them
     std::vector<std::uint32_t> leaving_;
     std::vector<std::uint8_t> is_leaving_, is_truncated_;
     std::vector<std::uint32_t> stopped_by_; ///< by vertex: the model beside which its way ended last
