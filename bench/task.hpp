@@ -23,6 +23,7 @@ struct Setting {
 
 // One function and one file a task; each returns the records of its CSV file.
 
+Records measure_calls(const Setting& setting);
 Records measure_contains(const Setting& setting);
 Records measure_contacts(const Setting& setting);
 Records measure_bytes(const Setting& setting);

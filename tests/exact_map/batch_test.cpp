@@ -127,11 +127,13 @@ std::vector<Contact> one_by_one(const ExactMapView& map, StridedSpan<const Vec3f
     return contacts;
 }
 
-void expect_same_contacts(const std::vector<Contact>& expected, const ExactMapView& map,
-                          StridedSpan<const Vec3f> points, float margin, const Vec3d& stretch,
-                          unsigned thread_count) {
-    std::vector<Contact> contacts(points.size());
-    stretched_contacts_batch(map, points, margin, contacts, stretch, thread_count);
+std::vector<Contact> by_reference(const ExactMapView& map, StridedSpan<const Vec3f> points, float margin,
+                                  const Vec3d& stretch) {
+    return test::under_instruction_set("scalar", [&] { return one_by_one(map, points, margin, stretch); });
+}
+
+void expect_same_contacts(const std::vector<Contact>& expected, const std::vector<Contact>& contacts,
+                          StridedSpan<const Vec3f> points) {
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < contacts.size(); ++i)
         if (!same_bits(contacts[i], expected[i]) && ++wrong <= 3)
@@ -141,9 +143,17 @@ void expect_same_contacts(const std::vector<Contact>& expected, const ExactMapVi
     EXPECT_EQ(wrong, 0U);
 }
 
+void expect_same_contacts(const std::vector<Contact>& expected, const ExactMapView& map,
+                          StridedSpan<const Vec3f> points, float margin, const Vec3d& stretch,
+                          unsigned thread_count) {
+    std::vector<Contact> contacts(points.size());
+    stretched_contacts_batch(map, points, margin, contacts, stretch, thread_count);
+    expect_same_contacts(expected, contacts, points);
+}
+
 void expect_same_contacts(const ExactMapView& map, StridedSpan<const Vec3f> points, float margin,
                           const Vec3d& stretch, unsigned thread_count) {
-    expect_same_contacts(one_by_one(map, points, margin, stretch), map, points, margin, stretch,
+    expect_same_contacts(by_reference(map, points, margin, stretch), map, points, margin, stretch,
                          thread_count);
 }
 
@@ -159,19 +169,27 @@ SignedDistances signed_distances_one_by_one(const ExactMapView& map, StridedSpan
     return result;
 }
 
+SignedDistances signed_distances_by_reference(const ExactMapView& map, StridedSpan<const Vec3f> points) {
+    return test::under_instruction_set("scalar", [&] { return signed_distances_one_by_one(map, points); });
+}
+
 void expect_same_signed_distances(const SignedDistances& expected, const ExactMapView& map,
                                   StridedSpan<const Vec3f> points, unsigned thread_count) {
     std::vector<float> distances(points.size(), 7), alone(points.size(), 7);
     std::vector<Vec3f> gradients(points.size(), {7, 7, 7});
     signed_distance_batch(map, points, distances, gradients, thread_count);
     signed_distance_batch(map, points, alone, {}, thread_count);
+    const SignedDistances singly = signed_distances_one_by_one(map, points);
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < points.size(); ++i)
         if ((!same_bits(distances[i], expected.distances[i]) || !same_bits(alone[i], distances[i]) ||
-             !same_bits(gradients[i], expected.gradients[i])) &&
+             !same_bits(gradients[i], expected.gradients[i]) ||
+             !same_bits(singly.distances[i], expected.distances[i]) ||
+             !same_bits(singly.gradients[i], expected.gradients[i])) &&
             ++wrong <= 3)
             ADD_FAILURE() << "point " << i << ": " << points[i].x << " " << points[i].y << " " << points[i].z
-                          << ", distance " << distances[i] << ", " << alone[i] << " alone, and not "
+                          << ", distance " << distances[i] << ", " << alone[i] << " alone, "
+                          << singly.distances[i] << " by a call of its own, and not "
                           << expected.distances[i];
     EXPECT_EQ(wrong, 0U);
 }
@@ -201,10 +219,11 @@ TEST(ExactMapBatch, AgreesWithContactUnderEveryInstructionSet) {
                                                    {0.05F * radius, {2, -1, 0.5}},
                                                    {4.5F * radius, {1, 0.7, 0.3}}};
         for (const auto& [margin, stretch] : askings) {
-            const std::vector<Contact> expected = one_by_one(map, points, margin, stretch);
+            const std::vector<Contact> expected = by_reference(map, points, margin, stretch);
             test::under_each_instruction_set([&, margin = margin, stretch = stretch](std::string_view name) {
                 SCOPED_TRACE(std::string(name));
                 expect_same_contacts(expected, map, points, margin, stretch, 1);
+                expect_same_contacts(expected, one_by_one(map, points, margin, stretch), points);
             });
         }
     }
@@ -215,7 +234,7 @@ TEST(ExactMapBatch, AgreesWithSignedDistanceUnderEveryInstructionSet) {
         SCOPED_TRACE(c.name);
         const ExactMap map = ExactMap::build(c.mesh, c.options);
         const std::vector<Vec3f> points = telling_points(map, c.mesh);
-        const SignedDistances expected = signed_distances_one_by_one(map, points);
+        const SignedDistances expected = signed_distances_by_reference(map, points);
         test::under_each_instruction_set([&](std::string_view name) {
             SCOPED_TRACE(std::string(name));
             expect_same_signed_distances(expected, map, points, 1);
@@ -241,7 +260,7 @@ TEST(ExactMapBatch, TakesAnyNumberOfPointsAtAnyStride) {
             const StridedSpan<const Vec3f> strided(&particles[0].position, count, sizeof(Particle));
             expect_same_sides(map, strided, 1);
             expect_same_contacts(map, strided, 0.01F, {1, 1, 1}, 1);
-            expect_same_signed_distances(signed_distances_one_by_one(map, strided), map, strided, 1);
+            expect_same_signed_distances(signed_distances_by_reference(map, strided), map, strided, 1);
         }
     });
 }
@@ -250,7 +269,7 @@ TEST(ExactMapBatch, GivesTheSameAnswersOnAnyNumberOfThreads) {
     const TriangleMesh mesh = make_torus(1, 0.4, 40, 16);
     const ExactMap map = ExactMap::build(mesh);
     const std::vector<Vec3f> points = comparison::surface_points(mesh, 100'000);
-    const SignedDistances expected = signed_distances_one_by_one(map, points);
+    const SignedDistances expected = signed_distances_by_reference(map, points);
     for (unsigned thread_count : {0U, 2U, 3U}) {
         expect_same_sides(map, points, thread_count);
         expect_same_contacts(map, points, 0, {1, 1, 1}, thread_count);
@@ -273,12 +292,13 @@ TEST(ExactMapBatch, AnswersWithIndicesOf32BitsToo) {
         const ExactMap map = ExactMap::build(mesh, {.divisions = 20});
         ASSERT_FALSE(map.view().references.wide.empty());
         const std::vector<Vec3f> points = comparison::surface_points(mesh, 3000);
-        const std::vector<Contact> expected = one_by_one(map, points, 0, {1, 1, 1});
-        const SignedDistances expected_distances = signed_distances_one_by_one(map, points);
+        const std::vector<Contact> expected = by_reference(map, points, 0, {1, 1, 1});
+        const SignedDistances expected_distances = signed_distances_by_reference(map, points);
         test::under_each_instruction_set([&](std::string_view name) {
             SCOPED_TRACE(std::string(name));
             expect_same_sides(map, points, 1);
             expect_same_contacts(expected, map, points, 0, {1, 1, 1}, 1);
+            expect_same_contacts(expected, one_by_one(map, points, 0, {1, 1, 1}), points);
             expect_same_signed_distances(expected_distances, map, points, 1);
         });
     }
@@ -289,10 +309,11 @@ TEST(ExactMapBatch, AgreesWithContactWhenTheWorldIsSquashed) {
     const ExactMap map = ExactMap::build(mesh);
     const std::vector<Vec3f> points = comparison::surface_points(mesh, 300);
     for (const Vec3d& stretch : {Vec3d{1, 1e-5, 1e-3}, Vec3d{1, 1e-25, 1e-25}, Vec3d{1e-25, 1, 1e-50}}) {
-        const std::vector<Contact> expected = one_by_one(map, points, 0.2F, stretch);
+        const std::vector<Contact> expected = by_reference(map, points, 0.2F, stretch);
         test::under_each_instruction_set([&](std::string_view name) {
             SCOPED_TRACE(std::string(name));
             expect_same_contacts(expected, map, points, 0.2F, stretch, 1);
+            expect_same_contacts(expected, one_by_one(map, points, 0.2F, stretch), points);
         });
     }
 }

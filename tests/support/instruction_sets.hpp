@@ -3,6 +3,7 @@
 #include <echinus/instruction_set.hpp>
 
 #include <string>
+#include <string_view>
 
 namespace echinus::test {
 
@@ -15,6 +16,16 @@ void under_each_instruction_set(const Body& body) {
         body(name);
     }
     use_instruction_set(before);
+}
+
+/// What body() returns under an instruction set; the previous one is restored.
+template <typename Body>
+auto under_instruction_set(std::string_view name, const Body& body) {
+    const std::string before(instruction_set());
+    use_instruction_set(name);
+    auto result = body();
+    use_instruction_set(before);
+    return result;
 }
 
 } // namespace echinus::test

@@ -186,7 +186,7 @@ class BandWindings {
             const IntLanes numbers = hn::Load(i, &pair_particles_[first]);
             const PointLanes p = places_of(first, numbers);
             const auto [crossing, unsure] =
-                crossings_of(corner_from_p(corners, first, p), corner_from_p(corners + 1, first, p),
+                crossings_of(f, corner_from_p(corners, first, p), corner_from_p(corners + 1, first, p),
                              corner_from_p(corners + 2, first, p), p, numbers);
             const auto raised = hn::BitCast(hn::RebindToUnsigned<Ints>(), hn::Add(crossing, hn::Set(i, 1)));
             hn::Store(hn::TruncateTo(bytes, raised), bytes, &raised_crossings_[first]);

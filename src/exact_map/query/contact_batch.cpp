@@ -1,5 +1,5 @@
 // Three passes: the sides of all particles; the nearest faces of those that need one, in an order that keeps
-// neighbours together; and the contacts with these faces.
+// neighbours together where there are many; and the contacts with these faces.
 
 #include "exact_map/query/contact_batch.hpp"
 
@@ -296,6 +296,10 @@ void answer(const ContactSearch& search, ContactBlock& block, const Output& outp
     block.size = 0;
 }
 
+/// Fewer particles are searched one by one anyway, unless they come in an order that keeps neighbours
+/// together; sorting them takes longer than it saves.
+constexpr std::size_t kFewestSorted = 512;
+
 /// Memory for a batch.
 struct ContactMemory {
     std::span<Side> sides;                 ///< one for each particle of the batch
@@ -312,7 +316,7 @@ void find_with(const ContactSearch& search, const StridedSpan<const Vec3f>& poin
     std::size_t queued = 0;
     const auto answer_queue = [&] {
         const std::span<KeyedParticle> queue = memory.queue.first(queued);
-        sort_by_key(queue, memory.spare.first(queued));
+        if (queued >= kFewestSorted) sort_by_key(queue, memory.spare.first(queued));
         for (std::size_t k = 0; k < queue.size(); ++k) {
             // Neighbours in space are not neighbours in memory: what is read and written soon is fetched now.
             constexpr std::size_t kAhead = 16;

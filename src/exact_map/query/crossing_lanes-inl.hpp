@@ -13,9 +13,10 @@ HWY_BEFORE_NAMESPACE();
 namespace echinus::HWY_NAMESPACE {
 
 /// How faces count for particles, one pair per lane.
+template <typename D>
 struct CrossingLanes {
-    IntLanes crossing; ///< as crossing_on() has it, where sure
-    FloatMask unsure;
+    hn::Vec<hn::RebindToSigned<D>> crossing; ///< as crossing_on() has it, where sure
+    hn::Mask<D> unsure;
 };
 
 /// A filter in single precision for crossing_on().
@@ -29,34 +30,36 @@ struct CrossingLanes {
 /// at most 10 u |v| m^2 in the L1 norm, which is at most 3 * 2^19 for p and 3 * 2^20 for a: less than m^2 and
 /// 2 m^2. So three edges and the volume: less than 5 m^2, and a little for their sum. Three times as much is
 /// allowed for.
+/// @param f       of the lanes
 /// @param before  with its sign bit set, crossings between the origin and p are wanted; else those from p on
-HWY_INLINE CrossingLanes crossings_of(const PointLanes& a, const PointLanes& b, const PointLanes& c,
-                                      const PointLanes& p, IntLanes before) {
-    constexpr Floats f;
-    constexpr Ints i;
-    const PointLanes b_c = fused_cross(b, c);
-    const FloatLanes past_bc = fused_dot(p, b_c);
-    const FloatLanes past_ca = fused_dot(p, fused_cross(c, a));
-    const FloatLanes past_ab = fused_dot(p, fused_cross(a, b));
-    const FloatLanes volume = fused_dot(a, b_c);
-    const FloatLanes bound =
+template <typename D, typename Lanes>
+HWY_INLINE CrossingLanes<D> crossings_of(D f, const Vec3Lanes<Lanes>& a, const Vec3Lanes<Lanes>& b,
+                                         const Vec3Lanes<Lanes>& c, const Vec3Lanes<Lanes>& p,
+                                         hn::Vec<hn::RebindToSigned<D>> before) {
+    constexpr hn::RebindToSigned<D> i;
+    const Vec3Lanes<Lanes> b_c = fused_cross(b, c);
+    const Lanes past_bc = fused_dot(p, b_c);
+    const Lanes past_ca = fused_dot(p, fused_cross(c, a));
+    const Lanes past_ab = fused_dot(p, fused_cross(a, b));
+    const Lanes volume = fused_dot(a, b_c);
+    const Lanes bound =
         hn::Mul(hn::Max(hn::Max(fused_dot(a, a), fused_dot(b, b)), fused_dot(c, c)), hn::Set(f, 16));
 
     // All of one sign, and by how much; negative where the signs differ.
-    const FloatLanes least = hn::Min(hn::Min(past_ab, past_bc), past_ca);
-    const FloatLanes most = hn::Max(hn::Max(past_ab, past_bc), past_ca);
-    const FloatLanes hit = hn::Max(least, hn::Neg(most));
+    const Lanes least = hn::Min(hn::Min(past_ab, past_bc), past_ca);
+    const Lanes most = hn::Max(hn::Max(past_ab, past_bc), past_ca);
+    const Lanes hit = hn::Max(least, hn::Neg(most));
     // Where it is hit, from its front with sign +: the plane lies ahead of p where the first is positive,
     // behind the origin where the second is negative.
-    const FloatLanes sign_bit = hn::SignBit(f);
-    const FloatLanes side = hn::And(past_ab, sign_bit);
-    const FloatLanes ahead = hn::Xor(volume, side);
-    const FloatLanes from_origin = hn::Add(ahead, hn::Abs(hn::Add(hn::Add(past_ab, past_bc), past_ca)));
-    const FloatLanes wanted = hn::Xor(ahead, hn::And(hn::BitCast(f, before), sign_bit));
-    const FloatLanes clear_of_plane = hn::Min(hn::Abs(volume), from_origin);
-    const FloatMask counts = hn::Gt(hn::Min(hit, wanted), bound);
-    const FloatMask unsure = hn::Le(hn::Min(hn::Abs(hit), hn::Max(hn::Neg(hit), clear_of_plane)), bound);
-    const IntLanes sign = hn::Or(hn::BroadcastSignBit(hn::BitCast(i, past_ab)), hn::Set(i, 1));
+    const Lanes sign_bit = hn::SignBit(f);
+    const Lanes side = hn::And(past_ab, sign_bit);
+    const Lanes ahead = hn::Xor(volume, side);
+    const Lanes from_origin = hn::Add(ahead, hn::Abs(hn::Add(hn::Add(past_ab, past_bc), past_ca)));
+    const Lanes wanted = hn::Xor(ahead, hn::And(hn::BitCast(f, before), sign_bit));
+    const Lanes clear_of_plane = hn::Min(hn::Abs(volume), from_origin);
+    const hn::Mask<D> counts = hn::Gt(hn::Min(hit, wanted), bound);
+    const hn::Mask<D> unsure = hn::Le(hn::Min(hn::Abs(hit), hn::Max(hn::Neg(hit), clear_of_plane)), bound);
+    const auto sign = hn::Or(hn::BroadcastSignBit(hn::BitCast(i, past_ab)), hn::Set(i, 1));
     return {hn::IfThenElseZero(hn::RebindMask(i, counts), sign), unsure};
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "exact_map/query/near_leaf.hpp"
+
 #include <echinus/exact_map_view.hpp>
 
 #include <cstdint>
@@ -9,11 +11,18 @@
 namespace echinus {
 
 struct NearestSearch {
-    Vec3d place;     ///< in lattice steps
-    double farthest; ///< as nearest_face() takes it
+    Vec3d place;                       ///< in lattice steps
+    double farthest;                   ///< as nearest_face() takes it
+    std::uint32_t near_leaf = kNoLeaf; ///< leaf_near(), or not yet known
 };
 
 inline constexpr std::uint32_t kNoFace = UINT32_MAX;
+
+/// The nearest face of a place, or kNoFace; the same as that of nearest_face(), whatever the instruction set.
+/// It needs no places near each other: a node's boxes and a leaf's faces are the lanes.
+/// @param search  finite
+std::uint32_t find_nearest_face(const ExactMapView& map, const Vec3d& stretch,
+                                const NearestSearch& search) noexcept;
 
 /// The nearest face of each place, or kNoFace; the same as that of nearest_face(), whatever the instruction
 /// set.

@@ -2,6 +2,7 @@
 
 #include "exact_map/query/contact_batch.hpp"
 #include "exact_map/query/contact_search.hpp"
+#include "exact_map/query/nearest_faces.hpp"
 #include "exact_map/query/sides.hpp"
 #include "exact_map/query/stretched_contact.hpp"
 #include "exact_map/query/winding.hpp"
@@ -17,7 +18,7 @@
 namespace echinus {
 
 bool contains(const ExactMapView& map, Vec3f point_local) noexcept {
-    return classify(map, point_local).inside;
+    return (find_side(map, frame_of(map), point_local, false).side & kInsideBit) != 0;
 }
 
 Containment classify(const ExactMapView& map, Vec3f point_local) noexcept {
@@ -25,13 +26,30 @@ Containment classify(const ExactMapView& map, Vec3f point_local) noexcept {
     return {is_inside(map.rule, winding.number), winding.certain, winding.computed};
 }
 
+namespace {
+
+/// The same as search(point_local), by vector instructions.
+Contact find_contact(const ContactSearch& search, const Vec3f& point_local) {
+    if (!use_kernels()) return search(point_local);
+    const ExactMapView& map = search.map();
+    const auto [side, near_leaf] = find_side(map, search.frame(), point_local, search.farthest(Side{0}) > 0);
+    if (!search.is_wanted(point_local, side)) return ContactSearch::no_contact(point_local, side);
+    const NearestSearch nearest{search.place_of(point_local), search.farthest(side), near_leaf};
+    const std::uint32_t face = find_nearest_face(map, search.stretch(), nearest);
+    if (face == kNoFace) return ContactSearch::no_contact(point_local, side);
+    return search.contact_at(point_local, side,
+                             nearest_point_on_face(map, face, nearest.place, search.stretch()));
+}
+
+} // namespace
+
 Contact contact(const ExactMapView& map, Vec3f point_local, float margin) noexcept {
     return stretched_contact(map, point_local, margin, {1, 1, 1});
 }
 
 Contact stretched_contact(const ExactMapView& map, const Vec3f& point_local, float margin,
                           const Vec3d& stretch) noexcept {
-    return ContactSearch(map, stretch, margin)(point_local);
+    return find_contact(ContactSearch(map, stretch, margin), point_local);
 }
 
 void contains_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_local,
@@ -92,7 +110,7 @@ void winding_number_batch(const ExactMapView& map, StridedSpan<const Vec3f> poin
 }
 
 float signed_distance(const ExactMapView& map, Vec3f point_local, Vec3f* gradient) noexcept {
-    const Contact contact = search_everywhere(map)(point_local);
+    const Contact contact = find_contact(search_everywhere(map), point_local);
     if (gradient != nullptr) *gradient = contact.normal;
     return contact.face == Contact::kUnknownFace ? signed_distance_without_contact(point_local)
                                                  : -contact.depth;

@@ -14,6 +14,7 @@
 #include <hwy/foreach_target.h>
 
 // After foreach_target.h, which includes this file once for each instruction set.
+#include "exact_map/query/band_of_one-inl.hpp"
 #include "exact_map/query/band_search-inl.hpp"
 #include "exact_map/query/band_windings-inl.hpp"
 #include "simd/dispatch.hpp"
@@ -117,7 +118,25 @@ void find_sides(const ExactMapView& map, const StridedSpan<const Vec3f>& points_
     SideFinder(map).find(points_local, sides);
 }
 
+SideAndLeaf find_side(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local,
+                      bool leaf_outside) {
+    const Vec3d place = frame.to_lattice(point_local);
+    if (!map.border.empty() || !is_on_lattice(place)) return {side_at(map, frame, point_local), kNoLeaf};
+    const LatticePoint p = rounded(place);
+    const OctahedralCells::Place in_cell = OctahedralCells(map.divisions).locate(p);
+    const std::int64_t t = band_unit_of(l1_norm(p));
+    if (t >= map.outer_limits[in_cell.cell] && !leaf_outside) return {0, kNoLeaf};
+    const PlaceInBands at = place_in_bands(map, in_cell, t);
+    const bool inside = !at.is_beyond_all() && is_inside(map.rule, winding_of_one(map, at, p));
+    return {inside ? kInsideBit : Side{0}, inside || leaf_outside ? leaf_near(map, at) : kNoLeaf};
+}
+
 #else
+
+SideAndLeaf find_side(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local,
+                      bool /*leaf_outside*/) {
+    return {side_at(map, frame, point_local), kNoLeaf};
+}
 
 void find_sides(const ExactMapView& map, const StridedSpan<const Vec3f>& points_local,
                 std::span<Side> sides) {
@@ -134,9 +153,16 @@ namespace echinus {
 
 namespace {
 
+HWY_EXPORT(find_side);
 HWY_EXPORT(find_sides);
 
 } // namespace
+
+SideAndLeaf find_side(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local,
+                      bool leaf_outside) noexcept {
+    if (!use_kernels()) return {side_at(map, frame, point_local), kNoLeaf};
+    return ECHINUS_DISPATCH(find_side)(map, frame, point_local, leaf_outside);
+}
 
 void find_sides(const ExactMapView& map, const StridedSpan<const Vec3f>& points_local,
                 std::span<Side> sides) noexcept {

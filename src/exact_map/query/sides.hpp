@@ -1,6 +1,7 @@
 #pragma once
 
 #include "exact_map/layout.hpp"
+#include "exact_map/query/near_leaf.hpp"
 #include "exact_map/query/winding.hpp"
 
 #include <cstdint>
@@ -20,6 +21,17 @@ inline Side side_at(const ExactMapView& map, const LatticeFrame& frame, const Ve
     return static_cast<Side>((is_inside(map.rule, winding.number) ? kInsideBit : 0) |
                              (winding.certain ? 0 : kUncertainBit));
 }
+
+struct SideAndLeaf {
+    Side side;
+    std::uint32_t near_leaf; ///< leaf_near(), or kNoLeaf where it has not been looked for
+};
+
+/// side_at() by vector instructions, whose lanes are the faces of one band, and for a particle inside a leaf
+/// near it.
+/// @param leaf_outside  also for a particle outside
+SideAndLeaf find_side(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local,
+                      bool leaf_outside) noexcept;
 
 /// side_at() for many particles, by vector instructions.
 /// Cost: takes 90 KB of the stack for 8 particles and more.

@@ -2,6 +2,7 @@
 
 #include "exact_map/border_part.hpp"
 #include "exact_map/layout.hpp"
+#include "exact_map/query/place_in_bands.hpp"
 #include "exact_map/query/ray_crossing.hpp"
 #include "exact_map/query/winding_tree.hpp"
 
@@ -104,29 +105,19 @@ Winding winding_of(double generalised) {
     return {number, std::fabs(generalised - static_cast<double>(number)) <= 0.5 - kCertainMargin, true};
 }
 
-/// Is this place, in lattice steps, rounded into the lattice?
-bool is_on_lattice(const Vec3d& place) {
-    constexpr double kLimit = static_cast<double>(kLatticeExtent) + 0.5;
-    return (std::fabs(place.x) <= kLimit) & (std::fabs(place.y) <= kLimit) & (std::fabs(place.z) <= kLimit);
-}
-
 } // namespace
 
 Winding winding_at(const ExactMapView& map, const LatticePoint& p) noexcept {
-    const auto [cell, part] = OctahedralCells(map.divisions).locate(p);
+    const OctahedralCells::Place place = OctahedralCells(map.divisions).locate(p);
     const std::int64_t t = band_unit_of(l1_norm(p));
-    if (t >= map.outer_limits[cell] && map.border.empty()) return {};
-    const BandRange bands = bands_of_cell(map, cell);
-    std::uint32_t band = bands.first;
-    while (band < bands.last && t >= map.bands[band].upper) ++band;
-    if (band == bands.last) return winding_of(generalised_winding(map, p, kAnyError));
-    const bool in_gap = t < map.bands[band].lower;
-    const int winding = in_gap ? map.winding_below[band] : winding_beyond(map, band, bands);
+    if (t >= map.outer_limits[place.cell])
+        return map.border.empty() ? Winding{} : winding_of(generalised_winding(map, p, kAnyError));
+    const PlaceInBands at = place_in_bands(map, place, t);
+    const int winding = winding_in_bands(map, at, [&](RaySide side, const PlaceInBands& in) {
+        return crossings_in_band(map, side, in.band, in.part, p);
+    });
     if (winding == ExactMapView::kUncertain) return winding_of(generalised_winding(map, p, kAnyError));
-    if (in_gap) return {winding};
-    if (winding == ExactMapView::kSplit)
-        return {map.winding_below[band] - crossings_in_band(map, RaySide::Before, band, part, p)};
-    return {winding + crossings_in_band(map, RaySide::Beyond, band, part, p)};
+    return {winding};
 }
 
 Winding winding_at(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local) noexcept {

@@ -4,6 +4,7 @@
 
 #include <echinus/exact_map_view.hpp>
 
+#include <cmath>
 #include <cstdint>
 
 namespace echinus {
@@ -14,6 +15,12 @@ struct Winding {
     bool certain = true;     ///< which is at least kCertainMargin away from a half
     bool computed = false;   ///< for this place, as an open surface's mostly has to be
 };
+
+/// Is this place, in lattice steps, rounded into the lattice?
+inline bool is_on_lattice(const Vec3d& place) {
+    constexpr double kLimit = static_cast<double>(kLatticeExtent) + 0.5;
+    return (std::fabs(place.x) <= kLimit) & (std::fabs(place.y) <= kLimit) & (std::fabs(place.z) <= kLimit);
+}
 
 /// The winding number around a particle. This scalar code is the specification of inside and outside.
 Winding winding_at(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local) noexcept;

@@ -1,0 +1,483 @@
+// Included once for each instruction set, as Highway wants it: no guard against a second time.
+#if defined(ECHINUS_ONE_PLACE_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef ECHINUS_ONE_PLACE_INL
+#undef ECHINUS_ONE_PLACE_INL
+#else
+#define ECHINUS_ONE_PLACE_INL
+#endif
+
+#include "exact_map/layout.hpp"
+#include "exact_map/query/nearest.hpp"
+#include "exact_map/query/nearest_faces.hpp"
+#include "simd/compress-inl.hpp"
+#include "simd/rows-inl.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#if HWY_TARGET != HWY_SCALAR // where the reference is used instead
+HWY_BEFORE_NAMESPACE();
+namespace echinus::HWY_NAMESPACE {
+
+/// A node's boxes or a leaf's faces, or half of them where vectors are short.
+using Eight = hn::CappedTag<float, TreeNode::kWidth>;
+using EightLanes = hn::Vec<Eight>;
+using EightPoints = Vec3Lanes<EightLanes>;
+
+HWY_INLINE EightLanes eight(float value) {
+    return hn::Set(Eight(), value);
+}
+HWY_INLINE EightPoints eight(const Vec3f& v) {
+    return {eight(v.x), eight(v.y), eight(v.z)};
+}
+
+/// Limits of some boxes of a node along an axis, in its units.
+HWY_INLINE EightLanes box_limits(const std::int16_t* limits) {
+    constexpr hn::RebindToSigned<Eight> i;
+    return hn::ConvertTo(Eight(), hn::PromoteTo(i, hn::LoadU(hn::Rebind<std::int16_t, Eight>(), limits)));
+}
+
+/// Of the distances of some faces, in a unit in which nearer is less.
+struct FaceBounds {
+    EightLanes lower, upper;
+};
+
+/// Squared distances of a place on the lattice or beside it.
+class NearMeasure {
+  public:
+    NearMeasure(const Vec3d& place, const Vec3d& stretch)
+        : place_(place), exact_stretch_(stretch), origin_(rounded(place)), stretch_(stretch),
+          offset_(place - Vec3d(origin_)) {
+        constexpr float kPerUnit = 1.0F / ExactMapView::kBoxUnit;
+        const Vec3f in_units = Vec3f(place) * kPerUnit;
+        const Vec3f slack{kPerUnit, kPerUnit, kPerUnit}; // a step: more than is rounded
+        above_ = in_units + slack;
+        below_ = in_units - slack;
+        per_unit_ = Vec3f(Vec3d{std::fabs(stretch.x), std::fabs(stretch.y), std::fabs(stretch.z)}) *
+                    static_cast<float>(ExactMapView::kBoxUnit);
+    }
+
+    static constexpr float kFarthest = 1e30F;
+    /// Above the squared distances that are at most this.
+    static float limit(double farthest_sq) {
+        return static_cast<float>(std::min(farthest_sq, double{kFarthest})) * (1 + 0x1p-20F);
+    }
+    float limit_by(double distance_sq) const { return limit(distance_sq); }
+
+    /// By which nearest_face() compares faces.
+    double distance_sq(const ExactMapView& map, std::uint32_t face) const {
+        return distance_sq_to_face(map, face, place_, exact_stretch_);
+    }
+
+    /// Bounds from below.
+    HWY_INLINE EightLanes boxes(const TreeNode& node, std::size_t first) const {
+        const auto clear = [&](std::size_t axis, float above, float below, float unit) HWY_ATTR {
+            const EightLanes low = hn::Sub(box_limits(node.low[axis] + first), eight(above));
+            const EightLanes high = hn::Sub(eight(below), box_limits(node.high[axis] + first));
+            return hn::Mul(hn::Max(hn::Max(low, high), hn::Zero(Eight())), eight(unit));
+        };
+        const EightPoints gap{clear(0, above_.x, below_.x, per_unit_.x),
+                              clear(1, above_.y, below_.y, per_unit_.y),
+                              clear(2, above_.z, below_.z, per_unit_.z)};
+        return fused_dot(gap, gap);
+    }
+
+    const Vec3<std::int32_t>& origin() const { return origin_; }
+
+    /// @param a, b, c  corners, counted from the origin
+    ///
+    /// With edges u = b - a and v = c - a, all is made of the products of a, u and v, and the foot of the
+    /// place in the plane is a + (s u + t v) / (u x v)^2.
+    ///
+    /// Rounding. Edges and a are off by no more than a rounding, e = 2^-24. Let m be the largest distance of
+    /// a corner: products with a are off by 4 e m |u| and the like, squared distances from edges by 54 e m^2,
+    /// and that from the plane by 60 e q^2 m^2, with q = |u| |v| / |u x v|. Where rounding takes a foot just
+    /// outside for one inside, the square of how far it is outside is missing: less than 1600 e^2 q^4 m^2, 6
+    /// e m^2 where the plane is used. Below, 2^7 e q^2 m^2 is allowed for, and 2 (a^2 + u^2 + v^2) taken for
+    /// m^2.
+    HWY_INLINE FaceBounds faces(EightPoints a, const EightPoints& b, const EightPoints& c) const {
+        constexpr float kThin = 256; // q^2 beyond which this does not do
+        const EightPoints stretch = eight(stretch_);
+        const EightPoints u = times(b - a, stretch), v = times(c - a, stretch);
+        a = times(a - eight(offset_), stretch);
+        const EightLanes aa = fused_dot(a, a), uu = fused_dot(u, u), vv = fused_dot(v, v);
+        const EightLanes uv = fused_dot(u, v), au = fused_dot(a, u), av = fused_dot(a, v);
+        const EightLanes across_sq = hn::MulSub(uu, vv, hn::Mul(uv, uv)), sides_sq = hn::Mul(uu, vv);
+        const auto is_wide = hn::Lt(sides_sq, hn::Mul(across_sq, eight(kThin)));
+        if (!hn::AllTrue(Eight(), is_wide)) [[unlikely]]
+            return thin_faces(a, a + u, a + v);
+        const EightLanes inverse_sq = hn::Div(eight(1), across_sq);
+
+        const EightLanes s = hn::MulSub(uv, av, hn::Mul(vv, au)), t = hn::MulSub(uv, au, hn::Mul(uu, av));
+        const EightLanes rest = hn::Sub(hn::Sub(across_sq, s), t);
+        const EightLanes to_plane = hn::MulAdd(hn::MulAdd(s, au, hn::Mul(t, av)), inverse_sq, aa);
+
+        const EightLanes aa_uu = hn::Add(aa, uu);
+        const EightLanes bb = hn::Add(aa_uu, hn::Add(au, au)),
+                         bc_sq = hn::Sub(hn::Add(uu, vv), hn::Add(uv, uv));
+        const EightLanes b_bc = hn::Add(hn::Sub(av, au), hn::Sub(uv, uu));
+        const EightLanes to_edges =
+            hn::Min(hn::Min(to_edge_sq(aa, au, uu), to_edge_sq(aa, av, vv)), to_edge_sq(bb, b_bc, bc_sq));
+        const auto above = hn::Gt(hn::Min(hn::Min(s, t), rest), hn::Zero(Eight()));
+        const EightLanes distance_sq = hn::IfThenElse(above, to_plane, to_edges);
+        const EightLanes q_sq = hn::Max(hn::Mul(sides_sq, inverse_sq), eight(1));
+        const EightLanes error = hn::Mul(hn::Mul(hn::Add(aa_uu, vv), eight(0x1p-16F)), q_sq);
+        return {hn::Sub(distance_sq, error), hn::Add(distance_sq, error)};
+    }
+
+  private:
+    /// From an edge, by products of its start with itself and with the edge.
+    static HWY_INLINE EightLanes to_edge_sq(EightLanes start_sq, EightLanes along, EightLanes edge_sq) {
+        const EightLanes back =
+            hn::Min(hn::Max(hn::Div(along, edge_sq), eight(-1)), hn::Zero(Eight())); // minus a share
+        return hn::NegMulAdd(back, hn::NegMulAdd(back, edge_sq, hn::Add(along, along)), start_sq);
+    }
+
+    /// Also for faces that are so thin that their planes are ill-determined, or segments, or points. Rounding
+    /// is that of LeafLanes, with the place as its origin.
+    HWY_NOINLINE FaceBounds thin_faces(const EightPoints& a, const EightPoints& b,
+                                       const EightPoints& c) const {
+        constexpr float kThin = 1024;                        // as there
+        const auto inverse = [](EightLanes value) HWY_ATTR { // 0 where the value is
+            return hn::IfThenElseZero(hn::Gt(value, hn::Zero(Eight())), hn::Div(eight(1), value));
+        };
+        const auto to_edge_sq = [&](const EightPoints& start, const EightPoints& edge,
+                                    EightLanes length_sq) HWY_ATTR {
+            const EightLanes back = hn::Mul(fused_dot(start, edge), inverse(length_sq));
+            const EightLanes share = hn::Min(hn::Max(hn::Neg(back), hn::Zero(Eight())), eight(1));
+            const EightPoints nearest{hn::MulAdd(edge.x, share, start.x), hn::MulAdd(edge.y, share, start.y),
+                                      hn::MulAdd(edge.z, share, start.z)};
+            return fused_dot(nearest, nearest);
+        };
+        const EightPoints ab = b - a, bc = c - b, ca = a - c, normal = fused_cross(ab, bc);
+        const EightLanes ab_sq = fused_dot(ab, ab), bc_sq = fused_dot(bc, bc), ca_sq = fused_dot(ca, ca);
+        const EightLanes normal_sq = fused_dot(normal, normal), normal_inverse = inverse(normal_sq);
+        const EightLanes sides_sq = // of the two longest, which meet in the sharpest corner
+            hn::Max(hn::Max(hn::Mul(ab_sq, bc_sq), hn::Mul(bc_sq, ca_sq)), hn::Mul(ca_sq, ab_sq));
+        const auto has_plane = hn::Lt(sides_sq, hn::Mul(normal_sq, eight(kThin)));
+        const EightLanes past_ab = fused_dot(a, fused_cross(ab, normal));
+        const EightLanes past_bc = fused_dot(b, fused_cross(bc, normal));
+        const EightLanes past_ca = fused_dot(c, fused_cross(ca, normal));
+        const auto above =
+            hn::And(has_plane, hn::Gt(hn::Min(hn::Min(past_ab, past_bc), past_ca), hn::Zero(Eight())));
+        const EightLanes height = fused_dot(a, normal);
+        const EightLanes to_plane = hn::Mul(hn::Mul(height, height), normal_inverse);
+        const EightLanes to_edges =
+            hn::Min(hn::Min(to_edge_sq(a, ab, ab_sq), to_edge_sq(b, bc, bc_sq)), to_edge_sq(c, ca, ca_sq));
+        const EightLanes distance_sq = hn::IfThenElse(above, to_plane, to_edges);
+
+        constexpr float kOffset = 8; // the place is off its lattice point by less
+        const EightLanes scale =
+            hn::Add(hn::Add(l1_norm(a), l1_norm(b)), hn::Add(l1_norm(c), eight(kOffset)));
+        const EightLanes error_sq = hn::Mul(hn::Mul(scale, scale), eight(0x1p-23F));
+        const EightLanes of_plane = hn::Mul(error_sq, hn::Max(hn::Mul(sides_sq, normal_inverse), eight(1)));
+        const EightLanes width_sq = hn::Mul(normal_sq, inverse(hn::Max(hn::Max(ab_sq, bc_sq), ca_sq)));
+        const EightLanes upper_term = hn::IfThenElse(has_plane, of_plane, error_sq);
+        const EightLanes lower_term =
+            hn::IfThenElse(has_plane, of_plane, hn::MulAdd(width_sq, eight(1.01F), error_sq));
+        const EightLanes lower_factor =
+            hn::IfThenElse(has_plane, eight(1 - 0x1p-12F), eight((1 - 0x1p-12F) / 2));
+        return {hn::MulSub(distance_sq, lower_factor, lower_term),
+                hn::MulAdd(distance_sq, eight(1 + 0x1p-12F), upper_term)};
+    }
+
+    Vec3d place_, exact_stretch_;
+    Vec3<std::int32_t> origin_; ///< the lattice point nearest to the place
+    Vec3f stretch_, offset_;    ///< of the place from the origin
+    Vec3f above_, below_;       ///< the place, by a little more and a little less; in the unit of boxes
+    Vec3f per_unit_;            ///< stretched lattice steps
+};
+
+/// Of a place afar: the excess that nearest.cpp explains. On a triangle it is least at a corner, but for its
+/// square term: with edges no longer than s that takes off at most s^2 / 2 d.
+class AfarMeasure {
+  public:
+    explicit AfarMeasure(const Vec3d& place)
+        : place_(brought_within_reach(place)), distance_(length(place_)), at_(place_),
+          direction_(place_ * (1 / distance_)), curvature_(static_cast<float>(0.5 / distance_)) {}
+
+    static constexpr float kFarthest = 1e30F;
+    float limit_by(double distance_sq) const {
+        return static_cast<float>((distance_sq - distance_ * distance_) / (2 * distance_)) + kSlack;
+    }
+
+    double distance_sq(const ExactMapView& map, std::uint32_t face) const {
+        return distance_sq_to_face(map, face, place_, {1, 1, 1});
+    }
+
+    HWY_INLINE EightLanes boxes(const TreeNode& node, std::size_t first) const {
+        const auto least = [&](std::size_t axis, float at, float direction) HWY_ATTR {
+            const EightLanes unit = eight(ExactMapView::kBoxUnit);
+            const EightLanes low = hn::Mul(box_limits(node.low[axis] + first), unit);
+            const EightLanes high = hn::Mul(box_limits(node.high[axis] + first), unit);
+            return excess(hn::Min(hn::Max(eight(at), low), high), direction);
+        };
+        return hn::Sub(hn::Add(hn::Add(least(0, at_.x, direction_.x), least(1, at_.y, direction_.y)),
+                               least(2, at_.z, direction_.z)),
+                       eight(kSlack));
+    }
+
+    static Vec3<std::int32_t> origin() { return {}; }
+
+    HWY_INLINE FaceBounds faces(const EightPoints& a, const EightPoints& b, const EightPoints& c) const {
+        const EightLanes least = hn::Min(hn::Min(excess(a), excess(b)), excess(c));
+        const EightPoints ab = b - a, bc = c - b, ca = a - c;
+        const EightLanes edge_sq = hn::Max(hn::Max(fused_dot(ab, ab), fused_dot(bc, bc)), fused_dot(ca, ca));
+        return {hn::Sub(hn::NegMulAdd(edge_sq, eight(curvature_), least), eight(kSlack)),
+                hn::Add(least, eight(kSlack))};
+    }
+
+  private:
+    static constexpr float kSlack = 1; ///< lattice steps, more than is rounded
+
+    HWY_INLINE EightLanes excess(EightLanes coordinate, float direction) const {
+        return hn::Mul(coordinate, hn::MulSub(coordinate, eight(curvature_), eight(direction)));
+    }
+    HWY_INLINE EightLanes excess(const EightPoints& q) const {
+        return hn::MulSub(fused_dot(q, q), eight(curvature_), fused_dot(q, eight(direction_)));
+    }
+
+    Vec3d place_;
+    double distance_; ///< from the centre
+    Vec3f at_, direction_;
+    float curvature_; ///< 1 / 2 d
+};
+
+/// Moves the chosen lanes to the beginning; what follows them is arbitrary.
+class EightCompressor {
+  public:
+    using Numbers = hn::RebindToSigned<Eight>;
+    explicit EightCompressor(hn::Mask<Numbers> chosen)
+#if HWY_TARGET == HWY_AVX3 // where Ints are wider
+        : chosen_(chosen) {
+    }
+    std::size_t count() const {
+        return hn::CountTrue(Numbers(), chosen_);
+    }
+    hn::Vec<Numbers> operator()(hn::Vec<Numbers> lanes) const {
+        return hn::Compress(lanes, chosen_);
+    }
+
+  private:
+    hn::Mask<Numbers> chosen_;
+#else
+        : compress_(chosen) {
+    }
+    std::size_t count() const {
+        return compress_.count();
+    }
+    hn::Vec<Numbers> operator()(hn::Vec<Numbers> lanes) const {
+        return compress_(lanes);
+    }
+
+  private:
+    Compressor compress_;
+#endif
+};
+
+/// nearest_face() of one place: the lanes are a node's boxes and a leaf's faces. It takes no neighbours.
+///
+/// A first leaf gives a bound, which is good where that leaf is near. Within it the leaves are listed,
+/// without a branch that depends on the boxes, and then visited, the nearest first.
+/// @pre the map has faces for one leaf at least
+template <typename Measure, typename Vertex>
+class OnePlaceSearch {
+  public:
+    /// @param corners  ExactMapView::corners
+    OnePlaceSearch(const ExactMapView& map, const Vertex* corners, const Measure& measure)
+        : map_(map), corners_(corners), measure_(measure) {}
+
+    /// @param near_leaf    to begin with, or kNoLeaf
+    /// @param limit        what is beyond it in the measure is surely farther than `farthest_sq`
+    /// @param farthest_sq  squared distance; may be infinite
+    std::uint32_t find(std::uint32_t near_leaf, float limit, double farthest_sq) {
+        upper_ = limit;
+        nearest_sq_ = farthest_sq;
+        first_leaf_ = near_leaf == kNoLeaf ? kNoLeaf : TreeNode::kLeaf + near_leaf;
+        if (near_leaf != kNoLeaf) visit_leaf(near_leaf);
+        nodes_.distances[0] = upper_;
+        nodes_.children[0] = 0;
+        nodes_.size = 1;
+        while (nodes_.size > 0) {
+            --nodes_.size;
+            if (nodes_.distances[nodes_.size] <= upper_) list_children(nodes_.children[nodes_.size]);
+            if (leaves_.size > kLeafCapacity - kWidth) visit_leaves();
+        }
+        visit_leaves();
+        return choose();
+    }
+
+  private:
+    static constexpr std::size_t kWidth = TreeNode::kWidth;
+    static constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+    using Numbers = hn::RebindToSigned<Eight>;
+
+    /// Children of nodes and their distances. Written a vector at a time, of which only the first lanes
+    /// count.
+    template <std::size_t kCapacity>
+    struct Children {
+        std::size_t size = 0;
+        std::array<float, kCapacity + kWidth> distances;
+        std::array<std::uint32_t, kCapacity + kWidth> children;
+
+        HWY_INLINE void add(hn::Mask<Numbers> chosen, EightLanes lower, hn::Vec<Numbers> numbers) {
+            const EightCompressor compress(chosen);
+            hn::StoreU(hn::BitCast(Eight(), compress(hn::BitCast(Numbers(), lower))), Eight(),
+                       &distances[size]);
+            hn::StoreU(hn::BitCast(hn::RebindToUnsigned<Eight>(), compress(numbers)),
+                       hn::RebindToUnsigned<Eight>(), &children[size]);
+            size += compress.count();
+        }
+    };
+
+    HWY_INLINE void list_children(std::uint32_t number) {
+        const TreeNode& node = map_.nodes[number];
+        constexpr Numbers n;
+        for (std::size_t lane = 0; lane < kWidth; lane += hn::Lanes(Eight())) {
+            const EightLanes lower = measure_.boxes(node, lane);
+            const auto exists = hn::Le(box_limits(node.low[0] + lane), box_limits(node.high[0] + lane));
+            const auto near = hn::RebindMask(n, hn::And(exists, hn::Le(lower, eight(upper_))));
+            const auto children =
+                hn::BitCast(n, hn::LoadU(hn::RebindToUnsigned<Eight>(), node.children + lane));
+            const auto is_leaf = hn::Lt(children, hn::Zero(n)); // TreeNode::kLeaf is the sign
+            const auto is_new = hn::Ne(children, hn::Set(n, static_cast<std::int32_t>(first_leaf_)));
+            nodes_.add(hn::AndNot(is_leaf, near), lower, children);
+            leaves_.add(hn::And(hn::And(is_leaf, is_new), near), lower, children);
+        }
+    }
+
+    /// The nearest first of as many as there are lanes.
+    HWY_INLINE void visit_leaves() {
+        constexpr Eight f;
+        for (std::size_t first = 0; first < leaves_.size; first += hn::Lanes(f)) {
+            EightLanes distances = hn::IfThenElse(hn::FirstN(f, leaves_.size - first),
+                                                  hn::LoadU(f, &leaves_.distances[first]), eight(kInfinity));
+            for (;;) {
+                const EightLanes least = hn::MinOfLanes(f, distances);
+                const float distance = hn::GetLane(least);
+                if (!(distance <= upper_) || distance == kInfinity) break;
+                const auto lane = std::countr_zero(bits_of(hn::Eq(distances, least)));
+                visit_leaf(leaves_.children[first + static_cast<std::size_t>(lane)] - TreeNode::kLeaf);
+                const auto is_visited = hn::Eq(hn::Iota(f, 0), eight(static_cast<float>(lane)));
+                distances = hn::IfThenElse(is_visited, eight(kInfinity), distances);
+            }
+        }
+        leaves_.size = 0;
+    }
+
+    template <typename Mask>
+    static HWY_INLINE std::uint32_t bits_of(Mask mask) {
+        std::array<std::uint8_t, 8> bits{};
+        hn::StoreMaskBits(Eight(), mask, bits.data());
+        return bits[0];
+    }
+
+    HWY_INLINE EightPoints corner_lanes(std::size_t k, std::size_t first) const {
+        const std::int32_t* vertices = &map_.vertices.data()->x;
+        const Vertex* corners = corners_ + 3 * first + k;
+        // The vertex as the last three numbers of a row.
+        constexpr hn::RebindToSigned<Eight> i;
+        const auto [before, x, y, z] =
+            load_rows(i, [=](std::size_t lane) HWY_ATTR {
+                const std::size_t vertex = corners[3 * lane];
+                return hn::LoadU(hn::FixedTag<std::int32_t, 4>(), vertices + 3 * vertex - 1);
+            }).at;
+        const Vec3<std::int32_t> origin = measure_.origin();
+        const auto from = [&](auto coordinate, std::int32_t of_origin) HWY_ATTR {
+            return hn::ConvertTo(Eight(), hn::Sub(coordinate, hn::Set(i, of_origin)));
+        };
+        return {from(x, origin.x), from(y, origin.y), from(z, origin.z)};
+    }
+
+    /// A short leaf is filled up with faces of the one before.
+    HWY_INLINE void visit_leaf(std::uint32_t leaf) {
+        const std::size_t first = std::min(std::size_t{leaf} * kWidth, map_.face_count() - kWidth);
+        if (size_ == kCapacity) settle();
+        std::array<float, kWidth>& lowers = lowers_[size_];
+        EightLanes least_upper = eight(upper_), least_lower = eight(Measure::kFarthest);
+        for (std::size_t lane = 0; lane < kWidth; lane += hn::Lanes(Eight())) {
+            const FaceBounds bounds = measure_.faces(
+                corner_lanes(0, first + lane), corner_lanes(1, first + lane), corner_lanes(2, first + lane));
+            hn::Store(bounds.lower, Eight(), &lowers[lane]);
+            least_upper = hn::Min(least_upper, bounds.upper);
+            least_lower = hn::Min(least_lower, bounds.lower);
+        }
+        upper_ = hn::GetLane(hn::MinOfLanes(Eight(), least_upper));
+        firsts_[size_] = static_cast<std::uint32_t>(first);
+        if (!hn::AllFalse(Eight(), hn::Le(least_lower, eight(upper_)))) ++size_;
+    }
+
+    /// Calls visit(face) for the faces that may be the nearest.
+    template <typename Visit>
+    HWY_INLINE void visit_candidates(const Visit& visit) const {
+        for (std::size_t i = 0; i < size_; ++i) {
+            std::uint32_t near = 0;
+            for (std::size_t lane = 0; lane < kWidth; lane += hn::Lanes(Eight()))
+                near |= bits_of(hn::Le(hn::Load(Eight(), &lowers_[i][lane]), eight(upper_))) << lane;
+            for (; near != 0; near &= near - 1)
+                visit(firsts_[i] + static_cast<std::uint32_t>(std::countr_zero(near)));
+        }
+    }
+
+    void measure_exactly(std::uint32_t face) {
+        const double distance_sq = measure_.distance_sq(map_, face);
+        if (!(distance_sq <= nearest_sq_) ||
+            (nearest_ != kNoFace && distance_sq == nearest_sq_ && face > nearest_))
+            return;
+        nearest_sq_ = distance_sq;
+        nearest_ = face;
+    }
+
+    /// Leaves one candidate of many.
+    HWY_NOINLINE void settle() {
+        visit_candidates([&](std::uint32_t face) { measure_exactly(face); });
+        size_ = 0;
+        if (nearest_ != kNoFace) upper_ = std::min(upper_, measure_.limit_by(nearest_sq_));
+    }
+
+    std::uint32_t choose() {
+        if (nearest_ == kNoFace && std::isinf(nearest_sq_)) {
+            // There must be one: a single candidate needs no measuring.
+            std::uint32_t count = 0, last = kNoFace;
+            visit_candidates([&](std::uint32_t face) {
+                last = face;
+                ++count;
+            });
+            if (count == 1) return last;
+        }
+        visit_candidates([&](std::uint32_t face) { measure_exactly(face); });
+        return nearest_;
+    }
+
+    const ExactMapView& map_;
+    const Vertex* corners_;
+    const Measure& measure_;
+
+    float upper_ = 0;                 ///< the nearest face surely lies within it
+    std::uint32_t nearest_ = kNoFace; ///< of those measured exactly
+    double nearest_sq_ = 0;
+
+    // Leaves with candidates: their faces' lower bounds.
+    static constexpr std::size_t kCapacity = 32;
+    std::size_t size_ = 0;
+    std::array<std::uint32_t, kCapacity> firsts_;
+    alignas(32) std::array<std::array<float, kWidth>, kCapacity> lowers_;
+
+    // Children that are waiting. As many nodes as in walk_near_leaves().
+    static constexpr std::size_t kMaxDepth = 12, kLeafCapacity = 32;
+    std::uint32_t first_leaf_ = kNoLeaf; ///< as a child; it has been visited
+    Children<kMaxDepth * kWidth> nodes_;
+    Children<kLeafCapacity> leaves_;
+};
+
+} // namespace echinus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
+
+#endif
