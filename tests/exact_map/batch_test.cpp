@@ -112,10 +112,12 @@ void expect_same_sides(const ExactMapView& map, StridedSpan<const Vec3f> points,
     std::vector<std::uint8_t> inside(points.size(), 7);
     contains_batch(map, points, inside, thread_count);
     std::size_t wrong = 0;
-    for (std::size_t i = 0; i < inside.size(); ++i)
-        if (inside[i] != (contains(map, points[i]) ? 1 : 0) && ++wrong <= 3)
+    for (std::size_t i = 0; i < inside.size(); ++i) { // classify() is the reference
+        const bool expected = classify(map, points[i]).inside;
+        if ((inside[i] != (expected ? 1 : 0) || contains(map, points[i]) != expected) && ++wrong <= 3)
             ADD_FAILURE() << "point " << i << " of " << inside.size() << ": " << points[i].x << " "
                           << points[i].y << " " << points[i].z;
+    }
     EXPECT_EQ(wrong, 0U);
 }
 
@@ -314,6 +316,47 @@ TEST(ExactMapBatch, AgreesWithContactWhenTheWorldIsSquashed) {
             SCOPED_TRACE(std::string(name));
             expect_same_contacts(expected, map, points, 0.2F, stretch, 1);
             expect_same_contacts(expected, one_by_one(map, points, 0.2F, stretch), points);
+        });
+    }
+}
+
+TEST(ExactMapBatch, AnswersCrowdsAndStragglersAlike) {
+    // Neighbours share a walk through the tree, others have one of their own.
+    const TriangleMesh mesh = make_torus(1, 0.4, 100, 40);
+    const ExactMap map = ExactMap::build(mesh);
+    test::Random random(3);
+    std::vector<Vec3f> points;
+    for (int crowd = 0; crowd < 40; ++crowd) {
+        const Vec3f middle = test::in_cube(random, 1.5F);
+        for (int n = 0; n < 40; ++n) points.push_back(middle + test::in_cube(random, 0.01F));
+        for (int n = 0; n < 10; ++n) points.push_back(test::in_cube(random, 2));
+    }
+    const std::vector<Contact> expected = by_reference(map, points, 0.1F, {1, 1, 1});
+    const SignedDistances distances = signed_distances_by_reference(map, points);
+    test::under_each_instruction_set([&](std::string_view name) {
+        SCOPED_TRACE(std::string(name));
+        for (const std::size_t call_size : {3U, 50U, 300U, 2000U})
+            for (std::size_t begin = 0; begin < points.size(); begin += call_size) {
+                const std::size_t count = std::min<std::size_t>(call_size, points.size() - begin);
+                const std::vector<Contact> part(&expected[begin], &expected[begin] + count);
+                expect_same_contacts(part, map, {&points[begin], count}, 0.1F, {1, 1, 1}, 1);
+            }
+        expect_same_signed_distances(distances, map, points, 1);
+    });
+}
+
+TEST(ExactMapBatch, AnswersWhereAllFacesAreAboutEquallyNear) {
+    for (const TriangleMesh& mesh : {make_sphere(1, 80, 40), make_sphere(1, 5, 3)}) {
+        const ExactMap map = ExactMap::build(mesh);
+        test::Random random(4);
+        std::vector<Vec3f> points{map.view().centre, {0, 0, 0}};
+        for (const float reach : {1e-6F, 1e-3F, 0.1F})
+            for (int n = 0; n < 40; ++n) points.push_back(test::in_cube(random, reach));
+        const std::vector<Contact> expected = by_reference(map, points, 0, {1, 1, 1});
+        test::under_each_instruction_set([&](std::string_view name) {
+            SCOPED_TRACE(std::string(name));
+            expect_same_contacts(expected, map, points, 0, {1, 1, 1}, 1);
+            expect_same_contacts(expected, one_by_one(map, points, 0, {1, 1, 1}), points);
         });
     }
 }

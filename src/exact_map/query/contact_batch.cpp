@@ -5,6 +5,7 @@
 
 #include "exact_map/query/nearest_faces.hpp"
 #include "exact_map/query/spatial_order.hpp"
+#include "geometry/raw_array.hpp"
 
 #include <algorithm>
 #include <array>
@@ -32,12 +33,12 @@ struct ContactBlock {
     static constexpr std::size_t kCapacity = 256;
 
     std::size_t size = 0;
-    std::array<std::uint32_t, kCapacity> particles;
-    std::array<Vec3f, kCapacity> points_local;
-    std::array<Side, kCapacity> sides;
-    std::array<NearestSearch, kCapacity> searches;
-    std::array<std::uint32_t, kCapacity> faces;
-    std::array<Contact, kCapacity> contacts;
+    RawArray<std::uint32_t, kCapacity> particles;
+    RawArray<Vec3f, kCapacity> points_local;
+    RawArray<Side, kCapacity> sides;
+    RawArray<NearestSearch, kCapacity> searches;
+    RawArray<std::uint32_t, kCapacity> faces;
+    RawArray<Contact, kCapacity> contacts;
 
     void add(const ContactSearch& search, std::uint32_t particle, const Vec3f& point_local, Side side) {
         particles[size] = particle;

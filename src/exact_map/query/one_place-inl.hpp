@@ -36,10 +36,26 @@ HWY_INLINE EightPoints eight(const Vec3f& v) {
     return {eight(v.x), eight(v.y), eight(v.z)};
 }
 
+using EightNumbers = hn::RebindToSigned<Eight>;
+
+/// Lattice points.
+using EightPlaces = Vec3Lanes<hn::Vec<EightNumbers>>;
+
+HWY_INLINE EightPoints as_floats(const EightPlaces& v) {
+    return {hn::ConvertTo(Eight(), v.x), hn::ConvertTo(Eight(), v.y), hn::ConvertTo(Eight(), v.z)};
+}
+
 /// Limits of some boxes of a node along an axis, in its units.
+HWY_INLINE hn::Vec<EightNumbers> box_numbers(const std::int16_t* limits) {
+    return hn::PromoteTo(EightNumbers(), hn::LoadU(hn::Rebind<std::int16_t, Eight>(), limits));
+}
 HWY_INLINE EightLanes box_limits(const std::int16_t* limits) {
-    constexpr hn::RebindToSigned<Eight> i;
-    return hn::ConvertTo(Eight(), hn::PromoteTo(i, hn::LoadU(hn::Rebind<std::int16_t, Eight>(), limits)));
+    return hn::ConvertTo(Eight(), box_numbers(limits));
+}
+
+HWY_INLINE hn::Mask<EightNumbers> boxes_that_exist(const TreeNode& node, std::size_t first) {
+    return hn::Lt(box_numbers(node.low[0] + first),
+                  hn::Add(box_numbers(node.high[0] + first), hn::Set(EightNumbers(), 1)));
 }
 
 /// Of the distances of some faces, in a unit in which nearer is less.
@@ -87,9 +103,35 @@ class NearMeasure {
         return fused_dot(gap, gap);
     }
 
-    const Vec3<std::int32_t>& origin() const { return origin_; }
+    /// What is farther may be left out by within().
+    void set_reach(float limit) {
+        const float reach = std::sqrt(limit);
+        const auto set = [&](float above, float below, float unit, std::int32_t& low, std::int32_t& high) {
+            constexpr float kLowest = -32767, kHighest = 32766; // between the limits of a missing child
+            const float units = unit > 0 ? reach / unit : kHighest;
+            high = static_cast<std::int32_t>(std::min(above + units + 1, kHighest));
+            low = static_cast<std::int32_t>(std::max(below - units - 1, kLowest));
+        };
+        set(above_.x, below_.x, per_unit_.x, reach_low_.x, reach_high_.x);
+        set(above_.y, below_.y, per_unit_.y, reach_low_.y, reach_high_.y);
+        set(above_.z, below_.z, per_unit_.z, reach_low_.z, reach_high_.z);
+    }
 
-    /// @param a, b, c  corners, counted from the origin
+    /// Which boxes meet the box around what is within reach. In whole numbers, which takes a third of the
+    /// time of a distance.
+    HWY_INLINE hn::Mask<EightNumbers> within(const TreeNode& node, std::size_t first) const {
+        constexpr EightNumbers i;
+        const auto gap = [&](std::size_t axis, std::int32_t low, std::int32_t high) HWY_ATTR {
+            return hn::Max(hn::Sub(box_numbers(node.low[axis] + first), hn::Set(i, high)),
+                           hn::Sub(hn::Set(i, low), box_numbers(node.high[axis] + first)));
+        };
+        const auto largest =
+            hn::Max(hn::Max(gap(0, reach_low_.x, reach_high_.x), gap(1, reach_low_.y, reach_high_.y)),
+                    gap(2, reach_low_.z, reach_high_.z));
+        return hn::Lt(largest, hn::Set(i, 1));
+    }
+
+    /// @param corner_a, b, c  on the lattice
     ///
     /// With edges u = b - a and v = c - a, all is made of the products of a, u and v, and the foot of the
     /// place in the plane is a + (s u + t v) / (u x v)^2.
@@ -100,11 +142,16 @@ class NearMeasure {
     /// outside for one inside, the square of how far it is outside is missing: less than 1600 e^2 q^4 m^2, 6
     /// e m^2 where the plane is used. Below, 2^7 e q^2 m^2 is allowed for, and 2 (a^2 + u^2 + v^2) taken for
     /// m^2.
-    HWY_INLINE FaceBounds faces(EightPoints a, const EightPoints& b, const EightPoints& c) const {
+    HWY_INLINE FaceBounds faces(const EightPlaces& corner_a, const EightPlaces& b,
+                                const EightPlaces& c) const {
         constexpr float kThin = 256; // q^2 beyond which this does not do
         const EightPoints stretch = eight(stretch_);
-        const EightPoints u = times(b - a, stretch), v = times(c - a, stretch);
-        a = times(a - eight(offset_), stretch);
+        const EightPoints u = times(as_floats(b - corner_a), stretch);
+        const EightPoints v = times(as_floats(c - corner_a), stretch);
+        const EightPoints from_origin = as_floats(corner_a - EightPlaces{hn::Set(EightNumbers(), origin_.x),
+                                                                         hn::Set(EightNumbers(), origin_.y),
+                                                                         hn::Set(EightNumbers(), origin_.z)});
+        const EightPoints a = times(from_origin - eight(offset_), stretch);
         const EightLanes aa = fused_dot(a, a), uu = fused_dot(u, u), vv = fused_dot(v, v);
         const EightLanes uv = fused_dot(u, v), au = fused_dot(a, u), av = fused_dot(a, v);
         const EightLanes across_sq = hn::MulSub(uu, vv, hn::Mul(uv, uv)), sides_sq = hn::Mul(uu, vv);
@@ -191,6 +238,7 @@ class NearMeasure {
     Vec3f stretch_, offset_;    ///< of the place from the origin
     Vec3f above_, below_;       ///< the place, by a little more and a little less; in the unit of boxes
     Vec3f per_unit_;            ///< stretched lattice steps
+    Vec3<std::int32_t> reach_low_, reach_high_; ///< of the box around what is within reach, in that unit
 };
 
 /// Of a place afar: the excess that nearest.cpp explains. On a triangle it is least at a corner, but for its
@@ -222,9 +270,15 @@ class AfarMeasure {
                        eight(kSlack));
     }
 
-    static Vec3<std::int32_t> origin() { return {}; }
+    void set_reach(float limit) { reach_ = limit; }
+    HWY_INLINE hn::Mask<EightNumbers> within(const TreeNode& node, std::size_t first) const {
+        const auto near = hn::RebindMask(EightNumbers(), hn::Le(boxes(node, first), eight(reach_)));
+        return hn::And(near, boxes_that_exist(node, first));
+    }
 
-    HWY_INLINE FaceBounds faces(const EightPoints& a, const EightPoints& b, const EightPoints& c) const {
+    HWY_INLINE FaceBounds faces(const EightPlaces& corner_a, const EightPlaces& corner_b,
+                                const EightPlaces& corner_c) const {
+        const EightPoints a = as_floats(corner_a), b = as_floats(corner_b), c = as_floats(corner_c);
         const EightLanes least = hn::Min(hn::Min(excess(a), excess(b)), excess(c));
         const EightPoints ab = b - a, bc = c - b, ca = a - c;
         const EightLanes edge_sq = hn::Max(hn::Max(fused_dot(ab, ab), fused_dot(bc, bc)), fused_dot(ca, ca));
@@ -246,12 +300,13 @@ class AfarMeasure {
     double distance_; ///< from the centre
     Vec3f at_, direction_;
     float curvature_; ///< 1 / 2 d
+    float reach_ = 0;
 };
 
 /// Moves the chosen lanes to the beginning; what follows them is arbitrary.
 class EightCompressor {
   public:
-    using Numbers = hn::RebindToSigned<Eight>;
+    using Numbers = EightNumbers;
     explicit EightCompressor(hn::Mask<Numbers> chosen)
 #if HWY_TARGET == HWY_AVX3 // where Ints are wider
         : chosen_(chosen) {
@@ -300,55 +355,82 @@ class OnePlaceSearch {
         nearest_sq_ = farthest_sq;
         first_leaf_ = near_leaf == kNoLeaf ? kNoLeaf : TreeNode::kLeaf + near_leaf;
         if (near_leaf != kNoLeaf) visit_leaf(near_leaf);
-        nodes_.distances[0] = upper_;
-        nodes_.children[0] = 0;
-        nodes_.size = 1;
-        while (nodes_.size > 0) {
-            --nodes_.size;
-            if (nodes_.distances[nodes_.size] <= upper_) list_children(nodes_.children[nodes_.size]);
-            if (leaves_.size > kLeafCapacity - kWidth) visit_leaves();
+        measure_.set_reach(upper_);
+        node_count_ = 1;
+        nodes_[0] = 0;
+        while (node_count_ > 0) {
+            const TreeNode& node = map_.nodes[nodes_[--node_count_]];
+            if ((node.children[0] & TreeNode::kLeaf) != 0)
+                list_leaves(node);
+            else
+                list_children(node);
+            if (leaves_.size > kLeafCapacity - kWidth) {
+                visit_leaves();
+                measure_.set_reach(upper_);
+            }
         }
         visit_leaves();
         return choose();
     }
 
   private:
-    static constexpr std::size_t kWidth = TreeNode::kWidth;
+    static constexpr std::size_t kWidth = TreeNode::kWidth, kLeafCapacity = 32;
     static constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-    using Numbers = hn::RebindToSigned<Eight>;
+    using Numbers = EightNumbers;
+    using Unsigned = hn::RebindToUnsigned<Eight>;
 
-    /// Children of nodes and their distances. Written a vector at a time, of which only the first lanes
-    /// count.
-    template <std::size_t kCapacity>
-    struct Children {
+    /// Leaves and their distances. Written a vector at a time, of which only the first lanes count.
+    struct Leaves {
         std::size_t size = 0;
-        std::array<float, kCapacity + kWidth> distances;
-        std::array<std::uint32_t, kCapacity + kWidth> children;
+        std::array<float, kLeafCapacity + kWidth> distances;
+        std::array<std::uint32_t, kLeafCapacity + kWidth> children;
 
         HWY_INLINE void add(hn::Mask<Numbers> chosen, EightLanes lower, hn::Vec<Numbers> numbers) {
             const EightCompressor compress(chosen);
             hn::StoreU(hn::BitCast(Eight(), compress(hn::BitCast(Numbers(), lower))), Eight(),
                        &distances[size]);
-            hn::StoreU(hn::BitCast(hn::RebindToUnsigned<Eight>(), compress(numbers)),
-                       hn::RebindToUnsigned<Eight>(), &children[size]);
+            hn::StoreU(hn::BitCast(Unsigned(), compress(numbers)), Unsigned(), &children[size]);
             size += compress.count();
         }
     };
 
-    HWY_INLINE void list_children(std::uint32_t number) {
-        const TreeNode& node = map_.nodes[number];
+    static HWY_INLINE hn::Vec<Numbers> children_of(const TreeNode& node, std::size_t first) {
+        return hn::BitCast(Numbers(), hn::LoadU(Unsigned(), node.children + first));
+    }
+
+    void push_nodes(hn::Mask<Numbers> chosen, hn::Vec<Numbers> children) {
+        const EightCompressor compress(chosen);
+        hn::StoreU(hn::BitCast(Unsigned(), compress(children)), Unsigned(), &nodes_[node_count_]);
+        node_count_ += compress.count();
+    }
+
+    /// Of a node above nodes.
+    HWY_INLINE void list_children(const TreeNode& node) {
+        for (std::size_t lane = 0; lane < kWidth; lane += hn::Lanes(Eight())) {
+            const auto children = children_of(node, lane);
+            const auto near = measure_.within(node, lane);
+            const auto leaves = hn::And(near, hn::Lt(children, hn::Zero(Numbers())));
+            push_nodes(hn::AndNot(leaves, near), children);
+            if (!hn::AllFalse(Numbers(), leaves)) [[unlikely]]
+                leaves_.add(leaves, measure_.boxes(node, lane), children);
+        }
+    }
+
+    /// Of a node above leaves.
+    HWY_INLINE void list_leaves(const TreeNode& node) {
         constexpr Numbers n;
         for (std::size_t lane = 0; lane < kWidth; lane += hn::Lanes(Eight())) {
+            const auto children = children_of(node, lane);
             const EightLanes lower = measure_.boxes(node, lane);
-            const auto exists = hn::Le(box_limits(node.low[0] + lane), box_limits(node.high[0] + lane));
-            const auto near = hn::RebindMask(n, hn::And(exists, hn::Le(lower, eight(upper_))));
-            const auto children =
-                hn::BitCast(n, hn::LoadU(hn::RebindToUnsigned<Eight>(), node.children + lane));
-            const auto is_leaf = hn::Lt(children, hn::Zero(n)); // TreeNode::kLeaf is the sign
+            const auto near =
+                hn::And(hn::RebindMask(n, hn::Le(lower, eight(upper_))), boxes_that_exist(node, lane));
+            const auto leaves = hn::And(near, hn::Lt(children, hn::Zero(n))); // TreeNode::kLeaf is the sign
             const auto is_new = hn::Ne(children, hn::Set(n, static_cast<std::int32_t>(first_leaf_)));
-            nodes_.add(hn::AndNot(is_leaf, near), lower, children);
-            leaves_.add(hn::And(hn::And(is_leaf, is_new), near), lower, children);
+            leaves_.add(hn::And(leaves, is_new), lower, children);
+            const auto nodes = hn::AndNot(leaves, near);
+            if (!hn::AllFalse(n, nodes)) [[unlikely]]
+                push_nodes(nodes, children);
         }
     }
 
@@ -378,7 +460,7 @@ class OnePlaceSearch {
         return bits[0];
     }
 
-    HWY_INLINE EightPoints corner_lanes(std::size_t k, std::size_t first) const {
+    HWY_INLINE EightPlaces corner_lanes(std::size_t k, std::size_t first) const {
         const std::int32_t* vertices = &map_.vertices.data()->x;
         const Vertex* corners = corners_ + 3 * first + k;
         // The vertex as the last three numbers of a row.
@@ -388,11 +470,7 @@ class OnePlaceSearch {
                 const std::size_t vertex = corners[3 * lane];
                 return hn::LoadU(hn::FixedTag<std::int32_t, 4>(), vertices + 3 * vertex - 1);
             }).at;
-        const Vec3<std::int32_t> origin = measure_.origin();
-        const auto from = [&](auto coordinate, std::int32_t of_origin) HWY_ATTR {
-            return hn::ConvertTo(Eight(), hn::Sub(coordinate, hn::Set(i, of_origin)));
-        };
-        return {from(x, origin.x), from(y, origin.y), from(z, origin.z)};
+        return {x, y, z};
     }
 
     /// A short leaf is filled up with faces of the one before.
@@ -457,7 +535,7 @@ class OnePlaceSearch {
 
     const ExactMapView& map_;
     const Vertex* corners_;
-    const Measure& measure_;
+    Measure measure_;
 
     float upper_ = 0;                 ///< the nearest face surely lies within it
     std::uint32_t nearest_ = kNoFace; ///< of those measured exactly
@@ -469,11 +547,12 @@ class OnePlaceSearch {
     std::array<std::uint32_t, kCapacity> firsts_;
     alignas(32) std::array<std::array<float, kWidth>, kCapacity> lowers_;
 
-    // Children that are waiting. As many nodes as in walk_near_leaves().
-    static constexpr std::size_t kMaxDepth = 12, kLeafCapacity = 32;
+    // What is waiting. As many nodes as in walk_near_leaves().
+    static constexpr std::size_t kMaxDepth = 12;
+    std::size_t node_count_ = 0;
+    std::array<std::uint32_t, kMaxDepth * kWidth + kWidth> nodes_;
+    Leaves leaves_;
     std::uint32_t first_leaf_ = kNoLeaf; ///< as a child; it has been visited
-    Children<kMaxDepth * kWidth> nodes_;
-    Children<kLeafCapacity> leaves_;
 };
 
 } // namespace echinus::HWY_NAMESPACE

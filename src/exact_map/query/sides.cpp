@@ -118,8 +118,10 @@ void find_sides(const ExactMapView& map, const StridedSpan<const Vec3f>& points_
     SideFinder(map).find(points_local, sides);
 }
 
-SideAndLeaf find_side(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local,
-                      bool leaf_outside) {
+namespace {
+
+SideAndLeaf side_and_leaf(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local,
+                          bool leaf_outside) {
     const Vec3d place = frame.to_lattice(point_local);
     if (!map.border.empty() || !is_on_lattice(place)) return {side_at(map, frame, point_local), kNoLeaf};
     const LatticePoint p = rounded(place);
@@ -131,11 +133,30 @@ SideAndLeaf find_side(const ExactMapView& map, const LatticeFrame& frame, const 
     return {inside ? kInsideBit : Side{0}, inside || leaf_outside ? leaf_near(map, at) : kNoLeaf};
 }
 
+} // namespace
+
+SideAndLeaf find_side(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local,
+                      bool leaf_outside) {
+    return side_and_leaf(map, frame, point_local, leaf_outside);
+}
+
+void find_few_sides(const ExactMapView& map, const StridedSpan<const Vec3f>& points_local,
+                    std::span<Side> sides) {
+    const LatticeFrame frame = frame_of(map);
+    for (std::size_t i = 0; i < sides.size(); ++i)
+        sides[i] = side_and_leaf(map, frame, points_local[i], false).side;
+}
+
 #else
 
 SideAndLeaf find_side(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local,
                       bool /*leaf_outside*/) {
     return {side_at(map, frame, point_local), kNoLeaf};
+}
+
+void find_few_sides(const ExactMapView& map, const StridedSpan<const Vec3f>& points_local,
+                    std::span<Side> sides) {
+    find_sides_one_by_one(map, points_local, sides);
 }
 
 void find_sides(const ExactMapView& map, const StridedSpan<const Vec3f>& points_local,
@@ -153,6 +174,7 @@ namespace echinus {
 
 namespace {
 
+HWY_EXPORT(find_few_sides);
 HWY_EXPORT(find_side);
 HWY_EXPORT(find_sides);
 
@@ -167,12 +189,13 @@ SideAndLeaf find_side(const ExactMapView& map, const LatticeFrame& frame, const 
 void find_sides(const ExactMapView& map, const StridedSpan<const Vec3f>& points_local,
                 std::span<Side> sides) noexcept {
     assert(points_local.size() == sides.size());
-    constexpr std::size_t kMinKernelBatch = 8; // one vector takes as long as the scalar query for so many
-    if (use_kernels() && sides.size() >= kMinKernelBatch) {
+    constexpr std::size_t kMinKernelBatch = 8; // one vector takes as long as so many, a vector for each
+    if (!use_kernels())
+        find_sides_one_by_one(map, points_local, sides);
+    else if (sides.size() >= kMinKernelBatch)
         ECHINUS_DISPATCH(find_sides)(map, points_local, sides);
-        return;
-    }
-    find_sides_one_by_one(map, points_local, sides);
+    else
+        ECHINUS_DISPATCH(find_few_sides)(map, points_local, sides);
 }
 
 } // namespace echinus
