@@ -7,7 +7,7 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// The vector instructions of the batch queries. They affect speed only, never the answers.
+/// The vector instructions of the queries. They affect speed only, never the answers.
 ///
 /// Names: "avx512", "avx2", "sse4", "neon", "wasm", and "scalar", which is the reference itself, one particle
 /// after the other. The default is the first that the machine has; the environment variable
