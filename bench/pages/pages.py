@@ -167,6 +167,40 @@ def figures(folder):
     return values
 
 
+def calls(folder):
+    results = Results(folder, "calls")
+    values = {"calls machine": results.machine, "calls commit": results.commit}
+    for mesh in results.distinct("mesh", kind="calls"):
+        ask = dict(kind="calls", mesh=mesh)
+        rows = [["particles in a call, system", "inside or outside, ns, U", "S", "C", "contact, ns, U", "S", "C", "signed distance, ns, U", "S", "C"]]
+        for call in results.distinct("call", **ask):
+            for r in results.where(call=call, set="U", task="contains", **ask):
+                one = dict(call=call, system=r["system"], **ask)
+                rows.append([f"{particles_in(results, mesh, call)}, {label(r)}"]
+                            + [cell for task in ("contains", "contacts", "distances") for cell in per_set(results, "ns", task=task, **one)])
+        values[f"calls {'torus' if mesh == 'torus' else 'horse'}"] = table(rows)
+    times = {(r["task"], r["set"], r["call"], r["system"]): float(r["ns"])
+             for r in results.where(kind="calls", mesh=results.distinct("mesh", kind="calls")[0])}
+    rows = [["times as fast as Embree, calls of", "inside or outside, U", "S", "C", "contact, U", "S", "C", "signed distance, U", "S", "C"]]
+    for call in results.distinct("call", kind="calls"):
+        rows.append([particles_in(results, results.records[0]["mesh"], call) if call != "whole set" else "all"]
+                    + [f"{times[t, s, call, 'Embree'] / times[t, s, call, 'exact map']:.1f}" for t in ("contains", "contacts", "distances")
+                       for s in "USC"])
+    values["calls ratios"] = table(rows)
+    rows = [["faces, system", "one call a particle, ns, U", "S", "C", "calls of 1000, U", "S", "C", "one call, U", "S", "C"]]
+    ask = dict(kind="faces", task="contacts")
+    for faces in results.distinct("faces", **ask):
+        for system in results.distinct("system", **ask):
+            rows.append([f"{faces}, {system}"] + [cell for call in results.distinct("call", **ask)
+                                                  for cell in per_set(results, "ns", faces=faces, system=system, call=call, **ask)])
+    values["calls faces"] = table(rows)
+    rows = [["set, system", "median, ns", "99.9 %, ns", "worst, ns", "worst undisturbed, ns"]]
+    rows += [[f"{r['set']}, {label(r)}"] + [f"{float(r[c]):.0f}" for c in ("median", "p999", "worst", "worst_undisturbed")]
+             for r in results.where(kind="latency")]
+    values["calls latency"] = table(rows)
+    return values
+
+
 def readme_table(results, mesh):
     """The README's: a question a row, a number a cell, near the surface unless the row says otherwise; the
     numbers of a row in one notation."""
@@ -238,6 +272,7 @@ TASKS = {
     "triangles": (["performance_tables.md"], triangles),
     "surfaces": (["surfaces_measured.md"], surfaces),
     "engines": (["engines.md"], engines),
+    "calls": (["calls.md"], calls),
     "labels": (["labels_measured.md"], labels),
     "figures": (["figures.md", "../README.md"], figures),
     "reproduction": (["reproduction.md"], reproduction),

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Draws the plots of docs/performance_tables.md, docs/surfaces_measured.md and docs/engines.md from bench/results/: time against error,
-time and error against bytes, build time against faces, time of a frame against particles. scripts/bench runs it."""
+"""Draws the plots of docs/performance_tables.md, docs/calls.md, docs/surfaces_measured.md and docs/engines.md from bench/results/: time
+against error, time and error against bytes, build time against faces, time against the size of calls, time of a frame against particles.
+scripts/bench runs it."""
 
 import argparse
 import csv
@@ -31,6 +32,24 @@ def plot(curves, x_label, y_label, path):
     axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
     figure.savefig(path, metadata={"Date": None})
     pyplot.close(figure)
+
+
+def plot_sets(rows, x, x_label, path):
+    """One diagram for each of U, S and C, in one picture with one scale of times."""
+    figure, all_axes = pyplot.subplots(1, 3, figsize=(9, 3.4), layout="constrained", sharey=True)
+    for name, axes in zip("USC", all_axes):
+        for system, (points, ours) in curves_of([r for r in rows if r["set"] == name], x, nanoseconds).items():
+            axes.plot(*zip(*sorted(points)), "o-" if ours else "s--", label=system, markersize=4, linewidth=1.2)
+        axes.set(xscale="log", yscale="log", xlabel=x_label, title=name)
+        axes.grid(True, which="major", alpha=0.3)
+    all_axes[0].set_ylabel("ns a particle")
+    figure.legend(*all_axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, frameon=False)
+    figure.savefig(path, metadata={"Date": None})
+    pyplot.close(figure)
+
+
+def call_size(r):
+    return float(r["particles"] if r["call"] == "whole set" else r["call"])
 
 
 def curves_of(rows, x, y):
@@ -75,6 +94,13 @@ def draw(task, folder, images):
         tori = [r for r in rows if r["mesh"].startswith("torus")]
         plot(curves_of(tori, lambda r: float(r["faces"]), lambda r: float(r["ms"])), "faces", "ms",
              images / "build_faces.svg")
+    elif task == "calls":
+        for question in ("contains", "contacts", "distances"):
+            some = [r for r in rows if r["kind"] == "calls" and r["mesh"] == rows[0]["mesh"] and r["task"] == question]
+            plot_sets(some, call_size, "particles in a call", images / f"calls_{question}.svg")
+        for call, name in (("1", "single"), ("1000", "1000")):
+            some = [r for r in rows if r["kind"] == "faces" and r["task"] == "contacts" and r["call"] == call]
+            plot_sets(some, lambda r: float(r["faces"]), "faces", images / f"calls_faces_{name}.svg")
     elif task == "surfaces":
         falls = [r for r in rows if r["scene"] == "horse, the fall alone"]
         curves = {}
@@ -92,7 +118,7 @@ def draw(task, folder, images):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("task", choices=["contains", "contacts", "bytes", "build", "surfaces", "engines"])
+    parser.add_argument("task", choices=["contains", "contacts", "calls", "bytes", "build", "surfaces", "engines"])
     parser.add_argument("--results", type=pathlib.Path, required=True)
     parser.add_argument("--images", type=pathlib.Path, required=True)
     arguments = parser.parse_args()
