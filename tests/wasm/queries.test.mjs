@@ -277,6 +277,50 @@ describe('A simulation', () => {
         second.step(20);
         assert.ok(second.positions[2] > first.positions[2]);
     });
+    test('has several colliders, each with a map and a velocity of its own', () => {
+        const cloth = { size: [2, 2], particles: [16, 16], position: [0, 0, 1.2] };
+        const scene = echinus.parseScene({ colliders: [{ model: 'a.obj' }, { model: { sphere: {} }, position: [3, 0, 0] }], cloth });
+        const maps = [echinus.buildMap(echinus.makeSphere(1, 30, 15)), echinus.buildMap(echinus.makeSphere(0.3, 20, 10))];
+        assert.throws(() => scene.makeSimulation(maps[0]), /2 colliders/);
+        const simulation = scene.makeSimulation(maps);
+        assert.equal(simulation.colliderCount, 2);
+        simulation.setColliderVelocity([-1, 0, 0], [0, 0, 0], 1);
+        simulation.step(24);
+        assert.ok(Math.abs(simulation.colliderAt(1).position[0] - 2.9) < 1e-9);
+        assert.deepEqual(simulation.collider.position, [0, 0, 0]);
+        assert.throws(() => simulation.setColliderVelocity([0, 0, 0], [0, 0, 0], 2), /there is no collider 2; there are 2/);
+        assert.throws(() => simulation.colliderAt(-1));
+    });
+    test('continues with a collider more, and without it', () => {
+        const description = { model: 'a.obj', cloth: { size: [2, 2], particles: [16, 16], position: [0, 0, 1.2] } };
+        const maps = [echinus.buildMap(echinus.makeSphere(1, 30, 15)), echinus.buildMap(echinus.makeSphere(0.3, 20, 10))];
+        const alone = echinus.parseScene(description);
+        const simulation = alone.makeSimulation(maps[0]);
+        simulation.setColliderVelocity([0, 0, -1], [0, 0, 0]);
+        simulation.step(24);
+        const { model, ...rest } = description;
+        const both = echinus.parseScene({ ...rest, colliders: [{ model }, { model: { sphere: {} }, position: [0, 0, 3] }] });
+        const joined = simulation.continueWith(both, maps);
+        assert.deepEqual([joined.colliderCount, joined.colliderAt(1).position], [2, [0, 0, 3]]);
+        assert.deepEqual(joined.collider, simulation.collider);
+        assert.deepEqual(joined.positions.slice(), simulation.positions.slice());
+        joined.step(4);
+        assert.equal(joined.continueWith(alone, [maps[0]]).colliderCount, 1);
+        assert.throws(() => simulation.continueWith(both, [maps[0]]), /a map for each collider/);
+    });
+    test('of soft bodies takes the surfaces that its caller has', () => {
+        const bodies = [{ mesh: 'ball.obj', element: 0.2, position: [0, 0, 0.9] }];
+        const scene = echinus.parseScene({ model: { torus: {} }, bodies });
+        assert.equal(scene.particleCount, null);
+        const map = scene.buildMap(scene.makeModel());
+        const simulation = scene.makeSimulation(map, { bodies: [echinus.makeSphere(0.4, 20, 10)] });
+        assert.ok(simulation.faces.length > 100);
+        const before = simulation.positions[2];
+        simulation.step(30);
+        assert.ok(simulation.positions[2] < before);
+        assert.throws(() => scene.makeSimulation(map), /bodies\[0\]: its mesh is the file ball\.obj/);
+        assert.throws(() => scene.makeSimulation(map, { bodies: [null, null] }), /more meshes of bodies than bodies/);
+    });
     test('of a scene with a file needs its mesh from outside', () => {
         const scene = echinus.parseScene(readScene('horse_small.json').replace('horse_small', 'horse'), 'horse.json');
         assert.equal(scene.modelFile, 'horse.3ds');

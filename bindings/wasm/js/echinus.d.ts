@@ -477,21 +477,19 @@ export type Shape = { torus: object } | { sphere: object } | { box: object };
 
 /** Keys and limits: docs/scenes.md. Angles are degrees. */
 export interface SceneDescription {
-    model: string | Shape;
+    /** This, or `colliders`. */
+    model?: string | Shape;
     repair?: readonly (Repair | MakeSolid)[];
     /** With 'small_holes'. */
     hole_edges?: number;
     /** With 'sheets'. */
     sheet_thickness?: number;
     map?: MapOptions;
-    collider?: {
-        position?: Vec3;
-        rotation?: { axis: Vec3; degrees: number };
-        scale?: number | Vec3;
-        linear_velocity?: Vec3;
-        angular_velocity?: Vec3;
-    };
-    cloth: (Sheet | MeshCloth) & {
+    collider?: Placement;
+    colliders?: readonly (Placement & { model: string | Shape; repair?: readonly (Repair | MakeSolid)[] })[];
+    /** Needed without `bodies`. */
+    cloth?: (Sheet | MeshCloth) & {
+        density?: number;
         position?: Vec3;
         rotation?: { axis: Vec3; degrees: number };
         velocity?: Vec3;
@@ -500,7 +498,11 @@ export interface SceneDescription {
         /** Between layers of the cloth. Default: the thickness. */
         self_thickness?: number;
     };
+    bodies?: readonly Body[];
     material?: {
+        /** Without a cloth. */
+        thickness?: number;
+        self_thickness?: number;
         friction?: number;
         drag?: number;
         structural?: number;
@@ -521,6 +523,31 @@ export interface SceneDescription {
     untangle?: boolean;
     frame_limit?: number;
     at_rest?: { distance?: number; speed?: number; frames?: number };
+}
+
+/** Where a model stands, and how it moves: degrees per second. */
+export interface Placement {
+    position?: Vec3;
+    rotation?: { axis: Vec3; degrees: number };
+    scale?: number | Vec3;
+    linear_velocity?: Vec3;
+    angular_velocity?: Vec3;
+}
+
+/** A soft body; lengths of `element` before the scale. */
+export interface Body {
+    mesh: string | Shape;
+    element: number;
+    density?: number;
+    young_modulus?: number;
+    poisson_ratio?: number;
+    damping?: number;
+    position?: Vec3;
+    rotation?: { axis: Vec3; degrees: number };
+    scale?: number;
+    velocity?: Vec3;
+    pins?: VertexChoice;
+    attachments?: VertexChoice;
 }
 
 /** A rectangular cloth. */
@@ -555,23 +582,28 @@ export class Scene extends Deletable {
     /** The names of the files of a cloth that is a mesh; null where it is none, or a generated shape. */
     readonly clothFile: string | null;
     readonly clothRestFile: string | null;
-    /** Of a sheet; null where the cloth is a mesh. */
+    /** Of a sheet; null where the cloth is a mesh, and beside bodies. */
     readonly particleCount: number | null;
     /** The generated shape, repaired by the scene's options. @throws InvalidScene for a file: read and repair() it instead */
     makeModel(): Mesh;
     /** With the scene's options. */
     buildMap(mesh: Mesh): AnyMap;
     /**
-     * The scene's cloth and collider, ready to step. The map may be of another kind than the scene's.
+     * The scene's cloth, bodies and colliders, ready to step. The map may be of another kind than the scene's.
+     * @param maps     of the collider, or of each of `colliders`, in their order
      * @param options  allowOpenCollider: accept the exact map of an open mesh, near whose gaps particles get in and out;
-     *                 cloth, clothAtRest: the meshes of clothFile and clothRestFile, welded
-     * @throws InvalidOptions for the exact map of an open mesh otherwise, where a cloth's mesh is not given, and with
-     * surface_collision for a start that intersects; InvalidMesh for a mesh that is no cloth
+     *                 cloth, clothAtRest: the meshes of clothFile and clothRestFile, welded;
+     *                 bodies: for each body its closed surface, which is filled with tetrahedra; null for a generated shape
+     * @throws InvalidOptions for the exact map of an open mesh otherwise, for more or fewer maps than colliders, where a
+     * mesh is not given, and with surface_collision for a start that intersects; InvalidMesh for a mesh that is no cloth
      */
-    makeSimulation(map: AnyMap, options?: { allowOpenCollider?: boolean; cloth?: Mesh; clothAtRest?: Mesh }): Simulation;
+    makeSimulation(
+        maps: AnyMap | readonly AnyMap[],
+        options?: { allowOpenCollider?: boolean; cloth?: Mesh; clothAtRest?: Mesh; bodies?: readonly (Mesh | null)[] },
+    ): Simulation;
 }
 
-/** Cloth on one collider. The same scene and map give the same positions, bit for bit, in every browser and in native C++. */
+/** Cloth and soft bodies among colliders. The same scene and map give the same positions, bit for bit, in every browser and in native C++. */
 export class Simulation extends Deletable {
     readonly particleCount: number;
     /** [3 particleCount] a view of the simulation's own memory: get it anew each time, as with a buffer. Read only. */
@@ -588,19 +620,24 @@ export class Simulation extends Deletable {
     readonly stateHash: string;
     /** Since the simulation began. */
     readonly profile: SimulationProfile;
+    readonly colliderCount: number;
+    /** The first. */
     readonly collider: ColliderState;
+    colliderAt(index: number): ColliderState;
 
     /** @throws Diverged; afterwards only reading is allowed */
     step(frameCount?: number): void;
     /**
-     * A simulation of the same particles and collider in their present state, with the solver, material, thickness and
+     * A simulation of the same particles and colliders in their present state, with the solver, material, thickness and
      * gravity of another scene: for options that change while the cloth falls. Profile and frame restart. Delete the
      * old one.
+     * @param maps  of all of the scene's colliders: those that this simulation does not have yet are added where the scene
+     *              has them, and those beyond the scene's are left out. By default the colliders stay
      * @throws InvalidOptions when the scene sets surface_collision and the cloth intersects now; set untangle too
      */
-    continueWith(scene: Scene): Simulation;
-    /** Steers the collider: it keeps these velocities until they are set again. Units and radians per second. */
-    setColliderVelocity(linear: Vec3, angular: Vec3): void;
+    continueWith(scene: Scene, maps?: readonly AnyMap[]): Simulation;
+    /** Steers a collider, the first by default: it keeps these velocities until they are set again. Units and radians per second. */
+    setColliderVelocity(linear: Vec3, angular: Vec3, index?: number): void;
 
     /**
      * Gives a particle a velocity, units per second. To drag with the pointer, set it before each step, for the grabbed
@@ -615,7 +652,7 @@ export class Simulation extends Deletable {
      */
     blow(wind: Vec3, rate: number): void;
 
-    /** Which particles are inside the collider now, by its map. */
+    /** Which particles are inside the first collider now, by its map. */
     containsBatch(inside: FlagBuffer): FlagBuffer;
     /** In world units, for instance for colours by depth. */
     contactsBatch(margin: number, contacts: ContactBuffer): ContactBuffer;

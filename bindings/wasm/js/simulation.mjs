@@ -17,12 +17,17 @@ export class Scene extends Handle {
     buildMap(mesh) {
         return wrapMap(this.core, this.core.try('scene_build_map', this.address, requireOwn(this.core, mesh, Mesh)));
     }
-    makeSimulation(map, { allowOpenCollider = false, cloth = null, clothAtRest = null } = {}) {
+    makeSimulation(maps, { allowOpenCollider = false, cloth = null, clothAtRest = null, bodies = [] } = {}) {
         const mesh = (own) => (own === null ? 0 : requireOwn(this.core, own, Mesh));
-        const values = [requireMap(this.core, map), allowOpenCollider ? 1 : 0, mesh(cloth), mesh(clothAtRest)];
-        return new Simulation(this.core, this.core.try('simulation_make', this.address, ...values));
+        const addresses = [addressesOf(this.core, [maps].flat()), Uint32Array.from(bodies, mesh)];
+        const [mapCount, bodyCount] = addresses.map(({ length }) => length);
+        const given = [allowOpenCollider ? 1 : 0, mesh(cloth), mesh(clothAtRest)];
+        return this.core.withCopies(addresses, (mapsAt, bodiesAt) =>
+            new Simulation(this.core, this.core.try('simulation_make', this.address, mapsAt, mapCount, ...given, bodiesAt, bodyCount)));
     }
 }
+
+const addressesOf = (core, maps) => Uint32Array.from(maps, (map) => requireMap(core, map));
 
 export class Simulation extends Handle {
     #positions = null;
@@ -33,9 +38,11 @@ export class Simulation extends Handle {
         Object.defineProperty(this, 'particleCount', { value: core.call('simulation_particle_count', address), enumerable: true });
     }
 
-    /** Continues with the options of another scene; particles and collider keep their state. */
-    continueWith(scene) {
-        return new Simulation(this.core, this.core.try('simulation_continue', this.address, requireOwn(this.core, scene, Scene)));
+    /** Continues with the options of another scene; particles and colliders keep their state. */
+    continueWith(scene, maps = []) {
+        const own = requireOwn(this.core, scene, Scene);
+        return this.core.withCopies([addressesOf(this.core, maps)], (mapsAt) =>
+            new Simulation(this.core, this.core.try('simulation_continue', this.address, own, mapsAt, maps.length)));
     }
 
     step(frameCount = 1) {
@@ -80,13 +87,24 @@ export class Simulation extends Handle {
         return this.core.json('simulation_profile', this.address);
     }
 
-    get collider() {
-        return this.core.json('simulation_collider', this.address);
+    get colliderCount() {
+        return this.core.call('simulation_collider_count', this.address);
     }
-    setColliderVelocity(linear, angular) {
+    get collider() {
+        return this.colliderAt(0);
+    }
+    colliderAt(index) {
+        return this.core.json('simulation_collider', this.address, this.#requireCollider(index));
+    }
+    setColliderVelocity(linear, angular, index = 0) {
         requireFinite(linear, 'the linear velocity');
         requireFinite(angular, 'the angular velocity');
-        this.core.call('simulation_set_collider_velocity', this.address, ...linear, ...angular);
+        this.core.call('simulation_set_collider_velocity', this.address, this.#requireCollider(index), ...linear, ...angular);
+    }
+    #requireCollider(index) {
+        requireCount(index, 'the collider');
+        if (index >= this.colliderCount) refuse(`there is no collider ${index}; there are ${this.colliderCount}`);
+        return index;
     }
 
     setParticleVelocity(particle, velocity) {

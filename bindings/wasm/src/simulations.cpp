@@ -5,6 +5,8 @@
 #include <echinus/error.hpp>
 #include <echinus/scene.hpp>
 
+#include <vector>
+
 namespace echinus::wasm {
 
 namespace {
@@ -27,9 +29,9 @@ json cloth_files(const Scene& scene) {
     return files;
 }
 
-/// Null for a mesh, whose vertices may be known to the caller only.
+/// Null for a mesh, whose vertices may be known to the caller only, and beside bodies.
 json particle_count(const Scene& scene) {
-    if (scene.mesh_cloth) return nullptr;
+    if (scene.mesh_cloth || !scene.bodies.empty()) return nullptr;
     return scene.cloth.column_count * scene.cloth.row_count;
 }
 
@@ -91,11 +93,54 @@ const Collider& collider_of(const Simulation& simulation) {
     return simulation.colliders().front();
 }
 
-/// The scene's options, with the particles and the collider of a simulation in their present state.
-Simulation continue_with(const Simulation& simulation, const Scene& scene) {
+/// Objects that JavaScript names by their addresses.
+template <typename Object>
+using Addresses = const Object* const*;
+
+std::vector<ColliderMap> maps_at(Addresses<AnyMap> maps, std::uint32_t count) {
+    std::vector<ColliderMap> copies; // they share the arrays
+    for (const AnyMap* map : values_at(maps, count)) copies.emplace_back(*map);
+    return copies;
+}
+
+ClothMeshes meshes_at(const Scene& scene, const TriangleMesh* cloth, const TriangleMesh* rest,
+                      Addresses<TriangleMesh> bodies, std::uint32_t body_count) {
+    ClothMeshes meshes;
+    if (cloth) meshes.mesh = *cloth;
+    if (rest) meshes.rest_mesh = *rest;
+    if (body_count > scene.bodies.size())
+        throw Error(ErrorCode::InvalidOptions, "there are more meshes of bodies than bodies in the scene");
+    for (std::size_t i = 0; i < body_count; ++i)
+        meshes.bodies.push_back(bodies[i] ? fill_body(scene.bodies[i], *bodies[i]) : TetrahedralMesh{});
+    return meshes;
+}
+
+/// The present colliders, with those that the scene has more of; without those that it has no longer.
+/// @param maps  of all of the scene's colliders, or none, to keep the present ones
+std::vector<Collider> colliders_after(const Simulation& simulation, const Scene& scene,
+                                      const std::vector<ColliderMap>& maps) {
+    std::vector<Collider> colliders = simulation.colliders();
+    if (maps.empty()) return colliders;
+    if (maps.size() != scene.colliders.size())
+        throw Error(ErrorCode::InvalidOptions, "continueWith() needs a map for each collider of the scene");
+    while (colliders.size() > maps.size()) colliders.pop_back();
+    for (std::size_t i = colliders.size(); i < maps.size(); ++i) {
+        const SceneCollider& added = scene.colliders[i];
+        colliders.push_back({.map = maps[i],
+                             .pose = added.pose,
+                             .scale = added.scale,
+                             .linear_velocity = added.linear_velocity,
+                             .angular_velocity = added.angular_velocity});
+    }
+    return colliders;
+}
+
+/// The scene's options, with the particles and the colliders of a simulation in their present state.
+Simulation continue_with(const Simulation& simulation, const Scene& scene,
+                         const std::vector<ColliderMap>& maps) {
     SimulationOptions options = scene.simulation;
     options.allow_open_colliders = simulation.options().allow_open_colliders;
-    return Simulation(simulation.deformable(), simulation.colliders(), options);
+    return Simulation(simulation.deformable(), colliders_after(simulation, scene, maps), options);
 }
 
 } // namespace
@@ -118,20 +163,24 @@ ECHINUS_EXPORT(scene_delete) void scene_delete(Scene* scene) {
     delete scene;
 }
 
+/// @param maps         of the scene's colliders, in their order
 /// @param cloth, rest  meshes of a cloth that is made of files, or null
+/// @param bodies       surfaces of the bodies, each null for a generated shape
 ECHINUS_EXPORT(simulation_make)
-Simulation* simulation_make(const Scene* scene, const AnyMap* map, bool allow_open_collider,
-                            const TriangleMesh* cloth, const TriangleMesh* rest) {
+Simulation* simulation_make(const Scene* scene, Addresses<AnyMap> maps, std::uint32_t map_count,
+                            bool allow_open_collider, const TriangleMesh* cloth, const TriangleMesh* rest,
+                            Addresses<TriangleMesh> bodies, std::uint32_t body_count) {
     return make_handle([&] {
         Scene with_choice = *scene;
         with_choice.simulation.allow_open_colliders = allow_open_collider;
-        const auto or_empty = [](const TriangleMesh* mesh) { return mesh ? *mesh : TriangleMesh{}; };
-        return make_simulation(with_choice, *map, {or_empty(cloth), or_empty(rest)});
+        return make_simulation(with_choice, maps_at(maps, map_count),
+                               meshes_at(*scene, cloth, rest, bodies, body_count));
     });
 }
 ECHINUS_EXPORT(simulation_continue)
-Simulation* simulation_continue(const Simulation* simulation, const Scene* scene) {
-    return make_handle([&] { return continue_with(*simulation, *scene); });
+Simulation* simulation_continue(const Simulation* simulation, const Scene* scene, Addresses<AnyMap> maps,
+                                std::uint32_t map_count) {
+    return make_handle([&] { return continue_with(*simulation, *scene, maps_at(maps, map_count)); });
 }
 ECHINUS_EXPORT(simulation_delete) void simulation_delete(Simulation* simulation) {
     delete simulation;
@@ -178,15 +227,22 @@ ECHINUS_EXPORT(simulation_profile) Text* simulation_profile(const Simulation* si
     return make_json([&] { return to_json(simulation->profile()); });
 }
 
-// ---- The collider of the scene
+// ---- The colliders of the scene
 
-ECHINUS_EXPORT(simulation_collider) Text* simulation_collider(const Simulation* simulation) {
-    return make_json([&] { return to_json(collider_of(*simulation)); });
+ECHINUS_EXPORT(simulation_collider_count)
+std::uint32_t simulation_collider_count(const Simulation* simulation) {
+    return static_cast<std::uint32_t>(simulation->colliders().size());
+}
+/// @pre index < simulation_collider_count(), as for the others
+ECHINUS_EXPORT(simulation_collider) Text* simulation_collider(const Simulation* simulation, std::uint32_t index) {
+    return make_json([&] { return to_json(simulation->colliders()[index]); });
 }
 ECHINUS_EXPORT(simulation_set_collider_velocity)
-void simulation_set_collider_velocity(Simulation* simulation, double linear_x, double linear_y,
-                                      double linear_z, double angular_x, double angular_y, double angular_z) {
-    simulation->set_collider_velocity(0, {linear_x, linear_y, linear_z}, {angular_x, angular_y, angular_z});
+void simulation_set_collider_velocity(Simulation* simulation, std::uint32_t index, double linear_x,
+                                      double linear_y, double linear_z, double angular_x, double angular_y,
+                                      double angular_z) {
+    simulation->set_collider_velocity(index, {linear_x, linear_y, linear_z},
+                                      {angular_x, angular_y, angular_z});
 }
 
 // ---- A hand and wind
