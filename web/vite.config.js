@@ -6,7 +6,11 @@ const inProject = (path) => fileURLToPath(new URL(`../${path}`, import.meta.url)
 // scripts/web puts files there that are copied into the page unchanged: the horse, where it is installed, and licences.
 const publicDir = inProject('build/web/public');
 
+/** Where the page will be, for the picture that others show of a link to it; they take absolute addresses only. */
+const address = process.env.ECHINUS_PAGE ?? './';
+
 export default defineConfig({
+    plugins: [{ name: 'address', transformIndexHtml: (page) => page.replaceAll('%ADDRESS%', address) }],
     base: './', // dist works in any folder of any host
     publicDir,
     define: { HAS_HORSE: existsSync(`${publicDir}/models/horse.3ds`) },

@@ -1,36 +1,46 @@
-/** The page: brings the panel, the pictures and the worker together. */
-import type { Raycaster } from 'three';
+/** The page: brings the panel, the pictures and the workers together. */
+import { type Ray, type Raycaster, Vector3 } from 'three';
 import { furthestAlong } from './axes';
-import type { Client } from './client';
+import { Client } from './client';
 import { enableFiles } from './files';
+import { fillGallery, showChosen } from './gallery';
 import { enableKeys } from './keys';
 import { Controls } from './panel/controls';
 import { fillDepthLegend } from './panel/depth_legend';
 import { byId } from './panel/elements';
 import { FigureStrip } from './panel/figures';
-import { showLegend, showMapFigures, showRay } from './panel/map_figures';
-import { beQuiet, enableClosing, say } from './panel/notice';
-import { count } from './panel/numbers';
+import { showHalf, showHeadline } from './panel/headline';
+import { forgetRay, showLegend, showMapFigures, showRay } from './panel/map_figures';
+import { beQuiet, enableClosing, remark, say, showProgress } from './panel/notice';
+import { numbered } from './panel/numbers';
 import { showReport } from './panel/report';
-import { Pairs } from './pairs';
 import { enablePointer } from './pointer';
-import type { Cuts, FromWorker, MapNews, ModelNews, SurfaceNews, Triple } from './protocol';
+import type { FromWorker, MapNews, ModelNews, SurfaceNews, ToWorker, Triple } from './protocol';
+import { Recorder } from './recorder';
 import { objText, saveAs } from './saving';
-import { SAMPLES, type Settings, consistent, fromLink, toLink } from './settings';
-import { ClothView } from './view/cloth_view';
+import { SAMPLES, type Settings, besideOf, consistent, fromLink, toLink } from './settings';
+import { Side } from './side';
+import { Tour } from './tour';
+import { BallView } from './view/ball_view';
 import { MapView } from './view/map_view';
 import { ModelView } from './view/model_view';
 import { Stage } from './view/stage';
 
-/** How many sets of arrays are in circulation: one is shown while the other is filled. */
-const FRAMES_UNDER_WAY = 2;
-
-/** How long the hint stays. */
-const HINT_MS = 12_000;
-
 /** By how many degrees a key turns the view, and its zoom factor. */
 const TURN = 5;
 const ZOOM = 1.1;
+
+/** By how many frames one of two cloths side by side may be ahead. */
+const AHEAD = 8;
+
+/** How often the words beneath the halves and the headline may change. */
+const WORDS_MS = 250;
+
+const HINTS: Record<Settings['hand'], string> = {
+    cloth: 'Drag the cloth to pull it. Drag beside it to turn the view.',
+    ball: 'Move the pointer: the ball follows. Drag to turn the view.',
+    model: 'Drag the model to shake it. Drag beside it to turn the view.',
+};
 
 /** A requested model: a file, or else the sample of the settings. */
 interface Opening {
@@ -47,33 +57,42 @@ class App {
     /** What is shown, and what has been requested. */
     #openings: Opening[] = [];
     #model: ModelNews | undefined;
+    #map: MapNews | undefined;
     #paused = false;
-    /** The number of the cloth shown; frames of earlier ones are dropped. */
-    #cloth = 0;
-    #framesAsked = 0;
-    #arrived: (FromWorker & { kind: 'frame' })[] = [];
     #rayAsked = false;
+    #surface: SurfaceNews | undefined;
+    #worded = 0;
 
     readonly #stage = new Stage(byId<HTMLCanvasElement>('canvas'));
     readonly #modelView = new ModelView();
-    readonly #clothView = new ClothView();
+    readonly #ballView = new BallView();
     readonly #mapView = new MapView();
     readonly #figures = new FigureStrip();
-    readonly #pairs = new Pairs((cuts) => this.#showCuts(cuts));
+    readonly #recorder = new Recorder();
     readonly #controls: Controls;
-    readonly #client: Client;
+    readonly #main: Side;
+    /** The cloth in the other half of the picture. */
+    #other: Side | undefined;
+    readonly #tour: Tour;
 
     constructor(client: Client) {
-        this.#client = client;
-        this.#stage.scene.add(this.#modelView.group, this.#clothView.mesh, this.#mapView.group);
+        this.#main = new Side(client);
+        this.#main.onCuts = (cuts) => this.#figures.showCuts(cuts);
+        this.#stage.scene.add(this.#modelView.group, this.#main.view.group, this.#ballView.mesh, this.#mapView.group);
         this.#controls = new Controls(this.#settings, (settings, key) => this.#change(settings, key));
+        this.#tour = new Tour({
+            model: () => this.#model,
+            look: (standpoint) => (this.#stage.standpoint = standpoint),
+            choose: (view) => this.#choose('view', view),
+            tell: (message) => this.#main.client.tell(message),
+        });
         this.#bindButtons();
         this.#bindKeys();
         enableFiles((file) => this.#open(file));
         this.#bindPointer();
         enableClosing();
         fillDepthLegend();
-        setTimeout(() => byId('hint').classList.add('seen'), HINT_MS);
+        fillGallery();
         // The visitor follows a link while the page is open.
         addEventListener('hashchange', () => {
             const settings = fromLink(location.hash);
@@ -81,15 +100,14 @@ class App {
             this.#settings = settings;
             this.#inView = '';
             this.#controls.show(settings);
-            this.#showView();
-            this.#showColours();
+            this.#showAll();
             this.#open(undefined); // a link cannot contain a file
         });
         this.#stage.onArrival = () => this.#keepCamera();
         this.#stage.onLoss = () => say('The browser has lost the graphics context. If the picture does not come back, reload the page.');
+        this.#stage.onLook = () => this.#showLook();
         client.listen((message) => this.#hear(message));
-        this.#showView();
-        this.#showColours();
+        this.#showAll();
         this.#open(undefined);
         this.#stage.renderer.setAnimationLoop(() => this.#draw());
     }
@@ -103,25 +121,25 @@ class App {
         this.#controls.show(this.#settings);
         this.#asked = { turn: ++this.#turn, file };
         this.#openings.push(this.#asked);
-        this.#client.tell({ kind: 'open', turn: this.#turn, settings: this.#settings, page: document.baseURI, ...(file && { file }) });
+        this.#main.client.tell(this.#opening(this.#settings));
+        if (this.#other) this.#endBeside();
+    }
+
+    #opening(settings: Settings): ToWorker {
+        const { turn, file } = this.#asked;
+        return { kind: 'open', turn, settings, page: document.baseURI, ...(file && { file }) };
     }
 
     #hear(message: FromWorker): void {
+        if (this.#main.hear(message)) {
+            if (message.kind === 'cloth') this.#beginCloth(message.why);
+            return;
+        }
         switch (message.kind) {
             case 'model':
                 return this.#showModel(message);
-            case 'cloth':
-                ++this.#cloth;
-                this.#arrived = [];
-                if (this.#paused) this.#pause(false); // a new cloth falls
-                this.#clothView.begin(message.faces);
-                this.#figures.forgetCuts();
-                this.#clothView.byDepth = this.#settings.colour === 'depth';
-                return;
-            case 'frame':
-                this.#framesAsked = Math.max(0, this.#framesAsked - 1);
-                if (message.cloth === this.#cloth) this.#arrived.push(message);
-                return;
+            case 'progress':
+                return this.#showProgress(message);
             case 'surface':
                 this.#surface = message;
                 this.#mapView.showSurface(message);
@@ -134,6 +152,7 @@ class App {
                 return this.#mapView.showCut(message);
             case 'ray':
                 this.#rayAsked = false;
+                if (this.#settings.view !== 'map') return; // its view has gone meanwhile
                 this.#mapView.showRay(message);
                 return showRay(message, this.#model!.radius);
             case 'missed':
@@ -146,13 +165,44 @@ class App {
         }
     }
 
+    #beginCloth(why: 'changed' | 'map' | undefined): void {
+        if (this.#paused) this.#pause(false); // a new cloth falls
+        this.#figures.forgetCuts();
+        this.#main.view.byDepth = this.#settings.colour === 'depth';
+        if (why) remark(why === 'map' ? 'The cloth falls anew, on the other map.' : `The cloth falls anew, with ${numbered(this.#particles, 'particle', 'particles')}.`);
+        if (this.#settings.beside !== 'nothing' && !this.#other) this.#beginBeside();
+    }
+
+    get #particles(): number {
+        return this.#main.view.positions ? this.#main.view.positions.length / 3 : Math.round(Math.sqrt(this.#settings.particles)) ** 2;
+    }
+
+    #showProgress({ turn, stage }: FromWorker & { kind: 'progress' }): void {
+        const { file } = this.#asked;
+        // A sample is there at once.
+        if (file && turn === this.#asked.turn) showProgress(`${file.name}: ${stage}`, () => this.#cancel());
+    }
+
+    /** Opens again what was open before. */
+    #cancel(): void {
+        const before = this.#openings[0];
+        this.#main.client.stop();
+        this.#main.forget();
+        this.#openings = [];
+        this.#rayAsked = false;
+        showProgress(undefined);
+        this.#open(before?.turn !== this.#asked.turn ? before?.file : undefined);
+        remark('Cancelled.');
+    }
+
     #fail({ sentence, code, turn }: FromWorker & { kind: 'failed' }): void {
         if (turn === undefined) {
             this.#rayAsked = false;
-            this.#framesAsked = 0; // the frame may have been waiting for one of these
+            this.#main.forgive(); // the frame may have been waiting for one of these
         } else if (turn < this.#asked.turn) return; // another model has been opened since
         if (code === 'Diverged') this.#pause(true);
         if (code === 'Crashed') this.#beginAgain();
+        showProgress(undefined);
         say(sentence);
     }
 
@@ -162,8 +212,8 @@ class App {
         this.#model = undefined;
         this.#openings = [];
         this.#asked = { turn: 0, file: undefined };
-        this.#cloth = 0;
-        this.#arrived = [];
+        this.#main.forget();
+        this.#endBeside();
         this.#controls.showFile(undefined);
         this.#controls.show(this.#settings);
         byId('subtitle').textContent = '';
@@ -174,15 +224,17 @@ class App {
     #settle({ turn, inForce }: FromWorker & { kind: 'settled' }): void {
         this.#openings = this.#openings.filter((opening) => opening.turn === inForce?.turn || opening.turn > turn);
         if (turn !== this.#turn) return; // there are newer requests
+        showProgress(undefined);
         const shown = this.#openings[0];
-        const { view, shown: inColours, slice, camera } = this.#settings; // the page's own
-        const settings = inForce ? { ...inForce.settings, view, shown: inColours, slice, camera } : this.#settings;
+        const { view, shown: inColours, slice, camera, look, beside } = this.#settings; // the page's own
+        const settings = inForce ? { ...inForce.settings, view, shown: inColours, slice, camera, look, beside } : this.#settings;
         if (shown === this.#asked && toLink(settings) === toLink(this.#settings)) return;
         this.#asked = shown ?? { turn: 0, file: undefined };
         this.#setLink(settings);
         this.#controls.showFile(this.#asked.file?.name);
         this.#controls.show(settings);
         this.#showColours();
+        this.#showHand();
         if (this.#model) this.#showNote(settings.map);
         if (this.#model) this.#showTitle(this.#model);
         else byId('subtitle').textContent = '';
@@ -190,7 +242,7 @@ class App {
 
     #showModel(model: ModelNews): void {
         this.#model = model;
-        this.#pairs.model = model;
+        this.#main.model = model;
         this.#modelView.show(model);
         this.#mapView.begin(model);
         this.#pointCamera(model);
@@ -201,11 +253,11 @@ class App {
     }
 
     /** The same model again, for instance mended: the camera stays. */
-    #pointCamera({ name, centre, radius, up }: ModelNews): void {
-        const inView = JSON.stringify([name, centre, radius, up]);
+    #pointCamera({ name, sight, floor, up }: ModelNews): void {
+        const inView = JSON.stringify([name, sight, up]);
         if (inView === this.#inView) return;
         this.#inView = inView;
-        this.#stage.lookAt(centre, radius, up);
+        this.#stage.lookAt({ ...sight, up, floor });
         if (this.#asked.file) this.#setLink({ ...this.#settings, camera: '' }); // that camera was for another model
         else if (this.#settings.camera) this.#stage.standpoint = this.#settings.camera;
     }
@@ -216,6 +268,8 @@ class App {
         this.#showNote(map.kind);
         document.body.classList.toggle('map-exact', map.kind === 'exact');
         document.body.classList.toggle('map-distance', map.kind === 'distance');
+        this.#mapView.forget();
+        forgetRay();
         if (this.#settings.view === 'map') this.#askForMap();
     }
 
@@ -224,50 +278,100 @@ class App {
     }
 
     #showMap(map: MapNews): void {
+        this.#map = map;
         showMapFigures(map);
         this.#figures.showMap(map);
     }
 
     #showTitle(model: ModelNews): void {
-        byId('subtitle').textContent = `${model.name}, ${count(model.report.faceCount)} faces`;
+        byId('subtitle').textContent = `${model.name}, ${numbered(model.report.faceCount, 'face', 'faces')}`;
+        showChosen(this.#asked.file ? undefined : this.#settings);
     }
 
     #askForMap(): void {
-        this.#client.tell({ kind: 'surface' });
-        this.#client.tell({ kind: 'slice', height: this.#settings.slice });
+        const { client } = this.#main;
+        client.tell({ kind: 'surface' });
+        client.tell({ kind: 'slice', height: this.#settings.slice });
         // Shows a ray before the pointer enters.
-        this.#client.tell({ kind: 'ray', direction: towardsTop(this.#model!) });
+        client.tell({ kind: 'ray', direction: towardsTop(this.#model!) });
+    }
+
+    // ---- The other half
+
+    #beginBeside(): void {
+        const other = new Side(new Client());
+        this.#other = other;
+        other.model = this.#model!;
+        other.view.fine = this.#stage.fine;
+        other.view.byDepth = this.#settings.colour === 'depth';
+        this.#stage.scene.add(other.view.group);
+        other.client.listen((message) => {
+            if (other.hear(message) || this.#other !== other) return;
+            if (message.kind === 'failed') {
+                say(`In the other half: ${message.sentence}`);
+                this.#choose('beside', 'nothing');
+            }
+        });
+        other.client.tell(this.#opening(besideOf(this.#settings)));
+        this.#stage.halves = [() => this.#showSide(this.#main, other), () => this.#showSide(other, this.#main)];
+        byId('halves').hidden = false;
+        this.#main.client.tell({ kind: 'restart' });
+    }
+
+    #endBeside(): void {
+        this.#other?.stop();
+        this.#other = undefined;
+        this.#stage.halves = [() => {}];
+        this.#main.view.group.visible = this.#settings.view === 'cloth';
+        byId('halves').hidden = true;
+    }
+
+    /** What the scene shows in one half. */
+    #showSide(side: Side, hidden: Side): void {
+        const cloth = this.#settings.view === 'cloth';
+        side.view.group.visible = cloth;
+        hidden.view.group.visible = false;
+        if (side.collider) this.#modelView.follow(side.collider);
+        this.#ballView.show(cloth ? side.ball : undefined);
+    }
+
+    /** To both, where there are two. */
+    #tell(message: ToWorker): void {
+        this.#main.client.tell(message);
+        this.#other?.client.tell(message);
     }
 
     // ---- Frames
 
     #draw(): void {
-        const next = this.#arrived.shift();
-        let spare;
+        const other = this.#other;
+        const asks = this.#settings.view === 'cloth' && this.#model !== undefined;
+        const next = this.#main.advance(asks, other ? other.frame + AHEAD : Infinity);
+        other?.advance(asks && other.news !== undefined, this.#main.frame + AHEAD);
         if (next) {
-            spare = this.#clothView.show(next.arrays);
-            this.#modelView.follow(next.collider);
             this.#figures.add(next.figures);
-            this.#pairs.consider(this.#cloth, next.figures.frame, next.arrays.positions, this.#clothView.faces, next.collider);
             // The tests wait for this.
             document.body.dataset.paused = String(next.figures.paused);
             document.body.dataset.rest = String(next.figures.atRest);
             document.body.dataset.frame = String(next.figures.frame);
         }
-        if (this.#settings.view === 'cloth' && this.#model)
-            while (this.#framesAsked < FRAMES_UNDER_WAY && this.#arrived.length === 0) {
-                ++this.#framesAsked;
-                this.#client.tell({ kind: 'frame', ...(spare && { arrays: spare }) }, spare ? [spare.positions.buffer, spare.normals.buffer, spare.depths.buffer] : []);
-                spare = undefined;
-            }
+        if (!other) {
+            if (next) this.#modelView.follow(next.collider);
+            this.#ballView.show(asks ? this.#main.ball : undefined);
+        }
         this.#stage.draw();
         this.#figures.countDrawing();
+        this.#word();
     }
 
-    #showCuts(cuts: Cuts): void {
-        if (cuts.number !== this.#cloth) return;
-        this.#clothView.markCut(cuts.cutFaces);
-        this.#figures.showCuts(cuts);
+    #word(): void {
+        const now = performance.now();
+        if (now - this.#worded < WORDS_MS || !this.#main.news || !this.#main.view.positions || !this.#map) return;
+        this.#worded = now;
+        showHeadline(this.#particles, this.#main.news.soft, this.#main.counts, this.#map);
+        if (!this.#other) return;
+        showHalf('half-left', undefined, this.#main.counts);
+        showHalf('half-right', this.#settings.beside === 'map' ? 'The paper\u2019s map' : 'Particles only', this.#other.counts);
     }
 
     // ---- The visitor's actions
@@ -275,13 +379,17 @@ class App {
     #change(settings: Settings, key: keyof Settings): void {
         if (key === 'model' || key === 'up') settings = { ...settings, camera: '' };
         settings = consistent(settings, key);
+        const before = this.#settings;
         this.#controls.show(settings);
         this.#setLink(settings);
+        if (settings.beside !== before.beside) this.#endBeside();
         switch (key) {
             case 'view':
                 return this.#showView();
+            case 'look':
+                return this.#showLook();
             case 'slice':
-                return this.#client.tell({ kind: 'slice', height: settings.slice });
+                return this.#main.client.tell({ kind: 'slice', height: settings.slice });
             case 'shown':
                 return this.#showSurface();
             case 'model':
@@ -291,8 +399,11 @@ class App {
                 return this.#open(this.#asked.file);
         }
         this.#showColours();
+        this.#showHand();
         if (this.#model && (key === 'surfaces' || key === 'self')) this.#showNote(settings.map);
-        this.#client.tell({ kind: 'change', turn: ++this.#turn, settings });
+        this.#main.client.tell({ kind: 'change', turn: ++this.#turn, settings });
+        this.#other?.client.tell({ kind: 'change', turn: this.#turn, settings: besideOf(settings) });
+        if (settings.beside !== 'nothing' && !this.#other && this.#model) this.#beginBeside();
     }
 
     #keepCamera(): void {
@@ -305,10 +416,29 @@ class App {
         history.replaceState(null, '', `#${toLink(settings)}`);
     }
 
+    #showAll(): void {
+        this.#showView();
+        this.#showColours();
+        this.#showHand();
+        this.#showLook();
+    }
+
     #showColours(): void {
         const byDepth = this.#settings.colour === 'depth';
-        this.#clothView.byDepth = byDepth;
+        for (const side of [this.#main, this.#other]) if (side) side.view.byDepth = byDepth;
         byId('depth-legend').hidden = !byDepth;
+    }
+
+    #showHand(): void {
+        this.#main.keepsOffItself = this.#settings.self;
+        document.body.classList.toggle('self', this.#settings.self);
+        byId('hint').textContent = HINTS[this.#settings.hand];
+    }
+
+    #showLook(): void {
+        this.#stage.look = this.#settings.look;
+        for (const side of [this.#main, this.#other]) if (side) side.view.fine = this.#stage.fine;
+        document.body.dataset.look = this.#stage.fine ? 'fine' : 'light'; // the tests read this
     }
 
     #showSurface(): void {
@@ -316,31 +446,33 @@ class App {
         this.#mapView.shown = this.#settings.shown;
         showLegend(this.#surface, this.#settings.shown);
     }
-    #surface: SurfaceNews | undefined;
 
     #showView(): void {
         const map = this.#settings.view === 'map';
         document.body.classList.toggle('view-map', map);
         document.body.classList.toggle('view-cloth', !map);
         this.#modelView.group.visible = !map;
-        this.#clothView.mesh.visible = !map;
+        this.#main.view.group.visible = !map;
+        this.#stage.ground.visible = !map;
         this.#mapView.group.visible = map;
+        if (map && this.#other) this.#endBeside();
+        else if (!map && this.#settings.beside !== 'nothing' && this.#model) this.#beginBeside();
         if (map && this.#model) this.#askForMap();
     }
 
     #pause(paused: boolean): void {
         this.#paused = paused;
         byId('pause').textContent = paused ? 'Go on' : 'Pause';
-        this.#client.tell({ kind: 'pause', paused });
+        this.#tell({ kind: 'pause', paused });
     }
     #step(): void {
         this.#pause(true);
-        ++this.#framesAsked; // the answer is a frame
-        this.#client.tell({ kind: 'step' });
+        this.#main.step();
+        this.#other?.step();
     }
     #restart(): void {
         beQuiet();
-        this.#client.tell({ kind: 'restart' });
+        this.#tell({ kind: 'restart' });
         this.#pause(false);
     }
     #switchView(): void {
@@ -349,10 +481,12 @@ class App {
     #switchMap(): void {
         this.#choose('map', this.#settings.map === 'exact' ? 'distance' : 'exact');
     }
+    #switchBeside(): void {
+        const next = { nothing: 'map', map: 'particles', particles: 'nothing' } as const;
+        this.#choose('beside', next[this.#settings.beside]);
+    }
     #choose<K extends keyof Settings>(key: K, value: Settings[K]): void {
-        const settings = { ...this.#settings, [key]: value };
-        this.#controls.show(settings);
-        this.#change(settings, key);
+        this.#change({ ...this.#settings, [key]: value }, key);
     }
 
     #bindButtons(): void {
@@ -360,10 +494,12 @@ class App {
             pause: () => this.#pause(!this.#paused),
             step: () => this.#step(),
             restart: () => this.#restart(),
-            rebuild: () => this.#client.tell({ kind: 'rebuild' }),
+            rebuild: () => this.#main.client.tell({ kind: 'rebuild' }),
+            record: () => void this.#record(),
             'save-picture': () => void this.#savePicture(),
             'save-mesh': () => this.#saveMesh(),
             'copy-link': () => void this.#copyLink(),
+            'tour-begin': () => this.#tour.begin(),
         };
         for (const [id, action] of Object.entries(actions)) byId(id).addEventListener('click', action);
     }
@@ -375,9 +511,13 @@ class App {
             ' ': ofCloth(() => this.#pause(!this.#paused)),
             s: ofCloth(() => this.#step()),
             r: ofCloth(() => this.#restart()),
+            c: ofCloth(() => this.#switchBeside()),
             m: () => this.#switchView(),
             x: () => this.#switchMap(),
+            t: () => this.#tour.begin(),
             p: () => void this.#savePicture(),
+            enter: () => this.#tour.next(),
+            escape: () => this.#tour.end(),
             arrowleft: () => this.#stage.turn(-TURN, 0),
             arrowright: () => this.#stage.turn(TURN, 0),
             arrowup: () => this.#stage.turn(0, TURN),
@@ -388,28 +528,35 @@ class App {
     }
 
     #bindPointer(): void {
-        enablePointer(byId<HTMLCanvasElement>('canvas'), this.#stage, this.#clothView, {
-            grab: (particle, target) => {
-                byId('hint').classList.add('seen');
-                this.#client.tell({ kind: 'grab', particle, target });
-            },
-            drag: (target) => this.#client.tell({ kind: 'drag', target }),
-            release: () => this.#client.tell({ kind: 'release' }),
+        enablePointer(byId<HTMLCanvasElement>('canvas'), this.#stage, {
+            hand: () => (this.#settings.view === 'cloth' ? this.#settings.hand : undefined),
+            clothAt: (x) => (this.#other && x >= 0.5 ? this.#other : this.#main).view,
+            grab: (particle, target) => this.#tell({ kind: 'grab', particle, target }),
+            drag: (target) => this.#tell({ kind: 'drag', target }),
+            hold: (offset) => this.#tell({ kind: 'hold', offset }),
+            release: () => this.#tell({ kind: 'release' }),
+            lead: (ray) => this.#lead(ray),
             hover: (ray) => this.#lookUnder(ray),
             obstacle: this.#modelView.clay,
-            mayGrab: () => this.#settings.view === 'cloth',
         });
+    }
+
+    #lead(ray: Ray): void {
+        if (!this.#model) return;
+        const { centre, radius } = this.#model.sight;
+        const reach = ray.origin.distanceTo(new Vector3(...centre)) + 3 * radius;
+        this.#tell({ kind: 'pointer', from: ray.origin.toArray(), to: ray.at(reach, new Vector3()).toArray() });
     }
 
     /** The ray of the map through the point under the pointer. One query at a time, so that slow ones do not queue up. */
     #lookUnder(ray: Raycaster): void {
-        if (this.#settings.view !== 'map' || this.#rayAsked || !this.#model) return;
+        if (this.#settings.view !== 'map' || this.#rayAsked || !this.#model || this.#tour.runs) return;
         const way = this.#mapView.wayOf(ray);
         if (!way) return;
         const { centre } = this.#model;
         this.#rayAsked = true;
-        if (this.#mapView.showsCells) this.#client.tell({ kind: 'ray', direction: [0, 1, 2].map((k) => way.from[k] - centre[k]) as Triple });
-        else this.#client.tell({ kind: 'point', ...way });
+        if (this.#mapView.showsCells) this.#main.client.tell({ kind: 'ray', direction: [0, 1, 2].map((k) => way.from[k] - centre[k]) as Triple });
+        else this.#main.client.tell({ kind: 'point', ...way });
     }
 
     // ---- Saving
@@ -418,8 +565,19 @@ class App {
         saveAs('echinus.png', await this.#stage.picture());
     }
 
+    async #record(): Promise<void> {
+        if (this.#recorder.runs) return this.#recorder.stop();
+        const button = byId('record');
+        try {
+            const { clip, ending } = await this.#recorder.record(byId<HTMLCanvasElement>('canvas'), (seconds) => (button.textContent = seconds > 0 ? `Stop (${seconds}\u2009s left)` : 'Record clip'));
+            saveAs(`echinus.${ending}`, clip);
+        } catch (error) {
+            say(error instanceof Error ? error.message : String(error));
+        }
+    }
+
     #saveMesh(): void {
-        const { positions, faces } = this.#clothView;
+        const { positions, faces } = this.#main.view;
         if (!positions || !this.#model) return say('there is no cloth to save yet');
         const model = { name: 'model', vertices: this.#modelView.verticesNow(this.#model.vertices), faces: this.#model.faces };
         const notices = ['Cloth and model, by Echinus'];

@@ -45,6 +45,11 @@ export class Pairs {
         this.#worker.postMessage(message, [message.positions.buffer]);
     }
 
+    stop(): void {
+        this.#worker?.terminate();
+        this.#failed = true;
+    }
+
     #start(): Worker {
         const worker = new Worker(new URL('./worker/pairs.ts', import.meta.url), { type: 'module' });
         worker.onmessage = ({ data }: MessageEvent<Cuts>) => {

@@ -1,33 +1,56 @@
 import * as THREE from 'three';
 import type { Triple } from './protocol';
+import type { Settings } from './settings';
 import type { ClothView } from './view/cloth_view';
 import type { Stage } from './view/stage';
 
 export interface PointerWishes {
+    /** What the pointer does; undefined: it only looks. */
+    hand(): Settings['hand'] | undefined;
+    /** The cloth in the half of the picture at this share of its width. */
+    clothAt(x: number): ClothView;
     grab(particle: number, target: Triple): void;
     drag(target: Triple): void;
+    /** The model is held, this far from where it was. */
+    hold(offset: Triple): void;
     release(): void;
+    /** The pointer's line, for the ball. */
+    lead(ray: THREE.Ray): void;
     /** The pointer moved over the canvas without holding anything. */
     hover(ray: THREE.Raycaster): void;
-    /** The objects that can hide the cloth. */
+    /** The model, which can hide the cloth. */
     obstacle: THREE.Object3D;
-    mayGrab(): boolean;
 }
 
+/** How often the cloth under the pointer is looked for. */
+const LOOK_MS = 80;
+
 /**
- * Pulls the cloth where the pointer grabs it, in the plane across the view; elsewhere the view turns. A second finger
- * releases the cloth: two fingers zoom.
+ * Pulls the cloth or the model where the pointer grabs it, in the plane across the view, or leads the ball; elsewhere the view turns. A second
+ * finger releases what is held: two fingers zoom.
  */
-export function enablePointer(canvas: HTMLCanvasElement, stage: Stage, cloth: ClothView, wishes: PointerWishes): void {
+export function enablePointer(canvas: HTMLCanvasElement, stage: Stage, wishes: PointerWishes): void {
     const ray = new THREE.Raycaster();
     const plane = new THREE.Plane();
     const target = new THREE.Vector3();
-    /** The last event of the pointer that holds the cloth. */
+    const begin = new THREE.Vector3();
+    /** The last event of the pointer that holds something, and what. */
     let hold: PointerEvent | undefined;
+    let held: Settings['hand'] = 'cloth';
+    let looked = 0;
 
-    const aim = ({ clientX, clientY }: PointerEvent) => {
+    const aim = ({ clientX, clientY }: PointerEvent): number => {
         const { left, top, width, height } = canvas.getBoundingClientRect();
-        ray.setFromCamera(new THREE.Vector2((2 * (clientX - left)) / width - 1, 1 - (2 * (clientY - top)) / height), stage.camera);
+        const x = (clientX - left) / width;
+        ray.setFromCamera(stage.inHalf(x, (clientY - top) / height), stage.camera);
+        return x;
+    };
+    /** What of it the pointer could hold. */
+    const under = (x: number, hand: Settings['hand']) => {
+        const onModel = ray.intersectObject(wishes.obstacle, false)[0];
+        const onCloth = wishes.clothAt(x).pick(ray);
+        if (hand === 'model') return onModel ?? onCloth;
+        return onCloth && !(onModel && onModel.distance < 0.99 * onCloth.distance) ? onCloth : undefined;
     };
 
     // Before the orbit controls receive it, so that they can be disabled.
@@ -41,28 +64,42 @@ export function enablePointer(canvas: HTMLCanvasElement, stage: Stage, cloth: Cl
                 return;
             }
             if (event.button !== 0 || !event.isPrimary || !event.isTrusted) return;
-            aim(event);
-            if (!wishes.mayGrab()) return wishes.hover(ray); // a finger hovers by touching
-            const hit = cloth.pick(ray);
+            const x = aim(event);
+            const hand = wishes.hand();
+            if (!hand) return wishes.hover(ray); // a finger hovers by touching
+            if (hand === 'ball' && event.pointerType === 'mouse') return; // which leads it without a button
+            const hit = hand === 'ball' ? { point: begin } : under(x, hand);
             if (!hit) return;
-            const hidden = ray.intersectObject(wishes.obstacle, false).some(({ distance }) => distance < 0.99 * hit.distance);
-            if (hidden) return;
             stage.orbiting = false;
             hold = event;
+            held = hand;
             canvas.setPointerCapture(event.pointerId);
             canvas.classList.add('dragging');
+            if (hand === 'ball') return wishes.lead(ray.ray);
+            begin.copy(hit.point);
             plane.setFromNormalAndCoplanarPoint(stage.camera.getWorldDirection(new THREE.Vector3()), hit.point);
-            wishes.grab(hit.particle, hit.point.toArray());
+            if (hand === 'cloth' && 'particle' in hit) wishes.grab(hit.particle, hit.point.toArray());
         },
         { capture: true },
     );
     canvas.addEventListener('pointermove', (event) => {
-        aim(event);
-        if (!hold) return wishes.hover(ray);
+        const x = aim(event);
+        if (!hold) return look(event, x);
         if (event.pointerId !== hold.pointerId) return;
         hold = event;
-        if (ray.ray.intersectPlane(plane, target)) wishes.drag(target.toArray());
+        if (held === 'ball') return wishes.lead(ray.ray);
+        if (!ray.ray.intersectPlane(plane, target)) return;
+        if (held === 'cloth') wishes.drag(target.toArray());
+        else wishes.hold(target.clone().sub(begin).toArray());
     });
+    const look = (event: PointerEvent, x: number) => {
+        wishes.hover(ray);
+        const hand = wishes.hand();
+        if (hand === 'ball' && event.buttons === 0) wishes.lead(ray.ray);
+        if (event.buttons > 0 || event.timeStamp - looked < LOOK_MS) return;
+        looked = event.timeStamp;
+        canvas.classList.toggle('over-cloth', hand !== undefined && hand !== 'ball' && under(x, hand) !== undefined);
+    };
     const release = () => {
         hold = undefined;
         stage.orbiting = true;

@@ -4,6 +4,7 @@
  */
 import type { ColliderState, DistanceMapDescription, ExactMapDescription, MeshFaults, MeshReport, RayInterval } from 'echinus';
 import type { Axis } from './axes';
+import type { Shape } from './creased_normals';
 import type { Settings } from './settings';
 
 export type Triple = [number, number, number];
@@ -16,10 +17,14 @@ export type ToWorker =
     | { kind: 'pause'; paused: boolean }
     | { kind: 'step' }
     /** Requests a frame; its arrays are those of an earlier one, if there was one. */
-    | { kind: 'frame'; arrays?: FrameArrays }
+    | { kind: 'frame'; arrays?: FrameArrays; until?: number }
     | { kind: 'grab'; particle: number; target: Triple }
     | { kind: 'drag'; target: Triple }
     | { kind: 'release' }
+    /** The visitor holds the model, this far from where it would be. */
+    | { kind: 'hold'; offset: Triple }
+    /** The line under the pointer, for the ball. */
+    | { kind: 'pointer'; from: Triple; to: Triple }
     /** The map along a ray from its centre. */
     | { kind: 'ray'; direction: Triple }
     /** The same, through the first point of the surface on a straight line. */
@@ -31,8 +36,12 @@ export type ToWorker =
 
 export type FromWorker =
     | ({ kind: 'model' } & ModelNews)
-    | { kind: 'cloth'; faces: Uint32Array }
-    | { kind: 'frame'; arrays: FrameArrays; figures: Figures; collider: ColliderState; cloth: number }
+    /** Another cloth; `why`, where a setting and no button has caused it. */
+    | ({ kind: 'cloth'; why?: 'changed' | 'map' } & ClothNews)
+    /** The same cloth, and the ball's radius where there is one. */
+    | { kind: 'hand'; ball?: number }
+    | { kind: 'frame'; arrays: FrameArrays; figures: Figures; wrong: Uint32Array; ball?: Triple; collider: ColliderState; cloth: number }
+    | { kind: 'progress'; turn: number; stage: Stage }
     | ({ kind: 'surface' } & SurfaceNews)
     /** Another map is in use. */
     | { kind: 'map'; map: MapNews }
@@ -44,6 +53,25 @@ export type FromWorker =
     | { kind: 'failed'; sentence: string; code: string; turn?: number }
     /** The last answer to a turn, failed or not: the turn that opened the model shown, if there is one, and the settings in force. */
     | { kind: 'settled'; turn: number; inForce?: { turn: number; settings: Settings } };
+
+/** What takes time when a model is opened. */
+export type Stage = 'reading' | 'mending' | 'building the map' | 'laying the cloth';
+
+export interface ClothNews {
+    faces: Uint32Array;
+    /** The distance that particles keep from the model. */
+    thickness: number;
+    /** Of a sheet. */
+    columns?: number;
+    /** [2 particles] places on the fabric, about in radii of the model. */
+    weave?: Float32Array;
+    /** [particles] places on the scale of colours, 0 to 1. */
+    tints?: Float32Array;
+    /** The surface of soft bodies, without a back. */
+    soft: boolean;
+    /** The radius of the visitor's ball. */
+    ball?: number;
+}
 
 export interface FrameArrays {
     /** [3 particles] */
@@ -58,13 +86,21 @@ export interface ModelNews {
     name: string;
     vertices: Float32Array;
     faces: Uint32Array;
+    /** Where it is small enough for creases. */
+    shape?: Shape;
     report: MeshReport;
+    /** Of the bounding sphere: where the answers of the exact map are certain for sure. */
+    certainShare: number;
     faults: MeshFaults;
     /** Faces dropped and parts reversed by mending. */
     mendedFaces: number;
     flippedParts: number;
     centre: Triple;
     radius: number;
+    /** What the camera shows. */
+    sight: { centre: Triple; radius: number };
+    /** The height of the ground, along up. */
+    floor: number;
     up: Axis;
     map: MapNews;
 }
@@ -82,11 +118,16 @@ export interface SurfaceNews {
     /** [faces] exact: the longest list that contains the face; distance: its layer. */
     values: Uint32Array;
     mapKind: 'exact' | 'distance';
-    /** [3 n] points at which the paper's map and the exact map differ, of sampleCount in the bounding sphere. */
-    disagreements: Float32Array;
-    sampleCount: number;
+    /** Where the paper's map and the exact map differ, of points in the whole bounding sphere and near the surface. */
+    differences?: { everywhere: Difference; near: Difference & { within: number } };
     /** Of an exact map: for each cell the faces in all its lists, and unit vectors to its three corners. */
     cells?: { faceCounts: Uint32Array; corners: Float32Array };
+}
+
+export interface Difference {
+    /** [3 n] */
+    points: Float32Array;
+    sampleCount: number;
 }
 
 /** A plane across the model, and the map's answers at its points. */
@@ -109,12 +150,13 @@ export interface PairsQuestion {
     collider: Pick<ColliderState, 'position' | 'rotation'>;
 }
 
-/** Its answer: pairs of faces that intersect, and the faces of the cloth among them. */
+/** Its answer: pairs of faces that intersect, and the faces of the cloth among them: with the model, and with each other. */
 export interface Cuts {
     number: number;
     withModel: number;
     own: number;
     cutFaces: Uint32Array;
+    ownFaces: Uint32Array;
     /** What it took. */
     ms: number;
 }

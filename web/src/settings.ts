@@ -28,6 +28,12 @@ export interface Settings {
     /** Mend what Mesh.repair() can mend, before the map is built. */
     mend: boolean;
     colour: 'fabric' | 'depth';
+    /** What the pointer does: it pulls the cloth, leads a ball, or holds the model. */
+    hand: 'cloth' | 'ball' | 'model';
+    /** What falls beside the cloth, in the other half of the picture: the same on the paper's map, or with its particles alone colliding. */
+    beside: 'nothing' | 'map' | 'particles';
+    /** How the cloth is drawn; 'auto' depends on how long a picture takes. */
+    look: 'auto' | 'fine' | 'light';
     /** What the colours show in the view of the map. */
     shown: 'surface' | 'cells';
     /** Where the map is cut open, along the view's up axis: -1 to 1 radii. 1 leaves it whole. */
@@ -36,11 +42,16 @@ export interface Settings {
     camera: string;
 }
 
-export type Sample = 'horse' | 'torus' | 'sphere';
+export type Sample = 'horse' | 'torus' | 'sphere' | 'figure' | 'organ' | 'ring' | 'flag' | 'layers';
 export const CELLS = ['auto', '16', '64', '256', '1024', '4096', '16384', '65536'] as const;
 const GRIDS = ['spherical', 'octahedral', 'cube', 'ellipsoidal'] as const;
 
-export const SAMPLES: readonly Sample[] = HAS_HORSE ? ['horse', 'torus', 'sphere'] : ['torus', 'sphere'];
+const MADE_HERE: readonly Sample[] = ['torus', 'sphere', 'figure', 'organ', 'ring', 'flag', 'layers'];
+export const SAMPLES: readonly Sample[] = HAS_HORSE ? ['horse', ...MADE_HERE] : MADE_HERE;
+/** What the list of models calls them. */
+export const SAMPLE_NAMES: Readonly<Record<Sample, string>> = {
+    horse: 'Horse', torus: 'Torus', sphere: 'Sphere', figure: 'Dancer and skirt', organ: 'Organ and probe', ring: 'Ring and kerchief', flag: 'Flag', layers: 'Ten layers',
+};
 
 export const DEFAULTS: Readonly<Settings> = {
     model: SAMPLES[0],
@@ -59,6 +70,9 @@ export const DEFAULTS: Readonly<Settings> = {
     up: 'auto',
     mend: true,
     colour: 'fabric',
+    hand: 'cloth',
+    beside: 'nothing',
+    look: 'auto',
     shown: 'surface',
     slice: 1,
     camera: '',
@@ -73,6 +87,9 @@ const CHOICES: { [K in keyof Settings]?: readonly Settings[K][] } = {
     motion: ['still', 'turning', 'swinging'],
     up: ['auto', ...AXES],
     colour: ['fabric', 'depth'],
+    hand: ['cloth', 'ball', 'model'],
+    beside: ['nothing', 'map', 'particles'],
+    look: ['auto', 'fine', 'light'],
     shown: ['surface', 'cells'],
 };
 
@@ -106,11 +123,22 @@ export function fromLink(hash: string): Settings {
         else if (typeof DEFAULTS[key as keyof Settings] === 'boolean' && ['true', 'false'].includes(text)) settings[key] = text === 'true';
         else if (key === 'camera' && standpoint.fromText(text)) settings[key] = text;
     }
-    return consistent(settings as unknown as Settings, 'surfaces');
+    return consistent(settings as unknown as Settings, said.has('beside') ? 'beside' : 'surfaces');
 }
 
 /** @param changed  the key that wins where two contradict each other */
 export function consistent(settings: Settings, changed: keyof Settings): Settings {
-    if (!settings.self || settings.surfaces) return settings;
-    return changed === 'self' ? { ...settings, surfaces: true } : { ...settings, self: false };
+    const parted = withHalves(settings, changed);
+    if (!parted.self || parted.surfaces) return parted;
+    return changed === 'self' ? { ...parted, surfaces: true } : { ...parted, self: false };
 }
+
+/** The left half is the exact map with surfaces, or there would be nothing to compare. */
+function withHalves(settings: Settings, changed: keyof Settings): Settings {
+    if (settings.beside === 'nothing' || (settings.map === 'exact' && settings.surfaces)) return settings;
+    return changed === 'map' || changed === 'surfaces' ? { ...settings, beside: 'nothing' } : { ...settings, map: 'exact', surfaces: true };
+}
+
+/** The settings of the other half. */
+export const besideOf = (settings: Settings): Settings =>
+    settings.beside === 'map' ? { ...settings, map: 'distance', self: false } : { ...settings, surfaces: false, self: false };

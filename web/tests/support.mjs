@@ -39,8 +39,13 @@ export async function startBrowser() {
     });
     return {
         address,
-        /** A page that keeps what its console complains of in `complaints`. @param place  a link within the built page, or an address @param beforeLoad  runs in it before its own code */
-        async open(place = '', { beforeLoad, ...options } = {}) {
+        /**
+         * A page that keeps what its console complains of in `complaints`.
+         * @param place       a link within the built page, or an address
+         * @param beforeLoad  runs in it before its own code
+         * @param folded      leaves the settings folded away, where tests could not reach them
+         */
+        async open(place = '', { beforeLoad, folded = false, ...options } = {}) {
             const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true, ...options });
             const page = await context.newPage();
             if (beforeLoad) await page.addInitScript(beforeLoad);
@@ -48,6 +53,7 @@ export async function startBrowser() {
             page.on('console', (message) => ['error', 'warning'].includes(message.type()) && !isOfTheDriver(message.text()) && page.complaints.push(message.text()));
             page.on('pageerror', (error) => page.complaints.push(String(error)));
             await page.goto(new URL(place, address).href);
+            if (!folded) await page.evaluate(() => document.querySelectorAll('#panel details').forEach((part) => (part.open = true)));
             return page;
         },
         async stop() {

@@ -1,4 +1,4 @@
-import { CELLS, DEFAULTS, RANGES, SAMPLES, type Settings } from '../settings';
+import { CELLS, DEFAULTS, RANGES, SAMPLES, SAMPLE_NAMES, type Settings } from '../settings';
 import { byId } from './elements';
 import { count } from './numbers';
 
@@ -13,9 +13,9 @@ export class Controls {
     /** @param changed  called with the settings after a visitor's change, and the changed key */
     constructor(settings: Settings, changed: (settings: Settings, key: keyof Settings) => void) {
         const model = byId('panel').querySelector<HTMLSelectElement>('select[name=model]')!;
-        model.append(...SAMPLES.map((name) => new Option(name[0].toUpperCase() + name.slice(1), name)));
+        model.append(...SAMPLES.map((name) => new Option(SAMPLE_NAMES[name], name)));
         byId('panel').querySelector<HTMLSelectElement>('select[name=cells]')!.append(...CELLS.map((cells) => new Option(cells === 'auto' ? 'by the mesh' : count(Number(cells)), cells)));
-        this.#inputs = [...byId('panel').querySelectorAll<Control>('[name]')];
+        this.#inputs = [...document.querySelectorAll<Control>('#panel [name], #bar [name]')];
         this.#settings = settings;
         for (const input of this.#inputs)
             input.addEventListener('input', () => this.#follow(input));

@@ -1,4 +1,4 @@
-import type { FromWorker, MapNews, SurfaceNews } from '../protocol';
+import type { Difference, FromWorker, MapNews, SurfaceNews } from '../protocol';
 import type { Settings } from '../settings';
 import { LAYERS } from '../view/colours';
 import { largestOf } from '../view/coloured_faces';
@@ -47,15 +47,23 @@ function scaleLegend(title: string, least: number, largest: number): HTMLElement
     return [make('span', title), scaleBar(), ends];
 }
 
-function layerLegend({ values, disagreements, sampleCount }: SurfaceNews): HTMLElement[] {
+function layerLegend({ values, differences }: SurfaceNews): HTMLElement[] {
     const layers = make('div', '', 'layers');
     for (let layer = 0; layer <= largestOf(values); ++layer) {
         const item = make('span', `layer ${layer + 1}`);
         item.prepend(swatch(LAYERS[layer % LAYERS.length]));
         layers.append(item);
     }
-    const share = `${count(disagreements.length / 3)} of ${count(sampleCount)}`;
-    return [layers, make('p', `${share} points in the bounding sphere lie on another side than by the exact map: drawn in red.`, 'note')];
+    return [layers, ...(differences ? [make('p', sentenceOn(differences), 'note')] : [])];
+}
+
+function sentenceOn({ near, everywhere }: NonNullable<SurfaceNews['differences']>): string {
+    const percent = ({ points, sampleCount }: Difference) => `${((100 * points.length) / 3 / sampleCount).toFixed(2)}\u2009%`;
+    return `Of points near the surface, within ${near.within}\u2009R of it, ${percent(near)} lie on another side than by the exact map; of all in the bounding sphere ${percent(everywhere)}. They are drawn in red.`;
+}
+
+export function forgetRay(): void {
+    byId('ray').textContent = 'Point at the surface.';
 }
 
 export function showRay({ intervals, bands }: FromWorker & { kind: 'ray' }, radius: number): void {

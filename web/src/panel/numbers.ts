@@ -4,6 +4,9 @@ const grouped = new Intl.NumberFormat('en', { maximumFractionDigits: 0 });
 /** 10 000: thin spaces, which no country reads as a decimal point. */
 export const count = (value: number): string => grouped.format(value).replaceAll(',', '\u2009');
 
+/** 1 face, 2 faces. */
+export const numbered = (value: number, one: string, many: string): string => `${count(value)} ${value === 1 ? one : many}`;
+
 export function milliseconds(value: number): string {
     return `${value.toFixed(value < 10 ? 2 : value < 100 ? 1 : 0)}\u2009ms`;
 }

@@ -1,31 +1,62 @@
 import * as THREE from 'three';
-import type { FrameArrays } from '../protocol';
-import { CLOTH, CLOTH_BACK, FAULT, SCALE } from './colours';
-import { matte } from './matte';
+import type { ClothNews, FrameArrays } from '../protocol';
+import { CLOTH, CLOTH_BACK, FAULT, FLESH } from './colours';
+import { Edge } from './edge';
+import { FabricUniforms, fabric, weaveTexture } from './fabric';
+import { glow } from './glow';
 
-/** The cloth: red in front and sand behind, or coloured by the depth of its contacts; with the faces marked that intersect something. */
+/** How much of the distance that particles keep is cloth, in the fine look: two layers that touch do not meet. */
+const THICK = 0.42;
+
+/**
+ * The cloth: red in front and sand behind, or coloured by the depth of its contacts; with the faces marked that intersect something, and the
+ * particles inside. In the fine look it has two sides with a thickness, and a weave.
+ */
 export class ClothView {
-    /** Uniform: 1 for colours by depth, otherwise 0. */
-    readonly #depthShare = { value: 0 };
-    readonly mesh = new THREE.Mesh(sheet(NOTHING, NO_FACES), fabric(this.#depthShare));
+    readonly group = new THREE.Group();
+    readonly #uniforms = new FabricUniforms();
+    /** How far either side is from the particles. */
+    readonly #lift = { value: 0 };
+    readonly #drop = { value: 0 };
+    readonly #front = fabric(CLOTH, CLOTH_BACK, this.#uniforms, this.#lift);
+    readonly #behind = backSide(this.#uniforms, this.#drop);
+    readonly mesh = new THREE.Mesh(sheet(NOTHING, NO_CLOTH), this.#front);
+    readonly #back = new THREE.Mesh(this.mesh.geometry, this.#behind);
+    readonly #edge = new Edge();
     readonly #cut = new THREE.Mesh(facesOf(this.mesh.geometry), warning());
     readonly #threads = new THREE.LineSegments(threadsOf(this.mesh.geometry), new THREE.LineBasicMaterial({ color: CLOTH }));
-    #faces: Uint32Array = NO_FACES;
+    readonly #wrong = glow();
+    #weave: THREE.Texture | undefined;
+    #cloth: Partial<ClothNews> & Pick<ClothNews, 'faces'> = NO_CLOTH;
     #shown: FrameArrays | undefined;
+    #fine = false;
 
     constructor() {
-        this.mesh.add(this.#cut, this.#threads);
-        for (const mesh of [this.mesh, this.#cut, this.#threads]) mesh.frustumCulled = false; // it moves: its bounding sphere would be wrong a frame later
+        this.group.add(this.mesh, this.#back, this.#edge.mesh, this.#cut, this.#threads, this.#wrong);
+        for (const part of this.#parts) part.frustumCulled = false; // it moves: its bounding sphere would be wrong a frame later
+        for (const part of [this.mesh, this.#edge.mesh]) part.castShadow = part.receiveShadow = true;
+        this.#back.receiveShadow = true;
+        this.#back.visible = this.#edge.mesh.visible = false;
+    }
+
+    get #parts() {
+        return [this.mesh, this.#back, this.#edge.mesh, this.#cut, this.#threads, this.#wrong];
     }
 
     /**
-     * Another cloth, which becomes visible with its first arrays.
-     * @param faces  a face with the same corner twice at its end is a piece of thread
+     * Another cloth, which becomes visible with its first arrays. A face with the same corner twice at its end is a piece of thread.
+     * @param unit  the length that places on the fabric are measured by, for the border of a sheet
      */
-    begin(faces: Uint32Array): void {
-        this.#faces = faces;
+    begin(cloth: Partial<ClothNews> & Pick<ClothNews, 'faces'>): void {
+        this.#cloth = cloth;
         this.#shown = undefined;
-        this.#lay(sheet(NOTHING, NO_FACES));
+        this.#uniforms.tinted.value = cloth.tints ? 1 : 0;
+        this.#uniforms.hem.value = cloth.columns && cloth.weave ? cloth.weave[cloth.weave.length - 1] : 0;
+        this.#front.color.set(cloth.soft ? FLESH : CLOTH);
+        this.#lay(sheet(NOTHING, NO_CLOTH));
+        this.markWrong(new Uint32Array(0));
+        this.#edge.begin(cloth.faces);
+        this.#refine();
     }
 
     /** @returns the previously shown arrays, which the worker may fill again */
@@ -33,12 +64,13 @@ export class ClothView {
         const previous = this.#shown;
         const { geometry } = this.mesh;
         this.#shown = arrays;
-        if (!previous) this.#lay(sheet(arrays, this.#faces));
+        if (!previous) this.#lay(sheet(arrays, this.#cloth));
         else {
             replace(geometry, 'position', arrays.positions);
             replace(geometry, 'normal', arrays.normals);
-            if (this.#depthShare.value > 0) replace(geometry, 'contactDepth', arrays.depths);
+            if (this.#uniforms.byDepth.value > 0) replace(geometry, 'contactDepth', arrays.depths);
         }
+        if (this.#edge.mesh.visible) this.#edge.follow(arrays, this.#lift.value);
         return previous;
     }
 
@@ -46,35 +78,80 @@ export class ClothView {
     markCut(cut: Uint32Array): void {
         const { geometry } = this.#cut;
         const index = geometry.index!;
-        cut.forEach((face, i) => (index.array as Uint32Array).set(this.#faces.subarray(3 * face, 3 * face + 3), 3 * i));
+        cut.forEach((face, i) => (index.array as Uint32Array).set(this.faces.subarray(3 * face, 3 * face + 3), 3 * i));
         index.needsUpdate = true;
         geometry.setDrawRange(0, 3 * cut.length);
     }
 
+    /** @param wrong  numbers of the particles that are inside the model */
+    markWrong(wrong: Uint32Array): void {
+        this.#wrong.visible = wrong.length > 0 && this.#shown !== undefined;
+        if (!this.#wrong.visible) return;
+        const places = new Float32Array(3 * wrong.length);
+        wrong.forEach((particle, i) => places.set(this.#shown!.positions.subarray(3 * particle, 3 * particle + 3), 3 * i));
+        this.#wrong.geometry.dispose();
+        this.#wrong.geometry = new THREE.BufferGeometry().setAttribute('position', new THREE.BufferAttribute(places, 3));
+    }
+
     #lay(geometry: THREE.BufferGeometry): void {
-        for (const mesh of [this.mesh, this.#cut, this.#threads]) mesh.geometry.dispose();
-        this.mesh.geometry = geometry;
+        for (const part of [this.mesh, this.#cut, this.#threads]) part.geometry.dispose();
+        this.mesh.geometry = this.#back.geometry = geometry;
         this.#cut.geometry = facesOf(geometry);
         this.#threads.geometry = threadsOf(geometry);
+    }
+
+    dispose(): void {
+        this.group.removeFromParent();
+        for (const part of this.#parts) {
+            part.geometry.dispose();
+            for (const material of [part.material].flat()) material.dispose();
+        }
     }
 
     get positions(): Float32Array | undefined {
         return this.#shown?.positions;
     }
     get faces(): Uint32Array {
-        return this.#faces;
+        return this.#cloth.faces;
     }
 
     set byDepth(on: boolean) {
-        this.#depthShare.value = on ? 1 : 0;
+        this.#uniforms.byDepth.value = on ? 1 : 0;
+    }
+
+    set fine(on: boolean) {
+        if (on === this.#fine) return;
+        this.#fine = on;
+        this.#refine();
+        if (this.#shown && this.#edge.mesh.visible) this.#edge.follow(this.#shown, this.#lift.value);
+    }
+
+    #refine(): void {
+        const { soft, thickness = 0, weave } = this.#cloth;
+        const twoSided = this.#fine && !soft && thickness > 0;
+        this.#lift.value = twoSided ? THICK * thickness : 0;
+        this.#drop.value = -this.#lift.value;
+        this.#back.visible = this.#edge.mesh.visible = twoSided;
+        this.#front.side = twoSided ? THREE.FrontSide : THREE.DoubleSide;
+        if (this.#fine && weave) this.#weave ??= weaveTexture();
+        for (const material of [this.#front, this.#behind]) {
+            material.bumpMap = this.#fine && weave ? this.#weave! : null;
+            material.bumpScale = 1.6;
+            material.defines = { ...(this.#fine && { FINE: '' }) };
+            material.needsUpdate = true;
+        }
     }
 
     /** The particle under a ray, and the ray's hit point on the cloth. */
     pick(ray: THREE.Raycaster): { particle: number; point: THREE.Vector3; distance: number } | undefined {
         const { geometry } = this.mesh;
         const { position } = geometry.attributes;
+        if (position.count === 0) return undefined;
         geometry.computeBoundingSphere();
+        const { side } = this.#front;
+        this.#front.side = THREE.DoubleSide;
         const [hit] = ray.intersectObject(this.mesh, false);
+        this.#front.side = side;
         if (!hit?.face) return undefined;
         const corner = new THREE.Vector3();
         const away = (i: number) => corner.fromBufferAttribute(position as THREE.BufferAttribute, i).distanceTo(hit.point);
@@ -83,50 +160,35 @@ export class ClothView {
     }
 }
 
-/** For colours by depth, each particle's depth is mapped to the palette's scale; a particle inside gets the colour of faults. */
-function fabric(byDepth: { value: number }): THREE.MeshLambertMaterial {
-    const material = matte(CLOTH, CLOTH_BACK);
-    const scale = { value: SCALE.map((hex) => new THREE.Color(hex)) };
-    const inside = { value: new THREE.Color(FAULT.faces) };
-    const { onBeforeCompile } = material;
-    material.onBeforeCompile = (shader, renderer) => {
-        onBeforeCompile(shader, renderer);
-        Object.assign(shader.uniforms, { byDepth, scale, inside });
-        shader.vertexShader = shader.vertexShader
-            .replace('#include <common>', '#include <common>\nattribute float contactDepth;\nvarying float vContactDepth;')
-            .replace('#include <begin_vertex>', '#include <begin_vertex>\nvContactDepth = contactDepth;');
-        shader.fragmentShader = shader.fragmentShader
-            .replace('#include <common>', '#include <common>\nuniform float byDepth;\nuniform vec3 scale[5];\nuniform vec3 inside;\nvarying float vContactDepth;')
-            .replace(
-                '#include <alphamap_fragment>', // after matte() has chosen the side's colour
-                `float place = 4.0 * clamp(vContactDepth, 0.0, 1.0);
-                vec3 shade = scale[0];
-                for (int i = 0; i < 4; ++i) shade = mix(shade, scale[i + 1], clamp(place - float(i), 0.0, 1.0));
-                if (vContactDepth > 1.0) shade = inside;
-                diffuseColor.rgb = mix(diffuseColor.rgb, shade, byDepth);
-                #include <alphamap_fragment>`,
-            );
-    };
+/** The side that faces away, drawn as the front of its own. */
+function backSide(uniforms: FabricUniforms, drop: { value: number }): THREE.MeshLambertMaterial {
+    const material = fabric(CLOTH_BACK, CLOTH_BACK, uniforms, drop);
+    material.side = THREE.BackSide;
     return material;
 }
 
 /** Over the cloth, from both sides, in a colour that no light changes. */
 function warning(): THREE.MeshBasicMaterial {
-    return new THREE.MeshBasicMaterial({ color: FAULT.faces, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: -2 });
+    return new THREE.MeshBasicMaterial({ color: FAULT.faces, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -8 });
 }
 
 /** No cloth yet, but with all attributes of one, since three.js compiles the program for them at once. */
-const NO_FACES = new Uint32Array(0);
+const NO_CLOTH = { faces: new Uint32Array(0) };
 const NOTHING: FrameArrays = { positions: new Float32Array(0), normals: new Float32Array(0), depths: new Float32Array(0) };
 
-function sheet({ positions, normals, depths }: FrameArrays, faces: Uint32Array): THREE.BufferGeometry {
+function sheet({ positions, normals, depths }: FrameArrays, { faces, weave, tints }: Partial<ClothNews> & Pick<ClothNews, 'faces'>): THREE.BufferGeometry {
     const geometry = new THREE.BufferGeometry();
     geometry.setIndex(new THREE.BufferAttribute(faces, 1));
     geometry.setAttribute('position', dynamic(positions, 3));
     geometry.setAttribute('normal', dynamic(normals, 3));
     geometry.setAttribute('contactDepth', dynamic(depths, 1));
+    const particles = positions.length / 3;
+    geometry.setAttribute('uv', new THREE.BufferAttribute(fitting(weave, 2 * particles), 2));
+    geometry.setAttribute('tint', new THREE.BufferAttribute(fitting(tints, particles), 1));
     return geometry;
 }
+
+const fitting = (array: Float32Array | undefined, length: number): Float32Array => (array?.length === length ? array : new Float32Array(length));
 
 /** The faces of another geometry that are threads, as lines. The two share the array of positions, so they are disposed of together. */
 function threadsOf({ attributes, index }: THREE.BufferGeometry): THREE.BufferGeometry {

@@ -2,6 +2,13 @@
 export const CLAY = 0xbdb5aa;
 export const CLOTH = 0xb4584e;
 export const CLOTH_BACK = 0xd39a7c;
+/** A border woven into a sheet. */
+export const HEM = 0xe8cba6;
+/** From the first piece of a cloth of several to the last. */
+export const TINTS = [0x2f6f8f, 0xe0c9a0, 0xb4584e];
+export const FLESH = 0xb2574c;
+/** What a visitor moves: the ball. */
+export const TOOL = 0x5c7f92;
 export const INK = 0x3a3936;
 /** Lines on the backdrop when that is dark. */
 export const CHALK = 0xd6d2ca;
@@ -15,5 +22,6 @@ export const BAND = 0x2f6f8f;
 /** The faults of a mesh, by kind: vivid, since they must be seen. */
 export const FAULT = { borderEdges: 0xd1242f, nonmanifoldEdges: 0x8250df, misorientedEdges: 0xbf8700, faces: 0xd1242f } as const;
 
-/** Paper and room behind everything. */
+/** Paper and room behind everything, and the ground where the light falls. */
 export const BACKDROP = { light: 0xf3f1ec, dark: 0x1b1d21 };
+export const GROUND = { light: 0xfdfcf9, dark: 0x2e3238 };

@@ -28,6 +28,12 @@ export class MapView {
     begin(model: ModelNews): void {
         this.#model = model;
         this.#up.set(...UNIT[model.up]);
+        this.forget();
+    }
+
+    /** What was shown is of another map. */
+    forget(): void {
+        clear(this.#cells);
         for (const part of [this.#surface, this.#cut, this.#ray]) clear(part);
     }
 
@@ -37,7 +43,7 @@ export class MapView {
         // An exact map has the model's own faces, which may look inwards.
         const inwards = news.mapKind === 'exact' && this.#model !== undefined && isInsideOut(this.#model.report);
         this.#surface.add(shell(colouredFaces(cornersOf(news, inwards), news.values, colours)));
-        if (news.disagreements.length > 0) this.#surface.add(dots(news.disagreements));
+        for (const { points } of news.differences ? [news.differences.everywhere, news.differences.near] : []) if (points.length > 0) this.#surface.add(dots(points));
         clear(this.#cells);
         if (news.cells && this.#model) this.#cells.add(shell(cellBall(news.cells, this.#model)));
         this.#surface.add(this.#cells);

@@ -5,7 +5,7 @@ import * as THREE from 'three';
  * program to compile, which is slow with software rendering.
  */
 export function matte(front: number, back = front): THREE.MeshLambertMaterial {
-    const material = new THREE.MeshLambertMaterial({ color: front, side: THREE.DoubleSide });
+    const material = new THREE.MeshLambertMaterial({ color: front, side: THREE.DoubleSide, shadowSide: THREE.DoubleSide });
     const colourBehind = { value: new THREE.Color(back) };
     material.onBeforeCompile = (shader) => {
         shader.uniforms.colourBehind = colourBehind;

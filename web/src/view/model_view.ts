@@ -1,12 +1,12 @@
 import * as THREE from 'three';
-import { toCreasedNormals } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 import type { ColliderState } from 'echinus';
+import type { Shape } from '../creased_normals';
 import type { ModelNews } from '../protocol';
 import { CLAY, FAULT } from './colours';
 import { matte } from './matte';
 
-/** Beyond this many faces, creases are left out: they take seconds, and small faces look smooth anyway. */
-const CREASED_FACES = 60_000;
+/** How much of a line shows that something hides: faults on the far side must be seen, but not as if they lay on the cloth. */
+const HIDDEN = 0.18;
 
 /** The model as clay, with the faults of its mesh drawn on it. Moves with the collider. */
 export class ModelView {
@@ -14,18 +14,16 @@ export class ModelView {
     /** The model alone, without the faults. Added to the group once it has normals, since three.js compiles the program for its attributes at once. */
     readonly clay = new THREE.Mesh(new THREE.BufferGeometry(), matte(CLAY));
 
-    show({ vertices, faces, faults }: Pick<ModelNews, 'vertices' | 'faces' | 'faults'>): void {
+    show({ vertices, faces, shape, faults }: Pick<ModelNews, 'vertices' | 'faces' | 'shape' | 'faults'>): void {
         this.group.remove(this.clay);
         clear(this.group);
         this.clay.geometry.dispose();
-        const geometry = new THREE.BufferGeometry();
-        geometry.setAttribute('position', new THREE.BufferAttribute(vertices, 3));
-        geometry.setIndex(new THREE.BufferAttribute(faces, 1));
-        this.clay.geometry = faces.length / 3 <= CREASED_FACES ? toCreasedNormals(geometry, Math.PI / 4.5) : smooth(geometry);
+        this.clay.geometry = shape ? creased(shape) : smooth(vertices, faces);
+        this.clay.castShadow = this.clay.receiveShadow = true;
         this.group.add(this.clay);
 
         for (const kind of ['borderEdges', 'nonmanifoldEdges', 'misorientedEdges'] as const)
-            if (faults[kind].length > 0) this.group.add(edges(vertices, faults[kind], FAULT[kind]));
+            if (faults[kind].length > 0) this.group.add(...edges(vertices, faults[kind], FAULT[kind]));
         const wrong = [...faults.duplicateFaces, ...faults.degenerateFaces];
         if (wrong.length > 0) this.group.add(marked(vertices, faces, wrong));
     }
@@ -43,19 +41,28 @@ export class ModelView {
     }
 }
 
-function smooth(geometry: THREE.BufferGeometry): THREE.BufferGeometry {
+function creased({ positions, normals }: Shape): THREE.BufferGeometry {
+    return new THREE.BufferGeometry().setAttribute('position', new THREE.BufferAttribute(positions, 3)).setAttribute('normal', new THREE.BufferAttribute(normals, 3));
+}
+
+function smooth(vertices: Float32Array, faces: Uint32Array): THREE.BufferGeometry {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(vertices, 3));
+    geometry.setIndex(new THREE.BufferAttribute(faces, 1));
     geometry.computeVertexNormals();
     return geometry;
 }
 
-/** Drawn through everything in front: faults on the far side must be visible as well. */
-function edges(vertices: Float32Array, pairs: Uint32Array, colour: number): THREE.LineSegments {
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(vertices, 3));
-    geometry.setIndex(new THREE.BufferAttribute(pairs, 1));
-    const lines = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: colour, depthTest: false, transparent: true }));
-    lines.renderOrder = 2;
-    return lines;
+/** Where they are in sight, and faintly where something hides them. */
+function edges(vertices: Float32Array, pairs: Uint32Array, colour: number): THREE.LineSegments[] {
+    return [1, HIDDEN].map((opacity) => {
+        const geometry = new THREE.BufferGeometry();
+        geometry.setAttribute('position', new THREE.BufferAttribute(vertices, 3));
+        geometry.setIndex(new THREE.BufferAttribute(pairs, 1));
+        const lines = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: colour, depthTest: opacity === 1, depthWrite: false, opacity, transparent: true }));
+        lines.renderOrder = 2;
+        return lines;
+    });
 }
 
 function marked(vertices: Float32Array, faces: Uint32Array, wrong: number[]): THREE.Mesh {

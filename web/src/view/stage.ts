@@ -2,8 +2,11 @@ import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Axis } from '../axes';
 import type { Triple } from '../protocol';
+import type { Settings } from '../settings';
 import { type Standpoint, fromText, toText } from '../standpoint';
-import { BACKDROP } from './colours';
+import { ContactShading } from './contact_shading';
+import { Pace, drawsInSoftware } from './pace';
+import { Studio } from './studio';
 
 type Axes = readonly [THREE.Vector3, THREE.Vector3, THREE.Vector3];
 
@@ -20,16 +23,30 @@ const MOST_ELEVATION = 89;
 /** How long the camera must be still to count as arrived. */
 const ARRIVAL_MS = 250;
 
+/** What is in sight, and the ground under it. */
+export interface Sight {
+    centre: Triple;
+    radius: number;
+    up: Axis;
+    /** Along up. */
+    floor: number;
+}
+
 /** The canvas, the camera and the light, shared by all views. */
 export class Stage {
     readonly scene = new THREE.Scene();
     readonly camera = new THREE.PerspectiveCamera(30, 1, 0.01, 100);
     readonly renderer: THREE.WebGLRenderer;
     #controls: OrbitControls;
-    readonly #sun = new THREE.DirectionalLight(0xfff4e6, 2.7);
-    /** From the camera, so that surfaces seen from below, away from sun and sky, keep their colour. */
-    readonly #lamp = new THREE.DirectionalLight(0xffffff, 0.7);
-    readonly #sky = new THREE.HemisphereLight(0xffffff, 0x6f675d, 1.25);
+    readonly #studio: Studio;
+    readonly #pace = new Pace();
+    #shading: ContactShading | undefined;
+    #wish: Settings['look'] = 'auto';
+    #fine = false;
+    /** What shows each half of the picture its own; one, where there are no halves. */
+    #halves: (() => void)[] = [() => {}];
+    /** The look has changed. */
+    onLook = (_fine: boolean) => {};
     readonly #canvas: HTMLCanvasElement;
     /** The argument of the last lookAt(). */
     #model = { centre: new THREE.Vector3(), radius: 1, axes: axesOf('z') };
@@ -46,19 +63,15 @@ export class Stage {
         this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
         this.renderer.localClippingEnabled = true;
         this.#controls = new OrbitControls(this.camera, canvas);
-        this.scene.add(this.#sun, this.#sun.target, this.#sky, this.#lamp, this.#lamp.target);
-
-        const dark = matchMedia('(prefers-color-scheme: dark)');
-        const paint = () => (this.scene.background = new THREE.Color(dark.matches ? BACKDROP.dark : BACKDROP.light));
-        dark.addEventListener('change', paint);
-        paint();
+        this.renderer.shadowMap.type = THREE.PCFShadowMap;
+        this.#studio = new Studio(this.scene);
         canvas.addEventListener('webglcontextlost', () => this.onLoss());
         new ResizeObserver(() => this.#fit()).observe(canvas);
         this.#fit();
     }
 
     /** Places the camera so that a whole sphere, and the cloth above it, is in sight. */
-    lookAt(centre: Triple, radius: number, up: Axis): void {
+    lookAt({ centre, radius, up, floor }: Sight): void {
         const axes = axesOf(up);
         const [upward, sideways, forward] = axes;
         this.#model = { centre: new THREE.Vector3(...centre), radius, axes };
@@ -73,8 +86,8 @@ export class Stage {
 
         const middle = new THREE.Vector3(...centre).addScaledVector(upward, 0.12 * radius);
         // Narrow screens show less to the sides, so the camera moves back.
-        const distance = 5.6 * radius * Math.max(1, 1.2 / this.camera.aspect);
-        const from = sideways.clone().multiplyScalar(0.8).addScaledVector(forward, 0.55).addScaledVector(upward, 0.34).normalize();
+        const distance = 5.2 * radius * Math.max(1, 1.05 / this.camera.aspect);
+        const from = sideways.clone().multiplyScalar(0.8).addScaledVector(forward, 0.55).addScaledVector(upward, 0.3).normalize();
         this.camera.position.copy(middle).addScaledVector(from, distance);
         this.camera.near = 0.02 * radius;
         this.camera.far = 40 * radius;
@@ -87,10 +100,42 @@ export class Stage {
             this.#arrival = window.setTimeout(() => this.onArrival(), ARRIVAL_MS);
         });
 
-        // Low and from the side, so that shadows reveal the folds.
-        this.#sun.position.copy(middle).addScaledVector(upward, 2.2 * radius).addScaledVector(sideways, -0.6 * radius).addScaledVector(forward, 2.6 * radius);
-        this.#sun.target.position.copy(middle);
-        this.#sky.position.copy(upward);
+        this.#studio.surround(middle, radius, axes, floor);
+    }
+
+    /** 'auto' begins with the fine look where there is a graphics card, and keeps it while pictures come quickly. */
+    set look(wish: Settings['look']) {
+        this.#wish = wish;
+        this.#refine(wish === 'fine' || (wish === 'auto' && !drawsInSoftware(this.renderer.getContext())));
+    }
+    get fine(): boolean {
+        return this.#fine;
+    }
+
+    #refine(fine: boolean): void {
+        if (fine === this.#fine) return;
+        this.#fine = fine;
+        this.#studio.fine = fine;
+        this.renderer.shadowMap.enabled = fine;
+        this.#shading?.dispose();
+        this.#shading = fine ? new ContactShading() : undefined;
+        this.onLook(fine);
+    }
+
+    /** @param shows  makes the scene show what belongs to a part of the picture: one for all of it, or two for its halves */
+    set halves(shows: (() => void)[]) {
+        this.#halves = shows;
+        this.#fit();
+    }
+
+    /** A place in the canvas in the camera's coordinates, -1 to 1. @param x, y  shares of its width and height */
+    inHalf(x: number, y: number): THREE.Vector2 {
+        const across = (x * this.#halves.length) % 1;
+        return new THREE.Vector2(2 * across - 1, 1 - 2 * y);
+    }
+
+    get ground(): THREE.Object3D {
+        return this.#studio.ground;
     }
 
     /** For a link (standpoint.ts); '' restores the camera of lookAt(). Any other invalid text changes nothing. */
@@ -140,9 +185,19 @@ export class Stage {
 
     draw(): void {
         this.#controls.update();
-        this.#lamp.position.copy(this.camera.position);
-        this.#lamp.target.position.copy(this.#controls.target);
-        this.renderer.render(this.scene, this.camera);
+        this.#studio.follow(this.camera, this.#controls.target);
+        const { clientWidth: width, clientHeight: height } = this.#canvas;
+        const share = width / this.#halves.length;
+        const ratio = this.renderer.getPixelRatio();
+        this.#halves.forEach((show, k) => {
+            show();
+            this.renderer.setViewport(k * share, 0, share, height);
+            this.renderer.setScissor(k * share, 0, share, height);
+            this.renderer.setScissorTest(this.#halves.length > 1);
+            if (this.#shading) this.#shading.render(this.renderer, this.scene, this.camera, new THREE.Vector2(ratio * share, ratio * height), this.#model.radius);
+            else this.renderer.render(this.scene, this.camera);
+        });
+        if (this.#wish === 'auto' && this.#fine && this.#pace.isSlow(performance.now())) this.#refine(false);
     }
 
     /** The canvas as a PNG file. */
@@ -157,7 +212,7 @@ export class Stage {
         const { clientWidth: width, clientHeight: height } = this.#canvas;
         if (width === 0 || height === 0) return;
         this.renderer.setSize(width, height, false);
-        this.camera.aspect = width / height;
+        this.camera.aspect = width / this.#halves.length / height;
         this.camera.updateProjectionMatrix();
     }
 }

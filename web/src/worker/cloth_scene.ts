@@ -1,8 +1,10 @@
 import type { SceneDescription } from 'echinus';
 import { AXES, type Axis, UNIT } from '../axes';
 import type { Settings } from '../settings';
+import type { Act } from './acts/act';
+import { ballOf } from './ball';
 
-/** The inputs of a scene besides the settings. */
+/** What a scene is measured by. */
 export interface Body {
     centre: readonly number[];
     radius: number;
@@ -21,33 +23,42 @@ const FROM_Z: Record<Axis, { axis: [number, number, number]; degrees: number } |
 export const columnsOf = (particles: number): number => Math.max(2, Math.round(Math.sqrt(particles)));
 
 /** Edge of the square cloth, in radii of the model. */
-const SIZE = 2.25;
+export const SIZE = 2.25;
 
 /** By the distance between neighbouring particles: a finer cloth lies closer, and as few of its faces are cut. */
-export const thicknessOf = (settings: Settings, { radius }: Body): number =>
-    (settings.thickness * SIZE * radius) / (columnsOf(settings.particles) - 1);
+export const thicknessOf = (settings: Settings, body: Body, act: Act | undefined): number =>
+    act ? act.thickness(settings, body) : (settings.thickness * SIZE * body.radius) / (columnsOf(settings.particles) - 1);
 
 /**
- * A cloth above the model. Lengths and gravity scale with the model's radius, so the cloth falls equally fast on a
- * model in millimetres and on one in metres.
+ * What happens on the model: the act, or else a cloth above it. Gravity scales with the model's radius, so the cloth falls
+ * equally fast on a model in millimetres and on one in metres.
  * @param falls  the cloth has begun to fall, by other settings
  */
-export function sceneFor(settings: Settings, body: Body, { falls } = { falls: false }): SceneDescription {
+export function sceneFor(settings: Settings, body: Body, act: Act | undefined, { falls } = { falls: false }): SceneDescription {
     const { radius } = body;
-    const position = [...body.centre] as [number, number, number];
-    const thickness = thicknessOf(settings, body);
-    position[AXES.indexOf(body.up)] = body.top + 0.08 * radius + thickness;
-    const columns = columnsOf(settings.particles);
-    const rotation = FROM_Z[body.up];
+    const thickness = thicknessOf(settings, body, act);
     const surfaces = settings.map === 'exact' && settings.surfaces; // the paper's map has no faces
+    const own = act ? act.scene(settings, body) : { cloth: sheetAbove(settings, body, thickness) };
     return {
-        model: 'model.obj', // a scene needs a name; its map already exists
-        cloth: { size: [SIZE * radius, SIZE * radius], particles: [columns, columns], position, thickness, ...(rotation && { rotation }) },
-        material: { friction: settings.friction },
+        ...(settings.hand === 'ball' ? { colliders: [{ model: MODEL }, ballOf(body)] } : { model: MODEL }),
+        ...own,
+        ...(own.cloth && { cloth: { thickness, ...own.cloth } }),
+        material: { friction: settings.friction, ...own.material },
         gravity: UNIT[body.up].map((part) => -9.81 * radius * part) as [number, number, number],
         surface_collision: surfaces,
         self_collision: surfaces && settings.self,
         untangle: surfaces && falls, // it may intersect where particles alone have collided
         at_rest: { distance: 0.001 * radius, speed: 0.1 * radius },
     };
+}
+
+/** A scene needs a name; the map of the model already exists. */
+const MODEL = 'model.obj';
+
+function sheetAbove({ particles }: Settings, { centre, radius, top, up }: Body, thickness: number): SceneDescription['cloth'] {
+    const position = [...centre] as [number, number, number];
+    position[AXES.indexOf(up)] = top + 0.08 * radius + thickness;
+    const columns = columnsOf(particles);
+    const rotation = FROM_Z[up];
+    return { size: [SIZE * radius, SIZE * radius], particles: [columns, columns], position, ...(rotation && { rotation }) };
 }

@@ -11,3 +11,9 @@ export function intoFrameOf({ position, rotation: [w, x, y, z] }: Pick<ColliderS
         local[i + 2] = pz + w * tz + (tx * y - ty * x);
     }
 }
+
+/** The inverse, in place. */
+export function outOfFrameOf({ position, rotation: [w, x, y, z] }: Pick<ColliderState, 'position' | 'rotation'>, points: Float32Array): void {
+    intoFrameOf({ position: [0, 0, 0], rotation: [w, -x, -y, -z] }, points, points);
+    for (let i = 0; i < points.length; ++i) points[i] += position[i % 3];
+}

@@ -13,19 +13,15 @@ export class Hand {
         return this.#held.length > 0;
     }
 
-    grab(simulation: Simulation, columns: number, particle: number, target: Triple): void {
+    /** @param reach  holds the particles within it of the one that is grabbed */
+    grab(simulation: Simulation, particle: number, target: Triple, reach: number): void {
         const { positions } = simulation;
-        const rows = positions.length / 3 / columns;
-        const reach = Math.max(1, Math.round(columns / 50)); // the hand has the same size on fine and coarse cloths
-        const [column, row] = [particle % columns, Math.floor(particle / columns)];
         this.#held = [];
         this.#target = target;
-        for (let r = Math.max(0, row - reach); r <= Math.min(rows - 1, row + reach); ++r)
-            for (let c = Math.max(0, column - reach); c <= Math.min(columns - 1, column + reach); ++c) {
-                const held = r * columns + c;
-                const offset = [0, 1, 2].map((k) => positions[3 * held + k] - positions[3 * particle + k]) as Triple;
-                this.#held.push({ particle: held, offset });
-            }
+        for (let i = 0; i < simulation.particleCount; ++i) {
+            const offset = [0, 1, 2].map((k) => positions[3 * i + k] - positions[3 * particle + k]) as Triple;
+            if (Math.hypot(...offset) <= reach) this.#held.push({ particle: i, offset });
+        }
     }
     drag(target: Triple): void {
         this.#target = target;

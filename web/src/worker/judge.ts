@@ -1,7 +1,7 @@
 import type { ColliderState, Echinus, ExactMap, FlagBuffer, PointBuffer } from 'echinus';
 import { intoFrameOf } from './collider_frame';
 
-/** Counts the particles inside the model by the exact map, even for a cloth that uses the paper's map. */
+/** Finds the particles inside the model by the exact map, even for a cloth that uses the paper's map. */
 export class Judge {
     readonly #map: ExactMap;
     readonly #points: PointBuffer;
@@ -13,12 +13,13 @@ export class Judge {
         this.#inside = echinus.makeFlags(particleCount);
     }
 
-    count(positions: Float32Array, collider: ColliderState): number {
+    /** The particles inside, ascending. */
+    wrongOf(positions: Float32Array, collider: ColliderState): Uint32Array<ArrayBuffer> {
         intoFrameOf(collider, positions, this.#points.view);
         const { view } = this.#map.containsBatch(this.#points, this.#inside);
-        let count = 0;
-        for (const flag of view) count += flag;
-        return count;
+        const wrong: number[] = [];
+        for (let i = view.indexOf(1); i >= 0; i = view.indexOf(1, i + 1)) wrong.push(i);
+        return new Uint32Array(wrong);
     }
 
     delete(): void {

@@ -1,21 +1,23 @@
 import type { DistanceMap, Echinus, ExactMap } from 'echinus';
 import { UNIT, following } from '../axes';
-import type { Cut, FromWorker, SurfaceNews, Triple } from '../protocol';
+import type { Cut, Difference, FromWorker, SurfaceNews, Triple } from '../protocol';
 import type { Playground } from './playground';
 
 const CUT_SIDE = 220;
 const SAMPLE_COUNT = 200_000;
+/** Points at most this far from the surface, in radii. */
+const NEAR = 0.02;
+const NEAR_COUNT = 100_000;
 
 /** The surface of the map in use, with the numbers that colour it, and where the two kinds of map differ. */
-export function surfaceOf(echinus: Echinus, { map, exactMap, settings, body }: Playground): SurfaceNews {
+export function surfaceOf(echinus: Echinus, { map, exactMap, settings }: Playground): SurfaceNews {
     const { mesh, values } = map.kind === 'exact' ? withLists(map) : withLayers(map);
     const news = {
         vertices: mesh.vertices,
         faces: mesh.faces,
         values,
         mapKind: settings.map,
-        disagreements: map.kind === 'exact' ? new Float32Array() : disagreements(echinus, exactMap, map, body.centre, body.radius),
-        sampleCount: SAMPLE_COUNT,
+        ...(map.kind === 'distance' && { differences: differencesOf(echinus, exactMap, map) }),
         ...(map.kind === 'exact' && { cells: map.cells() }),
     };
     mesh.delete();
@@ -31,25 +33,60 @@ function withLayers(map: DistanceMap) {
     return { mesh, values: layers };
 }
 
-/** The points of a fixed sequence in the bounding sphere that one map has inside and the other outside. */
-function disagreements(echinus: Echinus, exact: ExactMap, distance: DistanceMap, centre: readonly number[], radius: number): Float32Array {
-    const points = echinus.makePoints(SAMPLE_COUNT);
-    const first = echinus.makeFlags(SAMPLE_COUNT);
-    const second = echinus.makeFlags(SAMPLE_COUNT);
+/** Where the two maps differ: of points of fixed sequences in the bounding sphere, and near the surface. */
+function differencesOf(echinus: Echinus, exact: ExactMap, distance: DistanceMap): NonNullable<SurfaceNews['differences']> {
+    const { centre, radius } = exact;
+    const inBall = (i: number) => inUnitBall(i).map((part, k) => centre[k] + radius * part) as Triple;
+    const { mesh } = exact.surface();
+    const near = nearSurface(mesh.vertices, mesh.faces, NEAR * radius);
+    mesh.delete();
+    return {
+        everywhere: difference(echinus, exact, distance, SAMPLE_COUNT, inBall),
+        near: { ...difference(echinus, exact, distance, NEAR_COUNT, near), within: NEAR },
+    };
+}
+
+/** @param pointAt  point i of a sequence */
+function difference(echinus: Echinus, exact: ExactMap, distance: DistanceMap, sampleCount: number, pointAt: (i: number) => Triple): Difference {
+    const points = echinus.makePoints(sampleCount);
+    const first = echinus.makeFlags(sampleCount);
+    const second = echinus.makeFlags(sampleCount);
     try {
         const { view } = points;
-        for (let i = 0; i < SAMPLE_COUNT; ++i) {
-            const [x, y, z] = inUnitBall(i);
-            view.set([centre[0] + radius * x, centre[1] + radius * y, centre[2] + radius * z], 3 * i);
-        }
+        for (let i = 0; i < sampleCount; ++i) view.set(pointAt(i), 3 * i);
         const a = exact.containsBatch(points, first).view;
         const b = distance.containsBatch(points, second).view;
         const found: number[] = [];
-        for (let i = 0; i < SAMPLE_COUNT; ++i) if (a[i] !== b[i]) found.push(...points.view.subarray(3 * i, 3 * i + 3));
-        return new Float32Array(found);
+        for (let i = 0; i < sampleCount; ++i) if (a[i] !== b[i]) found.push(...points.view.subarray(3 * i, 3 * i + 3));
+        return { points: new Float32Array(found), sampleCount };
     } finally {
         for (const buffer of [points, first, second]) buffer.delete();
     }
+}
+
+/** A sequence of points on the faces, evenly by area, and off them by up to a distance to either side. */
+function nearSurface(vertices: Float32Array, faces: Uint32Array, distance: number): (i: number) => Triple {
+    const corner = (face: number, k: number) => [0, 1, 2].map((c) => vertices[3 * faces[3 * face + k] + c]);
+    const across = (face: number) => {
+        const [a, b, c] = [0, 1, 2].map((k) => corner(face, k));
+        const [u, v] = [b, c].map((p) => p.map((part, k) => part - a[k]));
+        return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    };
+    const sums = new Float64Array(faces.length / 3 + 1);
+    for (let face = 0; face + 1 < sums.length; ++face) sums[face + 1] = sums[face] + Math.hypot(...across(face));
+    const total = sums[sums.length - 1];
+    let face = 0;
+    return (i) => {
+        const wanted = ((i + 0.5) / NEAR_COUNT) * total; // ascending, so the face is found by going on
+        if (i === 0) face = 0;
+        while (face + 2 < sums.length && sums[face + 1] < wanted) ++face;
+        let [u, v, w] = fractions(i);
+        if (u + v > 1) [u, v] = [1 - u, 1 - v];
+        const [a, b, c] = [0, 1, 2].map((k) => corner(face, k));
+        const normal = across(face);
+        const out = ((2 * w - 1) * distance) / (Math.hypot(...normal) || 1);
+        return [0, 1, 2].map((k) => a[k] + u * (b[k] - a[k]) + v * (c[k] - a[k]) + out * normal[k]) as Triple;
+    };
 }
 
 /**
@@ -57,14 +94,17 @@ function disagreements(echinus: Echinus, exact: ExactMap, distance: DistanceMap,
  * Sequences" (2018), R3, mapped to volume, height and longitude.
  */
 function inUnitBall(i: number): Triple {
-    const [u, v, w] = [0.8191725133961645, 0.6710436067037893, 0.5497004779019703].map((step) => (0.5 + step * i) % 1);
+    const [u, v, w] = fractions(i);
     const radius = Math.cbrt(u), height = 2 * v - 1, longitude = 2 * Math.PI * w;
     const across = radius * Math.sqrt(1 - height * height);
     return [across * Math.cos(longitude), across * Math.sin(longitude), radius * height];
 }
 
+const fractions = (i: number) => [0.8191725133961645, 0.6710436067037893, 0.5497004779019703].map((step) => (0.5 + step * i) % 1);
+
 /** The answers of the map in use on a square across the bounding sphere. @param height  along up, in radii from the centre */
-export function cutAt(echinus: Echinus, { map, body: { centre, radius, up } }: Playground, height: number): Cut {
+export function cutAt(echinus: Echinus, { map, body: { up } }: Playground, height: number): Cut {
+    const { centre, radius } = map;
     const [across, along] = following(up).map((axis) => UNIT[axis]);
     const count = CUT_SIDE * CUT_SIDE;
     const points = echinus.makePoints(count);
@@ -87,7 +127,7 @@ export function cutAt(echinus: Echinus, { map, body: { centre, radius, up } }: P
 export function lookAt(playground: Playground, from: Triple, to: Triple): FromWorker {
     const { found, point } = playground.exactMap.sweep(from, to);
     if (!found) return { kind: 'missed' };
-    const { centre } = playground.body;
+    const { centre } = playground.exactMap;
     return lookAlong(playground, [0, 1, 2].map((k) => point[k] - centre[k]) as Triple);
 }
 

@@ -2,12 +2,20 @@ import type { Echinus, Mesh } from 'echinus';
 import type { Object3D } from 'three';
 import type { Axis } from '../axes';
 import type { Sample } from '../settings';
+import type { Act } from './acts/act';
+import { dancer } from './acts/figure';
+import { pole } from './acts/flag';
+import { ACTS } from './acts/of_sample';
+import { probe } from './acts/organ';
+import { RING } from './acts/ring';
+import type { SolidMesh } from './acts/solids';
 
-/** A mesh, and its up axis by the convention of its source. */
+/** A mesh, its up axis by the convention of its source, and what happens on it unless a cloth falls on it. */
 export interface Model {
     name: string;
     mesh: Mesh;
     up: Axis;
+    act?: Act;
 }
 
 /** The remaining work on a model once its bytes have arrived: the part that needs the module. */
@@ -23,10 +31,30 @@ export async function fetchSample(sample: Sample, page: string): Promise<Reading
             if (!response.ok) throw new Error(`horse.3ds: the server answers with status ${response.status}`);
             return prepareFile('horse.3ds', await response.arrayBuffer());
         }
+        default:
+            return (echinus) => {
+                const act = ACTS[sample]?.();
+                return { name: sample, mesh: makeSample(echinus, sample), up: 'z', ...(act && { act }) };
+            };
+    }
+}
+
+function makeSample(echinus: Echinus, sample: Exclude<Sample, 'horse'>): Mesh {
+    const made = ({ vertices, faces }: SolidMesh) => echinus.makeMesh(vertices, faces);
+    switch (sample) {
         case 'torus':
-            return (echinus) => ({ name: 'torus', mesh: echinus.makeTorus(1, 0.4, 60, 24), up: 'z' });
+            return echinus.makeTorus(1, 0.4, 60, 24);
         case 'sphere':
-            return (echinus) => ({ name: 'sphere', mesh: echinus.makeSphere(1, 60, 30), up: 'z' });
+        case 'layers':
+            return echinus.makeSphere(1, 60, 30);
+        case 'ring':
+            return echinus.makeTorus(RING.major, RING.minor, 72, 28);
+        case 'figure':
+            return made(dancer());
+        case 'flag':
+            return made(pole());
+        case 'organ':
+            return made(probe());
     }
 }
 
@@ -36,6 +64,7 @@ export async function fetchSample(sample: Sample, page: string): Promise<Reading
  */
 export async function prepareFile(name: string, bytes: ArrayBuffer): Promise<Reading> {
     const ending = name.toLowerCase().split('.').pop();
+    if (ending === 'glb' && !beginsAs(bytes, 'glTF')) throw new Error(`${name}: it does not begin as a .glb file does, with "glTF"`);
     switch (ending) {
         case '3ds':
             return welding(name, await described(name, async () => (await import('./three_ds')).read3ds(bytes)));
@@ -65,12 +94,17 @@ export function named<T>(name: string, make: () => T): T {
     }
 }
 
+const beginsAs = (bytes: ArrayBuffer, mark: string): boolean => new TextDecoder('latin1').decode(bytes.slice(0, mark.length)) === mark;
+
+/** Of what a reader complains of: its first line, without the bytes of the file that it may quote. */
+const legible = (sentence: string): string => sentence.split('\n')[0].replace(/[^\x20-\x7e]+/g, '?').slice(0, 160);
+
 /** Third-party readers name no file. */
 async function described<T>(name: string, read: () => Promise<T>): Promise<T> {
     try {
         return await read();
     } catch (error) {
-        throw new Error(`${name}: cannot be read (${error instanceof Error ? error.message : String(error)})`);
+        throw new Error(`${name}: cannot be read (${legible(error instanceof Error ? error.message : String(error))})`);
     }
 }
 

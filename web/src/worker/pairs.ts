@@ -24,7 +24,13 @@ function answer(echinus: Echinus, question: PairsQuestion): void {
     const withModel = cloth.intersectingPairs(model);
     const own = cloth.selfIntersectingPairs();
     cloth.delete();
-    const cutFaces = Uint32Array.from(new Set([...withModel.filter((_, i) => i % 2 === 0), ...own]));
-    const cuts: Cuts = { number: question.number, withModel: withModel.length / 2, own: own.length / 2, cutFaces, ms: performance.now() - begin };
+    const cuts: Cuts = {
+        number: question.number,
+        withModel: withModel.length / 2,
+        own: own.length / 2,
+        cutFaces: Uint32Array.from(new Set(withModel.filter((_, i) => i % 2 === 0))),
+        ownFaces: Uint32Array.from(new Set(own)),
+        ms: performance.now() - begin,
+    };
     self.postMessage(cuts);
 }

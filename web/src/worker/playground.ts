@@ -1,8 +1,12 @@
-import type { AnyMap, ContactBuffer, Echinus, ExactMap, Mesh, MeshFaults, MeshReport, Scene, Simulation, SimulationProfile } from 'echinus';
+import type { AnyMap, ColliderState, ContactBuffer, Echinus, ExactMap, Mesh, MeshFaults, MeshReport, Scene, Simulation, SimulationProfile } from 'echinus';
 import { AXES, type Axis, UNIT, furthestAlong } from '../axes';
-import type { FrameArrays, Figures, MapNews, ModelNews, Triple } from '../protocol';
+import { creasedNormals } from '../creased_normals';
+import type { ClothNews, FrameArrays, Figures, MapNews, ModelNews, Stage, Triple } from '../protocol';
 import type { Settings } from '../settings';
-import { type Body, columnsOf, sceneFor, thicknessOf } from './cloth_scene';
+import { surfaceNormals } from '../surface_normals';
+import type { Act } from './acts/act';
+import { Ball, ballRadius } from './ball';
+import { type Body, SIZE, columnsOf, sceneFor, thicknessOf } from './cloth_scene';
 import { measureDepths } from './depth';
 import { Hand } from './hand';
 import { Judge } from './judge';
@@ -10,6 +14,7 @@ import { Maps } from './maps';
 import type { Model } from './models';
 import { motionAt } from './motion';
 import { sheetNormals } from './normals';
+import { Shake } from './shake';
 
 /**
  * How long one frame may simulate: most of the time between frames, so that a slow display does not slow the cloth.
@@ -17,9 +22,24 @@ import { sheetNormals } from './normals';
  */
 const FRAME_BUDGET_MS = { least: 14, most: 100, share: 0.85 };
 
+/** Beyond this many faces, creases are left out: they take seconds, and small faces look smooth anyway. */
+const CREASED_FACES = 60_000;
+
+/** Radii per second, of whatever a visitor holds. */
+const FASTEST = 12;
+
+/** What a frame is, for the page. */
+export interface Look {
+    arrays: FrameArrays;
+    figures: Figures;
+    wrong: Uint32Array<ArrayBuffer>;
+    ball?: Triple;
+}
+
 /** One model, its maps, and the cloth on it. Everything it makes lives in the module's memory until delete(). */
 export class Playground {
     readonly hand = new Hand();
+    readonly shake = new Shake();
     readonly body: Body;
 
     readonly #echinus: Echinus;
@@ -31,6 +51,8 @@ export class Playground {
     #flippedParts = 0;
 
     readonly #maps: Maps;
+    readonly #act: Act | undefined;
+    readonly #ball: Ball;
 
     #settings: Settings;
     #scene!: Scene;
@@ -38,36 +60,46 @@ export class Playground {
     #clothMap!: AnyMap;
     #judge!: Judge;
     #contacts!: ContactBuffer;
+    #cloth!: Omit<ClothNews, 'ball'>;
+    /** Seconds that the model has moved by itself: not while it is held. */
+    #ownSeconds = 0;
     /** Frames of the simulations before the present one, whose count restarts after continueWith(). */
     #earlierFrames = 0;
     #owedSeconds = 0;
     #lastMs = 0;
 
-    /** Takes ownership of the model's mesh. @throws EchinusError when no map of it, or no cloth on it, is possible */
-    constructor(echinus: Echinus, model: Model, settings: Settings) {
+    /**
+     * Takes ownership of the model's mesh.
+     * @param tell  is told what takes time before it is done
+     * @throws EchinusError when no map of it, or no cloth on it, is possible
+     */
+    constructor(echinus: Echinus, model: Model, settings: Settings, tell: (stage: Stage) => void) {
         this.#echinus = echinus;
         this.#settings = settings;
         this.#name = model.name;
+        this.#act = model.act;
+        tell('mending');
         this.#mesh = settings.mend ? this.#mend(model.mesh) : model.mesh;
         this.#report = this.#mesh.report();
         this.#faults = this.#mesh.faults();
         const up = settings.up === 'auto' ? model.up : settings.up;
+        tell('building the map');
         this.#maps = new Maps(echinus, this.#mesh, up, settings);
-        this.body = bodyOf(this.#mesh, this.#maps.exact, up);
+        this.body = { ...bodyOf(this.#mesh, this.#maps.exact, up), ...this.#act?.body };
+        this.#ball = new Ball(echinus, this.body);
+        tell('laying the cloth');
         this.restart();
     }
 
     delete(): void {
         this.#dropCloth();
+        this.#ball.delete();
         this.#maps.delete();
         this.#mesh.delete();
     }
 
-    get columns(): number {
-        return columnsOf(this.#settings.particles);
-    }
-    get faces(): Uint32Array {
-        return this.#simulation.faces;
+    get clothNews(): ClothNews {
+        return { ...this.#cloth, ...(this.#settings.hand === 'ball' && { ball: ballRadius(this.body) }) };
     }
     get map(): AnyMap {
         return this.#maps.by(this.#settings).map;
@@ -83,16 +115,24 @@ export class Playground {
     }
 
     news(): ModelNews {
+        const { vertices, faces } = this.#mesh;
+        const bottom = furthestAlong(this.body.up, vertices.map((part) => -part)).map((part) => -part)[AXES.indexOf(this.body.up)];
+        const height = this.body.top - bottom;
         return {
             name: this.#name,
-            vertices: this.#mesh.vertices,
-            faces: this.#mesh.faces,
+            vertices,
+            faces,
+            ...(faces.length <= 3 * CREASED_FACES && { shape: creasedNormals(vertices, faces) }),
             report: this.#report,
+            certainShare: this.exactMap.description.certainShare,
             faults: this.#faults,
             mendedFaces: this.#mendedFaces,
             flippedParts: this.#flippedParts,
             centre: [...this.exactMap.centre] as Triple,
             radius: this.exactMap.radius,
+            sight: { centre: [...this.body.centre] as Triple, radius: this.body.radius },
+            // Room for a cloth that hangs over a flat model.
+            floor: this.#act?.floor ?? bottom - Math.max(0, 0.65 * this.body.radius - height),
             up: this.body.up,
             map: this.mapNews,
         };
@@ -115,7 +155,7 @@ export class Playground {
             this.restart();
             return true;
         }
-        const keys = ['friction', 'thickness', 'surfaces', 'self'] as const;
+        const keys = ['friction', 'thickness', 'surfaces', 'self', 'hand'] as const;
         if (keys.every((key) => settings[key] === before[key])) return false;
         try {
             this.#continue();
@@ -135,22 +175,46 @@ export class Playground {
     }
 
     restart(): void {
-        const scene = this.#echinus.parseScene(sceneFor(this.#settings, this.body));
+        const scene = this.#echinus.parseScene(sceneFor(this.#settings, this.body, this.#act));
         const { map } = this;
-        const simulation = scene.makeSimulation(map, { allowOpenCollider: true });
+        const garment = this.#act?.cloth?.(this.#echinus, this.#settings);
+        const bodies = this.#act?.bodies?.(this.#echinus) ?? [];
+        let simulation;
+        try {
+            simulation = scene.makeSimulation(this.#clothMaps, { allowOpenCollider: true, bodies, ...(garment && { cloth: garment.mesh }) });
+        } finally {
+            for (const mesh of [...bodies, garment?.mesh]) mesh?.delete();
+        }
         this.#dropCloth();
         this.#clothMap = map;
         this.#scene = scene;
         this.#simulation = simulation;
+        const columns = scene.particleCount === null ? undefined : columnsOf(this.#settings.particles);
+        this.#cloth = {
+            faces: simulation.faces,
+            thickness: thicknessOf(this.#settings, this.body, this.#act),
+            ...(columns && { columns, weave: weaveOf(columns) }),
+            ...(garment && { weave: garment.weave, ...(garment.tints && { tints: garment.tints }) }),
+            soft: bodies.length > 0,
+        };
         this.#judge = new Judge(this.#echinus, this.exactMap, simulation.particleCount);
         this.#contacts = this.#echinus.makeContacts(simulation.particleCount);
+        this.shake.forget();
+        this.#ownSeconds = 0;
         this.#earlierFrames = 0;
         this.#owedSeconds = 0;
         this.#lastMs = performance.now();
     }
 
-    /** Makes as many steps as real time requires, within FRAME_BUDGET_MS, and fills the arrays with the result. */
-    advance(paused: boolean, arrays: FrameArrays | undefined): { arrays: FrameArrays; figures: Figures } {
+    get #clothMaps(): AnyMap[] {
+        return this.#settings.hand === 'ball' ? [this.map, this.#ball.map] : [this.map];
+    }
+
+    /**
+     * Makes as many steps as real time requires, within FRAME_BUDGET_MS, and fills the arrays with the result.
+     * @param until  the last frame to make; two cloths keep step by it
+     */
+    advance(paused: boolean, arrays: FrameArrays | undefined, until = Infinity): Look {
         const now = performance.now();
         // A hidden page has not simulated, and need not catch up.
         const elapsed = now - this.#lastMs;
@@ -160,7 +224,7 @@ export class Playground {
         const before = this.#simulation.profile;
         let stepCount = 0;
         if (!paused && !this.#rests())
-            while (this.#owedSeconds >= this.#scene.timeStep && performance.now() - now < budget) {
+            while (this.#owedSeconds >= this.#scene.timeStep && this.#frame < until && performance.now() - now < budget) {
                 this.#step();
                 this.#owedSeconds -= this.#scene.timeStep;
                 ++stepCount;
@@ -169,35 +233,64 @@ export class Playground {
     }
 
     /** One step, for a cloth that is paused. */
-    stepOnce(arrays: FrameArrays | undefined): { arrays: FrameArrays; figures: Figures } {
+    stepOnce(arrays: FrameArrays | undefined): Look {
         const before = this.#simulation.profile;
         const begin = performance.now();
         this.#step();
         return this.#look(arrays, before, 1, performance.now() - begin, true);
     }
 
-    get collider() {
+    get collider(): ColliderState {
         return this.#simulation.collider;
     }
 
     grab(particle: number, target: Triple): void {
-        if (particle < this.#simulation.particleCount) this.hand.grab(this.#simulation, this.columns, particle, target);
+        const reach = this.#act ? 0.04 : 1.5 * SIZE / 50; // the hand has the same size on fine and coarse cloths
+        if (particle < this.#simulation.particleCount) this.hand.grab(this.#simulation, particle, target, reach * this.body.radius);
+    }
+
+    /** The pointer's line, for the ball. */
+    point(from: Triple, to: Triple): void {
+        this.#ball.aim(this.exactMap, this.collider, from, to);
+    }
+
+    get #frame(): number {
+        return this.#earlierFrames + this.#simulation.frame;
     }
 
     #step(): void {
         const simulation = this.#simulation;
-        const { radius, up } = this.body;
-        const frame = this.#earlierFrames + simulation.frame;
-        const { linear, angular } = motionAt(this.#settings.motion, UNIT[up], frame * this.#scene.timeStep, this.body.centre, simulation.collider);
-        simulation.setColliderVelocity(linear, angular);
-        if (this.#settings.wind > 0) simulation.blow(this.#wind(frame), 4);
-        this.hand.pull(simulation, this.#scene.timeStep, 12 * radius);
+        const { radius } = this.body;
+        const seconds = this.#frame * this.#scene.timeStep;
+        this.#moveModel();
+        const wind = this.#windAt(seconds);
+        if (wind.some((part) => part !== 0)) simulation.blow(wind, 4);
+        this.#act?.steer?.(simulation, seconds);
+        this.hand.pull(simulation, this.#scene.timeStep, FASTEST * radius);
+        if (simulation.colliderCount > 1) this.#ball.move(simulation, this.exactMap, 1, this.#scene.timeStep);
         simulation.step();
     }
 
+    /** By itself, and by the visitor's hand. */
+    #moveModel(): void {
+        const { timeStep } = this.#scene;
+        const { radius, up } = this.body;
+        const own = this.#act?.motion?.(this.#ownSeconds) ?? motionAt(this.#settings.motion, UNIT[up], this.#ownSeconds, this.exactMap.centre, this.#simulation.collider);
+        const held = this.shake.advance(timeStep, FASTEST * radius);
+        const still: Triple = [0, 0, 0];
+        const { linear, angular } = this.shake.holds ? { linear: still, angular: still } : own;
+        if (!this.shake.holds) this.#ownSeconds += timeStep;
+        this.#simulation.setColliderVelocity(linear.map((part, k) => part + held[k]), angular);
+    }
+
+    #windAt(seconds: number): Triple {
+        const own = this.#act?.wind?.(seconds) ?? [0, 0, 0];
+        const visitors = this.#settings.wind > 0 ? this.#gust(seconds) : [0, 0, 0];
+        return own.map((part, k) => part * this.body.radius + visitors[k]) as Triple;
+    }
+
     /** From the side, in gusts: a steady wind would hold the cloth like a wall. A function of the frame, so that a link reproduces it. */
-    #wind(frame: number): Triple {
-        const seconds = frame * this.#scene.timeStep;
+    #gust(seconds: number): Triple {
         const speed = this.#settings.wind * this.body.radius * (0.75 + 0.25 * Math.sin(2.1 * seconds) * Math.sin(0.8 * seconds));
         const across: Record<Axis, Triple> = { x: [0, 0.94, 0.34], y: [0.34, 0, 0.94], z: [0.94, 0.34, 0] };
         return across[this.body.up].map((part) => speed * part) as Triple;
@@ -205,40 +298,46 @@ export class Playground {
 
     /** Nothing moves the cloth any more, so the simulation may stop. */
     #rests(): boolean {
-        return this.#simulation.atRest && this.#settings.motion === 'still' && this.#settings.wind === 0 && !this.hand.holds;
+        const { motion, wind, hand } = this.#settings;
+        const seconds = this.#frame * this.#scene.timeStep;
+        const isMoved = this.hand.holds || this.shake.moves(this.body.radius) || (hand === 'ball' && this.#ball.isLed);
+        return this.#simulation.atRest && motion === 'still' && wind === 0 && !isMoved && seconds >= (this.#act?.lasts ?? 0);
     }
 
-    #look(arrays: FrameArrays | undefined, before: SimulationProfile, stepCount: number, ms: number, paused: boolean) {
+    #look(arrays: FrameArrays | undefined, before: SimulationProfile, stepCount: number, ms: number, paused: boolean): Look {
         const simulation = this.#simulation;
         const filled = fitted(arrays, simulation.particleCount);
         filled.positions.set(simulation.positions);
-        sheetNormals(filled.positions, this.columns, filled.normals);
-        if (this.#settings.colour === 'depth') measureDepths(simulation, thicknessOf(this.#settings, this.body), this.#contacts, filled.depths);
+        if (this.#cloth.columns) sheetNormals(filled.positions, this.#cloth.columns, filled.normals);
+        else surfaceNormals(filled.positions, this.#cloth.faces, filled.normals);
+        if (this.#settings.colour === 'depth') measureDepths(simulation, this.#cloth.thickness, this.#contacts, filled.depths);
+        const wrong = this.#judge.wrongOf(filled.positions, simulation.collider);
         const after = simulation.profile;
         const perStep = 1000 / Math.max(1, stepCount);
         const collisionSeconds = after.collisionSeconds - before.collisionSeconds;
         const figures: Figures = {
-            frame: this.#earlierFrames + simulation.frame,
+            frame: this.#frame,
             paused,
             atRest: this.#rests(),
             stepMs: stepCount > 0 ? ms / stepCount : 0,
             constraintMs: perStep * (after.constraintSeconds - before.constraintSeconds),
             collisionMs: perStep * collisionSeconds,
             queriesPerSecond: collisionSeconds > 0 ? (after.queryCount - before.queryCount) / collisionSeconds : 0,
-            inside: this.#judge.count(filled.positions, simulation.collider),
+            inside: wrong.length,
             stepCount,
         };
-        return { arrays: filled, figures };
+        return { arrays: filled, figures, wrong, ...(simulation.colliderCount > 1 && { ball: simulation.colliderAt(1).position }) };
     }
 
     #continue(): void {
-        const scene = this.#echinus.parseScene(sceneFor(this.#settings, this.body, { falls: true }));
-        const simulation = this.#simulation.continueWith(scene);
+        const scene = this.#echinus.parseScene(sceneFor(this.#settings, this.body, this.#act, { falls: true }));
+        const simulation = this.#simulation.continueWith(scene, this.#clothMaps);
         this.#earlierFrames += this.#simulation.frame;
         this.#simulation.delete();
         this.#scene.delete();
         this.#scene = scene;
         this.#simulation = simulation;
+        this.#cloth = { ...this.#cloth, thickness: thicknessOf(this.#settings, this.body, this.#act) };
     }
 
     #mend(mesh: Mesh): Mesh {
@@ -260,6 +359,13 @@ export class Playground {
 
 function bodyOf(mesh: Mesh, map: ExactMap, up: Axis): Body {
     return { centre: map.centre, radius: map.radius, up, top: furthestAlong(up, mesh.vertices)[AXES.indexOf(up)] };
+}
+
+/** Places on a square sheet, in radii of the model. */
+function weaveOf(columns: number): Float32Array<ArrayBuffer> {
+    const weave = new Float32Array(2 * columns * columns);
+    for (let i = 0; i < columns * columns; ++i) weave.set([(SIZE * (i % columns)) / (columns - 1), (SIZE * Math.floor(i / columns)) / (columns - 1)], 2 * i);
+    return weave;
 }
 
 function fitted(arrays: FrameArrays | undefined, particleCount: number): FrameArrays {

@@ -1,9 +1,9 @@
 /** The worker: one instance of the module, one playground, and a loop that the page drives frame by frame. */
 import { EchinusError, load } from 'echinus';
-import type { FrameArrays, FromWorker, ToWorker } from '../protocol';
+import type { FrameArrays, FromWorker, Stage, ToWorker } from '../protocol';
 import { cutAt, lookAlong, lookAt, surfaceOf } from './looking';
 import { type Reading, fetchSample, named, prepareFile } from './models';
-import { Playground } from './playground';
+import { type Look, Playground } from './playground';
 import { warmUp } from './warm_up';
 
 /** The first model waits for the module only. */
@@ -58,10 +58,11 @@ async function handle(message: ToWorker): Promise<void> {
         case 'change': {
             const before = playground.mapNews;
             // Settings that only opening applies stay as opened: the change may belong to a model that then failed.
-            const { model, mend, up } = playground.settings;
+            const { model, mend, up, hand } = playground.settings;
             const anew = playground.change({ ...message.settings, model, mend, up });
             if (playground.mapNews !== before) tell({ kind: 'map', map: playground.mapNews });
-            if (anew) tellCloth(playground);
+            if (anew) tellCloth(playground, before === playground.mapNews ? 'changed' : 'map');
+            else if (playground.settings.hand !== hand) tell({ kind: 'hand', ...(playground.clothNews.ball && { ball: playground.clothNews.ball }) });
             return;
         }
         case 'restart':
@@ -70,13 +71,18 @@ async function handle(message: ToWorker): Promise<void> {
         case 'step':
             return tellFrame(playground.stepOnce(undefined));
         case 'frame':
-            return tellFrame(advance(playground, message.arrays));
+            return tellFrame(advance(playground, message.arrays, message.until));
         case 'grab':
             return playground.grab(message.particle, message.target);
         case 'drag':
             return playground.hand.drag(message.target);
         case 'release':
+            playground.shake.release();
             return playground.hand.release();
+        case 'hold':
+            return playground.shake.hold(message.offset);
+        case 'pointer':
+            return playground.point(message.from, message.to);
         case 'ray':
             return tell(lookAlong(playground, message.direction));
         case 'point':
@@ -91,11 +97,13 @@ async function handle(message: ToWorker): Promise<void> {
 }
 
 async function open({ turn, settings, page, file }: ToWorker & { kind: 'open' }): Promise<void> {
+    const report = (stage: Stage) => tell({ kind: 'progress', turn, stage });
+    report('reading');
     const read = await (file ? readFile(file) : fetchSample(settings.model, page));
     modelIsThere = true;
     const echinus = await starting;
     const model = read(echinus);
-    const next = named(model.name, () => new Playground(echinus, model, settings));
+    const next = named(model.name, () => new Playground(echinus, model, settings, report));
     playground?.delete(); // only now: a file that cannot be opened leaves the previous model
     playground = next;
     opened = turn;
@@ -112,9 +120,9 @@ async function readFile(file: File): Promise<Reading> {
 }
 
 /** A cloth that diverged stops; its last positions stay visible. */
-function advance(playground: Playground, arrays: FrameArrays | undefined) {
+function advance(playground: Playground, arrays: FrameArrays | undefined, until: number | undefined): Look {
     try {
-        return playground.advance(paused, arrays);
+        return playground.advance(paused, arrays, until);
     } catch (error) {
         paused = true;
         fail(error);
@@ -125,13 +133,14 @@ function advance(playground: Playground, arrays: FrameArrays | undefined) {
 function tellModel(playground: Playground): void {
     tell({ kind: 'model', ...playground.news() });
 }
-function tellCloth(playground: Playground): void {
+/** @param why  it starts anew, unless it was asked for */
+function tellCloth(playground: Playground, why?: 'changed' | 'map'): void {
     ++cloth;
-    tell({ kind: 'cloth', faces: playground.faces });
+    tell({ kind: 'cloth', ...playground.clothNews, ...(why && { why }) });
 }
-function tellFrame({ arrays, figures }: ReturnType<Playground['advance']>): void {
+function tellFrame({ arrays, ...look }: Look): void {
     if (!playground) return;
-    tell({ kind: 'frame', arrays, figures, collider: playground.collider, cloth }, [
+    tell({ kind: 'frame', arrays, ...look, collider: playground.collider, cloth }, [
         arrays.positions.buffer,
         arrays.normals.buffer,
         arrays.depths.buffer,

@@ -1,0 +1,51 @@
+import { SAMPLES, type Sample, type Settings, fromLink, toLink } from './settings';
+import { byId, make } from './panel/elements';
+
+interface Example {
+    /** Of its picture. */
+    name: string;
+    title: string;
+    caption: string;
+    link: string;
+    model: Sample;
+}
+
+/** What the gallery shows; scripts/web --pictures takes their pictures. */
+const EXAMPLES: readonly Example[] = [
+    { name: 'horse', title: 'A cloth on a horse', caption: 'the start of this page', link: '', model: 'horse' },
+    { name: 'torus', title: 'The torus of the paper', caption: '10\u2009000 particles', link: 'model=torus', model: 'torus' },
+    { name: 'figure', title: 'A skirt, dancing', caption: 'a garment on a moving figure', link: 'model=figure&particles=4900', model: 'figure' },
+    { name: 'organ', title: 'A soft organ', caption: 'push it with the probe', link: 'model=organ&particles=1600&hand=model', model: 'organ' },
+    { name: 'ring', title: 'Through a ring', caption: 'pulled through, let go', link: 'model=ring&particles=3600&self=true', model: 'ring' },
+    { name: 'flag', title: 'A flag in the wind', caption: 'on a pole that you can shake', link: 'model=flag&particles=2500', model: 'flag' },
+    { name: 'layers', title: 'Ten layers', caption: 'none through another', link: 'model=layers&particles=2500&self=true', model: 'layers' },
+    { name: 'beside', title: 'Exact, and not', caption: 'the paper\u2019s map beside it', link: 'beside=map&thickness=0.1', model: 'horse' },
+];
+
+export function fillGallery(): void {
+    const tiles = EXAMPLES.filter(({ model }) => SAMPLES.includes(model)).map(({ name, title, caption, link }) => {
+        const tile = make('a', '', 'tile') as HTMLAnchorElement;
+        tile.href = `#${link}`;
+        fill(tile, `./gallery/${name}.jpg`, title, caption);
+        return tile;
+    });
+    const own = make('label', '', 'tile own') as HTMLLabelElement;
+    own.htmlFor = 'file';
+    fill(own, undefined, 'Your own file', 'or drop it on the page');
+    byId('gallery').replaceChildren(...tiles, own);
+}
+
+/** Marks the example that the page shows, if it is one of them. */
+export function showChosen(settings: Settings | undefined): void {
+    const now = settings && toLink({ ...settings, camera: '', view: 'cloth' });
+    for (const tile of byId('gallery').querySelectorAll<HTMLAnchorElement>('a')) tile.classList.toggle('chosen', now === toLink(fromLink(tile.hash)));
+}
+
+function fill(tile: HTMLElement, address: string | undefined, title: string, caption: string): void {
+    if (address) {
+        const picture = document.createElement('img');
+        Object.assign(picture, { src: address, alt: '', width: 120, height: 90, loading: 'lazy', decoding: 'async' });
+        tile.append(picture);
+    } else tile.append(make('i', '+'));
+    tile.append(make('span', title), make('small', caption));
+}

@@ -1,0 +1,37 @@
+import type { MapNews } from '../protocol';
+import type { Counts } from '../side';
+import { byId, make } from './elements';
+import { bytes, count, milliseconds } from './numbers';
+
+/** One sentence with the page's own figures: what is there, that nothing is wrong with it, and what that took. */
+export function showHeadline(particles: number, soft: boolean, counts: Counts, map: MapNews): void {
+    const parts = [
+        make('span', `${count(particles)} ${soft ? 'particles of a soft body' : 'particles'}, `),
+        verdict(counts),
+        make('span', `, ${map.kind === 'exact' ? 'a' : 'the paper\u2019s'} map of ${bytes(map.byteCount)} built in ${milliseconds(map.buildMs)}`),
+    ];
+    if (byId('headline').textContent !== parts.map(({ textContent }) => textContent).join('')) byId('headline').replaceChildren(...parts);
+}
+
+function verdict(counts: Counts): HTMLElement {
+    const wrong = wrongsOf(counts);
+    if (wrong.length > 0) return make('span', wrong.join(' and '), 'bad');
+    return make('span', counts.withModel === undefined ? 'none inside the model' : 'no face through the model', 'good');
+}
+
+/** What is wrong with a cloth, in words; nothing, where nothing is. */
+export function wrongsOf({ inside, withModel = 0 }: Counts): string[] {
+    return [
+        ...(inside > 0 ? [`${count(inside)} inside the model`] : []),
+        ...(withModel > 0 ? [`${count(withModel)} ${withModel === 1 ? 'pair of faces' : 'pairs of faces'} cut`] : []),
+    ];
+}
+
+/** Beneath a half of the picture. */
+export function showHalf(id: 'half-left' | 'half-right', title: string | undefined, counts: Counts): void {
+    const half = byId(id);
+    const wrong = wrongsOf(counts);
+    if (title) half.querySelector('strong')!.textContent = title;
+    half.querySelector('span')!.textContent = wrong.length > 0 ? wrong.join(', ') : counts.withModel === undefined ? 'none inside' : 'nothing inside, nothing cut';
+    half.className = wrong.length > 0 ? 'bad' : 'good';
+}

@@ -1,0 +1,127 @@
+import type { ColliderState } from 'echinus';
+import type { Client } from './client';
+import { Pairs } from './pairs';
+import type { ClothNews, Cuts, FromWorker, ModelNews, Triple } from './protocol';
+import { ClothView } from './view/cloth_view';
+
+/** How many sets of arrays are in circulation: one is shown while the other is filled. */
+const FRAMES_UNDER_WAY = 2;
+
+type Frame = FromWorker & { kind: 'frame' };
+
+/** What is wrong with a cloth, as far as it is known. */
+export interface Counts {
+    inside: number;
+    withModel?: number;
+    own?: number;
+}
+
+/** A cloth: the worker that simulates it, its picture, and what is wrong with it. The page has one, or two side by side. */
+export class Side {
+    readonly client: Client;
+    readonly view = new ClothView();
+    collider: ColliderState | undefined;
+    ball: { radius: number; position?: Triple } | undefined;
+    counts: Counts = { inside: 0 };
+    frame = 0;
+    keepsOffItself = false;
+    news: ClothNews | undefined;
+    /** Called with the counts of faces that intersect. */
+    onCuts = (_cuts: Cuts) => {};
+    readonly #pairs = new Pairs((cuts) => this.#showCuts(cuts));
+    /** The number of the cloth shown; frames of earlier ones are dropped. */
+    #cloth = 0;
+    #framesAsked = 0;
+    #arrived: Frame[] = [];
+
+    constructor(client: Client) {
+        this.client = client;
+    }
+
+    set model(model: ModelNews) {
+        this.#pairs.model = model;
+    }
+
+    /** @returns whether the message was about the cloth itself */
+    hear(message: FromWorker): boolean {
+        switch (message.kind) {
+            case 'cloth':
+                ++this.#cloth;
+                this.#arrived = [];
+                this.news = message;
+                this.frame = 0;
+                this.counts = { inside: 0 };
+                this.view.begin(message);
+                this.#setBall(message.ball);
+                return true;
+            case 'hand':
+                this.#setBall(message.ball);
+                return true;
+            case 'frame':
+                this.#framesAsked = Math.max(0, this.#framesAsked - 1);
+                if (message.cloth === this.#cloth) this.#arrived.push(message);
+                return true;
+        }
+        return false;
+    }
+
+    #setBall(radius: number | undefined): void {
+        this.ball = radius === undefined ? undefined : { ...this.ball, radius };
+    }
+
+    /** The answer to a question may never come. */
+    forgive(): void {
+        this.#framesAsked = 0;
+    }
+    /** Asks for a single step, whose answer is a frame. */
+    step(): void {
+        ++this.#framesAsked;
+        this.client.tell({ kind: 'step' });
+    }
+    /** Another worker will count its cloths anew. */
+    forget(): void {
+        this.#cloth = 0;
+        this.#arrived = [];
+        this.#framesAsked = 0;
+        this.frame = 0;
+    }
+
+    /**
+     * Shows the next frame, and asks for more where `asks`.
+     * @param until  the last frame that may be made @returns the frame that is new
+     */
+    advance(asks: boolean, until: number): Frame | undefined {
+        const next = this.#arrived.shift();
+        let spare;
+        if (next) {
+            spare = this.view.show(next.arrays);
+            this.view.markWrong(next.wrong);
+            this.collider = next.collider;
+            this.frame = next.figures.frame;
+            this.counts.inside = next.figures.inside;
+            if (this.ball && next.ball) this.ball.position = next.ball;
+            this.#pairs.consider(this.#cloth, next.figures.frame, next.arrays.positions, this.view.faces, next.collider);
+        }
+        while (asks && this.#framesAsked < FRAMES_UNDER_WAY && this.#arrived.length === 0) {
+            ++this.#framesAsked;
+            const question = { kind: 'frame' as const, ...(spare && { arrays: spare }), ...(Number.isFinite(until) && { until }) };
+            this.client.tell(question, spare ? [spare.positions.buffer, spare.normals.buffer, spare.depths.buffer] : []);
+            spare = undefined;
+        }
+        return next;
+    }
+
+    #showCuts(cuts: Cuts): void {
+        if (cuts.number !== this.#cloth) return;
+        // A cloth that need not keep off itself does nothing wrong.
+        this.view.markCut(this.keepsOffItself ? new Uint32Array([...cuts.cutFaces, ...cuts.ownFaces]) : cuts.cutFaces);
+        this.counts = { ...this.counts, withModel: cuts.withModel, own: cuts.own };
+        this.onCuts(cuts);
+    }
+
+    stop(): void {
+        this.client.stop();
+        this.#pairs.stop();
+        this.view.dispose();
+    }
+}

@@ -1,0 +1,30 @@
+import * as THREE from 'three';
+import { FAULT } from './colours';
+
+/** Marks on what is wrong, seen through everything in front. */
+export function glow(): THREE.Points {
+    const points = new THREE.Points(
+        new THREE.BufferGeometry(),
+        new THREE.PointsMaterial({ color: FAULT.faces, size: 15, sizeAttenuation: false, map: spot(), transparent: true, depthTest: false, depthWrite: false }),
+    );
+    points.renderOrder = 5;
+    points.frustumCulled = false;
+    points.visible = false;
+    return points;
+}
+
+/** White, opaque in the middle. @param softness  of its rim, 0 to 1: 1 fades from the middle on */
+export function spot(softness = 1): THREE.DataTexture {
+    const side = 64;
+    const pixels = new Uint8Array(4 * side * side);
+    for (let y = 0; y < side; ++y)
+        for (let x = 0; x < side; ++x) {
+            const out = Math.hypot((2 * x + 1) / side - 1, (2 * y + 1) / side - 1);
+            const share = Math.min(1, Math.max(0, (1 - out) / softness));
+            pixels.set([255, 255, 255, 255 * share * share * (3 - 2 * share)], 4 * (y * side + x));
+        }
+    const texture = new THREE.DataTexture(pixels, side, side);
+    texture.magFilter = texture.minFilter = THREE.LinearFilter;
+    texture.needsUpdate = true;
+    return texture;
+}

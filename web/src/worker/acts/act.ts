@@ -1,0 +1,36 @@
+import type { Echinus, Mesh, SceneDescription, Simulation } from 'echinus';
+import type { Triple } from '../../protocol';
+import type { Settings } from '../../settings';
+import type { Body } from '../cloth_scene';
+
+/** What happens around a model: by default a sheet falls on it (cloth_scene.ts). */
+export interface Act {
+    /** What the camera shows, and what lengths and gravity are measured by, where that is not the model alone. */
+    body?: Omit<Body, 'top'>;
+    /** How high the ground is, along up. */
+    floor: number;
+    /** The cloth or the soft bodies in the scene, with the material, and what differs from every act's scene. */
+    scene(settings: Settings, body: Body): Partial<SceneDescription>;
+    /** The distance that particles keep from the model. */
+    thickness(settings: Settings, body: Body): number;
+    /** A cloth that is no sheet. The caller deletes its mesh. */
+    cloth?(echinus: Echinus, settings: Settings): Garment;
+    /** The surfaces of soft bodies. The caller deletes them. */
+    bodies?(echinus: Echinus): Mesh[];
+    /** Sets velocities of particles before each step. */
+    steer?(simulation: Simulation, seconds: number): void;
+    /** The model's own motion at a time, where it has one: velocities of the pose of its frame. */
+    motion?(seconds: number): { linear: Triple; angular: Triple };
+    /** The air's velocity at a time, in radii per second. */
+    wind?(seconds: number): Triple;
+    /** Until then nothing counts as at rest, in seconds. */
+    lasts: number;
+}
+
+export interface Garment {
+    mesh: Mesh;
+    /** [2 particles] places on the fabric, in units of length. */
+    weave: Float32Array<ArrayBuffer>;
+    /** [particles] places on the scale of colours, 0 to 1, where pieces differ in colour. */
+    tints?: Float32Array<ArrayBuffer>;
+}

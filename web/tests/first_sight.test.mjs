@@ -1,0 +1,135 @@
+// What a newcomer sees: what this is, that it is well, and what can be opened.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { SMALL, hasHorse, picture, startBrowser, untilFrame } from './support.mjs';
+
+let browser;
+before(async () => (browser = await startBrowser()));
+after(() => browser?.stop());
+
+const untilHeadline = (page, pattern) =>
+    page.waitForFunction((source) => new RegExp(source).test(document.getElementById('headline').textContent), pattern.source, { timeout: 60_000 });
+
+test('the headline says what there is, that nothing is wrong, and what the map took', async () => {
+    const page = await browser.open('#model=torus&particles=900', SMALL);
+    await untilHeadline(page, /^900 particles, no face through the model, a map of [\d.]+\u2009kB built in [\d.]+\u2009ms$/);
+    await page.locator('input[name=map][value=distance]').check();
+    await untilHeadline(page, /the paper’s map of/);
+    await page.context().close();
+});
+
+test('the headline says what is wrong when something is', async () => {
+    const page = await browser.open('#model=torus&particles=400&thickness=0.1&surfaces=false', SMALL);
+    await untilHeadline(page, /^400 particles, \d+ pairs? of faces cut, /);
+    await page.context().close();
+});
+
+test('settings are folded away, and unfold', async () => {
+    const page = await browser.open('#model=torus&particles=100', { ...SMALL, folded: true });
+    await untilFrame(page, 1);
+    const friction = page.locator('input[name=friction]');
+    assert.ok(!(await friction.isVisible()));
+    assert.ok(await page.locator('#about').isVisible() && await page.locator('#gallery').isVisible());
+    await page.locator('summary', { hasText: 'Collision' }).click();
+    assert.ok(await friction.isVisible());
+    await page.context().close();
+});
+
+test('links lead to documents that are there, and others see a card of a link to the page', async () => {
+    const page = await browser.open('#model=torus&particles=100', SMALL);
+    for (const link of await page.locator('#about a').all()) {
+        const answer = await page.request.get(new URL(await link.getAttribute('href'), page.url()).href);
+        assert.ok(answer.ok() && (await answer.body()).length > 1000, await link.getAttribute('href'));
+    }
+    const card = new URL(await page.locator('meta[property="og:image"]').getAttribute('content'), page.url()).href;
+    const bytes = await (await page.request.get(card)).body();
+    assert.deepEqual([...bytes.subarray(0, 2)], [0xff, 0xd8], 'a JPEG file');
+    assert.ok(bytes.length < 120_000, `${bytes.length} bytes`);
+    assert.match(await page.locator('meta[name=description]').getAttribute('content'), /cloth/i);
+    await page.context().close();
+});
+
+test('software draws the light look, and a link may ask for the fine one, in the light and in the dark', async () => {
+    for (const colorScheme of ['light', 'dark']) {
+        const page = await browser.open('#model=torus&particles=900&look=fine', { viewport: { width: 780, height: 420 }, colorScheme });
+        await untilFrame(page, 60);
+        assert.equal(await page.evaluate(() => document.body.dataset.look), 'fine');
+        await picture(page, `fine_${colorScheme}`);
+        await page.locator('select[name=look]').selectOption('auto');
+        await page.waitForFunction(() => document.body.dataset.look === 'light');
+        assert.deepEqual(page.complaints, []);
+        await page.context().close();
+    }
+});
+
+test('the fine look casts the shadow of the model on the ground, and darkens where the cloth lies on it', async () => {
+    const brightness = async (look) => {
+        const page = await browser.open(`#model=sphere&particles=100&look=${look}&camera=35_25_6_0_0_0`, { viewport: { width: 700, height: 420 } });
+        await untilFrame(page, 30);
+        await page.keyboard.press('Space');
+        await page.waitForTimeout(500);
+        const shot = (await page.locator('#canvas').screenshot()).toString('base64');
+        const darkest = await page.evaluate(darkestOfGround, shot);
+        await page.context().close();
+        return darkest;
+    };
+    assert.ok((await brightness('fine')) < 0.93 * (await brightness('light')));
+});
+
+/** Runs in the page: the mean brightness of the lower fifth of a picture. */
+async function darkestOfGround(data) {
+    const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+    const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
+    context.drawImage(image, 0, 0);
+    const { data: bytes } = context.getImageData(0, Math.round(0.8 * image.height), image.width, Math.round(0.2 * image.height));
+    const rows = [];
+    for (let i = 0; i < bytes.length; i += 4) rows.push(bytes[i] + bytes[i + 1] + bytes[i + 2]);
+    rows.sort((a, b) => a - b);
+    return rows[Math.round(0.02 * rows.length)];
+}
+
+test('on a small window neither words nor buttons lie over the model', async () => {
+    const page = await browser.open('#model=torus&particles=400', { viewport: { width: 700, height: 500 } });
+    await untilFrame(page, 20);
+    const box = (selector) => page.locator(selector).boundingBox();
+    const [canvas, bar] = [await box('#canvas'), await box('#bar')];
+    assert.ok(bar.y >= canvas.y + canvas.height - 1, 'the buttons are below the picture');
+    await picture(page, 'small_window');
+    await page.context().close();
+});
+
+// The examples of the gallery, with few particles: software draws them.
+const FEW = { figure: 600, organ: 1500, ring: 400, flag: 400, layers: 800 };
+for (const [model, particles] of Object.entries(FEW))
+    test(`the example "${model}" runs, and nothing gets through`, async () => {
+        const page = await browser.open(`#model=${model}&particles=${particles}`, { viewport: { width: 600, height: 400 } });
+        page.setDefaultTimeout(120_000);
+        await page.waitForFunction(() => Number(document.body.dataset.frame) >= 240);
+        await untilHeadline(page, /no face through the model/);
+        assert.deepEqual(page.complaints, []);
+        await picture(page, `example_${model}`);
+        await page.context().close();
+    });
+
+test('the gallery has a tile for each example, with a picture, and one for a file; a click opens it', async () => {
+    const page = await browser.open('#model=torus&particles=100', SMALL);
+    await untilFrame(page, 1);
+    const tiles = page.locator('#gallery .tile');
+    assert.equal(await tiles.count(), hasHorse ? 9 : 7);
+    for (const image of await tiles.locator('img').all()) assert.ok((await page.request.get(new URL(await image.getAttribute('src'), page.url()).href)).ok());
+    await page.locator('#gallery a', { hasText: 'flag' }).click();
+    await page.waitForFunction(() => document.getElementById('subtitle').textContent.startsWith('flag'));
+    assert.equal(await page.locator('#gallery .chosen span').textContent(), 'A flag in the wind');
+    const [chooser] = await Promise.all([page.waitForEvent('filechooser'), page.locator('#gallery .own').click()]);
+    assert.ok(chooser);
+    await page.context().close();
+});
+
+test('no picture of the gallery is large', () => {
+    for (const name of ['horse', 'torus', 'figure', 'organ', 'ring', 'flag', 'layers', 'beside']) {
+        const { length } = readFileSync(fileURLToPath(new URL(`../pictures/gallery/${name}.jpg`, import.meta.url)));
+        assert.ok(length > 1500 && length < 16_000, `${name}: ${length} bytes`);
+    }
+});

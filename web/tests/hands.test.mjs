@@ -1,0 +1,146 @@
+// The visitor's ball, a model that is shaken, a clip, the tour, and what takes long.
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { after, before, test } from 'node:test';
+import { tetrahedra, torusStl } from './meshes.mjs';
+import { SMALL, figure, picture, startBrowser, untilFrame } from './support.mjs';
+
+let browser;
+before(async () => (browser = await startBrowser()));
+after(() => browser?.stop());
+
+const frameOf = (page) => page.evaluate(() => Number(document.body.dataset.frame));
+
+/** The vertices of an object of the saved mesh. */
+async function verticesOf(page, name) {
+    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#save-mesh').click()]);
+    const text = await readFile(await download.path(), 'utf8');
+    const part = text.slice(text.indexOf(`o ${name}`)).split('\n').slice(1);
+    const end = part.findIndex((line) => line.startsWith('o '));
+    return part.slice(0, end < 0 ? part.length : end).filter((line) => line.startsWith('v ')).map((line) => line.split(' ').slice(1).map(Number));
+}
+
+test('a ball follows the pointer, pushes the cloth, and gets no particle into the model', async () => {
+    const page = await browser.open('#model=torus&particles=900', SMALL);
+    await untilFrame(page, 200);
+    const before = await verticesOf(page, 'cloth');
+    await page.locator('input[name=hand][value=ball]').check();
+    const { x, y, width, height } = await page.locator('#canvas').boundingBox();
+    for (const [across, down] of [[0.3, 0.55], [0.45, 0.5], [0.5, 0.55], [0.6, 0.6]]) {
+        await page.mouse.move(x + across * width, y + down * height);
+        await untilFrame(page, 60 + (await frameOf(page)));
+    }
+    await picture(page, 'ball');
+    const after = await verticesOf(page, 'cloth');
+    const moved = after.map((point, i) => Math.hypot(...point.map((c, k) => c - before[i][k])));
+    assert.ok(Math.max(...moved) > 0.1, `by at most ${Math.max(...moved)}`);
+    assert.equal(await figure(page, 'inside'), '0');
+    await page.locator('input[name=hand][value=cloth]').check();
+    await untilFrame(page, 30 + (await frameOf(page)));
+    assert.equal(await page.locator('#notice').isVisible(), false);
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+test('a model that is shaken moves, takes the cloth along, and comes back', async () => {
+    const page = await browser.open('#model=torus&particles=900&hand=model', SMALL);
+    await untilFrame(page, 200);
+    const still = await verticesOf(page, 'model');
+    const { x, y, width, height } = await page.locator('#canvas').boundingBox();
+    await page.mouse.move(x + 0.5 * width, y + 0.5 * height);
+    await page.mouse.down();
+    assert.ok(await page.locator('#canvas.dragging').isVisible());
+    await page.mouse.move(x + 0.6 * width, y + 0.4 * height, { steps: 3 });
+    await untilFrame(page, 90 + (await frameOf(page)));
+    const away = (points) => Math.hypot(...points[0].map((c, k) => c - still[0][k]));
+    assert.ok(away(await verticesOf(page, 'model')) > 0.2);
+    await page.mouse.up();
+    await untilFrame(page, 300 + (await frameOf(page)));
+    assert.ok(away(await verticesOf(page, 'model')) < 0.02);
+    assert.equal(await figure(page, 'inside'), '0');
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+test('a clip of the picture is saved', async () => {
+    const page = await browser.open('#model=torus&particles=400', { viewport: { width: 600, height: 400 } });
+    await untilFrame(page, 20);
+    await page.locator('#record').click();
+    await page.waitForFunction(() => document.getElementById('record').textContent.startsWith('Stop'));
+    await page.waitForTimeout(1500);
+    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#record').click()]);
+    const bytes = await readFile(await download.path());
+    assert.match(download.suggestedFilename(), /^echinus\.(webm|mp4)$/);
+    assert.equal(bytes.readUInt32BE(0), 0x1a45dfa3, 'a WebM file');
+    assert.ok(bytes.length > 2000, `${bytes.length} bytes`);
+    assert.equal(await page.locator('#record').textContent(), 'Record clip');
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+test('opening a large file shows what is being done, and can be cancelled', async () => {
+    const page = await browser.open('#model=sphere&particles=100', SMALL);
+    await untilFrame(page, 5);
+    await page.locator('#file').setInputFiles({ name: 'large.stl', mimeType: 'model/stl', buffer: torusStl(600, 400) });
+    await page.locator('#progress').waitFor();
+    assert.match(await page.locator('#progress span').textContent(), /^large\.stl: (reading|mending|building the map|laying the cloth)$/);
+    await page.locator('#progress button').click();
+    await page.waitForFunction(() => document.getElementById('subtitle').textContent.startsWith('sphere'));
+    await untilFrame(page, 10);
+    assert.ok(!(await page.locator('#progress').isVisible()));
+    assert.ok(!(await page.locator('#notice').isVisible()));
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+test('an open model says what that means, and how much is certain', async () => {
+    const page = await browser.open('#model=torus&particles=100', SMALL);
+    await untilFrame(page, 1);
+    const closed = tetrahedra()['t.obj'];
+    await page.locator('#file').setInputFiles({ name: 'open.obj', mimeType: 'model/obj', buffer: Buffer.from(closed.slice(0, closed.lastIndexOf('f '))) });
+    await page.waitForFunction(() => /Open: sides/.test(document.getElementById('report').textContent));
+    assert.match(await page.locator('#report').textContent(), /in \d+(\.\d+)?\u2009% of the ball around it the answer is certain.*Close its holes/);
+    await page.context().close();
+});
+
+test('a file of random bytes is refused in legible words', async () => {
+    const page = await browser.open('#model=torus&particles=100', SMALL);
+    await untilFrame(page, 1);
+    const bytes = Buffer.from(Array.from({ length: 300 }, (_, i) => (i * 7919 + 13) % 256));
+    for (const name of ['random.glb', 'random.gltf', 'random.3ds', 'random.stl']) {
+        await page.locator('#file').setInputFiles({ name, mimeType: 'application/octet-stream', buffer: bytes });
+        await page.waitForFunction((start) => document.querySelector('#notice span').textContent.startsWith(start), name);
+        assert.match(await page.locator('#notice span').textContent(), /^[\x20-\x7e\u2009]{10,240}$/, name);
+    }
+    await page.context().close();
+});
+
+test('another number of particles says that the cloth falls anew', async () => {
+    const page = await browser.open('#model=torus&particles=400', SMALL);
+    await untilFrame(page, 20);
+    await page.locator('input[name=particles]').fill('0.2');
+    await page.locator('#remark', { hasText: 'falls anew' }).waitFor();
+    await page.context().close();
+});
+
+test('the tour goes through its stops by itself or by a key, and ends where it began', async () => {
+    const page = await browser.open('#model=torus&particles=400', SMALL);
+    await untilFrame(page, 5);
+    const untilStop = (stop) => page.waitForFunction((wanted) => document.getElementById('tour').dataset.stop === wanted, String(stop));
+    await page.keyboard.press('t');
+    await untilStop(0);
+    assert.ok(page.url().includes('view=map'));
+    await page.keyboard.press('Enter');
+    await untilStop(1);
+    await page.waitForTimeout(400);
+    await picture(page, 'tour');
+    await page.locator('#tour-next').click();
+    await untilStop(2);
+    await untilStop(3); // by itself
+    await picture(page, 'tour_slice');
+    await page.keyboard.press('Escape');
+    assert.ok(!(await page.locator('#tour').isVisible()));
+    assert.ok(!page.url().includes('view=map'));
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});

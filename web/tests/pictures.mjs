@@ -1,0 +1,33 @@
+// Takes the pictures of the page's gallery, and the card that others show of a link to it, from the built page: web/pictures/.
+// Software draws them here, which takes a while. Run by scripts/web --pictures.
+import { mkdirSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
+import { startBrowser, untilFrame } from './support.mjs';
+
+const folder = fileURLToPath(new URL('../pictures/', import.meta.url));
+mkdirSync(`${folder}gallery`, { recursive: true });
+
+/** Each moment in time steps. */
+const MOMENTS = { horse: 330, torus: 330, figure: 480, organ: 300, ring: 620, flag: 420, layers: 300, beside: 330 };
+
+const browser = await startBrowser();
+
+async function take(link, moment, size, path, quality) {
+    const page = await browser.open(`#${[link, 'look=fine'].filter(Boolean).join('&')}`, { viewport: { width: size.width + 360, height: size.height + 200 }, folded: true });
+    page.setDefaultTimeout(600_000);
+    await page.addStyleTag({ content: `body { display: block } #stage { width: ${size.width}px; height: ${size.height}px } #bar, #figures, #panel, header, #halves { display: none !important }` });
+    await page.waitForFunction((least) => Number(document.body.dataset.frame) >= least, moment, { timeout: 600_000 });
+    await page.waitForTimeout(1500);
+    await page.locator('#stage').screenshot({ path, type: 'jpeg', quality });
+    console.log(path);
+    await page.context().close();
+}
+
+const wanted = process.argv.slice(2);
+const page = await browser.open('#particles=100&model=torus');
+await untilFrame(page, 1);
+const links = await page.evaluate(() => [...document.querySelectorAll('#gallery a')].map((tile) => [tile.querySelector('img').src.match(/(\w+)\.jpg$/)[1], tile.hash.slice(1)]));
+await page.context().close();
+for (const [name, link] of links) if (wanted.length === 0 || wanted.includes(name)) await take(link, MOMENTS[name], { width: 240, height: 180 }, `${folder}gallery/${name}.jpg`, 80);
+if (wanted.length === 0 || wanted.includes('card')) await take('model=torus', MOMENTS.torus, { width: 1200, height: 630 }, `${folder}card.jpg`, 72);
+await browser.stop();
