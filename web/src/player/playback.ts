@@ -14,6 +14,11 @@ export class Playback {
     get frame(): number {
         return this.#frame;
     }
+    /** How far it is to the next frame, 0 to 1. @param available  frames that can be shown by now */
+    share(available: number): number {
+        const [now, next] = [this.#times[this.#frame], this.#times[this.#frame + 1]];
+        return this.#frame + 1 < available ? Math.min(1, Math.max(0, (this.#time - now) / (next - now))) : 0;
+    }
     get playing(): boolean {
         return this.#playing;
     }

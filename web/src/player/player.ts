@@ -18,6 +18,7 @@ export class Player {
     readonly #world: World;
     readonly #scrub = byId<HTMLInputElement>('scrub');
     #shown = -1;
+    #share = 0;
     #last = performance.now();
 
     constructor(recording: Recording) {
@@ -36,7 +37,8 @@ export class Player {
         const now = performance.now();
         this.#playback.advance(Math.min((now - this.#last) / 1000, LONGEST_PICTURE_S), this.#recording.frameCount);
         this.#last = now;
-        if (this.#playback.frame !== this.#shown && this.#playback.frame < this.#recording.frameCount) this.#show(this.#playback.frame);
+        const { frame } = this.#playback, share = this.#playback.share(this.#recording.frameCount);
+        if ((frame !== this.#shown || share !== this.#share) && frame < this.#recording.frameCount) this.#show(frame, share);
         this.#showPlaying();
         this.#stage.draw();
     }
@@ -46,9 +48,11 @@ export class Player {
         if (byId('pause').textContent !== word) byId('pause').textContent = word;
     }
 
-    #show(frame: number): void {
+    #show(frame: number, share: number): void {
         const { frames, figures } = this.#recording.description;
-        this.#world.show(frame);
+        this.#world.show(frame, share);
+        this.#share = share;
+        if (frame === this.#shown) return;
         showFrame(frames[frame], figures.time_step);
         this.#scrub.value = String(frame);
         this.#scrub.ariaValueText = `${(frames[frame].number * figures.time_step).toFixed(2)} seconds`;

@@ -43,6 +43,14 @@ export class Recording {
         return this.#coordinates.length;
     }
 
+    /** Between a frame and the next, straight. @param share  of the way @param positions, ahead  [3 particles] out, and room for the next */
+    positionsBetween(frame: number, share: number, positions: Float32Array, ahead: Float32Array): void {
+        this.positionsOf(frame, positions);
+        if (share === 0) return;
+        this.positionsOf(frame + 1, ahead);
+        for (let i = 0; i < positions.length; ++i) positions[i] += share * (ahead[i] - positions[i]);
+    }
+
     /** @param positions  [3 particles] out */
     positionsOf(frame: number, positions: Float32Array): void {
         const { lattice_step: step, frames } = this.description;

@@ -5,7 +5,7 @@ import { ClothView } from '../view/cloth_view';
 import { ModelView } from '../view/model_view';
 import type { Stage } from '../view/stage';
 import type { Description, Part, Pose, RecordedFrame } from './description';
-import { surfaceNormals } from './normals';
+import { surfaceNormals } from '../surface_normals';
 import type { Recording } from './recording';
 
 /** Model and cloth of a recording on a stage. */
@@ -14,11 +14,13 @@ export class World {
     readonly #cloth = new ClothView();
     readonly #models: ModelView[] = [];
     #spare: FrameArrays;
+    readonly #ahead: Float32Array;
 
     constructor(stage: Stage, recording: Recording) {
         this.#recording = recording;
         const { figures, model } = recording.description;
         this.#spare = arraysFor(figures.particles);
+        this.#ahead = new Float32Array(3 * figures.particles);
         const parts: Part[] = model.parts ?? [model];
         let firstVertex = 0, firstFace = 0;
         for (const { vertices, faces } of parts) {
@@ -29,17 +31,21 @@ export class World {
             firstVertex += vertices;
             firstFace += faces;
         }
-        this.#cloth.begin(recording.clothFaces);
+        this.#cloth.begin({ faces: recording.clothFaces, thickness: figures.thickness });
 
         const { axis, turn } = upright(figures.gravity);
         const group = new THREE.Group();
         group.quaternion.copy(turn);
-        group.add(...this.#models.map((view) => view.group), this.#cloth.mesh);
+        group.add(...this.#models.map((view) => view.group), this.#cloth.group);
         stage.scene.add(group);
         const first = posesOf(recording.description.frames[0])!;
         // Of several colliders it is where they start.
         const centre = model.parts ? new THREE.Vector3(...model.centre) : placed(model.centre, first[0]);
-        stage.lookAt(centre.applyQuaternion(turn).toArray(), model.radius, axis);
+        const placing = model.parts ? undefined : first[0];
+        const floor = lowest(recording.modelVertices, placing, turn, axis);
+        stage.lookAt({ centre: centre.applyQuaternion(turn).toArray(), radius: model.radius, up: axis, floor });
+        stage.onLook = (fine) => (this.#cloth.fine = fine);
+        stage.look = 'auto';
     }
 
     #addModel(vertices: Float32Array<ArrayBuffer>, faces: Uint32Array<ArrayBuffer>): void {
@@ -53,14 +59,38 @@ export class World {
         this.#models.push(view);
     }
 
-    show(frame: number): void {
+    /** @param share  of the way to the next frame */
+    show(frame: number, share: number): void {
         const { frames, figures } = this.#recording.description;
         const arrays = this.#spare;
-        this.#recording.positionsOf(frame, arrays.positions);
+        this.#recording.positionsBetween(frame, share, arrays.positions, this.#ahead);
         surfaceNormals(arrays.positions, this.#recording.clothFaces, arrays.normals);
         this.#spare = this.#cloth.show(arrays) ?? arraysFor(figures.particles);
-        posesOf(frames[frame])?.forEach((pose, i) => this.#models[i].follow(pose));
+        const next = share > 0 ? posesOf(frames[frame + 1]) : undefined;
+        posesOf(frames[frame])?.forEach((pose, i) => this.#models[i].follow(next ? between(pose, next[i], share) : pose));
     }
+}
+
+function between(from: Pose, to: Pose, share: number): Pose {
+    const turn = ({ rotation: [w, x, y, z] }: Pose) => new THREE.Quaternion(x, y, z, w);
+    const { x, y, z, w } = turn(from).slerp(turn(to), share);
+    const position = new THREE.Vector3(...from.position).lerp(new THREE.Vector3(...to.position), share);
+    return { position: position.toArray(), rotation: [w, x, y, z] };
+}
+
+/** Of a model where it starts; of several as they lie in their files. */
+function lowest(vertices: Float32Array, pose: Pose | undefined, turn: THREE.Quaternion, up: Axis): number {
+    const k = AXES.indexOf(up);
+    let least = Infinity;
+    const point: [number, number, number] = [0, 0, 0];
+    for (let i = 0; i < vertices.length; i += 3) {
+        point[0] = vertices[i];
+        point[1] = vertices[i + 1];
+        point[2] = vertices[i + 2];
+        const place = pose ? placed(point, pose) : new THREE.Vector3(...point);
+        least = Math.min(least, place.applyQuaternion(turn).getComponent(k));
+    }
+    return least;
 }
 
 const posesOf = (frame: RecordedFrame): Pose[] | undefined => frame.poses ?? (frame.pose && [frame.pose]);
