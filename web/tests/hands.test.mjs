@@ -13,7 +13,8 @@ const frameOf = (page) => page.evaluate(() => Number(document.body.dataset.frame
 
 /** The vertices of an object of the saved mesh. */
 async function verticesOf(page, name) {
-    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#save-mesh').click()]);
+    // Not by the mouse, which may hold something.
+    const [download] = await Promise.all([page.waitForEvent('download'), page.evaluate(() => document.getElementById('save-mesh').click())]);
     const text = await readFile(await download.path(), 'utf8');
     const part = text.slice(text.indexOf(`o ${name}`)).split('\n').slice(1);
     const end = part.findIndex((line) => line.startsWith('o '));

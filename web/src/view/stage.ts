@@ -51,6 +51,7 @@ export class Stage {
     /** The argument of the last lookAt(). */
     #model = { centre: new THREE.Vector3(), radius: 1, axes: axesOf('z') };
     #home = '';
+    #sight: Sight | undefined;
     #arrival = 0;
     /** The camera was moved, and stands at `standpoint` now. */
     onArrival = () => {};
@@ -71,7 +72,9 @@ export class Stage {
     }
 
     /** Places the camera so that a whole sphere, and the cloth above it, is in sight. */
-    lookAt({ centre, radius, up, floor }: Sight): void {
+    lookAt(sight: Sight): void {
+        const { centre, radius, up, floor } = sight;
+        this.#sight = sight;
         const axes = axesOf(up);
         const [upward, sideways, forward] = axes;
         this.#model = { centre: new THREE.Vector3(...centre), radius, axes };
@@ -124,8 +127,10 @@ export class Stage {
 
     /** @param shows  makes the scene show what belongs to a part of the picture: one for all of it, or two for its halves */
     set halves(shows: (() => void)[]) {
+        const isHome = this.standpoint === '';
         this.#halves = shows;
         this.#fit();
+        if (this.#sight && isHome) this.lookAt(this.#sight); // a half is narrower
     }
 
     /** A place in the canvas in the camera's coordinates, -1 to 1. @param x, y  shares of its width and height */
