@@ -179,11 +179,12 @@ class App {
 
     #showProgress({ turn, stage }: FromWorker & { kind: 'progress' }): void {
         const { file } = this.#asked;
-        // A sample is there at once.
-        if (file && turn === this.#asked.turn) showProgress(`${file.name}: ${stage}`, () => this.#cancel());
+        const isSample = !file && turn === this.#asked.turn; // which is there at once
+        if (turn !== this.#turn || isSample) return; // or there are newer requests
+        showProgress(file ? `${file.name}: ${stage}` : stage[0].toUpperCase() + stage.slice(1), () => this.#cancel());
     }
 
-    /** Opens again what was open before. */
+    /** Opens again what was open before, with the settings that were in force. */
     #cancel(): void {
         const before = this.#openings[0];
         this.#main.client.stop();
@@ -191,9 +192,14 @@ class App {
         this.#openings = [];
         this.#rayAsked = false;
         showProgress(undefined);
-        this.#open(before?.turn !== this.#asked.turn ? before?.file : undefined);
+        const isOpening = before?.turn !== this.#asked.turn;
+        if (!isOpening && this.#inForce) this.#setLink({ ...this.#settings, ...this.#inForce });
+        this.#showAll();
+        this.#open(before?.file);
         remark('Cancelled.');
     }
+    /** What a map and its cloth are made by, as the last answer reported it. */
+    #inForce: Partial<Settings> | undefined;
 
     #fail({ sentence, code, turn }: FromWorker & { kind: 'failed' }): void {
         if (turn === undefined) {
@@ -225,6 +231,10 @@ class App {
         this.#openings = this.#openings.filter((opening) => opening.turn === inForce?.turn || opening.turn > turn);
         if (turn !== this.#turn) return; // there are newer requests
         showProgress(undefined);
+        if (inForce) {
+            const { map, cells, grid, directions, particles } = inForce.settings;
+            this.#inForce = { map, cells, grid, directions, particles };
+        }
         const shown = this.#openings[0];
         const { view, shown: inColours, slice, camera, look, beside } = this.#settings; // the page's own
         const settings = inForce ? { ...inForce.settings, view, shown: inColours, slice, camera, look, beside } : this.#settings;

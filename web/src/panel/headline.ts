@@ -10,6 +10,8 @@ export function showHeadline(particles: number, soft: boolean, counts: Counts, m
         verdict(counts),
         make('span', `, ${map.kind === 'exact' ? 'a' : 'the paper\u2019s'} map of ${bytes(map.byteCount)} built in ${milliseconds(map.buildMs)}`),
     ];
+    // At a thin space a line may end, and a number must not.
+    for (const part of parts) part.textContent = part.textContent!.replaceAll('\u2009', '\u202f');
     if (byId('headline').textContent !== parts.map(({ textContent }) => textContent).join('')) byId('headline').replaceChildren(...parts);
 }
 

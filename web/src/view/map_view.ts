@@ -34,6 +34,7 @@ export class MapView {
     /** What was shown is of another map. */
     forget(): void {
         clear(this.#cells);
+        this.#cellNews = undefined;
         for (const part of [this.#surface, this.#cut, this.#ray]) clear(part);
     }
 
@@ -45,14 +46,21 @@ export class MapView {
         this.#surface.add(shell(colouredFaces(cornersOf(news, inwards), news.values, colours)));
         for (const { points } of news.differences ? [news.differences.everywhere, news.differences.near] : []) if (points.length > 0) this.#surface.add(dots(points));
         clear(this.#cells);
-        if (news.cells && this.#model) this.#cells.add(shell(cellBall(news.cells, this.#model)));
+        this.#cellNews = news.cells;
         this.#surface.add(this.#cells);
         this.#clip();
     }
 
     set shown(what: Settings['shown']) {
         this.#cells.visible = what === 'cells';
+        if (!this.#cells.visible || !this.#cellNews || !this.#model) return;
+        // Only now: there may be half a million.
+        this.#cells.add(shell(cellBall(this.#cellNews, this.#model)));
+        this.#cellNews = undefined;
+        this.#clip();
     }
+    #cellNews: SurfaceNews['cells'];
+
     /** Cells hide the surface where they are not cut away. */
     get showsCells(): boolean {
         return this.#cells.visible && this.#cells.children.length > 0;

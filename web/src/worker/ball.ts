@@ -1,5 +1,5 @@
 import type { ColliderState, Echinus, ExactMap, Placement, Shape, Simulation } from 'echinus';
-import { UNIT, following } from '../axes';
+import { AXES, UNIT, following } from '../axes';
 import type { Triple } from '../protocol';
 import type { Body } from './cloth_scene';
 import { intoFrameOf, outOfFrameOf } from './collider_frame';
@@ -67,6 +67,8 @@ export class Ball {
         const share = Math.min(RATE * timeStep, (FASTEST * radius * timeStep) / (Math.hypot(...way) || 1));
         const next = new Float32Array(position.map((part, k) => part + share * way[k]));
         keepOff(model, simulation.collider, next, (RADIUS + GAP) * radius);
+        const k = AXES.indexOf(this.#body.up);
+        next[k] = Math.max(next[k], this.#body.floor + (RADIUS + GAP) * radius);
         simulation.setColliderVelocity([...next].map((part, k) => (part - position[k]) / timeStep), [0, 0, 0], index);
     }
 

@@ -1,5 +1,6 @@
-import type { SceneDescription } from 'echinus';
+import type { Placement, SceneDescription, Shape } from 'echinus';
 import { AXES, type Axis, UNIT } from '../axes';
+import type { Triple } from '../protocol';
 import type { Settings } from '../settings';
 import type { Act } from './acts/act';
 import { ballOf } from './ball';
@@ -9,8 +10,11 @@ export interface Body {
     centre: readonly number[];
     radius: number;
     up: Axis;
-    /** The highest vertex, along `up`. */
+    /** The highest vertex, along `up`, and the lowest. */
     top: number;
+    bottom: number;
+    /** The height of the ground. */
+    floor: number;
 }
 
 /** The rotation from z, the cloth's own up, to another axis. */
@@ -40,7 +44,7 @@ export function sceneFor(settings: Settings, body: Body, act: Act | undefined, {
     const surfaces = settings.map === 'exact' && settings.surfaces; // the paper's map has no faces
     const own = act ? act.scene(settings, body) : { cloth: sheetAbove(settings, body, thickness) };
     return {
-        ...(settings.hand === 'ball' ? { colliders: [{ model: MODEL }, ballOf(body)] } : { model: MODEL }),
+        colliders: [{ model: MODEL }, floorOf(body), ...(settings.hand === 'ball' ? [ballOf(body)] : [])],
         ...own,
         ...(own.cloth && { cloth: { thickness, ...own.cloth } }),
         material: { friction: settings.friction, ...own.material },
@@ -54,6 +58,18 @@ export function sceneFor(settings: Settings, body: Body, act: Act | undefined, {
 
 /** A scene needs a name; the map of the model already exists. */
 const MODEL = 'model.obj';
+
+/** The ground, a box whose upper side it is: in radii its width and height. */
+const GROUND = { width: 10, height: 0.5 };
+
+export function groundSize({ radius, up }: Body): Triple {
+    return AXES.map((axis) => radius * (axis === up ? GROUND.height : GROUND.width)) as Triple;
+}
+function floorOf(body: Body): Placement & { model: Shape } {
+    const position = [...body.centre] as Triple;
+    position[AXES.indexOf(body.up)] = body.floor - 0.5 * GROUND.height * body.radius;
+    return { model: { box: { size: groundSize(body) } }, position };
+}
 
 function sheetAbove({ particles }: Settings, { centre, radius, top, up }: Body, thickness: number): SceneDescription['cloth'] {
     const position = [...centre] as [number, number, number];

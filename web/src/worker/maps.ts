@@ -30,10 +30,15 @@ export class Maps {
         return this.#built.get('exact')!.map as ExactMap;
     }
 
+    /** Is the map of the settings there already? */
+    has(settings: Settings): boolean {
+        return this.#built.get(settings.map)?.options === this.#optionsOf(settings);
+    }
+
     /** The map of the settings; builds it unless the last of its kind was built with the same options. */
     by(settings: Settings): Readonly<Built> {
         const present = this.#built.get(settings.map);
-        if (present?.options === this.#optionsOf(settings)) return present;
+        if (present && this.has(settings)) return present;
         const built = this.build(settings);
         this.#built.set(settings.map, built);
         present?.map.delete();

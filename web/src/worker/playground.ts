@@ -6,7 +6,7 @@ import type { Settings } from '../settings';
 import { surfaceNormals } from '../surface_normals';
 import type { Act } from './acts/act';
 import { Ball, ballRadius } from './ball';
-import { type Body, SIZE, columnsOf, sceneFor, thicknessOf } from './cloth_scene';
+import { type Body, SIZE, columnsOf, groundSize, sceneFor, thicknessOf } from './cloth_scene';
 import { measureDepths } from './depth';
 import { Hand } from './hand';
 import { Judge } from './judge';
@@ -25,8 +25,14 @@ const FRAME_BUDGET_MS = { least: 14, most: 100, share: 0.85 };
 /** Beyond this many faces, creases are left out: they take seconds, and small faces look smooth anyway. */
 const CREASED_FACES = 60_000;
 
+/** How far the visitor's hand reaches around the particle that it grabs, in radii. */
+const HAND = 0.06;
+
 /** Radii per second, of whatever a visitor holds. */
 const FASTEST = 12;
+
+/** The number of the ball among the colliders, after the model and the ground. */
+const BALL = 2;
 
 /** What a frame is, for the page. */
 export interface Look {
@@ -53,6 +59,7 @@ export class Playground {
     readonly #maps: Maps;
     readonly #act: Act | undefined;
     readonly #ball: Ball;
+    readonly #ground: ExactMap;
 
     #settings: Settings;
     #scene!: Scene;
@@ -85,7 +92,8 @@ export class Playground {
         const up = settings.up === 'auto' ? model.up : settings.up;
         tell('building the map');
         this.#maps = new Maps(echinus, this.#mesh, up, settings);
-        this.body = { ...bodyOf(this.#mesh, this.#maps.exact, up), ...this.#act?.body };
+        this.body = bodyOf(this.#mesh, this.#maps.exact, up, this.#act);
+        this.#ground = buildGround(echinus, this.body);
         this.#ball = new Ball(echinus, this.body);
         tell('laying the cloth');
         this.restart();
@@ -94,6 +102,7 @@ export class Playground {
     delete(): void {
         this.#dropCloth();
         this.#ball.delete();
+        this.#ground.delete();
         this.#maps.delete();
         this.#mesh.delete();
     }
@@ -116,8 +125,6 @@ export class Playground {
 
     news(): ModelNews {
         const { vertices, faces } = this.#mesh;
-        const bottom = furthestAlong(this.body.up, vertices.map((part) => -part)).map((part) => -part)[AXES.indexOf(this.body.up)];
-        const height = this.body.top - bottom;
         return {
             name: this.#name,
             vertices,
@@ -131,16 +138,16 @@ export class Playground {
             centre: [...this.exactMap.centre] as Triple,
             radius: this.exactMap.radius,
             sight: { centre: [...this.body.centre] as Triple, radius: this.body.radius },
-            // Room for a cloth that hangs over a flat model.
-            floor: this.#act?.floor ?? bottom - Math.max(0, 0.65 * this.body.radius - height),
+            floor: this.body.floor,
             up: this.body.up,
             map: this.mapNews,
         };
     }
 
-    /** @returns whether the cloth started anew */
-    change(settings: Settings): boolean {
+    /** @param tell  is told what takes time before it is done @returns whether the cloth started anew */
+    change(settings: Settings, tell: (stage: Stage) => void): boolean {
         const before = this.#settings;
+        if (!this.#maps.has(settings)) tell('building the map');
         this.#settings = settings;
         try {
             return this.#follow(settings, before);
@@ -207,7 +214,7 @@ export class Playground {
     }
 
     get #clothMaps(): AnyMap[] {
-        return this.#settings.hand === 'ball' ? [this.map, this.#ball.map] : [this.map];
+        return [this.map, this.#ground, ...(this.#settings.hand === 'ball' ? [this.#ball.map] : [])];
     }
 
     /**
@@ -245,13 +252,24 @@ export class Playground {
     }
 
     grab(particle: number, target: Triple): void {
-        const reach = this.#act ? 0.04 : 1.5 * SIZE / 50; // the hand has the same size on fine and coarse cloths
-        if (particle < this.#simulation.particleCount) this.hand.grab(this.#simulation, particle, target, reach * this.body.radius);
+        if (particle >= this.#simulation.particleCount) return;
+        // The hand has the same size on fine and coarse cloths, but holds the neighbours at least.
+        const reach = Math.max(HAND * this.body.radius, 1.05 * longestEdgeAt(particle, this.#cloth.faces, this.#simulation.positions));
+        this.hand.grab(this.#simulation, particle, target, reach);
     }
 
     /** The pointer's line, for the ball. */
     point(from: Triple, to: Triple): void {
         this.#ball.aim(this.exactMap, this.collider, from, to);
+    }
+
+    hold(offset: Triple): void {
+        const { bottom, floor, up } = this.body;
+        const least = this.#act?.deepest ?? floor - bottom;
+        const k = AXES.indexOf(up);
+        // The model may be lower already by its own motion.
+        const own = this.#act?.motion ? this.collider.position[k] - this.shake.offset[k] : 0;
+        this.shake.hold(offset, k, least - own);
     }
 
     get #frame(): number {
@@ -267,7 +285,7 @@ export class Playground {
         if (wind.some((part) => part !== 0)) simulation.blow(wind, 4);
         this.#act?.steer?.(simulation, seconds);
         this.hand.pull(simulation, this.#scene.timeStep, FASTEST * radius);
-        if (simulation.colliderCount > 1) this.#ball.move(simulation, this.exactMap, 1, this.#scene.timeStep);
+        if (simulation.colliderCount > BALL) this.#ball.move(simulation, this.exactMap, BALL, this.#scene.timeStep);
         simulation.step();
     }
 
@@ -326,7 +344,7 @@ export class Playground {
             inside: wrong.length,
             stepCount,
         };
-        return { arrays: filled, figures, wrong, ...(simulation.colliderCount > 1 && { ball: simulation.colliderAt(1).position }) };
+        return { arrays: filled, figures, wrong, ...(simulation.colliderCount > BALL && { ball: simulation.colliderAt(BALL).position }) };
     }
 
     #continue(): void {
@@ -357,8 +375,31 @@ export class Playground {
     }
 }
 
-function bodyOf(mesh: Mesh, map: ExactMap, up: Axis): Body {
-    return { centre: map.centre, radius: map.radius, up, top: furthestAlong(up, mesh.vertices)[AXES.indexOf(up)] };
+function bodyOf(mesh: Mesh, map: ExactMap, up: Axis, act: Act | undefined): Body {
+    const { vertices } = mesh;
+    const k = AXES.indexOf(up);
+    const top = furthestAlong(up, vertices)[k], bottom = -furthestAlong(up, vertices.map((part) => -part))[k];
+    const { centre, radius } = act?.body ?? map;
+    // Room for a cloth that hangs over a flat model.
+    const floor = act?.floor ?? bottom - Math.max(0, 0.65 * radius - (top - bottom));
+    return { centre, radius, up, top, bottom, floor };
+}
+
+function buildGround(echinus: Echinus, body: Body): ExactMap {
+    const box = echinus.makeBox(groundSize(body));
+    const map = echinus.buildMap(box, { kind: 'exact' });
+    box.delete();
+    return map;
+}
+
+function longestEdgeAt(particle: number, faces: Uint32Array, positions: Float32Array): number {
+    let longest = 0;
+    for (let corner = faces.indexOf(particle); corner >= 0; corner = faces.indexOf(particle, corner + 1))
+        for (let k = 0; k < 3; ++k) {
+            const other = faces[corner - (corner % 3) + k];
+            longest = Math.max(longest, Math.hypot(...[0, 1, 2].map((c) => positions[3 * other + c] - positions[3 * particle + c])));
+        }
+    return longest;
 }
 
 /** Places on a square sheet, in radii of the model. */

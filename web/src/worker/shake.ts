@@ -9,10 +9,10 @@ export class Shake {
     #offset: Triple = [0, 0, 0];
     #held = false;
 
-    /** @param offset  from where the model would be otherwise */
-    hold(offset: Triple): void {
+    /** @param offset  from where the model would be otherwise @param up  an axis @param least  along it */
+    hold(offset: Triple, up: number, least: number): void {
         this.#held = true;
-        this.#wish = offset;
+        this.#wish = offset.map((part, k) => (k === up ? Math.max(part, least) : part)) as Triple;
     }
     release(): void {
         this.#held = false;

@@ -59,7 +59,7 @@ async function handle(message: ToWorker): Promise<void> {
             const before = playground.mapNews;
             // Settings that only opening applies stay as opened: the change may belong to a model that then failed.
             const { model, mend, up, hand } = playground.settings;
-            const anew = playground.change({ ...message.settings, model, mend, up });
+            const anew = playground.change({ ...message.settings, model, mend, up }, (stage) => tell({ kind: 'progress', turn: message.turn, stage }));
             if (playground.mapNews !== before) tell({ kind: 'map', map: playground.mapNews });
             if (anew) tellCloth(playground, before === playground.mapNews ? 'changed' : 'map');
             else if (playground.settings.hand !== hand) tell({ kind: 'hand', ...(playground.clothNews.ball && { ball: playground.clothNews.ball }) });
@@ -80,7 +80,7 @@ async function handle(message: ToWorker): Promise<void> {
             playground.shake.release();
             return playground.hand.release();
         case 'hold':
-            return playground.shake.hold(message.offset);
+            return playground.hold(message.offset);
         case 'pointer':
             return playground.point(message.from, message.to);
         case 'ray':

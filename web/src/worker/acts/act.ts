@@ -6,7 +6,7 @@ import type { Body } from '../cloth_scene';
 /** What happens around a model: by default a sheet falls on it (cloth_scene.ts). */
 export interface Act {
     /** What the camera shows, and what lengths and gravity are measured by, where that is not the model alone. */
-    body?: Omit<Body, 'top'>;
+    body?: Pick<Body, 'centre' | 'radius' | 'up'>;
     /** How high the ground is, along up. */
     floor: number;
     /** The cloth or the soft bodies in the scene, with the material, and what differs from every act's scene. */
@@ -23,6 +23,8 @@ export interface Act {
     motion?(seconds: number): { linear: Triple; angular: Triple };
     /** The air's velocity at a time, in radii per second. */
     wind?(seconds: number): Triple;
+    /** How far down the visitor may push the model; by default onto the ground. */
+    deepest?: number;
     /** Until then nothing counts as at rest, in seconds. */
     lasts: number;
 }

@@ -26,6 +26,7 @@ export function organ(): Act {
     return {
         body: { centre: [0, 0, BELOW + 0.2], radius: 1.25, up: 'z' },
         floor: BELOW - 0.36,
+        deepest: -0.72, // what is held below must not be squeezed
         lasts: Infinity,
         thickness: () => 0.018,
         scene: ({ particles }) => ({
