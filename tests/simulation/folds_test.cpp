@@ -48,9 +48,11 @@ Deformable rumpled_cloth(std::uint32_t columns, std::uint32_t rows, float size =
 /// Positions after as many relaxations of the folds alone.
 std::vector<Vec3f> relaxed(const Deformable& cloth, const SimulationOptions& options, int count) {
     FoldArrays folds = weighted_folds(cloth, options);
-    PointArrays positions;
+    PointArrays positions, remainders;
     positions.load(cloth.positions);
-    for (int i = 0; i < count; ++i) relax(folds, positions);
+    remainders.resize(cloth.particle_count());
+    const bool keeps_remainders = options.solver == SolverKind::Xpbd;
+    for (int i = 0; i < count; ++i) relax(folds, positions, keeps_remainders ? &remainders : nullptr);
     std::vector<Vec3f> result(cloth.particle_count());
     positions.store(result);
     return result;

@@ -14,8 +14,8 @@ using namespace echinus;
 
 namespace {
 
-/// How far a block of rubber slides down a slope in half a second, with the friction 0.5, and the friction that
-/// its acceleration in the second half of that time tells. In the first it sags onto the slope.
+/// How far a block of rubber slides down a slope in half a second, with the friction 0.5, and the friction
+/// that its acceleration in the second half of that time tells. In the first it sags onto the slope.
 struct Slide {
     double distance, friction;
 };
