@@ -274,7 +274,8 @@ double sharing_distance(const ExactMapView& map) {
     return kLeaves * static_cast<double>(kLatticeExtent) / std::sqrt(leaf_count);
 }
 
-bool pays_to_share(std::span<const NearestSearch> group, double farthest_apart) {
+/// @param distance  from the surface, of a place nearby: from afar, places see the same faces first
+bool pays_to_share(std::span<const NearestSearch> group, double farthest_apart, double distance) {
     if (group.size() < hn::Lanes(Floats()) / 2) return false;
     Vec3d low = group[0].place, high = low;
     for (const NearestSearch& search : group) {
@@ -283,7 +284,7 @@ bool pays_to_share(std::span<const NearestSearch> group, double farthest_apart) 
         high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
     }
     const Vec3d apart = high - low;
-    return apart.x + apart.y + apart.z <= farthest_apart;
+    return apart.x + apart.y + apart.z <= farthest_apart + distance;
 }
 
 template <typename Measure>
@@ -323,15 +324,18 @@ void find_nearest_faces(const ExactMapView& map, const Vec3d& stretch,
     }
     const std::size_t lanes = hn::Lanes(Floats());
     const double farthest_apart = sharing_distance(map);
+    double distance = 0; // of the last place
     const auto find_with = [&](auto& finder) {
         for (std::size_t begin = 0; begin < searches.size(); begin += lanes) {
             const std::size_t count = std::min(lanes, searches.size() - begin);
             const auto group = searches.subspan(begin, count);
             const auto found = faces.subspan(begin, count);
-            if (pays_to_share(group, farthest_apart))
+            if (pays_to_share(group, farthest_apart, distance))
                 finder.find(group, found);
             else
                 for (std::size_t i = 0; i < count; ++i) found[i] = search_alone(map, stretch, group[i]);
+            if (found.back() != kNoFace)
+                distance = std::sqrt(distance_sq_to_face(map, found.back(), group.back().place, stretch));
         }
     };
     const bool unstretched = stretch == Vec3d{1, 1, 1};

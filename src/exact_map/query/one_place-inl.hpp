@@ -84,6 +84,12 @@ class NearMeasure {
         return static_cast<float>(std::min(farthest_sq, double{kFarthest})) * (1 + 0x1p-20F);
     }
     float limit_by(double distance_sq) const { return limit(distance_sq); }
+    /// The square of how far a leaf near the place's ray is likely to be near the place, too: the width of
+    /// two leaves, if they were spread over the sphere.
+    static float close_by(const ExactMapView& map) {
+        constexpr auto kExtent = static_cast<float>(kLatticeExtent);
+        return 32 * kExtent * kExtent / static_cast<float>(map.face_count());
+    }
 
     /// By which nearest_face() compares faces.
     double distance_sq(const ExactMapView& map, std::uint32_t face) const {
@@ -254,6 +260,9 @@ class AfarMeasure {
         return static_cast<float>((distance_sq - distance_ * distance_) / (2 * distance_)) + kSlack;
     }
 
+    /// No leaf is.
+    static float close_by(const ExactMapView& /*map*/) { return -kFarthest; }
+
     double distance_sq(const ExactMapView& map, std::uint32_t face) const {
         return distance_sq_to_face(map, face, place_, {1, 1, 1});
     }
@@ -355,6 +364,7 @@ class OnePlaceSearch {
         nearest_sq_ = farthest_sq;
         first_leaf_ = near_leaf == kNoLeaf ? kNoLeaf : TreeNode::kLeaf + near_leaf;
         if (near_leaf != kNoLeaf) visit_leaf(near_leaf);
+        if (!(upper_ < measure_.close_by(map_))) visit_leaf_by_descent();
         measure_.set_reach(upper_);
         node_count_ = 1;
         nodes_[0] = 0;
@@ -426,12 +436,33 @@ class OnePlaceSearch {
             const auto near =
                 hn::And(hn::RebindMask(n, hn::Le(lower, eight(upper_))), boxes_that_exist(node, lane));
             const auto leaves = hn::And(near, hn::Lt(children, hn::Zero(n))); // TreeNode::kLeaf is the sign
-            const auto is_new = hn::Ne(children, hn::Set(n, static_cast<std::int32_t>(first_leaf_)));
+            const auto is_new =
+                hn::And(hn::Ne(children, hn::Set(n, static_cast<std::int32_t>(first_leaf_))),
+                        hn::Ne(children, hn::Set(n, static_cast<std::int32_t>(second_leaf_))));
             leaves_.add(hn::And(leaves, is_new), lower, children);
             const auto nodes = hn::AndNot(leaves, near);
             if (!hn::AllFalse(n, nodes)) [[unlikely]]
                 push_nodes(nodes, children);
         }
+    }
+
+    /// Follows the nearest box down to a leaf.
+    HWY_NOINLINE void visit_leaf_by_descent() {
+        std::uint32_t child = 0;
+        do {
+            const TreeNode& node = map_.nodes[child];
+            alignas(32) std::array<float, kWidth> distances;
+            for (std::size_t lane = 0; lane < kWidth; lane += hn::Lanes(Eight())) {
+                const auto exists = hn::RebindMask(Eight(), boxes_that_exist(node, lane));
+                hn::Store(hn::IfThenElse(exists, measure_.boxes(node, lane), eight(kInfinity)), Eight(),
+                          &distances[lane]);
+            }
+            const auto nearest = std::min_element(distances.begin(), distances.end());
+            child = node.children[static_cast<std::size_t>(nearest - distances.begin())];
+        } while ((child & TreeNode::kLeaf) == 0);
+        if (child == first_leaf_) return;
+        second_leaf_ = child;
+        visit_leaf(child - TreeNode::kLeaf);
     }
 
     /// The nearest first of as many as there are lanes.
@@ -552,7 +583,7 @@ class OnePlaceSearch {
     std::size_t node_count_ = 0;
     std::array<std::uint32_t, kMaxDepth * kWidth + kWidth> nodes_;
     Leaves leaves_;
-    std::uint32_t first_leaf_ = kNoLeaf; ///< as a child; it has been visited
+    std::uint32_t first_leaf_ = kNoLeaf, second_leaf_ = kNoLeaf; ///< as children; they have been visited
 };
 
 } // namespace echinus::HWY_NAMESPACE
