@@ -139,7 +139,7 @@ test('an open mesh is reported with the number of its border edges', async () =>
     assert.match(await page.locator('#report').textContent(), /Open/);
     await page.locator('input[name=surfaces]').check(); // faces of the cloth that intersect would be red, too
     await untilFrame(page, 1);
-    assert.ok((await pixelsOf(page, FAULT_RED)) > 100, 'the border is drawn');
+    assert.ok((await pixelsOf(page, FAULT_RED)) > 15, 'the border is drawn, where the cloth does not hide it');
     await page.locator('input[name=map][value=distance]').check();
     await page.waitForFunction(() => document.getElementById('map-note').textContent.includes('paper') || !document.getElementById('notice').hidden);
     await page.locator('#restart').click();

@@ -12,7 +12,7 @@ const HIDDEN = 0.18;
 export class ModelView {
     readonly group = new THREE.Group();
     /** The model alone, without the faults. Added to the group once it has normals, since three.js compiles the program for its attributes at once. */
-    readonly clay = new THREE.Mesh(new THREE.BufferGeometry(), matte(CLAY));
+    readonly clay = new THREE.Mesh(new THREE.BufferGeometry(), clay());
 
     show({ vertices, faces, shape, faults }: Pick<ModelNews, 'vertices' | 'faces' | 'shape' | 'faults'>): void {
         this.group.remove(this.clay);
@@ -39,6 +39,11 @@ export class ModelView {
         const moved = new THREE.BufferAttribute(vertices.slice(), 3);
         return moved.applyMatrix4(this.group.matrixWorld).array as Float32Array;
     }
+}
+
+/** A little further away than it is, so that lines on it are drawn whole. */
+function clay(): THREE.MeshLambertMaterial {
+    return Object.assign(matte(CLAY), { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 4 });
 }
 
 function creased({ positions, normals }: Shape): THREE.BufferGeometry {
