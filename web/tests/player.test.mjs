@@ -84,6 +84,16 @@ test('a visitor can pause, step, go to any frame, and start over', { skip }, asy
     await page.context().close();
 });
 
+test('between two recorded frames the cloth goes on, and a pause on a frame shows that frame', { skip }, async () => {
+    const page = await browser.open(torus, SMALL);
+    await page.locator('#speed').selectOption('0.1');
+    await untilPlayed(page, 2);
+    await page.waitForFunction(() => Number(document.body.dataset.share) > 0.1 && Number(document.body.dataset.share) < 0.9);
+    await scrubTo(page, 10);
+    assert.equal(await page.evaluate(() => document.body.dataset.share), '0.00');
+    await page.context().close();
+});
+
 test('at a higher speed it comes to the end, and stays there', { skip }, async () => {
     const page = await browser.open(torus, SMALL);
     await page.locator('#speed').selectOption('4');

@@ -52,6 +52,7 @@ export class Player {
         const { frames, figures } = this.#recording.description;
         this.#world.show(frame, share);
         this.#share = share;
+        document.body.dataset.share = share.toFixed(2); // the tests read this
         if (frame === this.#shown) return;
         showFrame(frames[frame], figures.time_step);
         this.#scrub.value = String(frame);
