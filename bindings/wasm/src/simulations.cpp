@@ -234,7 +234,8 @@ std::uint32_t simulation_collider_count(const Simulation* simulation) {
     return static_cast<std::uint32_t>(simulation->colliders().size());
 }
 /// @pre index < simulation_collider_count(), as for the others
-ECHINUS_EXPORT(simulation_collider) Text* simulation_collider(const Simulation* simulation, std::uint32_t index) {
+ECHINUS_EXPORT(simulation_collider)
+Text* simulation_collider(const Simulation* simulation, std::uint32_t index) {
     return make_json([&] { return to_json(simulation->colliders()[index]); });
 }
 ECHINUS_EXPORT(simulation_set_collider_velocity)
