@@ -82,7 +82,6 @@ class App {
         this.#controls = new Controls(this.#settings, (settings, key) => this.#change(settings, key));
         this.#tour = new Tour({
             model: () => this.#model,
-            look: (standpoint) => (this.#stage.standpoint = standpoint),
             choose: (view) => this.#choose('view', view),
             tell: (message) => this.#main.client.tell(message),
         });

@@ -4,8 +4,6 @@ import type { ModelNews, ToWorker, Triple } from './protocol';
 
 export interface TourWishes {
     model(): ModelNews | undefined;
-    /** As in a link (standpoint.ts). */
-    look(standpoint: string): void;
     choose(view: 'cloth' | 'map'): void;
     tell(message: ToWorker): void;
 }
