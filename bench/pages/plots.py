@@ -43,7 +43,7 @@ def plot_sets(rows, x, x_label, path):
         axes.set(xscale="log", yscale="log", xlabel=x_label, title=name)
         axes.grid(True, which="major", alpha=0.3)
     all_axes[0].set_ylabel("ns a particle")
-    figure.legend(*all_axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, frameon=False)
+    all_axes[-1].legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
     figure.savefig(path, metadata={"Date": None})
     pyplot.close(figure)
 
