@@ -43,10 +43,12 @@ if(ECHINUS_SANITIZE)
 endif()
 
 # The headers that sources include most, and the given ones, compiled once for the target. Each source still names its own
-# includes: the presets clang and wasm compile without. (The latter has sources that are optimised in another way.)
+# includes: the presets clang and wasm compile without. (The latter has sources that are optimised in another way.) None of
+# the project's own: GCC tells a header that it has seen by its date, so that what ccache kept of a checkout does not fit
+# the next one.
 function(echinus_precompile target)
   target_precompile_headers(${target} PRIVATE <algorithm> <array> <bit> <cmath> <cstddef> <cstdint> <functional> <limits>
-    <memory> <optional> <span> <string> <string_view> <utility> <variant> <vector> <echinus/echinus.hpp> ${ARGN})
+    <memory> <optional> <span> <string> <string_view> <utility> <variant> <vector> ${ARGN})
 endfunction()
 
 # echinus_add_library(NAME [SHARED]): the library target echinus_NAME with the alias echinus::NAME.

@@ -1,8 +1,7 @@
 #pragma once
 
-// The headers that nearly every test includes. Each test still names its own includes.
-
-#include <echinus/echinus.hpp>
+// The headers that nearly every test includes, but for our own (cmake/EchinusTargets.cmake says why). Each test still
+// names its own includes.
 
 #include <gtest/gtest.h>
 
