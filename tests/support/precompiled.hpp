@@ -1,7 +1,7 @@
 #pragma once
 
-// The headers that nearly every test includes, but for our own (cmake/EchinusTargets.cmake says why). Each test still
-// names its own includes.
+// The headers that nearly every test includes, but for our own (cmake/EchinusTargets.cmake says why). Each
+// test still names its own includes.
 
 #include <gtest/gtest.h>
 
