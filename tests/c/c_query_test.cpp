@@ -3,6 +3,7 @@
 #include "handles.hpp"
 #include "support/random_points.hpp"
 
+#include <echinus/distance_map.hpp>
 #include <echinus/exact_map.hpp>
 #include <echinus/mesh.hpp>
 #include <echinus/surface_queries.hpp>
