@@ -86,9 +86,7 @@ struct Deformable {
     /// compliance or there are tetrahedra; 0 for a pinned particle: it stays in place, or where it is
     /// attached, and no collider pushes it.
     std::vector<float> inverse_masses;
-    /// In the order in which they are relaxed; where surfaces collide, every second relaxation of Verlet's
-    /// takes the groups of sticks without a common particle in the opposite order.
-    std::vector<Stick> sticks;
+    std::vector<Stick> sticks;             ///< in the order in which they are relaxed
     std::vector<Triangle> faces;           ///< for pictures, wind and contact of surfaces
     std::vector<Fold> folds{};             ///< in the order in which they are relaxed, before the sticks
     std::vector<Attachment> attachments{}; ///< of pinned particles, at most one of each

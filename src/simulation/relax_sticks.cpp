@@ -288,10 +288,8 @@ void relax(StickArrays& sticks, std::span<const std::uint32_t> chosen, PointArra
         HWY_NAMESPACE::relax_one(sticks, i, HWY_NAMESPACE::RoundedPlaces{positions});
 }
 
-void relax(StickArrays& sticks, PointArrays& positions, PointArrays* remainders, RunOrder order) noexcept {
-    const std::size_t run_count = sticks.runs.size();
-    for (std::size_t r = 0; r < run_count; ++r) {
-        const StickRun& run = sticks.runs[order == RunOrder::Forwards ? r : run_count - 1 - r];
+void relax(StickArrays& sticks, PointArrays& positions, PointArrays* remainders) noexcept {
+    for (const StickRun& run : sticks.runs) {
         const std::size_t done =
             use_kernels() ? ECHINUS_DISPATCH(relax_run)(run, sticks, positions, remainders) : 0;
         const std::size_t left = run.count - done;

@@ -143,7 +143,7 @@ void Simulation::Solver::step() {
         move_colliders(substep);
         begin_constraints();
         for (std::uint32_t iteration = 0; iteration < options.iteration_count; ++iteration) {
-            relax_constraints(order_of(substep * options.iteration_count + iteration));
+            relax_constraints();
             relax_stretched_part();
             collide();
         }
@@ -235,21 +235,12 @@ void Simulation::Solver::begin_constraints() {
     damp(tetrahedra_, particles_);
 }
 
-/// Relaxed in one order for ever, a slack sheet that hangs between two places does not come to rest: each
-/// relaxation pushes its ripples on in the same direction. Contact of particles only keeps to the paper. The
-/// springs of XPBD come to rest in one order, and tremble in two.
-RunOrder Simulation::Solver::order_of(std::uint64_t relaxation) const {
-    if (!surfaces_ || options.solver == SolverKind::Xpbd) return RunOrder::Forwards;
-    const std::uint64_t per_frame = std::uint64_t{options.substep_count} * options.iteration_count;
-    return (frame * per_frame + relaxation) % 2 == 0 ? RunOrder::Backwards : RunOrder::Forwards;
-}
-
-void Simulation::Solver::relax_constraints(RunOrder order) {
+void Simulation::Solver::relax_constraints() {
     const Stopwatch stopwatch(profile.constraint_seconds);
     if (meter_) meter_->note(particles_);
     PointArrays* const remainders = particles_.keeps_remainders ? &particles_.remainders : nullptr;
     relax(folds_, particles_.positions, remainders);
-    relax(sticks_, particles_.positions, remainders, order);
+    relax(sticks_, particles_.positions, remainders);
     relax(tetrahedra_, particles_);
     if (meter_) meter_->charge_holder(particles_);
 }

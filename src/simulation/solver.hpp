@@ -65,8 +65,7 @@ class Simulation::Solver {
     void look_ahead();
     void move_colliders(std::uint32_t substep);
     void begin_constraints();
-    RunOrder order_of(std::uint64_t relaxation) const;
-    void relax_constraints(RunOrder order);
+    void relax_constraints();
     void collide();
     void relax_stretched_part();
     void keep_free();

@@ -58,13 +58,9 @@ struct StickArrays {
 /// By the solver that the options choose, in the deformable's order.
 StickArrays weighted_sticks(const Deformable& deformable, const SimulationOptions& options);
 
-/// The order of the runs; within a run it is always that of its sticks.
-enum class RunOrder : std::uint8_t { Forwards, Backwards };
-
-/// One relaxation of all sticks. The same bits under every instruction set.
+/// One relaxation of all sticks, in order. The same bits under every instruction set.
 /// @param remainders  what rounding took off the positions, taken along; null: it is lost
-void relax(StickArrays& sticks, PointArrays& positions, PointArrays* remainders = nullptr,
-           RunOrder order = RunOrder::Forwards) noexcept;
+void relax(StickArrays& sticks, PointArrays& positions, PointArrays* remainders = nullptr) noexcept;
 
 /// The same of some sticks, by their numbers, without remainders.
 void relax(StickArrays& sticks, std::span<const std::uint32_t> chosen, PointArrays& positions) noexcept;

@@ -34,8 +34,7 @@ void expect_same_bits_under_each_instruction_set(const Deformable& cloth,
         positions.load(cloth.positions);
         remainders.resize(cloth.particle_count());
         PointArrays* const kept = options.solver == SolverKind::Xpbd ? &remainders : nullptr;
-        for (int i = 0; i < 3; ++i)
-            relax(sticks, positions, kept, i == 1 ? RunOrder::Backwards : RunOrder::Forwards);
+        for (int i = 0; i < 3; ++i) relax(sticks, positions, kept);
         std::vector<Vec3f> result(cloth.particle_count()), left_over = result;
         positions.store(result);
         remainders.store(left_over);
@@ -174,22 +173,4 @@ TEST(StretchedPart, IsEmptyWhereMuchIsStretched) {
     StretchedPart part(sticks, cloth.particle_count());
     part.find(sticks, positions);
     EXPECT_TRUE(part.empty());
-}
-
-TEST(Sticks, AreRelaxedBackwardsRunByRun) {
-    const Deformable cloth = rumpled_cloth(37, 9);
-    StickArrays sticks = weighted_sticks(cloth, {}), one_run = sticks;
-    PointArrays backwards, expected;
-    backwards.load(cloth.positions);
-    expected.load(cloth.positions);
-    relax(sticks, backwards, nullptr, RunOrder::Backwards);
-    for (std::size_t r = sticks.runs.size(); r-- > 0;) {
-        one_run.runs = {sticks.runs[r]};
-        relax(one_run, expected);
-    }
-    EXPECT_EQ(backwards.x, expected.x);
-    PointArrays forwards;
-    forwards.load(cloth.positions);
-    relax(sticks, forwards);
-    EXPECT_NE(backwards.x, forwards.x);
 }

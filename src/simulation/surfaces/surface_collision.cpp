@@ -165,24 +165,29 @@ void SurfaceCollision::find_pulls(const std::vector<Collider>& colliders, const 
     has_pulls_ = std::count(moves_.begin(), moves_.end(), std::uint8_t{1}) != 0 &&
                  std::count(is_near_.begin(), is_near_.end(), std::uint8_t{1}) > 1;
     if (!has_pulls_) return;
-    pulls_.resize(models_.size());
-    const float reach = kPullReach * *std::max_element(carry_reaches_.begin(), carry_reaches_.end());
-    rest_pull_ = 1 / reach;
-    for_each_near([&](std::size_t c, ModelSurface&) { find_pulls_of(c, colliders[c], reach, particles); });
+    begin_pulls(particles.count());
+    for_each_near([&](std::size_t c, ModelSurface&) { find_pulls_of(c, colliders[c], particles); });
 }
 
-void SurfaceCollision::find_pulls_of(std::size_t c, const Collider& collider, float reach,
-                                     const Particles& particles) {
+void SurfaceCollision::begin_pulls(std::size_t particle_count) {
+    has_pulls_ = true;
+    rest_pull_ = 1 / (kPullReach * *std::max_element(carry_reaches_.begin(), carry_reaches_.end()));
+    pulls_.resize(models_.size());
+    for (std::vector<float>& pulls : pulls_) pulls.assign(particle_count, 0.0F);
+}
+
+/// @param collider  as the frame begins
+void SurfaceCollision::find_pulls_of(std::size_t c, const Collider& collider, const Particles& particles) {
+    const float reach = 1 / rest_pull_;
     beside_.clear();
     places_.clear();
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
         if (clearances_[c][v] > reach) continue;
         beside_.push_back(v);
-        places_.push_back(particles.positions[v]);
+        places_.push_back(particles.frame_start[v]);
     }
     contacts_.resize(beside_.size());
     contacts_batch(collider, places_, reach, contacts_);
-    pulls_[c].assign(particles.count(), 0.0F);
     for (std::size_t n = 0; n < beside_.size(); ++n) {
         if (!contacts_[n].found()) continue;
         const float distance = std::max(std::fabs(contacts_[n].depth), kLeastDistance * reach);
@@ -242,6 +247,11 @@ void SurfaceCollision::meet_late(std::size_t collider, const Collider& at_end, c
     model.begin_frame(at_start, motions_[collider], particles.frame_start, {}, workers);
     model.look_ahead(at_end, particles.positions, workers);
     poses_[collider] = at_end.pose;
+    if (own_frame_ < models_.size()) return; // another takes along what stays behind
+    if (!has_pulls_ && moves_[collider] == 0) return;
+    if (!has_pulls_) begin_pulls(particles.count());
+    clearances_[collider].assign(particles.count(), 0.0F); // nothing is known
+    find_pulls_of(collider, at_start, particles);
 }
 
 void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profile, LoadMeter* meter,

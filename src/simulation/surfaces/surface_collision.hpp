@@ -53,7 +53,8 @@ class SurfaceCollision {
   private:
     void keep_gaps(const std::vector<Collider>& colliders, const Particles& particles);
     void find_pulls(const std::vector<Collider>& colliders, const Particles& particles);
-    void find_pulls_of(std::size_t model, const Collider& collider, float reach, const Particles& particles);
+    void begin_pulls(std::size_t particle_count);
+    void find_pulls_of(std::size_t model, const Collider& collider, const Particles& particles);
     bool pass(Particles& particles, bool is_first, const Workers& workers);
     void find_leaving(const Workers& workers);
     void shorten_ways(bool is_first, const Particles& particles, const Workers& workers);
