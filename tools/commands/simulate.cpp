@@ -295,7 +295,9 @@ void simulate(const SimulateArguments& arguments) {
 
     const LoadedColliders colliders =
         load_colliders(scene, arguments.scene, arguments.model_folders, arguments.threads_around());
-    for (const fs::path& file : colliders.files) require_another_file(file, arguments.page);
+    for (const fs::path& file : colliders.files)
+        for (const fs::path& target : {arguments.page, arguments.save_state})
+            require_another_file(file, target);
     Simulation simulation = made_as_scene_says(
         arguments.scene, "", [&] { return make_simulation(scene, colliders.maps, cloth, colliders.caches); });
     if (results.folder) results.folder->begin(simulation.deformable(), colliders, stride);

@@ -30,9 +30,6 @@ import { Stage } from './view/stage';
 const TURN = 5;
 const ZOOM = 1.1;
 
-/** By how many frames one of two cloths side by side may be ahead. */
-const AHEAD = 8;
-
 /** How often the words beneath the halves and the headline may change. */
 const WORDS_MS = 250;
 
@@ -104,7 +101,7 @@ class App {
         });
         this.#stage.onArrival = () => this.#keepCamera();
         this.#stage.onLoss = () => say('The browser has lost the graphics context. If the picture does not come back, reload the page.');
-        this.#stage.onLook = () => this.#showLook();
+        this.#stage.onLook = () => this.#passLook();
         client.listen((message) => this.#hear(message));
         this.#showAll();
         this.#open(undefined);
@@ -355,8 +352,8 @@ class App {
     #draw(): void {
         const other = this.#other;
         const asks = this.#settings.view === 'cloth' && this.#model !== undefined;
-        const next = this.#main.advance(asks, other ? other.frame + AHEAD : Infinity);
-        other?.advance(asks && other.news !== undefined, this.#main.frame + AHEAD);
+        const next = this.#main.advance(asks, other?.limit ?? Infinity);
+        other?.advance(asks && other.news !== undefined, this.#main.limit);
         if (next) {
             this.#figures.add(next.figures);
             // The tests wait for this.
@@ -446,6 +443,11 @@ class App {
 
     #showLook(): void {
         this.#stage.look = this.#settings.look;
+        this.#passLook();
+    }
+
+    /** The stage chooses the look, if nobody else has. */
+    #passLook(): void {
         for (const side of [this.#main, this.#other]) if (side) side.view.fine = this.#stage.fine;
         document.body.dataset.look = this.#stage.fine ? 'fine' : 'light'; // the tests read this
     }
@@ -465,7 +467,7 @@ class App {
         this.#stage.ground.visible = !map;
         this.#mapView.group.visible = map;
         if (map && this.#other) this.#endBeside();
-        else if (!map && this.#settings.beside !== 'nothing' && this.#model) this.#beginBeside();
+        else if (!map && this.#settings.beside !== 'nothing' && this.#model && !this.#other) this.#beginBeside();
         if (map && this.#model) this.#askForMap();
     }
 

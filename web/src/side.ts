@@ -16,6 +16,9 @@ export interface Counts {
     own?: number;
 }
 
+/** By how many frames one of two cloths side by side may be ahead. */
+const AHEAD = 8;
+
 /** A cloth: the worker that simulates it, its picture, and what is wrong with it. The page has one, or two side by side. */
 export class Side {
     readonly client: Client;
@@ -33,6 +36,7 @@ export class Side {
     #cloth = 0;
     #framesAsked = 0;
     #arrived: Frame[] = [];
+    #atRest = false;
 
     constructor(client: Client) {
         this.client = client;
@@ -50,6 +54,7 @@ export class Side {
                 this.#arrived = [];
                 this.news = message;
                 this.frame = 0;
+                this.#atRest = false;
                 this.counts = { inside: 0 };
                 this.view.begin(message);
                 this.#setBall(message.ball);
@@ -67,6 +72,11 @@ export class Side {
 
     #setBall(radius: number | undefined): void {
         this.ball = radius === undefined ? undefined : { ...this.ball, radius };
+    }
+
+    /** The last frame to which a half beside this one may go: they keep in step until one of them rests. */
+    get limit(): number {
+        return this.#atRest ? Infinity : this.frame + AHEAD;
     }
 
     /** The answer to a question may never come. */
@@ -98,6 +108,7 @@ export class Side {
             this.view.markWrong(next.wrong);
             this.collider = next.collider;
             this.frame = next.figures.frame;
+            this.#atRest = next.figures.atRest;
             this.counts.inside = next.figures.inside;
             if (this.ball && next.ball) this.ball.position = next.ball;
             this.#pairs.consider(this.#cloth, next.figures.frame, next.arrays.positions, this.view.faces, next.collider);
@@ -114,7 +125,7 @@ export class Side {
     #showCuts(cuts: Cuts): void {
         if (cuts.number !== this.#cloth) return;
         // A cloth that need not keep off itself does nothing wrong.
-        this.view.markCut(this.keepsOffItself ? new Uint32Array([...cuts.cutFaces, ...cuts.ownFaces]) : cuts.cutFaces);
+        this.view.markCut(this.keepsOffItself ? Uint32Array.from(new Set([...cuts.cutFaces, ...cuts.ownFaces])) : cuts.cutFaces);
         this.counts = { ...this.counts, withModel: cuts.withModel, own: cuts.own };
         this.onCuts(cuts);
     }

@@ -41,7 +41,7 @@ export class Stage {
     readonly #studio: Studio;
     readonly #pace = new Pace();
     #shading: ContactShading | undefined;
-    #wish: Settings['look'] = 'auto';
+    #wish?: Settings['look'];
     #fine = false;
     /** What shows each half of the picture its own; one, where there are no halves. */
     #halves: (() => void)[] = [() => {}];
@@ -108,6 +108,7 @@ export class Stage {
 
     /** 'auto' begins with the fine look where there is a graphics card, and keeps it while pictures come quickly. */
     set look(wish: Settings['look']) {
+        if (wish === this.#wish) return;
         this.#wish = wish;
         this.#refine(wish === 'fine' || (wish === 'auto' && !drawsInSoftware(this.renderer.getContext())));
     }
