@@ -130,7 +130,10 @@ test('a finger pulls the cloth, and a finger beside it turns the view', async ()
 
     // Two fingers zoom, even where the first has grabbed the cloth.
     const far = Number(new URL(page.url()).hash.match(/camera=[^_]*_[^_]*_([0-9.]+)/)[1]);
-    const [middle, level] = [x + 0.5 * width, y + 0.53 * height]; // on the cloth, which was pulled down
+    const [middle, level] = [x + 0.5 * width, y + 0.5 * height];
+    await page.keyboard.press('r'); // the cloth was pulled away from there
+    for (const rest of ['false', 'true'])
+        await page.waitForFunction((wanted) => document.body.dataset.rest === wanted, rest, { timeout: 120_000 });
     await touch('touchStart', [middle, level]);
     await page.locator('#canvas.dragging').waitFor();
     await touch('touchStart', [middle, level], [middle + 40, level]);
