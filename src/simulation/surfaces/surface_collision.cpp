@@ -328,12 +328,7 @@ void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles, c
         const Vec3f from = base_of(v, is_first, particles);
         ends_.set(v, from + (end - from) * shares[v]);
         // Where one of the models takes a vertex may be none that another allows.
-        bool is_permitted = true;
-        if (!is_one_frame)
-            for_each_near([&](std::size_t, ModelSurface& model) {
-                is_permitted = is_permitted && model.permits(v, ends_[v]);
-            });
-        if (!is_permitted) ++squeezed_now_;
+        if (!is_one_frame && !is_permitted(v, ends_[v])) ++squeezed_now_;
     }
 }
 
@@ -368,8 +363,27 @@ Vec3f SurfaceCollision::base_of(std::uint32_t vertex, bool is_first, const Parti
     return carrier() != nullptr ? carrier()->carried(vertex) : particles.frame_start[vertex];
 }
 
-/// The mean of where the models take it.
+/// The mean of where the models take it. Beside one that it all but touches, a mean may be too coarse; then
+/// where it was, or where one of them takes it.
 Vec3f SurfaceCollision::carried_between(std::uint32_t vertex, const Vec3f& start) const {
+    const Vec3f mean = mean_of_carried(vertex, start);
+    if (is_permitted(vertex, mean)) return mean;
+    if (is_permitted(vertex, start)) return start;
+    for (std::size_t c = 0; c < models_.size(); ++c) {
+        if (is_near_[c] == 0 || moves_[c] == 0) continue;
+        const Vec3f carried = models_[c].carried(vertex);
+        if (is_permitted(vertex, carried)) return carried;
+    }
+    return mean;
+}
+
+bool SurfaceCollision::is_permitted(std::uint32_t vertex, const Vec3f& place) const {
+    for (std::size_t c = 0; c < models_.size(); ++c)
+        if (is_near_[c] != 0 && !models_[c].permits(vertex, place)) return false;
+    return true;
+}
+
+Vec3f SurfaceCollision::mean_of_carried(std::uint32_t vertex, const Vec3f& start) const {
     float sum = rest_pull_;
     Vec3f way;
     for (std::size_t c = 0; c < models_.size(); ++c) {

@@ -61,6 +61,8 @@ class SurfaceCollision {
     Vec3f find_place(std::uint32_t vertex, bool is_first, const Particles& particles);
     const ModelSurface* carrier() const;
     Vec3f carried_between(std::uint32_t vertex, const Vec3f& start) const;
+    Vec3f mean_of_carried(std::uint32_t vertex, const Vec3f& start) const;
+    bool is_permitted(std::uint32_t vertex, const Vec3f& place) const;
     Vec3f base_of(std::uint32_t vertex, bool is_first, const Particles& particles) const;
     template <typename Visit>
     void for_each_near(const Visit& visit);
