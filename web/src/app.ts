@@ -188,14 +188,13 @@ class App {
         this.#openings = [];
         this.#rayAsked = false;
         showProgress(undefined);
-        const isOpening = before?.turn !== this.#asked.turn;
-        if (!isOpening && this.#inForce) this.#setLink({ ...this.#settings, ...this.#inForce });
+        if (this.#inForce) this.#setLink(this.#withOwn(this.#inForce));
         this.#showAll();
         this.#open(before?.file);
         remark('Cancelled.');
     }
-    /** What a map and its cloth are made by, as the last answer reported it. */
-    #inForce: Partial<Settings> | undefined;
+    /** What model, map and cloth are made by, as the last answer reported it. */
+    #inForce: Settings | undefined;
 
     #fail({ sentence, code, turn }: FromWorker & { kind: 'failed' }): void {
         if (turn === undefined) {
@@ -225,15 +224,11 @@ class App {
     /** The panel must show exactly the settings in force, after a refusal too. */
     #settle({ turn, inForce }: FromWorker & { kind: 'settled' }): void {
         this.#openings = this.#openings.filter((opening) => opening.turn === inForce?.turn || opening.turn > turn);
+        if (inForce) this.#inForce = inForce.settings;
         if (turn !== this.#turn) return; // there are newer requests
         showProgress(undefined);
-        if (inForce) {
-            const { map, cells, grid, directions, particles } = inForce.settings;
-            this.#inForce = { map, cells, grid, directions, particles };
-        }
         const shown = this.#openings[0];
-        const { view, shown: inColours, slice, camera, look, beside } = this.#settings; // the page's own
-        const settings = inForce ? { ...inForce.settings, view, shown: inColours, slice, camera, look, beside } : this.#settings;
+        const settings = inForce ? this.#withOwn(inForce.settings) : this.#settings;
         if (shown === this.#asked && toLink(settings) === toLink(this.#settings)) return;
         this.#asked = shown ?? { turn: 0, file: undefined };
         this.#setLink(settings);
@@ -244,6 +239,12 @@ class App {
         if (this.#model) this.#showNote(settings.map);
         if (this.#model) this.#showTitle(this.#model);
         else byId('subtitle').textContent = '';
+    }
+
+    /** Settings of the worker, with what only the page knows. */
+    #withOwn(settings: Settings): Settings {
+        const { view, shown, slice, camera, look, beside } = this.#settings;
+        return { ...settings, view, shown, slice, camera, look, beside };
     }
 
     #showModel(model: ModelNews): void {

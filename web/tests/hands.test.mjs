@@ -94,6 +94,21 @@ test('opening a large file shows what is being done, and can be cancelled', asyn
     await page.context().close();
 });
 
+test('mending that is cancelled is not chosen any more, and the file stays as it was', async () => {
+    const page = await browser.open('#model=sphere&particles=100&mend=false', SMALL);
+    page.setDefaultTimeout(120_000);
+    await untilFrame(page, 1);
+    await page.locator('#file').setInputFiles({ name: 'large.stl', mimeType: 'model/stl', buffer: torusStl(500, 300) });
+    await page.waitForFunction(() => document.getElementById('subtitle').textContent.startsWith('large.stl, ') && document.getElementById('progress').hidden);
+    await page.locator('input[name=mend]').check();
+    await page.locator('#progress button').click();
+    await page.waitForFunction(() => document.getElementById('subtitle').textContent.startsWith('large.stl, '));
+    assert.match(await page.evaluate(() => location.hash), /mend=false/);
+    assert.ok(!(await page.locator('input[name=mend]').isChecked()));
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
 test('building a large map can be cancelled, and the model and the map before stay', async () => {
     const page = await browser.open('#model=sphere&particles=100', SMALL);
     page.setDefaultTimeout(120_000);

@@ -104,8 +104,12 @@ export class ClothView {
         this.group.removeFromParent();
         for (const part of this.#parts) {
             part.geometry.dispose();
-            for (const material of [part.material].flat()) material.dispose();
+            for (const material of [part.material].flat()) {
+                if ('map' in material) material.map?.dispose();
+                material.dispose();
+            }
         }
+        this.#weave?.dispose();
     }
 
     get positions(): Float32Array | undefined {

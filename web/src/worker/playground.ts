@@ -50,7 +50,7 @@ export class Playground {
 
     readonly #echinus: Echinus;
     readonly #name: string;
-    readonly #mesh: Mesh;
+    #mesh: Mesh;
     readonly #report: MeshReport;
     readonly #faults: MeshFaults;
     #mendedFaces = 0;
@@ -85,25 +85,32 @@ export class Playground {
         this.#settings = settings;
         this.#name = model.name;
         this.#act = model.act;
-        tell('mending');
-        this.#mesh = settings.mend ? this.#mend(model.mesh) : model.mesh;
-        this.#report = this.#mesh.report();
-        this.#faults = this.#mesh.faults();
-        const up = settings.up === 'auto' ? model.up : settings.up;
-        tell('building the map');
-        this.#maps = new Maps(echinus, this.#mesh, up, settings);
-        this.body = bodyOf(this.#mesh, this.#maps.exact, up, this.#act);
-        this.#ground = buildGround(echinus, this.body);
-        this.#ball = new Ball(echinus, this.body);
-        tell('laying the cloth');
-        this.restart();
+        this.#mesh = model.mesh;
+        try {
+            tell('mending');
+            if (settings.mend) this.#mend();
+            this.#report = this.#mesh.report();
+            this.#faults = this.#mesh.faults();
+            const up = settings.up === 'auto' ? model.up : settings.up;
+            tell('building the map');
+            this.#maps = new Maps(echinus, this.#mesh, up, settings);
+            this.body = bodyOf(this.#mesh, this.#maps.exact, up, this.#act);
+            this.#ground = buildGround(echinus, this.body);
+            this.#ball = new Ball(echinus, this.body);
+            tell('laying the cloth');
+            this.restart();
+        } catch (error) {
+            this.delete();
+            throw error;
+        }
     }
 
+    /** Of a model that is refused, only a part was made. */
     delete(): void {
         this.#dropCloth();
-        this.#ball.delete();
-        this.#ground.delete();
-        this.#maps.delete();
+        this.#ball?.delete();
+        this.#ground?.delete();
+        this.#maps?.delete();
         this.#mesh.delete();
     }
 
@@ -188,7 +195,7 @@ export class Playground {
         const bodies = this.#act?.bodies?.(this.#echinus) ?? [];
         let simulation;
         try {
-            simulation = scene.makeSimulation(this.#clothMaps, { allowOpenCollider: true, bodies, ...(garment && { cloth: garment.mesh }) });
+            simulation = unlessRefused(scene, () => scene.makeSimulation(this.#clothMaps, { allowOpenCollider: true, bodies, ...(garment && { cloth: garment.mesh }) }));
         } finally {
             for (const mesh of [...bodies, garment?.mesh]) mesh?.delete();
         }
@@ -349,7 +356,7 @@ export class Playground {
 
     #continue(): void {
         const scene = this.#echinus.parseScene(sceneFor(this.#settings, this.body, this.#act, { falls: true }));
-        const simulation = this.#simulation.continueWith(scene, this.#clothMaps);
+        const simulation = unlessRefused(scene, () => this.#simulation.continueWith(scene, this.#clothMaps));
         this.#earlierFrames += this.#simulation.frame;
         this.#simulation.delete();
         this.#scene.delete();
@@ -358,12 +365,12 @@ export class Playground {
         this.#cloth = { ...this.#cloth, thickness: thicknessOf(this.#settings, this.body, this.#act) };
     }
 
-    #mend(mesh: Mesh): Mesh {
-        const { mesh: mended, report } = mesh.repair();
-        mesh.delete();
+    #mend(): void {
+        const { mesh, report } = this.#mesh.repair();
+        this.#mesh.delete();
+        this.#mesh = mesh;
         this.#mendedFaces = report.duplicateFacesDropped.length + report.doubledPatchFacesDropped.length;
         this.#flippedParts = report.componentsFlipped;
-        return mended;
     }
 
     #dropCloth(): void {
@@ -372,6 +379,16 @@ export class Playground {
         this.#scene?.delete();
         this.#judge?.delete();
         this.#contacts?.delete();
+    }
+}
+
+/** What is done with a scene, which is deleted if that is refused. */
+function unlessRefused<T>(scene: Scene, act: () => T): T {
+    try {
+        return act();
+    } catch (error) {
+        scene.delete();
+        throw error;
     }
 }
 
