@@ -7,7 +7,7 @@ A runner lets the cloth fall on the model and writes into DIR, which exists:
              the first is the start, then one for each displayed frame of 1/60 s
   run.json   {"engine": "Bullet", "version": "3.24", "configuration": "with Echinus", "platform": "native" | "wasm",
               "substeps": n, "settings": {"what": "as text", ...}, "frame_seconds": [N numbers]}
-frame_seconds are wall seconds of the steps alone: no set-up, no writing, and what Echinus adds is in them.
+frame_seconds are processor seconds of the steps alone: no set-up, no writing, and what Echinus adds is in them.
 Exit status: 0 done, 77 the engine is not installed (one sentence on stderr; the run is left out), else it failed.
 
 The model is closed, has its bounding sphere's centre at the origin and its radius R = 1; y is up. The cloth is a square of

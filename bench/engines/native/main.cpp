@@ -3,6 +3,7 @@
 #include "engine.hpp"
 #include "files/atomic_file.hpp"
 #include "mesh_io/point_cache.hpp"
+#include "rivals/compare/clock.hpp"
 #include "rivals/compare/machine.hpp"
 
 #include <echinus/error.hpp>
@@ -12,7 +13,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <chrono>
 #include <filesystem>
 
 using namespace echinus;
@@ -52,9 +52,9 @@ int run(const Arguments& arguments) {
     cache.add(engine->positions());
     std::vector<double> seconds;
     for (std::uint32_t frame = 0; frame < arguments.frame_count; ++frame) {
-        const auto start = std::chrono::steady_clock::now();
+        const double start = comparison::process_seconds();
         engine->run_frame();
-        seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        seconds.push_back(comparison::process_seconds() - start);
         cache.add(engine->positions());
     }
     cache.commit();
