@@ -87,7 +87,7 @@ def triangles(folder):
 def surfaces(folder):
     results = Results(folder, "surfaces")
     rows = [["scene, contact of", "pairs with the model", "own pairs", "frames judged, of them by CGAL", "frames to rest", "strain, %", "99 %", "ever", "truncated a frame",
-             "most", "gap, mean", "least"]]
+             "most", "gap, mean", "least", "apart, % R"]]
     times = [["scene, contact of", "particles", "ms a frame, mean", "99 %", "worst", "ratio"]]
     for r in results.records:
         name = f"{r['scene']}: {r['method']}"
@@ -95,7 +95,7 @@ def surfaces(folder):
         judged = f"{r['judged_frames']}, {r['cgal_frames']}" + (f" ({r['judges_differ']})" if r["judges_differ"] != "0" else "")
         rows.append([name, r["model_pairs"], r["own_pairs"], judged, rest]
                     + [number(r[c], 100) for c in ("strain", "strain_99", "strain_ever")]
-                    + [number(r["truncated_mean"]), r["truncated_most"], number(r["gap_mean"]), number(r["gap_least"])])
+                    + [number(r["truncated_mean"]), r["truncated_most"], number(r["gap_mean"]), number(r["gap_least"]), number(r["apart"], 100)])
         times.append([name, r["particles"]] + [number(r[c]) for c in ("frame_ms", "frame_ms_99", "frame_ms_worst", "ratio")])
     return {"surfaces": table(rows), "surfaces times": table(times), "surfaces machine": results.machine,
             "surfaces commit": results.commit}

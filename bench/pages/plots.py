@@ -102,7 +102,7 @@ def draw(task, folder, images):
             some = [r for r in rows if r["kind"] == "faces" and r["task"] == "contacts" and r["call"] == call]
             plot_sets(some, lambda r: float(r["faces"]), "faces", images / f"calls_faces_{name}.svg")
     elif task == "surfaces":
-        falls = [r for r in rows if r["scene"] == "horse, the fall alone"]
+        falls = [r for r in rows if r["scene"] == "horse the fall alone"]
         curves = {}
         for r in falls:
             curves.setdefault(r["method"], ([], True))[0].append((float(r["particles"]), float(r["frame_ms"])))

@@ -46,7 +46,8 @@ constexpr std::array kMethods{Method{"particles only", false, false}, Method{"wi
 
 // ---- The cloths ----
 
-/// A scene of the repository, with the changes that a fall makes to it.
+/// A scene of the repository, with the changes that a fall makes to it. Names have no commas, which records
+/// drop.
 struct SceneRun {
     std::string name;
     const char* file;
@@ -63,7 +64,7 @@ std::vector<SceneRun> scene_runs() {
     std::vector<SceneRun> runs{
         {.name = "horse", .file = "horse.json", .frame_limit = kLimit},
         {.name = "torus", .file = "torus.json", .frame_limit = kLimit},
-        {.name = "horse, XPBD", .file = "horse_xpbd.json", .frame_limit = kLimit},
+        {.name = "horse XPBD", .file = "horse_xpbd.json", .frame_limit = kLimit},
     };
     for (const int speed : {5, 10, 20, 50, 100})
         runs.push_back({.name = fmt::format("horse at {} units/s", speed),
@@ -84,7 +85,7 @@ std::vector<SceneRun> scene_runs() {
                         .frame_limit = kTurningLimit});
     for (const std::uint32_t side : {30, 50, 100, 200, 316}) // bench/pages/plots.py draws them by their name
         runs.push_back(
-            {.name = "horse, the fall alone", .file = "horse.json", .side = side, .frame_limit = kFallLimit});
+            {.name = "horse the fall alone", .file = "horse.json", .side = side, .frame_limit = kFallLimit});
     return runs;
 }
 
@@ -312,6 +313,17 @@ Gap gap_of(const Simulation& simulation) {
             std::ranges::min(gaps)};
 }
 
+/// The mean distance of the particles of one cloth from the surface of another, as a share of the model's
+/// radius. Distances are those of an exact map of the other, which may be open.
+double distance_apart(const Deformable& cloth, const Deformable& other, double radius) {
+    const ExactMap map = ExactMap::build(TriangleMesh{other.positions, other.faces});
+    std::vector<float> distances(cloth.particle_count());
+    signed_distance_batch(map.view(), cloth.positions, distances);
+    double sum = 0;
+    for (const float distance : distances) sum += std::fabs(double{distance});
+    return sum / (static_cast<double>(distances.size()) * radius);
+}
+
 // ---- The runs ----
 
 /// One cloth on its way.
@@ -336,6 +348,8 @@ class Runner {
         return std::accumulate(frame_ms_.begin(), frame_ms_.end(), 0.0) /
                static_cast<double>(frame_ms_.size());
     }
+
+    const Deformable& cloth() const { return simulation_.deformable(); }
 
     Records::Record record() const {
         const std::vector<double> strains = strains_of(simulation_.deformable());
@@ -434,6 +448,11 @@ bool has(const Records& records, const Fall& fall) {
     });
 }
 
+/// Of the first model's bounding sphere.
+double radius_of(const Fall& fall) {
+    return double{std::get<ExactMap>(fall.colliders.front().map.kind).view().radius};
+}
+
 /// The methods take turns of a few frames, so that other load on the machine slows all alike.
 void add_fall(const Fall& fall, const Setting& setting, Records& records) {
     if (has(records, fall)) return;
@@ -451,6 +470,8 @@ void add_fall(const Fall& fall, const Setting& setting, Records& records) {
         Records::Record record = runners[k].record();
         record["method"] = kMethods[k].name;
         record["ratio"] = fmt::format("{:.4g}", runners[k].mean_ms() / runners[0].mean_ms());
+        record["apart"] =
+            fmt::format("{:.4g}", distance_apart(runners[k].cloth(), runners[0].cloth(), radius_of(fall)));
         records.add(std::move(record));
     }
     setting.store(records);
@@ -463,8 +484,9 @@ Records measure_surfaces(const Setting& setting) {
                      "judged_frames", "cgal_frames",    "judges_differ", "frames",         "rested",
                      "strain",        "strain_99",      "strain_ever",   "truncated_mean", "truncated_most",
                      "squeezed",      "lost",           "gap_mean",      "gap_least",      "frame_ms",
-                     "frame_ms_99",   "frame_ms_worst", "ratio"});
-    if (setting.earlier) records = *setting.earlier;
+                     "frame_ms_99",   "frame_ms_worst", "ratio",         "apart"});
+    if (setting.earlier)
+        for (const Records::Record& record : setting.earlier->all()) records.add(record);
     for (const SceneRun& run : scene_runs()) add_fall(fall_of(run, setting), setting, records);
     for (const Fall& fall : other_falls(setting)) add_fall(fall, setting, records);
     return records;
