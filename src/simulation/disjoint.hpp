@@ -1,5 +1,7 @@
 #pragma once
 
+#include "geometry/workers.hpp"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -73,6 +75,17 @@ std::vector<ConstraintRun> disjoint_runs(std::size_t constraint_count, std::size
         ++runs.back().count;
     }
     return runs;
+}
+
+/// Calls relax(part) for parts of a run that are as long as a piece of work, on several threads.
+/// @param piece_size  a multiple of the lanes of every instruction set
+template <typename Relax>
+void for_parts_of(const ConstraintRun& run, std::size_t piece_size, const Workers& workers,
+                  const Relax& relax) {
+    workers.for_ranges(run.count, piece_size,
+                       [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
+                           relax(ConstraintRun{run.first + begin, end - begin});
+                       });
 }
 
 } // namespace echinus

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/workers.hpp"
 #include "simulation/disjoint.hpp"
 #include "simulation/particles.hpp"
 
@@ -43,8 +44,10 @@ struct FoldArrays {
 /// By the solver that the options choose, in the deformable's order.
 FoldArrays weighted_folds(const Deformable& deformable, const SimulationOptions& options);
 
-/// One relaxation of all folds, in order. The same bits under every instruction set.
+/// One relaxation of all folds, run by run. The same bits under every instruction set and number of threads.
 /// @param remainders  what rounding took off the positions, taken along; null: it is lost
-void relax(FoldArrays& folds, PointArrays& positions, PointArrays* remainders = nullptr) noexcept;
+/// @param workers     share the folds of a run
+void relax(FoldArrays& folds, PointArrays& positions, PointArrays* remainders = nullptr,
+           const Workers& workers = Workers()) noexcept;
 
 } // namespace echinus

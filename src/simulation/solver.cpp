@@ -74,6 +74,9 @@ Deformable valid_start(Deformable deformable, const std::vector<Collider>& colli
     return deformable;
 }
 
+/// Particles that are worth a piece of the integration.
+constexpr std::size_t kParticlesPerPiece = 1 << 14;
+
 /// Lengths whose squares are floats, too.
 constexpr double kLongestWay = 1e18;
 
@@ -206,11 +209,17 @@ void Simulation::Solver::integrate(double share_kept) {
     const float* mobility = particles_.mobility.data();
     const auto integrate_along = [&](std::vector<float> PointArrays::*axis, float fall_along) {
         float *const positions = (now.*axis).data(), *const previous = (before.*axis).data();
-        if (particles_.keeps_remainders)
-            integrate_compensated(positions, previous, (lost.*axis).data(), (lost_before.*axis).data(),
-                                  mobility, particles_.count(), keep, fall_along);
-        else // whole frames, whose ways are far longer than what is rounded
-            integrate_coordinate(positions, previous, mobility, particles_.count(), keep, fall_along);
+        const auto integrate_range = [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
+            const std::size_t count = end - begin;
+            if (particles_.keeps_remainders)
+                integrate_compensated(positions + begin, previous + begin, (lost.*axis).data() + begin,
+                                      (lost_before.*axis).data() + begin, mobility + begin, count, keep,
+                                      fall_along);
+            else // whole frames, whose ways are far longer than what is rounded
+                integrate_coordinate(positions + begin, previous + begin, mobility + begin, count, keep,
+                                     fall_along);
+        };
+        workers_.for_ranges(particles_.count(), kParticlesPerPiece, integrate_range);
     };
     integrate_along(&PointArrays::x, fall.x);
     integrate_along(&PointArrays::y, fall.y);
@@ -232,16 +241,19 @@ void Simulation::Solver::begin_constraints() {
         std::copy(sticks_.rest_lengths.begin(), sticks_.rest_lengths.end(), sticks_.goal_lengths.begin());
     folds_.restore_goals();
     tetrahedra_.begin_substep();
-    damp(tetrahedra_, particles_);
+    damp(tetrahedra_, particles_, workers_);
 }
 
 void Simulation::Solver::relax_constraints() {
     const Stopwatch stopwatch(profile.constraint_seconds);
     if (meter_) meter_->note(particles_);
     PointArrays* const remainders = particles_.keeps_remainders ? &particles_.remainders : nullptr;
-    relax(folds_, particles_.positions, remainders);
-    relax(sticks_, particles_.positions, remainders);
-    relax(tetrahedra_, particles_);
+    relax(folds_, particles_.positions, remainders, workers_);
+    if (workers_.count() == 1)
+        relax(sticks_, particles_.positions, remainders);
+    else
+        relax_tiles(sticks_, particles_.positions, remainders, workers_);
+    relax(tetrahedra_, particles_, workers_);
     if (meter_) meter_->charge_holder(particles_);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/workers.hpp"
 #include "simulation/particles.hpp"
 
 #include <echinus/simulation.hpp>
@@ -30,6 +31,21 @@ struct StickRun {
     float share_a = 0, share_b = 0, yield = 0; ///< of the first stick
 };
 
+/// Some sticks of a run, a run of the same shape.
+/// @pre first + count <= run.count, and first is even in a run of every second
+StickRun part_of(const StickRun& run, std::size_t first, std::size_t count);
+
+/// Runs cut into parts for several threads. Tiles of a step share no particle; sticks that share one keep
+/// their order, so that the bits are those of one run after the other.
+struct StickTiles {
+    struct Range {
+        std::size_t first, count;
+    };
+    std::vector<StickRun> parts;
+    std::vector<Range> tiles; ///< of parts
+    std::vector<Range> steps; ///< of tiles
+};
+
 /// All sticks with what their relaxation needs, in the order in which they are relaxed.
 ///
 /// A spring is relaxed like a stick whose length gives way. XPBD (Macklin et al. 2016, equation 18) changes
@@ -50,6 +66,7 @@ struct StickArrays {
     std::vector<float> rest_lengths; ///< [count + PointArrays::kPadding]
     std::vector<float> goal_lengths; ///< the same
     std::vector<StickRun> runs;
+    StickTiles tiles; ///< where several threads relax; else empty
 
     std::size_t count() const { return a.size(); }
     bool gives_way() const;
@@ -61,6 +78,10 @@ StickArrays weighted_sticks(const Deformable& deformable, const SimulationOption
 /// One relaxation of all sticks, in order. The same bits under every instruction set.
 /// @param remainders  what rounding took off the positions, taken along; null: it is lost
 void relax(StickArrays& sticks, PointArrays& positions, PointArrays* remainders = nullptr) noexcept;
+
+/// The same on several threads, which share tiles; the same bits. @pre the sticks have tiles
+void relax_tiles(StickArrays& sticks, PointArrays& positions, PointArrays* remainders,
+                 const Workers& workers) noexcept;
 
 /// The same of some sticks, by their numbers, without remainders.
 void relax(StickArrays& sticks, std::span<const std::uint32_t> chosen, PointArrays& positions) noexcept;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/workers.hpp"
 #include "simulation/disjoint.hpp"
 #include "simulation/particles.hpp"
 
@@ -62,10 +63,12 @@ TetrahedronArrays weighted_tetrahedra(const Deformable& deformable, const Simula
 
 /// Takes off a share of the strain that each tetrahedron gains in this substep, as viscosity does; once in a
 /// substep, before relaxations. @pre the particles keep remainders
-void damp(const TetrahedronArrays& tetrahedra, Particles& particles) noexcept;
+/// @param workers  share the tetrahedra of a run, as those of relax() do
+void damp(const TetrahedronArrays& tetrahedra, Particles& particles,
+          const Workers& workers = Workers()) noexcept;
 
-/// One relaxation of all tetrahedra, in order. The same bits under every instruction set.
-/// @pre the particles keep remainders
-void relax(TetrahedronArrays& tetrahedra, Particles& particles) noexcept;
+/// One relaxation of all tetrahedra, run by run. The same bits under every instruction set and number of
+/// threads. @pre the particles keep remainders
+void relax(TetrahedronArrays& tetrahedra, Particles& particles, const Workers& workers = Workers()) noexcept;
 
 } // namespace echinus
