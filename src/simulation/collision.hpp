@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/workers.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/state/state_archive.hpp"
 #include "simulation/surface_motion.hpp"
@@ -30,7 +31,8 @@ class Collision {
     /// The collider may have moved.
     virtual void begin_substep(const Collider& collider, const RigidTransform& previous_pose) = 0;
     /// One relaxation of all particles.
-    virtual void relax(Particles& particles, SimulationProfile& profile) = 0;
+    /// @param workers  may share them
+    virtual void relax(Particles& particles, SimulationProfile& profile, const Workers& workers) = 0;
 
     /// Lower bounds of the particles' distances from the surface, as far as they are known without a query.
     virtual void known_clearances(const Particles&, std::span<float> clearances) const {

@@ -52,11 +52,12 @@ void Collisions::begin_substep(std::vector<Collider>& colliders, double seconds)
     }
 }
 
-void Collisions::relax(Particles& particles, SimulationProfile& profile, LoadMeter* meter) {
+void Collisions::relax(Particles& particles, SimulationProfile& profile, LoadMeter* meter,
+                       const Workers& workers) {
     for (std::size_t i = 0; i < collisions_.size(); ++i) {
         if (is_away(i)) continue;
         if (meter != nullptr) meter->note(particles);
-        collisions_[i]->relax(particles, profile);
+        collisions_[i]->relax(particles, profile, workers);
         if (meter != nullptr) meter->charge(i, particles);
     }
     profile.query_count += collisions_.size() * particles.count();

@@ -27,7 +27,7 @@ class Collisions {
     /// Moves the colliders on.
     void begin_substep(std::vector<Collider>& colliders, double seconds);
     /// @param meter  of the loads on the colliders, or null
-    void relax(Particles& particles, SimulationProfile& profile, LoadMeter* meter);
+    void relax(Particles& particles, SimulationProfile& profile, LoadMeter* meter, const Workers& workers);
     /// Of the particles from one collider: Collision::known_clearances(). Nothing is known of one that is
     /// away.
     void known_clearances(std::size_t collider, const Particles& particles,

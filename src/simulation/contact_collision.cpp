@@ -54,7 +54,7 @@ void ContactCollision::begin_substep(const Collider& collider, const RigidTransf
     material_ = MaterialMotion(previous_pose, collider.pose);
 }
 
-void ContactCollision::relax(Particles& particles, SimulationProfile& profile) {
+void ContactCollision::relax(Particles& particles, SimulationProfile& profile, const Workers&) {
     for (std::size_t begin = 0; begin < particles.count(); begin += places_.size())
         profile.contact_count += relax_piece(begin, particles);
     profile.map_query_count += particles.count();

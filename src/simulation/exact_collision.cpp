@@ -1,6 +1,7 @@
 #include "simulation/exact_collision.hpp"
 
 #include "exact_map/query/stretched_contact.hpp"
+#include "geometry/parallel.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,13 +15,18 @@ namespace {
 /// Places are asked about in pieces that stay in the first-level cache.
 constexpr std::size_t kPieceSize = 256;
 
+/// Particles that are worth a piece of work, where several threads share them.
+constexpr std::size_t kSharedSize = 2048;
+
 } // namespace
 
 ExactCollision::ExactCollision(const Collider& collider, const Particles& particles,
                                const SimulationOptions& options)
     : options_(options), now_(collider, collider.pose, options), frame_start_pose_(collider.pose),
-      known_(particles), free_places_(now_, particles), to_ask_(particles.count()),
-      unproven_(2 * particles.count()) {
+      known_(particles), free_places_(now_, particles), unproven_(2 * particles.count()) {
+    const bool is_shared = worker_count(options.thread_count) > 1;
+    const std::size_t most = is_shared ? kSharedSize : std::max<std::size_t>(particles.count(), 1);
+    pieces_.assign(Workers::piece_count(particles.count(), most), Piece{ParticleList(most)});
     moved_along_.resize(particles.count());
 }
 
@@ -55,26 +61,41 @@ void ExactCollision::archive(StateArchive& state, const Collider& collider) {
     free_places_.archive(state);
 }
 
-void ExactCollision::relax(Particles& particles, SimulationProfile& profile) {
-    to_ask_.count = 0;
-    profile.contact_count += push_known(known_, now_, particles, to_ask_);
-    if (to_ask_.count > 0) ask(particles, profile);
+void ExactCollision::relax(Particles& particles, SimulationProfile& profile, const Workers& workers) {
+    const std::size_t size = pieces_.size() > 1 ? kSharedSize : particles.count();
+    workers.for_ranges(particles.count(), size,
+                       [&](std::size_t, std::size_t piece, std::size_t first, std::size_t end) {
+                           relax(first, end, particles, pieces_[piece]);
+                       });
+    for (const Piece& piece : pieces_) {
+        profile.contact_count += piece.contact_count;
+        profile.map_query_count += piece.map_query_count;
+    }
+}
+
+/// No particle's answer depends on another's.
+void ExactCollision::relax(std::size_t first, std::size_t end, Particles& particles, Piece& piece) {
+    piece.to_ask.count = 0;
+    piece.map_query_count = 0;
+    piece.contact_count = push_known(known_, now_, first, end, particles, piece.to_ask);
+    if (piece.to_ask.count > 0) ask(particles, piece);
 }
 
 /// The nearest point now, or the crossing when the particle came through the surface since it was free last:
 /// behind a thin plate the nearest point lies on the wrong side.
 ///
 /// Particles with about the same reach are asked for together.
-void ExactCollision::ask(Particles& particles, SimulationProfile& profile) {
+void ExactCollision::ask(Particles& particles, Piece& piece) {
+    ParticleList& to_ask = piece.to_ask;
     // Above 0 even where twice the thickness is too small for a float, so that doubling gets somewhere.
     const float least_reach = std::max(2 * now_.thickness, std::numeric_limits<float>::min());
     float reach = least_reach;
     std::size_t left = 0;
-    for (const std::uint32_t i : to_ask_.all()) {
-        if (!meet_on_the_way(i, particles, profile))
-            to_ask_.particles[left++] = i;
+    for (const std::uint32_t i : to_ask.all()) {
+        if (!meet_on_the_way(i, particles, piece))
+            to_ask.particles[left++] = i;
         else
-            profile.contact_count += push_one(known_, now_, i, particles) ? 1 : 0;
+            piece.contact_count += push_one(known_, now_, i, particles) ? 1 : 0;
     }
     std::array<std::uint32_t, kPieceSize> asked;
     std::array<Vec3f, kPieceSize> places;
@@ -82,13 +103,13 @@ void ExactCollision::ask(Particles& particles, SimulationProfile& profile) {
         std::size_t count = 0, beyond = 0;
         const auto ask_piece = [&] {
             ask_for_nearest(std::span(asked).first(count), std::span(places).first(count), reach, particles,
-                            profile);
+                            piece);
             count = 0;
         };
         for (std::size_t n = 0; n < left; ++n) {
-            const std::uint32_t i = to_ask_.particles[n];
+            const std::uint32_t i = to_ask.particles[n];
             if (reach_of(i, particles) > reach) {
-                to_ask_.particles[beyond++] = i;
+                to_ask.particles[beyond++] = i;
                 continue;
             }
             asked[count] = i;
@@ -111,15 +132,15 @@ float ExactCollision::reach_of(std::size_t i, const Particles& particles) const 
 
 void ExactCollision::ask_for_nearest(std::span<const std::uint32_t> asked,
                                      std::span<const Vec3f> places_local, float reach, Particles& particles,
-                                     SimulationProfile& profile) {
+                                     Piece& piece) {
     std::array<Contact, kPieceSize> contacts;
     stretched_contacts_batch(now_.map, places_local, reach, std::span(contacts).first(asked.size()),
                              now_.scale);
     for (std::size_t n = 0; n < asked.size(); ++n) {
         remember(asked[n], particles, contacts[n], reach);
-        if (contacts[n].found()) profile.contact_count += push_one(known_, now_, asked[n], particles) ? 1 : 0;
+        if (contacts[n].found()) piece.contact_count += push_one(known_, now_, asked[n], particles) ? 1 : 0;
     }
-    profile.map_query_count += asked.size();
+    piece.map_query_count += asked.size();
 }
 
 void ExactCollision::remember(std::size_t i, const Particles& particles, const Contact& nearest,
@@ -144,14 +165,14 @@ Vec3f ExactCollision::normal_to_own_side(std::size_t i, const Particles& particl
     return dot(way, nearest.normal) < 0 ? -nearest.normal : nearest.normal;
 }
 
-bool ExactCollision::meet_on_the_way(std::size_t i, const Particles& particles, SimulationProfile& profile) {
+bool ExactCollision::meet_on_the_way(std::size_t i, const Particles& particles, Piece& piece) {
     if (!options_.keep_free || !free_places_.has(i)) return false;
     // The surface may have come over the place where a particle was free.
     if (motion_ != nullptr && !now_.two_sided && contains(now_.map, free_places_.local(i, particles)))
         return false;
     const Vec3f position = particles.positions[i];
     if (length(position - known_.asked_at[i]) < known_.clearance[i]) return false;
-    ++profile.map_query_count;
+    ++piece.map_query_count;
     const SweptParticle particle = swept(i, particles);
     const SweepHit hit = particle.crossing();
     if (!hit.found()) return false;

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace echinus {
 
@@ -32,7 +33,7 @@ class ExactCollision final : public Collision {
     void resume(const Collider& collider) override;
     void begin_substep(const Collider& collider, const RigidTransform& previous_pose) override;
     /// To the thickness over the nearest point, with friction.
-    void relax(Particles& particles, SimulationProfile& profile) override;
+    void relax(Particles& particles, SimulationProfile& profile, const Workers& workers) override;
 
     void known_clearances(const Particles& particles, std::span<float> clearances) const override;
     std::span<const std::uint32_t> find_unproven(const Particles& particles) override;
@@ -47,13 +48,20 @@ class ExactCollision final : public Collision {
     void archive(StateArchive& state, const Collider& collider) override;
 
   private:
-    void ask(Particles& particles, SimulationProfile& profile);
-    bool meet_on_the_way(std::size_t i, const Particles& particles, SimulationProfile& profile);
+    /// Some particles that a thread relaxes.
+    struct Piece {
+        ParticleList to_ask;
+        std::uint64_t contact_count = 0, map_query_count = 0;
+    };
+
+    void relax(std::size_t first, std::size_t end, Particles& particles, Piece& piece);
+    void ask(Particles& particles, Piece& piece);
+    bool meet_on_the_way(std::size_t i, const Particles& particles, Piece& piece);
     float reach_of(std::size_t i, const Particles& particles) const;
     void remember(std::size_t i, const Particles& particles, const Contact& nearest, float reach);
     Vec3f normal_to_own_side(std::size_t i, const Particles& particles, const Contact& nearest) const;
     void ask_for_nearest(std::span<const std::uint32_t> asked, std::span<const Vec3f> places_local,
-                         float reach, Particles& particles, SimulationProfile& profile);
+                         float reach, Particles& particles, Piece& piece);
     SweptParticle swept(std::size_t i, const Particles& particles) const {
         return {now_, free_places_, i, particles};
     }
@@ -64,7 +72,8 @@ class ExactCollision final : public Collision {
     KnownContacts known_;
     FreePlaces free_places_;
     PointArrays moved_along_; ///< places at the frame's start, moved along; used while the collider moves
-    ParticleList to_ask_, unproven_;
+    std::vector<Piece> pieces_;
+    ParticleList unproven_;
     bool moves_ = false;
     const SurfaceMotion* motion_ = nullptr; ///< in this frame
     PointArrays drift_;                     ///< ColliderNow::drift; used while the surface deforms

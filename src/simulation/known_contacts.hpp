@@ -55,11 +55,12 @@ struct ParticleList {
     std::span<const std::uint32_t> all() const { return {particles.data(), count}; }
 };
 
-/// One relaxation: puts the particles that are known to be below the thickness over their contact plane,
-/// with friction. Lists those for which the map has to be asked, in order.
+/// One relaxation of the particles from first on: puts those that are known to be below the thickness over
+/// their contact plane, with friction. Lists those for which the map has to be asked, in order.
+/// @param first  a multiple of the lanes of every instruction set, as end is, if it is not the last
 /// @return how many were pushed. The same bits under every instruction set.
-std::size_t push_known(const KnownContacts& known, const ColliderNow& collider, Particles& particles,
-                       ParticleList& to_ask) noexcept;
+std::size_t push_known(const KnownContacts& known, const ColliderNow& collider, std::size_t first,
+                       std::size_t end, Particles& particles, ParticleList& to_ask) noexcept;
 
 /// The same for one particle, by the plane that was just found. @return whether it was pushed
 bool push_one(const KnownContacts& known, const ColliderNow& collider, std::size_t i,

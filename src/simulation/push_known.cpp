@@ -82,12 +82,12 @@ HWY_INLINE void push(const FloatMask& below, const FloatLanes& missing, const Po
     store(previous + normal * (missing - back), below, particles.previous, i);
 }
 
-std::size_t push_lanes(const KnownContacts& known, const ColliderNow& collider, Particles& particles,
-                       ParticleList& to_ask) {
+std::size_t push_lanes(const KnownContacts& known, const ColliderNow& collider, std::size_t first,
+                       std::size_t end, Particles& particles, ParticleList& to_ask) {
     const FloatLanes thickness = splat(collider.thickness);
     const FloatLanes reuse = splat(kPlaneReuse * collider.thickness);
     std::size_t pushed_count = 0;
-    for (std::size_t i = 0; i < particles.count(); i += hn::Lanes(Floats())) {
+    for (std::size_t i = first; i < end; i += hn::Lanes(Floats())) {
         const PointLanes moved = load(particles.positions, i) - load(known.asked_at, i);
         const FloatLanes moved_sq = dot(moved, moved);
         const FloatLanes quiet = load(&known.clearance[i]) - thickness;
@@ -136,11 +136,11 @@ namespace {
 HWY_EXPORT(push_lanes);
 HWY_EXPORT(list_unproven_lanes);
 
-std::size_t push_one_by_one(const KnownContacts& known, const ColliderNow& collider, Particles& particles,
-                            ParticleList& to_ask) {
+std::size_t push_one_by_one(const KnownContacts& known, const ColliderNow& collider, std::size_t first,
+                            std::size_t end, Particles& particles, ParticleList& to_ask) {
     const float reuse = kPlaneReuse * collider.thickness;
     std::size_t pushed_count = 0;
-    for (std::uint32_t i = 0; i < particles.count(); ++i) {
+    for (auto i = static_cast<std::uint32_t>(first); i < end; ++i) {
         const Vec3f moved = particles.positions[i] - known.asked_at[i];
         const float moved_sq = dot(moved, moved);
         const float quiet = known.clearance[i] - collider.thickness;
@@ -169,10 +169,10 @@ bool push_one(const KnownContacts& known, const ColliderNow& collider, std::size
     return true;
 }
 
-std::size_t push_known(const KnownContacts& known, const ColliderNow& collider, Particles& particles,
-                       ParticleList& to_ask) noexcept {
-    if (!use_kernels()) return push_one_by_one(known, collider, particles, to_ask);
-    return ECHINUS_DISPATCH(push_lanes)(known, collider, particles, to_ask);
+std::size_t push_known(const KnownContacts& known, const ColliderNow& collider, std::size_t first,
+                       std::size_t end, Particles& particles, ParticleList& to_ask) noexcept {
+    if (!use_kernels()) return push_one_by_one(known, collider, first, end, particles, to_ask);
+    return ECHINUS_DISPATCH(push_lanes)(known, collider, first, end, particles, to_ask);
 }
 
 bool is_known_free(const KnownContacts& known, const ColliderNow& collider, std::size_t i,

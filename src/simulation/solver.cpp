@@ -260,7 +260,7 @@ void Simulation::Solver::relax_constraints() {
 void Simulation::Solver::collide() {
     const Stopwatch stopwatch(profile.collision_seconds);
     LoadMeter* const meter = meter_ ? &*meter_ : nullptr;
-    collisions_.relax(particles_, profile, meter);
+    collisions_.relax(particles_, profile, meter, workers_);
     if (surfaces_) surfaces_->relax(particles_, profile, meter);
 }
 

@@ -66,7 +66,7 @@ TEST(KnownContacts, PushAndListTheSameParticlesUnderEachInstructionSet) {
         test::under_each_instruction_set([&](std::string_view) {
             Particles particles = start;
             ParticleList list(2 * count);
-            const std::size_t pushed = push_known(known, now, particles, list);
+            const std::size_t pushed = push_known(known, now, 0, particles.count(), particles, list);
             EXPECT_LE(pushed + list.count, count);
             list_unproven(known, now, particles.positions, start.positions, list);
             results.push_back(as_points(particles.positions, count));
@@ -89,7 +89,7 @@ TEST(KnownContacts, PutAParticleAtTheThicknessOverItsPlane) {
     Particles particles(deformable);
     const KnownContacts known = known_of(particles, now, 0.1F);
     ParticleList to_ask(1);
-    EXPECT_EQ(push_known(known, now, particles, to_ask), 1u);
+    EXPECT_EQ(push_known(known, now, 0, particles.count(), particles, to_ask), 1u);
     EXPECT_EQ(to_ask.count, 0u);
     EXPECT_NEAR(particles.positions[0].z, 0.5 + kThickness, 1e-6);
 }
@@ -106,7 +106,7 @@ TEST(KnownContacts, AskAgainAboutParticlesThatMovedAlongTheSurface) {
     const KnownContacts known = known_of(particles, now, 0.1F);
     for (std::size_t i : {0U, 1U}) particles.positions.x[i] += 0.01F;
     ParticleList to_ask(2);
-    EXPECT_EQ(push_known(known, now, particles, to_ask), 0u);
+    EXPECT_EQ(push_known(known, now, 0, particles.count(), particles, to_ask), 0u);
     ASSERT_EQ(to_ask.count, 1u); // the other one is far away
     EXPECT_EQ(to_ask.particles[0], 0u);
 }
