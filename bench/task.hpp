@@ -30,6 +30,7 @@ Records measure_bytes(const Setting& setting);
 Records measure_build(const Setting& setting);
 Records measure_cloth(const Setting& setting);
 Records measure_triangles(const Setting& setting);
+Records measure_solvers(const Setting& setting);
 Records measure_surfaces(const Setting& setting);
 Records measure_figures(const Setting& setting);
 Records measure_reproduction(const Setting& setting);

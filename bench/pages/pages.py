@@ -76,6 +76,18 @@ def cloth(folder):
     return {"cloth": table(rows), "cloth machine": results.machine, "cloth commit": results.commit}
 
 
+def solvers(folder):
+    results = Results(folder, "solvers")
+    values = {"solvers machine": results.machine, "solvers commit": results.commit}
+    for hangs in results.distinct("hangs"):
+        rows = [["solver", "ms a frame", "ratio", "its middle column, %", "99 % of sticks less than, %", "most, %", "residual, %"]]
+        for r in results.where(hangs=hangs):
+            rows.append([r["design"], number(r["frame_ms"]), number(r["ratio"])]
+                        + [number(r[c], 100) for c in ("column_stretch", "stretch_99", "stretch_largest", "residual")])
+        values[f"solvers {hangs}"] = table(rows)
+    return values
+
+
 def triangles(folder):
     results = Results(folder, "triangles")
     rows = [["question", "system", "ms for all faces", "found"]]
@@ -271,6 +283,7 @@ TASKS = {
     "cloth": (["cloth_on_each.md"], cloth),
     "triangles": (["performance_tables.md"], triangles),
     "surfaces": (["surfaces_measured.md"], surfaces),
+    "solvers": (["solvers.md"], solvers),
     "engines": (["engines.md"], engines),
     "calls": (["calls.md"], calls),
     "labels": (["labels_measured.md"], labels),

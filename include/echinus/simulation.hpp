@@ -235,9 +235,16 @@ struct SimulationOptions {
     /// A particle farther than this from the middle of where the deformable began ends the simulation as
     /// diverged, units. 0: 10 000 times the deformable's extent at the start.
     double bound = 0;
-    /// Threads that compute a frame; 0: all cores. The bits do not depend on it. More than one share the
-    /// contact of surfaces (docs/surfaces.md), wait awake while a frame lasts, and need oneTBB.
+    /// Threads that compute a frame; 0: all cores. The bits do not depend on it. More than one share sticks,
+    /// folds, tetrahedra, particles beside exact maps and most of the contact of surfaces (docs/solvers.md),
+    /// wait awake while a frame lasts, and need oneTBB.
     unsigned thread_count = 1;
+    /// Verlet: before its relaxations, each frame relaxes coarser and coarser sheets of the same cloth, from
+    /// the coarsest on, so that large cloth hardly stretches: of 316 x 316 particles that hang by one edge,
+    /// the sticks are 0.1 % too long instead of 70 % (docs/solvers.md). Takes about the time of two to three
+    /// relaxations. For rectangles of cloth, as make_cloth(ClothOptions) lays them, also as parts of what
+    /// combine() makes; what else there is, is relaxed as ever.
+    bool multilevel = false;
 };
 
 /// What bears on a collider, in the world's axes.
@@ -273,6 +280,12 @@ struct SimulationProfile {
     /// Times that no place for a particle was proven: a pinned particle was led through something, or
     /// colliders left no room between them. Only then faces may intersect at the end of a frame.
     std::uint64_t squeezed_count = 0;
+};
+
+/// What relaxations have left undone: of the structural sticks, how far their lengths are from those at rest,
+/// as a share of these. 0.01 is 1 %. What springs with a compliance give by themselves is part of it.
+struct Residual {
+    double root_mean_square = 0, largest = 0; ///< 0 without such sticks
 };
 
 /// A deformable among colliders. The same input gives the same positions bit for bit, on every run and with
@@ -338,6 +351,9 @@ class Simulation {
     /// Has the rest condition held for the required number of frames?
     bool at_rest() const;
     const SimulationProfile& profile() const;
+    /// At the end of the last frame. Large residuals call for more relaxations, for smaller steps or for
+    /// SimulationOptions::multilevel (docs/solvers.md). Time: about a third of a relaxation of all sticks.
+    Residual residual() const;
     /// XXH64 of the bits of all positions and previous positions.
     std::uint64_t state_hash() const;
 

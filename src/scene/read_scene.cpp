@@ -470,7 +470,9 @@ void read_solver(JsonObject& root, Scene& scene) {
     if (solver < usual) root.refuse("solver", "\"xpbd\" or left out where there are bodies");
     if (solver == 0) {
         refuse_keys_of_other_choice(root, {"substeps"}, "solver", "xpbd");
+        root.read("multilevel", options.multilevel);
     } else {
+        refuse_keys_of_other_choice(root, {"multilevel"}, "solver", "verlet");
         // As much work as ten iterations, in small steps.
         options.solver = SolverKind::Xpbd;
         options.iteration_count = 1;

@@ -41,6 +41,9 @@ std::uint32_t Simulation::frame() const {
 double Simulation::largest_speed() const {
     return solver_->largest_speed;
 }
+Residual Simulation::residual() const {
+    return solver_->residual();
+}
 bool Simulation::at_rest() const {
     return solver_->at_rest();
 }

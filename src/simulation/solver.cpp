@@ -129,6 +129,7 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
         surfaces_.emplace(deformable, colliders, particles_, options);
         if (options.solver == SolverKind::Verlet) stretched_part_.emplace(sticks_, particles_.count());
     }
+    if (options.multilevel) coarse_sheets_.emplace(deformable);
     if (options.measure_loads) meter_.emplace(deformable, colliders.size());
     const Sphere start = box_sphere(deformable.positions);
     start_centre_ = start.centre;
@@ -145,6 +146,7 @@ void Simulation::Solver::step() {
         if (substep == 0) look_ahead();
         move_colliders(substep);
         begin_constraints();
+        relax_coarse_sheets();
         for (std::uint32_t iteration = 0; iteration < options.iteration_count; ++iteration) {
             relax_constraints();
             relax_stretched_part();
@@ -242,6 +244,14 @@ void Simulation::Solver::begin_constraints() {
     folds_.restore_goals();
     tetrahedra_.begin_substep();
     damp(tetrahedra_, particles_, workers_);
+}
+
+void Simulation::Solver::relax_coarse_sheets() {
+    if (!coarse_sheets_ || coarse_sheets_->empty()) return;
+    const Stopwatch stopwatch(profile.constraint_seconds);
+    if (meter_) meter_->note(particles_);
+    coarse_sheets_->relax(particles_);
+    if (meter_) meter_->charge_holder(particles_);
 }
 
 void Simulation::Solver::relax_constraints() {
@@ -352,6 +362,20 @@ std::string Simulation::Solver::name_of_collider(std::size_t collider) const {
 
 Load Simulation::Solver::load_on(std::size_t collider) const {
     return meter_ ? meter_->load_on(collider, options.time_step, substep_seconds_) : Load{};
+}
+
+Residual Simulation::Solver::residual() const {
+    double sum = 0, largest = 0;
+    std::size_t count = 0;
+    for (const Stick& stick : deformable.sticks) {
+        if (stick.kind != StickKind::Structural || !(stick.rest_length > 0)) continue;
+        const Vec3d across = Vec3d(deformable.positions[stick.b]) - Vec3d(deformable.positions[stick.a]);
+        const double share = std::abs(length(across) / double{stick.rest_length} - 1);
+        sum += share * share;
+        largest = std::max(largest, share);
+        ++count;
+    }
+    return count > 0 ? Residual{std::sqrt(sum / static_cast<double>(count)), largest} : Residual{};
 }
 
 /// The velocity is what the particle moved in the last substep.

@@ -2,6 +2,7 @@
 
 #include "geometry/workers.hpp"
 #include "simulation/attachments.hpp"
+#include "simulation/coarse_sheets.hpp"
 #include "simulation/collider_motions.hpp"
 #include "simulation/collisions.hpp"
 #include "simulation/deforming_collider.hpp"
@@ -40,6 +41,7 @@ class Simulation::Solver {
     void lead_vertices(std::size_t collider, std::span<const Vec3f> vertices_local);
     void follow_cache(std::size_t collider, VertexCache cache);
     Load load_on(std::size_t collider) const;
+    Residual residual() const;
     std::string name_of_collider(std::size_t collider) const;
     /// Of all that decides how the simulation goes on. Reading may leave a part of it when it throws.
     void archive(StateArchive& state);
@@ -65,6 +67,7 @@ class Simulation::Solver {
     void look_ahead();
     void move_colliders(std::uint32_t substep);
     void begin_constraints();
+    void relax_coarse_sheets();
     void relax_constraints();
     void collide();
     void relax_stretched_part();
@@ -79,6 +82,7 @@ class Simulation::Solver {
     StickArrays sticks_;
     FoldArrays folds_;
     TetrahedronArrays tetrahedra_;
+    std::optional<CoarseSheets> coarse_sheets_;
     Attachments attachments_;
     std::vector<std::optional<DeformingCollider>> deforming_; ///< by collider; none where it never deformed
     std::vector<const SurfaceMotion*> surface_motions_;       ///< by collider, in this frame

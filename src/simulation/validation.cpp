@@ -64,6 +64,9 @@ void require_valid(const SimulationOptions& options) {
     if (options.solver == SolverKind::Verlet && options.substep_count != 1)
         fail("simulation option substep_count is " + std::to_string(options.substep_count) +
              "; it must be 1 with the Verlet solver, whose sticks would become stiffer");
+    if (options.multilevel && options.solver != SolverKind::Verlet)
+        fail("simulation option multilevel needs the Verlet solver: coarse sheets would take back what "
+             "springs give; use substeps");
     require_within("drag", options.drag, 0, 1);
     require_within("thickness", options.thickness.value_or(0), 0, kLargest);
     require_within("self_thickness", options.self_thickness.value_or(0), 0, kLargest);

@@ -149,6 +149,7 @@ TEST(CStructs, AreFilledWithTheDefaultsOfCpp) {
     EXPECT_EQ(simulation.surface_collision, 0);
     EXPECT_EQ(simulation.bound, defaults.bound);
     EXPECT_EQ(simulation.thread_count, defaults.thread_count);
+    EXPECT_EQ(simulation.multilevel != 0, defaults.multilevel);
 }
 
 } // namespace

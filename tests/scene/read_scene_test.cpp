@@ -36,7 +36,7 @@ const char* const kMeshScene = R"({
               "position": [4, 5, 6], "rotation": {"axis": [1, 0, 0], "degrees": -90}, "velocity": [1, 2, -3],
               "thickness": 0.02, "self_thickness": 0.03, "pins": [3, 5],
               "attachments": {"from": [-1, -2, -3], "to": [1, 2, 3]}},
-    "surface_collision": true, "self_collision": true, "untangle": true, "thread_count": 3
+    "surface_collision": true, "self_collision": true, "untangle": true, "thread_count": 3, "multilevel": true
 })";
 
 std::string refusal(const std::string& text) {
@@ -150,6 +150,7 @@ TEST(Scene, OfAMeshIsReadKeyByKey) {
     EXPECT_TRUE(scene.simulation.self_collision);
     EXPECT_TRUE(scene.simulation.untangle);
     EXPECT_EQ(scene.simulation.thread_count, 3u);
+    EXPECT_TRUE(scene.simulation.multilevel);
     EXPECT_EQ(std::get<std::vector<std::uint32_t>>(cloth.pins), (std::vector<std::uint32_t>{3, 5}));
     EXPECT_EQ(std::get<VertexBox>(cloth.attachments).from, (Vec3d{-1, -2, -3}));
     EXPECT_EQ(std::get<VertexBox>(cloth.attachments).to, (Vec3d{1, 2, 3}));

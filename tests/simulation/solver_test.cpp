@@ -185,3 +185,13 @@ TEST(Solver, TakesOverflowForDivergence) {
     Simulation simulation(single_particle({}, {1e38F, 0, 0}), {}, {.gravity = {}, .bound = 1e30});
     EXPECT_THROW(simulation.step(), Error);
 }
+
+TEST(Solver, TellsHowFarStructuralSticksAreFromTheirLength) {
+    Deformable cloth = make_cloth({.column_count = 3, .row_count = 2, .width = 2, .height = 1});
+    cloth.inverse_masses.assign(6, 0);
+    for (Vec3f& p : cloth.positions) p.x *= 1.5F; // four sticks of seven are longer by a half
+    const Residual residual = Simulation(cloth, {}, {}).residual();
+    EXPECT_NEAR(residual.largest, 0.5, 1e-6);
+    EXPECT_NEAR(residual.root_mean_square, std::sqrt(4 * 0.25 / 7), 1e-6);
+    EXPECT_EQ(Simulation(single_particle({}, {}), {}, {}).residual().largest, 0);
+}

@@ -13,7 +13,7 @@
 
 namespace echinus::c {
 
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_options, thread_count);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_options, multilevel);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_profile, squeezed_count);
 static_assert(ECHINUS_SOLVER_XPBD == static_cast<int>(SolverKind::Xpbd));
 
@@ -34,7 +34,8 @@ echinus_simulation_options as_c(const SimulationOptions& options) {
     // All members: one that is added does not compile until it has a place here.
     const auto& [solver, time_step, iteration_count, substep_count, gravity, drag, stiffness, compliance,
                  thickness, friction, rest, keep_free, allow_open_colliders, surface_collision,
-                 self_collision, self_thickness, untangle, measure_loads, bound, thread_count] = options;
+                 self_collision, self_thickness, untangle, measure_loads, bound, thread_count, multilevel] =
+        options;
     echinus_simulation_options result{};
     result.time_step = time_step;
     result.solver = static_cast<echinus_solver>(solver);
@@ -58,6 +59,7 @@ echinus_simulation_options as_c(const SimulationOptions& options) {
     result.untangle = untangle ? 1 : 0;
     result.measure_loads = measure_loads ? 1 : 0;
     result.thread_count = thread_count;
+    result.multilevel = multilevel ? 1 : 0;
     return result;
 }
 
@@ -85,7 +87,8 @@ SimulationOptions options_from(const echinus_simulation_options* options) {
             .untangle = given.untangle != 0,
             .measure_loads = given.measure_loads != 0,
             .bound = given.bound,
-            .thread_count = static_cast<unsigned>(std::min<std::uint64_t>(given.thread_count, kMostThreads))};
+            .thread_count = static_cast<unsigned>(std::min<std::uint64_t>(given.thread_count, kMostThreads)),
+            .multilevel = given.multilevel != 0};
 }
 
 /// A row of the caller's structs, which may be larger than ours.

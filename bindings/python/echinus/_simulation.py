@@ -51,6 +51,7 @@ class SimulationOptions:
     measure_loads: bool
     bound: float
     threads: int
+    multilevel: bool
 
 
 @dataclass(frozen=True)
@@ -136,7 +137,10 @@ class Simulation:
     bound
         Beyond it the simulation has diverged; 0: 10 000 times the extent at the start.
     threads
-        That compute a frame; 0: all cores. More than one share the contact of surfaces. The bits do not depend on it.
+        That compute a frame; 0: all cores. The bits do not depend on it.
+    multilevel
+        With ``"verlet"``: each frame relaxes coarser sheets of a rectangular cloth first, so that a large one hardly
+        stretches.
     frame_limit
         Of :meth:`run`.
 
@@ -176,6 +180,7 @@ class Simulation:
         measure_loads: bool = False,
         bound: float = 0,
         threads: int = 1,
+        multilevel: bool = False,
         frame_limit: int = 3000,
     ) -> None:
         if solver not in (None, "verlet", "xpbd"):
@@ -207,6 +212,7 @@ class Simulation:
             "measure_loads": measure_loads,
             "bound": bound,
             "threads": threads,
+            "multilevel": flag("multilevel", multilevel),
         }
         self._frame_limit = whole("frame_limit", frame_limit)
         self._simulation = _core.Simulation(deformable._deformable, [c._arguments() for c in models], options)
@@ -374,6 +380,13 @@ class Simulation:
     def largest_speed(self) -> float:
         """Of the fastest particle, units per second; infinite before the first frame."""
         return self._simulation.largest_speed
+
+    @property
+    def residual(self) -> tuple[float, float]:
+        """What relaxations left undone: how far structural sticks are from their length at rest, as a share of it;
+        root mean square and largest.
+        """
+        return self._simulation.residual()
 
     @property
     def state_hash(self) -> int:

@@ -82,7 +82,8 @@ SimulationOptions options_of(const py::dict& values) {
             .untangle = given.get<bool>("untangle"),
             .measure_loads = given.get<bool>("measure_loads"),
             .bound = given.get<double>("bound"),
-            .thread_count = thread_count(given.get<int>("threads"))};
+            .thread_count = thread_count(given.get<int>("threads")),
+            .multilevel = given.get<bool>("multilevel")};
 }
 
 std::unique_ptr<SharedSimulation> simulation_of(const Deformable& deformable,
@@ -161,6 +162,7 @@ py::dict describe(const SimulationOptions& o) {
     result["measure_loads"] = o.measure_loads;
     result["bound"] = o.bound;
     result["threads"] = o.thread_count;
+    result["multilevel"] = o.multilevel;
     return result;
 }
 
@@ -293,6 +295,11 @@ void bind_simulations(py::module_& module) {
         .def_property_readonly(
             "at_rest",
             [](SharedSimulation& shared) { return shared.alone([](Simulation& s) { return s.at_rest(); }); })
+        .def("residual",
+             [](SharedSimulation& shared) {
+                 const Residual residual = shared.alone([](Simulation& s) { return s.residual(); });
+                 return std::pair(residual.root_mean_square, residual.largest);
+             })
         .def_property_readonly("largest_speed",
                                [](SharedSimulation& shared) {
                                    return shared.alone([](Simulation& s) { return s.largest_speed(); });

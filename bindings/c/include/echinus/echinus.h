@@ -997,6 +997,7 @@ typedef struct echinus_simulation_options {
     int32_t untangle;          ///< with surface_collision: part what begins intersecting
     int32_t measure_loads;     ///< keep account for echinus_simulation_load_on()
     uint64_t thread_count;     ///< that compute a frame; 0: all cores. The bits do not depend on it
+    uint64_t multilevel;       ///< Verlet: each frame relaxes coarser sheets of the same cloth first; 0 or 1
 } echinus_simulation_options;
 
 ECHINUS_API void echinus_simulation_options_init(echinus_simulation_options* options, size_t size);
