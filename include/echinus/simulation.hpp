@@ -241,7 +241,7 @@ struct SimulationOptions {
     unsigned thread_count = 1;
     /// Verlet: before its relaxations, each frame relaxes coarser and coarser sheets of the same cloth, from
     /// the coarsest on, so that large cloth hardly stretches: of 316 x 316 particles that hang by one edge,
-    /// the sticks are 0.1 % too long instead of 70 % (docs/solvers.md). Takes about the time of two to three
+    /// the sticks are some 0.1 % too long instead of 140 % (docs/solvers.md). Takes less time than ten
     /// relaxations. For rectangles of cloth, as make_cloth(ClothOptions) lays them, also as parts of what
     /// combine() makes; what else there is, is relaxed as ever.
     bool multilevel = false;
