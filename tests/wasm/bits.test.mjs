@@ -86,15 +86,20 @@ for (const subject of reference.subjects) {
 }
 
 describe('A simulation has the state of the reference, bit for bit', () => {
-    for (const { scene, frames, hash, ...counts } of reference.simulations) {
+    for (const { scene, growth, frames, hash, ...counts } of reference.simulations) {
         const { model, cloth, ...rest } = scene;
         for (const set of instructionSets)
-            test(`${JSON.stringify(rest)} after ${frames} frames by ${set}`, async () => {
+            test(`${JSON.stringify(rest)}${growth ? ' with a model that grows' : ''} after ${frames} frames by ${set}`, async () => {
                 const echinus = await start();
                 echinus.instructionSet = set;
                 const parsed = echinus.parseScene(scene);
-                const simulation = parsed.makeSimulation(parsed.buildMap(parsed.makeModel()));
-                simulation.step(frames);
+                const mesh = parsed.makeModel();
+                const simulation = parsed.makeSimulation(parsed.buildMap(mesh));
+                const { vertices } = mesh;
+                for (let frame = 1; frame <= frames; ++frame) {
+                    if (growth) simulation.setColliderVertices(vertices.map((part) => part * (1 + growth * frame)));
+                    simulation.step();
+                }
                 assert.equal(simulation.stateHash, hash);
                 const { queryCount, contactCount, lostCount } = simulation.profile;
                 assert.deepEqual({ queryCount, contactCount, lostCount }, counts);

@@ -308,6 +308,41 @@ describe('A simulation', () => {
         assert.equal(joined.continueWith(alone, [maps[0]]).colliderCount, 1);
         assert.throws(() => simulation.continueWith(both, [maps[0]]), /a map for each collider/);
     });
+    test('has a collider that deforms, takes along what is attached to it, and meets no face of the cloth', () => {
+        const attached = { from: [-9, -9, -9], to: [-0.9, 9, 9] };
+        const cloth = { mesh: 'sheet.obj', position: [0, 0, 0.34], thickness: 0.02, attachments: attached };
+        const scene = echinus.parseScene({ model: 'ball.obj', cloth, surface_collision: true });
+        const ball = echinus.makeSphere(0.3, 24, 12);
+        const n = 18, places = Array.from({ length: n * n }, (_, i) => [(i % n) / 9 - 0.95, Math.floor(i / n) / 9 - 0.95, 0]);
+        const squares = places.flatMap((_, i) => (i % n < n - 1 && i < n * (n - 1) ? [i, i + 1, i + n + 1, i, i + n + 1, i + n] : []));
+        const simulation = scene.makeSimulation(echinus.buildMap(ball), { cloth: echinus.makeMesh(places.flat(), squares) });
+        const { vertices, faces } = ball;
+        const points = echinus.makePoints(ball.vertexCount);
+        const flags = echinus.makeFlags(simulation.particleCount);
+        const held = simulation.positions.slice(0, 3);
+        for (let frame = 1; frame <= 160; ++frame) {
+            const now = vertices.map((part, i) => part * (1 + 0.3 * Math.sin(0.05 * frame)) + (i % 3 === 2 ? 0.001 * frame : 0));
+            if (frame % 2) simulation.setColliderVertices(now);
+            else {
+                points.view.set(now);
+                simulation.setColliderVertices(points, 0);
+            }
+            simulation.step();
+            const sheet = echinus.makeMesh(simulation.positions, simulation.faces), model = echinus.makeMesh(now, faces);
+            assert.equal(sheet.intersectingPairs(model).length, 0, `frame ${frame}`);
+            assert.equal(simulation.containsBatch(flags).view.includes(1), false);
+            for (const mesh of [sheet, model]) mesh.delete();
+        }
+        assert.equal(simulation.profile.squeezedCount, 0);
+        assert.ok(simulation.profile.contactCount > 1000);
+        assert.ok(simulation.positions[2] > held[2] + 0.1, 'what is attached has risen');
+
+        const more = simulation.continueWith(scene);
+        const before = more.positions[2];
+        more.setColliderVertices(Float32Array.from(vertices, (part, i) => part + (i % 3 === 2 ? 0.2 : 0)));
+        more.step();
+        assert.ok(more.positions[2] !== before, 'also in the simulation that goes on');
+    });
     test('of soft bodies takes the surfaces that its caller has', () => {
         const bodies = [{ mesh: 'ball.obj', element: 0.2, position: [0, 0, 0.9] }];
         const scene = echinus.parseScene({ model: { torus: {} }, bodies });

@@ -150,15 +150,23 @@ std::string hexadecimal(std::uint64_t number) {
     return digits;
 }
 
-json run_simulation(const char* part) {
+/// @param growth  the model's vertices lie 1 + growth * frame times as far from the origin
+json run_simulation(const char* part, float growth) {
     json description = json::parse(kScene);
     description.merge_patch(json::parse(part));
     const Scene scene = parse_scene(description.dump(), "scene");
-    const AnyMap map =
-        build_map(make_mesh(std::get<TorusModel>(scene.colliders.front().model)), scene.map, 1);
-    Simulation simulation = make_simulation(scene, map);
-    for (std::uint32_t frame = 0; frame < kFrameCount; ++frame) simulation.step();
+    const TriangleMesh model = make_mesh(std::get<TorusModel>(scene.colliders.front().model));
+    Simulation simulation = make_simulation(scene, build_map(model, scene.map, 1));
+    for (std::uint32_t frame = 1; frame <= kFrameCount; ++frame) {
+        if (growth != 0) {
+            std::vector<Vec3f> grown = model.vertices;
+            for (Vec3f& vertex : grown) vertex = vertex * (1 + growth * static_cast<float>(frame));
+            simulation.set_collider_vertices(0, grown);
+        }
+        simulation.step();
+    }
     return {{"scene", description},
+            {"growth", growth},
             {"frames", kFrameCount},
             {"hash", hexadecimal(simulation.state_hash())},
             {"queryCount", simulation.profile().query_count},
@@ -171,7 +179,8 @@ void write_reference(const fs::path& folder) {
     fs::create_directories(folder);
     json reference{{"subjects", json::array()}, {"simulations", json::array()}};
     for (const Subject& subject : subjects()) reference["subjects"].push_back(write_subject(folder, subject));
-    for (const char* part : kSimulations) reference["simulations"].push_back(run_simulation(part));
+    for (const char* part : kSimulations) reference["simulations"].push_back(run_simulation(part, 0));
+    reference["simulations"].push_back(run_simulation(R"({"surface_collision": true})", 1.0F / 1024));
     const std::string text = reference.dump(1);
     write(folder / "reference.json", std::vector<char>(text.begin(), text.end()));
 }

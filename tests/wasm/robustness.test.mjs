@@ -293,6 +293,39 @@ describe('A simulation', () => {
     });
 });
 
+describe('A collider that deforms', () => {
+    const sceneOf = (keys) => echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [10, 10], position: [0, 0, 2] }, ...keys });
+    test('refuses vertices that are not those of its mesh, and goes on as it was', () => {
+        const scene = sceneOf({ surface_collision: true });
+        const mesh = scene.makeModel();
+        const { vertices } = mesh;
+        const simulation = scene.makeSimulation(scene.buildMap(mesh)), undisturbed = scene.makeSimulation(scene.buildMap(mesh));
+        const refusal = (given, index) => errorOf(() => simulation.setColliderVertices(given, index));
+        assert.match(refusal(vertices.subarray(3)).message, /has \d+ vertices, and was given places for \d+/);
+        assert.match(refusal(vertices.map((part, i) => (i === 10 ? NaN : part))).message, /the place of vertex 3 is not finite/);
+        assert.equal(refusal(new Float32Array(vertices.length)).code, 'InvalidMesh');
+        for (const given of [[...vertices], vertices.subarray(1), undefined, 7, new Float64Array(vertices), echinus.makeFlags(vertices.length)])
+            assert.equal(refusal(given).code, 'InvalidArgument');
+        for (const index of [1, -1, 0.5, NaN]) assert.equal(refusal(vertices, index).code, 'InvalidArgument');
+        for (const each of [simulation, undisturbed]) each.step(3);
+        assert.equal(simulation.stateHash, undisturbed.stateHash);
+        const deleted = echinus.makePoints(mesh.vertexCount);
+        deleted.delete();
+        assert.equal(refusal(deleted).code, 'Deleted');
+        assertAlive();
+    });
+    test('needs an exact map, and surfaces that collide', () => {
+        for (const [keys, words] of [[{ surface_collision: false }, /cannot deform without surface_collision/], [{ map: { kind: 'distance' } }, /has no exact map/]]) {
+            const scene = sceneOf(keys);
+            const mesh = scene.makeModel();
+            const error = errorOf(() => scene.makeSimulation(scene.buildMap(mesh)).setColliderVertices(mesh.vertices));
+            assert.equal(error.code, 'InvalidOptions');
+            assert.match(error.message, words);
+        }
+        assertAlive();
+    });
+});
+
 describe('The module', () => {
     test('supports everything here, and names what it needs where vectors are missing', async () => {
         assert.deepEqual(module.missingFeatures(), []);

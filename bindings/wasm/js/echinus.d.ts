@@ -638,6 +638,17 @@ export class Simulation extends Deletable {
     continueWith(scene: Scene, maps?: readonly AnyMap[]): Simulation;
     /** Steers a collider, the first by default: it keeps these velocities until they are set again. Units and radians per second. */
     setColliderVelocity(linear: Vec3, angular: Vec3, index?: number): void;
+    /**
+     * Deforms a collider, the first by default: the next step leads the vertices of its mesh here, each on a straight way;
+     * then they rest. The faces stay as they are, and the pose is another thing: it may move meanwhile. Faces of the cloth
+     * are kept off those that move as off any, and attached particles stay beside the face that was nearest to them when
+     * the collider first deformed. Builds the exact map anew: about a microsecond for each face.
+     * @param vertices  [3 vertexCount] in the collider's frame, of the mesh that its map was built of, in its order;
+     *                  copied, unless they are a PointBuffer
+     * @throws InvalidOptions for another number of vertices, one that is not finite, a collider without an exact map, or
+     * a scene without surface_collision; InvalidMesh where no map is possible. Then nothing has changed
+     */
+    setColliderVertices(vertices: PointBuffer | Float32Array, index?: number): void;
 
     /**
      * Gives a particle a velocity, units per second. To drag with the pointer, set it before each step, for the grabbed

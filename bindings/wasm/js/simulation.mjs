@@ -1,4 +1,4 @@
-import { ContactBuffer, FlagBuffer, requireWithin } from './buffers.mjs';
+import { ContactBuffer, FlagBuffer, requireWithin, withPoints } from './buffers.mjs';
 import { Handle, requireOwn } from './core.mjs';
 import { refuse, requireCount, requireFinite } from './errors.mjs';
 import { asJson, requireMap, wrapMap } from './maps.mjs';
@@ -100,6 +100,10 @@ export class Simulation extends Handle {
         requireFinite(linear, 'the linear velocity');
         requireFinite(angular, 'the angular velocity');
         this.core.call('simulation_set_collider_velocity', this.address, this.#requireCollider(index), ...linear, ...angular);
+    }
+    setColliderVertices(vertices, index = 0) {
+        const collider = this.#requireCollider(index);
+        withPoints(this.core, vertices, undefined, (at, count) => this.core.try('simulation_set_collider_vertices', this.address, collider, at, count));
     }
     #requireCollider(index) {
         requireCount(index, 'the collider');

@@ -245,6 +245,14 @@ void simulation_set_collider_velocity(Simulation* simulation, std::uint32_t inde
     simulation->set_collider_velocity(index, {linear_x, linear_y, linear_z},
                                       {angular_x, angular_y, angular_z});
 }
+ECHINUS_EXPORT(simulation_set_collider_vertices)
+bool simulation_set_collider_vertices(Simulation* simulation, std::uint32_t index, const Vec3f* vertices,
+                                      std::uint32_t count) {
+    return guarded([&] {
+        simulation->set_collider_vertices(index, values_at(vertices, count));
+        return true;
+    });
+}
 
 // ---- A hand and wind
 

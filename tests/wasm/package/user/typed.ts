@@ -15,6 +15,9 @@ export async function user(jolt: typeof Jolt, body: Jolt.Body, softBody: SoftBod
     mesh.repair(['everything']);
     const simulation = echinus.parseScene({ model: 'box', cloth: { size: [1, 1] } }).makeSimulation(map);
     new ClothGeometry(simulation).update();
+    simulation.setColliderVertices(mesh.vertices);
+    // @ts-expect-error: an array of numbers has to become a Float32Array
+    simulation.setColliderVertices([0, 0, 0], 0);
     using inJolt = new JoltCollision(echinus, jolt, body, { colliders: [{ map, body }], thickness: 0.01 });
     // @ts-expect-error: the thickness is needed
     new RapierCollision(echinus, softBody, { colliders: [{ map }] });
