@@ -15,7 +15,7 @@ import { beQuiet, enableClosing, remark, say, showProgress } from './panel/notic
 import { numbered } from './panel/numbers';
 import { showReport } from './panel/report';
 import { enablePointer } from './pointer';
-import type { FromWorker, MapNews, ModelNews, SurfaceNews, ToWorker, Triple } from './protocol';
+import type { CellNews, FromWorker, MapNews, ModelNews, SurfaceNews, ToWorker, Triple } from './protocol';
 import { Recorder } from './recorder';
 import { objText, saveAs } from './saving';
 import { SAMPLES, type Settings, besideOf, consistent, fromLink, toLink } from './settings';
@@ -58,6 +58,7 @@ class App {
     #paused = false;
     #rayAsked = false;
     #surface: SurfaceNews | undefined;
+    #cells: CellNews | undefined;
     #worded = 0;
 
     readonly #stage = new Stage(byId<HTMLCanvasElement>('canvas'));
@@ -139,6 +140,10 @@ class App {
             case 'surface':
                 this.#surface = message;
                 this.#mapView.showSurface(message);
+                return this.#showSurface();
+            case 'cells':
+                this.#cells = message;
+                this.#mapView.showCells(message);
                 return this.#showSurface();
             case 'map':
                 return this.#useMap(message.map);
@@ -276,6 +281,7 @@ class App {
         document.body.classList.toggle('map-exact', map.kind === 'exact');
         document.body.classList.toggle('map-distance', map.kind === 'distance');
         this.#mapView.forget();
+        this.#cells = undefined;
         forgetRay();
         if (this.#settings.view === 'map') this.#askForMap();
     }
@@ -298,9 +304,15 @@ class App {
     #askForMap(): void {
         const { client } = this.#main;
         client.tell({ kind: 'surface' });
+        this.#askForCells();
         client.tell({ kind: 'slice', height: this.#settings.slice });
         // Shows a ray before the pointer enters.
         client.tell({ kind: 'ray', direction: towardsTop(this.#model!) });
+    }
+
+    /** Only where they are shown: there may be half a million. */
+    #askForCells(): void {
+        if (this.#settings.shown === 'cells' && this.#map?.kind === 'exact' && !this.#cells) this.#main.client.tell({ kind: 'cells' });
     }
 
     // ---- The other half
@@ -398,6 +410,7 @@ class App {
             case 'slice':
                 return this.#main.client.tell({ kind: 'slice', height: settings.slice });
             case 'shown':
+                if (this.#settings.view === 'map') this.#askForCells();
                 return this.#showSurface();
             case 'model':
                 return this.#open(undefined);
@@ -456,7 +469,7 @@ class App {
     #showSurface(): void {
         if (!this.#surface) return;
         this.#mapView.shown = this.#settings.shown;
-        showLegend(this.#surface, this.#settings.shown);
+        showLegend(this.#surface, this.#cells, this.#settings.shown);
     }
 
     #showView(): void {

@@ -30,6 +30,8 @@ export type ToWorker =
     /** The same, through the first point of the surface on a straight line. */
     | { kind: 'point'; from: Triple; to: Triple }
     | { kind: 'surface' }
+    /** The cells of an exact map. */
+    | { kind: 'cells' }
     /** Builds the map in use once more, only to time it. */
     | { kind: 'rebuild' }
     | { kind: 'slice'; height: number };
@@ -43,6 +45,7 @@ export type FromWorker =
     | { kind: 'frame'; arrays: FrameArrays; figures: Figures; wrong: Uint32Array; ball?: Triple; collider: ColliderState; cloth: number }
     | { kind: 'progress'; turn: number; stage: Stage }
     | ({ kind: 'surface' } & SurfaceNews)
+    | ({ kind: 'cells' } & CellNews)
     /** Another map is in use. */
     | { kind: 'map'; map: MapNews }
     | { kind: 'rebuilt'; map: MapNews }
@@ -88,6 +91,8 @@ export interface ModelNews {
     faces: Uint32Array;
     /** Where it is small enough for creases. */
     shape?: Shape;
+    /** [3 vertices] Otherwise. */
+    normals?: Float32Array;
     report: MeshReport;
     /** Of the bounding sphere: where the answers of the exact map are certain for sure. */
     certainShare: number;
@@ -112,16 +117,30 @@ export interface MapNews {
     description: ExactMapDescription | DistanceMapDescription;
 }
 
+/** Separate faces, each in its colour, ready to draw: there may be a million. Transferred. */
+export interface ColouredFaces {
+    /** [9 faces] of their corners, as are the others. */
+    positions: Float32Array<ArrayBuffer>;
+    normals: Float32Array<ArrayBuffer>;
+    /** Linear. */
+    colours: Float32Array<ArrayBuffer>;
+}
+
 export interface SurfaceNews {
-    vertices: Float32Array;
-    faces: Uint32Array;
-    /** [faces] exact: the longest list that contains the face; distance: its layer. */
-    values: Uint32Array;
+    /** Coloured by their values. Exact: the longest list that contains the face; distance: its layer. */
+    faces: ColouredFaces;
+    /** Of the values. */
+    largest: number;
     mapKind: 'exact' | 'distance';
     /** Where the paper's map and the exact map differ, of points in the whole bounding sphere and near the surface. */
     differences?: { everywhere: Difference; near: Difference & { within: number } };
-    /** Of an exact map: for each cell the faces in all its lists, and unit vectors to its three corners. */
-    cells?: { faceCounts: Uint32Array; corners: Float32Array };
+}
+
+/** The cells of an exact map on the bounding sphere: the more faces are in their lists, the darker. */
+export interface CellNews {
+    faces: ColouredFaces;
+    /** Of the numbers of faces. */
+    largest: number;
 }
 
 export interface Difference {

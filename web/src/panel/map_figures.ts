@@ -1,7 +1,6 @@
-import type { Difference, FromWorker, MapNews, SurfaceNews } from '../protocol';
+import type { CellNews, Difference, FromWorker, MapNews, SurfaceNews } from '../protocol';
 import type { Settings } from '../settings';
 import { LAYERS } from '../view/colours';
-import { largestOf } from '../view/coloured_faces';
 import { byId, make, scaleBar, swatch } from './elements';
 import { bytes, count, milliseconds } from './numbers';
 
@@ -34,11 +33,11 @@ export function showMapFigures({ description, byteCount, buildMs }: MapNews): vo
     );
 }
 
-/** The meaning of the colours, and how often the two kinds of map differ. */
-export function showLegend(surface: SurfaceNews, shown: Settings['shown']): void {
+/** The meaning of the colours, and how often the two kinds of map differ. @param cells  where they are there */
+export function showLegend(surface: SurfaceNews, cells: CellNews | undefined, shown: Settings['shown']): void {
     if (surface.mapKind === 'distance') return byId('legend').replaceChildren(...layerLegend(surface));
-    if (shown === 'cells' && surface.cells) byId('legend').replaceChildren(...scaleLegend('Faces that a cell of directions lists', 0, largestOf(surface.cells.faceCounts)));
-    else byId('legend').replaceChildren(...scaleLegend('Faces that a query near the surface may have to test', 1, largestOf(surface.values)));
+    if (shown === 'cells' && cells) byId('legend').replaceChildren(...scaleLegend('Faces that a cell of directions lists', 0, cells.largest));
+    else byId('legend').replaceChildren(...scaleLegend('Faces that a query near the surface may have to test', 1, surface.largest));
 }
 
 function scaleLegend(title: string, least: number, largest: number): HTMLElement[] {
@@ -47,9 +46,9 @@ function scaleLegend(title: string, least: number, largest: number): HTMLElement
     return [make('span', title), scaleBar(), ends];
 }
 
-function layerLegend({ values, differences }: SurfaceNews): HTMLElement[] {
+function layerLegend({ largest, differences }: SurfaceNews): HTMLElement[] {
     const layers = make('div', '', 'layers');
-    for (let layer = 0; layer <= largestOf(values); ++layer) {
+    for (let layer = 0; layer <= largest; ++layer) {
         const item = make('span', `layer ${layer + 1}`);
         item.prepend(swatch(LAYERS[layer % LAYERS.length]));
         layers.append(item);

@@ -1,10 +1,8 @@
 import * as THREE from 'three';
 import { UNIT, following } from '../axes';
-import { isInsideOut } from '../inside_out';
-import type { Cut, FromWorker, ModelNews, SurfaceNews, Triple } from '../protocol';
+import type { CellNews, ColouredFaces, Cut, FromWorker, ModelNews, SurfaceNews, Triple } from '../protocol';
 import type { Settings } from '../settings';
-import { cellBall, colouredFaces, largestOf, scaleTo } from './coloured_faces';
-import { BAND, CHALK, CLOTH, FAULT, INK, LAYERS, LAYER_BACK } from './colours';
+import { BAND, CHALK, CLOTH, FAULT, INK, LAYER_BACK } from './colours';
 import { matte } from './matte';
 import { clear } from './model_view';
 
@@ -34,32 +32,26 @@ export class MapView {
     /** What was shown is of another map. */
     forget(): void {
         clear(this.#cells);
-        this.#cellNews = undefined;
         for (const part of [this.#surface, this.#cut, this.#ray]) clear(part);
     }
 
     showSurface(news: SurfaceNews): void {
         clear(this.#surface);
-        const colours = news.mapKind === 'exact' ? scaleTo(largestOf(news.values)) : (layer: number) => new THREE.Color(LAYERS[layer % LAYERS.length]);
-        // An exact map has the model's own faces, which may look inwards.
-        const inwards = news.mapKind === 'exact' && this.#model !== undefined && isInsideOut(this.#model.report);
-        this.#surface.add(shell(colouredFaces(cornersOf(news, inwards), news.values, colours)));
+        this.#surface.add(shell(news.faces));
         for (const { points } of news.differences ? [news.differences.everywhere, news.differences.near] : []) if (points.length > 0) this.#surface.add(dots(points));
-        clear(this.#cells);
-        this.#cellNews = news.cells;
         this.#surface.add(this.#cells);
+        this.#clip();
+    }
+
+    showCells({ faces }: CellNews): void {
+        clear(this.#cells);
+        this.#cells.add(shell(faces));
         this.#clip();
     }
 
     set shown(what: Settings['shown']) {
         this.#cells.visible = what === 'cells';
-        if (!this.#cells.visible || !this.#cellNews || !this.#model) return;
-        // Only now: there may be half a million.
-        this.#cells.add(shell(cellBall(this.#cellNews, this.#model)));
-        this.#cellNews = undefined;
-        this.#clip();
     }
-    #cellNews: SurfaceNews['cells'];
 
     /** Cells hide the surface where they are not cut away. */
     get showsCells(): boolean {
@@ -141,21 +133,16 @@ export class MapView {
     }
 }
 
-function cornersOf({ vertices, faces }: SurfaceNews, turned: boolean): Float32Array {
-    const corners = new Float32Array(3 * faces.length);
-    const order = turned ? [0, 2, 1] : [0, 1, 2];
-    for (let i = 0; i < faces.length; ++i) {
-        const vertex = 3 * faces[i - (i % 3) + order[i % 3]];
-        for (let k = 0; k < 3; ++k) corners[3 * i + k] = vertices[vertex + k];
-    }
-    return corners;
-}
-
 /** Coloured in front, paper behind. */
-function shell(geometry: THREE.BufferGeometry): THREE.Mesh {
+function shell({ positions, normals, colours }: ColouredFaces): THREE.Mesh {
+    const geometry = new THREE.BufferGeometry();
+    for (const [name, numbers] of [['position', positions], ['normal', normals], ['color', colours]] as const)
+        geometry.setAttribute(name, new THREE.BufferAttribute(numbers, 3));
     const material = matte(0xffffff, LAYER_BACK);
     material.vertexColors = true;
-    return new THREE.Mesh(geometry, material);
+    const mesh = new THREE.Mesh(geometry, material);
+    mesh.frustumCulled = false; // it fills the picture, and to find its bounds takes time
+    return mesh;
 }
 
 function dots(positions: Float32Array): THREE.Points {

@@ -14,11 +14,11 @@ export class ModelView {
     /** The model alone, without the faults. Added to the group once it has normals, since three.js compiles the program for its attributes at once. */
     readonly clay = new THREE.Mesh(new THREE.BufferGeometry(), clay());
 
-    show({ vertices, faces, shape, faults }: Pick<ModelNews, 'vertices' | 'faces' | 'shape' | 'faults'>): void {
+    show({ vertices, faces, shape, normals, faults }: Pick<ModelNews, 'vertices' | 'faces' | 'shape' | 'normals' | 'faults'>): void {
         this.group.remove(this.clay);
         clear(this.group);
         this.clay.geometry.dispose();
-        this.clay.geometry = shape ? creased(shape) : smooth(vertices, faces);
+        this.clay.geometry = shape ? creased(shape) : smooth(vertices, faces, normals);
         this.clay.castShadow = this.clay.receiveShadow = true;
         this.group.add(this.clay);
 
@@ -50,11 +50,12 @@ function creased({ positions, normals }: Shape): THREE.BufferGeometry {
     return new THREE.BufferGeometry().setAttribute('position', new THREE.BufferAttribute(positions, 3)).setAttribute('normal', new THREE.BufferAttribute(normals, 3));
 }
 
-function smooth(vertices: Float32Array, faces: Uint32Array): THREE.BufferGeometry {
+function smooth(vertices: Float32Array, faces: Uint32Array, normals: Float32Array | undefined): THREE.BufferGeometry {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', new THREE.BufferAttribute(vertices, 3));
     geometry.setIndex(new THREE.BufferAttribute(faces, 1));
-    geometry.computeVertexNormals();
+    if (normals) geometry.setAttribute('normal', new THREE.BufferAttribute(normals, 3));
+    else geometry.computeVertexNormals();
     return geometry;
 }
 

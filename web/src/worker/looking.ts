@@ -1,6 +1,8 @@
 import type { DistanceMap, Echinus, ExactMap } from 'echinus';
 import { UNIT, following } from '../axes';
-import type { Cut, Difference, FromWorker, SurfaceNews, Triple } from '../protocol';
+import { isInsideOut } from '../inside_out';
+import type { CellNews, ColouredFaces, Cut, Difference, FromWorker, SurfaceNews, Triple } from '../protocol';
+import { colouredFaces, cornersOf, largestOf, layersTo, onSphere, scaleTo } from './coloured_faces';
 import type { Playground } from './playground';
 
 const CUT_SIDE = 220;
@@ -9,20 +11,31 @@ const SAMPLE_COUNT = 200_000;
 const NEAR = 0.02;
 const NEAR_COUNT = 100_000;
 
-/** The surface of the map in use, with the numbers that colour it, and where the two kinds of map differ. */
-export function surfaceOf(echinus: Echinus, { map, exactMap, settings }: Playground): SurfaceNews {
+/** The surface of the map in use in colours, and where the two kinds of map differ. */
+export function surfaceOf(echinus: Echinus, { map, exactMap, report }: Playground): SurfaceNews {
     const { mesh, values } = map.kind === 'exact' ? withLists(map) : withLayers(map);
-    const news = {
-        vertices: mesh.vertices,
-        faces: mesh.faces,
-        values,
-        mapKind: settings.map,
-        ...(map.kind === 'distance' && { differences: differencesOf(echinus, exactMap, map) }),
-        ...(map.kind === 'exact' && { cells: map.cells() }),
-    };
+    const largest = largestOf(values);
+    // An exact map has the model's own faces, which may look inwards.
+    const corners = cornersOf(mesh.vertices, mesh.faces, map.kind === 'exact' && isInsideOut(report));
     mesh.delete();
-    return news;
+    return {
+        faces: colouredFaces(corners, values, map.kind === 'exact' ? scaleTo(largest) : layersTo(largest)),
+        largest,
+        mapKind: map.kind,
+        ...(map.kind === 'distance' && { differences: differencesOf(echinus, exactMap, map) }),
+    };
 }
+
+/** The cells of the map in use, where that is an exact one. */
+export function cellsOf({ map }: Playground): CellNews | undefined {
+    if (map.kind !== 'exact') return undefined;
+    const { faceCounts, corners } = map.cells();
+    const largest = largestOf(faceCounts);
+    return { faces: colouredFaces(onSphere(corners, map.centre, map.radius), faceCounts, scaleTo(largest)), largest };
+}
+
+/** What goes to the page without a copy. */
+export const buffersOf = ({ positions, normals, colours }: ColouredFaces): Transferable[] => [positions.buffer, normals.buffer, colours.buffer];
 
 function withLists(map: ExactMap) {
     const { mesh, longestLists } = map.surface();

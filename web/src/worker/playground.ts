@@ -129,6 +129,9 @@ export class Playground {
     get settings(): Settings {
         return this.#settings;
     }
+    get report(): MeshReport {
+        return this.#report;
+    }
 
     news(): ModelNews {
         const { vertices, faces } = this.#mesh;
@@ -136,7 +139,7 @@ export class Playground {
             name: this.#name,
             vertices,
             faces,
-            ...(faces.length <= 3 * CREASED_FACES && { shape: creasedNormals(vertices, faces) }),
+            ...(faces.length <= 3 * CREASED_FACES ? { shape: creasedNormals(vertices, faces) } : { normals: normalsOf(vertices, faces) }),
             report: this.#report,
             certainShare: this.exactMap.description.certainShare,
             faults: this.#faults,
@@ -407,6 +410,12 @@ function buildGround(echinus: Echinus, body: Body): ExactMap {
     const map = echinus.buildMap(box, { kind: 'exact' });
     box.delete();
     return map;
+}
+
+function normalsOf(vertices: Float32Array, faces: Uint32Array): Float32Array {
+    const normals = new Float32Array(vertices.length);
+    surfaceNormals(vertices, faces, normals);
+    return normals;
 }
 
 function longestEdgeAt(particle: number, faces: Uint32Array, positions: Float32Array): number {

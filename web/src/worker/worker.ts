@@ -1,7 +1,7 @@
 /** The worker: one instance of the module, one playground, and a loop that the page drives frame by frame. */
 import { EchinusError, load } from 'echinus';
 import type { FrameArrays, FromWorker, Stage, ToWorker } from '../protocol';
-import { cutAt, lookAlong, lookAt, surfaceOf } from './looking';
+import { buffersOf, cellsOf, cutAt, lookAlong, lookAt, surfaceOf } from './looking';
 import { type Reading, fetchSample, named, prepareFile } from './models';
 import { type Look, Playground } from './playground';
 import { warmUp } from './warm_up';
@@ -87,8 +87,14 @@ async function handle(message: ToWorker): Promise<void> {
             return tell(lookAlong(playground, message.direction));
         case 'point':
             return tell(lookAt(playground, message.from, message.to));
-        case 'surface':
-            return tell({ kind: 'surface', ...surfaceOf(echinus, playground) });
+        case 'surface': {
+            const news = surfaceOf(echinus, playground);
+            return tell({ kind: 'surface', ...news }, buffersOf(news.faces));
+        }
+        case 'cells': {
+            const news = cellsOf(playground);
+            return news && tell({ kind: 'cells', ...news }, buffersOf(news.faces));
+        }
         case 'rebuild':
             return tell({ kind: 'rebuilt', map: playground.rebuild() });
         case 'slice':
