@@ -351,6 +351,7 @@ class App {
         side.view.group.visible = cloth;
         hidden.view.group.visible = false;
         if (side.collider) this.#modelView.follow(side.collider);
+        this.#modelView.deform(side.shape);
         this.#ballView.show(cloth ? side.ball : undefined);
     }
 
@@ -376,6 +377,7 @@ class App {
         }
         if (!other) {
             if (next) this.#modelView.follow(next.collider);
+            this.#modelView.deform(this.#main.shape);
             this.#ballView.show(asks ? this.#main.ball : undefined);
         }
         this.#stage.draw();
@@ -604,7 +606,7 @@ class App {
     #saveMesh(): void {
         const { positions, faces } = this.#main.view;
         if (!positions || !this.#model) return say('there is no cloth to save yet');
-        const model = { name: 'model', vertices: this.#modelView.verticesNow(this.#model.vertices), faces: this.#model.faces };
+        const model = { name: 'model', vertices: this.#modelView.verticesNow(this.#main.shape?.vertices ?? this.#model.vertices), faces: this.#model.faces };
         const notices = ['Cloth and model, by Echinus'];
         if (this.#model.name === 'horse.3ds')
             notices.push('The object "model" is horse.3ds of glmark2-data, licence GPL-3 or later; it is not part of Echinus.');

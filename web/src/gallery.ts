@@ -14,7 +14,7 @@ interface Example {
 const EXAMPLES: readonly Example[] = [
     { name: 'horse', title: 'A cloth on a horse', caption: 'the start of this page', link: '', model: 'horse' },
     { name: 'torus', title: 'The torus of the paper', caption: '10\u2009000 particles', link: 'model=torus', model: 'torus' },
-    { name: 'figure', title: 'A skirt, dancing', caption: 'a garment on a moving figure', link: 'model=figure&particles=4900', model: 'figure' },
+    { name: 'figure', title: 'A skirt, dancing', caption: 'on a figure that moves', link: 'model=figure&particles=2500', model: 'figure' },
     { name: 'organ', title: 'A soft organ', caption: 'push it with the probe', link: 'model=organ&particles=1600&hand=model', model: 'organ' },
     { name: 'ring', title: 'Through a ring', caption: 'pulled through, let go', link: 'model=ring&particles=3600&self=true', model: 'ring' },
     { name: 'flag', title: 'A flag in the wind', caption: 'on a pole that you can shake', link: 'model=flag&particles=2500', model: 'flag' },

@@ -30,9 +30,9 @@ export class Pairs {
 
     /**
      * Asks about a cloth, unless it is too early for another question or this was the last one.
-     * @param number  of the cloth @param frame  of the cloth
+     * @param number  of the cloth @param frame  of the cloth @param shape  the model's vertices, where it has deformed
      */
-    consider(number: number, frame: number, positions: Float32Array, faces: Uint32Array, collider: ColliderState): void {
+    consider(number: number, frame: number, positions: Float32Array, faces: Uint32Array, collider: ColliderState, shape: Float32Array | undefined): void {
         const question = `${number} ${frame}`;
         if (this.#failed || this.#waits || !this.#model || performance.now() < this.#next || question === this.#asked) return;
         if (!this.#worker && frame < FIRST_FRAME) return;
@@ -40,7 +40,7 @@ export class Pairs {
         this.#asked = question;
         this.#waits = true;
         const { position, rotation } = collider;
-        const message: PairsQuestion = { number, positions: positions.slice(), faces, collider: { position, rotation }, ...(this.#modelToTell && { model: { vertices: this.#modelToTell.vertices, faces: this.#modelToTell.faces } }) };
+        const message: PairsQuestion = { number, positions: positions.slice(), faces, collider: { position, rotation }, ...(shape && { shape }), ...(this.#modelToTell && { model: { vertices: this.#modelToTell.vertices, faces: this.#modelToTell.faces } }) };
         this.#modelToTell = undefined;
         this.#worker.postMessage(message, [message.positions.buffer]);
     }

@@ -42,7 +42,7 @@ export type FromWorker =
     | ({ kind: 'cloth'; why?: 'changed' | 'map' } & ClothNews)
     /** The same cloth, and the ball's radius where there is one. */
     | { kind: 'hand'; ball?: number }
-    | { kind: 'frame'; arrays: FrameArrays; figures: Figures; wrong: Uint32Array; ball?: Triple; collider: ColliderState; cloth: number }
+    | { kind: 'frame'; arrays: FrameArrays; figures: Figures; wrong: Uint32Array; ball?: Triple; collider: ColliderState; shape?: ModelShape; cloth: number }
     | { kind: 'progress'; turn: number; stage: Stage }
     | ({ kind: 'surface' } & SurfaceNews)
     | ({ kind: 'cells' } & CellNews)
@@ -83,6 +83,13 @@ export interface FrameArrays {
     normals: Float32Array<ArrayBuffer>;
     /** [particles] depth of contact (worker/depth.ts), where the colours need it. */
     depths: Float32Array<ArrayBuffer>;
+}
+
+/** A model that has deformed. */
+export interface ModelShape {
+    /** [3 vertices], as are the normals. */
+    vertices: Float32Array<ArrayBuffer>;
+    normals: Float32Array<ArrayBuffer>;
 }
 
 export interface ModelNews {
@@ -167,6 +174,8 @@ export interface PairsQuestion {
     positions: Float32Array<ArrayBuffer>;
     faces: Uint32Array;
     collider: Pick<ColliderState, 'position' | 'rotation'>;
+    /** The model's vertices, where they have moved. */
+    shape?: Float32Array;
 }
 
 /** Its answer: pairs of faces that intersect, and the faces of the cloth among them: with the model, and with each other. */

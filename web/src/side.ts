@@ -1,7 +1,7 @@
 import type { ColliderState } from 'echinus';
 import type { Client } from './client';
 import { Pairs } from './pairs';
-import type { ClothNews, Cuts, FromWorker, ModelNews, Triple } from './protocol';
+import type { ClothNews, Cuts, FromWorker, ModelNews, ModelShape, Triple } from './protocol';
 import { ClothView } from './view/cloth_view';
 
 /** How many sets of arrays are in circulation: one is shown while the other is filled. */
@@ -24,6 +24,8 @@ export class Side {
     readonly client: Client;
     readonly view = new ClothView();
     collider: ColliderState | undefined;
+    /** Of the model, where it has deformed. */
+    shape: ModelShape | undefined;
     ball: { radius: number; position?: Triple } | undefined;
     counts: Counts = { inside: 0 };
     frame = 0;
@@ -43,6 +45,8 @@ export class Side {
     }
 
     set model(model: ModelNews) {
+        this.#arrived = []; // of the model before
+        this.shape = undefined;
         this.#pairs.model = model;
     }
 
@@ -54,6 +58,7 @@ export class Side {
                 this.#arrived = [];
                 this.news = message;
                 this.frame = 0;
+                this.shape = undefined;
                 this.#atRest = false;
                 this.counts = { inside: 0 };
                 this.view.begin(message);
@@ -107,11 +112,12 @@ export class Side {
             spare = this.view.show(next.arrays);
             this.view.markWrong(next.wrong);
             this.collider = next.collider;
+            this.shape = next.shape;
             this.frame = next.figures.frame;
             this.#atRest = next.figures.atRest;
             this.counts.inside = next.figures.inside;
             if (this.ball && next.ball) this.ball.position = next.ball;
-            this.#pairs.consider(this.#cloth, next.figures.frame, next.arrays.positions, this.view.faces, next.collider);
+            this.#pairs.consider(this.#cloth, next.figures.frame, next.arrays.positions, this.view.faces, next.collider, next.shape?.vertices);
         }
         while (asks && this.#framesAsked < FRAMES_UNDER_WAY && this.#arrived.length === 0) {
             ++this.#framesAsked;

@@ -8,7 +8,7 @@ const folder = fileURLToPath(new URL('../pictures/', import.meta.url));
 mkdirSync(`${folder}gallery`, { recursive: true });
 
 /** Each moment in time steps. */
-const MOMENTS = { horse: 330, torus: 330, figure: 480, organ: 300, ring: 760, flag: 420, layers: 300, beside: 330 };
+const MOMENTS = { horse: 330, torus: 330, figure: 460, organ: 300, ring: 760, flag: 420, layers: 300, beside: 330 };
 
 const browser = await startBrowser();
 

@@ -4,6 +4,7 @@ import { CLOTH, CLOTH_BACK, FAULT, FLESH } from './colours';
 import { Edge } from './edge';
 import { FabricUniforms, fabric, weaveTexture } from './fabric';
 import { glow } from './glow';
+import { replace } from './replace';
 
 /** How much of the distance that particles keep is cloth, in the fine look: two layers that touch do not meet. */
 const THICK = 0.42;
@@ -212,9 +213,4 @@ function facesOf({ attributes, index }: THREE.BufferGeometry): THREE.BufferGeome
 
 function dynamic(array: Float32Array, itemSize: number): THREE.BufferAttribute {
     return new THREE.BufferAttribute(array, itemSize).setUsage(THREE.DynamicDrawUsage);
-}
-function replace(geometry: THREE.BufferGeometry, name: string, array: Float32Array): void {
-    const attribute = geometry.attributes[name] as THREE.BufferAttribute;
-    attribute.array = array;
-    attribute.needsUpdate = true;
 }

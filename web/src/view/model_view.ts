@@ -1,9 +1,10 @@
 import * as THREE from 'three';
 import type { ColliderState } from 'echinus';
 import type { Shape } from '../creased_normals';
-import type { ModelNews } from '../protocol';
+import type { ModelNews, ModelShape } from '../protocol';
 import { CLAY, FAULT } from './colours';
 import { matte } from './matte';
+import { replace } from './replace';
 
 /** How much of a line shows that something hides: faults on the far side must be seen, but not as if they lay on the cloth. */
 const HIDDEN = 0.18;
@@ -14,11 +15,16 @@ export class ModelView {
     /** The model alone, without the faults. Added to the group once it has normals, since three.js compiles the program for its attributes at once. */
     readonly clay = new THREE.Mesh(new THREE.BufferGeometry(), clay());
 
+    #first: { vertices: Float32Array; normals: Float32Array } = { vertices: new Float32Array(0), normals: new Float32Array(0) };
+    #shape: ModelShape | undefined;
+
     show({ vertices, faces, shape, normals, faults }: Pick<ModelNews, 'vertices' | 'faces' | 'shape' | 'normals' | 'faults'>): void {
         this.group.remove(this.clay);
         clear(this.group);
         this.clay.geometry.dispose();
         this.clay.geometry = shape ? creased(shape) : smooth(vertices, faces, normals);
+        this.#first = { vertices, normals: this.clay.geometry.attributes.normal.array as Float32Array };
+        this.#shape = undefined;
         this.clay.castShadow = this.clay.receiveShadow = true;
         this.group.add(this.clay);
 
@@ -26,6 +32,17 @@ export class ModelView {
             if (faults[kind].length > 0) this.group.add(...edges(vertices, faults[kind], FAULT[kind]));
         const wrong = [...faults.duplicateFaces, ...faults.degenerateFaces];
         if (wrong.length > 0) this.group.add(marked(vertices, faces, wrong));
+    }
+
+    /** As it has deformed; undefined: as it was shown first. Of a model without creases. */
+    deform(shape: ModelShape | undefined): void {
+        if (shape === this.#shape) return;
+        this.#shape = shape;
+        const { vertices, normals } = shape ?? this.#first;
+        const { geometry } = this.clay;
+        replace(geometry, 'position', vertices);
+        replace(geometry, 'normal', normals);
+        geometry.boundingSphere = null; // three.js finds another
     }
 
     follow({ position, rotation: [w, x, y, z] }: Pick<ColliderState, 'position' | 'rotation'>): void {

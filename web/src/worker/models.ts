@@ -3,7 +3,6 @@ import type { Object3D } from 'three';
 import type { Axis } from '../axes';
 import type { Sample } from '../settings';
 import type { Act } from './acts/act';
-import { dancer } from './acts/figure';
 import { pole } from './acts/flag';
 import { ACTS } from './acts/of_sample';
 import { probe } from './acts/organ';
@@ -34,12 +33,12 @@ export async function fetchSample(sample: Sample, page: string): Promise<Reading
         default:
             return (echinus) => {
                 const act = ACTS[sample]?.();
-                return { name: sample, mesh: makeSample(echinus, sample), up: 'z', ...(act && { act }) };
+                return { name: sample, mesh: makeSample(echinus, sample, act), up: 'z', ...(act && { act }) };
             };
     }
 }
 
-function makeSample(echinus: Echinus, sample: Exclude<Sample, 'horse'>): Mesh {
+function makeSample(echinus: Echinus, sample: Exclude<Sample, 'horse'>, act: Act | undefined): Mesh {
     const made = ({ vertices, faces }: SolidMesh) => echinus.makeMesh(vertices, faces);
     switch (sample) {
         case 'torus':
@@ -50,7 +49,7 @@ function makeSample(echinus: Echinus, sample: Exclude<Sample, 'horse'>): Mesh {
         case 'ring':
             return echinus.makeTorus(RING.major, RING.minor, 72, 28);
         case 'figure':
-            return made(dancer());
+            return made(act!.solid!);
         case 'flag':
             return made(pole());
         case 'organ':

@@ -4,7 +4,7 @@ import type { Cuts, PairsQuestion } from '../protocol';
 import { intoFrameOf } from './collider_frame';
 
 const starting = load();
-let model: Mesh | undefined;
+let model: { faces: Uint32Array; mesh: Mesh } | undefined;
 /** Questions are answered in order, also while the module is loading. */
 let queue: Promise<void> = Promise.resolve();
 
@@ -14,16 +14,18 @@ self.onmessage = ({ data }: MessageEvent<PairsQuestion>) => {
 
 function answer(echinus: Echinus, question: PairsQuestion): void {
     if (question.model) {
-        model?.delete();
-        model = echinus.makeMesh(question.model.vertices, question.model.faces);
+        model?.mesh.delete();
+        model = { faces: question.model.faces, mesh: echinus.makeMesh(question.model.vertices, question.model.faces) };
     }
     if (!model) return;
     const begin = performance.now();
     intoFrameOf(question.collider, question.positions, question.positions);
     const cloth = echinus.makeMesh(question.positions, question.faces);
-    const withModel = cloth.intersectingPairs(model);
+    const now = question.shape && echinus.makeMesh(question.shape, model.faces);
+    const withModel = cloth.intersectingPairs(now ?? model.mesh);
     const own = cloth.selfIntersectingPairs();
     cloth.delete();
+    now?.delete();
     const cuts: Cuts = {
         number: question.number,
         withModel: withModel.length / 2,

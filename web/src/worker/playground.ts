@@ -1,7 +1,7 @@
 import type { AnyMap, ColliderState, ContactBuffer, Echinus, ExactMap, Mesh, MeshFaults, MeshReport, Scene, Simulation, SimulationProfile } from 'echinus';
 import { AXES, type Axis, UNIT, furthestAlong } from '../axes';
 import { creasedNormals } from '../creased_normals';
-import type { ClothNews, FrameArrays, Figures, MapNews, ModelNews, Stage, Triple } from '../protocol';
+import type { ClothNews, FrameArrays, Figures, MapNews, ModelNews, ModelShape, Stage, Triple } from '../protocol';
 import type { Settings } from '../settings';
 import { surfaceNormals } from '../surface_normals';
 import type { Act } from './acts/act';
@@ -40,6 +40,7 @@ export interface Look {
     figures: Figures;
     wrong: Uint32Array<ArrayBuffer>;
     ball?: Triple;
+    shape?: ModelShape;
 }
 
 /** One model, its maps, and the cloth on it. Everything it makes lives in the module's memory until delete(). */
@@ -53,6 +54,7 @@ export class Playground {
     #mesh: Mesh;
     readonly #report: MeshReport;
     readonly #faults: MeshFaults;
+    readonly #faces: Uint32Array;
     #mendedFaces = 0;
     #flippedParts = 0;
 
@@ -70,6 +72,9 @@ export class Playground {
     #cloth!: Omit<ClothNews, 'ball'>;
     /** Seconds that the model has moved by itself: not while it is held. */
     #ownSeconds = 0;
+    /** Seconds that it has deformed. */
+    #shapeSeconds = 0;
+    #shape: Float32Array<ArrayBuffer> | undefined;
     /** Frames of the simulations before the present one, whose count restarts after continueWith(). */
     #earlierFrames = 0;
     #owedSeconds = 0;
@@ -91,6 +96,7 @@ export class Playground {
             if (settings.mend) this.#mend();
             this.#report = this.#mesh.report();
             this.#faults = this.#mesh.faults();
+            this.#faces = this.#mesh.faces;
             const up = settings.up === 'auto' ? model.up : settings.up;
             tell('building the map');
             this.#maps = new Maps(echinus, this.#mesh, up, settings);
@@ -139,7 +145,7 @@ export class Playground {
             name: this.#name,
             vertices,
             faces,
-            ...(faces.length <= 3 * CREASED_FACES ? { shape: creasedNormals(vertices, faces) } : { normals: normalsOf(vertices, faces) }),
+            ...(faces.length <= 3 * CREASED_FACES && !this.#act?.shape ? { shape: creasedNormals(vertices, faces) } : { normals: normalsOf(vertices, faces) }),
             report: this.#report,
             certainShare: this.exactMap.description.certainShare,
             faults: this.#faults,
@@ -218,6 +224,8 @@ export class Playground {
         this.#contacts = this.#echinus.makeContacts(simulation.particleCount);
         this.shake.forget();
         this.#ownSeconds = 0;
+        this.#shapeSeconds = 0;
+        this.#shape = undefined;
         this.#earlierFrames = 0;
         this.#owedSeconds = 0;
         this.#lastMs = performance.now();
@@ -309,6 +317,21 @@ export class Playground {
         const { linear, angular } = this.shake.holds ? { linear: still, angular: still } : own;
         if (!this.shake.holds) this.#ownSeconds += timeStep;
         this.#simulation.setColliderVelocity(linear.map((part, k) => part + held[k]), angular);
+        if (!this.shake.holds) this.#deformModel();
+    }
+
+    #deformModel(): void {
+        const { surfaces, map } = this.#settings;
+        if (!this.#act?.shape || !surfaces || map !== 'exact') return;
+        this.#shapeSeconds += this.#scene.timeStep; // where surfaces were off meanwhile, it goes on from the shape that it had
+        this.#shape = this.#act.shape(this.#shapeSeconds);
+        this.#simulation.setColliderVertices(this.#shape);
+    }
+
+    #shapeNews(): { shape: ModelShape } | undefined {
+        if (!this.#shape) return undefined;
+        const vertices = this.#shape.slice();
+        return { shape: { vertices, normals: normalsOf(vertices, this.#faces) } };
     }
 
     #windAt(seconds: number): Triple {
@@ -339,7 +362,7 @@ export class Playground {
         if (this.#cloth.columns) sheetNormals(filled.positions, this.#cloth.columns, filled.normals);
         else surfaceNormals(filled.positions, this.#cloth.faces, filled.normals);
         if (this.#settings.colour === 'depth') measureDepths(simulation, this.#cloth.thickness, this.#contacts, filled.depths);
-        const wrong = this.#judge.wrongOf(filled.positions, simulation.collider);
+        const wrong = this.#shape ? this.#judge.wrongNow(simulation) : this.#judge.wrongOf(filled.positions, simulation.collider);
         const after = simulation.profile;
         const perStep = 1000 / Math.max(1, stepCount);
         const collisionSeconds = after.collisionSeconds - before.collisionSeconds;
@@ -354,7 +377,7 @@ export class Playground {
             inside: wrong.length,
             stepCount,
         };
-        return { arrays: filled, figures, wrong, ...(simulation.colliderCount > BALL && { ball: simulation.colliderAt(BALL).position }) };
+        return { arrays: filled, figures, wrong, ...this.#shapeNews(), ...(simulation.colliderCount > BALL && { ball: simulation.colliderAt(BALL).position }) };
     }
 
     #continue(): void {
@@ -412,7 +435,7 @@ function buildGround(echinus: Echinus, body: Body): ExactMap {
     return map;
 }
 
-function normalsOf(vertices: Float32Array, faces: Uint32Array): Float32Array {
+function normalsOf(vertices: Float32Array, faces: Uint32Array): Float32Array<ArrayBuffer> {
     const normals = new Float32Array(vertices.length);
     surfaceNormals(vertices, faces, normals);
     return normals;

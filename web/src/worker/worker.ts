@@ -150,6 +150,7 @@ function tellFrame({ arrays, ...look }: Look): void {
         arrays.positions.buffer,
         arrays.normals.buffer,
         arrays.depths.buffer,
+        ...(look.shape ? [look.shape.vertices.buffer, look.shape.normals.buffer] : []),
     ]);
 }
 

@@ -2,9 +2,14 @@ import type { Echinus, Mesh, SceneDescription, Simulation } from 'echinus';
 import type { Triple } from '../../protocol';
 import type { Settings } from '../../settings';
 import type { Body } from '../cloth_scene';
+import type { SolidMesh } from './solids';
 
 /** What happens around a model: by default a sheet falls on it (cloth_scene.ts). */
 export interface Act {
+    /** The model, where the act makes it. */
+    solid?: SolidMesh;
+    /** Its vertices at a time, where it deforms: at 0 those of `solid`. It does so while surfaces collide, which alone are kept off faces that move. */
+    shape?(seconds: number): Float32Array<ArrayBuffer>;
     /** What the camera shows, and what lengths and gravity are measured by, where that is not the model alone. */
     body?: Pick<Body, 'centre' | 'radius' | 'up'>;
     /** How high the ground is, along up. */
