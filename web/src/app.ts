@@ -380,6 +380,7 @@ class App {
             this.#modelView.deform(this.#main.shape);
             this.#ballView.show(asks ? this.#main.ball : undefined);
         }
+        this.#mapView.reveal();
         this.#stage.draw();
         this.#figures.countDrawing();
         this.#word();

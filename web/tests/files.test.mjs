@@ -5,7 +5,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { gltfTetrahedron, tetrahedra, torusStl } from './meshes.mjs';
-import { SMALL, picture, startBrowser, untilFrame } from './support.mjs';
+import { SMALL, picture, startBrowser, untilFrame, watchPauses } from './support.mjs';
 
 const CLOSED = tetrahedra()['t.obj'];
 const OPEN_TETRAHEDRON = 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n';
@@ -75,19 +75,6 @@ test('the page keeps drawing while a file of 50 MB is opened, and then shows the
         await rm(folder, { recursive: true });
     }
 });
-
-/** Runs in the page: keeps the longest time between two of its pictures. */
-function watchPauses() {
-    let last = performance.now();
-    globalThis.longestPause = 0;
-    const look = () => {
-        const now = performance.now();
-        globalThis.longestPause = Math.max(globalThis.longestPause, now - last);
-        last = now;
-        requestAnimationFrame(look);
-    };
-    requestAnimationFrame(look);
-}
 
 test('a broken file gives one sentence, and the page continues as it was', async () => {
     const link = '#model=torus&particles=400&camera=30_20_4_0_0_0';

@@ -114,6 +114,51 @@ for (const [model, particles] of Object.entries(FEW))
         await page.context().close();
     });
 
+test('the figure deforms and turns, and in no frame a face of its skirt is through it', async () => {
+    const page = await browser.open('#model=figure&particles=600', { viewport: { width: 600, height: 400 } });
+    page.setDefaultTimeout(120_000);
+    await page.waitForFunction(() => performance.getEntriesByType('resource').some(({ name }) => /pairs-/.test(name)));
+    const { most, shapes, atOnce, inside, ways } = await page.evaluate(danceInWorker, 480);
+    assert.equal(most, 0, 'pairs of faces');
+    assert.equal(inside, 0);
+    assert.equal(shapes, 480, 'a shape with each step');
+    assert.ok(atOnce < 0.03, `a vertex went ${atOnce} at once`);
+    assert.ok(ways > 0.3, `no vertex went farther than ${ways}`);
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+/** Runs in the page: steps by a worker of its own, each judged by the page's other worker. */
+async function danceInWorker(frames) {
+    const scripts = performance.getEntriesByType('resource').map(({ name }) => name);
+    const [worker, judge] = [/worker-[^/]*\.js$/, /pairs-[^/]*\.js$/].map((pattern) => new Worker(scripts.find((name) => pattern.test(name)), { type: 'module' }));
+    const settings = { model: 'figure', view: 'cloth', map: 'exact', cells: 'auto', particles: 600, friction: 0.5, surfaces: true, self: false, thickness: 0.5, wind: 0, motion: 'still', up: 'auto', mend: true, colour: 'fabric', hand: 'cloth' };
+    const next = (from, kind) => new Promise((resolve, reject) => {
+        from.onmessage = ({ data }) => data.kind === 'failed' ? reject(new Error(data.sentence)) : data.kind === kind && resolve(data);
+    });
+    const ask = (whom, message, kind) => (whom.postMessage(message), next(whom, kind));
+    const { vertices, faces } = await ask(worker, { kind: 'open', turn: 1, settings, page: document.baseURI }, 'model');
+    const cloth = await next(worker, 'cloth');
+    let most = 0, shapes = 0, atOnce = 0, ways = 0, inside = 0, before = vertices;
+    for (let frame = 1; frame <= frames; ++frame) {
+        const { arrays, shape, collider, wrong } = await ask(worker, { kind: 'step' }, 'frame');
+        inside += wrong.length;
+        if (!shape) continue;
+        ++shapes;
+        for (let at = 0; at < vertices.length; at += 3) {
+            const way = (from) => Math.hypot(...[0, 1, 2].map((k) => shape.vertices[at + k] - from[at + k]));
+            atOnce = Math.max(atOnce, way(before));
+            ways = Math.max(ways, way(vertices));
+        }
+        before = shape.vertices;
+        const question = { number: 1, positions: arrays.positions, faces: cloth.faces, collider, shape: shape.vertices, ...(frame === 1 && { model: { vertices, faces } }) };
+        const { withModel } = await ask(judge, question, undefined);
+        most = Math.max(most, withModel);
+    }
+    for (const each of [worker, judge]) each.terminate();
+    return { most, shapes, atOnce, inside, ways };
+}
+
 test('the gallery has a tile for each example, with a picture, and one for a file; a click opens it', async () => {
     const page = await browser.open('#model=torus&particles=100', SMALL);
     await untilFrame(page, 1);

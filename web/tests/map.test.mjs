@@ -1,6 +1,7 @@
 // The view of the map.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
+import { torusStl } from './meshes.mjs';
 import { SMALL, figure, hasHorse, numberOf, picture, shareOfProcessor, startBrowser, untilFrame, untilRay } from './support.mjs';
 
 let browser;
@@ -69,6 +70,70 @@ test("the paper's map follows its options, and one key switches to the other map
     assert.deepEqual(page.complaints, []);
     await page.context().close();
 });
+
+test("a large model's faces and cells are coloured while the page goes on drawing", async () => {
+    const page = await browser.open('#model=torus&particles=100&view=map&shown=cells', { viewport: { width: 700, height: 300 } });
+    await untilRay(page); // the programs are compiled
+    await page.keyboard.press('m');
+    await page.locator('#file').setInputFiles({ name: 'large.stl', mimeType: 'model/stl', buffer: torusStl(600, 300) });
+    await page.waitForFunction(() => document.getElementById('subtitle').textContent.startsWith('large.stl, ') && document.getElementById('progress').hidden, null, { timeout: 60_000 });
+    await page.waitForTimeout(1000); // the graphics driver has it
+    // Of what the page itself does: to draw so many faces takes software much longer.
+    await page.evaluate(() => {
+        globalThis.longestTask = 0;
+        new PerformanceObserver((list) => list.getEntries().forEach(({ duration }) => (globalThis.longestTask = Math.max(globalThis.longestTask, duration)))).observe({ type: 'longtask' });
+    });
+    await page.keyboard.press('m');
+    await untilRay(page);
+    assert.match(await page.locator('#legend').textContent(), /cell/);
+    await page.waitForTimeout(500);
+    const longest = await page.evaluate(() => globalThis.longestTask);
+    assert.ok(longest < 400, `${longest} ms`);
+    assert.deepEqual(page.complaints, []);
+    await page.context().close();
+});
+
+test('the worker gives each face one colour, by its value, and its normal', async () => {
+    const page = await browser.open('#model=torus&particles=100', SMALL);
+    await untilFrame(page, 1);
+    const { faceCount, surface, cells } = await page.evaluate(coloursOfWorker);
+    assert.equal(surface.faces, faceCount);
+    assert.ok(cells.faces >= 8);
+    for (const { colours, oneEach, unit, brightest, darkest } of [surface, cells]) {
+        assert.ok(oneEach && unit);
+        assert.ok(colours > 2, `${colours} colours`);
+        // The ends of the scale, 0xfff7bc and 0x662506: the second is of the largest value.
+        assert.ok(brightest > darkest && Math.abs(darkest - 0.1329) < 1e-3, `${brightest} ${darkest}`);
+    }
+    await page.context().close();
+});
+
+/** Runs in the page: what a worker of its own answers about the map of a torus. */
+async function coloursOfWorker() {
+    const script = performance.getEntriesByType('resource').find(({ name }) => /worker-[^/]*\.js$/.test(name)).name;
+    const worker = new Worker(script, { type: 'module' });
+    const settings = { model: 'torus', view: 'map', map: 'exact', cells: 'auto', particles: 100, friction: 0.5, surfaces: false, self: false, thickness: 0.5, wind: 0, motion: 'still', up: 'auto', mend: true, colour: 'fabric', hand: 'cloth' };
+    const until = (kind) => new Promise((resolve, reject) => {
+        worker.onmessage = ({ data }) => data.kind === kind ? resolve(data) : data.kind === 'failed' && reject(new Error(data.sentence));
+    });
+    const ask = (message, kind) => (worker.postMessage(message), until(kind));
+    const { report } = await ask({ kind: 'open', turn: 1, settings, page: document.baseURI }, 'model');
+    const summary = ({ faces: { positions, normals, colours } }) => {
+        const reds = new Set();
+        let oneEach = positions.length === colours.length, unit = positions.length === normals.length;
+        for (let at = 0; at < colours.length; at += 3) {
+            const first = at - (at % 9);
+            reds.add(colours[at]);
+            for (let k = 0; k < 3; ++k) oneEach &&= colours[at + k] === colours[first + k];
+            unit &&= Math.abs(Math.hypot(...normals.subarray(at, at + 3)) - 1) < 1e-5;
+        }
+        return { faces: positions.length / 9, colours: reds.size, oneEach, unit, brightest: Math.max(...reds), darkest: Math.min(...reds) };
+    };
+    const surface = summary(await ask({ kind: 'surface' }, 'surface'));
+    const cells = summary(await ask({ kind: 'cells' }, 'cells'));
+    worker.terminate();
+    return { faceCount: report.faceCount, surface, cells };
+}
 
 test('the ray goes through the point under the pointer', async () => {
     const page = await browser.open('#model=sphere&view=map&particles=100', SMALL);

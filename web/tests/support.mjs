@@ -80,6 +80,19 @@ export const untilFrame = (page, frame) => page.waitForFunction((least) => Numbe
 /** Waits until the view of the map shows its ray, which comes last. */
 export const untilRay = (page) => page.waitForFunction(() => document.getElementById('ray').textContent.includes('side'), null, { timeout: 60_000 });
 
+/** Runs in the page: keeps the longest time between two of its pictures. */
+export function watchPauses() {
+    let last = performance.now();
+    globalThis.longestPause = 0;
+    const look = () => {
+        const now = performance.now();
+        globalThis.longestPause = Math.max(globalThis.longestPause, now - last);
+        last = now;
+        requestAnimationFrame(look);
+    };
+    requestAnimationFrame(look);
+}
+
 /** 31.5 ms, 84.2 kB and the like. */
 export const numberOf = (text) => Number(text.replace(/[^0-9.].*$/, ''));
 

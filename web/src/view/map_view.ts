@@ -37,7 +37,7 @@ export class MapView {
 
     showSurface(news: SurfaceNews): void {
         clear(this.#surface);
-        this.#surface.add(shell(news.faces));
+        this.#surface.add(...shells(news.faces));
         for (const { points } of news.differences ? [news.differences.everywhere, news.differences.near] : []) if (points.length > 0) this.#surface.add(dots(points));
         this.#surface.add(this.#cells);
         this.#clip();
@@ -45,8 +45,19 @@ export class MapView {
 
     showCells({ faces }: CellNews): void {
         clear(this.#cells);
-        this.#cells.add(shell(faces));
+        this.#cells.add(...shells(faces));
         this.#clip();
+    }
+
+    /** Call before each picture: of what has many faces, one part more is drawn, for what is new has to be handed to the graphics driver. */
+    reveal(): void {
+        if (!this.group.visible) return;
+        for (const group of this.#cells.visible ? [this.#cells, this.#surface] : [this.#surface]) {
+            const next = group.children.find((part) => part instanceof THREE.Mesh && !part.visible);
+            if (!next) continue;
+            next.visible = true;
+            return;
+        }
     }
 
     set shown(what: Settings['shown']) {
@@ -133,16 +144,24 @@ export class MapView {
     }
 }
 
-/** Coloured in front, paper behind. */
-function shell({ positions, normals, colours }: ColouredFaces): THREE.Mesh {
-    const geometry = new THREE.BufferGeometry();
-    for (const [name, numbers] of [['position', positions], ['normal', normals], ['color', colours]] as const)
-        geometry.setAttribute(name, new THREE.BufferAttribute(numbers, 3));
-    const material = matte(0xffffff, LAYER_BACK);
-    material.vertexColors = true;
-    const mesh = new THREE.Mesh(geometry, material);
-    mesh.frustumCulled = false; // it fills the picture, and to find its bounds takes time
-    return mesh;
+/** In parts of so many faces: to hand 40 MB to the driver at once holds up the page for 0.4 s. */
+const PART = 30_000;
+
+/** Coloured in front, paper behind. The first part is visible. */
+function shells({ positions, normals, colours }: ColouredFaces): THREE.Mesh[] {
+    const parts: THREE.Mesh[] = [];
+    for (let from = 0; from < positions.length; from += 9 * PART) {
+        const geometry = new THREE.BufferGeometry();
+        for (const [name, numbers] of [['position', positions], ['normal', normals], ['color', colours]] as const)
+            geometry.setAttribute(name, new THREE.BufferAttribute(numbers.subarray(from, from + 9 * PART), 3));
+        const material = matte(0xffffff, LAYER_BACK);
+        material.vertexColors = true;
+        const mesh = new THREE.Mesh(geometry, material);
+        mesh.frustumCulled = false; // it fills the picture, and to find its bounds takes time
+        mesh.visible = from === 0;
+        parts.push(mesh);
+    }
+    return parts;
 }
 
 function dots(positions: Float32Array): THREE.Points {
