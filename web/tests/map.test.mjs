@@ -1,7 +1,6 @@
 // The view of the map.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
-import { torusStl } from './meshes.mjs';
 import { SMALL, figure, hasHorse, numberOf, picture, shareOfProcessor, startBrowser, untilFrame, untilRay } from './support.mjs';
 
 let browser;
@@ -67,28 +66,6 @@ test("the paper's map follows its options, and one key switches to the other map
     assert.ok(await page.locator('input[name=map][value=exact]').isChecked());
     await page.keyboard.press('x');
     await untilRow(page, 'directions', '2\u2009400');
-    assert.deepEqual(page.complaints, []);
-    await page.context().close();
-});
-
-test("a large model's faces and cells are coloured while the page goes on drawing", async () => {
-    const page = await browser.open('#model=torus&particles=100&view=map&shown=cells', { viewport: { width: 700, height: 300 } });
-    await untilRay(page); // the programs are compiled
-    await page.keyboard.press('m');
-    await page.locator('#file').setInputFiles({ name: 'large.stl', mimeType: 'model/stl', buffer: torusStl(600, 300) });
-    await page.waitForFunction(() => document.getElementById('subtitle').textContent.startsWith('large.stl, ') && document.getElementById('progress').hidden, null, { timeout: 60_000 });
-    await page.waitForTimeout(1000); // the graphics driver has it
-    // Of what the page itself does: to draw so many faces takes software much longer.
-    await page.evaluate(() => {
-        globalThis.longestTask = 0;
-        new PerformanceObserver((list) => list.getEntries().forEach(({ duration }) => (globalThis.longestTask = Math.max(globalThis.longestTask, duration)))).observe({ type: 'longtask' });
-    });
-    await page.keyboard.press('m');
-    await untilRay(page);
-    assert.match(await page.locator('#legend').textContent(), /cell/);
-    await page.waitForTimeout(500);
-    const longest = await page.evaluate(() => globalThis.longestTask);
-    assert.ok(longest < 400, `${longest} ms`);
     assert.deepEqual(page.complaints, []);
     await page.context().close();
 });
