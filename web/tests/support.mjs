@@ -6,7 +6,7 @@ import { extname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 
-const inProject = (path) => fileURLToPath(new URL(`../../${path}`, import.meta.url));
+export const inProject = (path) => fileURLToPath(new URL(`../../${path}`, import.meta.url));
 /** Whether the tested page has the horse. */
 export const hasHorse = existsSync(inProject('web/dist/models/horse.3ds'));
 /** Rendering is by software; small pages leave time for the cloth. */
@@ -14,13 +14,14 @@ export const SMALL = { viewport: { width: 900, height: 480 } };
 
 const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm' };
 
-/** web/dist/ in a subfolder, as on a static host. */
-async function serve() {
+/** web/dist/ in a subfolder, as on a static host. @param beforeLoad  runs in the page before its own code */
+export async function serve(beforeLoad) {
     const server = createServer(async ({ url }, response) => {
         const path = new URL(url, 'http://host').pathname.replace(/^\/any\/folder\//, '/');
         const file = path === '/' ? '/index.html' : path;
         try {
-            const bytes = await readFile(join(inProject('web/dist'), file));
+            let bytes = await readFile(join(inProject('web/dist'), file));
+            if (beforeLoad && file === '/index.html') bytes = bytes.toString().replace('<head>', `<head><script>(${beforeLoad})()</script>`);
             response.writeHead(200, { 'content-type': TYPES[extname(file)] ?? 'application/octet-stream' }).end(bytes);
         } catch {
             response.writeHead(404).end();
