@@ -21,7 +21,7 @@ test('beside surfaces, particles alone let faces be cut, which both halves count
     const frame = await page.evaluate(() => Number(document.body.dataset.frame));
     await untilFrame(page, frame + 30);
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test("beside the exact map, the paper's lets particles in", { skip: !hasHorse && 'the horse is not installed' }, async () => {
@@ -31,7 +31,7 @@ test("beside the exact map, the paper's lets particles in", { skip: !hasHorse &&
     assert.doesNotMatch(await half(page, 'left'), /\d/);
     await picture(page, 'beside_map');
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('both halves keep step, pause together and are pulled together', async () => {
@@ -48,7 +48,7 @@ test('both halves keep step, pause together and are pulled together', async () =
     await page.keyboard.press('c');
     await page.waitForFunction(() => !location.hash.includes('beside'));
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test("the view of the paper's map says how many points near the surface are on another side", async () => {
@@ -56,7 +56,7 @@ test("the view of the paper's map says how many points near the surface are on a
     await page.waitForFunction(() => /near the surface, within 0\.02/.test(document.getElementById('legend').textContent));
     const [near, everywhere] = (await page.locator('#legend').textContent()).match(/[\d.]+(?=\u2009%)/g).map(Number);
     assert.ok(near > everywhere && near > 0, `${near} % and ${everywhere} %`);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('what the view of one map shows goes when the other comes', async () => {
@@ -73,5 +73,5 @@ test('what the view of one map shows goes when the other comes', async () => {
     await page.waitForFunction(() => globalThis.rays.length >= 2);
     assert.equal(await page.evaluate(() => globalThis.rays[0]), 'Point at the surface.');
     assert.ok(!(await page.locator('#figure-step').isVisible()), 'figures of the cloth are not shown with the map');
-    await page.context().close();
+    await browser.close(page);
 });

@@ -34,7 +34,7 @@ test('OBJ, PLY, STL, OFF and GLB files are opened', async () => {
         assert.equal(await page.locator('select[name=model] option:checked').textContent(), name);
     }
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a file that is dropped on the page is opened', async () => {
@@ -50,7 +50,7 @@ test('a file that is dropped on the page is opened', async () => {
     await page.dispatchEvent('#canvas', 'drop', { dataTransfer: transfer });
     await untilTitle(page, 'dropped.off, 4 faces');
     assert.ok(!(await page.locator('#drop').isVisible()));
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('the page keeps drawing while a file of 50 MB is opened, and then shows the model', async () => {
@@ -70,7 +70,7 @@ test('the page keeps drawing while a file of 50 MB is opened, and then shows the
         assert.ok(longest < Math.max(1500, opening / 6), `a pause of ${longest} ms in ${opening} ms`);
         assert.match(await page.locator('#report').textContent(), /500\u2009000 vertices, one partClosed/);
         assert.deepEqual(page.complaints, []);
-        await page.context().close();
+        await browser.close(page);
     } finally {
         await rm(folder, { recursive: true });
     }
@@ -90,7 +90,7 @@ test('a broken file gives one sentence, and the page continues as it was', async
     await untilFrame(page, frame + 20);
     assert.match(await page.locator('#subtitle').textContent(), /^torus/);
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 for (const [kind, name, content, sentence] of [
@@ -101,7 +101,7 @@ for (const [kind, name, content, sentence] of [
         const page = await browser.open('#model=torus&particles=100', SMALL);
         await untilFrame(page, 1);
         assert.match(await refusal(page, name, content), sentence);
-        await page.context().close();
+        await browser.close(page);
     });
 
 test('a closed mesh that is inside out is reported unless it is mended, and an open one is not', async () => {
@@ -115,7 +115,7 @@ test('a closed mesh that is inside out is reported unless it is mended, and an o
         reports.push(/Inside out/.test(await page.locator('#report').textContent()));
     }
     assert.deepEqual(reports, [false, true, false, false]);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('an open mesh is reported with the number of its border edges', async () => {
@@ -138,7 +138,7 @@ test('an open mesh is reported with the number of its border edges', async () =>
     await untilReport(page, 'Closed');
     await page.waitForTimeout(500);
     assert.equal(await pixelsOf(page, FAULT_RED), 0);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('the cloth on an open mesh can be pulled, however small the mesh is', async () => {
@@ -158,7 +158,7 @@ test('the cloth on an open mesh can be pulled, however small the mesh is', async
         await page.mouse.up();
     }
     assert.ok(held >= 9, `at ${held} places`);
-    await page.context().close();
+    await browser.close(page);
 });
 
 /** The fault colours of view/colours.ts. */
@@ -187,5 +187,5 @@ test('nothing is fetched for an opened file, which is shown without its pictures
     await untilTitle(page, 'textured.gltf, 4 faces');
     assert.match(await refusal(page, 'parts.gltf', gltfTetrahedron({ buffer: 'elsewhere.bin' })), /^parts\.gltf: .*elsewhere\.bin.*\.glb/);
     assert.deepEqual(asked, []);
-    await page.context().close();
+    await browser.close(page);
 });

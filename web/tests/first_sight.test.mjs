@@ -17,13 +17,13 @@ test('the headline says what there is, that nothing is wrong, and what the map t
     await untilHeadline(page, /^900 particles, no face through the model, a map of [\d.]+\u202fkB built in [\d.]+\u202fms$/);
     await page.locator('input[name=map][value=distance]').check();
     await untilHeadline(page, /the paper’s map of/);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('the headline says what is wrong when something is', async () => {
     const page = await browser.open('#model=torus&particles=400&thickness=0.1&surfaces=false', SMALL);
     await untilHeadline(page, /^400 particles, \d+ pairs? of faces cut, /);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('settings are folded away, and unfold', async () => {
@@ -34,7 +34,7 @@ test('settings are folded away, and unfold', async () => {
     assert.ok(await page.locator('#about').isVisible() && await page.locator('#gallery').isVisible());
     await page.locator('summary', { hasText: 'Collision' }).click();
     assert.ok(await friction.isVisible());
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('links lead to documents that are there, and others see a card of a link to the page', async () => {
@@ -48,31 +48,31 @@ test('links lead to documents that are there, and others see a card of a link to
     assert.deepEqual([...bytes.subarray(0, 2)], [0xff, 0xd8], 'a JPEG file');
     assert.ok(bytes.length < 120_000, `${bytes.length} bytes`);
     assert.match(await page.locator('meta[name=description]').getAttribute('content'), /cloth/i);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('software draws the light look, and a link may ask for the fine one, in the light and in the dark', async () => {
     for (const colorScheme of ['light', 'dark']) {
-        const page = await browser.open('#model=torus&particles=900&look=fine', { viewport: { width: 780, height: 420 }, colorScheme });
-        await untilFrame(page, 60);
+        const page = await browser.open('#model=torus&particles=900&look=fine', { viewport: { width: 480, height: 320 }, colorScheme });
+        await untilFrame(page, 20);
         assert.equal(await page.evaluate(() => document.body.dataset.look), 'fine');
         await picture(page, `fine_${colorScheme}`);
         await page.locator('select[name=look]').selectOption('auto');
         await page.waitForFunction(() => document.body.dataset.look === 'light');
         assert.deepEqual(page.complaints, []);
-        await page.context().close();
+        await browser.close(page);
     }
 });
 
 test('the fine look casts the shadow of the model on the ground', async () => {
     const darkest = async (look) => {
         const page = await browser.open(`#model=sphere&particles=100&look=${look}&camera=35_25_6_0_0_0`, { viewport: { width: 960, height: 560 } });
-        await untilFrame(page, 30);
+        await untilFrame(page, 10);
         await page.keyboard.press('Space');
         await page.waitForTimeout(500);
         const shot = (await page.locator('#canvas').screenshot()).toString('base64');
         const brightness = await page.evaluate(darkestBesideModel, shot);
-        await page.context().close();
+        await browser.close(page);
         return brightness;
     };
     const [fine, light] = [await darkest('fine'), await darkest('light')];
@@ -98,7 +98,7 @@ test('on a small window neither words nor buttons lie over the model', async () 
     const [canvas, bar] = [await box('#canvas'), await box('#bar')];
     assert.ok(bar.y >= canvas.y + canvas.height - 1, 'the buttons are below the picture');
     await picture(page, 'small_window');
-    await page.context().close();
+    await browser.close(page);
 });
 
 // The examples of the gallery, with few particles: software draws them.
@@ -111,7 +111,7 @@ for (const [model, particles] of Object.entries(FEW))
         await untilHeadline(page, /no face through the model/);
         assert.deepEqual(page.complaints, []);
         await picture(page, `example_${model}`);
-        await page.context().close();
+        await browser.close(page);
     });
 
 test('the figure deforms and turns, and in no frame a face of its skirt is through it', async () => {
@@ -125,7 +125,7 @@ test('the figure deforms and turns, and in no frame a face of its skirt is throu
     assert.ok(atOnce < 0.03, `a vertex went ${atOnce} at once`);
     assert.ok(ways > 0.3, `no vertex went farther than ${ways}`);
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 /** Runs in the page: steps by a worker of its own, each judged by the page's other worker. */
@@ -170,7 +170,7 @@ test('the gallery has a tile for each example, with a picture, and one for a fil
     assert.equal(await page.locator('#gallery .chosen span').textContent(), 'A flag in the wind');
     const [chooser] = await Promise.all([page.waitForEvent('filechooser'), page.locator('#gallery .own').click()]);
     assert.ok(chooser);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('no picture of the gallery is large', () => {

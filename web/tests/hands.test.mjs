@@ -40,7 +40,7 @@ test('a ball follows the pointer, pushes the cloth, and gets no particle into th
     await untilFrame(page, 30 + (await frameOf(page)));
     assert.equal(await page.locator('#notice').isVisible(), false);
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a model that is shaken moves, takes the cloth along, and comes back', async () => {
@@ -60,7 +60,7 @@ test('a model that is shaken moves, takes the cloth along, and comes back', asyn
     assert.ok(away(await verticesOf(page, 'model')) < 0.02);
     assert.equal(await figure(page, 'inside'), '0');
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a clip of the picture is saved', async () => {
@@ -76,13 +76,13 @@ test('a clip of the picture is saved', async () => {
     assert.ok(bytes.length > 2000, `${bytes.length} bytes`);
     assert.equal(await page.locator('#record').textContent(), 'Record clip');
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('opening a large file shows what is being done, and can be cancelled', async () => {
     const page = await browser.open('#model=sphere&particles=100', SMALL);
     await untilFrame(page, 5);
-    await page.locator('#file').setInputFiles({ name: 'large.stl', mimeType: 'model/stl', buffer: torusStl(600, 400) });
+    await page.locator('#file').setInputFiles({ name: 'large.stl', mimeType: 'model/stl', buffer: torusStl(500, 300) });
     await page.locator('#progress').waitFor();
     assert.match(await page.locator('#progress span').textContent(), /^large\.stl: (reading|mending|building the map|laying the cloth)$/);
     await page.locator('#progress button').click();
@@ -91,7 +91,7 @@ test('opening a large file shows what is being done, and can be cancelled', asyn
     assert.ok(!(await page.locator('#progress').isVisible()));
     assert.ok(!(await page.locator('#notice').isVisible()));
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('mending that is cancelled is not chosen any more, and the file stays as it was', async () => {
@@ -113,7 +113,7 @@ test('building a large map can be cancelled, and the model and the map before st
     const page = await browser.open('#model=sphere&particles=100', SMALL);
     page.setDefaultTimeout(120_000);
     await untilFrame(page, 1);
-    await page.locator('#file').setInputFiles({ name: 'large.stl', mimeType: 'model/stl', buffer: torusStl(500, 300) });
+    await page.locator('#file').setInputFiles({ name: 'large.stl', mimeType: 'model/stl', buffer: torusStl(400, 240) });
     const untilOpen = () => page.waitForFunction(() => document.getElementById('subtitle').textContent.startsWith('large.stl, ') && document.getElementById('progress').hidden);
     await untilOpen();
     // As soon as it can: how long a map takes depends on the machine.
@@ -132,7 +132,7 @@ test('building a large map can be cancelled, and the model and the map before st
     await untilOpen();
     assert.ok(await page.locator('input[name=map][value=exact]').isChecked());
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('an open model says what that means, and how much is certain', async () => {
@@ -142,7 +142,7 @@ test('an open model says what that means, and how much is certain', async () => 
     await page.locator('#file').setInputFiles({ name: 'open.obj', mimeType: 'model/obj', buffer: Buffer.from(closed.slice(0, closed.lastIndexOf('f '))) });
     await page.waitForFunction(() => /Open: sides/.test(document.getElementById('report').textContent));
     assert.match(await page.locator('#report').textContent(), /in \d+(\.\d+)?\u2009% of the ball around it the answer is certain.*Close its holes/);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a file of random bytes is refused in legible words', async () => {
@@ -154,7 +154,7 @@ test('a file of random bytes is refused in legible words', async () => {
         await page.waitForFunction((start) => document.querySelector('#notice span').textContent.startsWith(start), name);
         assert.match(await page.locator('#notice span').textContent(), /^[\x20-\x7e\u2009]{10,240}$/, name);
     }
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('another number of particles says that the cloth falls anew', async () => {
@@ -162,7 +162,7 @@ test('another number of particles says that the cloth falls anew', async () => {
     await untilFrame(page, 20);
     await page.locator('input[name=particles]').fill('0.5');
     await page.locator('#remark', { hasText: 'falls anew' }).waitFor();
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('the tour goes through its stops by itself or by a key, and ends where it began', async () => {
@@ -184,5 +184,5 @@ test('the tour goes through its stops by itself or by a key, and ends where it b
     assert.ok(!(await page.locator('#tour').isVisible()));
     assert.ok(!page.url().includes('view=map'));
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });

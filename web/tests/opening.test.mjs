@@ -45,7 +45,7 @@ test('after a good file and a broken one right behind it, the good one is open a
     await untilTitle(page, 'good.obj, 4 faces');
     assert.equal(await page.locator('select[name=model] option:checked').textContent(), 'good.obj');
     assert.match(await page.evaluate(() => location.hash), /mend=false/);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('of a large file and a small one right behind it, the small one stays', async () => {
@@ -59,7 +59,7 @@ test('of a large file and a small one right behind it, the small one stays', asy
     await page.waitForFunction(() => ['large', 'small'].every((name) => globalThis.titles.includes(`${name}.obj, 4 faces`)));
     await untilChosen(page, 'small.obj');
     assert.match(await page.locator('#subtitle').textContent(), /^small\.obj/);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a link to a sample closes the file that is open', async () => {
@@ -69,7 +69,7 @@ test('a link to a sample closes the file that is open', async () => {
     await page.evaluate(() => (location.hash = '#model=sphere&particles=400'));
     await untilTitle(page, 'sphere');
     assert.equal(await page.locator('select[name=model]').inputValue(), 'sphere');
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a change made while a broken file is read takes effect, and the panel shows it', async () => {
@@ -85,7 +85,7 @@ test('a change made while a broken file is read takes effect, and the panel show
     let count;
     for (let turn = 0; turn < 20 && count !== 2500; ++turn) count = await particlesIn(page);
     assert.equal(count, 2500);
-    await page.context().close();
+    await browser.close(page);
 });
 
 /** Runs in the page: sets 2500 particles as soon as a file has gone to the worker, before its answer can arrive. */
@@ -115,7 +115,7 @@ test('a worker that does not load is reported once, and not restarted endlessly'
     const begun = await page.evaluate(() => globalThis.workersBegun);
     assert.ok(begun <= 2, `${begun} workers`); // one may fail before the page listens
     assert.equal(await page.locator('#subtitle').textContent(), '');
-    await page.context().close();
+    await browser.close(page);
 });
 
 /** Runs in the page: makes the worker's script unavailable. */
@@ -137,7 +137,7 @@ test('only closed meshes get the note that no particle gets through', async () =
     await untilTitle(page, 'open.obj, 3 faces');
     assert.match(await page.locator('#map-note').textContent(), /The mesh is open/);
     assert.doesNotMatch(await page.locator('#map-note').textContent(), /No particle gets through/);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('the notice about a broken file disappears when a sample is opened', async () => {
@@ -147,5 +147,5 @@ test('the notice about a broken file disappears when a sample is opened', async 
     await page.locator('select[name=model]').selectOption('sphere');
     await untilTitle(page, 'sphere');
     assert.ok(!(await page.locator('#notice').isVisible()));
-    await page.context().close();
+    await browser.close(page);
 });

@@ -5,14 +5,14 @@ import { after, before, test } from 'node:test';
 import { SMALL, figure, hasHorse, numberOf, picture, startBrowser, untilFrame, untilRay } from './support.mjs';
 
 /** For pictures that are only compared: software takes seconds for a large one. */
-const TINY = { viewport: { width: 480, height: 300 } };
+const TINY = { viewport: { width: 400, height: 260 } };
 
 let browser;
 before(async () => (browser = await startBrowser()));
 after(() => browser?.stop());
 
 test('the page opens with the cloth already falling and an empty console', async () => {
-    const page = await browser.open();
+    const page = await browser.open('', { fresh: true });
     await untilFrame(page, 40);
     await page.waitForFunction(() => document.getElementById('figure-inside').textContent !== '–'); // counted now and then
     assert.equal(await figure(page, 'inside'), '0');
@@ -20,7 +20,7 @@ test('the page opens with the cloth already falling and an empty console', async
     assert.match(await page.locator('#subtitle').textContent(), hasHorse ? /^horse\.3ds, 7\u2009160 faces$/ : /^torus/);
     await picture(page, 'opened');
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a page that carries the horse carries the notice and the text of its licence', { skip: !hasHorse && 'the horse is not installed' }, async () => {
@@ -29,7 +29,7 @@ test('a page that carries the horse carries the notice and the text of its licen
     const notice = page.locator('#horse-notice a');
     assert.ok(await notice.isVisible());
     for (const file of ['models/NOTICE.txt', 'models/GPL-3.txt', 'LICENSES.txt']) assert.ok((await page.request.get(new URL(file, page.url()).href)).ok(), file);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a link restores the state that it was copied from', async () => {
@@ -39,7 +39,7 @@ test('a link restores the state that it was copied from', async () => {
     assert.ok(await page.locator('input[name=map][value=distance]').isChecked());
     await page.locator('input[name=view][value=cloth]').check();
     await page.waitForFunction(() => location.hash === '#model=sphere&map=distance&particles=2500&friction=0.9');
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a link contains the position of the camera, and a broken one gives the default view', async () => {
@@ -48,7 +48,7 @@ test('a link contains the position of the camera, and a broken one gives the def
         await untilRay(page);
         await page.waitForTimeout(500);
         const canvas = await page.locator('#canvas').screenshot();
-        await page.context().close();
+        await browser.close(page);
         return canvas;
     };
     const usual = await seen('#model=torus&view=map');
@@ -69,12 +69,12 @@ async function linkAfterTurning() {
     await page.waitForFunction(() => location.hash.includes('camera='));
     await page.waitForTimeout(1000); // damping ends
     const hash = await page.evaluate(() => location.hash);
-    await page.context().close();
+    await browser.close(page);
     const again = await browser.open(hash, SMALL);
     await untilRay(again);
     await again.waitForTimeout(500);
     assert.equal(await again.evaluate(() => location.hash), hash);
-    await again.context().close();
+    await browser.close(again);
     return hash.split('&').at(-1);
 }
 
@@ -88,7 +88,7 @@ test('a choice that is not available is not shown as in force', { skip: !hasHors
     assert.equal(await page.locator('select[name=model]').inputValue(), 'torus');
     assert.match(await page.locator('#subtitle').textContent(), /^torus/);
     assert.equal(await page.evaluate(() => location.hash), '#model=torus&particles=400');
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('the link that is copied is the one of the address', async () => {
@@ -99,7 +99,7 @@ test('the link that is copied is the one of the address', async () => {
     await page.locator('#link-note:has-text("Copied.")').waitFor();
     assert.equal(await page.evaluate(() => navigator.clipboard.readText()), page.url());
     assert.match(page.url(), /#model=torus&particles=400&friction=0\.8$/);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('keys pause, step and drop the cloth and change the view and the map, and a list keeps its own', async () => {
@@ -134,7 +134,7 @@ test('keys pause, step and drop the cloth and change the view and the map, and a
     await page.keyboard.press('Space');
     assert.equal(await pausing(), 'Go on', 'a slider has no use for space');
     assert.ok(!page.url().includes('view=map'), 'and a list has for letters');
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('the saved mesh is an OBJ file of the cloth and the model', async () => {
@@ -144,7 +144,7 @@ test('the saved mesh is an OBJ file of the cloth and the model', async () => {
     const text = await readFile(await download.path(), 'utf8');
     const { length } = text.match(/^v /gm);
     assert.equal(length, 400 + (await page.evaluate(() => Number(/faces, ([\d\u2009]+) vertices/.exec(document.getElementById('report').textContent)[1].replace('\u2009', '')))));
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('the saved picture is a PNG file of the canvas', async () => {
@@ -155,7 +155,7 @@ test('the saved picture is a PNG file of the canvas', async () => {
     const { width, height } = await page.locator('#canvas').boundingBox();
     assert.equal(bytes.toString('latin1', 1, 4), 'PNG');
     assert.deepEqual([bytes.readUInt32BE(16), bytes.readUInt32BE(20)], [Math.round(width), Math.round(height)]);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a narrow screen shows everything without scrolling sideways', async () => {
@@ -163,7 +163,7 @@ test('a narrow screen shows everything without scrolling sideways', async () => 
     await untilFrame(page, 30);
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
     await picture(page, 'narrow');
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('in the dark the page is dark', async () => {
@@ -171,7 +171,7 @@ test('in the dark the page is dark', async () => {
     await untilFrame(page, 160);
     assert.equal(await page.evaluate(() => getComputedStyle(document.body).backgroundColor), 'rgb(27, 29, 33)');
     await picture(page, 'dark');
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a browser without vectors gets a message that names what it lacks', async () => {
@@ -179,7 +179,7 @@ test('a browser without vectors gets a message that names what it lacks', async 
     await page.locator('.lacking').waitFor();
     assert.match(await page.locator('.lacking').textContent(), /needs WebAssembly SIMD/);
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a browser without WebGL gets a message', async () => {
@@ -187,14 +187,14 @@ test('a browser without WebGL gets a message', async () => {
     await page.locator('.lacking').waitFor();
     assert.match(await page.locator('.lacking').textContent(), /needs WebGL 2/);
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a part of the page that does not arrive is reported as missing', async () => {
-    const page = await browser.open('about:blank', SMALL);
+    const page = await browser.open('about:blank', { ...SMALL, fresh: true });
     await page.route('**/assets/app-*.js', (route) => route.abort());
     await page.goto(browser.address);
     await page.locator('.lacking').waitFor();
     assert.match(await page.locator('.lacking').textContent(), /could not be loaded: load the page again/);
-    await page.context().close();
+    await browser.close(page);
 });

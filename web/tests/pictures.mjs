@@ -24,14 +24,14 @@ async function take(link, moment, size, path, quality) {
     for (let picture = 0; picture < 4; ++picture) await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(drawn)));
     await page.locator('#stage').screenshot({ path, type: 'jpeg', quality });
     console.log(path);
-    await page.context().close();
+    await browser.close(page);
 }
 
 const wanted = process.argv.slice(2);
 const page = await browser.open('#particles=100&model=torus');
 await untilFrame(page, 1);
 const links = await page.evaluate(() => [...document.querySelectorAll('#gallery a')].map((tile) => [tile.querySelector('img').src.match(/(\w+)\.jpg$/)[1], tile.hash.slice(1)]));
-await page.context().close();
+await browser.close(page);
 for (const [name, link] of links) if (wanted.length === 0 || wanted.includes(name)) await take(link, MOMENTS[name], { width: 240, height: 180 }, `${folder}gallery/${name}.jpg`, 80);
 if (wanted.length === 0 || wanted.includes('card')) await take('model=torus', MOMENTS.torus, { width: 1200, height: 630 }, `${folder}card.jpg`, 72);
 await browser.stop();

@@ -51,7 +51,7 @@ test('a recorded page plays from the disk with an empty console', { skip }, asyn
     assert.match(await page.locator('#about').textContent(), /torus.*faces of the cloth.*machine/);
     await picture(page, 'player_falling');
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('it requests nothing but itself', { skip }, async () => {
@@ -61,7 +61,7 @@ test('it requests nothing but itself', { skip }, async () => {
     await page.reload();
     await untilPlayed(page, 5);
     assert.deepEqual(asked.filter((url) => !url.startsWith('data:')), [torus]);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a visitor can pause, step, go to any frame, and start over', { skip }, async () => {
@@ -81,7 +81,7 @@ test('a visitor can pause, step, go to any frame, and start over', { skip }, asy
     await picture(page, 'player_end');
     await page.locator('#restart').click();
     await page.waitForFunction((end) => Number(document.body.dataset.frame) < end / 2, last);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('between two recorded frames the cloth goes on, and a pause on a frame shows that frame', { skip }, async () => {
@@ -91,7 +91,7 @@ test('between two recorded frames the cloth goes on, and a pause on a frame show
     await page.waitForFunction(() => Number(document.body.dataset.share) > 0.1 && Number(document.body.dataset.share) < 0.9);
     await scrubTo(page, 10);
     assert.equal(await page.evaluate(() => document.body.dataset.share), '0.00');
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('at a higher speed it comes to the end, and stays there', { skip }, async () => {
@@ -99,7 +99,7 @@ test('at a higher speed it comes to the end, and stays there', { skip }, async (
     await page.locator('#speed').selectOption('4');
     await page.waitForFunction(() => document.getElementById('pause').textContent === 'Play', null, { timeout: 60_000 });
     assert.equal(await frameOf(page), await lastOf(page));
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('the saved picture shows the cloth', { skip }, async () => {
@@ -109,7 +109,7 @@ test('the saved picture shows the cloth', { skip }, async () => {
     const bytes = await readFile(await download.path());
     assert.equal(bytes.toString('latin1', 1, 4), 'PNG');
     assert.ok(bytes.length > 5000, `${bytes.length} bytes are an empty picture`);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a page that carries the horse carries its notice, and the licence of three.js', { skip: skip || (!existsSync(inProject('models/horse.3ds')) && 'the horse is not installed') }, async () => {
@@ -121,7 +121,7 @@ test('a page that carries the horse carries its notice, and the licence of three
     await picture(page, 'player_horse');
     assert.equal(await figure(page, 'inside'), '0');
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a cloth of any shape is drawn', { skip }, async () => {
@@ -131,7 +131,7 @@ test('a cloth of any shape is drawn', { skip }, async () => {
     assert.equal(await figure(page, 'inside'), '0');
     await picture(page, 'player_bag');
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a thread is drawn, and falls', { skip }, async () => {
@@ -150,7 +150,7 @@ test('a thread is drawn, and falls', { skip }, async () => {
     assert.ok(!before.equals(await seenAt(await lastOf(page))));
     await picture(page, 'player_thread');
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a turning model is shown turning', { skip }, async () => {
@@ -168,7 +168,7 @@ test('a turning model is shown turning', { skip }, async () => {
     assert.ok(before.equals(await seenAt(0)));
     await picture(page, 'player_turning');
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('names that contain markup are shown literally', { skip }, async () => {
@@ -179,7 +179,7 @@ test('names that contain markup are shown literally', { skip }, async () => {
     assert.equal(await page.locator('#scene').textContent(), '<img src=x onerror=alert(1)>.json');
     assert.equal(await page.locator('#panel img').count(), 0);
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('a narrow dark screen shows everything without scrolling sideways', { skip }, async () => {
@@ -187,7 +187,7 @@ test('a narrow dark screen shows everything without scrolling sideways', { skip 
     await untilPlayed(page, 40);
     assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
     await picture(page, 'player_narrow');
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('damaged data and a player without a recording give one sentence each', { skip }, async () => {
@@ -199,5 +199,5 @@ test('damaged data and a player without a recording give one sentence each', { s
     await page.waitForFunction(() => document.querySelector('#notice span').textContent.startsWith('The recording in this page cannot be read: '));
     await page.goto(pathToFileURL(player).href);
     await page.waitForFunction(() => document.querySelector('#notice span').textContent.startsWith('This page holds no recording.'));
-    await page.context().close();
+    await browser.close(page);
 });
