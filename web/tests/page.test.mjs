@@ -57,6 +57,24 @@ test('a link contains the position of the camera, and a broken one gives the def
         assert.ok(usual.equals(await seen(`#model=torus&view=map&${broken}`)), broken);
 });
 
+test('a window that changes its shape shows the model as one that had that shape', async () => {
+    const sizes = [{ width: 800, height: 300 }, { width: 320, height: 480 }];
+    const seen = async (page) => {
+        await untilRay(page);
+        await page.waitForTimeout(500);
+        return page.locator('#canvas').screenshot();
+    };
+    const page = await browser.open('#model=torus&view=map', { viewport: sizes[1] });
+    const narrow = await seen(page);
+    await browser.close(page);
+    const turned = await browser.open('#model=torus&view=map', { viewport: sizes[0] });
+    await seen(turned);
+    await turned.setViewportSize(sizes[1]);
+    assert.ok(narrow.equals(await seen(turned)));
+    assert.ok(!(await turned.evaluate(() => location.hash)).includes('camera'));
+    await browser.close(turned);
+});
+
 /** After a visitor has turned the view, the address contains the camera, and opening that address restores it. */
 async function linkAfterTurning() {
     const page = await browser.open('#model=torus&view=map', SMALL);

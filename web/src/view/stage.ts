@@ -128,10 +128,8 @@ export class Stage {
 
     /** @param shows  makes the scene show what belongs to a part of the picture: one for all of it, or two for its halves */
     set halves(shows: (() => void)[]) {
-        const isHome = this.standpoint === '';
         this.#halves = shows;
         this.#fit();
-        if (this.#sight && isHome) this.lookAt(this.#sight); // a half is narrower
     }
 
     /** A place in the canvas in the camera's coordinates, -1 to 1. @param x, y  shares of its width and height */
@@ -217,8 +215,10 @@ export class Stage {
     #fit(): void {
         const { clientWidth: width, clientHeight: height } = this.#canvas;
         if (width === 0 || height === 0) return;
+        const isHome = this.#sight !== undefined && this.standpoint === '';
         this.renderer.setSize(width, height, false);
         this.camera.aspect = width / this.#halves.length / height;
         this.camera.updateProjectionMatrix();
+        if (isHome) this.lookAt(this.#sight!); // where it is narrower, from farther away
     }
 }

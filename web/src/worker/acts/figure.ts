@@ -4,7 +4,7 @@ import { Dancer } from './dancer';
 import { square } from './sheet_mesh';
 
 /** The skirt is cut as a ring around the waist, and starts nearly flat. */
-const WAIST = 0.16, LEVEL = 1.1, LENGTH = 0.58, DROP = 0.28;
+const WAIST = 0.13, LEVEL = 1.1, LENGTH = 0.58, DROP = 0.28;
 
 /** Rings, and particles around each. */
 function cut(particles: number): { rings: number; around: number } {
