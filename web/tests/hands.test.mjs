@@ -106,7 +106,7 @@ test('mending that is cancelled is not chosen any more, and the file stays as it
     assert.match(await page.evaluate(() => location.hash), /mend=false/);
     assert.ok(!(await page.locator('input[name=mend]').isChecked()));
     assert.deepEqual(page.complaints, []);
-    await page.context().close();
+    await browser.close(page);
 });
 
 test('building a large map can be cancelled, and the model and the map before stay', async () => {
