@@ -46,7 +46,8 @@ double processor_seconds(const std::function<void()>& work) {
 class Tasks {
   public:
     Tasks(const fs::path& scene_path, const fs::path& model)
-        : scene_(read_scene(scene_path)), mesh_(repair(read_mesh(model), scene_.repair).mesh),
+        : scene_(read_scene(scene_path)),
+          mesh_(repair(read_mesh(model), scene_.colliders.front().repair).mesh),
           maps_{{"exact", build_map(mesh_, ExactMapOptions{}, 1)},
                 {"distance", build_map(mesh_, DistanceMapOptions{}, 1)}},
           points_{{"U", comparison::uniform_points(mesh_, kParticleCount)},

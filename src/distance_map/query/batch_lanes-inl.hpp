@@ -132,25 +132,16 @@ void answer_all(const Kernel& kernel, const StridedSpan<const Vec3f>& points, An
     }
 }
 
-template <typename Grid, typename Answers>
-void answer_in_format(const DistanceMapView& map, const StridedSpan<const Vec3f>& points,
-                      const Answers& answers) {
-    if (map.entry_format == EntryFormat::Float32)
-        answer_all(Kernel<Grid, FloatEntries>(map), points, answers);
-    else
-        answer_all(Kernel<Grid, UnormEntries>(map), points, answers);
-}
-
 template <typename Grid>
 void contains_lanes(const DistanceMapView& map, const StridedSpan<const Vec3f>& points,
                     std::uint8_t* inside) {
-    answer_in_format<Grid>(map, points, InsideAnswers{inside});
+    answer_all(Kernel<Grid>(map), points, InsideAnswers{inside});
 }
 
 template <typename Grid>
 void contacts_lanes(const DistanceMapView& map, const StridedSpan<const Vec3f>& points, float margin,
                     Contact* contacts) {
-    answer_in_format<Grid>(map, points, ContactAnswers{contacts, margin});
+    answer_all(Kernel<Grid>(map), points, ContactAnswers{contacts, margin});
 }
 
 } // namespace

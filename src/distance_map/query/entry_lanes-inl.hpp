@@ -1,5 +1,5 @@
-// The entries of a map, in their two formats, and its offsets, for vectors of particles: loaded as rows of
-// four neighbours, or gathered.
+// The entries of a map, in either format, and its offsets, for vectors of particles: loaded as rows of four
+// neighbours, or gathered.
 
 #include <echinus/distance_map.hpp>
 
@@ -20,39 +20,50 @@ namespace { // its names are this folder's
 
 using FourFloats = hn::FixedTag<float, 4>;
 
-class FloatEntries {
+/// Entries of a map in its format. Which one is asked at run time: a branch that is always predicted, where a
+/// kernel for each format would double the code.
+class EntryLanes {
   public:
-    explicit FloatEntries(const DistanceMapView& map) : entries_(map.entries_float32.data()) {}
+    explicit EntryLanes(const DistanceMapView& map)
+        : wide_(map.entries_float32.data()), narrow_(map.entries_unorm16.data()),
+          is_wide_(map.entry_format == EntryFormat::Float32),
+          step_(is_wide_ ? 1 : map.largest_entry() / kUnormSteps) {}
 
-    HWY_INLINE hn::Vec<FourFloats> operator()(std::int32_t position) const {
-        return hn::LoadU(FourFloats(), entries_ + position);
+    /// For entry_of(): the entries at each lane's position and the three after it.
+    HWY_INLINE Rows load_rows(IntLanes positions) const {
+        return is_wide_ ? load_rows_at(WideRows{wide_}, positions)
+                        : load_rows_at(NarrowRows{narrow_}, positions);
     }
     /// What a row holds, in the mesh's unit.
-    HWY_INLINE FloatLanes entry_of(FloatLanes loaded) const { return loaded; }
+    HWY_INLINE FloatLanes entry_of(FloatLanes loaded) const {
+        return is_wide_ ? loaded : hn::Mul(hn::ConvertTo(kFloat, hn::BitCast(kInt, loaded)), splat(step_));
+    }
+    /// What is at each lane's position, in the mesh's unit.
     HWY_INLINE FloatLanes gather(IntLanes positions) const {
-        return hn::GatherIndex(kFloat, entries_, positions);
+        return is_wide_ ? hn::GatherIndex(kFloat, wide_, positions) : gather_narrow(positions);
     }
 
   private:
-    const float* entries_;
-};
+    struct WideRows {
+        const float* entries;
 
-class UnormEntries {
-  public:
-    explicit UnormEntries(const DistanceMapView& map)
-        : entries_(map.entries_unorm16.data()), step_(map.largest_entry() / kUnormSteps) {}
+        HWY_INLINE hn::Vec<FourFloats> operator()(std::int32_t position) const {
+            return hn::LoadU(FourFloats(), entries + position);
+        }
+    };
+    struct NarrowRows {
+        const std::uint16_t* entries;
 
-    HWY_INLINE hn::Vec<FourFloats> operator()(std::int32_t position) const {
-        const auto narrow = hn::LoadU(hn::FixedTag<std::uint16_t, 4>(), entries_ + position);
-        return hn::BitCast(FourFloats(), hn::PromoteTo(hn::FixedTag<std::uint32_t, 4>(), narrow));
-    }
-    HWY_INLINE FloatLanes entry_of(FloatLanes loaded) const {
-        return hn::Mul(hn::ConvertTo(kFloat, hn::BitCast(kInt, loaded)), splat(step_));
-    }
+        HWY_INLINE hn::Vec<FourFloats> operator()(std::int32_t position) const {
+            const auto narrow = hn::LoadU(hn::FixedTag<std::uint16_t, 4>(), entries + position);
+            return hn::BitCast(FourFloats(), hn::PromoteTo(hn::FixedTag<std::uint32_t, 4>(), narrow));
+        }
+    };
+
     /// Gathers pairs, each with the entry before, so that nothing beyond the last is read.
-    HWY_INLINE FloatLanes gather(IntLanes positions) const {
+    HWY_INLINE FloatLanes gather_narrow(IntLanes positions) const {
         const IntLanes before = hn::Max(hn::Sub(positions, splat_int(1)), hn::Zero(kInt));
-        const auto* pairs = reinterpret_cast<const std::int32_t*>(entries_);
+        const auto* pairs = reinterpret_cast<const std::int32_t*>(narrow_);
         const IntLanes pair = hn::GatherOffset(kInt, pairs, hn::Add(before, before));
         const FloatMask is_first = as_mask(hn::Eq(positions, hn::Zero(kInt)));
         const IntLanes first = hn::And(pair, splat_int(0xFFFF));
@@ -60,8 +71,9 @@ class UnormEntries {
         return entry_of(hn::BitCast(kFloat, choose(is_first, first, second)));
     }
 
-  private:
-    const std::uint16_t* entries_;
+    const float* wide_;
+    const std::uint16_t* narrow_;
+    bool is_wide_;
     float step_;
 };
 

@@ -63,18 +63,18 @@ struct Contacts {
 };
 
 /// The first four entries of each sample: rows[corner].at[k].
-template <typename Grid, typename Entries>
+template <typename Grid>
 struct LoadedEntries {
     static constexpr std::int32_t kMaxEntries = 4;
 
     const Grid& grid;
-    const Entries& entries;
+    const EntryLanes& entries;
     std::array<Rows, 4> rows;
 
-    HWY_INLINE LoadedEntries(const Grid& grid_, const Entries& entries_, const std::array<IntLanes, 4>& first,
-                             FloatMask wanted)
+    HWY_INLINE LoadedEntries(const Grid& grid_, const EntryLanes& entries_,
+                             const std::array<IntLanes, 4>& first, FloatMask wanted)
         : grid(grid_), entries(entries_), rows(at_corners([&](std::size_t corner) HWY_ATTR {
-              return load_rows_at(entries_, hn::IfThenElseZero(as_int_mask(wanted), first[corner]));
+              return entries_.load_rows(hn::IfThenElseZero(as_int_mask(wanted), first[corner]));
           })) {}
 
     /// The interpolants of the k-th entries, the same k for all lanes.
@@ -98,12 +98,12 @@ struct LoadedEntries {
 };
 
 /// Any entries.
-template <typename Grid, typename Entries>
+template <typename Grid>
 struct GatheredEntries {
     static constexpr std::int32_t kMaxEntries = std::numeric_limits<std::int32_t>::max();
 
     const Grid& grid;
-    const Entries& entries;
+    const EntryLanes& entries;
     std::array<IntLanes, 4> first;
     IntLanes count;
 
@@ -117,7 +117,7 @@ struct GatheredEntries {
     }
 };
 
-template <typename Grid, typename Entries>
+template <typename Grid>
 class Kernel {
   public:
     explicit Kernel(const DistanceMapView& map)
@@ -132,7 +132,7 @@ class Kernel {
         const Rays<Grid> rays = aim(load(points));
         const FloatMask reaches = hn::Le(rays.length, splat(map_.radius));
         Neighbours found = look_at_rows(rays, reaches);
-        const LoadedEntries<Grid, Entries> entries(grid_, entries_, found.first, found.known);
+        const LoadedEntries<Grid> entries(grid_, entries_, found.first, found.known);
         store(is_inside_at(rays, found, entries), inside);
         return hn::AndNot(found.known, reaches);
     }
@@ -142,7 +142,7 @@ class Kernel {
         const Rays<Grid> rays = aim(point);
         const FloatMask reaches = reaches_sphere(rays, margin);
         const Neighbours found = look_at_rows(rays, reaches);
-        const LoadedEntries<Grid, Entries> entries(grid_, entries_, found.first, found.known);
+        const LoadedEntries<Grid> entries(grid_, entries_, found.first, found.known);
         store(contacts_of(point, rays, found, entries, margin), contacts);
         return hn::AndNot(found.known, reaches);
     }
@@ -198,7 +198,7 @@ class Kernel {
         return hn::Xor(is_odd(interval), centre_inside_);
     }
 
-    HWY_INLINE GatheredEntries<Grid, Entries> gathered(const Neighbours& found) const {
+    HWY_INLINE GatheredEntries<Grid> gathered(const Neighbours& found) const {
         return {grid_, entries_, found.first, found.samples.entry_count};
     }
 
@@ -393,7 +393,7 @@ class Kernel {
 
     const DistanceMapView& map_;
     Grid grid_;
-    Entries entries_;
+    EntryLanes entries_;
     std::int32_t direction_count_, entry_count_;
     FloatMask centre_inside_;
 };

@@ -292,10 +292,7 @@ std::uint32_t find_one(const ExactMapView& map, const Measure& measure, const Ne
                        float limit) {
     const std::uint32_t near_leaf =
         search.near_leaf != kNoLeaf ? search.near_leaf : leaf_near(map, search.place);
-    const double farthest_sq = search.farthest * search.farthest;
-    if (map.corners.wide.empty())
-        return OnePlaceSearch(map, map.corners.narrow.data(), measure).find(near_leaf, limit, farthest_sq);
-    return OnePlaceSearch(map, map.corners.wide.data(), measure).find(near_leaf, limit, farthest_sq);
+    return OnePlaceSearch(map, measure).find(near_leaf, limit, search.farthest * search.farthest);
 }
 
 std::uint32_t search_alone(const ExactMapView& map, const Vec3d& stretch, const NearestSearch& search) {

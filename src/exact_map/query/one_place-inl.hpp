@@ -349,12 +349,10 @@ class EightCompressor {
 /// A first leaf gives a bound, which is good where that leaf is near. Within it the leaves are listed,
 /// without a branch that depends on the boxes, and then visited, the nearest first.
 /// @pre the map has faces for one leaf at least
-template <typename Measure, typename Vertex>
+template <typename Measure>
 class OnePlaceSearch {
   public:
-    /// @param corners  ExactMapView::corners
-    OnePlaceSearch(const ExactMapView& map, const Vertex* corners, const Measure& measure)
-        : map_(map), corners_(corners), measure_(measure) {}
+    OnePlaceSearch(const ExactMapView& map, const Measure& measure) : map_(map), measure_(measure) {}
 
     /// @param near_leaf    to begin with, or kNoLeaf
     /// @param limit        what is beyond it in the measure is surely farther than `farthest_sq`
@@ -491,9 +489,16 @@ class OnePlaceSearch {
         return bits[0];
     }
 
+    /// The k-th corners of neighbouring faces.
     HWY_INLINE EightPlaces corner_lanes(std::size_t k, std::size_t first) const {
+        const IndexArray& corners = map_.corners;
+        return corners.wide.empty() ? vertex_lanes(&corners.narrow[3 * first + k])
+                                    : vertex_lanes(&corners.wide[3 * first + k]);
+    }
+    /// @param corners  every third number of a vertex
+    template <typename Vertex>
+    HWY_INLINE EightPlaces vertex_lanes(const Vertex* corners) const {
         const std::int32_t* vertices = &map_.vertices.data()->x;
-        const Vertex* corners = corners_ + 3 * first + k;
         // The vertex as the last three numbers of a row.
         constexpr hn::RebindToSigned<Eight> i;
         const auto [before, x, y, z] =
@@ -565,7 +570,6 @@ class OnePlaceSearch {
     }
 
     const ExactMapView& map_;
-    const Vertex* corners_;
     Measure measure_;
 
     float upper_ = 0;                 ///< the nearest face surely lies within it
