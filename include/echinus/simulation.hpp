@@ -219,7 +219,9 @@ struct SimulationOptions {
     /// intersect at the start, no particle may begin inside a closed model (but see untangle), and keep_free
     /// must be true.
     bool surface_collision = false;
-    /// Needs surface_collision: the faces of the deformable do not meet each other either.
+    /// Needs surface_collision: the faces of the deformable do not meet each other either. A frame in which
+    /// it moves fast, relative to itself or to a model near by, is divided into up to 32 parts, each of which
+    /// takes about the time of a frame (docs/surfaces.md).
     bool self_collision = false;
     /// Distance that layers of the deformable keep from each other, units. If not given, the thickness. Near
     /// small faces it is less: at most 0.4 of the least height of a face, and a quarter of the mean

@@ -69,6 +69,16 @@ struct Particles {
     Vec3f step(std::size_t i) const {
         return (positions[i] - previous[i]) + (remainders[i] - previous_remainders[i]);
     }
+    /// For substeps that are so many times as long as they were.
+    void scale_velocities(double factor) {
+        if (factor == 1) return;
+        for (std::size_t i = 0; i < count(); ++i) {
+            const Vec3d place = Vec3d(positions[i]) + Vec3d(remainders[i]);
+            const Vec3d before = place - Vec3d(step(i)) * factor;
+            previous.set(i, Vec3f(before));
+            if (keeps_remainders) previous_remainders.set(i, Vec3f(before - Vec3d(previous[i])));
+        }
+    }
     void put(std::size_t i, const Placement& place) {
         positions.set(i, place.position);
         previous.set(i, place.previous);

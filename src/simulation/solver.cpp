@@ -121,7 +121,8 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
       tetrahedra_(weighted_tetrahedra(deformable, options)), attachments_(deformable, colliders),
       deforming_(colliders.size()), surface_motions_(colliders.size()), clearances_(particles_.count()),
       collisions_(colliders, particles_, options), rest_(options.rest, deformable.positions),
-      goals_give_way_(sticks_.gives_way()), substep_seconds_(options.time_step / options.substep_count),
+      goals_give_way_(sticks_.gives_way()), part_(options),
+      substep_seconds_(options.time_step / options.substep_count),
       start_hash_(hash_of(deformable.positions)) {
     for (const Collider& collider : colliders) start_poses_.push_back(collider.pose);
     if (options.surface_collision) {
@@ -129,6 +130,7 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
         surfaces_.emplace(deformable, colliders, particles_, options);
         if (options.solver == SolverKind::Verlet) stretched_part_.emplace(sticks_, particles_.count());
     }
+    if (options.self_collision) parts_.emplace(deformable, options);
     if (options.multilevel) coarse_sheets_.emplace(deformable);
     if (options.measure_loads) meter_.emplace(deformable, colliders.size());
     const Sphere start = box_sphere(deformable.positions);
@@ -140,9 +142,22 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
 void Simulation::Solver::step() {
     const Workers::Session session(workers_);
     begin_frame();
-    begin_collisions();
-    for (std::uint32_t substep = 0; substep < options.substep_count; ++substep) {
-        integrate(substep == 0 ? 1 - options.drag : 1);
+    const std::uint32_t part_count = begin_collisions();
+    if (part_count > 1) divide_frame(part_count);
+    for (std::uint32_t part = 0; part < part_count; ++part) {
+        begin_part(part_count > 1);
+        step_part();
+    }
+    if (part_count > 1) join_parts();
+    publish();
+    require_within(bound_);
+    ++frame;
+    judge_frame();
+}
+
+void Simulation::Solver::step_part() {
+    for (std::uint32_t substep = 0; substep < part_.substep_count; ++substep) {
+        integrate(substep == 0 ? 1 - part_.drag : 1);
         if (substep == 0) look_ahead();
         move_colliders(substep);
         begin_constraints();
@@ -156,10 +171,6 @@ void Simulation::Solver::step() {
     // What would be far out may be stopped on its way, but the way has to be one.
     require_within(kLongestWay);
     keep_free();
-    publish();
-    require_within(bound_);
-    ++frame;
-    judge_frame();
 }
 
 void Simulation::Solver::begin_frame() {
@@ -169,6 +180,31 @@ void Simulation::Solver::begin_frame() {
     if (meter_) meter_->begin_frame(colliders);
     if (stretched_part_ && frame % StretchedPart::kFrames == 0)
         stretched_part_->find(sticks_, particles_.positions);
+}
+
+/// Velocities are ways in a substep, which is a shorter one now.
+void Simulation::Solver::divide_frame(std::uint32_t part_count) {
+    part_ = parts_->options_of_part(part_count);
+    const double whole = std::exchange(substep_seconds_, part_.time_step / part_.substep_count);
+    particles_.scale_velocities(substep_seconds_ / whole);
+}
+
+void Simulation::Solver::join_parts() {
+    part_ = options;
+    const double of_part = std::exchange(substep_seconds_, options.time_step / options.substep_count);
+    particles_.scale_velocities(substep_seconds_ / of_part);
+    if (meter_) meter_->scale(substep_seconds_ / of_part);
+}
+
+/// A frame that is not divided has begun already, but for the surfaces.
+void Simulation::Solver::begin_part(bool is_divided) {
+    const Stopwatch stopwatch(profile.collision_seconds);
+    if (is_divided) {
+        particles_.frame_start = particles_.positions;
+        collisions_.begin_frame(colliders, surface_motions_, particles_, part_);
+    }
+    if (surfaces_)
+        surfaces_->begin_frame(colliders, surface_motions_, collisions_, particles_, part_, workers_);
 }
 
 /// Colliders that deform get the maps of the frame's end.
@@ -187,11 +223,15 @@ void Simulation::Solver::deform() {
     }
 }
 
-void Simulation::Solver::begin_collisions() {
+/// @return into how many parts the frame is divided
+std::uint32_t Simulation::Solver::begin_collisions() {
     const Stopwatch stopwatch(profile.collision_seconds);
     deform();
     collisions_.begin_frame(colliders, surface_motions_, particles_, options);
-    if (surfaces_) surfaces_->begin_frame(colliders, surface_motions_, collisions_, particles_, workers_);
+    const bool deforms = std::any_of(surface_motions_.begin(), surface_motions_.end(),
+                                     [](const SurfaceMotion* motion) { return motion != nullptr; });
+    // A surface that deforms goes its ways in a whole frame.
+    return parts_ && !deforms ? parts_->count(colliders, collisions_, particles_) : 1;
 }
 
 void Simulation::Solver::look_ahead() {
@@ -231,7 +271,7 @@ void Simulation::Solver::integrate(double share_kept) {
 void Simulation::Solver::move_colliders(std::uint32_t substep) {
     const Stopwatch stopwatch(profile.collision_seconds);
     collisions_.begin_substep(colliders, substep_seconds_);
-    const auto share = static_cast<float>(substep + 1) / static_cast<float>(options.substep_count);
+    const auto share = static_cast<float>(substep + 1) / static_cast<float>(part_.substep_count);
     attachments_.follow(colliders, deforming_, share, particles_.positions);
     if (surfaces_) surfaces_->begin_substep(colliders);
 }

@@ -7,6 +7,7 @@
 #include "simulation/collisions.hpp"
 #include "simulation/deforming_collider.hpp"
 #include "simulation/folds.hpp"
+#include "simulation/frame_parts.hpp"
 #include "simulation/load_meter.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/rest.hpp"
@@ -63,7 +64,11 @@ class Simulation::Solver {
     bool all_arrived() const;
     void begin_frame();
     void integrate(double share_kept);
-    void begin_collisions();
+    std::uint32_t begin_collisions();
+    void divide_frame(std::uint32_t part_count);
+    void begin_part(bool is_divided);
+    void step_part();
+    void join_parts();
     void look_ahead();
     void move_colliders(std::uint32_t substep);
     void begin_constraints();
@@ -94,7 +99,9 @@ class Simulation::Solver {
     RestWatch rest_;
     Wind wind_;
     bool goals_give_way_;
-    double substep_seconds_;
+    std::optional<FrameParts> parts_;         ///< with contact of the deformable with itself
+    SimulationOptions part_;                  ///< for the part of a frame at hand: all of it, mostly
+    double substep_seconds_;                  ///< of that
     std::uint64_t start_hash_;                ///< of where particles began
     std::vector<RigidTransform> start_poses_; ///< of the colliders
     Vec3d start_centre_;

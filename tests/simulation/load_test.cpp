@@ -144,6 +144,25 @@ TEST(Load, BalancesTheMomentumOfAnImpact) {
     EXPECT_NEAR(length(given + left - before), 0, 0.01 * length(before));
 }
 
+TEST(Load, OfAFastImpactIsWhatTheClothLosesThoughItsFramesAreDivided) {
+    for (const bool small_steps : {false, true}) {
+        SimulationOptions options = measured(true, small_steps);
+        options.gravity = {};
+        options.drag = 0;
+        Simulation simulation(sheet_at(0.3, 1, 20, {0, 0, -20.0 / 240 / options.substep_count}),
+                              colliders_of({make_sphere(0.2, 24, 12)}), options);
+        const Vec3d before = momentum_of(simulation);
+        Vec3d given;
+        for (int i = 0; i < 30; ++i) {
+            simulation.step();
+            given += simulation.load_on(0).force * options.time_step;
+        }
+        const Vec3d left = momentum_of(simulation);
+        EXPECT_LT(length(left), 0.97 * length(before));
+        EXPECT_NEAR(length(given + left - before), 0, 0.01 * length(before));
+    }
+}
+
 TEST(Load, OfAClothThatHangsFromItIsItsWeight) {
     Deformable sheet = sheet_at(1, 0.6, 12);
     std::uint32_t held = 0;

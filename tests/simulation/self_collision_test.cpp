@@ -138,6 +138,35 @@ TEST(SelfCollision, KeepsAThreadOffItselfAndASheet) {
     expect_nothing_meets(simulation, {}, 250);
 }
 
+TEST(SelfCollision, LeavesNoKnotInASheetThatHitsABallFast) {
+    const TriangleMesh ball = make_sphere(0.2, 24, 12);
+    for (const bool small_steps : {false, true}) {
+        SimulationOptions options = kSelf;
+        if (small_steps) {
+            options.solver = SolverKind::Xpbd;
+            options.iteration_count = 1;
+            options.substep_count = 10;
+        }
+        Simulation simulation(sheet_at(0.3, 1.2, 30, {0, 0, -40.0 / 240 / options.substep_count}),
+                              colliders_of({ball}), options);
+        expect_nothing_meets(simulation, {ball}, 30);
+        EXPECT_LT(simulation.residual().largest, 0.5);
+        EXPECT_EQ(simulation.profile().truncated_count, 0u);
+    }
+}
+
+TEST(SelfCollision, LeavesTheFastFlightOfASheetAsItIs) {
+    const auto flown = [](bool self) {
+        SimulationOptions options = kSelf;
+        options.self_collision = self;
+        Simulation simulation(sheet_at(30, 1, 20, {0, 0, -100.0 / 240}),
+                              colliders_of({make_sphere(0.2, 24, 12)}), options);
+        for (int i = 0; i < 60; ++i) simulation.step();
+        return simulation;
+    };
+    EXPECT_EQ(flown(true).state_hash(), flown(false).state_hash());
+}
+
 TEST(SelfCollision, LeavesTheFreeFallOfASheetAsItIs) {
     Simulation surfaces(sheet_at(0, 1, 20), {}, kSelf);
     Simulation particles(sheet_at(0, 1, 20), {}, {.thickness = 0.01});

@@ -137,7 +137,8 @@ void SurfaceCollision::for_each_near(const Visit& visit) {
 void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders,
                                    std::span<const SurfaceMotion* const> motions,
                                    const Collisions& collisions, const Particles& particles,
-                                   const Workers& workers) {
+                                   const SimulationOptions& options, const Workers& workers) {
+    options_ = options;
     keep_gaps(colliders, particles);
     motions_.assign(motions.begin(), motions.end());
     own_frame_ = models_.size();

@@ -30,8 +30,10 @@ class SurfaceCollision {
     /// live
     ///                    as long as the frame
     /// @param collisions  of the particles with the same colliders, which know some distances already
+    /// @param options     with the time step and the substeps of this frame
     void begin_frame(const std::vector<Collider>& colliders, std::span<const SurfaceMotion* const> motions,
-                     const Collisions& collisions, const Particles& particles, const Workers& workers);
+                     const Collisions& collisions, const Particles& particles,
+                     const SimulationOptions& options, const Workers& workers);
     /// After the first integration of a frame, before its colliders have moved.
     void look_ahead(const std::vector<Collider>& colliders, const Particles& particles,
                     const Workers& workers);
