@@ -51,7 +51,6 @@ SimulationOptions FrameParts::options_of_part(std::uint32_t count) const {
     SimulationOptions part = options_;
     part.time_step /= count;
     if (part.solver != SolverKind::Verlet) part.substep_count /= count;
-    part.drag = 1 - std::pow(1 - part.drag, 1.0 / count);
     return part;
 }
 

@@ -146,7 +146,7 @@ void Simulation::Solver::step() {
     if (part_count > 1) divide_frame(part_count);
     for (std::uint32_t part = 0; part < part_count; ++part) {
         begin_part(part_count > 1);
-        step_part();
+        step_part(part == 0);
     }
     if (part_count > 1) join_parts();
     publish();
@@ -155,9 +155,10 @@ void Simulation::Solver::step() {
     judge_frame();
 }
 
-void Simulation::Solver::step_part() {
+/// @param is_first  of the frame, which drags once
+void Simulation::Solver::step_part(bool is_first) {
     for (std::uint32_t substep = 0; substep < part_.substep_count; ++substep) {
-        integrate(substep == 0 ? 1 - part_.drag : 1);
+        integrate(is_first && substep == 0 ? 1 - options.drag : 1);
         if (substep == 0) look_ahead();
         move_colliders(substep);
         begin_constraints();

@@ -67,7 +67,7 @@ class Simulation::Solver {
     std::uint32_t begin_collisions();
     void divide_frame(std::uint32_t part_count);
     void begin_part(bool is_divided);
-    void step_part();
+    void step_part(bool is_first);
     void join_parts();
     void look_ahead();
     void move_colliders(std::uint32_t substep);
