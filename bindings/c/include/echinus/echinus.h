@@ -353,8 +353,8 @@ typedef struct echinus_exact_map_statistics {
     uint32_t longest_list;  ///< most faces of one band
     float mean_list;
     float expected_tests;       ///< faces that a query near the surface looks at
-    float certain_share;        ///< of the volume of the bounding sphere; 1 when the mesh is closed
-    float uncertain_directions; ///< share of directions along which the answer is uncertain somewhere
+    float certain_share;        ///< of the bounding sphere's volume: answers known beforehand; 1 if closed
+    float uncertain_directions; ///< share of directions along which an answer is computed somewhere
     uint32_t reserved;          ///< 0
 } echinus_exact_map_statistics;
 
