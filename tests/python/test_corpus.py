@@ -407,10 +407,35 @@ def test_meshes_are_named_by_their_places(folder, tmp_path):
         corpus.find_meshes([tmp_path])
 
 
+def test_what_is_no_file_is_refused_and_not_waited_for(folder, tmp_path):
+    meshes = tmp_path / "meshes"
+    meshes.mkdir()
+    os.mkfifo(meshes / "pipe.obj")  # nobody writes to it
+    ech.write_mesh(meshes / "torus.obj", torus())
+    summary = corpus.label(corpus_of(meshes, tmp_path / "out"), workers=1)
+    assert (summary.labelled, summary.refused) == (1, 1)
+    assert "pipe.obj: it is no file" in (tmp_path / "out" / "manifest.jsonl").read_text()
+
+
+def test_a_run_without_work_or_workers_is_an_error(folder, tmp_path):
+    for options in ({"archive_size": 0}, {"archive_size": -1}, {"shard": (1, 1)}, {"shard": (0, 0)}):
+        with pytest.raises(ValueError, match=next(iter(options))):
+            corpus_of(folder, tmp_path, **options)
+    for wrong in ({"workers": 0}, {"workers": -1}, {"memory": 0}, {"memory": -1}, {"memory": 1 << 63}):
+        with pytest.raises(ValueError, match=next(iter(wrong))):
+            corpus.label(corpus_of(folder, tmp_path), **wrong)
+    with pytest.raises(FileNotFoundError, match="missing"):
+        corpus.find_meshes([tmp_path / "missing"])
+
+
 def test_the_command_says_what_is_wrong(tmp_path):
     command = [sys.executable, "-m", "echinus", "label"]
     nothing = subprocess.run([*command, str(tmp_path), "-o", str(tmp_path / "out")], capture_output=True, text=True)
     assert nothing.returncode == 1 and "there are no meshes in" in nothing.stderr
+    ech.write_mesh(tmp_path / "torus.obj", torus())
+    for memory in ("inf", "nan", "-1", "0"):
+        wrong = subprocess.run([*command, str(tmp_path), "-o", str(tmp_path / "out"), "--memory", memory], capture_output=True, text=True)
+        assert wrong.returncode == 1 and "echinus label: memory must be" in wrong.stderr
     for wrong in (["--shard", "3/3"], ["--format", "other"], ["--sigmas", "x"]):
         assert subprocess.run([*command, str(tmp_path), "-o", "x", *wrong], capture_output=True).returncode == 2
 

@@ -75,7 +75,7 @@ class Contacts(_Answers):
 
     @property
     def certain(self) -> NDArray[np.bool_]:
-        """(...) False where the mesh is open and the generalised winding number decided ``inside``."""
+        """(...) False where the mesh is open and its generalised winding number within 0.1 of a half."""
         return self._field("certain", np.bool_)
 
     @property

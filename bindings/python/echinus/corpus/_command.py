@@ -79,6 +79,8 @@ def _corpus_of(a: argparse.Namespace) -> Corpus:
 
 
 def _label(corpus: Corpus, a: argparse.Namespace) -> int:
+    if not 0 < a.memory < 1 << 33:
+        raise ValueError(f"memory must be a positive number of GiB, not {a.memory:g}")
     memory = int(a.memory * (1 << 30))
     summary = label(corpus, workers=a.workers, scheduler=a.scheduler, memory=memory, progress=sys.stderr)
     if summary.already:

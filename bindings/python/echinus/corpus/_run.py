@@ -37,6 +37,8 @@ def find_meshes(sources: Sequence[Path]) -> list[Mesh]:
 
     Raises
     ------
+    FileNotFoundError
+        A source does not exist. What a list names may be missing: it is refused like a broken mesh.
     ValueError
         Two files have the same name, which is their path below the source without the extension.
     """
@@ -62,8 +64,10 @@ def _meshes_of(source: pathlib.Path) -> Iterator[tuple[str, pathlib.Path]]:
                 path = pathlib.Path(folder, file)
                 if path.suffix.lower() in EXTENSIONS:
                     yield str(path.relative_to(source).with_suffix("")), path
-    else:
+    elif source.exists():
         yield source.stem, source
+    else:
+        raise FileNotFoundError(f"there is no folder or file {source}")
 
 
 @dataclass(frozen=True)
@@ -97,6 +101,11 @@ class Corpus:
     def __post_init__(self) -> None:
         if self.form != "occupancy" and not self.sampling.distances:
             raise ValueError(f"labels as {self.form} need distances")
+        if self.archive_size < 1:
+            raise ValueError(f"archive_size must be 1 or more, not {self.archive_size}")
+        i, n = self.shard
+        if not 0 <= i < n:
+            raise ValueError(f"shard must be (i, n) with i from 0 to n - 1, not {self.shard}")
 
     def tasks(self) -> list[Task]:
         size = self.archive_size if self.form == "webdataset" else 1
@@ -231,10 +240,14 @@ def label(
     Raises
     ------
     ValueError
-        The folder has labels that were made with other settings.
+        The folder has labels that were made with other settings, or there are to be no workers.
     OSError
         A file cannot be written.
     """
+    if workers is not None and workers < 1:
+        raise ValueError(f"workers must be 1 or more, not {workers}")
+    if not 0 < memory < 1 << 63:
+        raise ValueError(f"memory must be a positive number of bytes, not {memory}")
     os.makedirs(corpus.output, exist_ok=True)
     manifest = _Manifest(corpus)
     mine = corpus.tasks()

@@ -76,6 +76,8 @@ def run(task: Task) -> list[Record]:
 
 
 def _labelled(name: str, path: str, task: Task) -> tuple[dict[str, bytes], Record]:
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise Refused(f"{path}: it is no file")  # a pipe would be waited for without end
     size = os.path.getsize(path) if os.path.exists(path) else 0
     if size > task.max_bytes:
         raise Refused(f"{path}: the file has {size} bytes; at most {task.max_bytes} are accepted")
