@@ -273,8 +273,8 @@ struct SimulationProfile {
     /// counts once for each such map, and again in each frame that it ends so. A particle that began inside
     /// and was never outside yet does not count.
     std::uint64_t lost_count = 0;
-    /// With surface_collision: times that a particle ended a frame short of where it was going, because its
-    /// edges or faces could have met something on the way.
+    /// With surface_collision: times that a particle ended a frame, or a part of one that is divided, short
+    /// of where it was going, because its edges or faces could have met something on the way.
     std::uint64_t truncated_count = 0;
     /// Faces whose neighbourhood was searched, and pairs of a vertex and a face or of two edges that were
     /// measured: the work of surface_collision, which keeps what it knows as long as that holds.

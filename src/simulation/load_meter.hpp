@@ -33,11 +33,11 @@ class LoadMeter {
         if (holder_) charge(*holder_, particles);
     }
 
-    /// Of the frame that has ended.
     /// What was charged were changes of velocity in substeps; now they are of substeps so many times as long.
     void scale(double factor) {
         for (Sum& sum : sums_) sum = {sum.motion * factor, sum.moment * factor};
     }
+    /// Of the frame that has ended.
     /// @param time_step, substep_seconds  of a frame and of a substep
     Load load_on(std::size_t collider, double time_step, double substep_seconds) const;
 

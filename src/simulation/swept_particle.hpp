@@ -26,7 +26,7 @@ class SweptParticle {
     bool is_unproven() const;
     bool is_lost() const { return was_free_ && !is_free_at(position_local_); }
 
-    /// Where the chord meets the surface first. @pre was_free()
+    /// Where the chord meets the surface first. @pre the particle was free once
     SweepHit crossing() const { return sweep(now_.map, free_local_, position_local_); }
     /// The normal of the face at the crossing, along the body's axes, towards where the particle came from.
     Vec3f free_normal(const SweepHit& crossing) const;

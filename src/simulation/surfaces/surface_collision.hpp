@@ -27,8 +27,7 @@ class SurfaceCollision {
     float carry_reach(std::size_t collider) const { return carry_reaches_[collider]; }
 
     /// @param motions     [collider_count] how surfaces deform in this frame, null where they do not; they
-    /// live
-    ///                    as long as the frame
+    ///                    live as long as the frame
     /// @param collisions  of the particles with the same colliders, which know some distances already
     /// @param options     with the time step and the substeps of this frame
     void begin_frame(const std::vector<Collider>& colliders, std::span<const SurfaceMotion* const> motions,
