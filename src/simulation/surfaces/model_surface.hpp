@@ -60,8 +60,6 @@ class ModelSurface {
     bool permits(std::uint32_t vertex, const Vec3f& place) const {
         return pairs_.permits(vertex, now_.point_to_local(place));
     }
-    /// Is a vertex near the model?
-    bool is_beside(std::uint32_t vertex) const { return pairs_.has_pairs(vertex); }
     const SurfacePairs& pairs() const { return pairs_; }
     /// Where a vertex would be that is carried along from where the frame began.
     Vec3f carried(std::uint32_t vertex) const { return now_.point_to_world(bases_[vertex]); }
@@ -97,7 +95,6 @@ class ModelSurface {
     std::shared_ptr<const Shape> shape_; ///< as it began
     /// In place of the shape's, once it has deformed: where the vertices are when the frame begins and ends.
     std::optional<Shape> deformed_;
-    PointArrays ends_;
     const SurfaceMotion* motion_ = nullptr; ///< in this pass
     float drift_share_ = 1;                 ///< of a frame's, in each substep
     SurfacePairs pairs_;

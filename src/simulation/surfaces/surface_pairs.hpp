@@ -8,7 +8,6 @@
 #include "simulation/surfaces/pair_lists.hpp"
 #include "simulation/surfaces/shares.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -96,11 +95,6 @@ class SurfacePairs {
     /// Is one of the shares of a vertex's way that ends here?
     bool permits(std::uint32_t vertex, const Vec3f& place) const {
         return !is_beyond(vertex, place, rooms_[vertex]) || !allowed(vertex, place, place).none();
-    }
-    /// Is anything listed near a vertex?
-    bool has_pairs(std::uint32_t vertex) const {
-        return std::any_of(own_->at(vertex).begin(), own_->at(vertex).end(),
-                           [&](std::uint32_t element) { return !lists_.of(element).empty(); });
     }
 
     /// @param opponent_count  of vertices
