@@ -276,6 +276,24 @@ TEST(CSimulations, LeadCollidersToPosesAndTellTheirLoadsAsInCpp) {
                    "without options.measure_loads");
 }
 
+TEST(CSimulations, TellTheResidualAsInCpp) {
+    Fall fall;
+    const CSimulation simulation = fall.make(c_small_sheet());
+    Simulation by_cpp = fall.make_by_cpp(make_cloth(small_sheet()));
+    step(simulation.get(), 40);
+    step(by_cpp, 40);
+    double root_mean_square = -1, largest = -1;
+    expect_ok(echinus_simulation_residual(simulation.get(), &root_mean_square, &largest));
+    EXPECT_EQ(root_mean_square, by_cpp.residual().root_mean_square);
+    EXPECT_EQ(largest, by_cpp.residual().largest);
+    EXPECT_GT(largest, root_mean_square);
+    EXPECT_GT(root_mean_square, 0);
+    expect_refused(echinus_simulation_residual(simulation.get(), nullptr, &largest), ECHINUS_INVALID_ARGUMENT,
+                   "root_mean_square");
+    expect_refused(echinus_simulation_residual(simulation.get(), &root_mean_square, nullptr),
+                   ECHINUS_INVALID_ARGUMENT, "largest");
+}
+
 TEST(CSimulations, OfACopyGoTheirOwnWay) {
     Fall fall;
     const CSimulation simulation = fall.make(c_small_sheet());

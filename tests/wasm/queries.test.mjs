@@ -335,6 +335,8 @@ describe('A simulation', () => {
         }
         assert.equal(simulation.profile.squeezedCount, 0);
         assert.ok(simulation.profile.contactCount > 1000);
+        const { rootMeanSquare, largest } = simulation.residual;
+        assert.ok(rootMeanSquare > 0 && largest > rootMeanSquare && largest < 0.5, `residual ${rootMeanSquare}, ${largest}`);
         assert.ok(simulation.positions[2] > held[2] + 0.1, 'what is attached has risen');
 
         const more = simulation.continueWith(scene);

@@ -224,6 +224,14 @@ echinus_status echinus_simulation_read_profile(const echinus_simulation* simulat
     return guarded(__func__,
                    [&] { write_struct(profile, as_c(simulation_at(simulation).profile()), "profile"); });
 }
+echinus_status echinus_simulation_residual(const echinus_simulation* simulation, double* root_mean_square,
+                                           double* largest) {
+    return guarded(__func__, [&] {
+        const Residual residual = simulation_at(simulation).residual();
+        at(root_mean_square, "root_mean_square") = residual.root_mean_square;
+        at(largest, "largest") = residual.largest;
+    });
+}
 echinus_status echinus_simulation_read_options(const echinus_simulation* simulation,
                                                echinus_simulation_options* options) {
     return guarded(__func__,

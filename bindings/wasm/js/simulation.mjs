@@ -83,6 +83,9 @@ export class Simulation extends Handle {
     get stateHash() {
         return BigInt.asUintN(64, this.core.call('simulation_state_hash', this.address)).toString(16).padStart(16, '0');
     }
+    get residual() {
+        return this.core.json('simulation_residual', this.address);
+    }
     get profile() {
         return this.core.json('simulation_profile', this.address);
     }

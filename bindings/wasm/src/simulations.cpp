@@ -223,6 +223,12 @@ ECHINUS_EXPORT(simulation_largest_speed) double simulation_largest_speed(const S
 ECHINUS_EXPORT(simulation_state_hash) std::uint64_t simulation_state_hash(const Simulation* simulation) {
     return simulation->state_hash();
 }
+ECHINUS_EXPORT(simulation_residual) Text* simulation_residual(const Simulation* simulation) {
+    return make_json([&] {
+        const Residual residual = simulation->residual();
+        return json{{"rootMeanSquare", residual.root_mean_square}, {"largest", residual.largest}};
+    });
+}
 ECHINUS_EXPORT(simulation_profile) Text* simulation_profile(const Simulation* simulation) {
     return make_json([&] { return to_json(simulation->profile()); });
 }

@@ -1076,6 +1076,14 @@ typedef struct echinus_simulation_profile {
 ECHINUS_API echinus_status echinus_simulation_read_profile(const echinus_simulation* simulation,
                                                            echinus_simulation_profile* profile);
 
+/// What relaxations have left undone at the end of the last frame: of the structural sticks, how far their
+/// lengths are from those at rest, as a share of these; 0.01 is 1 %, and 0 where there are no such sticks.
+/// Large residuals call for more relaxations, for smaller steps or for options.multilevel. Takes about a
+/// third of a relaxation.
+/// @param root_mean_square, largest  [1] out
+ECHINUS_API echinus_status echinus_simulation_residual(const echinus_simulation* simulation,
+                                                       double* root_mean_square, double* largest);
+
 /// The options as given, with the thickness in force.
 /// @param options  out; its size is set
 ECHINUS_API echinus_status echinus_simulation_read_options(const echinus_simulation* simulation,
