@@ -81,10 +81,10 @@ struct Rotation {
     /// the same way. 0 where nothing turns. The same bits on every machine.
     Vec3d vector() const;
     Rotation inverse() const { return {w, -x, -y, -z}; }
-    /// First `b`, then `a`.
-    friend Rotation operator*(const Rotation& a, const Rotation& b);
     Rotation normalised() const;
 };
+/// First `b`, then `a`.
+Rotation operator*(const Rotation& a, const Rotation& b);
 
 /// A pose: rotate, then translate. The translation is double, so that a collider may stand far from the
 /// origin.
