@@ -25,7 +25,7 @@ def figure_of_eight(around=96, along=384):
     vertices = np.stack([np.sin(t) - sideways * tangent[..., 1], np.sin(2 * t) / 2 + sideways * tangent[..., 0], 0.25 * np.sin(v)], axis=-1)
     i, j = np.meshgrid(np.arange(along), np.arange(around), indexing="ij")
     a, b, c, d = (((i + x) % along * around + (j + y) % around).ravel() for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)))
-    return ech.Mesh(vertices.reshape(-1, 3), np.stack([a, b, c, a, c, d], axis=1).reshape(-1, 3))
+    return ech.Mesh(vertices.reshape(-1, 3), np.stack([a, c, b, a, d, c], axis=1).reshape(-1, 3))
 
 
 def parts(count, torn):
