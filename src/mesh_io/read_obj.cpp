@@ -58,6 +58,9 @@ class ObjReader {
         std::uint32_t corner_count = 0;
         for (; !scanner_.at_end_of_line(); ++corner_count)
             mesh_.corners.push_back(vertex_index(scanner_.next_word()));
+        if (corner_count < 3)
+            scanner_.fail(ErrorCode::WrongFormat,
+                          "a face needs at least 3 vertices, not " + std::to_string(corner_count));
         mesh_.corner_counts.push_back(corner_count);
     }
 

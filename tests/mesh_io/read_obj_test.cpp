@@ -79,6 +79,13 @@ TEST(ReadObj, NamesTheLineOfANumberThatIsNone) {
                      kSquare + "f 1 2 //1\n");
 }
 
+TEST(ReadObj, NamesTheLineOfAFaceWithTooFewVertices) {
+    expect_obj_error(ErrorCode::WrongFormat, "line 6: a face needs at least 3 vertices, not 2",
+                     kSquare + "f 1 2 3\nf 1 2"); // as in a file that was cut off
+    expect_obj_error(ErrorCode::WrongFormat, "line 5: a face needs at least 3 vertices, not 0",
+                     kSquare + "f\nf 1 2 3\n");
+}
+
 TEST(ReadObj, RefusesAFileOfAnotherKind) {
     expect_obj_error(ErrorCode::WrongFormat, "line 1: '?PNG' is no statement", "\x89PNG\r\n\x1a\n");
     expect_obj_error(ErrorCode::WrongFormat, "line 1: '{\"asset\":' is no statement", "{\"asset\": {}}");

@@ -188,6 +188,19 @@ def test_options_change_the_map_and_not_the_answers():
     assert ech.ExactMap(torus(), budget=200_000).byte_count <= 200_000
 
 
+@pytest.mark.parametrize("value", [np.nan, np.float32(np.inf)])
+def test_a_number_that_is_not_finite_is_refused_by_its_key(value):
+    with pytest.raises(ValueError, match="budget must be finite"):
+        ech.ExactMap(torus(), budget=value)
+    with pytest.raises(ValueError, match=r"centre\[1\] must be finite"):
+        ech.ExactMap(torus(), centre=[0, value, 0])
+
+
+def test_a_path_with_a_null_byte_is_refused():
+    with pytest.raises(ValueError, match="a path must have no null byte"):
+        ech.load("horse.ech\0")
+
+
 def test_rules_differ_where_parts_overlap():
     outer, inner = ech.make_box((2, 2, 2)), ech.make_box()
     both = ech.Mesh(np.concatenate([outer.vertices, inner.vertices]), np.concatenate([outer.faces, inner.faces + 8]))

@@ -156,6 +156,12 @@ def test_answers_go_where_out_says():
     assert np.array_equal(out, INSIDE)
 
 
+def test_points_that_out_overlaps_are_read_first():
+    points = POINTS.copy()
+    expected = MAP.signed_distance(POINTS)
+    assert np.array_equal(MAP.signed_distance(points, out=points.ravel()[: len(points)]), expected)
+
+
 def test_contacts_go_where_earlier_ones_were():
     contacts = MAP.contacts(POINTS)
     depth = contacts.depth

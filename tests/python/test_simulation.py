@@ -181,6 +181,13 @@ def test_an_error_in_a_scene_names_the_key():
     assert raised.value.code == "invalid_scene"
 
 
+def test_numbers_of_a_scene_may_be_numpy_s_and_must_be_finite():
+    sheet = {**SHEET, "gravity": np.array([0, 0, -1])}
+    assert ech.Simulation.from_scene({**sheet, "frame_limit": np.int64(3)}).frame_limit == 3
+    with pytest.raises(ValueError, match=r"gravity\[2\] must be finite, not nan"):
+        ech.Simulation.from_scene({**SHEET, "gravity": [0, 0, np.nan]})
+
+
 def test_models_hands_and_wind_move_what_they_should():
     simulation = ech.Simulation.from_scene({**SHEET, "gravity": [0, 0, 0]})
     simulation.set_collider_velocity(0, [0, 0, -1], [0, 0, 1])

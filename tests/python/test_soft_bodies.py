@@ -291,7 +291,8 @@ def test_options_of_another_kind_are_refused_by_their_names():
         ({"solver": "jacobi"}, ValueError, "solver must be"),
         ({"iteration_count": -1}, ValueError, "iteration_count must be a whole number from 0 to 4294967295, not -1"),
         ({"time_step": "1"}, TypeError, "time_step must be a number, not '1'"),
-        ({"gravity": (0, 0)}, TypeError, "gravity must be three numbers"),
+        ({"gravity": (0, 0)}, ValueError, "gravity must be three numbers"),
+        ({"gravity": 9.81}, TypeError, "gravity must be three numbers"),
         ({"thickness": "thin"}, TypeError, "thickness must be a number or None"),
     ):
         with pytest.raises(error, match=words):

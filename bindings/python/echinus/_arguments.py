@@ -5,9 +5,11 @@ Wrong types are TypeErrors and wrong values ValueErrors, whose sentences name th
 
 from __future__ import annotations
 
+import json
+import math
 import operator
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any, TypeVar
 
 import numpy as np
@@ -93,4 +95,24 @@ def path_of(value: Any) -> str:
     """Of a file or folder, as the library takes it."""
     if not isinstance(value, (str, bytes, os.PathLike)):
         raise TypeError(f"a path must be a str or os.PathLike, not {kind_name(value)}")
-    return os.fsdecode(value)
+    path = os.fsdecode(value)
+    if "\0" in path:
+        raise ValueError(f"a path must have no null byte: {path!r}")
+    return path
+
+
+def json_of(values: Mapping[str, Any]) -> str:
+    """What the library reads as JSON, which has no NaN and no infinity: such numbers are refused by their keys."""
+    return json.dumps(_plain("", values))
+
+
+def _plain(key: str, value: Any) -> Any:
+    if isinstance(value, (np.generic, np.ndarray)):
+        value = value.tolist()
+    if isinstance(value, Mapping):
+        return {str(k): _plain(f"{key}.{k}" if key else str(k), v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(f"{key}[{i}]", v) for i, v in enumerate(value)]
+    if isinstance(value, float) and not math.isfinite(value):
+        raise ValueError(f"{key} must be finite, not {value!r}")
+    return value

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import Any, Generic, Literal, TypeVar, overload
 
@@ -10,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from echinus import _core
-from echinus._arguments import flag, number, of_kind, path_of, threads_of
+from echinus._arguments import flag, json_of, number, of_kind, path_of, threads_of
 from echinus._meshes import MeshLike, Path, arrays_of
 
 Scalar = TypeVar("Scalar", bound=np.generic)
@@ -476,4 +475,4 @@ def _map_from_bytes(data: bytes) -> AnyMap:
 
 def _options(**given: Any) -> str:
     """As under the key ``map`` of a scene; what is None keeps its default."""
-    return json.dumps({key: value for key, value in given.items() if value is not None})
+    return json_of({key: value for key, value in given.items() if value is not None})

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import pathlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from echinus import _core
-from echinus._arguments import flag, index, list_of_kind, number, of_kind, path_of, quaternion, threads_of, vector, whole
+from echinus._arguments import flag, index, json_of, list_of_kind, number, of_kind, path_of, quaternion, threads_of, vector, whole
 from echinus._colliders import Collider, ColliderState, Load, PoseKey, Vector, VertexCache, key_arguments
 from echinus._deformables import Deformable
 from echinus._errors import Error
@@ -266,7 +265,7 @@ class Simulation:
             name the file and what is wrong with it.
         """
         if isinstance(scene, Mapping):
-            parsed = _core.Scene.parse(json.dumps(scene), "the scene")
+            parsed = _core.Scene.parse(json_of(scene), "the scene")
             folder = pathlib.Path()
         else:
             parsed = _core.Scene.read(path_of(scene))

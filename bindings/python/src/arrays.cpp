@@ -119,12 +119,6 @@ py::array array_in_block(const py::dtype& type, const std::vector<py::ssize_t>& 
     return {type, shape, data, owner};
 }
 
-py::array new_array(const py::dtype& type, const std::vector<py::ssize_t>& shape) {
-    py::ssize_t size = type.itemsize();
-    for (const py::ssize_t length : shape) size *= length;
-    return size < kLarge || size > kMostKept ? py::array(type, shape) : array_in_block(type, shape, size);
-}
-
 } // namespace
 
 py::array number_array(const py::object& object, const char* name) {
@@ -171,7 +165,19 @@ void Points::convert(const py::array& points) {
     owner_ = std::move(floats);
 }
 
-py::array answers(const py::dtype& type, const std::vector<py::ssize_t>& shape, const py::object& out) {
+void Points::keep_apart_from(const py::array& answers) {
+    if (py::module_::import("numpy").attr("may_share_memory")(owner_, answers).cast<bool>())
+        convert(py::array(owner_));
+}
+
+py::array new_array(const py::dtype& type, const std::vector<py::ssize_t>& shape) {
+    py::ssize_t size = type.itemsize();
+    for (const py::ssize_t length : shape) size *= length;
+    return size < kLarge || size > kMostKept ? py::array(type, shape) : array_in_block(type, shape, size);
+}
+
+py::array answers(const py::dtype& type, const std::vector<py::ssize_t>& shape, const py::object& out,
+                  Points& read) {
     if (out.is_none()) return new_array(type, shape);
     const auto fits = [&](const py::array& array) {
         return array.dtype().equal(type) && array.writeable() && (array.flags() & py::array::c_style) &&
@@ -181,6 +187,7 @@ py::array answers(const py::dtype& type, const std::vector<py::ssize_t>& shape, 
     if (!py::isinstance<py::array>(out) || !fits(py::array(out)))
         throw py::value_error("out must be a writeable, contiguous array of type " + text_of(type) +
                               " with one element for each point");
+    read.keep_apart_from(py::array(out));
     return out;
 }
 

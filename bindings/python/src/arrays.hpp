@@ -34,6 +34,8 @@ class Points {
     std::size_t size() const { return span_.size(); }
     /// The shape without the last dimension.
     const std::vector<py::ssize_t>& shape() const { return shape_; }
+    /// Copies the points if they share memory with answers, which would otherwise overwrite them.
+    void keep_apart_from(const py::array& answers);
 
   private:
     bool read_in_place(const py::array& points);
@@ -44,8 +46,12 @@ class Points {
     StridedSpan<const Vec3f> span_;
 };
 
-/// A new array for one answer to each point, or `out` where that is not None and fits.
-py::array answers(const py::dtype& type, const std::vector<py::ssize_t>& shape, const py::object& out);
+py::array new_array(const py::dtype& type, const std::vector<py::ssize_t>& shape);
+
+/// A new array for one answer to each point, or `out` where that is not None and fits. As NumPy does, points
+/// that `out` overlaps are read from a copy.
+py::array answers(const py::dtype& type, const std::vector<py::ssize_t>& shape, const py::object& out,
+                  Points& read);
 
 /// A read-only array in memory that belongs to `owner`.
 py::array view_of(std::span<const Vec3f> points, const py::object& owner);

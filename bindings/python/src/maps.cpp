@@ -68,8 +68,8 @@ std::span<T> elements_of(py::array& array) {
 template <typename Map>
 py::array contains_points(const Map& map, const py::object& points, const py::object& out, int threads) {
     const unsigned workers = thread_count(threads);
-    const Points taken(points, "points");
-    py::array inside = answers(py::dtype::of<bool>(), taken.shape(), out);
+    Points taken(points, "points");
+    py::array inside = answers(py::dtype::of<bool>(), taken.shape(), out, taken);
     const std::span<std::uint8_t> flags = elements_of<std::uint8_t>(inside);
     in_pieces(taken.size(), [&](std::size_t first, std::size_t count) {
         contains_batch(map.view(), taken.span().subspan(first, count), flags.subspan(first, count), workers);
@@ -82,8 +82,8 @@ py::array contacts_of_points(const Map& map, const py::object& points, float mar
                              int threads) {
     const unsigned workers = thread_count(threads);
     if (!(margin >= 0)) throw py::value_error("margin must be 0 or more, not " + std::to_string(margin));
-    const Points taken(points, "points");
-    py::array result = answers(contact_type(), taken.shape(), out);
+    Points taken(points, "points");
+    py::array result = answers(contact_type(), taken.shape(), out, taken);
     const std::span<Contact> contacts = elements_of<Contact>(result);
     in_pieces(taken.size(), [&](std::size_t first, std::size_t count) {
         contacts_batch(map.view(), taken.span().subspan(first, count), margin, contacts.subspan(first, count),
@@ -96,14 +96,14 @@ py::array contacts_of_points(const Map& map, const py::object& points, float mar
 py::object signed_distances(const ExactMap& map, const py::object& points, bool gradient,
                             const py::object& out, int threads) {
     const unsigned workers = thread_count(threads);
-    const Points taken(points, "points");
-    py::array distances = answers(py::dtype::of<float>(), taken.shape(), out), gradients;
+    Points taken(points, "points");
+    py::array distances = answers(py::dtype::of<float>(), taken.shape(), out, taken), gradients;
     const std::span<float> lengths = elements_of<float>(distances);
     std::span<Vec3f> directions;
     if (gradient) {
         std::vector<py::ssize_t> shape = taken.shape();
         shape.push_back(3);
-        gradients = answers(py::dtype::of<float>(), shape, py::none());
+        gradients = new_array(py::dtype::of<float>(), shape);
         directions = {static_cast<Vec3f*>(gradients.mutable_data()), taken.size()};
     }
     in_pieces(taken.size(), [&](std::size_t first, std::size_t count) {
@@ -118,7 +118,7 @@ py::array sweep_points(const ExactMap& map, const py::object& start, const py::o
     const unsigned workers = thread_count(threads);
     const Points from(start, "start"), to(end, "end");
     if (from.shape() != to.shape()) throw py::value_error("start and end must have the same shape");
-    py::array result = answers(hit_type(), from.shape(), py::none());
+    py::array result = new_array(hit_type(), from.shape());
     const std::span<SweepHit> hits = elements_of<SweepHit>(result);
     in_pieces(from.size(), [&](std::size_t first, std::size_t count) {
         for_each_piece(count, workers, [&](std::size_t begin, std::size_t past) {

@@ -75,13 +75,13 @@ BodyEmbedding embed_points(const Vertices& vertices, const Tetrahedra& tetrahedr
 py::array carry_points(const BodyEmbedding& embedding, const py::object& positions, const py::object& out,
                        int threads) {
     const unsigned workers = thread_count(threads);
-    const Points taken(positions, "positions");
+    Points taken(positions, "positions");
     if (taken.shape().size() != 1 || taken.size() != embedding.vertex_count)
         throw py::value_error("positions must be those of the body's " +
                               std::to_string(embedding.vertex_count) + " vertices; there are " +
                               std::to_string(taken.size()));
     py::array carried =
-        answers(py::dtype::of<float>(), {static_cast<py::ssize_t>(embedding.points.size()), 3}, out);
+        answers(py::dtype::of<float>(), {static_cast<py::ssize_t>(embedding.points.size()), 3}, out, taken);
     const StridedSpan<Vec3f> places(static_cast<Vec3f*>(carried.mutable_data()), embedding.points.size());
     unlocked([&] { carry(embedding.points, taken.span(), places, workers); });
     return carried;
