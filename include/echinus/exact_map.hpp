@@ -81,7 +81,7 @@ class ExactMap {
     static ExactMap build(const TriangleMesh& mesh, const ExactMapOptions& options = {});
 
     /// A map of arrays that already exist. They belong to `storage`, which the map keeps alive. The file
-    /// reader uses this. Only ExactMapView::winding_nodes are computed anew, from the faces.
+    /// reader uses this. Only ExactMapView::winding_tree is computed anew.
     /// @pre the invariants of ExactMapView hold
     ExactMap(const ExactMapView& view, const ExactMapStatistics& statistics, std::uint64_t source_hash,
              std::shared_ptr<const void> storage);
@@ -102,7 +102,7 @@ class ExactMap {
     ExactMapStatistics statistics_;
     std::uint64_t source_hash_ = 0;
     std::shared_ptr<const void> storage_;
-    std::shared_ptr<const std::vector<WindingNode>> winding_nodes_; ///< of an open surface
+    std::shared_ptr<const void> winding_tree_; ///< memory of an open surface's, unless it is in the storage
 };
 
 // ---- Queries. noexcept, from any number of threads. Queries of one particle do not allocate
@@ -113,8 +113,8 @@ class ExactMap {
 // face leave no gap and no overlap between them.
 
 /// An answer about an open surface is *certain* where the generalised winding number is at least this far
-/// from every half: clear of the places where a hole makes the side a matter of taste. Of a closed surface
-/// all are.
+/// from where the side turns, a half or minus a half, by InsideRule::Parity every half: clear of the places
+/// where a hole makes the side a matter of taste. Of a closed surface all are.
 inline constexpr double kCertainMargin = 0.1;
 
 /// The side, and whether it is certain.

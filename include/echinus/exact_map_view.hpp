@@ -55,9 +55,9 @@ struct TreeNode {
 };
 static_assert(sizeof(TreeNode) == 128);
 
-/// The faces below each child of the TreeNode of the same number, as seen from afar: moments of their area
-/// vectors about a centre, for the winding number of an open surface. In lattice steps, divided by 4 pi. All
-/// 0 but the centre for a child that does not exist. src/exact_map/winding_nodes.hpp explains them.
+/// The triangles below each child of the TreeNode of the same number, as seen from afar: moments of their
+/// area vectors about a centre, for the winding number of an open surface. In lattice steps, divided by 4 pi.
+/// All 0 but the centre for a child that does not exist. src/exact_map/winding_nodes.hpp explains them.
 struct WindingNode {
     static constexpr std::size_t kWidth = TreeNode::kWidth;
 
@@ -70,6 +70,15 @@ struct WindingNode {
     double total_area[kWidth]; ///< sum of the areas
 };
 static_assert(sizeof(WindingNode) == 22 * 8 * sizeof(double));
+
+/// Triangles in a tree, for the sum of the solid angles at which a place sees them.
+struct WindingTree {
+    std::span<const TreeNode> nodes;
+    std::span<const WindingNode> moments; ///< [nodes.size()]
+    IndexArray corners;                   ///< [3 triangle_count] vertices of each, as the leaves want them
+
+    std::size_t triangle_count() const { return corners.size() / 3; }
+};
 
 /// An edge of the surface's border: `multiplicity` more faces run from a to b than from b to a.
 struct BorderEdge {
@@ -115,8 +124,11 @@ struct ExactMapView {
     IndexArray face_numbers;            ///< [face_count] each face's number in the mesh
     std::span<const TreeNode> nodes;    ///< the first is the root
     std::span<const BorderEdge> border; ///< empty when the surface is closed
-    /// [nodes.size()], or empty when the surface is closed. Not in map files, as they follow from the faces.
-    std::span<const WindingNode> winding_nodes;
+    /// What queries of an open surface sum: its faces, or caps that close it, where they are far fewer
+    /// (src/exact_map/border_part.hpp). Empty when the surface is closed. Not in map files, as it follows
+    /// from the faces.
+    WindingTree winding_tree;
+    bool winding_tree_has_caps = false;
 
     std::size_t cell_count() const { return std::size_t{8} * divisions * divisions; }
     std::size_t face_count() const { return face_numbers.size(); }
@@ -125,7 +137,9 @@ struct ExactMapView {
         return band_offsets.size_bytes() + outer_limits.size_bytes() + bands.size_bytes() +
                winding_below.size_bytes() + references.size_bytes() + reference_parts.size_bytes() +
                vertices.size_bytes() + corners.size_bytes() + face_numbers.size_bytes() + nodes.size_bytes() +
-               border.size_bytes() + winding_nodes.size_bytes();
+               border.size_bytes() + winding_tree.moments.size_bytes() +
+               (winding_tree_has_caps ? winding_tree.nodes.size_bytes() + winding_tree.corners.size_bytes()
+                                      : 0);
     }
 };
 

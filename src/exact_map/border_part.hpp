@@ -15,7 +15,8 @@
 ///
 ///     w(p) = crossings_beyond(p) + border_part(p),  border_part = - sum of solid angles of the cone / 4 pi.
 ///
-/// So a query needs the border, not the surface.
+/// The build and, where rounding leaves their answer open, queries sum this; other queries sum caps of the
+/// border (build/border_caps.hpp), most of which are far away as seen from most places.
 namespace echinus {
 
 /// The border's contribution to the generalised winding number, beside the signed crossings beyond the place

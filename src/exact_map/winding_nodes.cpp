@@ -1,7 +1,5 @@
 #include "exact_map/winding_nodes.hpp"
 
-#include "exact_map/layout.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -43,15 +41,17 @@ std::array<double, 3> coordinates(const Vec3d& v) {
     return {v.x, v.y, v.z};
 }
 
-Moments moments_of_leaf(const ExactMapView& map, std::uint32_t first) {
-    const std::uint32_t last = std::min(first + static_cast<std::uint32_t>(TreeNode::kWidth),
-                                        static_cast<std::uint32_t>(map.face_count()));
+Moments moments_of_leaf(const WindingTree& tree, std::span<const Vec3<std::int32_t>> vertices,
+                        std::size_t first) {
+    const std::size_t last = std::min(first + TreeNode::kWidth, tree.triangle_count());
     Moments result;
     Vec3d weighted;
     const auto for_each = [&](const auto& visit) {
-        for (std::uint32_t face = first; face < last; ++face) {
-            const auto corners = face_corners(map, face);
-            const Vec3d a(corners[0]), b(corners[1]), c(corners[2]);
+        for (std::size_t triangle = first; triangle < last; ++triangle) {
+            const auto corner = [&](std::size_t k) {
+                return Vec3d(vertices[tree.corners[3 * triangle + k]]);
+            };
+            const Vec3d a = corner(0), b = corner(1), c = corner(2);
             visit(a, b, c, cross(b - a, c - a) * 0.5);
         }
     };
@@ -160,11 +160,12 @@ void store(const Moments& moments, std::size_t k, WindingNode& node) {
 
 } // namespace
 
-std::vector<WindingNode> find_winding_nodes(const ExactMapView& map) {
-    std::vector<WindingNode> result(map.nodes.size());
-    std::vector<Moments> of_node(map.nodes.size());
-    for (std::size_t i = map.nodes.size(); i-- > 0;) {
-        const TreeNode& node = map.nodes[i];
+std::vector<WindingNode> find_winding_nodes(const WindingTree& tree,
+                                            std::span<const Vec3<std::int32_t>> vertices) {
+    std::vector<WindingNode> result(tree.nodes.size());
+    std::vector<Moments> of_node(tree.nodes.size());
+    for (std::size_t i = tree.nodes.size(); i-- > 0;) {
+        const TreeNode& node = tree.nodes[i];
         std::array<Moments, TreeNode::kWidth> parts;
         std::size_t count = 0;
         for (std::size_t k = 0; k < TreeNode::kWidth; ++k) {
@@ -174,9 +175,9 @@ std::vector<WindingNode> find_winding_nodes(const ExactMapView& map) {
             }
             const std::uint32_t child = node.children[k];
             const bool is_leaf = (child & TreeNode::kLeaf) != 0;
-            parts[count] = is_leaf ? moments_of_leaf(map, (child - TreeNode::kLeaf) *
-                                                              static_cast<std::uint32_t>(TreeNode::kWidth))
-                                   : of_node[child];
+            parts[count] = is_leaf
+                               ? moments_of_leaf(tree, vertices, (child - TreeNode::kLeaf) * TreeNode::kWidth)
+                               : of_node[child];
             store(parts[count], k, result[i]);
             ++count;
         }

@@ -2,10 +2,11 @@
 
 #include <echinus/exact_map_view.hpp>
 
+#include <span>
 #include <vector>
 
-/// What an open surface's generalised winding number needs of the face tree (Barill, Dickson, Schmidt, Levin
-/// and Jacobson, "Fast Winding Numbers for Soups and Clouds", 2018), with bounds of what is left out.
+/// What an open surface's generalised winding number needs of a tree of triangles (Barill, Dickson, Schmidt,
+/// Levin and Jacobson, "Fast Winding Numbers for Soups and Clouds", 2018), with bounds of what is left out.
 ///
 /// The winding number around a place p is the sum over the faces of 1 / 4 pi times the integral of n (x - p)
 /// / |x - p|^3. Seen from a distance r = |c - p| greater than the radius R of a group of faces around c, it
@@ -21,8 +22,10 @@
 ///     S_2 / (4 pi r^4) (4 t + 5 t^2 + ...) = S_2 / (4 pi r^4) t (4 - 3 t) / (1 - t)^2.
 namespace echinus {
 
-/// The winding nodes of a map's face tree. Time O(nodes and faces).
-/// @param map  its nodes, corners and vertices are set; children come after their parents
-std::vector<WindingNode> find_winding_nodes(const ExactMapView& map);
+/// The moments of a tree of triangles. Time O(nodes and triangles).
+/// @param tree      its nodes and corners are set; children come after their parents
+/// @param vertices  on the lattice
+std::vector<WindingNode> find_winding_nodes(const WindingTree& tree,
+                                            std::span<const Vec3<std::int32_t>> vertices);
 
 } // namespace echinus

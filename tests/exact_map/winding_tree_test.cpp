@@ -1,4 +1,6 @@
 #include "directions/face_cone.hpp"
+#include "exact_map/build/border.hpp"
+#include "exact_map/build/border_caps.hpp"
 #include "exact_map/layout.hpp"
 #include "exact_map/query/winding_tree.hpp"
 #include "exact_map/winding_nodes.hpp"
@@ -68,23 +70,36 @@ double distance_from_half(Real winding) {
     return static_cast<double>(std::fabs(winding - std::floor(winding) - Real{0.5}));
 }
 
+/// From where the side turns.
+double distance_from_turn(InsideRule rule, Real winding) {
+    return rule == InsideRule::Parity ? distance_from_half(winding)
+                                      : static_cast<double>(std::fabs(std::fabs(winding) - Real{0.5}));
+}
+
+bool is_inside(InsideRule rule, Real winding) {
+    const std::int64_t number = std::llrint(winding);
+    return rule == InsideRule::Parity ? number % 2 != 0 : number != 0;
+}
+
 } // namespace
 
 TEST(WindingTree, AgreesWithTheFullWindingNumberAtEveryPoint) {
-    for (const auto& [name, mesh] : test::soups()) {
-        const ExactMap map = ExactMap::build(mesh);
-        ASSERT_GT(map.view().border.size(), kFewBorderEdges) << name;
-        for (const Vec3f& p : points_around(map, mesh)) {
-            const Real full = full_winding_number(map, queried_place(map, p));
-            const Containment found = classify(map, p);
-            const double from_half = distance_from_half(full);
-            if (from_half > 1e-7) // what both sums are rounded
-                ASSERT_EQ(found.inside, std::llrint(full) != 0) << name << ", winding number " << full;
-            if (found.computed && std::fabs(from_half - kCertainMargin) > 1e-7)
-                ASSERT_EQ(found.certain, from_half > kCertainMargin) << name << ", winding number " << full;
-            if (!found.computed) ASSERT_GE(from_half, kCertainMargin - 1e-6) << name;
+    for (const auto& [name, mesh] : test::soups())
+        for (const InsideRule rule : {InsideRule::Nonzero, InsideRule::Parity}) {
+            const ExactMap map = ExactMap::build(mesh, {.rule = rule});
+            ASSERT_FALSE(map.view().border.empty()) << name;
+            for (const Vec3f& p : points_around(map, mesh)) {
+                const Real full = full_winding_number(map, queried_place(map, p));
+                const Containment found = classify(map, p);
+                const double from_turn = distance_from_turn(rule, full);
+                if (from_turn > 1e-7) // what both sums are rounded
+                    ASSERT_EQ(found.inside, is_inside(rule, full)) << name << ", winding number " << full;
+                if (found.computed && std::fabs(from_turn - kCertainMargin) > 1e-7)
+                    ASSERT_EQ(found.certain, from_turn > kCertainMargin)
+                        << name << ", winding number " << full;
+                if (!found.computed) ASSERT_GE(from_turn, kCertainMargin - 1e-6) << name;
+            }
         }
-    }
 }
 
 TEST(WindingTree, GivesTheWindingNumberToTheTolerance) {
@@ -133,16 +148,14 @@ TEST(WindingTree, TellsTheSideOfAPlaceOnAFaceAsAClosedSurfaceDoes) {
         return middle.z > 2.99F && std::fabs(middle.x) < 1 && std::fabs(middle.y) < 1;
     });
     const ExactMap closed_map = ExactMap::build(closed), open_map = ExactMap::build(open);
-    ASSERT_GT(open_map.view().border.size(), kFewBorderEdges);
+    ASSERT_TRUE(open_map.view().winding_tree_has_caps);
     test::Random random(4);
     for (int n = 0; n < 600; ++n) {
         Vec3f p = test::in_cube(random, 0.9F);
         (n % 3 == 0 ? p.x : n % 3 == 1 ? p.y : p.z) = n % 2 == 0 ? -1.0F : 1.0F;
         if (p.z > 0.3F) continue; // beside the hole the surface differs
-        const LatticePoint place = rounded(frame_of(open_map).to_lattice(p));
-        const auto winding = decided_winding_by_tree(open_map, Vec3d(place), &place, 1e-3);
-        ASSERT_TRUE(winding.has_value());
-        ASSERT_EQ(*winding > 0.5, contains(closed_map, p)) << p.x << " " << p.y << " " << p.z;
+        ASSERT_EQ(winding_number(open_map, p, 1e-3F) > 0.5F, contains(closed_map, p))
+            << p.x << " " << p.y << " " << p.z;
     }
 }
 
@@ -157,12 +170,44 @@ TEST(WindingTree, AnswersOnEdgesAndVertices) {
     }
 }
 
+TEST(WindingTree, HoldsCapsWhereTheyAreFarFewerThanTheFaces) {
+    for (const auto& [name, mesh] : test::soups()) {
+        const ExactMap map = ExactMap::build(mesh);
+        const ExactMapView& view = map.view();
+        ASSERT_EQ(view.winding_tree_has_caps, 2 * view.border.size() <= view.face_count()) << name;
+        ASSERT_EQ(view.winding_tree.moments.size(), view.winding_tree.nodes.size()) << name;
+    }
+}
+
+TEST(BorderCaps, CloseAnySurface) {
+    TriangleMesh torn =
+        make_sphere(1, 40, 20); // any three of its vertices but those of a parallel have an area
+    std::erase_if(torn.faces, [n = 0](const Triangle&) mutable { return n++ % 5 == 0; });
+    torn.faces.push_back(torn.faces.front()); // an edge that counts twice
+    for (const TriangleMesh& mesh : {test::random_triangles(200, 1), torn}) {
+        LatticeMesh lattice = snap_to_lattice(mesh);
+        const std::vector<BorderEdge> border = find_border(lattice);
+        ASSERT_FALSE(border.empty());
+        const std::vector<Vec3<std::int32_t>> vertices(lattice.vertices.begin(), lattice.vertices.end());
+        for (const Triangle& cap : cap_border(border, vertices)) lattice.faces.push_back(cap);
+        EXPECT_TRUE(find_border(lattice).empty());
+    }
+}
+
+TEST(BorderCaps, LeaveOpenWhatLeadsNowhere) {
+    const std::vector<Vec3<std::int32_t>> vertices{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}};
+    const std::vector<BorderEdge> dangling{{0, 1, 1}, {1, 2, 1}, {2, 0, 1}, {2, 3, 1}};
+    EXPECT_EQ(cap_border(dangling, vertices).size(), 1U);
+    EXPECT_TRUE(cap_border({}, vertices).empty());
+}
+
 TEST(WindingTree, OfAFileAnswersAsTheMapThatWasSaved) {
     for (const auto& [name, mesh] : test::soups()) {
         const ExactMap map = ExactMap::build(mesh);
         const auto bytes = std::make_shared<const std::vector<std::byte>>(serialise(map));
         const ExactMap loaded = std::get<ExactMap>(load_map(*bytes, bytes, name));
-        ASSERT_EQ(loaded.view().winding_nodes.size(), map.view().winding_nodes.size());
+        ASSERT_EQ(loaded.view().winding_tree.moments.size(), map.view().winding_tree.moments.size());
+        ASSERT_EQ(loaded.view().winding_tree_has_caps, map.view().winding_tree_has_caps);
         ASSERT_EQ(loaded.view().byte_count(), map.view().byte_count());
         for (const Vec3f& p : points_around(map, mesh))
             ASSERT_EQ(winding_number(loaded, p), winding_number(map, p)) << name;
@@ -179,11 +224,11 @@ TEST(WindingNumber, OfAClosedSurfaceIsWhole) {
     EXPECT_EQ(winding_number(map, {50, 3, 0.2F}), 0);
 }
 
-TEST(WindingNumber, OfFewBorderEdgesIsTheSumOverThem) {
+TEST(WindingNumber, OfASmallHoleIsTheFullSum) {
     TriangleMesh pierced = make_torus(1, 0.4, 20, 10);
     pierced.faces.pop_back();
     const ExactMap map = ExactMap::build(pierced);
-    ASSERT_LE(map.view().border.size(), kFewBorderEdges);
+    ASSERT_TRUE(map.view().winding_tree_has_caps);
     for (const Vec3f& p : points_around(map, pierced)) {
         const auto full = static_cast<double>(full_winding_number(map, queried_place(map, p)));
         ASSERT_NEAR(winding_number(map, p, 0), full, 1e-4)

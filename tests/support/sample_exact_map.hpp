@@ -67,6 +67,8 @@ struct ExactMapParts {
         all.face_numbers = storage->face_numbers.view();
         all.nodes = storage->nodes;
         all.border = storage->border;
+        all.winding_tree = {}; // made anew
+        all.winding_tree_has_caps = false;
         return {all, statistics, source_hash, storage};
     }
 };

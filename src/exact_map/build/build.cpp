@@ -5,9 +5,9 @@
 #include "exact_map/build/centre_of_fewest_tests.hpp"
 #include "exact_map/build/face_tree.hpp"
 #include "exact_map/build/index_storage.hpp"
+#include "exact_map/build/make_winding_tree.hpp"
 #include "exact_map/build/resolution.hpp"
 #include "exact_map/layout.hpp"
-#include "exact_map/winding_nodes.hpp"
 #include "geometry/parallel.hpp"
 #include "mesh/is_closed.hpp"
 #include "mesh/mesh_hash.hpp"
@@ -72,7 +72,7 @@ struct OwnedArrays {
     IndexStorage face_numbers;
     std::vector<TreeNode> nodes;
     std::vector<BorderEdge> border;
-    std::vector<WindingNode> winding_nodes;
+    OwnedWindingTree winding_tree;
 };
 
 /// All arrays except the bands.
@@ -83,7 +83,7 @@ ExactMapView surface_of(const OwnedArrays& arrays) {
     view.face_numbers = arrays.face_numbers.view();
     view.nodes = arrays.nodes;
     view.border = arrays.border;
-    view.winding_nodes = arrays.winding_nodes;
+    if (!arrays.winding_tree.moments.empty()) arrays.winding_tree.show_in(view);
     return view;
 }
 
@@ -226,8 +226,8 @@ void MapMaker::set_surface(std::span<const Vec3f> vertices) {
     arrays_->vertices.reserve(1 + lattice_.vertices.size());
     arrays_->vertices.emplace_back(); // so that vectors can read a number before the first
     for (const LatticePoint& vertex : lattice_.vertices) arrays_->vertices.emplace_back(vertex);
-    arrays_->winding_nodes.clear();
-    if (!arrays_->border.empty()) arrays_->winding_nodes = find_winding_nodes(surface_of(*arrays_));
+    arrays_->winding_tree = {};
+    if (!arrays_->border.empty()) arrays_->winding_tree = make_winding_tree(surface_of(*arrays_));
 }
 
 /// @returns  false when the bands alone exceed the limit; those of the arrays stay as they are then
@@ -311,9 +311,10 @@ const ExactMap& ExactMapBuilder::rebuild(std::span<const Vec3f> vertices) {
 ExactMap::ExactMap(const ExactMapView& view, const ExactMapStatistics& statistics, std::uint64_t source_hash,
                    std::shared_ptr<const void> storage)
     : view_(view), statistics_(statistics), source_hash_(source_hash), storage_(std::move(storage)) {
-    if (view_.border.empty() || !view_.winding_nodes.empty()) return;
-    winding_nodes_ = std::make_shared<const std::vector<WindingNode>>(find_winding_nodes(view_));
-    view_.winding_nodes = *winding_nodes_;
+    if (view_.border.empty() || !view_.winding_tree.moments.empty()) return;
+    const auto tree = std::make_shared<const OwnedWindingTree>(make_winding_tree(view_));
+    tree->show_in(view_);
+    winding_tree_ = tree;
 }
 
 ExactMap ExactMap::build(const TriangleMesh& mesh, const ExactMapOptions& options) {

@@ -19,11 +19,12 @@ double distance_to_segment(const Vec3d& place, const Vec3d& a, const Vec3d& b) {
     return length(place - a - ab * share);
 }
 
-/// How often gaps may be halved so that the distances looked at stay below 3 10^8, some seconds on one core.
+/// How often gaps may be halved so that the distances looked at stay below 10^8, a tenth of a second on one
+/// core.
 int affordable_halvings(std::size_t edge_count, std::size_t cell_count, int most) {
     constexpr std::size_t kManyEdges = 200; // beside so many, little is found
     if (edge_count > kManyEdges) return -1;
-    constexpr double kMostDistances = 3e8;
+    constexpr double kMostDistances = 1e8;
     constexpr double kGapsPerCell = 3;
     const double distances_per_piece =
         kGapsPerCell * static_cast<double>(edge_count) * static_cast<double>(cell_count);
@@ -75,7 +76,6 @@ double GapStates::largest_change(const Vec3d& place, double reach) const {
 
 std::int16_t GapStates::winding_in(const Region& region, int crossings) const {
     constexpr double kAllowed = 0.5 - kCertainMargin;
-    if (max_depth_ < 0) return ExactMapView::kUncertain;
     const double change = largest_change(region.place(), region.reach);
     if (change >= kAllowed) return ExactMapView::kUncertain;
     const double winding = crossings + border_part(border_, vertices_, region.direction, region.share);
@@ -89,7 +89,11 @@ std::int16_t GapStates::winding_in(const Region& region, int crossings) const {
 
 void GapStates::append_pieces(std::uint32_t cell, std::int32_t lower, std::int32_t upper, int crossings,
                               std::vector<GapPiece>& pieces) const {
-    if (lower < upper) append_halves(cell, lower, upper, crossings, 0, pieces);
+    if (lower >= upper) return;
+    if (max_depth_ < 0)
+        pieces.push_back({static_cast<std::uint16_t>(upper), ExactMapView::kUncertain});
+    else
+        append_halves(cell, lower, upper, crossings, 0, pieces);
 }
 
 void GapStates::append_halves(std::uint32_t cell, std::int32_t lower, std::int32_t upper, int crossings,
@@ -111,6 +115,7 @@ void GapStates::append_halves(std::uint32_t cell, std::int32_t lower, std::int32
 
 bool GapStates::certain_in_band(std::uint32_t cell, std::int32_t lower, std::int32_t upper,
                                 int crossings) const {
+    if (max_depth_ < 0) return false;
     const Region region(cells_, cell, lower * kUnit, upper * kUnit, upper * kUnit);
     return winding_in(region, crossings) != ExactMapView::kUncertain;
 }

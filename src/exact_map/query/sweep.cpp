@@ -137,7 +137,7 @@ SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexce
     const Vec3d place = start + (end - start) * share;
     const double fraction = std::min(1.0, length(place - from_place) / length(to_place - from_place));
     // Faces may have the opposite orientation: what counts is which side of this one is solid.
-    const std::int64_t before = winding_at(map, from).number;
+    const std::int64_t before = winding_at(map, from, WindingGoal::Turn::AtEveryHalf).number;
     const std::int64_t after = before + (first->crossing.entering() ? 1 : -1);
     const bool inside_before = is_inside(map.rule, before), inside_after = is_inside(map.rule, after);
     const bool turned =

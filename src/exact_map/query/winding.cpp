@@ -2,9 +2,9 @@
 
 #include "exact_map/border_part.hpp"
 #include "exact_map/layout.hpp"
+#include "exact_map/query/cap_crossings.hpp"
 #include "exact_map/query/place_in_bands.hpp"
 #include "exact_map/query/ray_crossing.hpp"
-#include "exact_map/query/winding_tree.hpp"
 
 #include <echinus/exact_map.hpp>
 
@@ -70,53 +70,48 @@ int crossings_in_band(const ExactMapView& map, RaySide side, std::uint32_t band,
                                        : with_corners(map.references.wide.data());
 }
 
-/// Is the sum over the border's edges dearer than that by the tree?
-bool is_for_tree(const ExactMapView& map) {
-    return map.border.size() > kFewBorderEdges;
-}
-
-/// Where any error that changes neither side nor certainty is tolerated.
-constexpr double kAnyError = 1;
-
-/// The generalised winding number of an open surface: crossings beyond the place, and the border's part.
-double generalised_winding(const ExactMapView& map, const LatticePoint& p, double tolerance) {
-    if (is_for_tree(map))
-        if (const auto winding = decided_winding_by_tree(map, Vec3d(p), &p, tolerance)) return *winding;
+/// Signed crossings of a particle's ray with all faces beyond the particle.
+int crossings_beyond(const ExactMapView& map, const LatticePoint& p) {
     const auto [cell, part] = OctahedralCells(map.divisions).locate(p);
     const std::int64_t t = band_unit_of(l1_norm(p));
     const BandRange bands = bands_of_cell(map, cell);
     int crossings = 0;
     for (std::uint32_t band = bands.first; band < bands.last; ++band)
         if (t < map.bands[band].upper) crossings += crossings_in_band(map, RaySide::Beyond, band, part, p);
-    return crossings + border_part(map.border, map.vertices, p);
+    return crossings;
+}
+
+/// The generalised winding number of an open surface.
+double generalised_winding(const ExactMapView& map, const LatticePoint& p, const WindingGoal& goal) {
+    const int crossings = map.winding_tree_has_caps ? crossings_beyond(map, p) + cap_crossings(map, p) : 0;
+    if (const auto winding = decided_winding_by_tree(map, Vec3d(p), &p, crossings, goal)) return *winding;
+    return crossings_beyond(map, p) + border_part(map.border, map.vertices, p);
 }
 
 /// That of a place beyond the lattice, where it fades with the distance. @pre the place is finite
-double winding_beyond_lattice(const ExactMapView& map, const Vec3d& place, double tolerance) {
-    if (is_for_tree(map))
-        if (const auto winding = decided_winding_by_tree(map, place, nullptr, tolerance)) return *winding;
+double winding_beyond_lattice(const ExactMapView& map, const Vec3d& place, const WindingGoal& goal) {
+    if (const auto winding = decided_winding_by_tree(map, place, nullptr, 0, goal)) return *winding;
     const double largest = std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)});
     const double shrink = static_cast<double>(kLatticeExtent) / largest;
     return border_part(map.border, map.vertices, rounded(place * shrink), 1 / shrink);
 }
 
-Winding winding_of(double generalised) {
-    const std::int64_t number = std::llrint(generalised);
-    return {number, std::fabs(generalised - static_cast<double>(number)) <= 0.5 - kCertainMargin, true};
+Winding winding_of(double generalised, WindingGoal::Turn turn) {
+    return {std::llrint(generalised), distance_from_turn(generalised, turn) >= kCertainMargin, true};
 }
 
 } // namespace
 
-Winding winding_at(const ExactMapView& map, const LatticePoint& p) noexcept {
+Winding winding_at(const ExactMapView& map, const LatticePoint& p, WindingGoal::Turn turn) noexcept {
     const OctahedralCells::Place place = OctahedralCells(map.divisions).locate(p);
     const std::int64_t t = band_unit_of(l1_norm(p));
     if (t >= map.outer_limits[place.cell])
-        return map.border.empty() ? Winding{} : winding_of(generalised_winding(map, p, kAnyError));
+        return map.border.empty() ? Winding{} : winding_of(generalised_winding(map, p, {turn}), turn);
     const PlaceInBands at = place_in_bands(map, place, t);
     const int winding = winding_in_bands(map, at, [&](RaySide side, const PlaceInBands& in) {
         return crossings_in_band(map, side, in.band, in.part, p);
     });
-    if (winding == ExactMapView::kUncertain) return winding_of(generalised_winding(map, p, kAnyError));
+    if (winding == ExactMapView::kUncertain) return winding_of(generalised_winding(map, p, {turn}), turn);
     return {winding};
 }
 
@@ -124,7 +119,8 @@ Winding winding_at(const ExactMapView& map, const LatticeFrame& frame, const Vec
     const Vec3d place = frame.to_lattice(point_local);
     if (is_on_lattice(place)) return winding_at(map, rounded(place));
     if (map.border.empty() || !is_finite(place)) return {};
-    return winding_of(winding_beyond_lattice(map, place, kAnyError));
+    const WindingGoal::Turn turn = turn_of_side(map);
+    return winding_of(winding_beyond_lattice(map, place, {turn}), turn);
 }
 
 double winding_number_at(const ExactMapView& map, const LatticeFrame& frame, const Vec3f& point_local,
@@ -134,8 +130,9 @@ double winding_number_at(const ExactMapView& map, const LatticeFrame& frame, con
     const bool on_lattice = is_on_lattice(place);
     if (map.border.empty())
         return on_lattice ? static_cast<double>(winding_at(map, rounded(place)).number) : 0;
-    return on_lattice ? generalised_winding(map, rounded(place), tolerance)
-                      : winding_beyond_lattice(map, place, tolerance);
+    const WindingGoal goal{WindingGoal::Turn::AtEveryHalf, tolerance};
+    return on_lattice ? generalised_winding(map, rounded(place), goal)
+                      : winding_beyond_lattice(map, place, goal);
 }
 
 } // namespace echinus

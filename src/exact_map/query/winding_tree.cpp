@@ -33,11 +33,11 @@ struct WindingSum {
     bool decided;
 };
 
-/// How far a winding number is from the next half, and from the next number that is kCertainMargin away from
-/// one: within that distance neither the side nor its certainty changes.
-double distance_from_turning_point(double winding) {
-    const double from_half = std::fabs(winding - std::floor(winding) - 0.5);
-    return std::min(from_half, std::fabs(from_half - kCertainMargin));
+/// How far a winding number is from the next turn of the answer, and from the next number that is
+/// kCertainMargin away from one: within that distance neither the answer nor its certainty changes.
+double distance_from_turning_point(double winding, WindingGoal::Turn turn) {
+    const double from_turn = distance_from_turn(winding, turn);
+    return std::min(from_turn, std::fabs(from_turn - kCertainMargin));
 }
 
 } // namespace
@@ -96,18 +96,20 @@ struct Angle {
 class TreeSum {
   public:
     /// @param kept_error  groups of smaller error are not parted
-    TreeSum(const ExactMapView& map, const Vec3d& place, const LatticePoint* on_lattice, double kept_error)
-        : map_(map), place_(place), on_lattice_(on_lattice),
-          rounding_(rounding_at(place, on_lattice != nullptr)), kept_error_(kept_error) {}
+    TreeSum(const ExactMapView& map, const Vec3d& place, const LatticePoint* on_lattice, int crossings,
+            double kept_error)
+        : map_(map), place_(place), on_lattice_(on_lattice), crossings_(crossings),
+          sign_(map.winding_tree_has_caps ? -1 : 1), rounding_(rounding_at(place, on_lattice != nullptr)),
+          kept_error_(kept_error) {}
 
-    WindingSum operator()(double tolerance) {
-        constexpr double kFarthestFromTurningPoint = 0.5 - kCertainMargin;
-        double needed = std::min(tolerance, kFarthestFromTurningPoint);
+    WindingSum operator()(const WindingGoal& goal) {
+        constexpr double kWorthALook = 0.5 - kCertainMargin; // far from all turns if they are one apart
+        double needed = std::min(goal.tolerance, kWorthALook);
         add(0);
         while (true) {
             if (error() < needed) {
                 const double sum = value();
-                needed = std::min(tolerance, distance_from_turning_point(sum));
+                needed = std::min(goal.tolerance, distance_from_turning_point(sum, goal.turn));
                 if (error() < needed) return {sum, true};
             }
             if (!part_the_worst()) return {value(), false};
@@ -115,7 +117,8 @@ class TreeSum {
     }
 
   private:
-    double value() const { return far_value_ + angle_.in_turns(); }
+    /// Caps close the surface: what they add to the whole, which the crossings count, is to be taken away.
+    double value() const { return crossings_ + sign_ * (far_value_ + angle_.in_turns()); }
     /// With more than all sums are rounded.
     double error() const {
         constexpr double kRounding = 0x1p-36;
@@ -177,9 +180,9 @@ class TreeSum {
                 add_leaf((next - TreeNode::kLeaf) * static_cast<std::uint32_t>(kWidth));
                 continue;
             }
-            const FarChildren children = seen_from(place_, map_.winding_nodes[next]);
+            const FarChildren children = seen_from(place_, map_.winding_tree.moments[next]);
             for (std::size_t k = 0; k < kWidth; ++k) {
-                const std::uint32_t part = map_.nodes[next].children[k];
+                const std::uint32_t part = map_.winding_tree.nodes[next].children[k];
                 if (!(children.errors[k] < kTooFarOff) ||
                     !keep({children.values[k], children.errors[k], part}))
                     waiting[count++] = part;
@@ -249,7 +252,7 @@ class TreeSum {
         for (std::uint32_t lane = 0; lane < kWidth; ++lane) {
             const std::size_t face = first + std::min(lane, count - 1);
             for (std::size_t k = 0; k < 3; ++k) {
-                const Vec3<std::int32_t>& v = map_.vertices[map_.corners[3 * face + k]];
+                const Vec3<std::int32_t>& v = map_.vertices[map_.winding_tree.corners[3 * face + k]];
                 corners[k].x[lane] = v.x - place_.x - nudge.x;
                 corners[k].y[lane] = v.y - place_.y - nudge.y;
                 corners[k].z[lane] = v.z - place_.z - nudge.z;
@@ -277,8 +280,9 @@ class TreeSum {
     }
 
     void add_leaf(std::uint32_t first) {
-        const std::uint32_t count = std::min(static_cast<std::uint32_t>(kWidth),
-                                             static_cast<std::uint32_t>(map_.face_count()) - first);
+        const std::uint32_t count =
+            std::min(static_cast<std::uint32_t>(kWidth),
+                     static_cast<std::uint32_t>(map_.winding_tree.triangle_count()) - first);
         const Leaf leaf = angles_of(first, count, {});
         if (is_certain(leaf)) [[likely]]
             add_angles(leaf, first, count);
@@ -320,26 +324,32 @@ class TreeSum {
         for (std::uint32_t k = 0; k < count; ++k) {
             angle_error_ += leaf.doubts[k];
             if (leaf.re[k] < 0 && std::fabs(leaf.im[k]) <= rounding_) [[unlikely]]
-                angle_.turns += is_behind(first + k) ? 0.5 : -0.5; // on the face: half the sphere
+                angle_.turns += half_turn(first + k); // on the face: half the sphere
             else
                 angle_.add(leaf.re[k], leaf.im[k]);
         }
         angle_.normalise();
     }
 
-    /// Is the place behind a face, on the side of its solid? Decided exactly; in its plane, by the
-    /// perturbation.
-    bool is_behind(std::uint32_t face) const {
-        const auto [a, b, c] = face_corners(map_, face);
+    /// Of a face on which the place is: positive where that is behind it, on the side of its solid. Decided
+    /// exactly; in its plane, by the perturbation. A face without area is seen at no angle from anywhere.
+    double half_turn(std::uint32_t face) const {
+        const auto corner = [&](std::size_t k) {
+            return LatticePoint(map_.vertices[map_.winding_tree.corners[3 * std::size_t{face} + k]]);
+        };
+        const LatticePoint a = corner(0), normal = cross(corner(1) - a, corner(2) - a);
+        if (normal == LatticePoint{}) return 0;
         const LatticePoint p = on_lattice_ != nullptr ? *on_lattice_ : rounded(place_);
-        const LatticePoint normal = cross(b - a, c - a);
         const std::int64_t height = dot(normal, a - p);
-        return height != 0 ? height > 0 : sign_of_perturbation(normal) < 0;
+        const bool is_behind = height != 0 ? height > 0 : sign_of_perturbation(normal) < 0;
+        return is_behind ? 0.5 : -0.5;
     }
 
     const ExactMapView& map_;
     Vec3d place_;
     const LatticePoint* on_lattice_;
+    double crossings_;
+    double sign_; ///< of the sum in the winding number
 
     static constexpr double kTooFarOff = 0.5; // an error that is not worth remembering
 
@@ -355,8 +365,8 @@ class TreeSum {
 } // namespace
 
 WindingSum sum_by_tree(const ExactMapView& map, const Vec3d& place, const LatticePoint* on_lattice,
-                       double kept_error, double tolerance) {
-    return TreeSum(map, place, on_lattice, kept_error)(tolerance);
+                       int crossings, double kept_error, const WindingGoal& goal) {
+    return TreeSum(map, place, on_lattice, crossings, kept_error)(goal);
 }
 
 } // namespace echinus::HWY_NAMESPACE
@@ -372,12 +382,14 @@ HWY_EXPORT(sum_by_tree);
 } // namespace
 
 std::optional<double> decided_winding_by_tree(const ExactMapView& map, const Vec3d& place,
-                                              const LatticePoint* on_lattice, double tolerance) noexcept {
+                                              const LatticePoint* on_lattice, int crossings,
+                                              const WindingGoal& goal) noexcept {
     constexpr double kFinest = 1e-8; // what the rounding of double permits
     constexpr double kLeastKept = 0x1p-36;
-    const double wanted = std::max(tolerance, kFinest);
-    for (double kept = std::min(0x1p-8, wanted * 0x1p-5);; kept = kept > kLeastKept ? kept * 0x1p-6 : 0) {
-        const WindingSum sum = ECHINUS_DISPATCH(sum_by_tree)(map, place, on_lattice, kept, wanted);
+    const WindingGoal wanted{goal.turn, std::max(goal.tolerance, kFinest)};
+    for (double kept = std::min(0x1p-8, wanted.tolerance * 0x1p-5);;
+         kept = kept > kLeastKept ? kept * 0x1p-6 : 0) {
+        const WindingSum sum = ECHINUS_DISPATCH(sum_by_tree)(map, place, on_lattice, crossings, kept, wanted);
         if (sum.decided) return sum.value;
         if (kept == 0) return std::nullopt;
     }
