@@ -23,8 +23,9 @@ struct GapPiece {
 /// 4 pi distance^2 (the law of Biot and Savart: a solid angle is the potential of a current in its border).
 /// So from its value at one place its range in a convex region follows, if no border edge comes near.
 ///
-/// That takes time proportional to border edges times pieces. Work beyond a tenth of a second is skipped. Where the
-/// border is long, as that of a triangle soup, next to nothing would be found: there all gaps stay uncertain.
+/// That takes time proportional to border edges times pieces. Work beyond a tenth of a second is skipped.
+/// Where the border is long, as that of a triangle soup, next to nothing would be found: there all gaps stay
+/// uncertain.
 class GapStates {
   public:
     static constexpr int kMostHalvings = 5;
