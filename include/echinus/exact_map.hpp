@@ -138,9 +138,9 @@ Containment classify(const ExactMapView& map, Vec3f point_local) noexcept;
 /// beyond one half (InsideRule::Nonzero).
 ///
 /// NaN in a point: NaN. Otherwise, infinity in a point: 0. Does not allocate. Cost for an open surface: a
-/// walk through the tree of faces (Barill et al. 2018) with an error bound for each group that is seen from
-/// afar: about 10 microseconds at the default tolerance, and more the smaller it is; contains() needs less,
-/// about one. With a border of at most 16 edges, 50 ns for each of them.
+/// walk through a tree (Barill et al. 2018) of caps that close its holes, or of the faces of a soup, with an
+/// error bound for each group that is seen from afar: a microsecond beside caps, 10 to 60 in soups, and more
+/// the smaller the tolerance is; contains() needs less, a third of a microsecond and one to ten.
 /// @param tolerance  the number may be off by this much, but not to the other side of a half; not negative,
 ///                   NaN counts as 0, and 0 as 1e-8, to which double can be relied upon
 float winding_number(const ExactMapView& map, Vec3f point_local, float tolerance = 1e-2F) noexcept;

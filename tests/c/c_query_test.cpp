@@ -150,6 +150,24 @@ TEST(CQueries, MeasureSignedDistancesAsInCpp) {
                    ECHINUS_INVALID_ARGUMENT, "distances is NULL");
 }
 
+TEST(CQueries, TellWindingNumbersAsInCpp) {
+    const ExactMap by_cpp = ExactMap::build(open_torus());
+    const CMap map = c_map(c_mesh_of(open_torus()));
+    const std::vector<Vec3f> points = points_everywhere(2000);
+    std::vector<float> expected(points.size()), found(points.size(), -7);
+    for (const float tolerance : {0.0F, 0.1F}) {
+        winding_number_batch(by_cpp.view(), points, expected, tolerance);
+        expect_ok(echinus_map_winding_number(map.get(), &points.data()->x, points.size(), 0, tolerance, 0,
+                                             found.data()));
+        EXPECT_TRUE(same_bits(std::span<const float>(found), std::span<const float>(expected)));
+    }
+    expect_refused(echinus_map_winding_number(map.get(), &points.data()->x, 5, 0, -1, 1, found.data()),
+                   ECHINUS_INVALID_ARGUMENT, "tolerance");
+    expect_refused(echinus_map_winding_number(c_distance_map(c_torus()).get(), &points.data()->x, 5, 0, 0, 1,
+                                              found.data()),
+                   ECHINUS_INVALID_ARGUMENT, "map is not an exact map");
+}
+
 TEST(CQueries, SweepAsInCpp) {
     const TriangleMesh torus = make_torus(1.0, 0.4, 60, 24);
     const ExactMap by_cpp = ExactMap::build(torus);

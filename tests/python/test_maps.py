@@ -92,6 +92,19 @@ def test_distances_of_points_that_are_not_finite_are_not_either():
     assert EXACT_TORUS.signed_distance(points, out=out) is out and np.array_equal(out, distances, equal_nan=True)
 
 
+def test_winding_numbers_are_those_of_the_sum_over_all_faces():
+    mesh, points = open_torus(), points_around(torus(), 1000)
+    m, truth = ech.ExactMap(mesh), ech.winding_number(mesh, points)
+    clear = ech.unsigned_distance(mesh, points) > 100 * step_of(m)
+    for tolerance in (0, 1e-3, 0.1):
+        found = m.winding_number(points, tolerance=tolerance, threads=0)
+        assert np.abs(found - truth)[clear].max() < tolerance + 1e-3
+    assert set(EXACT_TORUS.winding_number(points)) == {0, 1}
+    assert np.isnan(m.winding_number([np.nan, 0, 0])) and m.winding_number([np.inf, 0, 0]) == 0
+    with pytest.raises(ValueError, match="tolerance must be 0 or more"):
+        m.winding_number(points, tolerance=-1)
+
+
 def test_a_margin_bounds_the_contacts_of_points_outside(mesh):
     m = ech.ExactMap(mesh)
     points = points_around(mesh, 2000)

@@ -58,6 +58,16 @@ echinus_status echinus_map_signed_distance(const echinus_map* map, const float* 
     });
 }
 
+echinus_status echinus_map_winding_number(const echinus_map* map, const float* points, size_t count,
+                                          size_t stride, float tolerance, uint32_t thread_count,
+                                          float* winding_numbers) {
+    return guarded(__func__, [&] {
+        winding_number_batch(exact_map_at(map).view(), batch_at<Vec3f>(points, count, stride, "points"),
+                             values_at(winding_numbers, count, "winding_numbers"),
+                             not_negative(tolerance, "tolerance"), thread_count);
+    });
+}
+
 echinus_status echinus_map_sweep(const echinus_map* map, const float* from, size_t from_stride,
                                  const float* to, size_t to_stride, size_t count, echinus_sweep_hit* hits) {
     return guarded(__func__, [&] {

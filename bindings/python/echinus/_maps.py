@@ -363,6 +363,32 @@ class ExactMap(_Map[_core.ExactMap]):
         """
         return self._built.signed_distance(points, flag("gradient", gradient), out, threads_of(threads))
 
+    def winding_number(
+        self,
+        points: ArrayLike,
+        *,
+        tolerance: float = 1e-2,
+        threads: int = 1,
+        out: NDArray[np.float32] | None = None,
+    ) -> NDArray[np.float32]:
+        """How often does the surface go around each point, counted with sign?
+
+        A whole number where the surface is closed, else the generalised winding number (Jacobson et al. 2013),
+        whose distance from a half says how much holes and gaps matter.
+
+        Parameters
+        ----------
+        points : array_like (..., 3)
+            NaN has the winding number NaN, and infinity has 0.
+        tolerance
+            The numbers may be off by this much, but not to the other side of a half; 0 counts as 1e-8.
+        threads
+            0: all cores. The answers do not depend on it.
+        out : ndarray (...) of float32, optional
+            Takes the winding numbers.
+        """
+        return self._built.winding_number(points, number("tolerance", tolerance), out, threads_of(threads))
+
     def sweep(self, start: ArrayLike, end: ArrayLike, *, threads: int = 1) -> SweepHits:
         """Where do segments first cross the surface?
 

@@ -114,6 +114,21 @@ py::object signed_distances(const ExactMap& map, const py::object& points, bool 
     return distances;
 }
 
+py::array winding_numbers(const ExactMap& map, const py::object& points, float tolerance,
+                          const py::object& out, int threads) {
+    const unsigned workers = thread_count(threads);
+    if (!(tolerance >= 0))
+        throw py::value_error("tolerance must be 0 or more, not " + std::to_string(tolerance));
+    Points taken(points, "points");
+    py::array result = answers(py::dtype::of<float>(), taken.shape(), out, taken);
+    const std::span<float> numbers = elements_of<float>(result);
+    in_pieces(taken.size(), [&](std::size_t first, std::size_t count) {
+        winding_number_batch(map.view(), taken.span().subspan(first, count), numbers.subspan(first, count),
+                             tolerance, workers);
+    });
+    return result;
+}
+
 py::array sweep_points(const ExactMap& map, const py::object& start, const py::object& end, int threads) {
     const unsigned workers = thread_count(threads);
     const Points from(start, "start"), to(end, "end");
@@ -197,6 +212,7 @@ void bind_maps(py::module_& module) {
     bind_map<DistanceMap>(module, "DistanceMap");
     bind_map<ExactMap>(module, "ExactMap")
         .def("signed_distance", signed_distances)
+        .def("winding_number", winding_numbers)
         .def("sweep", sweep_points);
     module.def("build_map", [](const py::array_t<float>& vertices, const py::array_t<std::uint32_t>& faces,
                                const std::string& options_json, int threads) {

@@ -470,7 +470,7 @@ typedef struct echinus_contact {
     float depth;     ///< distance to point: positive inside, negative outside
     int32_t face;    ///< of the mesh; -1 where it is not known
     uint8_t inside;
-    uint8_t certain; ///< 0 where the mesh is open and its winding number is within 0.1 of a half
+    uint8_t certain; ///< 0 where the mesh is open and its winding number within 0.1 of where the side turns
     uint8_t feature; ///< an echinus_feature
 } echinus_contact;
 
@@ -481,7 +481,8 @@ ECHINUS_API echinus_status echinus_map_contains(const echinus_map* map, const fl
 
 /// Which points are inside, and whether that is certain. One point after the other, on one thread.
 /// @param inside   [count] out
-/// @param certain  [count] out: 0 where the mesh is open and its winding number is within 0.1 of a half
+/// @param certain  [count] out: 0 where the mesh is open and its winding number within 0.1 of where the side
+/// turns
 ECHINUS_API echinus_status echinus_map_classify(const echinus_map* map, const float* points, size_t count,
                                                 size_t stride, uint8_t* inside, uint8_t* certain);
 
@@ -500,6 +501,15 @@ ECHINUS_API echinus_status echinus_map_contacts(const echinus_map* map, const fl
 ECHINUS_API echinus_status echinus_map_signed_distance(const echinus_map* map, const float* points,
                                                        size_t count, size_t stride, uint32_t thread_count,
                                                        float* distances, float* gradients);
+
+/// How often the surface goes around each point, counted with sign: a whole number where it is closed, else
+/// the generalised winding number. Only exact maps can tell. NaN in a point gives NaN, infinity 0.
+/// @param tolerance        the numbers may be off by this much, but not to the other side of a half; not
+///                         negative, and 0 counts as 1e-8
+/// @param winding_numbers  [count] out
+ECHINUS_API echinus_status echinus_map_winding_number(const echinus_map* map, const float* points,
+                                                      size_t count, size_t stride, float tolerance,
+                                                      uint32_t thread_count, float* winding_numbers);
 
 /// Where a particle that moves along a segment first meets the surface.
 typedef struct echinus_sweep_hit {

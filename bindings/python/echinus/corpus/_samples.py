@@ -112,7 +112,7 @@ class Samples:
     nearest : ndarray (n, 3) of float32
         The nearest points of the surface; likewise.
     certain : ndarray (n) of bool
-        False where the mesh is open and its generalised winding number within 0.1 of a half.
+        False where the mesh is open and its generalised winding number within 0.1 of where the side turns.
     surface, normals : ndarray (m, 3)
         Points of the surface, and unit normals of their faces.
     loc, scale
