@@ -23,8 +23,8 @@ namespace {
 [[noreturn]] void refuse(const char* option, const char* wanted, const py::handle& given) {
     const std::string sentence =
         std::string(option) + " must be " + wanted + ", not " + std::string(py::repr(given));
-    const bool has_the_type =
-        py::isinstance<py::int_>(given) || py::isinstance<py::tuple>(given) || py::isinstance<py::list>(given);
+    const bool has_the_type = py::isinstance<py::int_>(given) || py::isinstance<py::tuple>(given) ||
+                              py::isinstance<py::list>(given);
     if (has_the_type) throw py::value_error(sentence); // a number out of range, or too few of them
     throw py::type_error(sentence);
 }
