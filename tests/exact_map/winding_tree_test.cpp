@@ -198,6 +198,8 @@ TEST(BorderCaps, LeaveOpenWhatLeadsNowhere) {
     const std::vector<Vec3<std::int32_t>> vertices{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}};
     const std::vector<BorderEdge> dangling{{0, 1, 1}, {1, 2, 1}, {2, 0, 1}, {2, 3, 1}};
     EXPECT_EQ(cap_border(dangling, vertices).size(), 1U);
+    const std::vector<BorderEdge> of_nothing{{0, 1, 1}, {1, 99, 1}, {99, 0, 1}}; // there is no vertex 99
+    EXPECT_TRUE(cap_border(of_nothing, vertices).empty());
     EXPECT_TRUE(cap_border({}, vertices).empty());
 }
 

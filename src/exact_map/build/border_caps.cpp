@@ -17,11 +17,12 @@ struct OpenEdge {
     std::uint32_t from, to;
 };
 
-std::vector<OpenEdge> open_edges(std::span<const BorderEdge> border) {
+std::vector<OpenEdge> open_edges(std::span<const BorderEdge> border, std::size_t vertex_count) {
     std::vector<OpenEdge> result;
     for (const auto& [a, b, multiplicity] : border)
-        result.insert(result.end(), static_cast<std::size_t>(std::abs(std::int64_t{multiplicity})),
-                      multiplicity > 0 ? OpenEdge{a, b} : OpenEdge{b, a});
+        if (std::max(a, b) < vertex_count)
+            result.insert(result.end(), static_cast<std::size_t>(std::abs(std::int64_t{multiplicity})),
+                          multiplicity > 0 ? OpenEdge{a, b} : OpenEdge{b, a});
     std::sort(result.begin(), result.end(),
               [](const OpenEdge& x, const OpenEdge& y) { return x.from < y.from; });
     return result;
@@ -88,7 +89,7 @@ class LoopCap {
 std::vector<Triangle> cap_border(std::span<const BorderEdge> border,
                                  std::span<const Vec3<std::int32_t>> vertices) {
     std::vector<Triangle> triangles;
-    for_each_loop(open_edges(border), vertices.size(), LoopCap(vertices, triangles));
+    for_each_loop(open_edges(border, vertices.size()), vertices.size(), LoopCap(vertices, triangles));
     return triangles;
 }
 
