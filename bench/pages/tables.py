@@ -20,14 +20,14 @@ class Results:
 
 
 def number(text, scale=1.0):
-    """Three digits, as a reader compares them."""
+    """Three digits, as a reader compares them; two of what is written in powers of ten."""
     if text in ("", None):
         return ""
     value = scale * float(text)
     if value == 0 or math.isnan(value):
         return "0" if value == 0 else ""
     if abs(value) < 0.001:
-        return f"{value:.0e}"
+        return f"{value:.1e}"
     digits = max(0, 2 - math.floor(math.log10(abs(value))))
     return f"{value:.{digits}f}"
 
