@@ -191,8 +191,7 @@ void BandBuilder::append_open(std::uint32_t cell) {
     for (std::size_t b = 0; b < merged_.size(); ++b) {
         const MergedBand& band = merged_[b];
         append(band, append_gap(cell, lower, band.lower, band.winding_below));
-        const int beyond = b + 1 < merged_.size() ? merged_[b + 1].winding_below : 0;
-        if (!gap_states_->certain_in_band(cell, band.lower, band.upper, beyond)) {
+        if (!gap_states_->certain_in_band(cell, {lower, band.lower, band.winding_below}, band.upper)) {
             append_limit(band.upper, band.upper, ExactMapView::kUncertain);
             uncertain_ += volume(band.lower, band.upper, whole);
         }
@@ -209,7 +208,7 @@ void BandBuilder::append_open(std::uint32_t cell) {
 std::int16_t BandBuilder::append_gap(std::uint32_t cell, std::uint16_t lower, std::uint16_t upper,
                                      int crossings) {
     pieces_.clear();
-    gap_states_->append_pieces(cell, lower, upper, crossings, pieces_);
+    gap_states_->append_pieces(cell, {lower, upper, crossings}, pieces_);
     if (pieces_.empty()) return ExactMapView::kUncertain; // a gap without a place in it
     const double whole = l1_at_sphere(cell);
     std::uint16_t piece_lower = lower;

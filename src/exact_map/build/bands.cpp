@@ -32,9 +32,8 @@ std::uint32_t octants_at_a_time(std::size_t most_intervals, std::size_t face_cou
 
 } // namespace
 
-bool BandFinder::find(const LatticeMesh& lattice, std::span<const BorderEdge> border,
-                      const BandDetail& detail, unsigned thread_count, std::size_t byte_limit,
-                      Bands& result) {
+bool BandFinder::find(const LatticeMesh& lattice, const ExactMapView& surface, const BandDetail& detail,
+                      unsigned thread_count, std::size_t byte_limit, Bands& result) {
     const OctahedralCells& cells = detail.cells;
     const std::size_t bytes_of_cells = cells.count() * kBytesPerCell + kBytesOfEnds;
     if (bytes_of_cells > byte_limit) return false;
@@ -44,7 +43,7 @@ bool BandFinder::find(const LatticeMesh& lattice, std::span<const BorderEdge> bo
         std::min((byte_limit - bytes_of_cells) / reference_bytes, kMostIntervals);
     LimitedCount interval_count(most_intervals);
     std::optional<GapStates> gap_states;
-    if (!border.empty()) gap_states.emplace(lattice, border, cells, detail.gap_halvings);
+    if (!surface.border.empty()) gap_states.emplace(surface, cells, detail.gap_halvings);
     lists_.resize(worker_count(thread_count));
     for (BandList& list : lists_) list.clear();
     blocks_.clear();

@@ -46,13 +46,13 @@ class BandFinder {
 
     /// Finds the bands of every cell and the winding numbers between them; reuses the memory of `result`.
     /// Does not depend on the number of threads.
-    /// @param border      of the surface; empty when it is closed
+    /// @param surface     the map but for its bands; only of an open surface it has to be there
     /// @param byte_limit  on byte_count(). It holds for edge-on faces too, as if they had references. What
     ///                    exceeds it is given up as soon as that shows, so that time and memory are bounded
     ///                    by the limit, the faces and the cells
     /// @returns  false when the limit was exceeded; `result` is as it was then
     /// @throws Error InvalidMesh when a winding number is too large to be stored
-    bool find(const LatticeMesh& lattice, std::span<const BorderEdge> border, const BandDetail& detail,
+    bool find(const LatticeMesh& lattice, const ExactMapView& surface, const BandDetail& detail,
               unsigned thread_count, std::size_t byte_limit, Bands& result);
 
   private:

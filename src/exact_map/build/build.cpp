@@ -235,7 +235,8 @@ bool MapMaker::find_bands(std::uint32_t divisions, std::size_t byte_limit) {
     BandDetail detail{OctahedralCells(divisions)};
     // The last way out must be a small map, as default_byte_limit() says.
     if (divisions == 1 && options_.divisions == 0) detail.gap_halvings = 1;
-    return finder_.find(lattice_, arrays_->border, detail, options_.thread_count, byte_limit, arrays_->bands);
+    return finder_.find(lattice_, surface_of(*arrays_), detail, options_.thread_count, byte_limit,
+                        arrays_->bands);
 }
 
 /// Finds the bands for the wished number of cells. Returns the divisions.

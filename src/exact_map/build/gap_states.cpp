@@ -1,17 +1,21 @@
 #include "exact_map/build/gap_states.hpp"
 
-#include "exact_map/border_part.hpp"
+#include "exact_map/query/cap_crossings.hpp"
+#include "exact_map/query/winding.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 namespace echinus {
 
 namespace {
 
-constexpr double kUnit = ExactMapView::kBandUnit;
+constexpr int kUnit = ExactMapView::kBandUnit;
+constexpr double kTolerance = 1e-3;                               ///< of winding numbers
+constexpr double kMostChange = 0.5 - kCertainMargin - kTolerance; ///< within a region that is certain
 
 double distance_to_segment(const Vec3d& place, const Vec3d& a, const Vec3d& b) {
     const Vec3d ab = b - a;
@@ -19,8 +23,8 @@ double distance_to_segment(const Vec3d& place, const Vec3d& a, const Vec3d& b) {
     return length(place - a - ab * share);
 }
 
-/// How often gaps may be halved so that the distances looked at stay below 10^8, a tenth of a second on one
-/// core.
+/// How often gaps may be halved so that the distances looked at would stay below 10^8 if groups did not spare
+/// most of them: about a tenth of a second on one core.
 int affordable_halvings(std::size_t edge_count, std::size_t cell_count, int most) {
     constexpr std::size_t kManyEdges = 200; // beside so many, little is found
     if (edge_count > kManyEdges) return -1;
@@ -37,87 +41,145 @@ int affordable_halvings(std::size_t edge_count, std::size_t cell_count, int most
 
 } // namespace
 
-/// A cell between two L1 norms, and a place in it on the ray through the cell's middle.
+/// A cell between two limits in band units, and the lattice point on the ray through the cell's middle, next
+/// to a given L1 norm, where the winding number is looked at.
 struct GapStates::Region {
-    LatticePoint direction;
-    double share; ///< the place is share * direction
+    LatticePoint place;
     double reach; ///< no point of the region is farther from it
 
-    Region(const OctahedralCells& cells, std::uint32_t cell, double lower, double upper, double at)
-        : direction(cells.middle(cell)),
-          share(at / static_cast<double>(std::max<std::int64_t>(l1_norm(direction), 1))), reach(0) {
+    Region(const OctahedralCells& cells, std::uint32_t cell, std::int32_t lower, std::int32_t upper,
+           double norm)
+        : place(place_on_middle(cells, cell, norm)), reach(0) {
         for (const Vec3d& corner : cells.corners(cell))
-            for (double t : {lower, upper}) reach = std::max(reach, length(corner * t - place()));
+            for (std::int32_t limit : {lower, upper})
+                reach = std::max(reach, length(corner * (limit * kUnit) - Vec3d(place)));
     }
 
-    Vec3d place() const { return Vec3d(direction) * share; }
+  private:
+    /// A multiple of the first lattice point on the ray, as the middle is. Not the origin, from which rays
+    /// lead elsewhere.
+    static LatticePoint place_on_middle(const OctahedralCells& cells, std::uint32_t cell, double norm) {
+        const LatticePoint middle = cells.middle(cell);
+        const std::int64_t first_norm = 3 * cells.divisions();
+        const std::int64_t multiple = kLatticeExtent / first_norm;
+        const LatticePoint first{middle.x / multiple, middle.y / multiple, middle.z / multiple};
+        return first * std::max(std::llround(norm / static_cast<double>(first_norm)), 1LL);
+    }
 };
 
-GapStates::GapStates(const LatticeMesh& lattice, std::span<const BorderEdge> border,
-                     const OctahedralCells& cells, int most_halvings)
-    : border_(border), cells_(cells), vertices_(lattice.vertices.begin(), lattice.vertices.end()),
-      max_depth_(affordable_halvings(border.size(), cells.count(), most_halvings)) {
-    for (const BorderEdge& edge : border) {
-        const Vec3d a(lattice.vertices[edge.a]), b(lattice.vertices[edge.b]);
+GapStates::GapStates(const ExactMapView& surface, const OctahedralCells& cells, int most_halvings)
+    : surface_(surface), cells_(cells),
+      max_depth_(affordable_halvings(surface.border.size(), cells.count(), most_halvings)) {
+    if (max_depth_ < 0) return;
+    for (const BorderEdge& edge : surface.border) {
+        const Vec3d a(surface.vertices[edge.a]), b(surface.vertices[edge.b]);
         edges_.push_back({a, b, std::abs(edge.multiplicity) * length(b - a) / (4 * std::numbers::pi)});
     }
+    put_neighbours_together();
+    make_groups();
+}
+
+/// After each edge the nearest one of those that are left.
+void GapStates::put_neighbours_together() {
+    for (std::size_t last = 0; last + 1 < edges_.size(); ++last) {
+        const auto from_last = [end = edges_[last].b](const Edge& edge) { return length(edge.a - end); };
+        const auto rest = std::span(edges_).subspan(last + 1);
+        const auto nearest = std::min_element(rest.begin(), rest.end(), [&](const Edge& x, const Edge& y) {
+            return from_last(x) < from_last(y);
+        });
+        std::swap(rest.front(), *nearest);
+    }
+}
+
+void GapStates::make_groups() {
+    for (std::size_t first = 0; first < edges_.size(); first += kGroupSize) {
+        const std::size_t count = std::min(kGroupSize, edges_.size() - first);
+        Group group{{}, 0, 0, first, count};
+        for (const Edge& edge : edges_of(group))
+            group.centre = group.centre + (edge.a + edge.b) * (0.5 / static_cast<double>(count));
+        for (const Edge& edge : edges_of(group)) {
+            group.weight += edge.weight;
+            group.radius =
+                std::max({group.radius, length(edge.a - group.centre), length(edge.b - group.centre)});
+        }
+        groups_.push_back(group);
+    }
+}
+
+std::span<const GapStates::Edge> GapStates::edges_of(const Group& group) const {
+    return std::span(edges_).subspan(group.first, group.count);
 }
 
 double GapStates::largest_change(const Vec3d& place, double reach) const {
-    double slope = 0;
-    for (const Edge& edge : edges_) {
-        const double clearance = distance_to_segment(place, edge.a, edge.b) - reach;
-        if (!(clearance > 0)) return std::numeric_limits<double>::infinity();
-        slope += edge.weight / (clearance * clearance);
-        if (slope * reach > 1) return slope * reach; // enough to know
+    constexpr double kFar = 8; // radii; there a group is hardly nearer than its edges
+    const auto slope = [](double weight, double clearance) {
+        return clearance > 0 ? weight / (clearance * clearance) : std::numeric_limits<double>::infinity();
+    };
+    double sum = 0;
+    for (const Group& group : groups_) {
+        const double distance = length(place - group.centre) - reach;
+        if (distance > kFar * group.radius)
+            sum += slope(group.weight, distance - group.radius);
+        else
+            for (const Edge& edge : edges_of(group))
+                sum += slope(edge.weight, distance_to_segment(place, edge.a, edge.b) - reach);
+        if (sum * reach > kMostChange) break; // enough to know
     }
-    return slope * reach;
+    return sum * reach;
 }
 
-std::int16_t GapStates::winding_in(const Region& region, int crossings) const {
-    constexpr double kAllowed = 0.5 - kCertainMargin;
-    const double change = largest_change(region.place(), region.reach);
-    if (change >= kAllowed) return ExactMapView::kUncertain;
-    const double winding = crossings + border_part(border_, vertices_, region.direction, region.share);
-    const double whole = std::round(winding);
-    constexpr double kRounding = 1e-6;
+/// Beyond the lattice there are neither faces nor caps.
+std::optional<double> GapStates::winding_at(const LatticePoint& place, int crossings) const {
+    const bool on_lattice = is_on_lattice(Vec3d(place));
+    if (surface_.winding_tree_has_caps && on_lattice) crossings += cap_crossings(surface_, place);
+    return decided_winding_by_tree(surface_, Vec3d(place), on_lattice ? &place : nullptr,
+                                   surface_.winding_tree_has_caps ? crossings : 0,
+                                   {WindingGoal::Turn::AtEveryHalf, kTolerance});
+}
+
+std::int16_t GapStates::winding_in(const Region& region, const Gap& gap) const {
+    const std::int64_t norm = l1_norm(region.place);
+    if (norm < gap.lower * kUnit || norm >= gap.upper * kUnit) return ExactMapView::kUncertain;
+    const double change = largest_change(Vec3d(region.place), region.reach);
+    if (!(change < kMostChange)) return ExactMapView::kUncertain;
+    const std::optional<double> winding = winding_at(region.place, gap.crossings);
+    if (!winding) return ExactMapView::kUncertain;
+    const double whole = std::round(*winding);
     constexpr double kMostStored = 32'000;
-    const bool certain =
-        std::fabs(winding - whole) + change < kAllowed - kRounding && std::fabs(whole) < kMostStored;
+    const bool certain = std::fabs(*winding - whole) + change < kMostChange && std::fabs(whole) < kMostStored;
     return certain ? static_cast<std::int16_t>(whole) : ExactMapView::kUncertain;
 }
 
-void GapStates::append_pieces(std::uint32_t cell, std::int32_t lower, std::int32_t upper, int crossings,
-                              std::vector<GapPiece>& pieces) const {
-    if (lower >= upper) return;
+void GapStates::append_pieces(std::uint32_t cell, const Gap& gap, std::vector<GapPiece>& pieces) const {
+    if (gap.lower >= gap.upper) return;
     if (max_depth_ < 0)
-        pieces.push_back({static_cast<std::uint16_t>(upper), ExactMapView::kUncertain});
+        pieces.push_back({static_cast<std::uint16_t>(gap.upper), ExactMapView::kUncertain});
     else
-        append_halves(cell, lower, upper, crossings, 0, pieces);
+        append_halves(cell, gap, 0, pieces);
 }
 
-void GapStates::append_halves(std::uint32_t cell, std::int32_t lower, std::int32_t upper, int crossings,
-                              int depth, std::vector<GapPiece>& pieces) const {
-    const double middle = 0.5 * (lower + upper);
-    const Region region(cells_, cell, lower * kUnit, upper * kUnit, middle * kUnit);
-    const std::int16_t winding = winding_in(region, crossings);
-    if (winding == ExactMapView::kUncertain && depth < max_depth_ && upper - lower > 1) {
-        const std::int32_t half = (lower + upper) / 2;
-        append_halves(cell, lower, half, crossings, depth + 1, pieces);
-        append_halves(cell, half, upper, crossings, depth + 1, pieces);
+void GapStates::append_halves(std::uint32_t cell, const Gap& gap, int depth,
+                              std::vector<GapPiece>& pieces) const {
+    const std::int32_t sum = gap.lower + gap.upper;
+    const Region region(cells_, cell, gap.lower, gap.upper, 0.5 * kUnit * sum);
+    const std::int16_t winding = winding_in(region, gap);
+    if (winding == ExactMapView::kUncertain && depth < max_depth_ && gap.upper - gap.lower > 1) {
+        append_halves(cell, {gap.lower, sum / 2, gap.crossings}, depth + 1, pieces);
+        append_halves(cell, {sum / 2, gap.upper, gap.crossings}, depth + 1, pieces);
         return;
     }
     if (!pieces.empty() && pieces.back().winding == winding)
-        pieces.back().upper = static_cast<std::uint16_t>(upper);
+        pieces.back().upper = static_cast<std::uint16_t>(gap.upper);
     else
-        pieces.push_back({static_cast<std::uint16_t>(upper), winding});
+        pieces.push_back({static_cast<std::uint16_t>(gap.upper), winding});
 }
 
-bool GapStates::certain_in_band(std::uint32_t cell, std::int32_t lower, std::int32_t upper,
-                                int crossings) const {
+bool GapStates::certain_in_band(std::uint32_t cell, const Gap& below, std::int32_t upper) const {
     if (max_depth_ < 0) return false;
-    const Region region(cells_, cell, lower * kUnit, upper * kUnit, upper * kUnit);
-    return winding_in(region, crossings) != ExactMapView::kUncertain;
+    const double norm =
+        kUnit * below.upper - 0.5 - 1.5 * cells_.divisions(); // rounds to the last place before
+    const Region region(cells_, cell, below.upper, upper, norm);
+    return winding_in(region, below) != ExactMapView::kUncertain;
 }
 
 } // namespace echinus
