@@ -340,7 +340,24 @@ def test_other_settings_need_another_folder(folder, tmp_path):
         corpus.label(corpus_of(folder, tmp_path, sampling=corpus.Sampling()), workers=1)
 
 
+def test_two_runs_do_not_write_the_same_labels_at_once(folder, tmp_path):
+    with _run._alone(corpus_of(folder, tmp_path)):
+        with pytest.raises(ValueError, match="another run is writing these labels"):
+            corpus.label(corpus_of(folder, tmp_path), workers=1)
+        corpus.label(corpus_of(folder, tmp_path, shard=(0, 16)), workers=1)
+    corpus.label(corpus_of(folder, tmp_path), workers=1)
+
+
 # ---- What is refused, and what is wrong
+
+
+def test_a_manifest_that_is_none_is_an_error_that_names_its_line(folder, tmp_path):
+    corpus.label(corpus_of(folder, tmp_path), workers=1)
+    manifest = tmp_path / "manifest.jsonl"
+    manifest.write_bytes(manifest.read_bytes().splitlines(keepends=True)[0] + b"\xff garbage\n")
+    for run in (corpus.label, corpus.verify):
+        with pytest.raises(ValueError, match="manifest.jsonl, line 2 is no record"):
+            run(corpus_of(folder, tmp_path))
 
 
 def test_refused_meshes_are_listed_with_the_reason(folder, tmp_path):

@@ -228,6 +228,8 @@ def test_the_distance_map_has_as_many_directions_as_asked():
     assert few.byte_count < many.byte_count / 50
     assert (many.contains(points) != truth).mean() < (few.contains(points) != truth).mean() < 0.2
     assert ech.DistanceMap(torus(), grid="cube", divisions=50, entries="unorm16").byte_count < many.byte_count
+    with pytest.raises(ech.Error, match="map.directions is 20; it must be an array of 2"):
+        ech.DistanceMap(torus(), 20)
 
 
 @pytest.mark.parametrize(

@@ -454,7 +454,7 @@ class DistanceMap(_Map[_core.DistanceMap]):
     ) -> None:
         options = _options(
             kind="distance",
-            directions=None if directions is None else list(directions),
+            directions=directions,
             grid=grid,
             divisions=divisions,
             correction=correction,

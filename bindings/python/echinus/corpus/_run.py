@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import collections
 import contextlib
+import fcntl
 import hashlib
 import itertools
 import json
@@ -172,9 +173,17 @@ class _Manifest:
 
 def _records(manifest: pathlib.Path) -> Iterator[Record]:
     """Without a last line that was cut short."""
-    if manifest.exists():
-        with manifest.open() as file:
-            yield from (json.loads(line) for line in file if line.endswith("\n"))
+    if not manifest.exists():
+        return
+    with manifest.open(errors="replace") as file:
+        for number, line in enumerate(file, 1):
+            if not line.endswith("\n"):
+                return
+            try:
+                record = json.loads(line)
+            except json.JSONDecodeError as error:
+                raise ValueError(f"{manifest}, line {number} is no record ({error}); remove the file to label all meshes again") from None
+            yield record
 
 
 def _line(record: Record) -> str:
@@ -240,7 +249,8 @@ def label(
     Raises
     ------
     ValueError
-        The folder has labels that were made with other settings, or there are to be no workers.
+        The folder has labels that were made with other settings, another run is writing them, or there are to be no
+        workers.
     OSError
         A file cannot be written.
     """
@@ -249,6 +259,30 @@ def label(
     if not 0 < memory < 1 << 63:
         raise ValueError(f"memory must be a positive number of bytes, not {memory}")
     os.makedirs(corpus.output, exist_ok=True)
+    with _alone(corpus):
+        return _label(corpus, workers, scheduler, memory, progress)
+
+
+@contextlib.contextmanager
+def _alone(corpus: Corpus) -> Iterator[None]:
+    """While no other run works on the same part. The lock goes with the process, however it ends."""
+    i, n = corpus.shard
+    path = pathlib.Path(corpus.output, UNFINISHED, f"lock-{i}-of-{n}")
+    path.parent.mkdir(exist_ok=True)
+    with path.open("w") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise ValueError(f"{corpus.output}: another run is writing these labels; wait for it, or choose another folder") from None
+        except OSError:
+            pass  # a file system without locks
+        try:
+            yield
+        finally:
+            path.unlink(missing_ok=True)
+
+
+def _label(corpus: Corpus, workers: int | None, scheduler: str | None, memory: int, progress: TextIO | None) -> Summary:
     manifest = _Manifest(corpus)
     mine = corpus.tasks()
     done = manifest.done()
