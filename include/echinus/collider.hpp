@@ -126,25 +126,37 @@ void contacts_batch(const Collider& collider, StridedSpan<const Vec3f> points_wo
                     std::span<Contact> contacts) noexcept;
 
 /// Where contacts_into() writes: the contacts alone, one after the other, each member an array of its own. An
-/// empty array is not wanted; the others have room for a contact of each point. Members as in Contact.
+/// empty array is not wanted, and one that is too short takes the first contacts. Members as in Contact.
+/// @tparam T  float or double, as the positions of the points
+template <typename T>
 struct ContactArrays {
-    std::span<std::uint32_t> particles; ///< the contact's point, by its number; ascending
-    std::span<Vec3f> points{}, normals{};
+    std::span<std::uint32_t> particles; ///< the contact's point, by its number
+    std::span<Vec3<T>> points{};
+    std::span<Vec3f> normals{};
     std::span<float> depths{};
     std::span<std::int32_t> faces{};
-    std::span<std::uint8_t> inside{}; ///< 1 inside, 0 outside within the margin
+    std::span<std::uint8_t> inside{};     ///< 1 inside, 0 outside within the margin
+    std::span<std::uint32_t> colliders{}; ///< the contact's collider, by its number
 };
 
-/// The contacts that contacts_batch() finds, bit for bit, without the points that have none: for solvers that
-/// keep separate arrays, or have many points and few contacts.
+/// The contacts that contacts_batch() finds beside one collider after the other, bit for bit, without the
+/// points that have none: for solvers that keep separate arrays, have many points and few contacts, or many
+/// colliders. Ascending by collider, then by point. A collider whose bounding sphere is away from all points
+/// costs nothing more.
+///
+/// With points in double, a world may be as large as one likes: points are rounded to float only in a
+/// collider's local frame, and `points` of the contacts are the map's answer taken to the world in double.
+/// Then normals, depths and faces are the same wherever points and collider stand together.
 /// @param points_world  [n]
-/// @param contacts      out: arrays of at least n, or empty; beyond the contacts they are left as they are.
-/// No
-///                      overlap with points_world or each other
-/// @returns how many contacts there are
-/// Allocates nothing beyond what a custom map does. Takes 170 KB of the stack, and with a custom map 350 KB.
-std::size_t contacts_into(const Collider& collider, StridedSpan<const Vec3f> points_world, float margin_world,
-                          const ContactArrays& contacts) noexcept;
+/// @param contacts      out: arrays of any size; beyond the contacts they are left as they are. No overlap
+///                      with points_world or each other
+/// @returns how many contacts there are, also those that an array was too short for
+/// Allocates nothing beyond what batches of the maps do. Takes 170 KB of the stack, and with a custom map 350
+/// KB.
+std::size_t contacts_into(std::span<const Collider> colliders, StridedSpan<const Vec3f> points_world,
+                          float margin_world, const ContactArrays<float>& contacts) noexcept;
+std::size_t contacts_into(std::span<const Collider> colliders, StridedSpan<const Vec3d> points_world,
+                          float margin_world, const ContactArrays<double>& contacts) noexcept;
 
 /// Where a particle first meets a collider that moves and turns while the particle moves: the first crossing
 /// of the chord between the particle's local position under the previous pose and the one under the present

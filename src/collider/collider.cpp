@@ -1,10 +1,12 @@
 #include "collider/frame_change.hpp"
 #include "collider/queries_in_frame.hpp"
+#include "collider/reach.hpp"
 
 #include <echinus/collider.hpp>
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <variant>
 
 namespace echinus {
@@ -12,8 +14,8 @@ namespace echinus {
 namespace {
 
 /// Calls `body(begin, points_local)` for consecutive pieces of a batch.
-template <std::size_t piece_size, typename Body>
-void for_each_piece(const FrameChange& frame, const StridedSpan<const Vec3f>& points_world,
+template <std::size_t piece_size, typename T, typename Body>
+void for_each_piece(const FrameChange& frame, const StridedSpan<const Vec3<T>>& points_world,
                     const Body& body) {
     std::array<Vec3f, piece_size> points_local;
     for (std::size_t begin = 0; begin < points_world.size(); begin += piece_size) {
@@ -31,16 +33,52 @@ auto with_queries(const Collider& collider, const FrameChange& frame, float marg
                       collider.map.kind);
 }
 
-void append(const Contact& contact, std::size_t particle, std::size_t at, const ContactArrays& arrays) {
-    const auto write = [at](const auto& array, const auto& value) {
-        if (!array.empty()) array[at] = value;
+/// @param point  the contact's, in the precision of the world
+template <typename T>
+void write(const Contact& contact, const Vec3<T>& point, std::size_t particle, std::size_t collider,
+           std::size_t at, const ContactArrays<T>& arrays) {
+    const auto put = [at](const auto& array, const auto& value) {
+        if (at < array.size()) array[at] = value;
     };
-    write(arrays.particles, static_cast<std::uint32_t>(particle));
-    write(arrays.points, contact.point);
-    write(arrays.normals, contact.normal);
-    write(arrays.depths, contact.depth);
-    write(arrays.faces, contact.face);
-    write(arrays.inside, static_cast<std::uint8_t>(contact.inside ? 1 : 0));
+    put(arrays.particles, static_cast<std::uint32_t>(particle));
+    put(arrays.points, point);
+    put(arrays.normals, contact.normal);
+    put(arrays.depths, contact.depth);
+    put(arrays.faces, contact.face);
+    put(arrays.inside, static_cast<std::uint8_t>(contact.inside ? 1 : 0));
+    put(arrays.colliders, static_cast<std::uint32_t>(collider));
+}
+
+/// Of one collider. @param count  contacts of those before it; out: with its own
+template <typename T>
+void append_contacts(const Collider& collider, std::size_t number, const StridedSpan<const Vec3<T>>& points,
+                     float margin, const ContactArrays<T>& contacts, std::size_t& count) {
+    const FrameChange frame(collider);
+    with_queries(collider, frame, margin, [&]<typename Queries>(const Queries& queries) {
+        std::array<Contact, Queries::kPieceSize> found;
+        for_each_piece<Queries::kPieceSize>(frame, points, [&](std::size_t begin, auto points_local) {
+            queries.ask_contacts(points_local, std::span(found.data(), points_local.size()));
+            for (std::size_t i = 0; i < points_local.size(); ++i) {
+                const Vec3f on_surface = found[i].point;
+                queries.to_world(found[i], points_local[i], Vec3f(points[begin + i]));
+                if (found[i].found())
+                    write(found[i], frame.point_to_world<T>(on_surface), begin + i, number, count++,
+                          contacts);
+            }
+        });
+    });
+}
+
+template <typename T>
+std::size_t gather_contacts(std::span<const Collider> colliders, const StridedSpan<const Vec3<T>>& points,
+                            float margin, const ContactArrays<T>& contacts) {
+    std::optional<PointBox> box; // one collider would take it for itself alone
+    if (colliders.size() > 1) box.emplace(points);
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < colliders.size(); ++k)
+        if (!box || may_touch(colliders[k], *box, margin))
+            append_contacts(colliders[k], k, points, margin, contacts, count);
+    return count;
 }
 
 } // namespace
@@ -85,21 +123,14 @@ void contacts_batch(const Collider& collider, StridedSpan<const Vec3f> points_wo
     });
 }
 
-std::size_t contacts_into(const Collider& collider, StridedSpan<const Vec3f> points_world, float margin_world,
-                          const ContactArrays& contacts) noexcept {
-    const FrameChange frame(collider);
-    std::size_t count = 0;
-    with_queries(collider, frame, margin_world, [&]<typename Queries>(const Queries& queries) {
-        std::array<Contact, Queries::kPieceSize> found;
-        for_each_piece<Queries::kPieceSize>(frame, points_world, [&](std::size_t begin, auto points_local) {
-            queries.ask_contacts(points_local, std::span(found.data(), points_local.size()));
-            for (std::size_t i = 0; i < points_local.size(); ++i) {
-                queries.to_world(found[i], points_local[i], points_world[begin + i]);
-                if (found[i].found()) append(found[i], begin + i, count++, contacts);
-            }
-        });
-    });
-    return count;
+std::size_t contacts_into(std::span<const Collider> colliders, StridedSpan<const Vec3f> points_world,
+                          float margin_world, const ContactArrays<float>& contacts) noexcept {
+    return gather_contacts(colliders, points_world, margin_world, contacts);
+}
+
+std::size_t contacts_into(std::span<const Collider> colliders, StridedSpan<const Vec3d> points_world,
+                          float margin_world, const ContactArrays<double>& contacts) noexcept {
+    return gather_contacts(colliders, points_world, margin_world, contacts);
 }
 
 SweepHit sweep(const Collider& collider, const RigidTransform& previous_pose, Vec3f from_world,

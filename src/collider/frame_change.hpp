@@ -41,11 +41,13 @@ class FrameChange {
     }
     explicit FrameChange(const Collider& collider) : FrameChange(collider.pose, collider.scale) {}
 
-    Vec3f point_to_local(const Vec3f& point_world) const {
+    template <typename T>
+    Vec3f point_to_local(const Vec3<T>& point_world) const {
         return Vec3f(to_local_ * (Vec3d(point_world) - translation_));
     }
-    Vec3f point_to_world(const Vec3f& point_local) const {
-        return Vec3f(rotation_ * times(Vec3d(point_local), scale_) + translation_);
+    template <typename T = float>
+    Vec3<T> point_to_world(const Vec3f& point_local) const {
+        return Vec3<T>(rotation_ * times(Vec3d(point_local), scale_) + translation_);
     }
     /// A unit normal of the scaled surface, still along the map's axes.
     Vec3f normal_to_world(const Vec3f& normal) const { return Vec3f(rotation_ * Vec3d(normal)); }

@@ -337,6 +337,62 @@ TEST(BulletAdapter, RigidBodiesMeetTheTrianglesThatTheShapeWasGiven) {
     EXPECT_LT(height_after_a_second(nullptr), 0);
 }
 
+TEST(BulletAdapter, OneClothKeepsTheMarginOfEachShapeThatItLiesOn) {
+    const TriangleMesh box = make_box({1, 3, 1});
+    const ExactMap map = ExactMap::build(box);
+    bullet::MapShape low(map), high(map);
+    high.setMargin(btScalar(0.1));
+    World world;
+    world.add(low, at(btScalar(-0.6), 0, 0));
+    world.add(high, at(btScalar(0.6), 0, 0));
+    const btSoftBody& cloth = world.add_cloth(2, btScalar(0.7));
+    world.step(90);
+    btScalar lowest_left = SIMD_INFINITY, lowest_right = SIMD_INFINITY;
+    for (int i = 0; i < cloth.m_nodes.size(); ++i) {
+        const btVector3& place = cloth.m_nodes[i].m_x;
+        if (place.x() < btScalar(-0.3)) lowest_left = btMin(lowest_left, place.z());
+        if (place.x() > btScalar(0.3)) lowest_right = btMin(lowest_right, place.z());
+    }
+    EXPECT_NEAR(lowest_left, btScalar(0.5) + kMargin, btScalar(0.01));
+    EXPECT_NEAR(lowest_right, btScalar(0.5) + kMargin + btScalar(0.1), btScalar(0.01));
+}
+
+TEST(BulletAdapter, NothingIsLostAMillionAwayWhereBulletHasDoubles) {
+    if (sizeof(btScalar) < sizeof(double)) GTEST_SKIP() << "Bullet's own floats are 0.06 apart there";
+    const btTransform away = at(btScalar(1e6), btScalar(-1e6), btScalar(1e6));
+    const TriangleMesh mesh = torus();
+    const TriangleMesh plate = make_box({4, 4, 0.002});
+    bullet::MapShape shape(ExactMap::build(mesh)), thin(ExactMap::build(plate));
+    World world;
+    btRigidBody& turning = world.add_kinematic(shape, away);
+    const btTransform below = away * at(0, 0, btScalar(-0.8));
+    world.add(thin, below);
+    btSoftBody& cloth = world.add_cloth(3, btScalar(0.5));
+    cloth.transform(away);
+    for (int frame = 1; frame <= 90; ++frame) {
+        const btTransform pose = away * turned({0, 0, 1}, btScalar(frame) / 100);
+        turning.setWorldTransform(pose);
+        world.step(1);
+        ASSERT_EQ(inside_count(cloth, mesh, pose), 0) << "frame " << frame;
+        ASSERT_EQ(inside_count(cloth, plate, below), 0) << "frame " << frame;
+    }
+    btScalar lowest = SIMD_INFINITY;
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        lowest = btMin(lowest, below.invXform(cloth.m_nodes[i].m_x).z());
+    EXPECT_GT(lowest, btScalar(0.001));
+    EXPECT_GT(away.invXform({1e6, -1e6, highest(cloth)}).z(), btScalar(0.3));
+}
+
+TEST(BulletAdapter, ASleepingClothGathersNoContacts) {
+    bullet::MapShape shape(ExactMap::build(torus()));
+    World world;
+    world.add_kinematic(shape, at(0, 0, btScalar(-0.43)));
+    btSoftBody& cloth = world.add_cloth(2, 0);
+    cloth.forceActivationState(ISLAND_SLEEPING);
+    world.step(10);
+    EXPECT_LE(cloth.m_rcontacts.size(), cloth.m_nodes.size());
+}
+
 TEST(BulletAdapter, NamesAnOpenSurfaceAndAScaleOfZero) {
     TriangleMesh open = torus();
     open.faces.pop_back();

@@ -17,15 +17,15 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <type_traits>
+#include <span>
 #include <utility>
 #include <vector>
 
 /// Bullet's soft bodies among exact maps, without a change of Bullet (docs/bullet.md): a MapShape in place of
 /// a mesh shape, and a Solver in place of Bullet's own.
 ///
-/// Header-only, written against Bullet 3.24. Bullet may be built with floats or with doubles; positions are
-/// rounded to float for queries.
+/// Header-only, written against Bullet 3.24. Bullet may be built with floats, or with doubles for large
+/// worlds: then positions are rounded to float only in the frame of each shape.
 namespace echinus::bullet {
 
 // ---- Numbers of Bullet's
@@ -33,7 +33,8 @@ namespace echinus::bullet {
 inline Vec3d to_echinus(const btVector3& v) {
     return {double{v.x()}, double{v.y()}, double{v.z()}};
 }
-inline btVector3 to_bullet(const Vec3f& v) {
+template <typename T>
+btVector3 to_bullet(const Vec3<T>& v) {
     return {btScalar(v.x), btScalar(v.y), btScalar(v.z)};
 }
 inline RigidTransform to_echinus(const btTransform& pose) {
@@ -106,14 +107,83 @@ class MapShape : public btConcaveShape {
     btVector3 scale_{1, 1, 1};
 };
 
+/// The contacts of a soft body's nodes with some shapes. Its arrays stay for the next step.
+class NodeContacts {
+  public:
+    void find(std::span<const Collider> colliders, const btSoftBody& body, btScalar margin) {
+        const auto node_count = static_cast<std::size_t>(body.m_nodes.size());
+        do {
+            make_room(std::max(count_, node_count));
+            count_ = contacts_into(colliders, positions_of(body), static_cast<float>(margin),
+                                   {.particles = nodes_,
+                                    .points = points_,
+                                    .normals = normals_,
+                                    .depths = depths_,
+                                    .colliders = colliders_});
+        } while (count_ > nodes_.size());
+    }
+
+    std::size_t count() const { return count_; }
+    std::size_t collider(std::size_t k) const { return colliders_[k]; }
+    int node(std::size_t k) const { return static_cast<int>(nodes_[k]); }
+    btVector3 point(std::size_t k) const { return to_bullet(points_[k]); }
+    btVector3 normal(std::size_t k) const { return to_bullet(normals_[k]); }
+    btScalar depth(std::size_t k) const { return btScalar(depths_[k]); }
+
+  private:
+    /// In place, whether Bullet has floats or doubles.
+    static StridedSpan<const Vec3<btScalar>> positions_of(const btSoftBody& body) {
+        const auto& nodes = body.m_nodes;
+        const auto count = static_cast<std::size_t>(nodes.size());
+        return {reinterpret_cast<const Vec3<btScalar>*>(&nodes[0].m_x), count, sizeof(btSoftBody::Node)};
+    }
+    void make_room(std::size_t count) {
+        if (nodes_.size() >= count) return;
+        for (auto* numbers : {&colliders_, &nodes_}) numbers->resize(count);
+        points_.resize(count);
+        normals_.resize(count);
+        depths_.resize(count);
+    }
+
+    std::size_t count_ = 0;
+    std::vector<std::uint32_t> colliders_, nodes_;
+    std::vector<Vec3<btScalar>> points_;
+    std::vector<Vec3f> normals_;
+    std::vector<float> depths_;
+};
+
+/// A collider that moves during a step, around its place at the end of it: whatever is near is near 0 there,
+/// so that floats resolve it in a world of any size.
+class MovedCollider {
+  public:
+    MovedCollider(Collider now, RigidTransform before)
+        : origin_(now.pose.translation), now_(std::move(now)), before_(before) {
+        now_.pose.translation = {};
+        before_.translation = before_.translation - origin_;
+    }
+
+    Vec3f to_local(const btVector3& point) const { return Vec3f(to_echinus(point) - origin_); }
+    btVector3 to_world(const Vec3f& point) const { return to_bullet(Vec3d(point) + origin_); }
+    SweepHit sweep(const Vec3f& from, const Vec3f& to) const {
+        return echinus::sweep(now_, before_, from, to);
+    }
+    /// Where a point would be that had been taken along.
+    Vec3f carried(const Vec3f& from) const {
+        return Vec3f(now_.pose.to_world(before_.to_local(Vec3d(from))));
+    }
+
+  private:
+    Vec3d origin_;
+    Collider now_;
+    RigidTransform before_;
+};
+
 /// One soft body beside one object with a MapShape: its contacts, and the poses between which its nodes move.
 /// The Solver holds one for each pair that the broad phase reports.
 class SoftBodyPair {
   public:
-    /// Adds contacts to the soft body for Bullet's solver, as Bullet does for its convex shapes: of all nodes
-    /// within the margin at their predicted places, with the friction and the hardness that Bullet gives
-    /// them.
-    void add_contacts(btSoftBody& body, const btCollisionObjectWrapper& collider) {
+    /// Bullet's collision detection has found that the two may touch in this step.
+    void begin_step(btSoftBody& body, const btCollisionObjectWrapper& collider) {
         const btCollisionObject& object = *collider.getCollisionObject();
         const bool wanted = (body.m_cfg.collisions & btSoftBody::fCollision::RVSmask) != 0 &&
                             body.m_collisionDisabledObjects.findLinearSearch(&object) ==
@@ -125,30 +195,45 @@ class SoftBodyPair {
         in_object_ = shape_ == object.getCollisionShape()
                          ? btTransform::getIdentity()
                          : object.getWorldTransform().inverseTimes(collider.getWorldTransform());
-        const Collider placed = shape_->at(collider.getWorldTransform());
-        if (!last_pose_) last_pose_ = pose_before(placed);
-        // Contacts with a link of a multibody need Jacobians that its solver keeps to itself.
-        if (object.getInternalType() == btCollisionObject::CO_FEATHERSTONE_LINK) return;
-        const auto node_count = static_cast<std::size_t>(body.m_nodes.size());
-        found_.resize(node_count);
-        points_.resize(node_count);
-        normals_.resize(node_count);
-        const std::size_t count =
-            contacts_into(placed, positions(), static_cast<float>(margin()), {found_, points_, normals_});
-        for (std::size_t k = 0; k < count; ++k)
-            add(body.m_nodes[static_cast<int>(found_[k])], to_bullet(points_[k]), to_bullet(normals_[k]));
+        if (!last_pose_) last_pose_ = pose_before(now());
+    }
+
+    /// Whether the two are to have contacts in this step. Those with a link of a multibody need Jacobians
+    /// that its solver keeps to itself.
+    bool has_contacts(const btSoftBody& body) const {
+        return body_ == &body && object_->getInternalType() != btCollisionObject::CO_FEATHERSTONE_LINK;
+    }
+    Collider now() const { return shape_->at(object_->getWorldTransform() * in_object_); }
+    btScalar margin() const { return body_->getCollisionShape()->getMargin() + shape_->getMargin(); }
+
+    /// Adds a contact for Bullet's solver, as Bullet does for its convex shapes, with the friction and the
+    /// hardness that Bullet gives them.
+    void add_contact(int node, const btVector3& point, const btVector3& normal) {
+        add(body_->m_nodes[node], point, normal);
     }
 
     /// Puts nodes that passed the surface during the step, or ended inside, back to it.
     /// @return false when there was none
     bool keep_outside() {
         if (body_ == nullptr || !body_->hasContactResponse() || !object_->hasContactResponse()) return false;
-        const Collider now = shape_->at(object_->getWorldTransform() * in_object_);
-        inside_.resize(static_cast<std::size_t>(body_->m_nodes.size()));
-        contains_batch(now, positions(), inside_);
+        const Collider placed = now();
+        inside_.find({&placed, 1}, *body_, 0);
+        const MovedCollider collider(placed, *last_pose_);
         bool moved = false;
-        for (int i = 0; i < body_->m_nodes.size(); ++i)
-            if (keep_outside(body_->m_nodes[i], now, inside_[static_cast<std::size_t>(i)] != 0)) moved = true;
+        std::size_t k = 0;
+        for (int i = 0; i < body_->m_nodes.size(); ++i) {
+            btSoftBody::Node& node = body_->m_nodes[i];
+            const bool is_inside = k < inside_.count() && inside_.node(k) == i;
+            if (!is_held(node)) {
+                if (stop(node, collider))
+                    moved = true;
+                else if (is_inside) { // and was when the step began
+                    put(node, inside_.point(k) + inside_.normal(k) * gap(), inside_.normal(k));
+                    moved = true;
+                }
+            }
+            if (is_inside) ++k;
+        }
         if (moved) body_->activate();
         return moved;
     }
@@ -160,8 +245,6 @@ class SoftBodyPair {
     }
 
   private:
-    btScalar margin() const { return body_->getCollisionShape()->getMargin() + shape_->getMargin(); }
-
     btScalar friction() const { return body_->m_cfg.kDF * object_->getFriction(); }
 
     /// How far from the surface a node is put: enough for floats, and not so much that one sees it.
@@ -172,20 +255,8 @@ class SoftBodyPair {
 
     static bool is_held(const btSoftBody::Node& node) { return node.m_im == 0 || node.m_battach != 0; }
 
-    /// Of all nodes: in place where Bullet has floats, else rounded.
-    StridedSpan<const Vec3f> positions() {
-        const auto& nodes = body_->m_nodes;
-        const auto count = static_cast<std::size_t>(nodes.size());
-        if constexpr (std::is_same_v<btScalar, float>)
-            return {reinterpret_cast<const Vec3f*>(&nodes[0].m_x), count, sizeof(btSoftBody::Node)};
-        rounded_.resize(count);
-        for (std::size_t i = 0; i < count; ++i)
-            rounded_[i] = Vec3f(to_echinus(nodes[static_cast<int>(i)].m_x));
-        return rounded_;
-    }
-
     /// Where the collider was when the step began, as far as a new pair can know. Bullet leads a kinematic
-    /// object to its new pose before the step, and integrates a dynamic one after the contacts are found.
+    /// object to its new pose before the step, and integrates a dynamic one after it has found the pairs.
     RigidTransform pose_before(Collider placed) const {
         const btRigidBody* rigid = btRigidBody::upcast(object_);
         if (rigid == nullptr || !rigid->isKinematicObject()) return placed.pose;
@@ -240,31 +311,26 @@ class SoftBodyPair {
         return mobility.inverse() * (1 / seconds);
     }
 
-    bool keep_outside(btSoftBody::Node& node, const Collider& now, bool inside) {
-        if (is_held(node)) return false;
-        const Vec3f to(to_echinus(node.m_x));
-        const Vec3f from = body_->isActive() ? Vec3f(to_echinus(node.m_q)) : to; // a body that sleeps stays
-        const SweepHit hit = sweep(now, *last_pose_, from, to);
-        if (hit.found() && hit.entering) {
-            put(node, free_place(now, from, to, hit), hit.normal);
-        } else if (inside) { // and was when the step began
-            const Contact out = contact(now, to);
-            put(node, out.point + out.normal * gap(), out.normal);
-        } else {
-            return false;
-        }
+    /// Puts a node back that went in during the step. @return false when it did not
+    bool stop(btSoftBody::Node& node, const MovedCollider& collider) {
+        const Vec3f to = collider.to_local(node.m_x);
+        const Vec3f from = body_->isActive() ? collider.to_local(node.m_q) : to; // a body that sleeps stays
+        const SweepHit hit = collider.sweep(from, to);
+        if (!hit.found() || !hit.entering) return false;
+        put(node, collider.to_world(free_place(collider, from, to, hit)), to_bullet(hit.normal));
         return true;
     }
 
     /// Near where the node was going: along the face that it met, or where it met it, or where it came from,
     /// carried along with the collider. A place is free when no surface lies on the way there.
-    Vec3f free_place(const Collider& now, const Vec3f& from, const Vec3f& to, const SweepHit& hit) const {
-        const Vec3f carried(now.pose.to_world(last_pose_->to_local(Vec3d(from))));
+    Vec3f free_place(const MovedCollider& collider, const Vec3f& from, const Vec3f& to,
+                     const SweepHit& hit) const {
+        const Vec3f carried = collider.carried(from);
         const Vec3f beside = hit.point + hit.normal * gap();
         const Vec3f along = to + hit.normal * dot(hit.normal, beside - to);
         for (const Vec3f& place :
              std::array{along - rubbed(along - carried, hit.normal, length(along - to)), beside})
-            if (!sweep(now, *last_pose_, from, place).found()) return place;
+            if (!collider.sweep(from, place).found()) return place;
         return carried;
     }
 
@@ -276,23 +342,20 @@ class SoftBodyPair {
     }
 
     /// The node is there, has the velocity of its corrected way along the surface, and no longer moves in.
-    void put(btSoftBody::Node& node, const Vec3f& place, const Vec3f& out) const {
-        const btVector3 normal = to_bullet(out), shift = to_bullet(place) - node.m_x;
-        node.m_x = to_bullet(place);
+    void put(btSoftBody::Node& node, const btVector3& place, const btVector3& normal) const {
+        const btVector3 shift = place - node.m_x;
+        node.m_x = place;
         node.m_v += (shift - normal * shift.dot(normal)) / body_->m_sst.sdt;
         const btScalar inwards = btMin((node.m_v - velocity_at(node.m_x)).dot(normal), btScalar(0));
         node.m_v -= normal * inwards;
     }
 
-    btSoftBody* body_ = nullptr; ///< null where this step has no contact between the two
+    btSoftBody* body_ = nullptr; ///< null where the two do not meet in this step
     const btCollisionObject* object_ = nullptr;
     const MapShape* shape_ = nullptr;
     btTransform in_object_;                   ///< of the shape; not the identity in a compound
     std::optional<RigidTransform> last_pose_; ///< of the shape, at the end of the last step
-    std::vector<std::uint32_t> found_;        ///< [nodes] of them the first: nodes in contact
-    std::vector<Vec3f> points_, normals_;     ///< [nodes] of the surface there
-    std::vector<std::uint8_t> inside_;        // [nodes]
-    std::vector<Vec3f> rounded_;              // [nodes]
+    NodeContacts inside_;                     ///< nodes that ended the step inside
 };
 
 /// Bullet's default solver of soft bodies, which after each step puts nodes that got into a MapShape back to
@@ -301,7 +364,7 @@ class SoftBodyPair {
 ///     echinus::bullet::Solver solver(dispatcher);
 ///     btSoftRigidDynamicsWorld world(&dispatcher, &broadphase, &rigid_solver, &configuration, &solver);
 ///
-/// So no node ends a step inside, or on the other side of something thin, however fast it is: each is swept
+/// No node ends a step inside, or on the other side of something thin, however fast it is: each is swept
 /// from where the step began to where it ended, as the moving collider sees it. Exceptions: nodes that are
 /// pinned or anchored; nodes that several colliders squeeze; a collider that is put elsewhere without being
 /// kinematic, in the first step beside it. A node that begins inside is put to the nearest surface point.
@@ -335,6 +398,8 @@ class Solver : public btDefaultSoftBodySolver {
     }
 
     void solveConstraints(btScalar seconds) override {
+        for (int i = 0; i < m_softBodySet.size(); ++i)
+            if (m_softBodySet[i]->isActive()) add_contacts(*m_softBodySet[i]);
         btDefaultSoftBodySolver::solveConstraints(seconds);
         // What one collider pushed, another may have to push back.
         bool moved = true;
@@ -348,6 +413,26 @@ class Solver : public btDefaultSoftBodySolver {
 
   private:
     static constexpr int kMostPasses = 4;
+
+    /// The soft body asks all shapes beside it in one call.
+    void add_contacts(const btSoftBody& body) {
+        beside_.clear();
+        placed_.clear();
+        btScalar margin = 0; // the largest
+        for (SoftBodyPair* pair : pairs_) {
+            if (!pair->has_contacts(body)) continue;
+            beside_.push_back(pair);
+            placed_.push_back(pair->now());
+            margin = btMax(margin, pair->margin());
+        }
+        if (beside_.empty()) return;
+        contacts_.find(placed_, body, margin);
+        for (std::size_t k = 0; k < contacts_.count(); ++k) {
+            SoftBodyPair& pair = *beside_[contacts_.collider(k)];
+            if (-contacts_.depth(k) <= pair.margin())
+                pair.add_contact(contacts_.node(k), contacts_.point(k), contacts_.normal(k));
+        }
+    }
 
     /// Bullet keeps one for each pair, in memory whose pieces are as large as its own largest algorithm.
     class Algorithm : public btCollisionAlgorithm {
@@ -364,7 +449,7 @@ class Solver : public btDefaultSoftBodySolver {
                               const btDispatcherInfo&, btManifoldResult*) override {
             if (!first->getCollisionShape()->isSoftBody()) std::swap(first, second);
             auto* object = const_cast<btCollisionObject*>(first->getCollisionObject());
-            pair_->add_contacts(*btSoftBody::upcast(object), *second);
+            pair_->begin_step(*btSoftBody::upcast(object), *second);
         }
         btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
                                        btManifoldResult*) override {
@@ -389,7 +474,10 @@ class Solver : public btDefaultSoftBodySolver {
     };
 
     Create create_;
-    std::vector<SoftBodyPair*> pairs_; ///< that the broad phase reports; each belongs to an Algorithm
+    std::vector<SoftBodyPair*> pairs_;  ///< that the broad phase reports; each belongs to an Algorithm
+    std::vector<SoftBodyPair*> beside_; ///< of them those of one soft body
+    std::vector<Collider> placed_;      ///< their shapes
+    NodeContacts contacts_;             ///< with those
 };
 
 } // namespace echinus::bullet
