@@ -383,16 +383,6 @@ TEST(BulletAdapter, NothingIsLostAMillionAwayWhereBulletHasDoubles) {
     EXPECT_GT(away.invXform({1e6, -1e6, highest(cloth)}).z(), btScalar(0.3));
 }
 
-TEST(BulletAdapter, ASleepingClothGathersNoContacts) {
-    bullet::MapShape shape(ExactMap::build(torus()));
-    World world;
-    world.add_kinematic(shape, at(0, 0, btScalar(-0.43)));
-    btSoftBody& cloth = world.add_cloth(2, 0);
-    cloth.forceActivationState(ISLAND_SLEEPING);
-    world.step(10);
-    EXPECT_LE(cloth.m_rcontacts.size(), cloth.m_nodes.size());
-}
-
 TEST(BulletAdapter, NamesAnOpenSurfaceAndAScaleOfZero) {
     TriangleMesh open = torus();
     open.faces.pop_back();
