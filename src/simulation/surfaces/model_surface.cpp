@@ -56,8 +56,8 @@ void ModelSurface::begin_frame(const Collider& collider, const SurfaceMotion* mo
     motion_ = motion;
     to_body(starts, starts_);
     for (std::size_t v = 0; v < own_->vertex_count(); ++v) bases_.set(v, starts_[v] + motion->carried[v]);
-    pairs_.begin({&shape_->elements, &deformed_->tree, &motion->from, &motion->to, motion->most}, starts_,
-                 bases_, clearances);
+    pairs_.begin({&shape_->elements, &deformed_->tree, &motion->from, &motion->to, motion->most, &ways_},
+                 starts_, bases_, clearances);
 }
 
 /// The tree covers the ways of this frame, and therefore also where they end.
@@ -68,6 +68,12 @@ void ModelSurface::deform(const SurfaceMotion& motion, const Workers& workers) {
     }
     deformed_->positions = motion.to;
     deformed_->tree.refit(shape_->elements.all, motion.from, motion.to, workers);
+    if (ways_.wanted.empty()) {
+        ways_.from = ways_.to = shape_->tree;
+        ways_.wanted.resize(shape_->tree.group_count());
+        ways_.want([](std::uint32_t) { return true; }, workers);
+    }
+    ways_.refit(shape_->elements.all, motion.from, motion.to, workers);
 }
 
 void ModelSurface::begin_pass(const PointArrays& starts, std::span<const float> clearances) {

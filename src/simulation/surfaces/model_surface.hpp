@@ -95,6 +95,7 @@ class ModelSurface {
     std::shared_ptr<const Shape> shape_; ///< as it began
     /// In place of the shape's, once it has deformed: where the vertices are when the frame begins and ends.
     std::optional<Shape> deformed_;
+    MovingTree ways_;                       ///< of its elements, in the last frame in which it deformed
     const SurfaceMotion* motion_ = nullptr; ///< in this pass
     float drift_share_ = 1;                 ///< of a frame's, in each substep
     SurfacePairs pairs_;

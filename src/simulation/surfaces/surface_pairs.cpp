@@ -107,26 +107,20 @@ void SurfacePairs::keep_lists(const Workers& workers) {
     listing_.clear();
     outdated_.append_to(listing_);
     listings_.resize(workers.count());
-    found_counts_.resize(listing_.size());
-    found_.begin(workers, Workers::piece_count(listing_.size(), kListsPerPiece));
-    workers.for_ranges(listing_.size(), kListsPerPiece,
-                       [&](std::size_t worker, std::size_t piece, std::size_t begin, std::size_t end) {
-                           found_.add(worker, piece, [&](std::vector<Pair>& found) {
-                               for (std::size_t i = begin; i < end; ++i) {
-                                   const std::size_t before = found.size();
-                                   list(listing_[i], listings_[worker], found);
-                                   found_counts_[i] = static_cast<std::uint32_t>(found.size() - before);
-                               }
+    for (Listing& listing : listings_) listing.found.clear();
+    listed_.resize(own_->all.size());
+    if (opponent_.ways != nullptr)
+        list_on_their_ways(workers);
+    else
+        workers.for_ranges(listing_.size(), kListsPerPiece,
+                           [&](std::size_t worker, std::size_t, std::size_t begin, std::size_t end) {
+                               for (std::size_t i = begin; i < end; ++i) list(listing_[i], worker);
                            });
-                       });
     listed_count += listing_.size();
-    for (const std::uint32_t element : listing_) lists_.clear(element);
-    std::size_t i = 0, left = listing_.empty() ? 0 : found_counts_[0];
-    found_.for_each([&](const Pair& pair) {
-        while (left == 0) left = found_counts_[++i];
-        --left;
-        lists_.add(listing_[i], pair);
-    });
+    for (const std::uint32_t element : listing_) {
+        lists_.clear(element);
+        for (const Measured& found : just_listed(element)) lists_.add(element, found.pair);
+    }
 }
 
 /// Every point of an element lies within its longest edge of each of its vertices.
@@ -141,47 +135,116 @@ float SurfacePairs::clearance_of(const Element& element) const {
     return best * (1 - kRounding);
 }
 
-/// @param found  pairs are added here
-void SurfacePairs::list(std::uint32_t element, Listing& listing, std::vector<Pair>& found) {
+/// Notes where an element is whose list is made. @return whether what is known of its distance is enough
+bool SurfacePairs::is_far(std::uint32_t element) {
     for (std::size_t k = 0; k < 3; ++k)
         element_listed_at_[element][k] = (*starts_)[own_->all[element].vertices[k]];
     const float clearance = clearance_of(own_->all[element]) - 2 * opponent_.most;
-    if (clearance > reach_.listed) {
-        list_reaches_[element] = clearance;
-        return;
-    }
-    Box box = box_of_both(box_of(own_->all[element], *starts_), box_of(own_->all[element], *bases_));
-    box.grow(reach_.listed);
-    listing.near.clear();
+    list_reaches_[element] = std::max(clearance, reach_.listed);
+    return clearance > reach_.listed;
+}
+
+void SurfacePairs::list(std::uint32_t element, std::size_t worker) {
+    Listing& listing = listings_[worker];
+    listed_[element] = {worker, listing.found.size(), 0};
+    if (is_far(element)) return;
+    const Ways own = ways_of(element);
     bool touches = false;
-    opponent_.tree->visit_touching(box, [&](std::uint32_t other) {
+    listing.near.clear();
+    opponent_.tree->visit_touching(own.reached, [&](std::uint32_t other) {
         touches = true;
-        list_pairs(element, other, listing.near);
+        list_pairs(own, other, listing.near);
     });
-    keep_near(listing, found);
-    list_reaches_[element] = reach_.listed;
-    if (!touches) {
-        box.grow(-reach_.listed);
-        list_reaches_[element] =
-            std::max(reach_.listed, opponent_.tree->distance(box, kFarReach * reach_.listed));
+    keep_near(element, listing);
+    if (!touches) list_reaches_[element] = far_reach(element);
+}
+
+/// Beside an opponent that deforms all lists are made in each frame: group by group, and what two elements
+/// have in common of their ways does not bring them together.
+void SurfacePairs::list_on_their_ways(const Workers& workers) {
+    if (own_ways_.wanted.empty()) {
+        own_ways_ = MovingTree(own_->all, *starts_);
+        places_in_tree_.resize(own_->all.size());
+        const auto order = own_ways_.from.order();
+        for (std::uint32_t i = 0; i < order.size(); ++i) places_in_tree_[order[i]] = i;
+    }
+    is_wanted_.assign(own_->all.size(), 0);
+    for (const std::uint32_t element : listing_) {
+        listed_[element] = {};
+        is_wanted_[element] = is_far(element) ? 0 : 1;
+    }
+    own_ways_.want([&](std::uint32_t element) { return is_wanted_[element] != 0; }, workers);
+    own_ways_.refit(own_->all, *starts_, *bases_, workers);
+    workers.for_pieces(own_ways_.piece_count(), [&](std::size_t worker, std::size_t piece) {
+        list_piece(piece, listings_[worker], worker);
+    });
+}
+
+/// What is listed does not depend on the groups of the tree, which are of any frame: an element is compared
+/// with the opponent's, and with groups of them, in their order.
+void SurfacePairs::list_piece(std::size_t piece, Listing& listing, std::size_t worker) {
+    constexpr std::size_t kElements = MovingTree::kGroupsPerPiece * ElementTree::kWidth;
+    const std::size_t first = piece * kElements;
+    const auto order = own_ways_.from.order();
+    listing.near_elements.clear();
+    find_near(own_ways_, *opponent_.ways, reach_.listed, piece, listing.near_elements);
+    std::array<std::uint32_t, kElements + 1> ends{};
+    for (const auto& [own, other] : listing.near_elements) ++ends[places_in_tree_[own] - first + 1];
+    for (std::size_t i = 0; i < kElements; ++i) ends[i + 1] += ends[i];
+    listing.others.resize(listing.near_elements.size());
+    for (const auto& [own, other] : listing.near_elements)
+        listing.others[ends[places_in_tree_[own] - first]++] = other;
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < std::min(kElements, order.size() - first); ++i) {
+        const std::uint32_t element = order[first + i];
+        if (is_wanted_[element] == 0) continue;
+        listed_[element] = {worker, listing.found.size(), 0};
+        if (begin == ends[i]) continue;
+        const Ways own = ways_of(element);
+        listing.near.clear();
+        for (; begin < ends[i]; ++begin) list_pairs(own, listing.others[begin], listing.near);
+        keep_near(element, listing);
     }
 }
 
-void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_number,
-                              std::vector<Pair>& near) const {
-    const Element& own = own_->all[own_number];
-    const Element& other = opponent_.elements->all[other_number];
-    // Each point's way, a box.
-    const PointArrays& other_ends = opponent_.ends != nullptr ? *opponent_.ends : *opponent_.positions;
-    std::array<Box, 3> a, b;
-    for (std::size_t k = 0; k < 3; ++k) {
-        a[k] = box_of_way(*starts_, *bases_, own.vertices[k]);
-        b[k] = box_of_way(*opponent_.positions, other_ends, other.vertices[k]);
+/// A lower bound of how far it is from an element's way to the opponent's, up to some reaches.
+float SurfacePairs::far_reach(std::uint32_t element) const {
+    Box box = ways_of(element).reached;
+    box.grow(-reach_.listed);
+    return std::max(reach_.listed, opponent_.tree->distance(box, kFarReach * reach_.listed));
+}
+
+/// Looks farther around a vertex that leaves its room where nothing is listed. @return whether that helps
+bool SurfacePairs::look_farther(std::uint32_t vertex) {
+    if (opponent_.ways == nullptr) return false;
+    bool helps = false;
+    for (const std::uint32_t element : own_->at(vertex)) {
+        if (list_reaches_[element] != reach_.listed || !lists_.of(element).empty()) continue;
+        list_reaches_[element] = far_reach(element);
+        helps = helps || list_reaches_[element] > reach_.listed;
     }
-    Box own_box = box_of_both(box_of_both(a[0], a[1]), a[2]);
+    return helps;
+}
+
+SurfacePairs::Ways SurfacePairs::ways_of(std::uint32_t element) const {
+    Ways ways{&own_->all[element], {}, {}};
+    for (std::size_t k = 0; k < 3; ++k)
+        ways.points[k] = box_of_way(*starts_, *bases_, ways.element->vertices[k]);
+    ways.reached = box_of_both(box_of_both(ways.points[0], ways.points[1]), ways.points[2]);
+    ways.reached.grow(reach_.listed);
+    return ways;
+}
+
+void SurfacePairs::list_pairs(const Ways& ways, std::uint32_t other_number, std::vector<Pair>& near) const {
+    const Element& own = *ways.element;
+    const Element& other = opponent_.elements->all[other_number];
+    const PointArrays& other_ends = opponent_.ends != nullptr ? *opponent_.ends : *opponent_.positions;
+    const std::array<Box, 3>& a = ways.points;
+    std::array<Box, 3> b;
+    for (std::size_t k = 0; k < 3; ++k)
+        b[k] = box_of_way(*opponent_.positions, other_ends, other.vertices[k]);
     const Box other_box = box_of_both(box_of_both(b[0], b[1]), b[2]);
-    own_box.grow(reach_.listed);
-    if (!is_near(own_box, other_box)) return;
+    if (!is_near(ways.reached, other_box)) return;
     if (other.is_face()) {
         Box reached = other_box;
         reached.grow(reach_.listed);
@@ -192,7 +255,7 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
     }
     if (own.is_face())
         for (std::size_t k = 0; k < other.vertex_count; ++k)
-            if (other.owns_vertex(k) && is_near(b[k], own_box))
+            if (other.owns_vertex(k) && is_near(b[k], ways.reached))
                 near.push_back({{own.vertices[0], own.vertices[1], own.vertices[2], other.vertices[k]},
                                 PairKind::FaceVertex});
     const auto edge_count = [](const Element& e) { return e.vertex_count == 3 ? 3U : e.vertex_count - 1U; };
@@ -212,36 +275,56 @@ void SurfacePairs::list_pairs(std::uint32_t own_number, std::uint32_t other_numb
 }
 
 /// Of the pairs whose boxes are near, those that are near, or get so on the way to the bases.
-void SurfacePairs::keep_near(Listing& listing, std::vector<Pair>& found) const {
+void SurfacePairs::keep_near(std::uint32_t element, Listing& listing) {
     listing.separations.resize(listing.near.size());
     separations(listing.near, *starts_, *opponent_.positions, listing.separations);
     for (std::size_t i = 0; i < listing.near.size(); ++i) {
         const Separation& apart = listing.separations[i];
         float gap = apart.gap;
         if (opponent_.ends != nullptr) gap -= std::max(closing(listing.near[i], apart.normal), 0.0F);
-        if (!(gap > reach_.listed)) found.push_back(listing.near[i]);
+        if (!(gap > reach_.listed)) listing.found.push_back({listing.near[i], apart});
     }
+    listed_[element].count = listing.found.size() - listed_[element].first;
 }
 
-/// The pairs of the elements to be measured, and how far apart they are now.
+/// The pairs of the elements to be measured, and how far apart they are now: those that were just listed have
+/// been measured for that.
 void SurfacePairs::gather_measured(const Workers& workers) {
     keep_lists(workers);
-    measured_pairs_.clear();
+    measured_.clear();
     measured_elements_.clear();
+    to_measure_.clear();
+    auto next_listed = listing_.begin(); // in the order of those to be measured
     for (const std::uint32_t element : measuring_) {
         const Element& own = own_->all[element];
         const float bound = bound_of(element);
         for (std::size_t k = 0; k < own.vertex_count; ++k) shrink(own.vertices[k], bound, bound);
-        const std::span<const Pair> pairs = lists_.of(element);
-        measured_pairs_.insert(measured_pairs_.end(), pairs.begin(), pairs.end());
-        measured_elements_.insert(measured_elements_.end(), pairs.size(), element);
+        if (next_listed != listing_.end() && *next_listed == element) {
+            ++next_listed;
+            const std::span<const Measured> found = just_listed(element);
+            measured_.insert(measured_.end(), found.begin(), found.end());
+        } else {
+            for (const Pair& pair : lists_.of(element)) {
+                to_measure_.push_back(static_cast<std::uint32_t>(measured_.size()));
+                measured_.push_back({pair, {}});
+            }
+        }
+        measured_elements_.resize(measured_.size(), element);
     }
-    separations_.resize(measured_pairs_.size());
-    workers.for_ranges(measured_pairs_.size(), kPairsPerPiece,
-                       [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
-                           separations(std::span(measured_pairs_).subspan(begin, end - begin), *starts_,
-                                       *opponent_.positions,
-                                       std::span(separations_).subspan(begin, end - begin));
+    measure(workers);
+}
+
+void SurfacePairs::measure(const Workers& workers) {
+    workers.for_ranges(to_measure_.size(), kPairsPerPiece,
+                       [&](std::size_t worker, std::size_t, std::size_t begin, std::size_t end) {
+                           Listing& listing = listings_[worker];
+                           listing.near.clear();
+                           for (std::size_t i = begin; i < end; ++i)
+                               listing.near.push_back(measured_[to_measure_[i]].pair);
+                           listing.separations.resize(end - begin);
+                           separations(listing.near, *starts_, *opponent_.positions, listing.separations);
+                           for (std::size_t i = begin; i < end; ++i)
+                               measured_[to_measure_[i]].apart = listing.separations[i - begin];
                        });
 }
 
@@ -320,7 +403,7 @@ std::span<const std::uint32_t> SurfacePairs::find_leaving(const PointArrays& goa
             // In a later pass, after the opponent has deformed, most vertices have arrived: they rest, and so
             // need no room.
             if (rooms_[v] == -1 && opponent_.ends == nullptr && goals[v] == (*starts_)[v]) continue;
-            if (renewed_in_[v] == frame_)
+            if (renewed_in_[v] == frame_ && !look_farther(v))
                 leaving_.push_back(v);
             else
                 wake(v);

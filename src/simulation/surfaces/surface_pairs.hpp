@@ -5,6 +5,7 @@
 #include "simulation/particles.hpp"
 #include "simulation/surfaces/element_tree.hpp"
 #include "simulation/surfaces/elements.hpp"
+#include "simulation/surfaces/near_elements.hpp"
 #include "simulation/surfaces/pair_lists.hpp"
 #include "simulation/surfaces/shares.hpp"
 
@@ -24,6 +25,7 @@ struct Opponent {
     /// the deformable's do to their bases.
     const PointArrays* ends = nullptr;
     float most = 0;
+    const MovingTree* ways = nullptr; ///< of its elements, where it deforms
 };
 
 /// Lengths, in units of the world.
@@ -117,18 +119,46 @@ class SurfacePairs {
     float advance(const Pair& pair, const Vec3f& normal) const;
     float closing(const Pair& pair, const Vec3f& normal) const;
 
-    /// What a worker needs to list pairs.
+    /// An element of the deformable, where its vertices go.
+    struct Ways {
+        const Element* element;
+        std::array<Box, 3> points; ///< around the way of each vertex
+        Box reached;               ///< around all that is listed with it
+    };
+    struct Measured {
+        Pair pair;
+        Separation apart;
+    };
+    /// What a worker needs to list pairs, and those that it has found.
     struct Listing {
+        std::vector<std::array<std::uint32_t, 2>> near_elements;
+        std::vector<std::uint32_t> others;
         std::vector<Pair> near;
         std::vector<Separation> separations;
+        std::vector<Measured> found;
+    };
+    /// Of the pairs that a worker has found.
+    struct Slice {
+        std::size_t worker = 0, first = 0, count = 0;
     };
     bool is_list_outdated(std::uint32_t element) const;
     float moved_since_listed(std::uint32_t element) const;
     void keep_lists(const Workers& workers);
-    void list(std::uint32_t element, Listing& listing, std::vector<Pair>& found);
+    bool is_far(std::uint32_t element);
+    void list(std::uint32_t element, std::size_t worker);
+    void list_on_their_ways(const Workers& workers);
+    void list_piece(std::size_t piece, Listing& listing, std::size_t worker);
+    float far_reach(std::uint32_t element) const;
+    bool look_farther(std::uint32_t vertex);
     float clearance_of(const Element& element) const;
-    void list_pairs(std::uint32_t own, std::uint32_t other, std::vector<Pair>& near) const;
-    void keep_near(Listing& listing, std::vector<Pair>& found) const;
+    Ways ways_of(std::uint32_t element) const;
+    void list_pairs(const Ways& own, std::uint32_t other, std::vector<Pair>& near) const;
+    void keep_near(std::uint32_t element, Listing& listing);
+    std::span<const Measured> just_listed(std::uint32_t element) const {
+        const Slice& slice = listed_[element];
+        return std::span(listings_[slice.worker].found).subspan(slice.first, slice.count);
+    }
+    void measure(const Workers& workers);
 
     const Elements* own_;
     PairReach reach_;
@@ -152,30 +182,33 @@ class SurfacePairs {
     std::vector<std::uint32_t> measured_in_; ///< by element, in wakes: so that none is measured twice
     std::uint32_t wake_ = 0;
     std::vector<std::uint32_t> woken_, measuring_, leaving_;
-    PiecewiseList<std::uint32_t> outdated_;   ///< elements,
-    std::vector<std::uint32_t> listing_;      ///< the same
-    std::vector<Listing> listings_;           ///< by worker
-    PiecewiseList<Pair> found_;               ///< in their lists,
-    std::vector<std::uint32_t> found_counts_; ///< so many in each
-    std::vector<Pair> measured_pairs_;
+    PiecewiseList<std::uint32_t> outdated_; ///< elements,
+    std::vector<std::uint32_t> listing_;    ///< the same, in the order of those to be measured
+    std::vector<Listing> listings_;         ///< by worker
+    std::vector<Slice> listed_;             ///< by element: what was found for its list last
+    // Beside an opponent that deforms
+    MovingTree own_ways_;
+    std::vector<std::uint32_t> places_in_tree_; ///< by element
+    std::vector<std::uint8_t> is_wanted_;       ///< the same
+    std::vector<Measured> measured_;
     std::vector<std::uint32_t> measured_elements_; ///< by measured pair
-    std::vector<Separation> separations_;          ///< the same
+    std::vector<std::uint32_t> to_measure_;        ///< those of them that were listed earlier
 };
 
 /// @param visit  returns how far the pair's vertices may go quietly
 template <typename Visit>
 void SurfacePairs::measure_collected(const Visit& visit, const Workers& workers) {
     gather_measured(workers);
-    for (std::size_t i = 0; i < measured_pairs_.size(); ++i) {
-        const Pair& pair = measured_pairs_[i];
-        Separation apart = separations_[i];
+    for (std::size_t i = 0; i < measured_.size(); ++i) {
+        const Pair& pair = measured_[i].pair;
+        Separation apart = measured_[i].apart;
         const float closed = opponent_.ends != nullptr ? closing(pair, apart.normal) : 0;
         const float room = usable(apart.gap) - closed;
         apart.gap -= closed;
         const float quiet = visit(measured_elements_[i], pair, apart);
         for (std::size_t k = 0; k < own_count(pair.kind); ++k) shrink(pair.points[k], room, quiet);
     }
-    measured_count += measured_pairs_.size();
+    measured_count += measured_.size();
 }
 
 } // namespace echinus
