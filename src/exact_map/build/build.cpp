@@ -8,6 +8,7 @@
 #include "exact_map/build/make_winding_tree.hpp"
 #include "exact_map/build/resolution.hpp"
 #include "exact_map/layout.hpp"
+#include "geometry/number_text.hpp"
 #include "geometry/parallel.hpp"
 #include "mesh/is_closed.hpp"
 #include "mesh/mesh_hash.hpp"
@@ -166,7 +167,7 @@ void MapMaker::snap(std::span<const Vec3f> vertices) {
         snapper_.snap(vertices, lattice_);
     if (lattice_.faces.empty())
         throw Error(ErrorCode::InvalidMesh, "no face is larger than a step of the lattice, " +
-                                                std::to_string(lattice_.frame.step) +
+                                                number_text(lattice_.frame.step) +
                                                 ": the mesh is a few specks in a large void");
     dropped_faces_ = faces_.size() - lattice_.faces.size();
     if (dropped_faces_ != 0) add_collapsed_faces();
