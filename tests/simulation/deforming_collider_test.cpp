@@ -222,8 +222,7 @@ TEST(DeformingCollider, DoesNotHoldBackWhatFliesPastIt) {
     options.drag = 0;
     const Deformable sheet = sheet_at(0.5, 1.2, 19);
     Simulation simulation(sheet, {{.map = ExactMap::build(ball)}}, options);
-    for (std::size_t i = 0; i < sheet.particle_count(); ++i)
-        simulation.set_particle_velocity(i, {12, 0, 0});
+    for (std::size_t i = 0; i < sheet.particle_count(); ++i) simulation.set_particle_velocity(i, {12, 0, 0});
     EXPECT_EQ(most_pairs(simulation, ball, tremble, 20), 0u);
     EXPECT_EQ(simulation.profile().truncated_count, 0u);
     // In a single pass of each frame: another would list all of them again.
