@@ -1,5 +1,5 @@
 // A beam bends under its own weight, as far as Timoshenko's theory says or how near to it.
-// Arguments: cuboids across its height (4), Poisson's ratio (0.3).
+// Arguments: cuboids across its height (4), Poisson's ratio (0.3), how many times smaller the steps are (1).
 
 #include <echinus/soft_body.hpp>
 
@@ -14,6 +14,7 @@ using namespace echinus;
 int main(int argument_count, char** arguments) try {
     const std::uint32_t segments = argument_count > 1 ? std::atoi(arguments[1]) : 4;
     const double poisson = argument_count > 2 ? std::atof(arguments[2]) : 0.3;
+    const std::uint32_t finer = argument_count > 3 ? std::atoi(arguments[3]) : 1;
     const double length = 1, height = 0.2, density = 1000, gravity = 10,
                  young = 5e6; // metres, kilograms, pascals
 
@@ -34,7 +35,7 @@ int main(int argument_count, char** arguments) try {
                           {.solver = SolverKind::Xpbd,
                            .time_step = time_step,
                            .iteration_count = 4,
-                           .substep_count = 10,
+                           .substep_count = 10 * finer,
                            .gravity = {0, 0, -gravity},
                            .drag = std::fmin(0.9, 1.6 * pace * time_step)});
     while (simulation.frame() * time_step * pace < 12) simulation.step();
