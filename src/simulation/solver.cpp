@@ -130,7 +130,10 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
         surfaces_.emplace(deformable, colliders, particles_, options);
         if (options.solver == SolverKind::Verlet) stretched_part_.emplace(sticks_, particles_.count());
     }
-    if (options.self_collision) parts_.emplace(deformable, options);
+    if (options.self_collision) {
+        parts_.emplace(deformable, options);
+        if (options.solver == SolverKind::Verlet) gentle_sticks_.emplace();
+    }
     if (options.multilevel) coarse_sheets_.emplace(deformable);
     if (options.measure_loads) meter_.emplace(deformable, colliders.size());
     const Sphere start = box_sphere(deformable.positions);
@@ -282,6 +285,7 @@ void Simulation::Solver::begin_constraints() {
     const Stopwatch stopwatch(profile.constraint_seconds);
     if (goals_give_way_)
         std::copy(sticks_.rest_lengths.begin(), sticks_.rest_lengths.end(), sticks_.goal_lengths.begin());
+    if (gentle_sticks_) gentle_sticks_->set_goals(sticks_, particles_.positions);
     folds_.restore_goals();
     tetrahedra_.begin_substep();
     damp(tetrahedra_, particles_, workers_);
@@ -332,8 +336,9 @@ void Simulation::Solver::keep_free() {
     LoadMeter* const meter = meter_ ? &*meter_ : nullptr;
     if (meter != nullptr) meter->note(particles_);
     if (!surfaces_) return collisions_.keep_free(particles_, profile, meter);
-    const std::uint64_t squeezed_before = profile.squeezed_count;
+    const std::uint64_t squeezed_before = profile.squeezed_count, truncated_before = profile.truncated_count;
     surfaces_->end_frame(particles_, profile, meter, workers_);
+    if (gentle_sticks_) gentle_sticks_->note(profile.truncated_count > truncated_before);
     collisions_.end_frame(particles_, profile.squeezed_count > squeezed_before, profile);
 }
 

@@ -8,6 +8,7 @@
 #include "simulation/deforming_collider.hpp"
 #include "simulation/folds.hpp"
 #include "simulation/frame_parts.hpp"
+#include "simulation/gentle_sticks.hpp"
 #include "simulation/load_meter.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/rest.hpp"
@@ -95,6 +96,7 @@ class Simulation::Solver {
     Collisions collisions_;
     std::optional<SurfaceCollision> surfaces_;
     std::optional<StretchedPart> stretched_part_; ///< with contact of surfaces, by Verlet
+    std::optional<GentleSticks> gentle_sticks_;   ///< with contact of the deformable with itself, by Verlet
     std::optional<LoadMeter> meter_;
     RestWatch rest_;
     Wind wind_;

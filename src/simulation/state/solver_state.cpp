@@ -29,6 +29,7 @@ void Simulation::Solver::archive(StateArchive& state) {
     state.points(particles_.previous_remainders);
     rest_.archive(state);
     if (stretched_part_) stretched_part_->archive(state, sticks_.count());
+    if (gentle_sticks_) gentle_sticks_->archive(state);
     if (meter_) meter_->archive(state);
     archive_colliders(state);
     attachments_.archive(state, deforming_);
