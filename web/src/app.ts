@@ -18,7 +18,7 @@ import { enablePointer } from './pointer';
 import type { CellNews, FromWorker, MapNews, ModelNews, SurfaceNews, ToWorker, Triple } from './protocol';
 import { Recorder } from './recorder';
 import { objText, saveAs } from './saving';
-import { SAMPLES, type Settings, besideOf, consistent, fromLink, toLink } from './settings';
+import { SAMPLES, type Settings, UNDER_SHEETS, besideOf, consistent, fromLink, toLink } from './settings';
 import { Side } from './side';
 import { Tour } from './tour';
 import { BallView } from './view/ball_view';
@@ -80,7 +80,7 @@ class App {
         this.#controls = new Controls(this.#settings, (settings, key) => this.#change(settings, key));
         this.#tour = new Tour({
             model: () => this.#model,
-            choose: (view) => this.#choose('view', view),
+            choose: (key, value) => this.#settings[key] !== value && this.#choose(key, value),
             tell: (message) => this.#main.client.tell(message),
         });
         this.#bindButtons();
@@ -170,12 +170,13 @@ class App {
         if (this.#paused) this.#pause(false); // a new cloth falls
         this.#figures.forgetCuts();
         this.#main.view.byDepth = this.#settings.colour === 'depth';
-        if (why) remark(why === 'map' ? 'The cloth falls anew, on the other map.' : `The cloth falls anew, with ${numbered(this.#particles, 'particle', 'particles')}.`);
+        if (why) remark(why === 'map' ? 'The cloth falls anew, on the other map.' : fallsAnew(this.#particles, this.#cloths));
         if (this.#settings.beside !== 'nothing' && !this.#other) this.#beginBeside();
     }
 
     get #particles(): number {
-        return this.#main.view.positions ? this.#main.view.positions.length / 3 : Math.round(Math.sqrt(this.#settings.particles)) ** 2;
+        if (this.#main.view.positions) return this.#main.view.positions.length / 3;
+        return this.#cloths * Math.round(Math.sqrt(this.#settings.particles / this.#cloths)) ** 2; // it has not fallen yet
     }
 
     #showProgress({ turn, stage }: FromWorker & { kind: 'progress' }): void {
@@ -299,6 +300,15 @@ class App {
     #showTitle(model: ModelNews): void {
         byId('subtitle').textContent = `${model.name}, ${numbered(model.report.faceCount, 'face', 'faces')}`;
         showChosen(this.#asked.file ? undefined : this.#settings);
+        byId('cloths').hidden = !this.#hasSheets;
+    }
+
+    get #hasSheets(): boolean {
+        return this.#asked.file !== undefined || UNDER_SHEETS.includes(this.#settings.model);
+    }
+
+    get #cloths(): number {
+        return this.#hasSheets ? this.#settings.cloths : 1;
     }
 
     #askForMap(): void {
@@ -628,6 +638,11 @@ class App {
         }
         if (this.#asked.file) note.textContent += ' The opened file is not part of it.';
     }
+}
+
+function fallsAnew(particles: number, cloths: number): string {
+    const what = numbered(particles, 'particle', 'particles');
+    return cloths === 1 ? `The cloth falls anew, with ${what}.` : `${cloths} cloths fall anew, with ${what} in all.`;
 }
 
 function mapNote(kind: MapNews['kind'], closed: boolean, surfaces: boolean): string {

@@ -6,6 +6,15 @@ export function enableKeys(actions: Record<string, () => void>): void {
         event.preventDefault();
         action();
     });
+    releaseLists();
+}
+
+/** A list from which the pointer has chosen gives the keys back; one that keys operate goes on having them. */
+function releaseLists(): void {
+    let byPointer = false;
+    addEventListener('pointerdown', () => (byPointer = true), { capture: true });
+    addEventListener('keydown', () => (byPointer = false), { capture: true });
+    addEventListener('change', ({ target }) => byPointer && target instanceof HTMLSelectElement && target.blur());
 }
 
 /** These repeat while held down: they step or turn by a little. */

@@ -64,12 +64,12 @@ export interface ClothNews {
     faces: Uint32Array;
     /** The distance that particles keep from the model. */
     thickness: number;
-    /** Of a sheet. */
-    columns?: number;
     /** [2 particles] places on the fabric, about in radii of the model. */
     weave?: Float32Array;
     /** [particles] places on the scale of colours, 0 to 1. */
     tints?: Float32Array;
+    /** The edge on the fabric of square sheets that have a border. */
+    hem?: number;
     /** The surface of soft bodies, without a back. */
     soft: boolean;
     /** The radius of the visitor's ball. */
@@ -193,6 +193,8 @@ export interface Figures {
     frame: number;
     paused: boolean;
     atRest: boolean;
+    /** Simulated by a step. */
+    stepSeconds: number;
     /** Per step, over the steps since the last frame; 0 when there was none. */
     stepMs: number;
     constraintMs: number;

@@ -11,8 +11,10 @@ export interface Settings {
     /** The paper's map: how directions are divided, and into about how many. */
     grid: (typeof GRIDS)[number];
     directions: number;
-    /** Of the cloth; rounded to a square number. */
+    /** Of all cloths; rounded to a square number for one. */
     particles: number;
+    /** How many sheets fall on a model around which nothing else happens. */
+    cloths: number;
     friction: number;
     /** With the exact map: faces of the cloth keep off the model, too, not only its particles. */
     surfaces: boolean;
@@ -43,6 +45,8 @@ export interface Settings {
 }
 
 export type Sample = 'horse' | 'torus' | 'sphere' | 'figure' | 'organ' | 'ring' | 'flag' | 'layers';
+/** On these samples, and on every file, sheets fall; around the others something else happens. */
+export const UNDER_SHEETS: readonly Sample[] = ['horse', 'torus', 'sphere'];
 export const CELLS = ['auto', '16', '64', '256', '1024', '4096', '16384', '65536'] as const;
 const GRIDS = ['spherical', 'octahedral', 'cube', 'ellipsoidal'] as const;
 
@@ -61,6 +65,7 @@ export const DEFAULTS: Readonly<Settings> = {
     grid: 'spherical',
     directions: 40_000,
     particles: 10_000,
+    cloths: 1,
     friction: 0.5,
     surfaces: true,
     self: false,
@@ -96,6 +101,7 @@ const CHOICES: { [K in keyof Settings]?: readonly Settings[K][] } = {
 export const RANGES = {
     directions: [400, 640_000],
     particles: [100, 100_000],
+    cloths: [1, 5],
     friction: [0, 1.5],
     thickness: [0.1, 2],
     wind: [0, 10],
@@ -128,9 +134,15 @@ export function fromLink(hash: string): Settings {
 
 /** @param changed  the key that wins where two contradict each other */
 export function consistent(settings: Settings, changed: keyof Settings): Settings {
-    const parted = withHalves(settings, changed);
+    const parted = withHalves(withCloths(settings, changed), changed);
     if (!parted.self || parted.surfaces) return parted;
     return changed === 'self' ? { ...parted, surfaces: true } : { ...parted, self: false };
+}
+
+/** Whoever asks for another cloth sees it lie on the first. */
+function withCloths(settings: Settings, changed: keyof Settings): Settings {
+    const whole = { ...settings, cloths: Math.round(settings.cloths) };
+    return changed === 'cloths' && whole.cloths > 1 ? { ...whole, map: 'exact', surfaces: true, self: true } : whole;
 }
 
 /** The left half is the exact map with surfaces, or there would be nothing to compare. */

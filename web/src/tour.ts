@@ -1,10 +1,11 @@
 import { furthestAlong } from './axes';
 import { byId } from './panel/elements';
 import type { ModelNews, ToWorker, Triple } from './protocol';
+import type { Settings } from './settings';
 
 export interface TourWishes {
     model(): ModelNews | undefined;
-    choose(view: 'cloth' | 'map'): void;
+    choose<K extends keyof Settings>(key: K, value: Settings[K]): void;
     tell(message: ToWorker): void;
 }
 
@@ -25,7 +26,8 @@ const STOPS: readonly Stop[] = [
     {
         words: 'A model, as its map has it. The map is built once, in milliseconds, and takes a few dozen bytes a face.',
         enter: (tour) => {
-            tour.choose('map');
+            tour.choose('map', 'exact'); // the paper's has no cells
+            tour.choose('view', 'map');
             tour.tell({ kind: 'slice', height: 1 });
         },
     },
@@ -45,7 +47,7 @@ const STOPS: readonly Stop[] = [
         words: 'A cloth asks about each of its particles, many times a second, and each that would be inside is put back the shortest way. Now pull at it.',
         enter: (tour) => {
             tour.tell({ kind: 'slice', height: 1 });
-            tour.choose('cloth');
+            tour.choose('view', 'cloth');
             tour.tell({ kind: 'restart' });
         },
     },
@@ -94,7 +96,7 @@ export class Tour {
         this.#stop = -1;
         byId('tour').hidden = true;
         this.#wishes.tell({ kind: 'slice', height: 1 });
-        this.#wishes.choose('cloth');
+        this.#wishes.choose('view', 'cloth');
     }
 
     #goOn(): void {

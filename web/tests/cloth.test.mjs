@@ -223,6 +223,41 @@ test('no face of a cloth whose surfaces collide intersects while it falls, is pu
     await browser.close(page);
 });
 
+test('several cloths fall on the model and on each other, and none gets through another', async () => {
+    const page = await browser.open('#model=torus&particles=1200', SMALL);
+    await untilFrame(page, 1);
+    await page.locator('input[name=cloths]').fill('3');
+    await page.locator('#remark', { hasText: '3 cloths fall anew, with 1\u2009200 particles in all.' }).waitFor();
+    assert.ok(await page.locator('input[name=self]').isChecked());
+    await page.waitForFunction(() => Number(document.body.dataset.frame) > 300, null, { timeout: 120_000 });
+    await untilCounted(page);
+    await picture(page, 'three_cloths');
+    for (const name of ['inside', 'pairs', 'own-pairs']) assert.equal(await figure(page, name), '0', name);
+    assert.match(page.url(), /cloths=3/);
+    assert.deepEqual(page.complaints, []);
+    await page.locator('select[name=model]').selectOption('flag');
+    await page.waitForFunction(() => document.getElementById('cloths').hidden);
+    await browser.close(page);
+});
+
+test('the pointer is a hand over the cloth alone, and holds while it pulls', async () => {
+    const page = await browser.open('#model=torus&particles=900', SMALL);
+    await untilFrame(page, 240);
+    const { x, y, width, height } = await page.locator('#canvas').boundingBox();
+    const cursorAt = async (across, down) => {
+        await page.mouse.move(x + across * width, y + down * height);
+        await page.waitForTimeout(150); // it looks now and then
+        await page.mouse.move(x + across * width + 1, y + down * height);
+        return page.evaluate(() => getComputedStyle(document.getElementById('canvas')).cursor);
+    };
+    assert.equal(await cursorAt(0.5, 0.5), 'grab');
+    await page.mouse.down();
+    assert.equal(await page.evaluate(() => getComputedStyle(document.getElementById('canvas')).cursor), 'grabbing');
+    await page.mouse.up();
+    assert.notEqual(await cursorAt(0.03, 0.1), 'grab');
+    await browser.close(page);
+});
+
 test('the depth of contact is shown in colours with a legend', async () => {
     const page = await browser.open('#model=torus&particles=2500&colour=depth&map=distance', SMALL);
     await untilFrame(page, 160);

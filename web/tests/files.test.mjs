@@ -141,6 +141,45 @@ test('an open mesh is reported with the number of its border edges', async () =>
     await browser.close(page);
 });
 
+test('a line of faults shows only faintly through the cloth that hides it', async () => {
+    const page = await browser.open('#model=torus&particles=900', SMALL);
+    await untilFrame(page, 1);
+    const cup = 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\nf 1 3 2\nf 1 4 3\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n';
+    await page.locator('select[name=up]').selectOption('z');
+    await choose(page, 'cup.obj', cup);
+    await untilReport(page, '4 border edges');
+    const red = () => pixelsOf(page, FAULT_RED, 44); // lines are thin, and the cloth is another red
+    const turn = async (key, count) => {
+        for (let press = 0; press < count; ++press) await page.keyboard.press(key);
+        await page.waitForTimeout(500);
+    };
+    // The cloth is held above it, right after it has begun to fall anew.
+    await untilFrame(page, 40);
+    await page.locator('#restart').click();
+    await page.waitForFunction(() => Number(document.body.dataset.frame) < 30 && (document.getElementById('pause').click(), true));
+    await page.waitForFunction(() => document.body.dataset.paused === 'true');
+    await turn('ArrowDown', 5);
+    const beside = await red();
+    await picture(page, 'faults_beside');
+    await turn('ArrowUp', 16);
+    await picture(page, 'faults_hidden');
+    const above = await red();
+    assert.ok(beside > 20 && above < 0.1 * beside, `${beside} pixels from beside, ${above} from above`);
+    await browser.close(page);
+});
+
+test('the words for one face, one vertex and one edge are in the singular', async () => {
+    const page = await browser.open('#model=torus&particles=100', SMALL);
+    await untilFrame(page, 1);
+    const closed = tetrahedra()['t.obj'];
+    await choose(page, 'doubled.obj', `${closed}${closed.trim().split('\n').at(-1)}\n`);
+    await untilReport(page, '1 doubled face left out');
+    await choose(page, 'one.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n');
+    await untilTitle(page, 'one.obj, 1 face');
+    assert.doesNotMatch(`${await page.locator('#subtitle').textContent()} ${await page.locator('#report').textContent()}`, /\b1 (faces|vertices|edges|parts|pairs)\b/);
+    await browser.close(page);
+});
+
 test('the cloth on an open mesh can be pulled, however small the mesh is', async () => {
     const page = await browser.open('#model=torus&particles=400', SMALL);
     await untilFrame(page, 1);

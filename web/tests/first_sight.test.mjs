@@ -91,14 +91,50 @@ async function darkestBesideModel(data) {
     return sums.sort((a, b) => a - b)[Math.round(0.03 * sums.length)];
 }
 
-test('on a small window neither words nor buttons lie over the model', async () => {
-    const page = await browser.open('#model=torus&particles=400', { viewport: { width: 700, height: 500 } });
-    await untilFrame(page, 20);
-    const box = (selector) => page.locator(selector).boundingBox();
-    const [canvas, bar] = [await box('#canvas'), await box('#bar')];
-    assert.ok(bar.y >= canvas.y + canvas.height - 1, 'the buttons are below the picture');
-    await picture(page, 'small_window');
-    await browser.close(page);
+test('in no window words or buttons lie over the model', async () => {
+    for (const [width, height] of [[700, 500], [900, 600], [1400, 900], [390, 844]]) {
+        const page = await browser.open('#model=torus&particles=400', { viewport: { width, height } });
+        await untilFrame(page, 20);
+        await page.locator('#remark').waitFor({ state: 'hidden' });
+        const covers = await page.evaluate(() => {
+            const picture = document.getElementById('canvas').getBoundingClientRect();
+            return ['header', '#transport', '#hands', '#hint', '#figures', '#panel'].filter((selector) => {
+                const { width, height, left, right, top, bottom } = document.querySelector(selector).getBoundingClientRect();
+                return width * height > 0 && left < picture.right - 1 && right > picture.left + 1 && top < picture.bottom - 1 && bottom > picture.top + 1;
+            });
+        });
+        assert.deepEqual(covers, [], `${width} x ${height}`);
+        const cut = await page.evaluate(() => {
+            const { right } = document.getElementById('figures').getBoundingClientRect();
+            return [...document.querySelectorAll('#figures dd')].filter((cell) => {
+                const words = document.createRange();
+                words.selectNodeContents(cell);
+                return words.getBoundingClientRect().right > right;
+            }).length;
+        });
+        assert.equal(cut, 0, `figures cut off at ${width} x ${height}`);
+        await picture(page, `window_${width}`);
+        await browser.close(page);
+    }
+});
+
+test('in the light and in the dark the chosen tab stands out, and its word is legible', async () => {
+    for (const colorScheme of ['light', 'dark']) {
+        const page = await browser.open('#model=torus&particles=100', { ...SMALL, colorScheme });
+        await untilFrame(page, 1);
+        const { edge, word } = await page.evaluate(() => {
+            const luminance = (colour) => {
+                const parts = colour.match(/[\d.]+/g).slice(0, 3).map((part) => (part / 255 <= 0.04 ? part / 255 / 12.92 : ((part / 255 + 0.055) / 1.055) ** 2.4));
+                return 0.2126 * parts[0] + 0.7152 * parts[1] + 0.0722 * parts[2];
+            };
+            const contrast = (a, b) => (Math.max(luminance(a), luminance(b)) + 0.05) / (Math.min(luminance(a), luminance(b)) + 0.05);
+            const chosen = getComputedStyle(document.querySelector('.tabs input:checked + span'));
+            const around = getComputedStyle(document.querySelector('.tabs'));
+            return { edge: contrast(chosen.backgroundColor, around.backgroundColor), word: contrast(chosen.color, chosen.backgroundColor) };
+        });
+        assert.ok(edge > (colorScheme === 'dark' ? 1.4 : 1.1) && word > 4.5, `${colorScheme}: ${edge} and ${word}`);
+        await browser.close(page);
+    }
 });
 
 // The examples of the gallery, with few particles: software draws them.

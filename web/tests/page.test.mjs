@@ -155,6 +155,31 @@ test('keys pause, step and drop the cloth and change the view and the map, and a
     await browser.close(page);
 });
 
+test('a list gives the keys back once the pointer has chosen from it', async () => {
+    const page = await browser.open('#model=sphere&particles=100', SMALL);
+    await untilFrame(page, 1);
+    const colour = page.locator('select[name=colour]');
+    await colour.dispatchEvent('pointerdown');
+    await colour.focus();
+    await colour.selectOption('depth');
+    await page.keyboard.press('Space');
+    assert.equal(await page.locator('#pause').textContent(), 'Go on');
+    await colour.focus();
+    await page.keyboard.press('ArrowUp');
+    assert.ok(await colour.evaluate((list) => list === document.activeElement), 'keys that move in a list stay in it');
+    await browser.close(page);
+});
+
+test('a click on a figure says what it means, and the time of a step stands beside what it simulates', async () => {
+    const page = await browser.open('#model=torus&particles=400', SMALL);
+    await page.waitForFunction(() => /^\d+(\.\d+)?\u2009ms of 4\.17$/.test(document.getElementById('figure-step').textContent));
+    for (const figure of await page.locator('#figures > div:visible').all()) {
+        await figure.click();
+        assert.match(await page.locator('#remark').textContent(), new RegExp(`^${await figure.locator('dt').textContent()}: .{20}`));
+    }
+    await browser.close(page);
+});
+
 test('the saved mesh is an OBJ file of the cloth and the model', async () => {
     const page = await browser.open('#model=sphere&particles=400', SMALL);
     await untilFrame(page, 2);

@@ -1,4 +1,5 @@
 import { SCALE } from '../view/colours';
+import { count } from './numbers';
 
 /** The element of index.html with this id. */
 export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
@@ -28,3 +29,14 @@ export function scaleBar(): HTMLElement {
 }
 
 const css = (colour: number): string => `#${colour.toString(16).padStart(6, '0')}`;
+
+/** A number that should be 0, as a figure; without one, the figure is not there. */
+export function writeCount(id: string, number: number | undefined): void {
+    const cell = byId(id);
+    const figure = cell.parentElement!;
+    figure.hidden = number === undefined;
+    if (number === undefined) return;
+    cell.textContent = count(number);
+    figure.classList.toggle('some', number > 0);
+    figure.classList.toggle('none', number === 0);
+}

@@ -1,6 +1,7 @@
 import type { Cuts, Figures, MapNews } from '../protocol';
-import { byId } from './elements';
-import { bytes, count, milliseconds, perSecond } from './numbers';
+import { byId, make, writeCount } from './elements';
+import { remark } from './notice';
+import { bytes, milliseconds, perSecond } from './numbers';
 
 /** How often the figures are updated: flickering numbers are unreadable. */
 const PERIOD_MS = 250;
@@ -16,6 +17,12 @@ export class FigureStrip {
     #steps = 0;
     #sums: Sums = { ...NOTHING };
     #mostInside = 0;
+    #stepSeconds = 0;
+
+    constructor() {
+        // A finger sees no titles.
+        for (const figure of document.querySelectorAll<HTMLElement>('#figures > [title]')) figure.addEventListener('click', () => remark(`${figure.querySelector('dt')!.textContent}: ${figure.title}`));
+    }
 
     countDrawing(): void {
         ++this.#drawn;
@@ -29,6 +36,7 @@ export class FigureStrip {
 
     add(figures: Figures): void {
         this.#steps += figures.stepCount;
+        this.#stepSeconds = figures.stepSeconds;
         for (const key of Object.keys(NOTHING) as (keyof Sums)[]) this.#sums[key] += figures.stepCount * figures[key];
         // The largest since the last update: a single frame with a particle inside must not go unnoticed.
         this.#mostInside = Math.max(this.#mostInside, figures.inside);
@@ -54,7 +62,7 @@ export class FigureStrip {
 
     #writeMeans(): void {
         const mean = (key: keyof Sums) => this.#sums[key] / this.#steps;
-        byId('figure-step').textContent = milliseconds(mean('stepMs'));
+        byId('figure-step').replaceChildren(milliseconds(mean('stepMs')), make('small', ` of ${(1000 * this.#stepSeconds).toFixed(2)}`));
         byId('figure-constraints').textContent = milliseconds(mean('constraintMs'));
         byId('figure-collision').textContent = milliseconds(mean('collisionMs'));
         byId('figure-queries').textContent = perSecond(mean('queriesPerSecond'));
@@ -67,12 +75,4 @@ export class FigureStrip {
         writeCount('figure-inside', this.#mostInside);
         this.#mostInside = 0;
     }
-}
-
-/** A number that should be 0. */
-function writeCount(id: string, number: number): void {
-    const cell = byId(id);
-    cell.textContent = count(number);
-    cell.parentElement!.classList.toggle('some', number > 0);
-    cell.parentElement!.classList.toggle('none', number === 0);
 }

@@ -1,4 +1,4 @@
-import { byId, make } from '../panel/elements';
+import { byId, make, writeCount } from '../panel/elements';
 import { count, milliseconds, perSecond } from '../panel/numbers';
 import type { Description, RecordedFrame } from './description';
 
@@ -16,10 +16,10 @@ export function showAbout(description: Description): void {
 }
 
 /** The facts of one frame. */
-export function showFrame({ number, inside }: RecordedFrame, timeStep: number): void {
-    const cell = byId('figure-inside');
-    cell.textContent = count(inside);
-    cell.parentElement!.classList.toggle('some', inside > 0);
+export function showFrame({ number, inside, intersecting_pairs, self_intersecting_pairs }: RecordedFrame, timeStep: number): void {
+    writeCount('figure-inside', inside);
+    writeCount('figure-pairs', intersecting_pairs);
+    writeCount('figure-own-pairs', self_intersecting_pairs);
     byId('figure-time').textContent = `${(number * timeStep).toFixed(2)}\u2009s`;
     byId('figure-frame').textContent = count(number);
 }

@@ -42,6 +42,9 @@ export interface Figures {
 export interface RecordedFrame {
     number: number;
     inside: number;
+    /** Of faces: of the cloth and a model, and of the cloth alone; where all frames were judged. */
+    intersecting_pairs?: number;
+    self_intersecting_pairs?: number;
     /** The smallest coordinates, in lattice steps. */
     origin: Triple;
     /** Of the first frame, and of each where the model moves. */

@@ -1,12 +1,15 @@
 import * as THREE from 'three';
 import { AXES, type Axis } from '../axes';
-import type { FrameArrays } from '../protocol';
+import type { ClothNews, FrameArrays } from '../protocol';
 import { ClothView } from '../view/cloth_view';
 import { ModelView } from '../view/model_view';
 import type { Stage } from '../view/stage';
 import type { Description, Part, Pose, RecordedFrame } from './description';
 import { surfaceNormals } from '../surface_normals';
 import type { Recording } from './recording';
+
+/** By how much of its width a flat cloth may rise, and a square one be shorter. */
+const FLAT = 0.001;
 
 /** Model and cloth of a recording on a stage. */
 export class World {
@@ -15,6 +18,7 @@ export class World {
     readonly #models: ModelView[] = [];
     #spare: FrameArrays;
     readonly #ahead: Float32Array;
+    #begun = false;
 
     constructor(stage: Stage, recording: Recording) {
         this.#recording = recording;
@@ -31,7 +35,6 @@ export class World {
             firstVertex += vertices;
             firstFace += faces;
         }
-        this.#cloth.begin({ faces: recording.clothFaces, thickness: figures.thickness });
 
         const { axis, turn } = upright(figures.gravity);
         const group = new THREE.Group();
@@ -59,9 +62,18 @@ export class World {
         this.#models.push(view);
     }
 
+    /** Once the first frame has been read. */
+    #begin(): void {
+        const { figures, model } = this.#recording.description;
+        this.#recording.positionsOf(0, this.#ahead);
+        this.#cloth.begin({ faces: this.#recording.clothFaces, thickness: figures.thickness, ...fabricOf(this.#ahead, model.radius) });
+        this.#begun = true;
+    }
+
     /** @param share  of the way to the next frame */
     show(frame: number, share: number): void {
         const { frames, figures } = this.#recording.description;
+        if (!this.#begun) this.#begin();
         const arrays = this.#spare;
         this.#recording.positionsBetween(frame, share, arrays.positions, this.#ahead);
         surfaceNormals(arrays.positions, this.#recording.clothFaces, arrays.normals);
@@ -69,6 +81,25 @@ export class World {
         const next = share > 0 ? posesOf(frames[frame + 1]) : undefined;
         posesOf(frames[frame])?.forEach((pose, i) => this.#models[i].follow(next ? between(pose, next[i], share) : pose));
     }
+}
+
+/** Of a cloth that begins flat: its places on the fabric, in radii, and the border of a square one. Of others no fabric is known. */
+function fabricOf(positions: Float32Array, radius: number): Partial<ClothNews> {
+    const bounds = [0, 1, 2].map((k) => {
+        let least = Infinity, most = -Infinity;
+        for (let i = k; i < positions.length; i += 3) [least, most] = [Math.min(least, positions[i]), Math.max(most, positions[i])];
+        return { k, least, size: most - least };
+    });
+    const [wide, long, high] = bounds.sort((a, b) => b.size - a.size || a.k - b.k);
+    if (high.size > FLAT * wide.size) return {};
+    const weave = new Float32Array((2 * positions.length) / 3);
+    let toCorner = Infinity; // a disc has none
+    for (let i = 0; i < weave.length; i += 2) {
+        [wide, long].forEach(({ k, least }, j) => (weave[i + j] = (positions[1.5 * i + k] - least) / radius));
+        toCorner = Math.min(toCorner, weave[i] + weave[i + 1]);
+    }
+    const edge = wide.size / radius;
+    return { weave, ...(long.size > (1 - FLAT) * wide.size && toCorner < FLAT * edge && { hem: edge }) };
 }
 
 function between(from: Pose, to: Pose, share: number): Pose {

@@ -46,13 +46,12 @@ export class ClothView {
 
     /**
      * Another cloth, which becomes visible with its first arrays. A face with the same corner twice at its end is a piece of thread.
-     * @param unit  the length that places on the fabric are measured by, for the border of a sheet
      */
     begin(cloth: Partial<ClothNews> & Pick<ClothNews, 'faces'>): void {
         this.#cloth = cloth;
         this.#shown = undefined;
         this.#uniforms.tinted.value = cloth.tints ? 1 : 0;
-        this.#uniforms.hem.value = cloth.columns && cloth.weave ? cloth.weave[cloth.weave.length - 1] : 0;
+        this.#uniforms.hem.value = cloth.hem ?? 0;
         this.#front.color.set(cloth.soft ? FLESH : CLOTH);
         this.#lay(sheet(NOTHING, NO_CLOTH));
         this.markWrong(new Uint32Array(0));

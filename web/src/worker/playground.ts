@@ -4,9 +4,10 @@ import { creasedNormals } from '../creased_normals';
 import type { ClothNews, FrameArrays, Figures, MapNews, ModelNews, ModelShape, Stage, Triple } from '../protocol';
 import type { Settings } from '../settings';
 import { surfaceNormals } from '../surface_normals';
-import type { Act } from './acts/act';
+import type { Act, Garment } from './acts/act';
+import { SIZE, sheets } from './acts/sheets';
 import { Ball, ballRadius } from './ball';
-import { type Body, SIZE, columnsOf, groundSize, sceneFor, thicknessOf } from './cloth_scene';
+import { type Body, columnsOf, groundSize, sceneFor } from './cloth_scene';
 import { measureDepths } from './depth';
 import { Hand } from './hand';
 import { Judge } from './judge';
@@ -59,7 +60,7 @@ export class Playground {
     #flippedParts = 0;
 
     readonly #maps: Maps;
-    readonly #act: Act | undefined;
+    readonly #act: Act;
     readonly #ball: Ball;
     readonly #ground: ExactMap;
 
@@ -70,6 +71,8 @@ export class Playground {
     #judge!: Judge;
     #contacts!: ContactBuffer;
     #cloth!: Omit<ClothNews, 'ball'>;
+    /** Of a single sheet. */
+    #columns: number | undefined;
     /** Seconds that the model has moved by itself: not while it is held. */
     #ownSeconds = 0;
     /** Seconds that it has deformed. */
@@ -89,7 +92,7 @@ export class Playground {
         this.#echinus = echinus;
         this.#settings = settings;
         this.#name = model.name;
-        this.#act = model.act;
+        this.#act = model.act ?? sheets();
         this.#mesh = model.mesh;
         try {
             tell('mending');
@@ -145,7 +148,7 @@ export class Playground {
             name: this.#name,
             vertices,
             faces,
-            ...(faces.length <= 3 * CREASED_FACES && !this.#act?.shape ? { shape: creasedNormals(vertices, faces) } : { normals: normalsOf(vertices, faces) }),
+            ...(faces.length <= 3 * CREASED_FACES && !this.#act.shape ? { shape: creasedNormals(vertices, faces) } : { normals: normalsOf(vertices, faces) }),
             report: this.#report,
             certainShare: this.exactMap.description.certainShare,
             faults: this.#faults,
@@ -174,7 +177,7 @@ export class Playground {
     }
 
     #follow(settings: Settings, before: Settings): boolean {
-        if (this.#maps.by(settings).map !== this.#clothMap || settings.particles !== before.particles) {
+        if (this.#maps.by(settings).map !== this.#clothMap || settings.particles !== before.particles || settings.cloths !== before.cloths) {
             this.restart();
             return true;
         }
@@ -200,8 +203,8 @@ export class Playground {
     restart(): void {
         const scene = this.#echinus.parseScene(sceneFor(this.#settings, this.body, this.#act));
         const { map } = this;
-        const garment = this.#act?.cloth?.(this.#echinus, this.#settings);
-        const bodies = this.#act?.bodies?.(this.#echinus) ?? [];
+        const garment = this.#act.cloth?.(this.#echinus, this.#settings, this.body);
+        const bodies = this.#act.bodies?.(this.#echinus) ?? [];
         let simulation;
         try {
             simulation = unlessRefused(scene, () => scene.makeSimulation(this.#clothMaps, { allowOpenCollider: true, bodies, ...(garment && { cloth: garment.mesh }) }));
@@ -212,12 +215,12 @@ export class Playground {
         this.#clothMap = map;
         this.#scene = scene;
         this.#simulation = simulation;
-        const columns = scene.particleCount === null ? undefined : columnsOf(this.#settings.particles);
+        this.#columns = scene.particleCount === null ? undefined : columnsOf(this.#settings.particles);
         this.#cloth = {
             faces: simulation.faces,
-            thickness: thicknessOf(this.#settings, this.body, this.#act),
-            ...(columns && { columns, weave: weaveOf(columns) }),
-            ...(garment && { weave: garment.weave, ...(garment.tints && { tints: garment.tints }) }),
+            thickness: this.#act.thickness(this.#settings, this.body),
+            ...(this.#columns && { weave: weaveOf(this.#columns), hem: SIZE }),
+            ...(garment && onFabric(garment)),
             soft: bodies.length > 0,
         };
         this.#judge = new Judge(this.#echinus, this.exactMap, simulation.particleCount);
@@ -283,10 +286,10 @@ export class Playground {
 
     hold(offset: Triple): void {
         const { bottom, floor, up } = this.body;
-        const least = this.#act?.deepest ?? floor - bottom;
+        const least = this.#act.deepest ?? floor - bottom;
         const k = AXES.indexOf(up);
         // The model may be lower already by its own motion.
-        const own = this.#act?.motion ? this.collider.position[k] - this.shake.offset[k] : 0;
+        const own = this.#act.motion ? this.collider.position[k] - this.shake.offset[k] : 0;
         this.shake.hold(offset, k, least - own);
     }
 
@@ -301,7 +304,7 @@ export class Playground {
         this.#moveModel();
         const wind = this.#windAt(seconds);
         if (wind.some((part) => part !== 0)) simulation.blow(wind, 4);
-        this.#act?.steer?.(simulation, seconds);
+        this.#act.steer?.(simulation, seconds);
         this.hand.pull(simulation, this.#scene.timeStep, FASTEST * radius);
         if (simulation.colliderCount > BALL) this.#ball.move(simulation, this.exactMap, BALL, this.#scene.timeStep);
         simulation.step();
@@ -311,7 +314,7 @@ export class Playground {
     #moveModel(): void {
         const { timeStep } = this.#scene;
         const { radius, up } = this.body;
-        const own = this.#act?.motion?.(this.#ownSeconds) ?? motionAt(this.#settings.motion, UNIT[up], this.#ownSeconds, this.exactMap.centre, this.#simulation.collider);
+        const own = this.#act.motion?.(this.#ownSeconds) ?? motionAt(this.#settings.motion, UNIT[up], this.#ownSeconds, this.exactMap.centre, this.#simulation.collider);
         const held = this.shake.advance(timeStep, FASTEST * radius);
         const still: Triple = [0, 0, 0];
         const { linear, angular } = this.shake.holds ? { linear: still, angular: still } : own;
@@ -322,7 +325,7 @@ export class Playground {
 
     #deformModel(): void {
         const { surfaces, map } = this.#settings;
-        if (!this.#act?.shape || !surfaces || map !== 'exact') return;
+        if (!this.#act.shape || !surfaces || map !== 'exact') return;
         this.#shapeSeconds += this.#scene.timeStep; // where surfaces were off meanwhile, it goes on from the shape that it had
         this.#shape = this.#act.shape(this.#shapeSeconds);
         this.#simulation.setColliderVertices(this.#shape);
@@ -335,7 +338,7 @@ export class Playground {
     }
 
     #windAt(seconds: number): Triple {
-        const own = this.#act?.wind?.(seconds) ?? [0, 0, 0];
+        const own = this.#act.wind?.(seconds) ?? [0, 0, 0];
         const visitors = this.#settings.wind > 0 ? this.#gust(seconds) : [0, 0, 0];
         return own.map((part, k) => part * this.body.radius + visitors[k]) as Triple;
     }
@@ -352,14 +355,14 @@ export class Playground {
         const { motion, wind, hand } = this.#settings;
         const seconds = this.#frame * this.#scene.timeStep;
         const isMoved = this.hand.holds || this.shake.moves(this.body.radius) || (hand === 'ball' && this.#ball.isLed);
-        return this.#simulation.atRest && motion === 'still' && wind === 0 && !isMoved && seconds >= (this.#act?.lasts ?? 0);
+        return this.#simulation.atRest && motion === 'still' && wind === 0 && !isMoved && seconds >= this.#act.lasts;
     }
 
     #look(arrays: FrameArrays | undefined, before: SimulationProfile, stepCount: number, ms: number, paused: boolean): Look {
         const simulation = this.#simulation;
         const filled = fitted(arrays, simulation.particleCount);
         filled.positions.set(simulation.positions);
-        if (this.#cloth.columns) sheetNormals(filled.positions, this.#cloth.columns, filled.normals);
+        if (this.#columns) sheetNormals(filled.positions, this.#columns, filled.normals);
         else surfaceNormals(filled.positions, this.#cloth.faces, filled.normals);
         if (this.#settings.colour === 'depth') measureDepths(simulation, this.#cloth.thickness, this.#contacts, filled.depths);
         const wrong = this.#shape ? this.#judge.wrongNow(simulation) : this.#judge.wrongOf(filled.positions, simulation.collider);
@@ -370,6 +373,7 @@ export class Playground {
             frame: this.#frame,
             paused,
             atRest: this.#rests(),
+            stepSeconds: this.#scene.timeStep,
             stepMs: stepCount > 0 ? ms / stepCount : 0,
             constraintMs: perStep * (after.constraintSeconds - before.constraintSeconds),
             collisionMs: perStep * collisionSeconds,
@@ -388,7 +392,7 @@ export class Playground {
         this.#scene.delete();
         this.#scene = scene;
         this.#simulation = simulation;
-        this.#cloth = { ...this.#cloth, thickness: thicknessOf(this.#settings, this.body, this.#act) };
+        this.#cloth = { ...this.#cloth, thickness: this.#act.thickness(this.#settings, this.body) };
     }
 
     #mend(): void {
@@ -418,13 +422,13 @@ function unlessRefused<T>(scene: Scene, act: () => T): T {
     }
 }
 
-function bodyOf(mesh: Mesh, map: ExactMap, up: Axis, act: Act | undefined): Body {
+function bodyOf(mesh: Mesh, map: ExactMap, up: Axis, act: Act): Body {
     const { vertices } = mesh;
     const k = AXES.indexOf(up);
     const top = furthestAlong(up, vertices)[k], bottom = -furthestAlong(up, vertices.map((part) => -part))[k];
-    const { centre, radius } = act?.body ?? map;
+    const { centre, radius } = act.body ?? map;
     // Room for a cloth that hangs over a flat model.
-    const floor = act?.floor ?? bottom - Math.max(0, 0.65 * radius - (top - bottom));
+    const floor = act.floor ?? bottom - Math.max(0, 0.65 * radius - (top - bottom));
     return { centre, radius, up, top, bottom, floor };
 }
 
@@ -450,6 +454,9 @@ function longestEdgeAt(particle: number, faces: Uint32Array, positions: Float32A
         }
     return longest;
 }
+
+/** What the page needs of it. */
+const onFabric = ({ weave, tints, hem }: Garment): Partial<ClothNews> => ({ weave, ...(tints && { tints }), ...(hem && { hem }) });
 
 /** Places on a square sheet, in radii of the model. */
 function weaveOf(columns: number): Float32Array<ArrayBuffer> {

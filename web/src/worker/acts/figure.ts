@@ -1,5 +1,5 @@
 import { columnsOf } from '../cloth_scene';
-import type { Act } from './act';
+import { type Act, garmentOf } from './act';
 import { Dancer } from './dancer';
 import { square } from './sheet_mesh';
 
@@ -44,7 +44,7 @@ export function figure(): Act {
                         faces.push(...square(ring * around + i, around, right)); // red outside
                     }
                 }
-            return { mesh: echinus.makeMesh(vertices, faces), weave: new Float32Array(weave) };
+            return garmentOf(echinus, { vertices, faces, weave });
         },
         motion: (seconds) => ({ linear: [0, 0, 0], angular: [0, 0, turning(seconds)] }),
     };

@@ -1,5 +1,5 @@
 import { columnsOf } from '../cloth_scene';
-import type { Act } from './act';
+import { type Act, garmentOf } from './act';
 import { sheetMesh } from './sheet_mesh';
 import { lathe } from './solids';
 
@@ -30,12 +30,8 @@ export function flag(): Act {
             cloth: { mesh: 'flag', bending: 'sticks', attachments: Array.from({ length: rowsOf(particles) }, (_, row) => row * columnCount(particles)) },
             material: { drag: 0.002 },
         }),
-        cloth(echinus, { particles }) {
-            const { vertices, faces, weave } = sheetMesh(columnCount(particles), rowsOf(particles), [WIDTH, HEIGHT], (u, v) => [
-                RADIUS + GAP + u * WIDTH, 0.05 * u * Math.sin(9 * u), LEVEL - v * HEIGHT,
-            ]);
-            return { mesh: echinus.makeMesh(vertices, faces), weave: new Float32Array(weave) };
-        },
+        cloth: (echinus, { particles }) =>
+            garmentOf(echinus, sheetMesh(columnCount(particles), rowsOf(particles), [WIDTH, HEIGHT], (u, v) => [RADIUS + GAP + u * WIDTH, 0.05 * u * Math.sin(9 * u), LEVEL - v * HEIGHT])),
         wind: (seconds) => {
             const turn = 0.5 * Math.sin(1.9 * seconds) + 0.35 * Math.sin(4.3 * seconds + 1) + 0.2 * Math.sin(7.1 * seconds);
             const speed = 4.5 + 1.2 * Math.sin(0.9 * seconds);
