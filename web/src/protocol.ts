@@ -201,7 +201,7 @@ export interface Figures {
     collisionMs: number;
     /** Particle queries per second of collision. */
     queriesPerSecond: number;
-    /** Judged by the exact map, whichever map the cloth uses. */
-    inside: number;
+    /** Judged by the exact map, whichever map the cloth uses; an open model has no inside. */
+    inside?: number;
     stepCount: number;
 }

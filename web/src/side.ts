@@ -11,7 +11,8 @@ type Frame = FromWorker & { kind: 'frame' };
 
 /** What is wrong with a cloth, as far as it is known. */
 export interface Counts {
-    inside: number;
+    /** Of a closed model. */
+    inside?: number;
     withModel?: number;
     own?: number;
 }
@@ -27,7 +28,7 @@ export class Side {
     /** Of the model, where it has deformed. */
     shape: ModelShape | undefined;
     ball: { radius: number; position?: Triple } | undefined;
-    counts: Counts = { inside: 0 };
+    counts: Counts = {};
     frame = 0;
     keepsOffItself = false;
     news: ClothNews | undefined;
@@ -60,7 +61,7 @@ export class Side {
                 this.frame = 0;
                 this.shape = undefined;
                 this.#atRest = false;
-                this.counts = { inside: 0 };
+                this.counts = {};
                 this.view.begin(message);
                 this.#setBall(message.ball);
                 return true;
@@ -115,7 +116,7 @@ export class Side {
             this.shape = next.shape;
             this.frame = next.figures.frame;
             this.#atRest = next.figures.atRest;
-            this.counts.inside = next.figures.inside;
+            this.counts = { ...this.counts, inside: next.figures.inside };
             if (this.ball && next.ball) this.ball.position = next.ball;
             this.#pairs.consider(this.#cloth, next.figures.frame, next.arrays.positions, this.view.faces, next.collider, next.shape?.vertices);
         }

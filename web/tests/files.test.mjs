@@ -126,7 +126,8 @@ test('an open mesh is reported with the number of its border edges', async () =>
     assert.match(await page.locator('#report').textContent(), /Open/);
     await page.locator('input[name=surfaces]').check(); // faces of the cloth that intersect would be red, too
     await untilFrame(page, 1);
-    assert.ok((await pixelsOf(page, FAULT_RED, 32)) > 15, 'the border is drawn, where the cloth does not hide it');
+    const red = await pixelsOf(page, FAULT_RED, LINE_RED);
+    assert.ok(red > 15, `the border is drawn, where the cloth does not hide it: ${red} pixels`);
     await page.locator('input[name=map][value=distance]').check();
     await page.waitForFunction(() => document.getElementById('map-note').textContent.includes('paper') || !document.getElementById('notice').hidden);
     await page.locator('#restart').click();
@@ -148,7 +149,7 @@ test('a line of faults shows only faintly through the cloth that hides it', asyn
     await page.locator('select[name=up]').selectOption('z');
     await choose(page, 'cup.obj', cup);
     await untilReport(page, '4 border edges');
-    const red = () => pixelsOf(page, FAULT_RED, 44); // lines are thin, and the cloth is another red
+    const red = () => pixelsOf(page, FAULT_RED, LINE_RED);
     const turn = async (key, count) => {
         for (let press = 0; press < count; ++press) await page.keyboard.press(key);
         await page.waitForTimeout(500);
@@ -202,6 +203,8 @@ test('the cloth on an open mesh can be pulled, however small the mesh is', async
 
 /** The fault colours of view/colours.ts. */
 const FAULT_RED = [0xd1, 0x24, 0x2f];
+/** How far from it thin lines are, whose rims are blended. The cloth's red is farther. */
+const LINE_RED = 44;
 
 /** The number of pixels in the model's picture with about this colour. Of lines, whose rims are blended, more tolerance finds most. */
 async function pixelsOf(page, colour, tolerance = 12) {

@@ -145,6 +145,9 @@ test('an open model says what that means, and how much is certain', async () => 
     await page.locator('#file').setInputFiles({ name: 'open.obj', mimeType: 'model/obj', buffer: Buffer.from(closed.slice(0, closed.lastIndexOf('f '))) });
     await page.waitForFunction(() => /Open: sides/.test(document.getElementById('report').textContent));
     assert.match(await page.locator('#report').textContent(), /in \d+(\.\d+)?\u2009% of the ball around it the answer is certain.*Close its holes/);
+    await page.locator('#figure-inside').waitFor({ state: 'hidden' }); // it has no inside
+    await untilFrame(page, 60);
+    assert.doesNotMatch(await page.locator('#headline').textContent(), /inside/);
     await browser.close(page);
 });
 
@@ -178,6 +181,8 @@ test('the tour goes through the exact map by itself or by a key, and ends at the
     await page.keyboard.press('Enter');
     await untilStop(1);
     await page.waitForTimeout(400);
+    const [picturePlace, wordsPlace] = [await page.locator('#canvas').boundingBox(), await page.locator('#tour').boundingBox()];
+    assert.ok(wordsPlace.y >= picturePlace.y + picturePlace.height - 1, 'its words are not over the model');
     await picture(page, 'tour');
     await page.locator('#tour-next').click();
     await untilStop(2);

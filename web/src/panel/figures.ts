@@ -16,7 +16,7 @@ export class FigureStrip {
     #since = performance.now();
     #steps = 0;
     #sums: Sums = { ...NOTHING };
-    #mostInside = 0;
+    #mostInside: number | undefined = 0;
     #stepSeconds = 0;
 
     constructor() {
@@ -39,7 +39,7 @@ export class FigureStrip {
         this.#stepSeconds = figures.stepSeconds;
         for (const key of Object.keys(NOTHING) as (keyof Sums)[]) this.#sums[key] += figures.stepCount * figures[key];
         // The largest since the last update: a single frame with a particle inside must not go unnoticed.
-        this.#mostInside = Math.max(this.#mostInside, figures.inside);
+        this.#mostInside = figures.inside === undefined ? undefined : Math.max(this.#mostInside ?? 0, figures.inside);
         if (figures.stepCount === 0) this.#writeInside();
     }
 

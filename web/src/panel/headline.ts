@@ -18,11 +18,12 @@ export function showHeadline(particles: number, soft: boolean, counts: Counts, m
 function verdict(counts: Counts): HTMLElement {
     const wrong = wrongsOf(counts);
     if (wrong.length > 0) return make('span', wrong.join(' and '), 'bad');
-    return make('span', counts.withModel === undefined ? 'none inside the model' : 'no face through the model', 'good');
+    if (counts.withModel !== undefined) return make('span', 'no face through the model', 'good');
+    return counts.inside === undefined ? make('span', 'falling') : make('span', 'none inside the model', 'good');
 }
 
 /** What is wrong with a cloth, in words; nothing, where nothing is. */
-export function wrongsOf({ inside, withModel = 0 }: Counts): string[] {
+export function wrongsOf({ inside = 0, withModel = 0 }: Counts): string[] {
     return [
         ...(inside > 0 ? [`${count(inside)} inside the model`] : []),
         ...(withModel > 0 ? [`${count(withModel)} ${withModel === 1 ? 'pair of faces' : 'pairs of faces'} cut`] : []),

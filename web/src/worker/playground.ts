@@ -365,7 +365,7 @@ export class Playground {
         if (this.#columns) sheetNormals(filled.positions, this.#columns, filled.normals);
         else surfaceNormals(filled.positions, this.#cloth.faces, filled.normals);
         if (this.#settings.colour === 'depth') measureDepths(simulation, this.#cloth.thickness, this.#contacts, filled.depths);
-        const wrong = this.#shape ? this.#judge.wrongNow(simulation) : this.#judge.wrongOf(filled.positions, simulation.collider);
+        const wrong = this.#wrongOf(filled.positions);
         const after = simulation.profile;
         const perStep = 1000 / Math.max(1, stepCount);
         const collisionSeconds = after.collisionSeconds - before.collisionSeconds;
@@ -378,10 +378,16 @@ export class Playground {
             constraintMs: perStep * (after.constraintSeconds - before.constraintSeconds),
             collisionMs: perStep * collisionSeconds,
             queriesPerSecond: collisionSeconds > 0 ? (after.queryCount - before.queryCount) / collisionSeconds : 0,
-            inside: wrong.length,
+            ...(this.#report.closed && { inside: wrong.length }),
             stepCount,
         };
         return { arrays: filled, figures, wrong, ...this.#shapeNews(), ...(simulation.colliderCount > BALL && { ball: simulation.colliderAt(BALL).position }) };
+    }
+
+    /** The particles inside, where there is an inside. */
+    #wrongOf(positions: Float32Array): Uint32Array<ArrayBuffer> {
+        if (!this.#report.closed) return new Uint32Array(0);
+        return this.#shape ? this.#judge.wrongNow(this.#simulation) : this.#judge.wrongOf(positions, this.#simulation.collider);
     }
 
     #continue(): void {
