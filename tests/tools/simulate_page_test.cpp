@@ -123,6 +123,18 @@ TEST_F(SimulatePage, CountsTheParticlesInsideInEachFrame) {
     EXPECT_EQ(page.description["frames"].back()["inside"], 0);
 }
 
+TEST_F(SimulatePage, HasThePairsOfFacesThatIntersectInEachFrameWhereAllAreJudged) {
+    write("cut.json", R"({"model": {"box": {"size": [1, 1, 1]}}, "frame_limit": 42,
+        "cloth": {"particles": [2, 2], "size": [4, 4], "position": [0, 0, 0.6]},
+        "surface_collision": false})");
+    const PlayerPage page = play("cut.json", {"--judge", "all"});
+    EXPECT_EQ(page.description["frames"].front()["intersecting_pairs"], 0);
+    EXPECT_EQ(page.description["frames"].back()["number"], 42);
+    EXPECT_GT(page.description["frames"].back()["intersecting_pairs"], 0);
+    for (const json& frame : page.description["frames"]) EXPECT_EQ(frame["self_intersecting_pairs"], 0);
+    EXPECT_FALSE(play("cut.json").description["frames"].back().contains("intersecting_pairs"));
+}
+
 TEST_F(SimulatePage, HasAPoseForEachFrameOfAModelThatMoves) {
     write("turning.json", R"({"model": {"box": {}}, "collider": {"angular_velocity": [0, 0, 90]},
         "cloth": {"particles": [2, 2], "size": [1, 1], "position": [0, 0, 2]}, "frame_limit": 24})");

@@ -167,8 +167,12 @@ Course run(Simulation& simulation, Results& results, std::uint32_t frame_limit, 
     const std::vector<Collider>& colliders = simulation.colliders();
     Course course;
     if (judge) course.worst.emplace();
+    std::optional<PairCounts> pairs;
     const auto judge_frame = [&] {
-        if (judge) course.worst->judge(simulation.frame(), judge->count(simulation));
+        if (!judge) return;
+        pairs = judge->count(simulation);
+        course.worst->judge(simulation.frame(), *pairs);
+        if (results.page) results.page->recording->add_pairs(simulation.frame(), *pairs);
     };
     for (const Collider& collider : colliders) course.poses.push_back({{simulation.frame(), collider.pose}});
     results.watch(simulation, stride);
@@ -187,7 +191,10 @@ Course run(Simulation& simulation, Results& results, std::uint32_t frame_limit, 
                 course.poses[c].push_back({simulation.frame(), colliders[c].pose});
         progress(static_cast<double>(simulation.frame()) / frame_limit);
     }
-    if (results.page) results.page->recording->finish(simulation);
+    if (results.page) {
+        results.page->recording->finish(simulation);
+        if (pairs) results.page->recording->add_pairs(simulation.frame(), *pairs);
+    }
     return course;
 }
 

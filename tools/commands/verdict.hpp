@@ -1,5 +1,7 @@
 #pragma once
 
+#include "recording/recording.hpp"
+
 #include <echinus/collider.hpp>
 #include <echinus/exact_map.hpp>
 #include <echinus/mesh.hpp>
@@ -13,12 +15,6 @@
 struct ContactGap {
     std::size_t particle_count = 0;
     double mean = 0, least = 0; ///< units; meaningless without particles
-};
-
-/// How many pairs of faces intersect.
-struct PairCounts {
-    std::size_t with_models = 0; ///< a face of the cloth and one of a model
-    std::size_t own = 0;         ///< two faces of the cloth, beyond what they share
 };
 
 /// How a cloth lies on a model.

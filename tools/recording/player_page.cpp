@@ -77,6 +77,10 @@ Json frames_of(const Recording& recording, const Lattice& lattice, bool moves) {
     for (const RecordedFrame& frame : recording.frames()) {
         Json entry{
             {"number", frame.number}, {"inside", frame.inside_count}, {"origin", origin_of(frame, lattice)}};
+        if (frame.pairs) {
+            entry.add("intersecting_pairs", frame.pairs->with_models);
+            entry.add("self_intersecting_pairs", frame.pairs->own);
+        }
         if (moves || &frame == &recording.frames().front()) {
             if (frame.poses.size() == 1)
                 entry.add("pose", to_json(frame.poses.front()));

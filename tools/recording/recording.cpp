@@ -40,10 +40,14 @@ void Recording::finish(const Simulation& simulation) {
     if (frames_.empty() || frames_.back().number != simulation.frame()) add(simulation);
 }
 
+void Recording::add_pairs(std::uint32_t frame, const PairCounts& pairs) {
+    if (!frames_.empty() && frames_.back().number == frame) frames_.back().pairs = pairs;
+}
+
 void Recording::add(const Simulation& simulation) {
     const std::span<const Vec3f> positions = simulation.positions();
-    RecordedFrame& frame =
-        frames_.emplace_back(RecordedFrame{simulation.frame(), {positions.begin(), positions.end()}, {}, 0});
+    RecordedFrame& frame = frames_.emplace_back(
+        RecordedFrame{simulation.frame(), {positions.begin(), positions.end()}, {}, 0, {}});
     for (std::size_t c = 0; c < models_.size(); ++c) {
         const Collider& collider = simulation.colliders()[c];
         frame.poses.push_back(collider.pose);

@@ -5,14 +5,22 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
+
+/// How many pairs of faces intersect.
+struct PairCounts {
+    std::size_t with_models = 0; ///< a face of the cloth and one of a model
+    std::size_t own = 0;         ///< two faces of the cloth, beyond what they share
+};
 
 /// A frame that was recorded.
 struct RecordedFrame {
     std::uint32_t number;
     std::vector<echinus::Vec3f> positions;      ///< [particle_count] of the cloth, in the world
     std::vector<echinus::RigidTransform> poses; ///< of the colliders
-    std::size_t inside_count; ///< particles inside a model, by its exact map; inside two of them twice
+    std::size_t inside_count;        ///< particles inside a model, by its exact map; inside two of them twice
+    std::optional<PairCounts> pairs; ///< none where they were not counted
 };
 
 /// The recording that a page plays: a simulation's cloth and collider in some of its frames, including the
@@ -29,6 +37,9 @@ class Recording {
     void watch(const echinus::Simulation& simulation);
     /// Records the last frame, due or not.
     void finish(const echinus::Simulation& simulation);
+
+    /// Of a frame, which counts if it is the one recorded last.
+    void add_pairs(std::uint32_t frame, const PairCounts& pairs);
 
     const std::vector<RecordedFrame>& frames() const { return frames_; }
 

@@ -54,6 +54,17 @@ test('a recorded page plays from the disk with an empty console', { skip }, asyn
     await browser.close(page);
 });
 
+test('a recording all of whose frames were judged shows the pairs of faces that intersect, and another does not', { skip }, async () => {
+    const judged = record('recorded_judged', inProject('scenes/torus_small.json'), '--frames', '120', '--judge', 'all');
+    const page = await browser.open(judged, SMALL);
+    await untilPlayed(page, 10);
+    for (const name of ['pairs', 'own-pairs']) assert.equal(await figure(page, name), '0');
+    await page.goto(torus);
+    await untilPlayed(page, 1);
+    assert.ok(!(await page.locator('#figure-pairs').isVisible()));
+    await browser.close(page);
+});
+
 test('it requests nothing but itself', { skip }, async () => {
     const page = await browser.open(torus, SMALL);
     const asked = [];
