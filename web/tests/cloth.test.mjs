@@ -24,7 +24,7 @@ for (const [model, particles] of [['torus', 900], ['horse', 2500]])
 async function fallInWorker({ model, particles }) {
     const script = performance.getEntriesByType('resource').find(({ name }) => /worker-[^/]*\.js$/.test(name)).name;
     const worker = new Worker(script, { type: 'module' });
-    const settings = { model, view: 'cloth', map: 'exact', cells: 'auto', particles, friction: 0.5, surfaces: false, self: false, thickness: 0.5, wind: 0, motion: 'still', up: 'auto', mend: true, colour: 'fabric' };
+    const settings = { model, view: 'cloth', map: 'exact', cells: 'auto', particles, cloths: 1, friction: 0.5, surfaces: false, self: false, thickness: 0.5, wind: 0, motion: 'still', up: 'auto', mend: true, colour: 'fabric' };
     let mostInside = 0;
     return new Promise((resolve, reject) => {
         worker.onmessage = ({ data }) => {

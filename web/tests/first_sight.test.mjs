@@ -168,7 +168,7 @@ test('the figure deforms and turns, and in no frame a face of its skirt is throu
 async function danceInWorker(frames) {
     const scripts = performance.getEntriesByType('resource').map(({ name }) => name);
     const [worker, judge] = [/worker-[^/]*\.js$/, /pairs-[^/]*\.js$/].map((pattern) => new Worker(scripts.find((name) => pattern.test(name)), { type: 'module' }));
-    const settings = { model: 'figure', view: 'cloth', map: 'exact', cells: 'auto', particles: 600, friction: 0.5, surfaces: true, self: false, thickness: 0.5, wind: 0, motion: 'still', up: 'auto', mend: true, colour: 'fabric', hand: 'cloth' };
+    const settings = { model: 'figure', view: 'cloth', map: 'exact', cells: 'auto', particles: 600, cloths: 1, friction: 0.5, surfaces: true, self: false, thickness: 0.5, wind: 0, motion: 'still', up: 'auto', mend: true, colour: 'fabric', hand: 'cloth' };
     const next = (from, kind) => new Promise((resolve, reject) => {
         from.onmessage = ({ data }) => data.kind === 'failed' ? reject(new Error(data.sentence)) : data.kind === kind && resolve(data);
     });

@@ -89,7 +89,7 @@ test('the worker gives each face one colour, by its value, and its normal', asyn
 async function coloursOfWorker() {
     const script = performance.getEntriesByType('resource').find(({ name }) => /worker-[^/]*\.js$/.test(name)).name;
     const worker = new Worker(script, { type: 'module' });
-    const settings = { model: 'torus', view: 'map', map: 'exact', cells: 'auto', particles: 100, friction: 0.5, surfaces: false, self: false, thickness: 0.5, wind: 0, motion: 'still', up: 'auto', mend: true, colour: 'fabric', hand: 'cloth' };
+    const settings = { model: 'torus', view: 'map', map: 'exact', cells: 'auto', particles: 100, cloths: 1, friction: 0.5, surfaces: false, self: false, thickness: 0.5, wind: 0, motion: 'still', up: 'auto', mend: true, colour: 'fabric', hand: 'cloth' };
     const until = (kind) => new Promise((resolve, reject) => {
         worker.onmessage = ({ data }) => data.kind === kind ? resolve(data) : data.kind === 'failed' && reject(new Error(data.sentence));
     });
