@@ -32,7 +32,7 @@ const STOPS: readonly Stop[] = [
         },
     },
     {
-        words: 'One ray from the centre outwards. It is thick where it is inside of the model: the ray alone answers for every point on it.',
+        words: 'One ray from the centre outwards. It is thick where it is inside the model: the ray alone answers for every point on it.',
         move: (tour, share) => tour.tell({ kind: 'ray', direction: around(tour.model()!, 0.35 * share) }),
     },
     {
