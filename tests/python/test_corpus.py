@@ -344,7 +344,12 @@ def test_two_runs_do_not_write_the_same_labels_at_once(folder, tmp_path):
     with _run._alone(corpus_of(folder, tmp_path)):
         with pytest.raises(ValueError, match="another run is writing these labels"):
             corpus.label(corpus_of(folder, tmp_path), workers=1)
+        with pytest.raises(ValueError, match="another run is writing these labels"):
+            corpus.label(corpus_of(folder, tmp_path, shard=(0, 16)), workers=1)
+    with _run._alone(corpus_of(folder, tmp_path, shard=(1, 16))):
         corpus.label(corpus_of(folder, tmp_path, shard=(0, 16)), workers=1)
+        with pytest.raises(ValueError, match="another run is writing these labels"):
+            corpus.label(corpus_of(folder, tmp_path), workers=1)
     corpus.label(corpus_of(folder, tmp_path), workers=1)
 
 
@@ -453,8 +458,11 @@ def test_the_command_says_what_is_wrong(tmp_path):
     for memory in ("inf", "nan", "-1", "0"):
         wrong = subprocess.run([*command, str(tmp_path), "-o", str(tmp_path / "out"), "--memory", memory], capture_output=True, text=True)
         assert wrong.returncode == 1 and "echinus label: memory must be" in wrong.stderr
-    for wrong in (["--shard", "3/3"], ["--format", "other"], ["--sigmas", "x"]):
-        assert subprocess.run([*command, str(tmp_path), "-o", "x", *wrong], capture_output=True).returncode == 2
+    for wrong in (["--shard", "3/3"], ["--shard", "1"], ["--format", "other"], ["--sigmas", "x"]):
+        refused = subprocess.run([*command, str(tmp_path), "-o", "x", *wrong], capture_output=True, text=True)
+        assert refused.returncode == 2 and wrong[0] in refused.stderr
+    wrong = subprocess.run([*command, str(tmp_path), "-o", str(tmp_path / "torus.obj")], capture_output=True, text=True)
+    assert wrong.returncode == 1 and "torus.obj is a file; the labels take a folder" in wrong.stderr
 
 
 # ---- On a cluster

@@ -68,7 +68,7 @@ py::array_t<std::uint32_t> index_array(const py::object& indices, py::ssize_t wi
     for (py::ssize_t i = 0; i < numbers.size(); ++i) {
         if (!is_index(from[i]))
             throw py::value_error(std::string(row) + " " + std::to_string(i / width) + " names the vertex " +
-                                  std::to_string(from[i]));
+                                  py::str(array[py::make_tuple(i / width, i % width)]).cast<std::string>());
         to[i] = static_cast<std::uint32_t>(from[i]);
     }
     return result;

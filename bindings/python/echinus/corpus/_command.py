@@ -103,10 +103,10 @@ def _numbers(text: str) -> tuple[float, ...]:
 
 
 def _shard(text: str) -> tuple[int, int]:
-    i, n = map(int, text.split("/"))
-    if not 0 <= i < n:
-        raise ValueError
-    return i, n
+    i, _, n = text.partition("/")
+    if not (i.isdecimal() and n.isdecimal() and int(i) < int(n)):
+        raise argparse.ArgumentTypeError(f"must be i/n, with i from 0 to n - 1, not {text!r}")
+    return int(i), int(n)
 
 
 def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:

@@ -258,6 +258,8 @@ def label(
         raise ValueError(f"workers must be 1 or more, not {workers}")
     if not 0 < memory < 1 << 63:
         raise ValueError(f"memory must be a positive number of bytes, not {memory}")
+    if os.path.exists(corpus.output) and not os.path.isdir(corpus.output):
+        raise NotADirectoryError(f"{corpus.output} is a file; the labels take a folder")
     os.makedirs(corpus.output, exist_ok=True)
     with _alone(corpus):
         return _label(corpus, workers, scheduler, memory, progress)
@@ -265,21 +267,44 @@ def label(
 
 @contextlib.contextmanager
 def _alone(corpus: Corpus) -> Iterator[None]:
-    """While no other run works on the same part. The lock goes with the process, however it ends."""
+    """While no other run works on the same part, or on the whole. The locks go with the process, however it ends."""
     i, n = corpus.shard
-    path = pathlib.Path(corpus.output, UNFINISHED, f"lock-{i}-of-{n}")
-    path.parent.mkdir(exist_ok=True)
-    with path.open("w") as file:
+    folder = pathlib.Path(corpus.output, UNFINISHED)
+    with contextlib.ExitStack() as locks:
         try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            locks.enter_context(_locked(folder / "lock", shared=n > 1))
+            locks.enter_context(_locked(folder / f"lock-{i}-of-{n}"))
         except BlockingIOError:
             raise ValueError(f"{corpus.output}: another run is writing these labels; wait for it, or choose another folder") from None
-        except OSError:
-            pass  # a file system without locks
-        try:
+        yield
+
+
+@contextlib.contextmanager
+def _locked(path: pathlib.Path, shared: bool = False) -> Iterator[None]:
+    """Raises BlockingIOError where another process holds the lock. Locks nothing on a file system without locks."""
+    while True:
+        path.parent.mkdir(exist_ok=True)
+        with path.open("a+") as file:
+            try:
+                fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+            except BlockingIOError:
+                raise
+            except OSError:
+                pass  # a file system without locks
+            if not _is(file, path):
+                continue  # another run removed it meanwhile
             yield
-        finally:
-            path.unlink(missing_ok=True)
+            with contextlib.suppress(OSError):  # the last to hold it removes it
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                path.unlink(missing_ok=True)
+            return
+
+
+def _is(file: TextIO, path: pathlib.Path) -> bool:
+    try:
+        return os.path.samestat(os.fstat(file.fileno()), path.stat())
+    except FileNotFoundError:
+        return False
 
 
 def _label(corpus: Corpus, workers: int | None, scheduler: str | None, memory: int, progress: TextIO | None) -> Summary:
