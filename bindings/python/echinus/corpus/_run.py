@@ -267,37 +267,47 @@ def label(
 
 @contextlib.contextmanager
 def _alone(corpus: Corpus) -> Iterator[None]:
-    """While no other run works on the same part, or on the whole. The locks go with the process, however it ends."""
+    """While no other run works on the same part, or on the whole. The locks go with the process, however it ends.
+
+    All runs lock the folder: one of a part shares it. So what is in it is removed by none while another works.
+    """
     i, n = corpus.shard
-    folder = pathlib.Path(corpus.output, UNFINISHED)
-    with contextlib.ExitStack() as locks:
-        try:
-            locks.enter_context(_locked(folder / "lock", shared=n > 1))
-            locks.enter_context(_locked(folder / f"lock-{i}-of-{n}"))
-        except BlockingIOError:
-            raise ValueError(f"{corpus.output}: another run is writing these labels; wait for it, or choose another folder") from None
-        yield
+    folder = os.open(corpus.output, os.O_RDONLY)
+    try:
+        _lock(folder, fcntl.LOCK_SH if n > 1 else fcntl.LOCK_EX)
+        with _part_locked(pathlib.Path(corpus.output, UNFINISHED, f"lock-{i}-of-{n}")):
+            yield
+    except BlockingIOError:
+        raise ValueError(f"{corpus.output}: another run is writing these labels; wait for it, or choose another folder") from None
+    finally:
+        os.close(folder)
 
 
 @contextlib.contextmanager
-def _locked(path: pathlib.Path, shared: bool = False) -> Iterator[None]:
-    """Raises BlockingIOError where another process holds the lock. Locks nothing on a file system without locks."""
-    while True:
-        path.parent.mkdir(exist_ok=True)
-        with path.open("a+") as file:
-            try:
-                fcntl.flock(file, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
-            except BlockingIOError:
-                raise
-            except OSError:
-                pass  # a file system without locks
-            if not _is(file, path):
-                continue  # another run removed it meanwhile
-            yield
-            with contextlib.suppress(OSError):  # the last to hold it removes it
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                path.unlink(missing_ok=True)
-            return
+def _part_locked(path: pathlib.Path) -> Iterator[None]:
+    path.parent.mkdir(exist_ok=True)
+    file = path.open("a")
+    try:
+        _lock(file.fileno(), fcntl.LOCK_EX)
+        while not _is(file, path):  # an earlier run removed it meanwhile
+            file.close()
+            file = path.open("a")
+            _lock(file.fileno(), fcntl.LOCK_EX)
+        yield
+        if _is(file, path):  # a whole run has removed it with its folder
+            path.unlink()
+    finally:
+        file.close()
+
+
+def _lock(descriptor: int, how: int) -> None:
+    """Raises BlockingIOError where another process holds the lock. Does nothing on a file system without locks."""
+    try:
+        fcntl.flock(descriptor, how | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise
+    except OSError:
+        pass
 
 
 def _is(file: TextIO, path: pathlib.Path) -> bool:
