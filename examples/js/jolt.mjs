@@ -4,7 +4,7 @@ import { load } from 'echinus';
 import { JoltCollision } from 'echinus/jolt';
 import { MODELS, addCloth, makeSheet, makeWorld, positionsOf } from './jolt_cloth.mjs';
 
-const SECONDS = 1 / 60, STEPS = 300;
+const SECONDS = 1 / 240, STEPS = 1200;
 
 const [echinus, Jolt] = await Promise.all([load(), initJolt()]);
 const mesh = echinus.makeTorus(1, 0.4, 60, 24);

@@ -3,7 +3,7 @@ import RAPIER from '@dimforge/rapier3d-compat';
 import { load } from 'echinus';
 import { RapierCollision } from 'echinus/rapier';
 
-const STEPS = 150, COLUMNS = 24, SIZE = 3;
+const SECONDS = 1 / 240, STEPS = 600, COLUMNS = 24, SIZE = 3;
 
 await RAPIER.init();
 const echinus = await load();
@@ -11,6 +11,7 @@ const mesh = echinus.makeTorus(1, 0.4, 60, 24);
 const map = echinus.buildMap(mesh);
 
 const world = new RAPIER.World({ x: 0, y: 0, z: -9.81 });
+world.timestep = SECONDS;
 const torus = world.createRigidBody(RAPIER.RigidBodyDesc.kinematicVelocityBased().setLinvel(0, 0, 0.2));
 const edge = SIZE / (COLUMNS - 1);
 const cloth = world.createSoftBody(RAPIER.SoftBodyDesc.cloth(

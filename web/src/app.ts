@@ -500,7 +500,7 @@ class App {
 
     #pause(paused: boolean): void {
         this.#paused = paused;
-        byId('pause').textContent = paused ? 'Go on' : 'Pause';
+        byId('pause').textContent = paused ? 'Resume' : 'Pause';
         this.#tell({ kind: 'pause', paused });
     }
     #step(): void {

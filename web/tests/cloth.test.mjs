@@ -47,7 +47,7 @@ test('a pause holds the cloth, a step moves it by one frame, and it can be dropp
     const page = await browser.open('#model=sphere&particles=400', SMALL);
     await untilFrame(page, 20);
     await page.keyboard.press('Space');
-    assert.equal(await page.locator('#pause').textContent(), 'Go on');
+    assert.equal(await page.locator('#pause').textContent(), 'Resume');
     await page.waitForFunction(() => document.body.dataset.paused === 'true'); // frames under way have arrived
     const frame = () => page.evaluate(() => Number(document.body.dataset.frame));
     const held = await frame();

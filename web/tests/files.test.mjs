@@ -83,7 +83,7 @@ test('a broken file gives one sentence, and the page continues as it was', async
     await page.keyboard.press('Space');
     assert.match(await refusal(page, 'broken.obj', 'v 0 0 0\nf 1 2 9\n'), /^broken\.obj.*2/);
     await picture(page, 'broken_file');
-    assert.equal(await page.locator('#pause').textContent(), 'Go on');
+    assert.equal(await page.locator('#pause').textContent(), 'Resume');
     assert.equal(new URL(page.url()).hash, link);
     await page.keyboard.press('Space');
     const frame = await page.evaluate(() => Number(document.body.dataset.frame));

@@ -127,7 +127,7 @@ test('keys pause, step and drop the cloth and change the view and the map, and a
     const frame = () => page.evaluate(() => Number(document.body.dataset.frame));
     const untilLink = (part, there) => page.waitForFunction(([part, there]) => location.hash.includes(part) === there, [part, there]);
     await page.keyboard.press('s');
-    assert.equal(await pausing(), 'Go on');
+    assert.equal(await pausing(), 'Resume');
     await page.waitForFunction(() => document.body.dataset.paused === 'true');
     const held = await frame();
     await page.keyboard.press('S');
@@ -150,7 +150,7 @@ test('keys pause, step and drop the cloth and change the view and the map, and a
     await page.keyboard.press('m');
     await page.locator('input[name=friction]').focus();
     await page.keyboard.press('Space');
-    assert.equal(await pausing(), 'Go on', 'a slider has no use for space');
+    assert.equal(await pausing(), 'Resume', 'a slider has no use for space');
     assert.ok(!page.url().includes('view=map'), 'and a list has for letters');
     await browser.close(page);
 });
@@ -163,7 +163,7 @@ test('a list gives the keys back once the pointer has chosen from it', async () 
     await colour.focus();
     await colour.selectOption('depth');
     await page.keyboard.press('Space');
-    assert.equal(await page.locator('#pause').textContent(), 'Go on');
+    assert.equal(await page.locator('#pause').textContent(), 'Resume');
     await colour.focus();
     await page.keyboard.press('ArrowUp');
     assert.ok(await colour.evaluate((list) => list === document.activeElement), 'keys that move in a list stay in it');

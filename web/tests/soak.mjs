@@ -64,8 +64,8 @@ async function soak(browser, name, link) {
     const half = LOOKS / 2, growth = (values) => median(values.slice(half)) - median(values.slice(0, half));
     const faults = [
         ...(counts.inside.some((text) => text !== '0') ? [`inside: ${counts.inside}`] : []),
-        ...(counts.pairs.some((text) => text !== '0') ? [`pairs with the model: ${counts.pairs}`] : []),
-        ...(self && counts['own-pairs'].some((text) => text !== '0') ? [`pairs with itself: ${counts['own-pairs']}`] : []),
+        ...(counts.pairs.some((text) => text !== '0') ? [`cuts through the model: ${counts.pairs}`] : []),
+        ...(self && counts['own-pairs'].some((text) => text !== '0') ? [`cuts through itself: ${counts['own-pairs']}`] : []),
         ...page.complaints,
         ...(growth(residents) > MOST_MB ? [`the memory grows: ${residents.map(Math.round)}`] : []),
     ];

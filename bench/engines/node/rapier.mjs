@@ -1,12 +1,12 @@
 // The cloth in Rapier, against a triangle mesh of the model; with --echinus against Echinus instead.
-import { FRAME_SECONDS, FRICTION, GRAVITY, THICKNESS, cloth, engine, inOrder, isMatched, model, orderOf, record, versionOf, withEchinus } from './runner.mjs';
+import { FRAME_SECONDS, FRICTION, GRAVITY, THICKNESS, cloth, engine, inOrder, isMatched, model, orderOf, record, stepsPerFrame, versionOf, withEchinus } from './runner.mjs';
 
 const { default: RAPIER } = await engine('@dimforge/rapier3d-compat');
 await RAPIER.init();
 const settings = {};
 
 const world = new RAPIER.World({ x: GRAVITY[0], y: GRAVITY[1], z: GRAVITY[2] });
-world.timestep = FRAME_SECONDS;
+world.timestep = FRAME_SECONDS / stepsPerFrame;
 if (isMatched) world.numSolverIterations = 10;
 settings.numSolverIterations = String(world.numSolverIterations);
 const body = world.createSoftBody(describeCloth());
@@ -15,10 +15,12 @@ const correct = withEchinus ? await correctionOf(body) : () => {};
 if (!withEchinus) world.createCollider(RAPIER.ColliderDesc.trimesh(model.vertices, model.faces).setFriction(FRICTION));
 
 record(
-    { engine: 'Rapier', version: versionOf('@dimforge/rapier3d-compat'), configuration: withEchinus ? 'with Echinus' : '', substeps: 1, settings },
+    { engine: 'Rapier', version: versionOf('@dimforge/rapier3d-compat'), configuration: withEchinus ? 'with Echinus' : '', substeps: stepsPerFrame, settings },
     () => {
-        world.step();
-        correct();
+        for (let i = 0; i < stepsPerFrame; ++i) {
+            world.step();
+            correct();
+        }
     },
     () => inOrder(body.particlePositions(), order),
 );
@@ -41,5 +43,5 @@ async function correctionOf(softBody) {
     const map = echinus.buildMap(echinus.makeMesh(model.vertices, model.faces));
     settings.thickness = String(THICKNESS);
     const collision = new RapierCollision(echinus, softBody, { colliders: [{ map }], thickness: THICKNESS, friction: FRICTION });
-    return () => collision.step(FRAME_SECONDS);
+    return () => collision.step(world.timestep);
 }
