@@ -1,10 +1,12 @@
 #include "geometry/circle.hpp"
+#include "geometry/number_text.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/mesh.hpp>
 
 #include <array>
 #include <limits>
+#include <string>
 
 namespace echinus {
 
@@ -17,6 +19,12 @@ bool is_usable_length(double length) {
 
 void require(bool condition, const char* sentence) {
     if (!condition) throw Error(ErrorCode::InvalidOptions, sentence);
+}
+
+void require_length(double length, const std::string& name) {
+    if (!is_usable_length(length))
+        throw Error(ErrorCode::InvalidOptions, name + " is " + number_text(length) +
+                                                   "; it must be positive and finite as a 32-bit float");
 }
 
 void require_face_count(double face_count) {
@@ -92,9 +100,10 @@ void add_box_side(TriangleMesh& mesh, const std::array<double, 3>& size, std::ui
 
 TriangleMesh make_torus(double major_radius, double minor_radius, std::uint32_t major_segments,
                         std::uint32_t minor_segments) {
-    require(is_usable_length(minor_radius) && minor_radius < major_radius &&
-                is_usable_length(major_radius + minor_radius),
-            "a torus needs 0 < minor radius < major radius");
+    require_length(minor_radius, "the minor radius of a torus");
+    require_length(major_radius, "the major radius of a torus");
+    require(minor_radius < major_radius, "a torus needs 0 < minor radius < major radius");
+    require_length(major_radius + minor_radius, "the outer radius of a torus, major + minor,");
     require(major_segments >= 3 && minor_segments >= 3, "a torus needs at least 3 x 3 segments");
     require_face_count(2.0 * major_segments * minor_segments);
 
@@ -114,7 +123,7 @@ TriangleMesh make_torus(double major_radius, double minor_radius, std::uint32_t 
 }
 
 TriangleMesh make_sphere(double radius, std::uint32_t meridian_count, std::uint32_t parallel_count) {
-    require(is_usable_length(radius), "a sphere needs a positive radius");
+    require_length(radius, "the radius of a sphere");
     require(meridian_count >= 3 && parallel_count >= 2,
             "a sphere needs at least 3 meridians and 2 rows of faces");
     require_face_count(2.0 * meridian_count * parallel_count);
@@ -133,9 +142,10 @@ TriangleMesh make_sphere(double radius, std::uint32_t meridian_count, std::uint3
 
 TriangleMesh make_box(const Vec3d& size, std::uint32_t segments) {
     const std::array<double, 3> lengths{size.x, size.y, size.z};
-    for (double length : lengths)
-        require(is_usable_length(length) && is_usable_length(length / 2),
-                "a box needs positive edge lengths");
+    for (double length : lengths) {
+        require_length(length, "the edge length of a box");
+        require_length(length / 2, "half the edge length of a box");
+    }
     require(segments >= 1, "a box needs at least 1 segment");
     require_face_count(12.0 * segments * segments);
 

@@ -53,7 +53,8 @@ void require_valid(const RigidTransform& pose, const std::string& owner) {
     const double size = length(pose.rotation);
     if (!(size >= 1 - kTolerance && size <= 1 + kTolerance))
         fail(owner + " has the rotation " + as_text(pose.rotation) + ", a quaternion of length " +
-             std::to_string(size) + "; it must be 1. Rotation::about() makes one from axis and angle");
+             std::to_string(size) +
+             "; it must be 1: cos(a / 2) and the unit axis times sin(a / 2) turn by a");
 }
 
 void require_valid(const SimulationOptions& options) {

@@ -296,6 +296,80 @@ TEST(CArguments, LengthsAreNotNegative) {
         echinus_map_clearance(map.get(), points, 1, 0, std::numeric_limits<float>::infinity(), &clearance));
 }
 
+TEST(CArguments, FlagsAreZeroOrOne) {
+    const CMesh mesh = c_torus();
+    CMesh repaired;
+    for (const auto flag :
+         {&echinus_repair_options::drop_duplicate_faces, &echinus_repair_options::drop_inner_faces})
+        for (const std::int32_t wrong : {2, -1}) {
+            echinus_repair_options options;
+            echinus_repair_options_init(&options, sizeof options);
+            options.*flag = wrong;
+            expect_refused(echinus_mesh_repair(mesh.get(), &options, out(repaired), nullptr, nullptr),
+                           ECHINUS_INVALID_ARGUMENT,
+                           "faces is " + std::to_string(wrong) + "; expected 0 or 1");
+        }
+    CDeformable cloth;
+    expect_ok(echinus_deformable_cloth(nullptr, out(cloth)));
+    CSimulation simulation;
+    echinus_simulation_options options;
+    echinus_simulation_options_init(&options, sizeof options);
+    options.multilevel = std::uint64_t{1} << 32;
+    expect_refused(echinus_simulation_create(cloth.get(), nullptr, 0, &options, out(simulation)),
+                   ECHINUS_INVALID_ARGUMENT, "options.multilevel is 4294967296; expected 0 or 1");
+    options.multilevel = 1;
+    options.keep_free = 3;
+    expect_refused(echinus_simulation_create(cloth.get(), nullptr, 0, &options, out(simulation)),
+                   ECHINUS_INVALID_ARGUMENT, "options.keep_free is 3; expected 0 or 1");
+}
+
+TEST(CArguments, ReservedMembersOfOptionsAreZero) {
+    const CMesh mesh = c_torus();
+    const auto expect_named = [](echinus_status status) {
+        expect_refused(status, ECHINUS_INVALID_ARGUMENT, "options.reserved is 7; expected 0");
+    };
+    echinus_repair_options repair;
+    echinus_repair_options_init(&repair, sizeof repair);
+    repair.reserved = 7;
+    CMesh repaired;
+    expect_named(echinus_mesh_repair(mesh.get(), &repair, out(repaired), nullptr, nullptr));
+    echinus_distance_map_options map;
+    echinus_distance_map_options_init(&map, sizeof map);
+    map.reserved = 7;
+    CMap built;
+    expect_named(echinus_map_build_distance(mesh.get(), &map, out(built)));
+    echinus_mesh_cloth_options cloth;
+    echinus_mesh_cloth_options_init(&cloth, sizeof cloth);
+    cloth.reserved = 7;
+    CDeformable sheet;
+    expect_named(echinus_deformable_cloth_of_mesh(mesh.get(), &cloth, out(sheet)));
+    echinus_tetrahedralize_options filling;
+    echinus_tetrahedralize_options_init(&filling, sizeof filling);
+    filling.reserved = 7;
+    CTetrahedra body;
+    expect_named(echinus_tetrahedralize(c_map(mesh).get(), &filling, out(body), nullptr));
+}
+
+TEST(CArguments, ArraysAreNoLargerThanMemory) {
+    constexpr std::size_t kMany = std::size_t{1} << 60;
+    const CMap map = c_map(c_torus());
+    echinus_collider collider;
+    echinus_collider_init(&collider, sizeof collider, map.get());
+    CDeformable cloth;
+    expect_ok(echinus_deformable_cloth(nullptr, out(cloth)));
+    CSimulation simulation;
+    expect_refused(echinus_simulation_create(cloth.get(), &collider, kMany, nullptr, out(simulation)),
+                   ECHINUS_INVALID_ARGUMENT,
+                   "the count of colliders, " + std::to_string(kMany) + ", is more than memory can hold");
+    const echinus_stick stick{};
+    echinus_deformable_arrays arrays{};
+    arrays.size = sizeof arrays;
+    arrays.sticks = &stick;
+    arrays.stick_count = kMany;
+    expect_refused(echinus_deformable_create(&arrays, out(cloth)), ECHINUS_INVALID_ARGUMENT,
+                   "the count of sticks");
+}
+
 TEST(CArguments, MapsHaveTheKindThatAQueryNeeds) {
     const CMesh mesh = c_torus();
     const CMap distance = c_distance_map(mesh);

@@ -181,7 +181,8 @@ TEST(CSimulations, RefuseWrongOptionsAsInCpp) {
     expect_refused(create(), ECHINUS_INVALID_OPTIONS, "thickness");
     echinus_simulation_options_init(&fall.options, sizeof fall.options);
     fall.collider.pose.rotation[0] = 3;
-    expect_refused(create(), ECHINUS_INVALID_OPTIONS, "a quaternion of length 3");
+    expect_refused(create(), ECHINUS_INVALID_OPTIONS,
+                   "a quaternion of length 3.000000; it must be 1: cos(a / 2)");
     fall.collider.map = nullptr;
     expect_refused(create(), ECHINUS_INVALID_ARGUMENT, "the map of the collider is NULL");
     EXPECT_EQ(simulation, nullptr);

@@ -58,6 +58,19 @@ TEST(Generators, RefuseSizesThatMakeNoSolid) {
     }
 }
 
+TEST(Generators, NameTheSizeThatIsTooLarge) {
+    const double infinity = std::numeric_limits<double>::infinity();
+    const auto expect_named = [](const char* sentence, const auto& call) {
+        expect_error(ErrorCode::InvalidOptions, sentence, call);
+    };
+    expect_named("the major radius of a torus is inf; it must be positive and finite as a 32-bit float",
+                 [&] { make_torus(infinity, 1, 8, 8); });
+    expect_named("the outer radius of a torus, major + minor, is 5e+38",
+                 [] { make_torus(3e38, 2e38, 8, 8); });
+    expect_named("the radius of a sphere is inf", [&] { make_sphere(infinity, 8, 8); });
+    expect_named("the edge length of a box is 1e+39", [] { make_box({1, 1e39, 1}); });
+}
+
 TEST(Generators, RefuseTooFewAndTooManySegments) {
     const std::uint32_t many = std::numeric_limits<std::uint32_t>::max();
     expect_refused([&] { make_torus(1, 0.4, 2, 8); });

@@ -66,16 +66,18 @@ echinus_status make(const char* function, Handle** result, const Body& body) noe
     });
 }
 
-/// @throws WrongArgument for null where there are elements
-template <typename T>
-std::span<T> values_at(T* first, std::size_t count, const char* name) {
-    if (count == 0) return {};
-    return {&at(first, name), count};
-}
-
 /// The number of elements that `count` items of `width` elements each make.
 /// @throws WrongArgument where it overflows
 std::size_t times(std::size_t count, std::size_t width, const char* name);
+
+/// @throws WrongArgument for null where there are elements, and for more than all memory
+template <typename T>
+std::span<T> values_at(T* first, std::size_t count, const char* name) {
+    if (count == 0) return {};
+    require_address(first, name);
+    times(count, sizeof(T), name);
+    return {first, count};
+}
 
 /// A batch of values of whole floats, in the caller's memory.
 /// @param stride  in bytes; 0: one after the other
@@ -125,6 +127,14 @@ Enum enumerator(const CEnum& value, Enum last, const char* name) {
     return static_cast<Enum>(number);
 }
 
+/// @throws WrongArgument unless it is 0 or 1
+template <typename Integer>
+bool flag(Integer value, const char* name) {
+    if (value != 0 && value != 1)
+        throw WrongArgument(std::string(name) + " is " + std::to_string(value) + "; expected 0 or 1");
+    return value == 1;
+}
+
 // ---- Structs that begin with their size
 
 /// The size of a struct in the first version; one that has grown since is named where it is used.
@@ -136,6 +146,15 @@ void require_size(std::size_t size, std::size_t known_size, std::size_t first_si
 
 /// @throws WrongArgument when a byte after the known ones is set: a member that this library does not have
 void require_zero(const void* first, std::size_t known_size, std::size_t size, const char* name);
+
+/// What a later version may give a meaning, which this one would not heed.
+/// @throws WrongArgument unless it is 0
+template <typename Integer>
+void require_unused(Integer reserved) {
+    if (reserved != 0)
+        throw WrongArgument("options.reserved is " + std::to_string(reserved) +
+                            "; expected 0: fill options by their _init function");
+}
 
 /// The part that the caller's struct and the library's have in common.
 inline std::size_t common_size(std::size_t size, std::size_t known_size) {

@@ -157,6 +157,7 @@ std::vector<std::array<std::uint32_t, 2>> edges_from(const std::uint32_t* edges,
 MeshClothOptions options_from(const echinus_mesh_cloth_options* options) {
     if (options == nullptr) return {};
     const auto given = read_struct(options, as_c(MeshClothOptions{}), "options");
+    require_unused(given.reserved);
     return {
         .pose = pose_from(given.pose),
         .scale = given.scale,

@@ -76,6 +76,7 @@ echinus_distance_map_options as_c(const DistanceMapOptions& options) {
 DistanceMapOptions options_from(const echinus_distance_map_options* options) {
     if (options == nullptr) return {};
     const auto given = read_struct(options, as_c(DistanceMapOptions{}), "options");
+    require_unused(given.reserved);
     return {.grid = enumerator(given.grid, DirectionGrid::Ellipsoidal, "options.grid"),
             .longitude_count = given.longitude_count,
             .colatitude_count = given.colatitude_count,

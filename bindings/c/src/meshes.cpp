@@ -70,11 +70,12 @@ echinus_mesh_report describe(const MeshReport& report) {
 
 RepairOptions repair_options_from(const echinus_repair_options* options) {
     const auto given = read_struct(options, echinus_repair_options{}, "options");
-    return {.drop_duplicate_faces = given.drop_duplicate_faces != 0,
-            .drop_doubled_patches = given.drop_doubled_patches != 0,
-            .flip_inside_out = given.flip_inside_out != 0,
+    require_unused(given.reserved);
+    return {.drop_duplicate_faces = flag(given.drop_duplicate_faces, "options.drop_duplicate_faces"),
+            .drop_doubled_patches = flag(given.drop_doubled_patches, "options.drop_doubled_patches"),
+            .flip_inside_out = flag(given.flip_inside_out, "options.flip_inside_out"),
             .max_hole_edges = given.max_hole_edges,
-            .drop_inner_faces = given.drop_inner_faces != 0,
+            .drop_inner_faces = flag(given.drop_inner_faces, "options.drop_inner_faces"),
             .sheet_thickness = given.sheet_thickness};
 }
 

@@ -79,16 +79,16 @@ SimulationOptions options_from(const echinus_simulation_options* options) {
             .rest = {.distance = given.rest_distance,
                      .speed = given.rest_speed,
                      .frame_count = given.rest_frame_count},
-            .keep_free = given.keep_free != 0,
-            .allow_open_colliders = given.allow_open_colliders != 0,
-            .surface_collision = given.surface_collision != 0,
-            .self_collision = given.self_collision != 0,
+            .keep_free = flag(given.keep_free, "options.keep_free"),
+            .allow_open_colliders = flag(given.allow_open_colliders, "options.allow_open_colliders"),
+            .surface_collision = flag(given.surface_collision, "options.surface_collision"),
+            .self_collision = flag(given.self_collision, "options.self_collision"),
             .self_thickness = thickness_from(given.self_thickness),
-            .untangle = given.untangle != 0,
-            .measure_loads = given.measure_loads != 0,
+            .untangle = flag(given.untangle, "options.untangle"),
+            .measure_loads = flag(given.measure_loads, "options.measure_loads"),
             .bound = given.bound,
             .thread_count = static_cast<unsigned>(std::min<std::uint64_t>(given.thread_count, kMostThreads)),
-            .multilevel = given.multilevel != 0};
+            .multilevel = flag(given.multilevel, "options.multilevel")};
 }
 
 /// A row of the caller's structs, which may be larger than ours.
@@ -97,6 +97,7 @@ std::vector<Collider> colliders_from(const echinus_collider* first, std::size_t 
     if (count == 0) return result;
     const std::size_t size = at(first, "colliders").size;
     require_size(size, sizeof *first, sizeof *first, "colliders");
+    times(count, size, "colliders");
     for (std::size_t i = 0; i < count; ++i) {
         const auto* place = reinterpret_cast<const std::byte*>(first) + i * size;
         const auto& given = *reinterpret_cast<const echinus_collider*>(place);

@@ -53,6 +53,7 @@ echinus_tetrahedralize_options as_c(const TetrahedralizeOptions& options) {
 
 TetrahedralizeOptions options_from(const echinus_tetrahedralize_options* options) {
     const auto given = read_struct(options, as_c(TetrahedralizeOptions{}), "options");
+    require_unused(given.reserved);
     return {.size = given.lattice_size,
             .count = given.count,
             .most_tetrahedra = given.most_tetrahedra,

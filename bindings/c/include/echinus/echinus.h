@@ -32,7 +32,7 @@
 /// defaults and the size; of results the caller sets .size before the call. New members will be added at the
 /// end, and zero will be their default. So a program and a library of different versions understand each
 /// other, and a program that sets a member which the library does not have gets ECHINUS_INVALID_ARGUMENT.
-/// Flags are 0 or 1.
+/// Flags are 0 or 1, and what is called reserved in options is 0; other numbers are ECHINUS_INVALID_ARGUMENT.
 ///
 /// Frames, units and words are those of docs/conventions.md: right-handed, lengths in the caller's unit,
 /// angles in radians, faces counter-clockwise seen from outside, rotations as unit quaternions w, x, y, z.
@@ -126,17 +126,19 @@ ECHINUS_API echinus_status echinus_mesh_read(const char* path, echinus_mesh** me
 ECHINUS_API echinus_status echinus_mesh_write(const echinus_mesh* mesh, const char* path);
 
 /// A torus about the z axis, centred at the origin like the other two shapes.
-/// @return ECHINUS_INVALID_OPTIONS unless 0 < minor_radius < major_radius and both counts are at least 3
+/// @return ECHINUS_INVALID_OPTIONS unless 0 < minor_radius < major_radius, their sum is finite as a float,
+/// and both counts are at least 3
 ECHINUS_API echinus_status echinus_mesh_torus(double major_radius, double minor_radius,
                                               uint32_t major_segments, uint32_t minor_segments,
                                               echinus_mesh** mesh);
 /// A sphere of meridians and parallels with its poles on the z axis.
-/// @return ECHINUS_INVALID_OPTIONS unless radius > 0, meridian_count >= 3 and parallel_count >= 2
+/// @return ECHINUS_INVALID_OPTIONS unless radius > 0 and finite as a float, meridian_count >= 3 and
+/// parallel_count >= 2
 ECHINUS_API echinus_status echinus_mesh_sphere(double radius, uint32_t meridian_count,
                                                uint32_t parallel_count, echinus_mesh** mesh);
 /// A box, each side cut into segments x segments squares of two faces.
 /// @param size  [3] lengths of the edges
-/// @return ECHINUS_INVALID_OPTIONS unless all lengths are positive and segments >= 1
+/// @return ECHINUS_INVALID_OPTIONS unless all lengths are positive and finite as floats, and segments >= 1
 ECHINUS_API echinus_status echinus_mesh_box(const double* size, uint32_t segments, echinus_mesh** mesh);
 
 ECHINUS_API void echinus_mesh_destroy(echinus_mesh* mesh);
@@ -1018,7 +1020,8 @@ typedef struct echinus_simulation echinus_simulation;
 /// Copies the deformable and keeps what it needs of the maps: all arguments may go afterwards.
 /// @param colliders  [collider_count]
 /// @param options    or NULL for the defaults
-/// @return ECHINUS_INVALID_OPTIONS, naming what is at fault
+/// @return ECHINUS_INVALID_OPTIONS, naming what is at fault; ECHINUS_INVALID_ARGUMENT also for more colliders
+/// than memory can hold
 ECHINUS_API echinus_status echinus_simulation_create(const echinus_deformable* deformable,
                                                      const echinus_collider* colliders, size_t collider_count,
                                                      const echinus_simulation_options* options,
