@@ -5,6 +5,7 @@ import io
 import json
 import os
 import pathlib
+import re
 import signal
 import statistics
 import subprocess
@@ -12,6 +13,7 @@ import sys
 import tarfile
 import threading
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,7 +21,7 @@ from hypothesis import given, strategies
 
 import echinus as ech
 from echinus import corpus
-from echinus.corpus import _engines, _random, _run, _tasks
+from echinus.corpus import _command, _engines, _random, _run, _tasks
 from support import open_torus, torus
 
 SMALL = corpus.Sampling(uniform=300, near=200, sigmas=(0.01, 0.1), surface=100)
@@ -120,13 +122,16 @@ def test_a_mesh_that_is_not_to_be_labelled_is_refused_with_a_reason():
         (torus(), {"max_faces": 100}, "it has 720 faces; at most 100"),
         (open_torus(), {"min_certain": 1.0}, "% of its labels are certain"),
         (torus(), {"time_limit": 1e-9}, "take longer than"),
-        (ech.Mesh(np.zeros((3, 3)), [[0, 1, 2]]), {}, "its extent is 0"),
+        (ech.Mesh(np.zeros((3, 3)), [[0, 1, 2]]), {}, "its extent is 0; it must be between 1e-30 and 1e\\+30"),
         (ech.Mesh([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]]), {}, "no area"),
         (ech.Mesh(torus().vertices * 1e6, torus().faces), {"frame": "none", "dtype": "float16"}, "do not fit into float16"),
+        (ech.Mesh(torus().vertices * 1e6, torus().faces), {"frame": "none", "dtype": "float16", "uniform": 0, "near": 0}, "do not fit into float16"),
+        (torus(), {"sigmas": (1e30,), "dtype": "float16"}, "do not fit into float16"),
     ]
     for mesh, options, reason in cases:
-        with pytest.raises(corpus.Refused, match=reason), np.errstate(over="ignore"):
+        with pytest.raises(corpus.Refused, match=reason) as refusal:  # and without a warning of NumPy
             corpus.sample(mesh, corpus.Sampling(**{**SMALL.__dict__, **options}))
+        assert refusal.value.again == ("time_limit" in options)
     assert 0 < corpus.sample(open_torus(), SMALL).certain.mean() < 1
 
 
@@ -155,10 +160,19 @@ def test_meshes_become_solid_on_request_and_the_report_says_how():
         sampled(open_torus(), thicken=1e-7)
 
 
-def test_settings_out_of_range_are_errors():
-    for options in ({"close_holes": 257}, {"close_holes": -1}, {"thicken": -1}, {"thicken": np.nan}, {"uniform": -1}, {"sigmas": ()}, {"sigmas": (0.1, -1)}, {"padding": -1}, {"min_certain": 2}, {"time_limit": 0}):
-        with pytest.raises(ValueError):
-            corpus.Sampling(**options)
+@pytest.mark.parametrize("name, values, range_", [
+    ("close_holes", (257, -1), "a whole number from 0 to 256"),
+    ("thicken", (-1, 0.6, np.nan), "a number from 0 to 0.5"),
+    ("uniform", (-1, 1 << 32), "a whole number from 0 to 4294967295"),
+    ("sigmas", ((), (0.1, -1), (1e300,), (np.nan,)), "positive numbers up to 1e+30"),
+    ("padding", (-1, np.nan, 1e300), "a number from 0 to 1e+30"),
+    ("min_certain", (2, -0.1, np.nan), "a number from 0 to 1"),
+    ("time_limit", (0, -1, np.nan), "a positive number of seconds"),
+])
+def test_a_setting_out_of_range_is_named_with_its_range(name, values, range_):
+    for value in values:
+        with pytest.raises(ValueError, match=re.escape(f"{name} must be {range_}, not {value}")):
+            corpus.Sampling(**{name: value})
 
 
 # ---- Random numbers
@@ -323,7 +337,7 @@ def test_a_run_that_was_ended_goes_on_where_it_was(folder, tmp_path, reference, 
     subprocess.run(command, check=True, capture_output=True)
     assert bytes_below(tmp_path) == reference[1]
     verdict = subprocess.run([*command, "--verify"], check=True, capture_output=True, text=True)
-    assert "16 meshes: each has its labels once, unchanged" in verdict.stdout
+    assert "16 meshes, 3 of them refused: each of the others has its labels once, unchanged" in verdict.stdout
 
 
 def test_a_second_run_computes_nothing(folder, tmp_path):
@@ -336,8 +350,71 @@ def test_a_second_run_computes_nothing(folder, tmp_path):
 
 def test_other_settings_need_another_folder(folder, tmp_path):
     corpus.label(corpus_of(folder, tmp_path), workers=1)
-    with pytest.raises(ValueError, match="made with other settings"):
-        corpus.label(corpus_of(folder, tmp_path, sampling=corpus.Sampling()), workers=1)
+    other = corpus_of(folder, tmp_path, sampling=corpus.Sampling(**{**SIDES.__dict__, "uniform": 7}))
+    with pytest.raises(ValueError, match="manifest.jsonl: .* made with other settings: uniform was 300, and is 7 now"):
+        corpus.label(other, workers=1)
+    assert "uniform was 300, and is 7 now" in corpus.verify(other)[0]
+
+
+def test_all_parts_of_a_folder_have_the_same_settings_and_are_as_many(folder, tmp_path):
+    corpus.label(corpus_of(folder, tmp_path, shard=(0, 2)), workers=1)
+    before = bytes_below(tmp_path)
+    other = corpus.Sampling(**{**SIDES.__dict__, "seed": 5})
+    for options, words in [
+        ({"shard": (1, 2), "sampling": other}, "made with other settings: seed was 0, and is 5 now"),
+        ({"shard": (1, 3)}, r"made in 2 parts \(--shard i/2\), now 3 parts \(--shard i/3\)"),
+        ({}, r"made in 2 parts \(--shard i/2\), now one part \(no --shard\)"),
+    ]:
+        with pytest.raises(ValueError, match="manifest-0-of-2.jsonl: .*" + words):
+            corpus.label(corpus_of(folder, tmp_path, **options), workers=1)
+    assert bytes_below(tmp_path) == before
+    corpus.label(corpus_of(folder, tmp_path, shard=(1, 2)), workers=1)
+    assert corpus.verify(corpus_of(folder, tmp_path)) == []
+
+
+@pytest.mark.parametrize("form", ["occupancy", "webdataset"])
+def test_a_corpus_may_change(folder, tmp_path, form):
+    everything = corpus_of(folder, tmp_path / "labels", form=form)
+    fewer = replace(everything, meshes=[mesh for mesh in everything.meshes if mesh[0] not in ("class_0/sphere_2", "open")])
+    for meshes in (everything, fewer, everything):
+        corpus.label(meshes, workers=1)
+    assert corpus.verify(everything) == []
+    corpus.label(replace(everything, output=tmp_path / "at once"), workers=1)
+    assert bytes_below(tmp_path / "labels") == bytes_below(tmp_path / "at once")
+
+
+@pytest.mark.parametrize("form, left", [("occupancy", ["open/pointcloud.npz", "open/points.npz"]), ("webdataset", ["labels-000003.tar"])])
+def test_files_of_a_mesh_that_was_taken_out_are_named_until_they_are_removed(folder, tmp_path, form, left):
+    before = corpus_of(folder, tmp_path, form=form)
+    corpus.label(before, workers=1)
+    after = replace(before, meshes=[mesh for mesh in before.meshes if mesh[0] != "open"][:12])
+    if form == "webdataset":
+        assert "labels-000003.tar: belongs to no labelled mesh of the corpus" in corpus.verify(after)
+    corpus.label(after, workers=1)
+    gone = {name for name, _ in before.meshes} - {name for name, _ in after.meshes}
+    surplus = corpus.verify(after)
+    assert [f"{name}: belongs to no labelled mesh of the corpus" for name in left] == [s for s in surplus if s.startswith(("open", "labels"))]
+    for sentence in surplus:
+        assert form == "webdataset" or sentence.partition("/points")[0].partition("/pointcloud")[0] in gone
+        (tmp_path / sentence.partition(":")[0]).unlink()
+    assert corpus.verify(after) == []
+
+
+def test_archives_tell_that_the_corpus_has_changed(folder, tmp_path):
+    before = corpus_of(folder, tmp_path, form="webdataset")
+    corpus.label(before, workers=1)
+    after = replace(before, meshes=before.meshes[1:])
+    assert any("as before the corpus changed" in sentence for sentence in corpus.verify(after))
+    corpus.label(after, workers=1)
+    assert corpus.verify(after) == []
+    assert len(list(samples_of_archives(tmp_path))) == len({s["__key__"] for s in samples_of_archives(tmp_path)})
+
+
+def test_an_archive_of_refused_meshes_is_done(folder, tmp_path):
+    refused = [mesh for mesh in corpus_of(folder, tmp_path).meshes if mesh[0] in ("broken", "empty", "flat")]
+    c = replace(corpus_of(folder, tmp_path, form="webdataset"), meshes=refused)
+    assert (corpus.label(c, workers=1).refused, corpus.label(c, workers=1).already) == (3, 3)
+    assert corpus.verify(c) == []
 
 
 def test_two_runs_do_not_write_the_same_labels_at_once(folder, tmp_path):
@@ -350,7 +427,6 @@ def test_two_runs_do_not_write_the_same_labels_at_once(folder, tmp_path):
         corpus.label(corpus_of(folder, tmp_path, shard=(0, 16)), workers=1)
         with pytest.raises(ValueError, match="another run is writing these labels"):
             corpus.label(corpus_of(folder, tmp_path), workers=1)
-    corpus.label(corpus_of(folder, tmp_path), workers=1)
 
 
 # ---- What is refused, and what is wrong
@@ -363,6 +439,23 @@ def test_a_manifest_that_is_none_is_an_error_that_names_its_line(folder, tmp_pat
     for run in (corpus.label, corpus.verify):
         with pytest.raises(ValueError, match="manifest.jsonl, line 2 is no record"):
             run(corpus_of(folder, tmp_path))
+
+
+@pytest.mark.parametrize("line", ["1", "null", '"mesh"', "[]", "{}", '{"mesh":1}', '{"mesh":"a","files":"b"}', '{"file":"a"}', "[" * 100_000])
+def test_a_line_of_a_manifest_that_is_json_but_no_record_is_named(folder, tmp_path, line):
+    c = corpus_of(folder, tmp_path)
+    settings = json.dumps(c.settings())
+    for lines, number in ((f"{line}\n", 1), (f"{settings}\n{line}\n", 2)):
+        (tmp_path / "manifest.jsonl").write_text(lines)
+        for run in (corpus.label, corpus.verify):
+            with pytest.raises(ValueError, match=f"manifest.jsonl, line {number} is no record .*remove the file"):
+                run(c)
+
+
+def test_a_manifest_without_settings_is_an_error(folder, tmp_path):
+    (tmp_path / "manifest.jsonl").write_text("")
+    with pytest.raises(ValueError, match="manifest.jsonl: there are no settings in its first line; remove the file"):
+        corpus.label(corpus_of(folder, tmp_path), workers=1)
 
 
 def test_refused_meshes_are_listed_with_the_reason(folder, tmp_path):
@@ -381,21 +474,82 @@ def test_a_mesh_that_no_worker_survives_is_refused_and_its_neighbours_are_not(fo
             names = {name for name, _ in task.meshes} - {name for name, _ in task.refused}
             yield task, "3 workers died of it" if deadly in names else _tasks.run(task)
 
-    monkeypatch.setattr(_engines, "on_processes", lambda tasks, workers, memory: in_one_worker(tasks))
-    for form in ("occupancy", "webdataset"):
-        output = tmp_path / form
-        summary = corpus.label(corpus_of(folder, output, form=form))
-        assert (summary.labelled, summary.refused) == (12, 4)
-        assert corpus.verify(corpus_of(folder, output, form=form)) == []
+    with monkeypatch.context() as patched:
+        patched.setattr(_engines, "on_processes", lambda tasks, workers, memory: in_one_worker(tasks))
+        for form in ("occupancy", "webdataset"):
+            output = tmp_path / form
+            summary = corpus.label(corpus_of(folder, output, form=form))
+            assert (summary.labelled, summary.refused, summary.again) == (12, 4, 1)
+            assert corpus.verify(corpus_of(folder, output, form=form)) == []
     assert len(list(samples_of_archives(tmp_path / "webdataset"))) == 12
+    for form, computed in (("occupancy", 1), ("webdataset", 4)):  # the whole archive
+        summary = corpus.label(corpus_of(folder, tmp_path / form, form=form), workers=1)
+        assert (summary.labelled, summary.refused, summary.again) == (computed, 0, 0)
+        assert corpus.verify(corpus_of(folder, tmp_path / form, form=form)) == []
+    assert len(list(samples_of_archives(tmp_path / "webdataset"))) == 13
+
+
+def test_an_archive_that_no_worker_survives_is_a_sentence(folder, tmp_path, monkeypatch, capsys):
+    def in_one_worker(tasks):
+        for task in tasks:
+            yield task, "3 workers died of it" if task.archive else _tasks.run(task)
+
+    monkeypatch.setattr(_engines, "on_processes", lambda tasks, workers, memory: in_one_worker(tasks))
+    command = ["label", str(folder), "-o", str(tmp_path), "--format", "webdataset", "--uniform", "9", "--near", "9", "--surface", "9"]
+    assert _command.main(_command.parse(command)) == 1
+    assert "echinus label: labels-000000.tar: no worker survives it" in capsys.readouterr().err
+
+
+def test_an_archive_that_a_worker_lacks_memory_for_is_a_sentence(folder, tmp_path, monkeypatch):
+    def without_memory(files):
+        raise MemoryError
+
+    monkeypatch.setattr(_tasks, "archive_of", without_memory)
+    with pytest.raises(RuntimeError, match="labels-000000.tar: a worker has too little memory for it"):
+        _tasks.run(corpus_of(folder, tmp_path, form="webdataset").tasks()[0])
 
 
 def test_a_mesh_that_needs_too_much_memory_is_refused(folder, tmp_path):
     ech.write_mesh(tmp_path / "large.ply", ech.make_sphere(1, 2000, 101))  # 400 000 faces, which take 200 MB
     large = corpus.Corpus(corpus.find_meshes([tmp_path / "large.ply", folder / "class_0"]), tmp_path / "out", sampling=SMALL)
     summary = corpus.label(large, workers=1, memory=160 << 20)
-    assert summary.refused == 1 and summary.labelled == 6
-    assert "memory" in (tmp_path / "out" / "manifest.jsonl").read_text() or "died" in (tmp_path / "out" / "manifest.jsonl").read_text()
+    assert summary.refused == summary.again == 1 and summary.labelled == 6
+    manifest = (tmp_path / "out" / "manifest.jsonl").read_text()
+    assert '"again":true' in manifest and ("memory" in manifest or "died" in manifest)
+
+
+def test_a_mesh_that_lacked_memory_is_labelled_by_the_next_run_with_more(folder, tmp_path, monkeypatch):
+    def without_memory(mesh, sampling):
+        if not sampling.distances and len(mesh.faces) == len(ech.read_mesh(folder / "class_0" / "sphere_2.ply").faces):
+            raise MemoryError
+        return corpus.sample(mesh, sampling)
+
+    c = corpus_of(folder, tmp_path)
+    with monkeypatch.context() as patched:
+        patched.setattr(_tasks, "sample", without_memory)
+        patched.setattr(_engines, "on_processes", lambda tasks, workers, memory: ((task, _tasks.run(task)) for task in tasks))
+        for _ in range(2):
+            assert corpus.label(c).again == 1
+    record, = (r for r in map(json.loads, (tmp_path / "manifest.jsonl").read_text().splitlines()) if "again" in r)
+    assert record["again"] is True and record["refused"] == "it needs more memory than a worker has"
+    found = _run.examine(c)
+    assert (found.refused, found.again) == (4, 1) and not found.sentences()
+    assert str(found).splitlines() == [
+        "16 meshes, 4 of them refused: each of the others has its labels once, unchanged",
+        "1 of the refused may succeed with more memory or time: the same command without --verify tries them again",
+    ]
+    summary = corpus.label(c, workers=1)
+    assert (summary.already, summary.labelled, summary.again) == (15, 1, 0)
+    assert str(_run.examine(c)) == "16 meshes, 3 of them refused: each of the others has its labels once, unchanged"
+
+
+def test_meshes_that_lacked_time_are_labelled_by_the_next_run_with_more(folder, tmp_path, reference):
+    form = reference[0]
+    usual = corpus_of(folder, tmp_path, form=form)
+    hasty = replace(usual, sampling=replace(usual.sampling, time_limit=1e-9))
+    assert corpus.label(hasty, workers=1).again == 13
+    assert corpus.label(usual, workers=1).labelled == 13
+    assert bytes_below(tmp_path) == reference[1]
 
 
 def test_verification_finds_what_is_missing_changed_surplus_or_double(folder, tmp_path):
@@ -411,7 +565,7 @@ def test_verification_finds_what_is_missing_changed_surplus_or_double(folder, tm
     of_mesh = [line for line in lines if '"mesh":"class_1/torus_1"' in line]
     manifest.write_text("".join(line for line in lines if '"mesh":"class_0/sphere_0"' not in line) + "".join(of_mesh))
     complaints = "\n".join(corpus.verify(c))
-    for expected in ("open/points.npz: is missing", "torus_0/points.npz: has other bytes", "surplus: is in no manifest",
+    for expected in ("open/points.npz: is missing", "torus_0/points.npz: has other bytes", "surplus: belongs to no labelled mesh of the corpus",
                      "class_0/sphere_0: has no labels", "class_1/torus_1: is recorded 2 times"):
         assert expected in complaints
     corpus.label(c, workers=1)  # mends what is missing; what has changed shows only by its hash
@@ -448,6 +602,41 @@ def test_a_run_without_work_or_workers_is_an_error(folder, tmp_path):
             corpus.label(corpus_of(folder, tmp_path), **wrong)
     with pytest.raises(FileNotFoundError, match="missing"):
         corpus.find_meshes([tmp_path / "missing"])
+    with pytest.raises(ValueError, match="a path of meshes is empty"):
+        corpus.find_meshes([""])
+    with pytest.raises(ValueError, match="output is an empty path"):
+        corpus_of(folder, "")
+
+
+def test_a_list_that_is_no_text_is_named(tmp_path):
+    for content in ("meshes/é.obj\n".encode("latin-1"), "a.obj\n".encode("utf-16"), "a.obj\n".encode("utf-16-be")):
+        (tmp_path / "list.txt").write_bytes(content)
+        with pytest.raises(ValueError, match="list.txt is no text.* a list of meshes has a path a line"):
+            corpus.find_meshes([tmp_path / "list.txt"])
+    (tmp_path / "list.txt").write_bytes("\ufeffa.obj\n".encode())  # as some editors begin UTF-8
+    assert corpus.find_meshes([tmp_path / "list.txt"]) == [("a", str(tmp_path / "a.obj"))]
+
+
+def test_without_dask_a_scheduler_is_a_sentence_and_nothing_is_touched(folder, tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    command = ["label", str(folder), "-o", str(tmp_path / "out"), "--scheduler", "tcp://127.0.0.1:1"]
+    assert _command.main(_command.parse(command)) == 1
+    assert "echinus label: a scheduler needs Dask, Debian's package python3-distributed" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_exit_code_of_verification_tells_surplus_files_from_errors(folder, tmp_path, capsys):
+    command = ["label", str(folder / "class_0"), "-o", str(tmp_path), "--uniform", "9", "--near", "9", "--surface", "0", "--workers", "1"]
+    verify = _command.parse([*command, "--verify"])
+    assert _command.main(_command.parse(command)) == 0
+    assert _command.main(verify) == 0
+    (tmp_path / "notes").write_text("")
+    assert _command.main(verify) == 3
+    said = capsys.readouterr().out
+    assert "notes: belongs to no labelled mesh of the corpus" in said
+    assert "files that belong to no labelled mesh of the corpus: 1; remove those that you do not want" in said
+    (tmp_path / "torus_0" / "points.npz").unlink()
+    assert _command.main(verify) == 1
 
 
 def test_the_command_says_what_is_wrong(tmp_path):

@@ -195,6 +195,16 @@ def test_generators_refuse_what_is_no_shape():
         assert raised.value.code == "invalid_options"
 
 
+def test_generators_name_the_size_that_is_too_large():
+    for call, words in (
+        (lambda: ech.make_torus(np.inf, 1), "the major radius of a torus is inf"),
+        (lambda: ech.make_sphere(1e39), "the radius of a sphere is 1e[+]39; it must be positive and finite"),
+        (lambda: ech.make_box((1, np.inf, 1)), "the edge length of a box is inf"),
+    ):
+        with pytest.raises(ech.Error, match=words):
+            call()
+
+
 def test_an_error_names_the_file(tmp_path):
     (tmp_path / "bad.obj").write_text("v 0 0 0\nf 1 2 3\n")
     for name, code in {"bad.obj": "invalid_mesh", "absent.obj": "unreadable", "model.xyz": "wrong_format"}.items():

@@ -139,9 +139,11 @@ def test_ragged_points_are_an_error():
         MAP.contains([[1, 2, 3], [4, 5]])
 
 
-def test_threads_must_not_be_negative():
-    with pytest.raises(ValueError, match="threads is -1"):
-        MAP.contains(POINTS, threads=-1)
+@pytest.mark.parametrize("threads", [-1, 2**31, 2**70])
+def test_threads_out_of_range_are_named_with_their_range(threads):
+    for call in (lambda: MAP.contains(POINTS, threads=threads), lambda: ech.ExactMap(torus(), threads=threads)):
+        with pytest.raises(ValueError, match=f"threads must be a whole number from 0 to 2147483647, not {threads}"):
+            call()
 
 
 @pytest.mark.parametrize("margin", [-1, np.nan])

@@ -79,8 +79,9 @@ def test_threads_decide_no_bits():
     one.step(40)
     two.step(40)
     assert one.profile.contact_count > 0 and one.state_hash == two.state_hash
-    with pytest.raises(ValueError, match="threads is -1"):
-        made(-1)
+    for wrong in (-1, 2**31):
+        with pytest.raises(ValueError, match=f"threads must be a whole number from 0 to 2147483647, not {wrong}"):
+            made(wrong)
 
 
 def test_copies_are_independent():
@@ -110,6 +111,8 @@ def test_the_lines_of_a_file_are_threads(tmp_path: pathlib.Path):
     (tmp_path / "thread.obj").write_text("v -1 0 1\nv 0 0 1\nv 1 0 1\nl 1 2 3\n")
     scene = {"model": {"torus": {}}, "cloth": {"mesh": "thread.obj", "thickness": 0.02}}
     simulation = ech.Simulation.from_scene(scene, model_folders=[tmp_path])
+    for one_folder in (str(tmp_path), tmp_path):
+        assert ech.Simulation.from_scene(scene, model_folders=one_folder).state_hash == simulation.state_hash
     simulation.step(30)
     ends = simulation.positions
     assert ends.shape == (3, 3) and simulation.faces.shape == (0, 3)

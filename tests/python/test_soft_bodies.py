@@ -238,6 +238,8 @@ def test_vertices_that_are_no_numbers_are_refused():
         (lambda: ech.pose_at([ech.PoseKey("now", (0, 0, 0))], 0), "time must be a number, not 'now'"),
         (lambda: ech.rotation_about((0, 0, 1), "right"), "angle_rad must be a number"),
         (lambda: FLOOR.contains([[0, 0, 0]], threads="all"), "threads must be a whole number, not 'all'"),
+        (lambda: ech.ExactMap(BALL, budget=object()), "budget must be a number, .*, not <object"),
+        (lambda: ech.Simulation.from_scene({"model": {"torus": {"radius": {1}}}}), r"model.torus.radius must be a number, .*, not {1}"),
         (lambda: FLOOR.contacts([[0, 0, 0]], margin="far"), "margin must be a number"),
         (lambda: FLOOR.contacts([[0, 0, 0]], out=np.zeros(1)), "out must be of the class Contacts"),
         (lambda: ech.read_mesh(5), "a path must be a str or os.PathLike, not int"),
@@ -297,6 +299,8 @@ def test_options_of_another_kind_are_refused_by_their_names():
     ):
         with pytest.raises(error, match=words):
             ech.Simulation(soft_box(), [BELOW], **options)
+    turned = refusal(ech.Simulation, soft_box(), [ech.Collider(FLOOR, rotation=(2, 0, 0, 0))])[1]
+    assert "a quaternion of length 2.000000; it must be 1: cos(a / 2)" in turned and "::" not in turned
     for wrong in ({"scale": 0}, {"rotation": (2, 0, 0, 0)}, {"position": (np.nan, 0, 0)}):
         assert refusal(ech.Simulation, soft_box(), [ech.Collider(FLOOR, **wrong)])[0] == "invalid_options"
     with pytest.raises(ValueError):

@@ -49,8 +49,8 @@ def index(name: str, value: Any) -> int:
 
 
 def threads_of(value: Any) -> int:
-    """The library refuses negative ones."""
-    return whole("threads", value, -_MOST_THREADS, _MOST_THREADS)
+    """0 stands for all cores."""
+    return whole("threads", value, 0, _MOST_THREADS)
 
 
 def flag(name: str, value: Any) -> bool:
@@ -102,7 +102,7 @@ def path_of(value: Any) -> str:
 
 
 def json_of(values: Mapping[str, Any]) -> str:
-    """What the library reads as JSON, which has no NaN and no infinity: such numbers are refused by their keys."""
+    """What the library reads as JSON, which has no NaN, no infinity and no objects: these are refused by their keys."""
     return json.dumps(_plain("", values))
 
 
@@ -115,4 +115,6 @@ def _plain(key: str, value: Any) -> Any:
         return [_plain(f"{key}[{i}]", v) for i, v in enumerate(value)]
     if isinstance(value, float) and not math.isfinite(value):
         raise ValueError(f"{key} must be finite, not {value!r}")
+    if value is not None and not isinstance(value, (str, int, float)):
+        raise TypeError(f"{key} must be a number, a text, a list or a mapping, not {value!r}")
     return value

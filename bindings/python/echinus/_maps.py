@@ -401,7 +401,10 @@ class ExactMap(_Map[_core.ExactMap]):
         """
         start, end = np.asanyarray(start), np.asanyarray(end)
         if start.shape != end.shape:
-            start, end = np.broadcast_arrays(start, end)
+            try:
+                start, end = np.broadcast_arrays(start, end)
+            except ValueError:
+                raise ValueError(f"start and end must have shapes that fit each other, not {start.shape} and {end.shape}") from None
         return SweepHits(self._built.sweep(start, end, threads_of(threads)))
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import pathlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -210,7 +211,7 @@ class Simulation:
             "untangle": untangle,
             "measure_loads": measure_loads,
             "bound": bound,
-            "threads": threads,
+            "threads": threads_of(threads),
             "multilevel": flag("multilevel", multilevel),
         }
         self._frame_limit = whole("frame_limit", frame_limit)
@@ -224,7 +225,7 @@ class Simulation:
         model: _Model | Sequence[_Model] = None,
         cloth: MeshLike | None = None,
         rest_cloth: MeshLike | None = None,
-        model_folders: Sequence[Path] = (),
+        model_folders: Path | Sequence[Path] = (),
         surface_collision: bool | None = None,
         self_collision: bool | None = None,
         untangle: bool | None = None,
@@ -245,7 +246,7 @@ class Simulation:
         cloth, rest_cloth
             Meshes in place of the files that the scene's cloth is made of.
         model_folders
-            Where the scene's files are looked for first; then beside the scene, in ``../models`` beside it,
+            A folder, or several, where the scene's files are looked for first; then beside the scene, in ``../models`` beside it,
             and in ``models`` in the working folder.
         surface_collision, self_collision, untangle
             In place of the scene's keys. Without the first there is none of the others. A distance map as ``model``
@@ -280,7 +281,8 @@ class Simulation:
         parsed.allow_open_colliders = flag("allow_open_colliders", allow_open_colliders)
         parsed.measure_loads = flag("measure_loads", measure_loads)
         threads = threads_of(threads)
-        files = _Files([*map(pathlib.Path, model_folders), folder, folder / ".." / "models", pathlib.Path("models")])
+        folders = [model_folders] if isinstance(model_folders, (str, bytes, os.PathLike)) else model_folders
+        files = _Files([*(pathlib.Path(path_of(each)) for each in folders), folder, folder / ".." / "models", pathlib.Path("models")])
         loaded = [_load_collider(parsed, i, given, files, threads) for i, given in enumerate(models)]
         start, threads_of_cloth = files.cloth(parsed.cloth_file, cloth)
         rest, _ = files.cloth(parsed.rest_file, rest_cloth)

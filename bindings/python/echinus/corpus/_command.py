@@ -7,10 +7,11 @@ import sys
 from collections.abc import Sequence
 
 from echinus._errors import Error
-from echinus.corpus._run import Corpus, find_meshes, label, verify
+from echinus.corpus._run import Corpus, examine, find_meshes, label
 from echinus.corpus._samples import Frame, Sampling
 
 DEFAULT = Sampling()
+ONLY_SURPLUS = 3  # the exit code of --verify where all labels are right, and there are files besides
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,7 +45,7 @@ def main(arguments: argparse.Namespace) -> int:
     try:
         corpus = _corpus_of(arguments)
         return _verify(corpus) if arguments.verify else _label(corpus, arguments)
-    except (Error, ValueError, OSError) as error:
+    except (Error, ValueError, OSError, RuntimeError, ModuleNotFoundError) as error:
         print(f"echinus label: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
@@ -84,18 +85,21 @@ def _label(corpus: Corpus, a: argparse.Namespace) -> int:
     memory = int(a.memory * (1 << 30))
     summary = label(corpus, workers=a.workers, scheduler=a.scheduler, memory=memory, progress=sys.stderr)
     if summary.already:
-        print(f"{summary.already} meshes had their labels already", file=sys.stderr)
+        print(f"{summary.already} meshes were done already", file=sys.stderr)
     print(f"\n{summary}", file=sys.stderr)
+    if summary.again:
+        print(f"{summary.again} of the refused may succeed with more memory or time: the same command tries them again", file=sys.stderr)
     return 0
 
 
 def _verify(corpus: Corpus) -> int:
-    complaints = verify(corpus)
-    for complaint in complaints:
-        print(complaint)
-    if not complaints:
-        print(f"{len(corpus.meshes)} meshes: each has its labels once, unchanged")
-    return 1 if complaints else 0
+    found = examine(corpus)
+    for sentence in found.sentences():
+        print(sentence)
+    if found.complaints:
+        return 1
+    print(found)
+    return ONLY_SURPLUS if found.surplus else 0
 
 
 def _numbers(text: str) -> tuple[float, ...]:

@@ -126,12 +126,19 @@ def _next(worker: _Worker, source: Iterator[Task], again: deque[Task]) -> None:
             worker.give(task)
 
 
+def require_dask() -> Any:
+    try:
+        return importlib.import_module("distributed")
+    except ModuleNotFoundError as error:
+        raise ModuleNotFoundError(f"a scheduler needs Dask, Debian's package python3-distributed ({error})", name=error.name) from None
+
+
 def on_dask(tasks: Iterable[Task], scheduler: str, window: int = 1000) -> Iterator[Outcome]:
     """On the workers of an existing cluster, which see the same files under the same names.
 
     The scheduler repeats the tasks of workers that died, as often as its setting ``allowed-failures`` says.
     """
-    dask: Any = importlib.import_module("distributed")
+    dask = require_dask()
     source = iter(tasks)
     task_of: dict[Any, Task] = {}
     with dask.Client(scheduler, set_as_default=False) as client:

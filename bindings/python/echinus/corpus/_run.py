@@ -10,6 +10,7 @@ import itertools
 import json
 import os
 import pathlib
+import re
 import shutil
 import time
 from collections.abc import Iterable, Iterator, Sequence
@@ -41,10 +42,13 @@ def find_meshes(sources: Sequence[Path]) -> list[Mesh]:
     FileNotFoundError
         A source does not exist. What a list names may be missing: it is refused like a broken mesh.
     ValueError
-        Two files have the same name, which is their path below the source without the extension.
+        Two files have the same name, which is their path below the source without the extension; a path is empty, or
+        a list no text in UTF-8.
     """
     found: dict[str, str] = {}
     for source in sources:
+        if not os.fspath(source):
+            raise ValueError("a path of meshes is empty; name folders, mesh files or lists of them")
         for name, path in _meshes_of(pathlib.Path(source)):
             name = name.replace(".", "_")
             if found.setdefault(name, str(path)) != str(path):
@@ -54,7 +58,7 @@ def find_meshes(sources: Sequence[Path]) -> list[Mesh]:
 
 def _meshes_of(source: pathlib.Path) -> Iterator[tuple[str, pathlib.Path]]:
     if source.suffix == ".txt":
-        for line in source.read_text().splitlines():
+        for line in _text_of(source).splitlines():
             if line.strip():
                 path = source.parent / line.strip()
                 relative = pathlib.PurePath(line.strip())
@@ -69,6 +73,16 @@ def _meshes_of(source: pathlib.Path) -> Iterator[tuple[str, pathlib.Path]]:
         yield source.stem, source
     else:
         raise FileNotFoundError(f"there is no folder or file {source}")
+
+
+def _text_of(source: pathlib.Path) -> str:
+    try:
+        text = source.read_text("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{source} is no text in UTF-8 ({error}); a list of meshes has a path a line") from None
+    if "\0" in text:
+        raise ValueError(f"{source} is no text, it has a null byte; a list of meshes has a path a line, in UTF-8")
+    return text
 
 
 @dataclass(frozen=True)
@@ -100,6 +114,8 @@ class Corpus:
     shard: tuple[int, int] = (0, 1)
 
     def __post_init__(self) -> None:
+        if not os.fspath(self.output):
+            raise ValueError("output is an empty path; name the folder of the labels")
         if self.form != "occupancy" and not self.sampling.distances:
             raise ValueError(f"labels as {self.form} need distances")
         if self.archive_size < 1:
@@ -125,8 +141,12 @@ class Corpus:
         return tasks[self.shard[0] :: self.shard[1]]
 
     def settings(self) -> Record:
-        """The first line of the manifest: labels made with others do not belong into the same folder."""
+        """The first line of the manifest: labels made with others do not belong into the same folder.
+
+        The time limit is not among them: it decides which meshes have labels, but not what these are.
+        """
         sampling = self.sampling.to_json() | {"sigmas": list(self.sampling.sigmas)}
+        del sampling["time_limit"]
         return {"echinus": _core.version, "format": self.form, "archive_size": self.archive_size, "max_bytes": self.max_bytes, "sampling": sampling}
 
 
@@ -141,19 +161,39 @@ class _Manifest:
         name = "manifest.jsonl" if n == 1 else f"manifest-{i}-of-{n}.jsonl"
         self.path = pathlib.Path(corpus.output, name)
         self.settings = corpus.settings()
-        if self.path.exists() and self.settings not in itertools.islice(_records(self.path), 1):
-            raise ValueError(f"{self.path}: the labels in this folder were made with other settings; choose another folder")
+        for path, parts in _manifests(pathlib.Path(corpus.output)):
+            if parts != n:
+                raise ValueError(f"{path}: the labels in this folder are made in {_parts(parts)}, now {_parts(n)}; choose another folder")
+            if difference := _difference(path, self.settings):
+                raise ValueError(difference)
 
-    def done(self) -> set[str]:
-        """The meshes that have a record, and all files that it names."""
+    def finished(self, tasks: Iterable[Task]) -> list[Task]:
+        """Those with a record of each mesh that need not be tried again, and with the files that the records name."""
         records = list(_records(self.path))
         whole = {r["file"] for r in records if "file" in r and _size(self.path.parent / r["file"]) == r["bytes"]}
-        return {r["mesh"] for r in records if "mesh" in r and whole.issuperset(r.get("files", []))}
+        record_of = {r["mesh"]: r for r in records if "mesh" in r}
+        meshes_of: dict[str, set[str]] = collections.defaultdict(set)
+        for name, record in record_of.items():
+            for file in record.get("files", []):
+                meshes_of[file].add(name)
 
-    def keep(self, meshes: set[str]) -> None:
-        """Forgets what is not about these meshes."""
-        files = {name for r in _records(self.path) if r.get("mesh") in meshes for name in r.get("files", [])}
-        self._write(r for r in _records(self.path) if r.get("mesh") in meshes or r.get("file") in files)
+        def is_finished(task: Task) -> bool:
+            names = {name for name, _ in task.meshes}
+            if not all(name in record_of and "again" not in record_of[name] for name in names):
+                return False
+            files = {file for name in names for file in record_of[name].get("files", [])}
+            if task.archive is not None:  # no other one: a corpus that has changed fills its archives anew
+                return files <= {task.archive} <= whole and meshes_of[task.archive] <= names
+            return files <= whole
+
+        return [task for task in tasks if is_finished(task)]
+
+    def keep(self, tasks: Iterable[Task]) -> None:
+        """Forgets what is not about these tasks."""
+        meshes = {name for task in tasks for name, _ in task.meshes}
+        files = {task.archive for task in tasks}
+        files |= {name for r in _records(self.path) if r.get("mesh") in meshes for name in r.get("files", [])}
+        self._write(r for r in _records(self.path) if r.get("mesh") in meshes or ("file" in r and r["file"] in files))
 
     def add(self, records: Iterable[Record]) -> None:
         with self.path.open("a") as file:
@@ -181,9 +221,56 @@ def _records(manifest: pathlib.Path) -> Iterator[Record]:
                 return
             try:
                 record = json.loads(line)
-            except json.JSONDecodeError as error:
-                raise ValueError(f"{manifest}, line {number} is no record ({error}); remove the file to label all meshes again") from None
+            except (ValueError, RecursionError) as error:
+                raise ValueError(_no_record(manifest, number, str(error))) from None
+            if not _is_record(record):
+                raise ValueError(_no_record(manifest, number, "neither settings nor a mesh nor a file"))
             yield record
+
+
+def _is_record(value: Any) -> bool:
+    if not isinstance(value, dict):
+        return False
+    if "mesh" in value:
+        files = value.get("files", [])
+        return isinstance(files, list) and all(isinstance(name, str) for name in [value["mesh"], *files])
+    if "file" in value:
+        return isinstance(value["file"], str) and {"sha256", "bytes"} <= value.keys()
+    return "echinus" in value
+
+
+def _no_record(manifest: pathlib.Path, number: int, why: str) -> str:
+    return f"{manifest}, line {number} is no record ({why}); remove the file to label all meshes again"
+
+
+def _manifests(folder: pathlib.Path) -> list[tuple[pathlib.Path, int]]:
+    """The manifests of a folder, and of how many parts each is."""
+    names = ((path, re.fullmatch(r"manifest(?:-\d+-of-(\d+))?\.jsonl", path.name)) for path in sorted(folder.glob("manifest*.jsonl")))
+    return [(path, int(match[1] or 1)) for path, match in names if match]
+
+
+def _parts(count: int) -> str:
+    return f"{count} parts (--shard i/{count})" if count > 1 else "one part (no --shard)"
+
+
+def _difference(manifest: pathlib.Path, settings: Record) -> str | None:
+    """Says which setting of a manifest is another."""
+    theirs: Record = next(_records(manifest), {})
+    if "echinus" not in theirs:
+        return f"{manifest}: there are no settings in its first line; remove the file to label all meshes again"
+    was, now = _flat(theirs), _flat(settings)
+    for name in now | was:
+        if was.get(name) != now.get(name):
+            return (
+                f"{manifest}: the labels in this folder were made with other settings: "
+                f"{name} was {was.get(name)}, and is {now.get(name)} now; choose another folder"
+            )
+    return None
+
+
+def _flat(settings: Record) -> Record:
+    sampling = settings.get("sampling")
+    return settings | sampling | {"sampling": None} if isinstance(sampling, dict) else settings
 
 
 def _line(record: Record) -> str:
@@ -204,6 +291,8 @@ class Summary:
     ----------
     labelled, refused, points
         Of this run.
+    again
+        Those of the refused that the next run tries again: what they lacked is memory or time.
     already
         Meshes that an earlier run had done.
     """
@@ -211,6 +300,7 @@ class Summary:
     already: int = 0
     labelled: int = 0
     refused: int = 0
+    again: int = 0
     points: int = 0
     seconds: float = 0.0
 
@@ -218,6 +308,7 @@ class Summary:
         for record in records:
             self.labelled += "report" in record
             self.refused += "refused" in record
+            self.again += "again" in record
             self.points += record.get("report", {}).get("points", 0)
 
     def __str__(self) -> str:
@@ -233,7 +324,9 @@ def label(
     memory: int = 4 << 30,
     progress: TextIO | None = None,
 ) -> Summary:
-    """Labels all meshes that have no labels yet. The labels are the same bytes whoever computes them.
+    """Labels all meshes that have no labels yet, also those that were refused for want of memory or time.
+
+    The labels are the same bytes whoever computes them.
 
     Parameters
     ----------
@@ -253,7 +346,13 @@ def label(
         workers.
     OSError
         A file cannot be written.
+    ModuleNotFoundError
+        A scheduler is given, and Dask is not installed.
+    RuntimeError
+        An archive cannot be written for want of memory, though each of its meshes can be labelled.
     """
+    if scheduler is not None:
+        _engines.require_dask()
     if workers is not None and workers < 1:
         raise ValueError(f"workers must be 1 or more, not {workers}")
     if not 0 < memory < 1 << 63:
@@ -320,11 +419,11 @@ def _is(file: TextIO, path: pathlib.Path) -> bool:
 def _label(corpus: Corpus, workers: int | None, scheduler: str | None, memory: int, progress: TextIO | None) -> Summary:
     manifest = _Manifest(corpus)
     mine = corpus.tasks()
-    done = manifest.done()
-    tasks = [task for task in mine if not all(name in done for name, _ in task.meshes)]
-    finished = {name for task in mine for name, _ in task.meshes} - {name for task in tasks for name, _ in task.meshes}
+    finished = manifest.finished(mine)
     manifest.keep(finished)
-    summary, began = Summary(already=len(finished)), time.monotonic()
+    done = {task.meshes for task in finished}
+    tasks = [task for task in mine if task.meshes not in done]
+    summary, began = Summary(already=sum(map(len, done))), time.monotonic()
     shown = began
     total = sum(len(task.meshes) for task in tasks)
 
@@ -367,32 +466,90 @@ def _all_records(tasks: Sequence[Task], run: Any) -> Iterator[list[Record]]:
         again = replace(task, refused=tuple((name, reason) for name in culprits))
         for _, result in run([again]):
             if isinstance(result, str):
-                raise RuntimeError(f"no worker survives {task.archive}, though each survives its meshes one by one")
+                raise RuntimeError(
+                    f"{task.archive}: no worker survives it, though each of its meshes alone; give workers more memory, or archives fewer meshes"
+                )
             yield result
 
 
+@dataclass(frozen=True)
+class Findings:
+    """What is there of the labels of a corpus.
+
+    Attributes
+    ----------
+    complaints
+        What is wrong with its labels.
+    surplus
+        Files that belong to no mesh with labels, for instance because their mesh was taken out of the corpus.
+    refused, again
+        Meshes without labels, and those of them that the next run tries again.
+    """
+
+    complaints: list[str]
+    surplus: list[str]
+    meshes: int
+    refused: int
+    again: int
+
+    def sentences(self) -> list[str]:
+        return self.complaints + [f"{name}: belongs to no labelled mesh of the corpus" for name in self.surplus]
+
+    def __str__(self) -> str:
+        refused = f", {self.refused} of them refused: each of the others" if self.refused else ": each"
+        text = f"{self.meshes} meshes{refused} has its labels once, unchanged"
+        if self.again:
+            text += f"\n{self.again} of the refused may succeed with more memory or time: the same command without --verify tries them again"
+        if self.surplus:
+            text += f"\nfiles that belong to no labelled mesh of the corpus: {len(self.surplus)}; remove those that you do not want"
+        return text
+
+
 def verify(corpus: Corpus) -> list[str]:
-    """What is wrong with the labels in a folder; nothing, if each mesh has its labels once, with the bytes of the manifests."""
-    folder = pathlib.Path(corpus.output)
-    manifests = sorted(folder.glob("manifest*.jsonl"))
+    """What is wrong with the labels in a folder, and which files there belong to no labelled mesh; nothing, if each mesh
+    was refused or has its labels once, with the bytes of the manifests."""
+    return examine(corpus).sentences()
+
+
+def examine(corpus: Corpus) -> Findings:
+    folder, settings = pathlib.Path(corpus.output), corpus.settings()
+    manifests = [path for path, _ in _manifests(folder)]
     records = list(itertools.chain.from_iterable(map(_records, manifests)))
-    settings = [r for r in records if "echinus" in r]
-    complaints = [f"{folder}: there are labels of other settings" for r in settings if r != corpus.settings()][:1]
-    times = collections.Counter(r["mesh"] for r in records if "mesh" in r)
+    complaints = [difference for path in manifests if (difference := _difference(path, settings))]
+    archive_of = {name: task.archive for task in replace(corpus, shard=(0, 1)).tasks() for name, _ in task.meshes}
+    ours = [r for r in records if r.get("mesh") in archive_of]
+    times = collections.Counter(r["mesh"] for r in ours)
     complaints += [f"{name}: is recorded {n} times" for name, n in sorted(times.items()) if n > 1]
-    complaints += [f"{name}: has no labels" for name, _ in corpus.meshes if name not in times]
-    named = {name for r in records for name in r.get("files", [])}
-    files = {r["file"]: r["sha256"] for r in records if "file" in r}
-    complaints += [f"{name}: has no hash" for name in sorted(named - set(files))]
-    for name, expected in sorted(files.items()):
+    complaints += [f"{name}: has no labels" for name in archive_of if name not in times]
+    complaints += _misplaced(records, archive_of)
+    named = {name for r in ours for name in r.get("files", [])}
+    hashes = {r["file"]: r["sha256"] for r in records if "file" in r}
+    complaints += [f"{name}: has no hash" for name in sorted(named - set(hashes))]
+    used = named | {archive for archive in archive_of.values() if archive is not None and archive in hashes}
+    complaints += _changed(folder, {name: hashes[name] for name in sorted(used) if name in hashes})
+    present = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file() and UNFINISHED not in path.parts}
+    surplus = sorted(present - used - {path.name for path in manifests})
+    refused = [r for r in ours if "refused" in r]
+    return Findings(complaints, surplus, len(archive_of), len(refused), sum("again" in r for r in refused))
+
+
+def _misplaced(records: Iterable[Record], archive_of: dict[str, str | None]) -> Iterator[str]:
+    """Archives as they were before meshes came into the corpus or went."""
+    archives = {archive for archive in archive_of.values() if archive is not None}
+    for record in records:
+        for file in record.get("files", []):
+            place = archive_of.get(record["mesh"])
+            if file != place and (place is not None or file in archives):
+                yield f"{record['mesh']}: has labels in {file}, as before the corpus changed; the same command without --verify mends that"
+
+
+def _changed(folder: pathlib.Path, hashes: dict[str, str]) -> Iterator[str]:
+    for name, expected in hashes.items():
         path = folder / name
         if not path.exists():
-            complaints.append(f"{name}: is missing")
+            yield f"{name}: is missing"
         elif _hash_of(path) != expected:
-            complaints.append(f"{name}: has other bytes than it had")
-    present = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file() and UNFINISHED not in path.parts}
-    complaints += [f"{name}: is in no manifest" for name in sorted(present - set(files) - {path.name for path in manifests})]
-    return complaints
+            yield f"{name}: has other bytes than it had"
 
 
 def _hash_of(path: pathlib.Path) -> str:

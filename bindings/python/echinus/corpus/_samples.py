@@ -10,16 +10,28 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from echinus._arguments import whole
 from echinus._errors import Error
 from echinus._maps import ExactMap
 from echinus._meshes import Mesh, MeshLike, as_mesh, inspect, repair
 from echinus.corpus._random import Random
 
 Frame = Literal["cube", "sphere", "none"]
+_LARGEST = 1e30  # of lengths: their squares are far from overflow, and float32 has room for them
 
 
 class Refused(Exception):
-    """A mesh that gets no labels; the text says why."""
+    """A mesh that gets no labels; the text says why.
+
+    Attributes
+    ----------
+    again : bool
+        Another attempt may succeed: the reason lies in the machine, not in the mesh.
+    """
+
+    def __init__(self, reason: str, *, again: bool = False) -> None:
+        super().__init__(reason)
+        self.again = again
 
 
 @dataclass(frozen=True)
@@ -82,14 +94,15 @@ class Sampling:
 
     def __post_init__(self) -> None:
         for name in ("uniform", "near", "surface", "max_faces"):
-            if getattr(self, name) < 0:
-                raise ValueError(f"{name} must be 0 or more, not {getattr(self, name)}")
-        if self.near and (not self.sigmas or not all(0 < s < np.inf for s in self.sigmas)):
-            raise ValueError(f"sigmas must be positive numbers, not {self.sigmas}")
-        if not 0 <= self.close_holes <= 256 or not 0 <= self.thicken <= 0.5:
-            raise ValueError("close_holes must be from 0 to 256, and thicken from 0 to 0.5")
-        if not 0 <= self.padding < np.inf or not 0 <= self.min_certain <= 1 or not self.time_limit > 0:
-            raise ValueError("padding must be 0 or more, min_certain from 0 to 1, and time_limit positive")
+            whole(name, getattr(self, name))
+        whole("close_holes", self.close_holes, 0, 256)
+        for name, most in (("padding", _LARGEST), ("thicken", 0.5), ("min_certain", 1)):
+            if not 0 <= getattr(self, name) <= most:
+                raise ValueError(f"{name} must be a number from 0 to {most:g}, not {getattr(self, name)}")
+        if (self.near and not self.sigmas) or not all(0 < sigma <= _LARGEST for sigma in self.sigmas):
+            raise ValueError(f"sigmas must be positive numbers up to {_LARGEST:g}, not {self.sigmas}")
+        if not self.time_limit > 0:
+            raise ValueError(f"time_limit must be a positive number of seconds, not {self.time_limit}")
 
     @property
     def makes_solid(self) -> bool:
@@ -161,10 +174,8 @@ def sample(mesh: MeshLike, sampling: Sampling = Sampling()) -> Samples:
         share = sampling.near * (i + 1) // len(sampling.sigmas) - sampling.near * i // len(sampling.sigmas)
         on_surface, _ = surface.points(share, random(f"near {i}"))
         parts.append(on_surface + sigma * random(f"offset {i}").normal(share, 3))
-    points = np.concatenate(parts).astype(sampling.dtype)
     cloud, cloud_faces = surface.points(sampling.surface, random("surface"))
-    if not np.isfinite(points).all():
-        raise Refused(f"its points do not fit into {sampling.dtype}")
+    points, cloud = _stored(np.concatenate(parts), sampling), _stored(cloud, sampling)
     labels = _labels(framed, points, report["closed"], sampling)
     certain_share = float(labels.certain.mean()) if len(points) else 1.0
     if certain_share < sampling.min_certain:
@@ -176,12 +187,20 @@ def sample(mesh: MeshLike, sampling: Sampling = Sampling()) -> Samples:
         distance=labels.distance,
         nearest=labels.nearest,
         certain=labels.certain,
-        surface=cloud.astype(sampling.dtype),
+        surface=cloud,
         normals=surface.normals(cloud_faces).astype(sampling.dtype),
         loc=loc,
         scale=scale,
         report=report,
     )
+
+
+def _stored(points: NDArray[np.float64], sampling: Sampling) -> NDArray[np.floating[Any]]:
+    with np.errstate(over="ignore"):
+        stored: NDArray[np.floating[Any]] = points.astype(sampling.dtype)
+    if not np.isfinite(stored).all():
+        raise Refused(f"its points do not fit into {sampling.dtype}")
+    return stored
 
 
 def _mended(mesh: Mesh, sampling: Sampling) -> tuple[Mesh, dict[str, Any]]:
@@ -242,8 +261,8 @@ def _in_frame(mesh: Mesh, frame: Frame) -> tuple[Mesh, NDArray[np.float64], floa
     around = used - loc
     farthest = np.sqrt((around[:, 0] ** 2 + around[:, 1] ** 2 + around[:, 2] ** 2).max())
     scale = float((high - low).max() if frame == "cube" else 1.03 * farthest)
-    if not 1e-30 < scale < 1e30:
-        raise Refused(f"its extent is {scale:.3g}")
+    if not 1 / _LARGEST < scale < _LARGEST:
+        raise Refused(f"its extent is {scale:.3g}; it must be between {1 / _LARGEST:g} and {_LARGEST:g}")
     return Mesh((mesh.vertices.astype(np.float64) - loc) / scale, mesh.faces), loc, scale
 
 
@@ -310,7 +329,7 @@ def _labels(mesh: Mesh, points: NDArray[np.floating[Any]], closed: bool, samplin
     while first < len(points):
         began = time.monotonic()
         if began > end:
-            raise Refused(f"its labels take longer than {sampling.time_limit:g} s")
+            raise Refused(f"its labels take longer than {sampling.time_limit:g} s", again=True)
         _fill(labels, slice(first, min(first + count, len(points))), exact, points, closed, sampling.distances)
         first += count
         count = max(64, int(count * min(1024.0, 2.0 / max(time.monotonic() - began, 1e-6))))

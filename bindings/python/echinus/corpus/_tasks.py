@@ -58,11 +58,10 @@ def run(task: Task) -> list[Record]:
     for name, path in task.meshes:
         try:
             if name in reasons:
-                raise Refused(reasons[name])
+                raise Refused(reasons[name], again=True)
             files, report = _labelled(name, path, task)
         except (Refused, Error, MemoryError) as error:
-            reason = "it needs more memory than a worker has" if isinstance(error, MemoryError) else str(error)
-            records.append({"mesh": name, "source": path, "refused": reason})
+            records.append({"mesh": name, "source": path} | _refusal(error))
             continue
         if task.archive is None:
             written = [_write(task.output, file, content) for file, content in files.items()]
@@ -71,8 +70,19 @@ def run(task: Task) -> list[Record]:
             members |= files
             records.append({"mesh": name, "source": path, "files": [task.archive], "report": report})
     if task.archive is not None:
-        records.append(_write(task.output, task.archive, archive_of(members)))
+        try:
+            records.append(_write(task.output, task.archive, archive_of(members)))
+        except MemoryError:
+            raise RuntimeError(f"{task.archive}: a worker has too little memory for it; give it more, or archives fewer meshes") from None
     return records
+
+
+def _refusal(error: Refused | Error | MemoryError) -> Record:
+    """The next run tries meshes again that were refused for the machine's sake."""
+    if isinstance(error, MemoryError):
+        error = Refused("it needs more memory than a worker has", again=True)
+    again = isinstance(error, Refused) and error.again
+    return {"refused": str(error)} | ({"again": True} if again else {})
 
 
 def _labelled(name: str, path: str, task: Task) -> tuple[dict[str, bytes], Record]:
