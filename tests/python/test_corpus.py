@@ -482,9 +482,9 @@ def test_a_mesh_that_no_worker_survives_is_refused_and_its_neighbours_are_not(fo
             assert (summary.labelled, summary.refused, summary.again) == (12, 4, 1)
             assert corpus.verify(corpus_of(folder, output, form=form)) == []
     assert len(list(samples_of_archives(tmp_path / "webdataset"))) == 12
-    for form, computed in (("occupancy", 1), ("webdataset", 4)):  # the whole archive
+    for form, computed in (("occupancy", (1, 0)), ("webdataset", (3, 1))):  # all of the archive, with the broken mesh
         summary = corpus.label(corpus_of(folder, tmp_path / form, form=form), workers=1)
-        assert (summary.labelled, summary.refused, summary.again) == (computed, 0, 0)
+        assert (summary.labelled, summary.refused, summary.again) == (*computed, 0)
         assert corpus.verify(corpus_of(folder, tmp_path / form, form=form)) == []
     assert len(list(samples_of_archives(tmp_path / "webdataset"))) == 13
 

@@ -392,9 +392,11 @@ def _part_locked(path: pathlib.Path) -> Iterator[None]:
             file.close()
             file = path.open("a")
             _lock(file.fileno(), fcntl.LOCK_EX)
-        yield
-        if _is(file, path):  # a whole run has removed it with its folder
-            path.unlink()
+        try:
+            yield
+        finally:
+            if _is(file, path):  # else a whole run has removed it with its folder
+                path.unlink()
     finally:
         file.close()
 
