@@ -238,6 +238,11 @@ struct SweepHit {
 
 /// The first crossing of a segment with the surface. On the lattice, which faces are crossed is exact.
 ///
+/// The segment is that between two lattice points at its ends or, where an end is beyond the lattice, where
+/// it enters. No place of it is farther than a lattice step from the given segment, however far away the ends
+/// are: all finite points will do. From ends more than 10^6 R apart `fraction`, a float, does not tell the
+/// place as `point` does.
+///
 /// On a closed surface sweep() agrees with contains(): when nothing is met, the winding number is the same at
 /// both ends. On an open surface it need not be: the generalised winding number also passes one half where
 /// there is no face, so contains() may differ at the ends of a segment that meets nothing.

@@ -64,9 +64,11 @@ struct TriangleSweepHit {
 /// The way of a triangle whose corners each move along a straight line, at the same time. An edge is a
 /// triangle with two equal corners.
 ///
-/// Conservative advancement: the triangle moves on by its clearance, until that is within R / 2^17. So where
-/// `fraction` is less than 1, it is that near to the surface; or it has moved 100 times, past something that
-/// it nearly touched all the way. Does not allocate. Cost: so many clearances as it moves.
+/// Conservative advancement: the triangle moves on by its clearance, until that is within R / 2^17, or within
+/// 10^-14 of how far from the centre the way begins and ends, if that is more. So where `fraction` is less
+/// than 1, it is that near to the surface; or it has moved 100 times, past something that it nearly touched
+/// all the way. A way that begins or ends farther than 10^11 R from the centre is not followed: nothing is
+/// met. Does not allocate. Cost: so many clearances as it moves.
 TriangleSweepHit sweep(const ExactMapView& map, const TrianglePoints& from_local,
                        const TrianglePoints& to_local) noexcept;
 
@@ -84,7 +86,7 @@ struct FaceLists {
 /// that is farther by more than rounding (see Clearance).
 /// @param vertices_local  [vertex_count]
 /// @param triangles       [n] indices of vertices
-/// @param reach           not negative; 0: faces that touch
+/// @param reach           not negative; 0: faces that touch. Beyond 10^12 R nothing is looked for
 /// @param lists           [n] out; keeps its memory from one call to the next
 /// @param thread_count    0: all cores
 /// @pre indices are in range

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <utility>
+#include <vector>
 
 using namespace echinus;
 
@@ -69,6 +71,39 @@ TEST(ScaledCollider, WithAnExactMapAnswersAsTheScaledMeshDoes) {
             ASSERT_NEAR(length(Vec3d(found.normal) - way_out), 0, 2 * kResolution / distance + 1e-4);
         }
         EXPECT_GT(inside, 50);
+    }
+}
+
+TEST(ScaledCollider, WithAnExactMapHasItsContactAtAnyDistance) {
+    const TriangleMesh box = make_box({2, 2, 2}, 2);
+    const ExactMap map = ExactMap::build(box);
+    test::Random random(2);
+    const Vec3d scale{1, 2, 0.01};
+    const Collider collider{.map = map, .scale = scale};
+    for (int exponent = 3; exponent < 37; ++exponent) {
+        const double far = std::pow(10.0, exponent);
+        std::vector<Vec3f> points;
+        // Points whose nearest one is a corner, in an octant each.
+        for (int i = 0; i < 16; ++i) {
+            const Vec3f away = test::in_cube(random, 1);
+            points.push_back({static_cast<float>(std::copysign(far, away.x)),
+                              static_cast<float>(std::copysign(far / 3, away.y)),
+                              static_cast<float>(std::copysign(far / 7, away.z))});
+        }
+        std::vector<Contact> batch(points.size());
+        contacts_batch(collider, points, std::numeric_limits<float>::infinity(), batch);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const Vec3d p(points[i]);
+            const Vec3d corner{std::copysign(scale.x, p.x), std::copysign(scale.y, p.y),
+                               std::copysign(scale.z, p.z)};
+            const double distance = length(p - corner);
+            ASSERT_NEAR(batch[i].depth / distance, -1, 1e-6) << far;
+            ASSERT_LT(length(Vec3d(batch[i].point) - corner), kResolution) << far;
+            ASSERT_LT(length(Vec3d(batch[i].normal) - (p - corner) * (1 / distance)), 1e-5) << far;
+            const auto margin = static_cast<float>(distance);
+            ASSERT_EQ(contact(collider, points[i], margin * 1.001F).face, batch[i].face) << far;
+            ASSERT_FALSE(contact(collider, points[i], margin * 0.999F).found()) << far;
+        }
     }
 }
 

@@ -99,6 +99,44 @@ TEST(ExactMapSweep, CutsWaysThatBeginAndEndFarAway) {
     EXPECT_FALSE(sweep(map, {-1e6F, 5, 0}, {1e6F, 5, 0}).found());
 }
 
+TEST(ExactMapSweep, MeetsTheSamePlaceFromAnyDistance) {
+    const ExactMap map = ExactMap::build(make_box({2, 2, 2}));
+    test::Random random(8);
+    for (int n = 0; n < 500; ++n) {
+        // Ways through the centre: multiples of a power of two are exact.
+        const Vec3f direction = test::unit_vector(random);
+        const SweepHit near = sweep(map, direction * 4, direction * -4);
+        ASSERT_TRUE(near.found());
+        for (int exponent = 10; exponent < 127; exponent += 13) {
+            const float far = std::ldexp(1.0F, exponent);
+            const SweepHit hit = sweep(map, direction * far, direction * (far / -2));
+            ASSERT_TRUE(hit.found()) << exponent;
+            ASSERT_TRUE(hit.entering);
+            ASSERT_LT(length(hit.point - near.point), 1e-5) << exponent;
+            ASSERT_NEAR(hit.fraction, 2.0F / 3, 2 / far + 1e-6F);
+        }
+    }
+}
+
+TEST(ExactMapSweep, TellsFromAnyDistanceWhatPassesBesideTheSurface) {
+    const ExactMap map = ExactMap::build(make_box({2, 2, 2}));
+    constexpr float kBeside = 1e-5F; // three lattice steps
+    for (int exponent = 3; exponent < 38; ++exponent) {
+        const float far = std::pow(10.0F, static_cast<float>(exponent));
+        for (const float x : {far, -far})
+            for (const float y : {far, -far}) {
+                const float below = 1 - kBeside, above = 1 + kBeside;
+                const SweepHit hit = sweep(map, {x, y, below}, {-x / 4, -y / 4, below});
+                ASSERT_TRUE(hit.found()) << far;
+                ASSERT_NEAR(hit.point.x, std::copysign(1, x), 1e-5);
+                ASSERT_NEAR(hit.point.y, std::copysign(1, y), 1e-5);
+                ASSERT_NEAR(hit.point.z, below, 2e-6);
+                ASSERT_FALSE(sweep(map, {x, y, above}, {-x / 4, -y / 4, above}).found()) << far;
+                ASSERT_FALSE(sweep(map, {x, y, below}, {x / 2, y / 2, below}).found()) << far;
+            }
+    }
+}
+
 TEST(ExactMapSweep, PassesThroughTheCentre) {
     const TriangleMesh mesh = make_torus(1, 0.4, 30, 12);
     const ExactMap map = ExactMap::build(mesh);
@@ -123,7 +161,7 @@ TEST(ExactMapSweep, EndsWhereContainsSeesTheParticleHoweverFarItCameFrom) {
     const ExactMap map = ExactMap::build(make_box({1, 1, 1}));
     test::Random random(9);
     for (int n = 0; n < 2000; ++n) {
-        const float far = std::pow(10.0F, static_cast<float>(n % 18));
+        const float far = std::pow(10.0F, static_cast<float>(n % 38));
         const Vec3f from = test::in_sphere(random, far) + Vec3f{2 * far, 0, 0};
         const Vec3f to = test::in_sphere(random, 0.7F);
         if (contains(map, from) != contains(map, to)) ASSERT_TRUE(sweep(map, from, to).found());

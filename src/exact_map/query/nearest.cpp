@@ -213,17 +213,8 @@ std::optional<std::uint32_t> nearest_face_from_afar(const ExactMapView& map, con
     return nearest.face();
 }
 
-} // namespace
-
-std::optional<std::uint32_t> nearest_face(const ExactMapView& map, const Vec3d& place, const Vec3d& stretch,
-                                          double farthest) noexcept {
-    if (is_afar(place) && stretch == kUnstretched) {
-        // No corner is farther from the centre than its coordinates can be, snapped and rounded.
-        if (farthest < length(place) - 2 * static_cast<double>(kLatticeExtent)) return std::nullopt;
-        const auto face = nearest_face_from_afar(map, place);
-        const bool is_within = face && distance_sq_to_face(map, *face, place, stretch) <= farthest * farthest;
-        return is_within ? face : std::nullopt;
-    }
+std::optional<std::uint32_t> nearest_face_from_nearby(const ExactMapView& map, const Vec3d& place,
+                                                      const Vec3d& stretch, double farthest) {
     NearestSoFar nearest(map, place, stretch, farthest);
     float bound = rounded_up(nearest.distance_sq());
     walk_near_leaves(map, bound, BoxDistances(place, stretch), [&](const LeafFaces& faces) {
@@ -232,9 +223,27 @@ std::optional<std::uint32_t> nearest_face(const ExactMapView& map, const Vec3d& 
     return nearest.face();
 }
 
+} // namespace
+
+std::optional<std::uint32_t> nearest_face(const ExactMapView& map, const Vec3d& place, const Vec3d& stretch,
+                                          double farthest) noexcept {
+    const bool unstretched = stretch == kUnstretched;
+    const Vec3d within_reach = brought_within_reach(place, stretch);
+    if (unstretched ? !is_afar(place) : within_reach == place)
+        return nearest_face_from_nearby(map, place, stretch, farthest);
+    // No corner is farther from the centre than its coordinates can be, snapped and rounded.
+    if (farthest < length(stretched(place, stretch)) - 2 * static_cast<double>(kLatticeExtent))
+        return std::nullopt;
+    constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+    const auto face = unstretched ? nearest_face_from_afar(map, place)
+                                  : nearest_face_from_nearby(map, within_reach, stretch, kUnbounded);
+    const bool is_within = face && distance_sq_to_face(map, *face, place, stretch) <= farthest * farthest;
+    return is_within ? face : std::nullopt;
+}
+
 NearestPoint nearest_point_on_face(const ExactMapView& map, std::uint32_t face, const Vec3d& place,
                                    const Vec3d& stretch) noexcept {
-    const Vec3d from = brought_within_reach(place);
+    const Vec3d from = brought_within_reach(place, stretch);
     const auto [offset, distance, feature] = nearest_on_triangle(corners_around(map, face, from, stretch));
     const Vec3d point = from + Vec3d{offset.x / stretch.x, offset.y / stretch.y, offset.z / stretch.z};
     return {point, from == place ? distance : length(stretched(point - place, stretch)), face, feature};

@@ -30,10 +30,11 @@ inline bool is_afar(const Vec3d& place) {
 
 /// Where a place is so far that the distances to the faces, rounded to double, no longer differ, the place
 /// from which the nearest face and its nearest point are found instead: on its ray from the centre, and so
-/// far that both are the same but for a sixteenth of a lattice step.
-inline Vec3d brought_within_reach(const Vec3d& place) {
+/// far that both are the same but for a sixteenth of a lattice step, stretched.
+inline Vec3d brought_within_reach(const Vec3d& place, const Vec3d& stretch = {1, 1, 1}) {
     constexpr double kReach = 0x1p44;
-    const double largest = std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)});
+    const double largest = std::max(
+        {std::fabs(place.x * stretch.x), std::fabs(place.y * stretch.y), std::fabs(place.z * stretch.z)});
     return largest > kReach ? place * (kReach / largest) : place;
 }
 

@@ -57,14 +57,14 @@ struct PlacedTriangle {
                                          frame.to_lattice(points[2])},
                          length_of(frame.centre) * frame.inverse_step) {}
 
-    /// @param centre_distance  of the frame, whose subtraction rounded the corners
-    PlacedTriangle(const TriangleCorners& places, double centre_distance) : corners(places) {
+    /// @param rounded_extent  of what was rounded to get the corners, such as the frame's centre
+    PlacedTriangle(const TriangleCorners& places, double rounded_extent) : corners(places) {
         const auto& [a, b, c] = places;
         const Vec3d least{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})};
         const Vec3d most{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})};
         low = rounded_down(least);
         high = rounded_up(most);
-        rounding = (length_of(a) + length_of(b) + length_of(c) + centre_distance +
+        rounding = (length_of(a) + length_of(b) + length_of(c) + rounded_extent +
                     3.0 * static_cast<double>(kLatticeExtent)) *
                    0x1p-46;
         const auto within_range = [](const Vec3d& v) {
@@ -251,21 +251,25 @@ TriangleSweepHit sweep(const ExactMapView& map, const TrianglePoints& from_local
     constexpr int kMostMoves = 100;
     if (!all_finite(from_local) || !all_finite(to_local)) return {};
     const LatticeFrame frame = frame_of(map);
-    const double centre_distance = PlacedTriangle::length_of(frame.centre) * frame.inverse_step;
     TriangleCorners from, way;
-    double longest = 0;
+    double longest = 0, extent = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         from[k] = frame.to_lattice(from_local[k]);
-        way[k] = frame.to_lattice(to_local[k]) - from[k];
+        const Vec3d to = frame.to_lattice(to_local[k]);
+        way[k] = to - from[k];
         longest = std::max(longest, length(way[k]));
+        extent = std::max(extent, PlacedTriangle::length_of(from[k]) + PlacedTriangle::length_of(to));
     }
+    if (extent > kFarthest / 2) return {};
+    // A place on the way is off by less than 2^-49 of the extent, however near it is.
+    const double rounded_extent =
+        PlacedTriangle::length_of(frame.centre) * frame.inverse_step + extent * 0x1p-3;
     double fraction = 0;
     for (int move = 0;; ++move) {
         const TriangleCorners now{from[0] + way[0] * fraction, from[1] + way[1] * fraction,
                                   from[2] + way[2] * fraction};
-        const double rest = std::min(longest * (1 - fraction), kFarthest);
-        const auto nearest =
-            nearest_face(map, PlacedTriangle(now, centre_distance), std::max(rest, kArrived));
+        const double rest = longest * (1 - fraction);
+        const auto nearest = nearest_face(map, PlacedTriangle(now, rounded_extent), std::max(rest, kArrived));
         if (!nearest) return {};
         if (nearest->distance <= kArrived || move == kMostMoves)
             return {.fraction = rounded_down(fraction), .face = number_of(map, nearest->face)};

@@ -20,19 +20,65 @@ namespace {
 constexpr std::int64_t kLatticeLimit = kLatticeExtent + 1;
 constexpr auto kLimit = static_cast<double>(kLatticeLimit);
 
+using Axis = double Vec3d::*;
+
+Axis longest_axis(const Vec3d& v) {
+    const double x = std::fabs(v.x), y = std::fabs(v.y), z = std::fabs(v.z);
+    if (x >= y && x >= z) return &Vec3d::x;
+    return y >= z ? &Vec3d::y : &Vec3d::z;
+}
+
+/// The place on the line through two points with this coordinate along an axis; in lattice steps.
+///
+/// Seen from the centre C, all places p of the line have the moment p x way = (a - C) x (b - C), which is
+/// a x b - C x way. Products of floats are exact in double, so that it is off by no more than a few roundings
+/// of itself and of |C| |way|, however far away a and b are. With the axis e, e x (p x way) is
+/// p (e.way) - way (e.p).
+/// @param axis  along which the line advances most: then no error grows in the division
+Vec3d place_on_line(const LatticeFrame& frame, const Vec3d& a, const Vec3d& b, Axis axis, double coordinate) {
+    const Vec3d way = b - a;
+    const Vec3d moment = (cross(a, b) - cross(frame.centre, way)) * frame.inverse_step;
+    Vec3d unit;
+    unit.*axis = 1;
+    return (way * coordinate + cross(unit, moment)) * (1 / way.*axis);
+}
+
 /// Moves one end of a segment towards the other, to where the lattice begins: beyond there is no surface.
-/// Measured from the other end, so that one that lies on the lattice leaves the cut exact, however far away
-/// this one is.
+/// Measured from the other end, so that one that lies on the lattice leaves the cut exact.
 /// @return false when the whole segment lies beyond
 bool cut_to_lattice(Vec3d& end, const Vec3d& other) {
     double share = 1;
-    for (double Vec3d::*c : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
+    for (Axis c : {&Vec3d::x, &Vec3d::y, &Vec3d::z}) {
         if (std::fabs(end.*c) <= kLimit) continue;
         const double limit = end.*c > 0 ? kLimit : -kLimit;
         if (end.*c > 0 ? other.*c > limit : other.*c < limit) return false;
         share = std::min(share, (limit - other.*c) / (end.*c - other.*c));
     }
     if (share < 1) end = other + (end - other) * share;
+    return true;
+}
+
+/// Are cuts from here off by much less than a lattice step?
+bool is_near(const Vec3d& place) {
+    constexpr double kNear = 0x1p24;
+    return (std::fabs(place.x) <= kNear) & (std::fabs(place.y) <= kNear) & (std::fabs(place.z) <= kNear);
+}
+
+/// Cuts a segment across the axis along which it advances most. What then does not lie beyond one side of the
+/// lattice is near.
+/// @return false when the whole segment lies beyond
+bool cut_far_segment(const LatticeFrame& frame, const Vec3f& from_local, const Vec3f& to_local, Vec3d& start,
+                     Vec3d& end) {
+    const Axis axis = longest_axis(end - start);
+    const double from = start.*axis, to = end.*axis;
+    if (std::min(from, to) > kLimit || std::max(from, to) < -kLimit) return false;
+    const auto cut = [&](Vec3d& place) {
+        if (std::fabs(place.*axis) <= kLimit) return;
+        const double limit = std::copysign(kLimit, place.*axis);
+        place = place_on_line(frame, Vec3d(from_local), Vec3d(to_local), axis, limit);
+    };
+    cut(start);
+    cut(end);
     return true;
 }
 
@@ -87,8 +133,9 @@ struct FaceCrossing {
     std::uint32_t face;
 };
 
-std::optional<FaceCrossing> first_crossing(const ExactMapView& map, const LatticePoint& from,
-                                           const LatticePoint& to) {
+/// Not inlined: what comes before it would cost the search registers.
+[[gnu::noinline]] std::optional<FaceCrossing>
+first_crossing(const ExactMapView& map, const LatticePoint& from, const LatticePoint& to) {
     std::optional<FaceCrossing> first;
     float bound = 1;
     walk_near_leaves(map, bound, BoxEntries(from, to), [&](const LeafFaces& faces) {
@@ -127,6 +174,8 @@ SweepHit sweep(const ExactMapView& map, Vec3f from_local, Vec3f to_local) noexce
     const LatticeFrame frame = frame_of(map);
     const Vec3d from_place = frame.to_lattice(from_local), to_place = frame.to_lattice(to_local);
     Vec3d start = from_place, end = to_place;
+    if (!(is_near(start) && is_near(end)) && !cut_far_segment(frame, from_local, to_local, start, end))
+        return hit;
     if (!cut_to_lattice(start, end) || !cut_to_lattice(end, start)) return hit;
     const LatticePoint from = clamped(rounded(start));
     const LatticePoint to = clamped(rounded(end));

@@ -556,7 +556,8 @@ typedef struct echinus_triangle_sweep_hit {
     int32_t face;   ///< that it comes to; -1 where it meets none
 } echinus_triangle_sweep_hit;
 
-/// Where triangles whose corners move along straight lines first come to the surface.
+/// Where triangles whose corners move along straight lines first come to the surface. Ways that begin or end
+/// farther from the map's centre than 10^11 of its radii are not followed: they meet nothing.
 /// @param hits  [count] out
 ECHINUS_API echinus_status echinus_map_sweep_triangles(const echinus_map* map, const float* from,
                                                        size_t from_stride, const float* to, size_t to_stride,
