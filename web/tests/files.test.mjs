@@ -127,7 +127,7 @@ test('an open mesh is reported with the number of its border edges', async () =>
     await page.locator('input[name=surfaces]').check(); // faces of the cloth that intersect would be red, too
     await untilFrame(page, 1);
     const red = await pixelsOf(page, FAULT_RED, LINE_RED);
-    assert.ok(red > 15, `the border is drawn, where the cloth does not hide it: ${red} pixels`);
+    assert.ok(red > 5, `the border is drawn, where the cloth does not hide it: ${red} pixels`);
     await page.locator('input[name=map][value=distance]').check();
     await page.waitForFunction(() => document.getElementById('map-note').textContent.includes('paper') || !document.getElementById('notice').hidden);
     await page.locator('#restart').click();
@@ -138,7 +138,7 @@ test('an open mesh is reported with the number of its border edges', async () =>
     await choose(page, 'closed.off', tetrahedra()['t.off']);
     await untilReport(page, 'Closed');
     await page.waitForTimeout(500);
-    assert.equal(await pixelsOf(page, FAULT_RED), 0);
+    assert.equal(await pixelsOf(page, FAULT_RED, LINE_RED), 0, 'no line is left, and the cloth is not taken for one');
     await browser.close(page);
 });
 
@@ -203,8 +203,8 @@ test('the cloth on an open mesh can be pulled, however small the mesh is', async
 
 /** The fault colours of view/colours.ts. */
 const FAULT_RED = [0xd1, 0x24, 0x2f];
-/** How far from it thin lines are, whose rims are blended. The cloth's red is farther. */
-const LINE_RED = 44;
+/** How far from it thin lines are, whose rims are blended. The cloth's red is farther: from 44 on, it would be counted. */
+const LINE_RED = 36;
 
 /** The number of pixels in the model's picture with about this colour. Of lines, whose rims are blended, more tolerance finds most. */
 async function pixelsOf(page, colour, tolerance = 12) {
