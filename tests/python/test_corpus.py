@@ -15,13 +15,14 @@ import threading
 import time
 from dataclasses import replace
 
+import hypothesis
 import numpy as np
 import pytest
 from hypothesis import given, strategies
 
 import echinus as ech
 from echinus import corpus
-from echinus.corpus import _command, _engines, _random, _run, _tasks
+from echinus.corpus import _command, _engines, _random, _run, _samples, _tasks
 from support import open_torus, torus
 
 SMALL = corpus.Sampling(uniform=300, near=200, sigmas=(0.01, 0.1), surface=100)
@@ -73,6 +74,20 @@ def test_samples_near_the_surface_are_as_far_as_their_sigmas_say():
     s = corpus.sample(ech.make_box((1, 1, 1), 1), corpus.Sampling(uniform=0, near=40_000, sigmas=(0.001, 0.01), surface=0))
     for part, sigma in zip(np.split(s.distance, 2), (0.001, 0.01)):
         assert part.std() == pytest.approx(sigma, rel=0.03)  # along the normal of a side
+
+
+@given(areas=strategies.lists(strategies.sampled_from([0.0, 1e-30, 1e-7, 1.0, 3.0, 1e7]), min_size=1, max_size=300), seed=strategies.integers(0, 99))
+def test_faces_are_those_that_a_search_of_all_areas_finds(areas, seed):
+    hypothesis.assume(max(areas) > 0)
+    feet = np.arange(len(areas), dtype=np.float64)
+    triangles = np.zeros((len(areas), 3, 3))
+    triangles[:, :, 0] = feet[:, None]
+    triangles[:, 1, 1], triangles[:, 2, 2] = np.sqrt(areas), np.sqrt(areas)
+    surface = _samples._Surface(ech.Mesh(triangles.reshape(-1, 3), np.arange(3 * len(areas)).reshape(-1, 3)))
+    share = np.concatenate([np.random.default_rng(seed).random(200), [0, 1 - 2.0**-53], surface._total / surface._total[-1]])
+    share = share[share < 1]
+    found = np.searchsorted(surface._total, share * surface._total[-1], side="right")
+    assert (surface._find(share) == np.minimum(found, len(areas) - 1)).all()
 
 
 def test_samples_of_the_surface_are_even_by_area_and_have_the_normals_of_their_faces():

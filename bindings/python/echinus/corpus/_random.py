@@ -19,8 +19,9 @@ class Random:
 
     def uniform(self, *shape: int) -> Doubles:
         """In [0, 1), multiples of 2^-53."""
-        raw = self._bits.random_raw(int(np.prod(shape)))
-        return (np.asarray(raw, np.uint64) >> np.uint64(11)).reshape(shape) * 2.0**-53
+        raw = np.asarray(self._bits.random_raw(int(np.prod(shape))), np.uint64)
+        raw >>= np.uint64(11)
+        return raw.reshape(shape) * 2.0**-53
 
     def normal(self, *shape: int) -> Doubles:
         """Normally distributed, of mean 0 and variance 1."""

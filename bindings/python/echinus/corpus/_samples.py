@@ -282,23 +282,40 @@ class _Surface:
     """Draws points of a mesh, evenly by area."""
 
     def __init__(self, mesh: Mesh) -> None:
-        a, b, c = self._corners = [mesh.vertices[mesh.faces[:, k]].astype(np.float64) for k in range(3)]
+        a, b, c = (mesh.vertices[mesh.faces[:, k]].astype(np.float64) for k in range(3))
+        self._corners = [np.ascontiguousarray(corner.T) for corner in (a, b, c)]
         u, v = b - a, c - a
         self._normal = np.stack([u[:, k - 2] * v[:, k - 1] - u[:, k - 1] * v[:, k - 2] for k in range(3)], axis=1)
         self._area = np.sqrt(self._normal[:, 0] ** 2 + self._normal[:, 1] ** 2 + self._normal[:, 2] ** 2)
         self._total = np.cumsum(self._area)
+        self._bins = 1 << min(1 + len(self._area).bit_length(), 18)
+        self._face_of_bin = self._face_at(np.arange(self._bins) / self._bins * self._total[-1])
 
     def points(self, count: int, random: Random) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
         """Points and their faces."""
-        total = self._total[-1]
-        if count and not total > 0:
+        if count == 0:
+            return np.zeros((0, 3)), np.zeros(0, np.intp)
+        if not self._total[-1] > 0:
             raise Refused("its surface has no area")
-        face = np.searchsorted(self._total, random.uniform(count) * total, side="right") if count else np.zeros(0, np.intp)
-        face = np.minimum(face, len(self._area) - 1)
-        root, share = np.sqrt(random.uniform(count))[:, None], random.uniform(count)[:, None]
-        a, b, c = (corner[face] for corner in self._corners)
-        points: NDArray[np.float64] = (1 - root) * a + root * (1 - share) * b + root * share * c
+        face = self._find(random.uniform(count))
+        root, share = np.sqrt(random.uniform(count)), random.uniform(count)
+        weights = (1 - root, root * (1 - share), root * share)
+        points = np.empty((count, 3))
+        for k in range(3):
+            a, b, c = (weight * corner[k].take(face) for weight, corner in zip(weights, self._corners))
+            points[:, k] = a + b + c
         return points, face
+
+    def _find(self, share: NDArray[np.float64]) -> NDArray[np.intp]:
+        """The faces at shares of the area, from 0 to below 1: mostly that at which the share's bin begins, which takes no search."""
+        face = self._face_of_bin.take((share * self._bins).astype(np.intp))
+        area = share * self._total[-1]
+        beyond = np.flatnonzero(self._total.take(face) <= area)
+        face[beyond] = self._face_at(area[beyond])
+        return face
+
+    def _face_at(self, area: NDArray[np.float64]) -> NDArray[np.intp]:
+        return np.minimum(np.searchsorted(self._total, area, side="right"), len(self._area) - 1)
 
     def normals(self, faces: NDArray[np.intp]) -> NDArray[np.float64]:
         area = self._area[faces]
