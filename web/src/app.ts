@@ -398,9 +398,12 @@ class App {
 
     #word(): void {
         const now = performance.now();
-        if (now - this.#worded < WORDS_MS || !this.#main.news || !this.#main.view.positions || !this.#map) return;
+        if (now - this.#worded < WORDS_MS || !this.#map) return;
+        const { news, view, counts } = this.#main;
+        const falls = this.#settings.view === 'cloth';
+        if (falls && !(news && view.positions)) return;
         this.#worded = now;
-        showHeadline(this.#particles, this.#main.news.soft, this.#main.counts, this.#map);
+        showHeadline(this.#map, falls ? { particles: this.#particles, soft: news!.soft, counts } : undefined);
         if (!this.#other) return;
         showHalf('half-left', undefined, this.#main.counts);
         showHalf('half-right', this.#settings.beside === 'map' ? 'The paper\u2019s map' : 'Particles only', this.#other.counts);

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { SMALL, hasHorse, picture, startBrowser, untilFrame } from './support.mjs';
+import { SMALL, figure, hasHorse, picture, startBrowser, untilFrame } from './support.mjs';
 
 let browser;
 before(async () => (browser = await startBrowser()));
@@ -17,6 +17,16 @@ test('the headline says what there is, that nothing is wrong, and what the map t
     await untilHeadline(page, /^900 particles, no face through the model, a map of [\d.]+\u202fkB built in [\d.]+\u202fms$/);
     await page.locator('input[name=map][value=distance]').check();
     await untilHeadline(page, /the paper’s map of/);
+    await browser.close(page);
+});
+
+test('the headline in the view of the map is about the map of the model that is shown', async () => {
+    const page = await browser.open('#model=torus&view=map', SMALL);
+    await untilHeadline(page, /^An exact map of [\d.]+\u202fkB built in [\d.]+\u202fms$/);
+    const torus = await page.locator('#headline').textContent();
+    await page.locator('select[name=model]').selectOption('sphere');
+    await page.waitForFunction((before) => /^An exact map of/.test(document.getElementById('headline').textContent) && document.getElementById('headline').textContent !== before, torus);
+    assert.equal(await page.locator('#headline').textContent(), `An exact map of ${(await figure(page, 'bytes')).replaceAll('\u2009', '\u202f')} built in ${(await figure(page, 'build')).replaceAll('\u2009', '\u202f')}`);
     await browser.close(page);
 });
 

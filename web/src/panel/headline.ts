@@ -3,13 +3,24 @@ import type { Counts } from '../side';
 import { byId, make } from './elements';
 import { bytes, count, milliseconds } from './numbers';
 
-/** One sentence with the page's own figures: what is there, that nothing is wrong with it, and what that took. */
-export function showHeadline(particles: number, soft: boolean, counts: Counts, map: MapNews): void {
-    const parts = [
-        make('span', `${count(particles)} ${soft ? 'particles of a soft body' : 'particles'}, `),
-        verdict(counts),
-        make('span', `, ${map.kind === 'exact' ? 'a' : 'the paper\u2019s'} map of ${bytes(map.byteCount)} built in ${milliseconds(map.buildMs)}`),
-    ];
+/** What falls, and what is counted of it. */
+export interface Cloth {
+    particles: number;
+    soft: boolean;
+    counts: Counts;
+}
+
+/** One sentence with the page's own figures: what is there, that nothing is wrong with it, and what that took. Of the map alone, where no cloth is seen. */
+export function showHeadline(map: MapNews, cloth?: Cloth): void {
+    const ofMap = `map of ${bytes(map.byteCount)} built in ${milliseconds(map.buildMs)}`;
+    const isExact = map.kind === 'exact';
+    const parts = cloth
+        ? [
+              make('span', `${count(cloth.particles)} ${cloth.soft ? 'particles of a soft body' : 'particles'}, `),
+              verdict(cloth.counts),
+              make('span', `, ${isExact ? 'a' : 'the paper\u2019s'} ${ofMap}`),
+          ]
+        : [make('span', `${isExact ? 'An exact' : 'The paper\u2019s'} ${ofMap}`)];
     // At a thin space a line may end, and a number must not.
     for (const part of parts) part.textContent = part.textContent!.replaceAll('\u2009', '\u202f');
     if (byId('headline').textContent !== parts.map(({ textContent }) => textContent).join('')) byId('headline').replaceChildren(...parts);
