@@ -51,10 +51,10 @@ TEST_F(MeshCommand, RefusesWrongUse) {
     expect_failure(2, "--segments", {"mesh", "torus", "--segments", "60x-1", "-o", "a.obj"});
     expect_failure(2, "--major", {"mesh", "torus", "--major", "wide", "-o", "a.obj"});
     expect_failure(2, "minor radius", {"mesh", "torus", "--minor", "2", "-o", "a.obj"});
-    expect_failure(2, "positive radius", {"mesh", "sphere", "--radius", "nan", "-o", "a.obj"});
+    expect_failure(2, "the radius of a sphere is nan", {"mesh", "sphere", "--radius", "nan", "-o", "a.obj"});
     expect_failure(2, "3 meridians", {"mesh", "sphere", "--segments", "2x2", "-o", "a.obj"});
     expect_failure(2, "2^27", {"mesh", "sphere", "--segments", "4000000000x4000000000", "-o", "a.obj"});
-    expect_failure(2, "positive edge lengths", {"mesh", "box", "--size", "1x0x1", "-o", "a.obj"});
+    expect_failure(2, "the edge length of a box is 0", {"mesh", "box", "--size", "1x0x1", "-o", "a.obj"});
     for (const char* size : {"1x1", "1x1x1x1", "1xx1", "axbxc"})
         expect_failure(2, "--size", {"mesh", "box", "--size", size, "-o", "a.obj"});
 }
