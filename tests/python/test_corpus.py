@@ -456,7 +456,7 @@ def test_a_manifest_that_is_none_is_an_error_that_names_its_line(folder, tmp_pat
             run(corpus_of(folder, tmp_path))
 
 
-@pytest.mark.parametrize("line", ["1", "null", '"mesh"', "[]", "{}", '{"mesh":1}', '{"mesh":"a","files":"b"}', '{"file":"a"}', "[" * 100_000])
+@pytest.mark.parametrize("line", ["1", "null", '"mesh"', "[]", "{}", '{"mesh":1}', '{"mesh":"a","files":"b"}', '{"file":"a"}', '{"mesh":"a","file":"b"}', "[" * 100_000])
 def test_a_line_of_a_manifest_that_is_json_but_no_record_is_named(folder, tmp_path, line):
     c = corpus_of(folder, tmp_path)
     settings = json.dumps(c.settings())

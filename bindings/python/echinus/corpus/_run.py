@@ -233,7 +233,7 @@ def _is_record(value: Any) -> bool:
         return False
     if "mesh" in value:
         files = value.get("files", [])
-        return isinstance(files, list) and all(isinstance(name, str) for name in [value["mesh"], *files])
+        return "file" not in value and isinstance(files, list) and all(isinstance(name, str) for name in [value["mesh"], *files])
     if "file" in value:
         return isinstance(value["file"], str) and {"sha256", "bytes"} <= value.keys()
     return "echinus" in value
