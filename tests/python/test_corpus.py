@@ -355,6 +355,35 @@ def test_a_run_that_was_ended_goes_on_where_it_was(folder, tmp_path, reference, 
     assert "16 meshes, 3 of them refused: each of the others has its labels once, unchanged" in verdict.stdout
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="asks /proc")
+def test_workers_end_with_a_run_that_is_killed(folder, tmp_path):
+    command = [sys.executable, "-m", "echinus", "label", str(folder / "class_0"), "-o", str(tmp_path), "--format", "deepsdf", "--uniform", "20000000", "--workers", "1"]
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as main:
+        children = pathlib.Path(f"/proc/{main.pid}/task/{main.pid}/children")
+        until(lambda: len(children.read_text().split()) >= 2)  # a worker, and the tracker of resources
+        workers = children.read_text().split()
+        until(lambda: max(map(resident_pages, workers)) > 100_000)  # with its samples
+        main.kill()
+    until(lambda: not any(map(goes_on, workers)), seconds=3)  # its task takes longer
+
+
+def resident_pages(process):
+    return int(pathlib.Path("/proc", process, "statm").read_text().split()[1])
+
+
+def goes_on(process):
+    with contextlib.suppress(FileNotFoundError, ProcessLookupError):
+        return pathlib.Path("/proc", process, "stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    return False
+
+
+def until(holds, seconds=60):
+    end = time.monotonic() + seconds
+    while not holds():
+        assert time.monotonic() < end
+        time.sleep(0.05)
+
+
 def test_a_second_run_computes_nothing(folder, tmp_path):
     first = corpus.label(corpus_of(folder, tmp_path), workers=2)
     before = bytes_below(tmp_path)

@@ -10,6 +10,7 @@ import ctypes
 import importlib
 import itertools
 import multiprocessing
+import os
 import resource
 import signal
 from collections import deque
@@ -61,6 +62,7 @@ class _Worker:
 def _serve(pipe: Connection, memory: int) -> None:
     """The life of a worker: with an address space so large that a mesh that needs more is refused."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that gave the tasks hears it, too
+    _end_with_parent()
     resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     _keep_freed_memory()
     while True:
@@ -72,6 +74,16 @@ def _serve(pipe: Connection, memory: int) -> None:
             pipe.send(run(task))
         except Exception as error:  # for the one who started the run: a full disk, or a fault of ours
             pipe.send(error)
+
+
+def _end_with_parent() -> None:
+    """A worker of a run that was killed would write beside the next run, which has the lock."""
+    with contextlib.suppress(AttributeError):  # Linux only
+        set_death_signal = 1
+        ctypes.CDLL(None).prctl(set_death_signal, signal.SIGKILL)
+    parent = multiprocessing.parent_process()
+    if parent is not None and not parent.is_alive():
+        os._exit(1)
 
 
 def _keep_freed_memory() -> None:
