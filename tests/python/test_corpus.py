@@ -15,10 +15,9 @@ import threading
 import time
 from dataclasses import replace
 
-import hypothesis
 import numpy as np
 import pytest
-from hypothesis import given, strategies
+from hypothesis import assume, given, strategies
 
 import echinus as ech
 from echinus import corpus
@@ -78,7 +77,7 @@ def test_samples_near_the_surface_are_as_far_as_their_sigmas_say():
 
 @given(areas=strategies.lists(strategies.sampled_from([0.0, 1e-30, 1e-7, 1.0, 3.0, 1e7]), min_size=1, max_size=300), seed=strategies.integers(0, 99))
 def test_faces_are_those_that_a_search_of_all_areas_finds(areas, seed):
-    hypothesis.assume(max(areas) > 0)
+    assume(max(areas) > 0)
     feet = np.arange(len(areas), dtype=np.float64)
     triangles = np.zeros((len(areas), 3, 3))
     triangles[:, :, 0] = feet[:, None]

@@ -403,7 +403,7 @@ class App {
         const falls = this.#settings.view === 'cloth';
         if (falls && !(news && view.positions)) return;
         this.#worded = now;
-        showHeadline(this.#map, falls ? { particles: this.#particles, soft: news!.soft, counts } : undefined);
+        showHeadline(this.#map, falls && news ? { particles: this.#particles, soft: news.soft, counts } : undefined);
         if (!this.#other) return;
         showHalf('half-left', undefined, this.#main.counts);
         showHalf('half-right', this.#settings.beside === 'map' ? 'The paper\u2019s map' : 'Particles only', this.#other.counts);

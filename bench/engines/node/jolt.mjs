@@ -1,6 +1,6 @@
 // The cloth in Jolt, against a mesh shape of the model; with --echinus against Echinus instead.
 import { MODELS, addCloth, makeWorld, positionsOf } from '../../../examples/js/jolt_cloth.mjs';
-import { FRAME_SECONDS, FRICTION, GRAVITY, THICKNESS, cloth, engine, isMatched, model, record, stepsPerFrame, versionOf, withEchinus } from './runner.mjs';
+import { FRICTION, GRAVITY, STEP_SECONDS, THICKNESS, cloth, engine, isMatched, model, record, stepsPerFrame, versionOf, withEchinus } from './runner.mjs';
 
 const { default: initJolt } = await engine('jolt-physics');
 const Jolt = await initJolt();
@@ -22,10 +22,8 @@ if (!withEchinus) addModel();
 record(
     { engine: 'Jolt', version: versionOf('jolt-physics'), configuration: withEchinus ? 'with Echinus' : '', substeps: stepsPerFrame, settings },
     () => {
-        for (let i = 0; i < stepsPerFrame; ++i) {
-            jolt.Step(FRAME_SECONDS / stepsPerFrame, 1);
-            correct();
-        }
+        jolt.Step(STEP_SECONDS, 1);
+        correct();
     },
     () => positionsOf(Jolt, body),
 );
@@ -37,7 +35,7 @@ async function correctionOf(softBody) {
     const map = echinus.buildMap(echinus.makeMesh(model.vertices, model.faces));
     settings.thickness = String(THICKNESS);
     const collision = new JoltCollision(echinus, Jolt, softBody, { colliders: [{ map }], thickness: THICKNESS, friction: FRICTION });
-    return () => collision.step(FRAME_SECONDS / stepsPerFrame);
+    return () => collision.step(STEP_SECONDS);
 }
 
 function addModel() {

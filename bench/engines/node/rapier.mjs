@@ -1,12 +1,12 @@
 // The cloth in Rapier, against a triangle mesh of the model; with --echinus against Echinus instead.
-import { FRAME_SECONDS, FRICTION, GRAVITY, THICKNESS, cloth, engine, inOrder, isMatched, model, orderOf, record, stepsPerFrame, versionOf, withEchinus } from './runner.mjs';
+import { FRICTION, GRAVITY, STEP_SECONDS, THICKNESS, cloth, engine, inOrder, isMatched, model, orderOf, record, stepsPerFrame, versionOf, withEchinus } from './runner.mjs';
 
 const { default: RAPIER } = await engine('@dimforge/rapier3d-compat');
 await RAPIER.init();
 const settings = {};
 
 const world = new RAPIER.World({ x: GRAVITY[0], y: GRAVITY[1], z: GRAVITY[2] });
-world.timestep = FRAME_SECONDS / stepsPerFrame;
+world.timestep = STEP_SECONDS;
 if (isMatched) world.numSolverIterations = 10;
 settings.numSolverIterations = String(world.numSolverIterations);
 const body = world.createSoftBody(describeCloth());
@@ -17,10 +17,8 @@ if (!withEchinus) world.createCollider(RAPIER.ColliderDesc.trimesh(model.vertice
 record(
     { engine: 'Rapier', version: versionOf('@dimforge/rapier3d-compat'), configuration: withEchinus ? 'with Echinus' : '', substeps: stepsPerFrame, settings },
     () => {
-        for (let i = 0; i < stepsPerFrame; ++i) {
-            world.step();
-            correct();
-        }
+        world.step();
+        correct();
     },
     () => inOrder(body.particlePositions(), order),
 );
@@ -43,5 +41,5 @@ async function correctionOf(softBody) {
     const map = echinus.buildMap(echinus.makeMesh(model.vertices, model.faces));
     settings.thickness = String(THICKNESS);
     const collision = new RapierCollision(echinus, softBody, { colliders: [{ map }], thickness: THICKNESS, friction: FRICTION });
-    return () => collision.step(world.timestep);
+    return () => collision.step(STEP_SECONDS);
 }

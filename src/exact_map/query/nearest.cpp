@@ -228,15 +228,15 @@ std::optional<std::uint32_t> nearest_face_from_nearby(const ExactMapView& map, c
 std::optional<std::uint32_t> nearest_face(const ExactMapView& map, const Vec3d& place, const Vec3d& stretch,
                                           double farthest) noexcept {
     const bool unstretched = stretch == kUnstretched;
-    const Vec3d within_reach = brought_within_reach(place, stretch);
-    if (unstretched ? !is_afar(place) : within_reach == place)
+    if (unstretched ? !is_afar(place) : brought_within_reach(place, stretch) == place)
         return nearest_face_from_nearby(map, place, stretch, farthest);
     // No corner is farther from the centre than its coordinates can be, snapped and rounded.
     if (farthest < length(stretched(place, stretch)) - 2 * static_cast<double>(kLatticeExtent))
         return std::nullopt;
     constexpr double kUnbounded = std::numeric_limits<double>::infinity();
     const auto face = unstretched ? nearest_face_from_afar(map, place)
-                                  : nearest_face_from_nearby(map, within_reach, stretch, kUnbounded);
+                                  : nearest_face_from_nearby(map, brought_within_reach(place, stretch),
+                                                             stretch, kUnbounded);
     const bool is_within = face && distance_sq_to_face(map, *face, place, stretch) <= farthest * farthest;
     return is_within ? face : std::nullopt;
 }
