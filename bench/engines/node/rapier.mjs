@@ -41,5 +41,5 @@ async function correctionOf(softBody) {
     const map = echinus.buildMap(echinus.makeMesh(model.vertices, model.faces));
     settings.thickness = String(THICKNESS);
     const collision = new RapierCollision(echinus, softBody, { colliders: [{ map }], thickness: THICKNESS, friction: FRICTION });
-    return () => collision.step(STEP_SECONDS);
+    return () => collision.step(world.timestep);
 }
