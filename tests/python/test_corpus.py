@@ -21,7 +21,7 @@ from hypothesis import assume, given, strategies
 
 import echinus as ech
 from echinus import corpus
-from echinus.corpus import _command, _engines, _random, _run, _samples, _tasks
+from echinus.corpus import _command, _engines, _random, _run, _samples, _tasks, _verification
 from support import open_torus, torus
 
 SMALL = corpus.Sampling(uniform=300, near=200, sigmas=(0.01, 0.1), surface=100)
@@ -575,7 +575,7 @@ def test_a_mesh_that_lacked_memory_is_labelled_by_the_next_run_with_more(folder,
             assert corpus.label(c).again == 1
     record, = (r for r in map(json.loads, (tmp_path / "manifest.jsonl").read_text().splitlines()) if "again" in r)
     assert record["again"] is True and record["refused"] == "it needs more memory than a worker has"
-    found = _run.examine(c)
+    found = _verification.examine(c)
     assert (found.refused, found.again) == (4, 1) and not found.sentences()
     assert str(found).splitlines() == [
         "16 meshes, 4 of them refused: each of the others has its labels once, unchanged",
@@ -583,7 +583,7 @@ def test_a_mesh_that_lacked_memory_is_labelled_by_the_next_run_with_more(folder,
     ]
     summary = corpus.label(c, workers=1)
     assert (summary.already, summary.labelled, summary.again) == (15, 1, 0)
-    assert str(_run.examine(c)) == "16 meshes, 3 of them refused: each of the others has its labels once, unchanged"
+    assert str(_verification.examine(c)) == "16 meshes, 3 of them refused: each of the others has its labels once, unchanged"
 
 
 def test_meshes_that_lacked_time_are_labelled_by_the_next_run_with_more(folder, tmp_path, reference):

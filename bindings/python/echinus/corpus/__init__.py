@@ -4,7 +4,10 @@
 :func:`label` labels many, :func:`verify` checks what is there.
 """
 
-from echinus.corpus._run import Corpus, Summary, find_meshes, label, verify
+from echinus.corpus._corpus import Corpus
+from echinus.corpus._run import Summary, label
 from echinus.corpus._samples import Frame, Refused, Samples, Sampling, sample
+from echinus.corpus._sources import find_meshes
+from echinus.corpus._verification import verify
 
 __all__ = ["Corpus", "Frame", "Refused", "Samples", "Sampling", "Summary", "find_meshes", "label", "sample", "verify"]

@@ -7,8 +7,11 @@ import sys
 from collections.abc import Sequence
 
 from echinus._errors import Error
-from echinus.corpus._run import Corpus, examine, find_meshes, label
+from echinus.corpus._corpus import Corpus
+from echinus.corpus._run import label
 from echinus.corpus._samples import Frame, Sampling
+from echinus.corpus._sources import find_meshes
+from echinus.corpus._verification import examine
 
 DEFAULT = Sampling()
 ONLY_SURPLUS = 3  # the exit code of --verify where all labels are right, and there are files besides

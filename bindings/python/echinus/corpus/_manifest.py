@@ -1,0 +1,148 @@
+"""The manifest: with which settings the labels of a folder were made, and a record of each mesh and each file."""
+
+from __future__ import annotations
+
+import collections
+import contextlib
+import json
+import os
+import pathlib
+import re
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from echinus.corpus._corpus import Corpus
+from echinus.corpus._tasks import Record, Task
+
+
+class Manifest:
+    """manifest.jsonl: the settings, then a line for each mesh and each file, sorted in the end.
+
+    While a run goes on, lines are added as results come; one that a crash cut short is dropped.
+    """
+
+    def __init__(self, corpus: Corpus) -> None:
+        i, n = corpus.shard
+        name = "manifest.jsonl" if n == 1 else f"manifest-{i}-of-{n}.jsonl"
+        self.path = pathlib.Path(corpus.output, name)
+        self.settings = corpus.settings()
+        for path, parts in manifests(pathlib.Path(corpus.output)):
+            if parts != n:
+                raise ValueError(f"{path}: the labels in this folder are made in {_parts(parts)}, now {_parts(n)}; choose another folder")
+            if sentence := difference(path, self.settings):
+                raise ValueError(sentence)
+
+    def finished(self, tasks: Iterable[Task]) -> list[Task]:
+        """Those with a record of each mesh that need not be tried again, and with the files that the records name."""
+        records = list(records_of(self.path))
+        whole = {r["file"] for r in records if "file" in r and _size(self.path.parent / r["file"]) == r["bytes"]}
+        record_of = {r["mesh"]: r for r in records if "mesh" in r}
+        meshes_of: dict[str, set[str]] = collections.defaultdict(set)
+        for name, record in record_of.items():
+            for file in record.get("files", []):
+                meshes_of[file].add(name)
+
+        def is_finished(task: Task) -> bool:
+            names = {name for name, _ in task.meshes}
+            if not all(name in record_of and "again" not in record_of[name] for name in names):
+                return False
+            files = {file for name in names for file in record_of[name].get("files", [])}
+            if task.archive is not None:  # no other one: a corpus that has changed fills its archives anew
+                return files <= {task.archive} <= whole and meshes_of[task.archive] <= names
+            return files <= whole
+
+        return [task for task in tasks if is_finished(task)]
+
+    def keep(self, tasks: Iterable[Task]) -> None:
+        """Forgets what is not about these tasks."""
+        meshes = {name for task in tasks for name, _ in task.meshes}
+        files = {task.archive for task in tasks}
+        files |= {name for r in records_of(self.path) if r.get("mesh") in meshes for name in r.get("files", [])}
+        self._write(r for r in records_of(self.path) if r.get("mesh") in meshes or ("file" in r and r["file"] in files))
+
+    def add(self, records: Iterable[Record]) -> None:
+        with self.path.open("a") as file:
+            file.writelines(_line(record) for record in records)
+
+    def sort(self) -> None:
+        """The same bytes for the same labels, in whatever order they came."""
+        self._write(r for r in records_of(self.path) if "echinus" not in r)
+
+    def _write(self, records: Iterable[Record]) -> None:
+        lines = sorted((r.get("mesh", ""), r.get("file", ""), _line(r)) for r in records)
+        part = self.path.with_suffix(".part")
+        with part.open("w") as file:
+            file.writelines([_line(self.settings), *(line for _, _, line in lines)])
+        os.replace(part, self.path)
+
+
+def records_of(manifest: pathlib.Path) -> Iterator[Record]:
+    """Without a last line that was cut short."""
+    if not manifest.exists():
+        return
+    with manifest.open(errors="replace") as file:
+        for number, line in enumerate(file, 1):
+            if not line.endswith("\n"):
+                return
+            try:
+                record = json.loads(line)
+            except (ValueError, RecursionError) as error:
+                raise ValueError(_no_record(manifest, number, str(error))) from None
+            if not _is_record(record):
+                raise ValueError(_no_record(manifest, number, "neither settings nor a mesh nor a file"))
+            yield record
+
+
+def _is_record(value: Any) -> bool:
+    if not isinstance(value, dict):
+        return False
+    if "mesh" in value:
+        files = value.get("files", [])
+        return "file" not in value and isinstance(files, list) and all(isinstance(name, str) for name in [value["mesh"], *files])
+    if "file" in value:
+        return isinstance(value["file"], str) and {"sha256", "bytes"} <= value.keys()
+    return "echinus" in value
+
+
+def _no_record(manifest: pathlib.Path, number: int, why: str) -> str:
+    return f"{manifest}, line {number} is no record ({why}); remove the file to label all meshes again"
+
+
+def manifests(folder: pathlib.Path) -> list[tuple[pathlib.Path, int]]:
+    """The manifests of a folder, and of how many parts each is."""
+    names = ((path, re.fullmatch(r"manifest(?:-\d+-of-(\d+))?\.jsonl", path.name)) for path in sorted(folder.glob("manifest*.jsonl")))
+    return [(path, int(match[1] or 1)) for path, match in names if match]
+
+
+def _parts(count: int) -> str:
+    return f"{count} parts (--shard i/{count})" if count > 1 else "one part (no --shard)"
+
+
+def difference(manifest: pathlib.Path, settings: Record) -> str | None:
+    """Says which setting of a manifest is another."""
+    theirs: Record = next(records_of(manifest), {})
+    if "echinus" not in theirs:
+        return f"{manifest}: there are no settings in its first line; remove the file to label all meshes again"
+    was, now = _flat(theirs), _flat(settings)
+    for name in now | was:
+        if was.get(name) != now.get(name):
+            return (
+                f"{manifest}: the labels in this folder were made with other settings: "
+                f"{name} was {was.get(name)}, and is {now.get(name)} now; choose another folder"
+            )
+    return None
+
+
+def _flat(settings: Record) -> Record:
+    sampling = settings.get("sampling")
+    return settings | sampling | {"sampling": None} if isinstance(sampling, dict) else settings
+
+
+def _line(record: Record) -> str:
+    return json.dumps(record, sort_keys=True, separators=(",", ":")) + "\n"
+
+
+def _size(path: pathlib.Path) -> int | None:
+    with contextlib.suppress(OSError):
+        return path.stat().st_size
+    return None

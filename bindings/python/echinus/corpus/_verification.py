@@ -1,0 +1,99 @@
+"""What is wrong with the labels of a corpus."""
+
+from __future__ import annotations
+
+import collections
+import hashlib
+import itertools
+import pathlib
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+
+from echinus.corpus._corpus import Corpus
+from echinus.corpus._manifest import difference, manifests, records_of
+from echinus.corpus._tasks import UNFINISHED, Record
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What is there of the labels of a corpus.
+
+    Attributes
+    ----------
+    complaints
+        What is wrong with its labels.
+    surplus
+        Files that belong to no mesh with labels, for instance because their mesh was taken out of the corpus.
+    refused, again
+        Meshes without labels, and those of them that the next run tries again.
+    """
+
+    complaints: list[str]
+    surplus: list[str]
+    meshes: int
+    refused: int
+    again: int
+
+    def sentences(self) -> list[str]:
+        return self.complaints + [f"{name}: belongs to no labelled mesh of the corpus" for name in self.surplus]
+
+    def __str__(self) -> str:
+        refused = f", {self.refused} of them refused: each of the others" if self.refused else ": each"
+        text = f"{self.meshes} meshes{refused} has its labels once, unchanged"
+        if self.again:
+            text += f"\n{self.again} of the refused may succeed with more memory or time: the same command without --verify tries them again"
+        if self.surplus:
+            text += f"\nfiles that belong to no labelled mesh of the corpus: {len(self.surplus)}; remove those that you do not want"
+        return text
+
+
+def verify(corpus: Corpus) -> list[str]:
+    """What is wrong with the labels in a folder, and which files there belong to no labelled mesh; nothing, if each mesh
+    was refused or has its labels once, with the bytes of the manifests."""
+    return examine(corpus).sentences()
+
+
+def examine(corpus: Corpus) -> Findings:
+    folder, settings = pathlib.Path(corpus.output), corpus.settings()
+    found = [path for path, _ in manifests(folder)]
+    records = list(itertools.chain.from_iterable(map(records_of, found)))
+    complaints = [sentence for path in found if (sentence := difference(path, settings))]
+    archive_of = {name: task.archive for task in replace(corpus, shard=(0, 1)).tasks() for name, _ in task.meshes}
+    ours = [r for r in records if r.get("mesh") in archive_of]
+    times = collections.Counter(r["mesh"] for r in ours)
+    complaints += [f"{name}: is recorded {n} times" for name, n in sorted(times.items()) if n > 1]
+    complaints += [f"{name}: has no labels" for name in archive_of if name not in times]
+    complaints += _misplaced(records, archive_of)
+    named = {name for r in ours for name in r.get("files", [])}
+    hashes = {r["file"]: r["sha256"] for r in records if "file" in r}
+    complaints += [f"{name}: has no hash" for name in sorted(named - set(hashes))]
+    used = named | {archive for archive in archive_of.values() if archive is not None and archive in hashes}
+    complaints += _changed(folder, {name: hashes[name] for name in sorted(used) if name in hashes})
+    present = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file() and UNFINISHED not in path.parts}
+    surplus = sorted(present - used - {path.name for path in found})
+    refused = [r for r in ours if "refused" in r]
+    return Findings(complaints, surplus, len(archive_of), len(refused), sum("again" in r for r in refused))
+
+
+def _misplaced(records: Iterable[Record], archive_of: dict[str, str | None]) -> Iterator[str]:
+    """Archives as they were before meshes came into the corpus or went."""
+    archives = {archive for archive in archive_of.values() if archive is not None}
+    for record in records:
+        for file in record.get("files", []):
+            place = archive_of.get(record["mesh"])
+            if file != place and (place is not None or file in archives):
+                yield f"{record['mesh']}: has labels in {file}, as before the corpus changed; the same command without --verify mends that"
+
+
+def _changed(folder: pathlib.Path, hashes: dict[str, str]) -> Iterator[str]:
+    for name, expected in hashes.items():
+        path = folder / name
+        if not path.exists():
+            yield f"{name}: is missing"
+        elif _hash_of(path) != expected:
+            yield f"{name}: has other bytes than it had"
+
+
+def _hash_of(path: pathlib.Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
