@@ -21,7 +21,7 @@ from hypothesis import assume, given, strategies
 
 import echinus as ech
 from echinus import corpus
-from echinus.corpus import _command, _engines, _random, _run, _samples, _tasks, _verification
+from echinus.corpus import _command, _engines, _locks, _random, _samples, _tasks, _verification
 from support import open_torus, torus
 
 SMALL = corpus.Sampling(uniform=300, near=200, sigmas=(0.01, 0.1), surface=100)
@@ -176,17 +176,47 @@ def test_meshes_become_solid_on_request_and_the_report_says_how():
 
 @pytest.mark.parametrize("name, values, range_", [
     ("close_holes", (257, -1), "a whole number from 0 to 256"),
-    ("thicken", (-1, 0.6, np.nan), "a number from 0 to 0.5"),
+    ("thicken", (-1.0, 0.6, np.nan), "a number from 0 to 0.5"),
     ("uniform", (-1, 1 << 32), "a whole number from 0 to 4294967295"),
-    ("sigmas", ((), (0.1, -1), (1e300,), (np.nan,)), "positive numbers up to 1e+30"),
-    ("padding", (-1, np.nan, 1e300), "a number from 0 to 1e+30"),
-    ("min_certain", (2, -0.1, np.nan), "a number from 0 to 1"),
-    ("time_limit", (0, -1, np.nan), "a positive number of seconds"),
+    ("sigmas", ((), (0.1, -1.0), (1e300,), (np.nan,)), "positive numbers up to 1e+30"),
+    ("padding", (-1.0, np.nan, 1e300), "a number from 0 to 1e+30"),
+    ("min_certain", (2.0, -0.1, np.nan), "a number from 0 to 1"),
+    ("time_limit", (0.0, -1.0, np.nan), "a positive number of seconds"),
+    ("seed", (-1, 1 << 63), "a whole number from 0 to 9223372036854775807"),
 ])
 def test_a_setting_out_of_range_is_named_with_its_range(name, values, range_):
     for value in values:
         with pytest.raises(ValueError, match=re.escape(f"{name} must be {range_}, not {value}")):
             corpus.Sampling(**{name: value})
+
+
+@pytest.mark.parametrize("of, wrong, error, words", [
+    (corpus.Sampling, {"frame": "square"}, ValueError, "frame must be 'cube', 'sphere' or 'none', not 'square'"),
+    (corpus.Sampling, {"dtype": "float64"}, ValueError, "dtype must be 'float16' or 'float32', not 'float64'"),
+    (corpus.Sampling, {"dtype": np.float32}, TypeError, "dtype must be a str, not <class 'numpy.float32'>"),
+    (corpus.Sampling, {"sigmas": 0.1}, TypeError, "sigmas must be numbers, not 0.1"),
+    (corpus.Sampling, {"sigmas": ("a",)}, TypeError, "each of sigmas must be a number, not 'a'"),
+    (corpus.Sampling, {"padding": "a"}, TypeError, "padding must be a number, not 'a'"),
+    (corpus.Sampling, {"seed": 1.5}, TypeError, "seed must be a whole number, not 1.5"),
+    (corpus.Sampling, {"repair": "no"}, TypeError, "repair must be True or False, not 'no'"),
+    (corpus.Corpus, {"form": "npz"}, ValueError, "form must be 'occupancy', 'deepsdf' or 'webdataset', not 'npz'"),
+    (corpus.Corpus, {"sampling": {}}, TypeError, "sampling must be of the class Sampling, not dict"),
+    (corpus.Corpus, {"archive_size": "4"}, TypeError, "archive_size must be a whole number, not '4'"),
+    (corpus.Corpus, {"max_bytes": -1}, ValueError, "max_bytes must be a whole number from 0"),
+    (corpus.Corpus, {"shard": 3}, TypeError, "shard must be (i, n), not 3"),
+    (corpus.Corpus, {"meshes": ["a.obj"]}, TypeError, "meshes[0] must be (name, path), as find_meshes() gives them, not 'a.obj'"),
+    (corpus.Corpus, {"meshes": [("../a", "a.obj")]}, ValueError, "meshes[0]: its labels go to '../a' below the output folder"),
+])
+def test_settings_of_another_kind_are_named(of, wrong, error, words):
+    needed = {"meshes": [], "output": "out"} if of is corpus.Corpus else {}
+    with pytest.raises(error, match=re.escape(words)):
+        of(**{**needed, **wrong})
+
+
+def test_numbers_of_numpy_are_settings_like_others(folder, tmp_path):
+    sampling = corpus.Sampling(**{**SIDES.__dict__, "uniform": np.int64(300), "sigmas": np.array([0.01, 0.1]), "padding": np.float32(0.5)})
+    summary = corpus.label(corpus.Corpus(corpus.find_meshes([folder / "class_0"]), tmp_path, sampling=sampling), workers=1)
+    assert summary.labelled == 6
 
 
 # ---- Random numbers
@@ -366,6 +396,18 @@ def test_workers_end_with_a_run_that_is_killed(folder, tmp_path):
     until(lambda: not any(map(goes_on, workers)), seconds=3)  # its task takes longer
 
 
+def test_workers_are_deaf_to_interrupts_from_their_first_moment(folder, tmp_path):
+    task = corpus_of(folder, tmp_path).tasks()[-1]
+    worker = _engines._Worker(1 << 32)
+    try:
+        os.kill(worker.process.pid, signal.SIGINT)
+        worker.give(task)
+        assert [record["mesh"] for record in worker.take() if "mesh" in record] == [task.meshes[0][0]]
+    finally:
+        worker.stop()
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, [])
+
+
 def resident_pages(process):
     return int(pathlib.Path("/proc", process, "statm").read_text().split()[1])
 
@@ -415,6 +457,80 @@ def test_all_parts_of_a_folder_have_the_same_settings_and_are_as_many(folder, tm
     assert corpus.verify(corpus_of(folder, tmp_path)) == []
 
 
+def test_parts_that_begin_at_once_have_the_same_settings(folder, tmp_path):
+    def begun(i):
+        command = [sys.executable, "-m", "echinus", "label", str(folder / "class_0"), "-o", str(tmp_path), "--uniform", "9", "--near", "9", "--surface", "9"]
+        return subprocess.Popen([*command, "--shard", f"{i}/2", "--seed", str(i)], stderr=subprocess.PIPE, text=True)
+
+    runs = [begun(0), begun(1)]
+    said = [run.communicate(timeout=60)[1] for run in runs]
+    assert sorted(run.returncode for run in runs) == [0, 1]
+    assert "made with other settings: seed was" in said[0] + said[1]
+
+
+def test_a_run_that_ends_before_its_first_label_binds_no_other(folder, tmp_path, monkeypatch):
+    def broken(tasks, **_):
+        raise RuntimeError("no worker")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(_engines, "on_processes", broken)
+        with pytest.raises(RuntimeError, match="no worker"):
+            corpus.label(corpus_of(folder, tmp_path))
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture
+def own_folder(tmp_path):
+    folder = tmp_path / "meshes"
+    folder.mkdir()
+    for i in range(3):
+        ech.write_mesh(folder / f"box_{i}.ply", ech.make_box((1, 1, 1 + i), 2))
+    return folder
+
+
+@pytest.mark.parametrize("form", ["occupancy", "webdataset"])
+def test_a_mesh_file_that_has_changed_is_labelled_anew(own_folder, tmp_path, form):
+    def corpus_in(output):
+        return corpus_of(own_folder, tmp_path / output, form=form, archive_size=2)
+
+    corpus.label(corpus_in("labels"), workers=1)
+    mesh, before = own_folder / "box_2.ply", (own_folder / "box_2.ply").stat()
+    ech.write_mesh(mesh, ech.make_box((1, 1, 7), 2))
+    os.utime(mesh, ns=(before.st_atime_ns, before.st_mtime_ns))
+    assert mesh.stat().st_size == before.st_size  # neither its date nor its size tells
+    assert corpus.verify(corpus_in("labels")) == [f"box_2: {mesh} has changed since it was labelled; the same command without --verify labels it anew"]
+    summary = corpus.label(corpus_in("labels"), workers=1)
+    assert (summary.already, summary.labelled) == (2, 1)
+    assert corpus.verify(corpus_in("labels")) == []
+    corpus.label(corpus_in("at once"), workers=1)
+    assert bytes_below(tmp_path / "labels") == bytes_below(tmp_path / "at once")
+
+
+def test_a_mesh_that_was_mended_or_added_after_its_refusal_is_labelled(own_folder, tmp_path):
+    mesh = own_folder / "box_1.ply"
+    good = mesh.read_bytes()
+    (tmp_path / "list.txt").write_text("".join(f"{own_folder}/box_{i}.ply\n" for i in range(3)))
+    c = corpus.Corpus(corpus.find_meshes([tmp_path / "list.txt"]), tmp_path / "labels", sampling=SIDES)
+    for make_bad in (mesh.unlink, lambda: mesh.write_bytes(good[:-20])):
+        make_bad()
+        summary = corpus.label(c, workers=1)
+        assert (summary.refused, summary.again) == (1, 0) and corpus.verify(c) == []
+        assert corpus.label(c, workers=1).already == 3  # the same refusal is not repeated
+        mesh.write_bytes(good)
+        (complaint,) = corpus.verify(c)
+        assert f"{mesh} has changed since it was refused" in complaint
+        assert corpus.label(c, workers=1).labelled == 1 and corpus.verify(c) == []
+
+
+def test_a_mesh_that_is_refused_after_a_change_keeps_no_labels(own_folder, tmp_path):
+    c = corpus_of(own_folder, tmp_path / "labels")
+    corpus.label(c, workers=1)
+    assert (tmp_path / "labels" / "box_0").exists()
+    (own_folder / "box_0.ply").write_bytes(b"ply\n")
+    assert corpus.label(c, workers=1).refused == 1
+    assert corpus.verify(c) == [] and not (tmp_path / "labels" / "box_0").exists()
+
+
 @pytest.mark.parametrize("form", ["occupancy", "webdataset"])
 def test_a_corpus_may_change(folder, tmp_path, form):
     everything = corpus_of(folder, tmp_path / "labels", form=form)
@@ -461,12 +577,12 @@ def test_an_archive_of_refused_meshes_is_done(folder, tmp_path):
 
 
 def test_two_runs_do_not_write_the_same_labels_at_once(folder, tmp_path):
-    with _run._alone(corpus_of(folder, tmp_path)):
+    with _locks.alone(corpus_of(folder, tmp_path)):
         with pytest.raises(ValueError, match="another run is writing these labels"):
             corpus.label(corpus_of(folder, tmp_path), workers=1)
         with pytest.raises(ValueError, match="another run is writing these labels"):
             corpus.label(corpus_of(folder, tmp_path, shard=(0, 16)), workers=1)
-    with _run._alone(corpus_of(folder, tmp_path, shard=(1, 16))):
+    with _locks.alone(corpus_of(folder, tmp_path, shard=(1, 16))):
         corpus.label(corpus_of(folder, tmp_path, shard=(0, 16)), workers=1)
         with pytest.raises(ValueError, match="another run is writing these labels"):
             corpus.label(corpus_of(folder, tmp_path), workers=1)
@@ -484,7 +600,8 @@ def test_a_manifest_that_is_none_is_an_error_that_names_its_line(folder, tmp_pat
             run(corpus_of(folder, tmp_path))
 
 
-@pytest.mark.parametrize("line", ["1", "null", '"mesh"', "[]", "{}", '{"mesh":1}', '{"mesh":"a","files":"b"}', '{"file":"a"}', '{"mesh":"a","file":"b"}', "[" * 100_000])
+@pytest.mark.parametrize("line", ["1", "null", '"mesh"', "[]", "{}", '{"mesh":1}', '{"mesh":"a","files":"b"}', '{"file":"a"}', '{"mesh":"a","file":"b"}', "[" * 100_000,
+                                  '{"file":"\\u0000","bytes":1,"sha256":""}', '{"file":"../a","bytes":1,"sha256":""}', '{"mesh":"a","files":["/dev/zero"]}'])
 def test_a_line_of_a_manifest_that_is_json_but_no_record_is_named(folder, tmp_path, line):
     c = corpus_of(folder, tmp_path)
     settings = json.dumps(c.settings())
@@ -493,6 +610,21 @@ def test_a_line_of_a_manifest_that_is_json_but_no_record_is_named(folder, tmp_pa
         for run in (corpus.label, corpus.verify):
             with pytest.raises(ValueError, match=f"manifest.jsonl, line {number} is no record .*remove the file"):
                 run(c)
+
+
+def test_a_manifest_that_is_no_file_is_an_error(folder, tmp_path):
+    os.mkfifo(tmp_path / "manifest.jsonl")  # nobody writes to it
+    for run in (corpus.label, corpus.verify):
+        with pytest.raises(ValueError, match="manifest.jsonl is no file; remove it, or choose another folder"):
+            run(corpus_of(folder, tmp_path))
+
+
+def test_a_full_disk_is_a_sentence_that_names_the_file(folder, tmp_path):
+    command = [sys.executable, "-m", "echinus", "label", str(folder / "class_0"), "-o", str(tmp_path), "--uniform", "9000", "--workers", "1"]
+    full = subprocess.run(["sh", "-c", 'ulimit -f 64; exec "$@"', "sh", *command], capture_output=True, text=True)
+    assert full.returncode == 1
+    assert re.fullmatch(r"echinus label: \[Errno 27\] File too large: '.*/points.npz'\n", full.stderr)
+    assert [path for path in tmp_path.rglob("*") if path.is_file()] == []
 
 
 def test_a_manifest_without_settings_is_an_error(folder, tmp_path):
@@ -518,7 +650,7 @@ def test_a_mesh_that_no_worker_survives_is_refused_and_its_neighbours_are_not(fo
             yield task, "3 workers died of it" if deadly in names else _tasks.run(task)
 
     with monkeypatch.context() as patched:
-        patched.setattr(_engines, "on_processes", lambda tasks, workers, memory: in_one_worker(tasks))
+        patched.setattr(_engines, "on_processes", lambda tasks, **_: in_one_worker(tasks))
         for form in ("occupancy", "webdataset"):
             output = tmp_path / form
             summary = corpus.label(corpus_of(folder, output, form=form))
@@ -537,7 +669,7 @@ def test_an_archive_that_no_worker_survives_is_a_sentence(folder, tmp_path, monk
         for task in tasks:
             yield task, "3 workers died of it" if task.archive else _tasks.run(task)
 
-    monkeypatch.setattr(_engines, "on_processes", lambda tasks, workers, memory: in_one_worker(tasks))
+    monkeypatch.setattr(_engines, "on_processes", lambda tasks, **_: in_one_worker(tasks))
     command = ["label", str(folder), "-o", str(tmp_path), "--format", "webdataset", "--uniform", "9", "--near", "9", "--surface", "9"]
     assert _command.main(_command.parse(command)) == 1
     assert "echinus label: labels-000000.tar: no worker survives it" in capsys.readouterr().err
@@ -570,7 +702,7 @@ def test_a_mesh_that_lacked_memory_is_labelled_by_the_next_run_with_more(folder,
     c = corpus_of(folder, tmp_path)
     with monkeypatch.context() as patched:
         patched.setattr(_tasks, "sample", without_memory)
-        patched.setattr(_engines, "on_processes", lambda tasks, workers, memory: ((task, _tasks.run(task)) for task in tasks))
+        patched.setattr(_engines, "on_processes", lambda tasks, **_: ((task, _tasks.run(task)) for task in tasks))
         for _ in range(2):
             assert corpus.label(c).again == 1
     record, = (r for r in map(json.loads, (tmp_path / "manifest.jsonl").read_text().splitlines()) if "again" in r)
@@ -624,6 +756,10 @@ def test_meshes_are_named_by_their_places(folder, tmp_path):
     (tmp_path / "a_b.ply").write_text("")
     with pytest.raises(ValueError, match="would both be labelled as a_b"):
         corpus.find_meshes([tmp_path])
+    for line in (".", "/", "./"):
+        (tmp_path / "list.txt").write_text(f"a.obj\n{line}\n")
+        with pytest.raises(ValueError, match=f"list.txt, line 2: {line!r} is the path of no file"):
+            corpus.find_meshes([tmp_path / "list.txt"])
 
 
 def test_what_is_no_file_is_refused_and_not_waited_for(folder, tmp_path):
@@ -689,12 +825,21 @@ def test_the_command_says_what_is_wrong(tmp_path):
     ech.write_mesh(tmp_path / "torus.obj", torus())
     for memory in ("inf", "nan", "-1", "0"):
         wrong = subprocess.run([*command, str(tmp_path), "-o", str(tmp_path / "out"), "--memory", memory], capture_output=True, text=True)
-        assert wrong.returncode == 1 and "echinus label: memory must be" in wrong.stderr
-    for wrong in (["--shard", "3/3"], ["--shard", "1"], ["--format", "other"], ["--sigmas", "x"]):
+        assert wrong.returncode == 2 and "echinus label: memory must be" in wrong.stderr
+    for wrong in (["--shard", "3/3"], ["--shard", "1"], ["--format", "other"], ["--sigmas", "x"], ["--sigmas", ","], ["--padding", "-1"],
+                  ["--workers", "0", "--verify"], ["--archive-size", "0"], ["--uniform", "-5"], ["--seed", "-1"]):
         refused = subprocess.run([*command, str(tmp_path), "-o", "x", *wrong], capture_output=True, text=True)
-        assert refused.returncode == 2 and wrong[0] in refused.stderr
+        assert refused.returncode == 2 and wrong[0].strip("-") in refused.stderr and "_numbers" not in refused.stderr
     wrong = subprocess.run([*command, str(tmp_path), "-o", str(tmp_path / "torus.obj")], capture_output=True, text=True)
     assert wrong.returncode == 1 and "torus.obj is a file; the labels take a folder" in wrong.stderr
+
+
+def test_a_run_with_nothing_to_do_says_so_only(own_folder, tmp_path, capsys):
+    command = _command.parse(["label", str(own_folder), "-o", str(tmp_path / "labels"), "--uniform", "9", "--near", "9", "--surface", "0"])
+    for expected in ("3 meshes; ", "3 meshes were done already\n"):
+        assert _command.main(command) == 0
+        said = capsys.readouterr().err
+        assert said.startswith(expected) and said.count("\n") == 1
 
 
 # ---- On a cluster
@@ -706,3 +851,40 @@ def test_a_cluster_gives_the_same_bytes(folder, tmp_path, reference):
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, scheduler_port=0) as cluster:
         corpus.label(corpus_of(folder, tmp_path, form=reference[0]), scheduler=cluster.scheduler_address)
     assert bytes_below(tmp_path) == reference[1]
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_a_cluster_that_goes_ends_the_run_with_a_sentence_and_the_next_run_goes_on(own_folder, tmp_path):
+    pytest.importorskip("distributed")
+    program = (
+        "import distributed; c = distributed.LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None, scheduler_port=0);"
+        "print(c.scheduler_address, flush=True); input()"
+    )
+    command = [sys.executable, "-m", "echinus", "label", str(own_folder), "-o", str(tmp_path / "labels"), "--uniform"]
+    with subprocess.Popen([sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, start_new_session=True) as cluster:
+        try:
+            address = cluster.stdout.readline().strip()
+            run = subprocess.Popen([*command, "50000000", "--scheduler", address], stderr=subprocess.PIPE, text=True)
+            until(lambda: (tmp_path / "labels" / "manifest.jsonl").exists())
+            time.sleep(0.5)
+        finally:
+            os.killpg(cluster.pid, signal.SIGKILL)
+    said = run.communicate(timeout=120)[1]
+    assert run.returncode == 1 and f"the cluster at {address} has gone; the same command goes on from here" in said
+    assert "Traceback" not in said and not (tmp_path / "labels" / "manifest.jsonl").exists()
+    subprocess.run([*command, "9"], check=True, capture_output=True)
+
+
+@pytest.mark.parametrize("address, words", [
+    ("foo", "scheduler 'foo' is no address, for instance tcp://host:8786"),
+    ("", "scheduler '' is no address"),
+    ("http://localhost:1", "scheduler 'http://localhost:1' is no address"),
+    ("tcp://127.0.0.1:1", "scheduler tcp://127.0.0.1:1 does not answer"),
+])
+def test_a_scheduler_that_is_none_is_a_sentence_and_nothing_is_touched(folder, tmp_path, address, words):
+    pytest.importorskip("distributed")
+    command = [sys.executable, "-m", "echinus", "label", str(folder), "-o", str(tmp_path / "out"), "--scheduler", address]
+    hasty = {**os.environ, "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "1s"}
+    wrong = subprocess.run(command, capture_output=True, text=True, timeout=60, env=hasty)
+    assert wrong.returncode == 1 and f"echinus label: {words}" in wrong.stderr and "Traceback" not in wrong.stderr
+    assert not (tmp_path / "out").exists()

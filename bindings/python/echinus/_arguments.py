@@ -9,7 +9,7 @@ import json
 import math
 import operator
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypeVar
 
 import numpy as np
@@ -59,14 +59,25 @@ def flag(name: str, value: Any) -> bool:
     return bool(value)
 
 
-def _numbers(name: str, values: Any, count: int, words: str) -> list[float]:
-    sentence = f"{name} must be {words}, not {values!r}"
+def one_of(name: str, value: Any, choices: Sequence[str]) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{name} must be a str, not {value!r}")
+    if value not in choices:
+        raise ValueError(f"{name} must be {', '.join(map(repr, choices[:-1]))} or {choices[-1]!r}, not {value!r}")
+    return value
+
+
+def numbers(name: str, values: Any, words: str = "numbers") -> tuple[float, ...]:
     if isinstance(values, (str, bytes, bytearray)) or not isinstance(values, Iterable):
-        raise TypeError(sentence)
-    entries = list(values)
+        raise TypeError(f"{name} must be {words}, not {values!r}")
+    return tuple(number(f"each of {name}", entry) for entry in values)
+
+
+def _numbers(name: str, values: Any, count: int, words: str) -> tuple[float, ...]:
+    entries = numbers(name, values, words)
     if len(entries) != count:
-        raise ValueError(sentence)
-    return [number(f"each of {name}", entry) for entry in entries]
+        raise ValueError(f"{name} must be {words}, not {values!r}")
+    return entries
 
 
 def vector(name: str, values: Any) -> tuple[float, float, float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import logging
 import sys
 from collections.abc import Sequence
 
@@ -14,7 +15,8 @@ from echinus.corpus._sources import find_meshes
 from echinus.corpus._verification import examine
 
 DEFAULT = Sampling()
-ONLY_SURPLUS = 3  # the exit code of --verify where all labels are right, and there are files besides
+WRONG_OPTIONS = 2  # exit codes
+ONLY_SURPLUS = 3  # of --verify where all labels are right, and there are files besides
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -36,8 +38,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--max-faces", type=int, default=DEFAULT.max_faces, help="refuse larger meshes (%(default)s)")
     parser.add_argument("--time-limit", type=float, default=DEFAULT.time_limit, help="seconds for a mesh (%(default)s)")
     parser.add_argument("--seed", type=int, default=0, help="other seeds, other samples (0)")
-    parser.add_argument("--archive-size", type=int, default=64, help="meshes in each archive of webdataset (%(default)s)")
-    parser.add_argument("--workers", type=int, help="processes; default: one for each core")
+    parser.add_argument("--archive-size", type=_count, default=64, help="meshes in each archive of webdataset (%(default)s)")
+    parser.add_argument("--workers", type=_count, help="processes; default: one for each core")
     parser.add_argument("--memory", type=float, default=4, help="address space of a process, GiB (%(default)s)")
     parser.add_argument("--scheduler", help="address of a Dask scheduler, for instance tcp://host:8786")
     parser.add_argument("--shard", type=_shard, default=(0, 1), help="i/n: only the i-th of n parts, from 0")
@@ -46,8 +48,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def main(arguments: argparse.Namespace) -> int:
     try:
-        corpus = _corpus_of(arguments)
-        return _verify(corpus) if arguments.verify else _label(corpus, arguments)
+        sampling, memory = _sampling_of(arguments), _memory_of(arguments)
+    except ValueError as error:
+        print(f"echinus label: {error}", file=sys.stderr)
+        return WRONG_OPTIONS
+    try:
+        corpus = _corpus_of(arguments, sampling)
+        return _verify(corpus) if arguments.verify else _label(corpus, arguments, memory)
     except (Error, ValueError, OSError, RuntimeError, ModuleNotFoundError) as error:
         print(f"echinus label: {error}", file=sys.stderr)
         return 1
@@ -56,9 +63,9 @@ def main(arguments: argparse.Namespace) -> int:
         return 130
 
 
-def _corpus_of(a: argparse.Namespace) -> Corpus:
+def _sampling_of(a: argparse.Namespace) -> Sampling:
     usual_frame: Frame = "sphere" if a.format == "deepsdf" else "cube"
-    sampling = Sampling(
+    return Sampling(
         uniform=a.uniform,
         near=a.near,
         sigmas=a.sigmas,
@@ -76,27 +83,36 @@ def _corpus_of(a: argparse.Namespace) -> Corpus:
         time_limit=a.time_limit,
         seed=a.seed,
     )
+
+
+def _memory_of(a: argparse.Namespace) -> int:
+    if not 0 < a.memory < 1 << 33:
+        raise ValueError(f"memory must be a positive number of GiB, not {a.memory:g}")
+    return int(a.memory * (1 << 30))
+
+
+def _corpus_of(a: argparse.Namespace, sampling: Sampling) -> Corpus:
     meshes = find_meshes(a.meshes)
     if not meshes:
         raise ValueError("there are no meshes in " + ", ".join(a.meshes))
     return Corpus(meshes, a.output, a.format, sampling, archive_size=a.archive_size, shard=a.shard)
 
 
-def _label(corpus: Corpus, a: argparse.Namespace) -> int:
-    if not 0 < a.memory < 1 << 33:
-        raise ValueError(f"memory must be a positive number of GiB, not {a.memory:g}")
-    memory = int(a.memory * (1 << 30))
+def _label(corpus: Corpus, a: argparse.Namespace, memory: int) -> int:
+    if a.scheduler is not None:
+        logging.disable()  # Dask's: it tells a lost connection as tracebacks, besides our sentence
     summary = label(corpus, workers=a.workers, scheduler=a.scheduler, memory=memory, progress=sys.stderr)
     if summary.already:
         print(f"{summary.already} meshes were done already", file=sys.stderr)
-    print(f"\n{summary}", file=sys.stderr)
+    if summary.labelled or summary.refused:
+        print(summary, file=sys.stderr)
     if summary.again:
         print(f"{summary.again} of the refused may succeed with more memory or time: the same command tries them again", file=sys.stderr)
     return 0
 
 
 def _verify(corpus: Corpus) -> int:
-    found = examine(corpus)
+    found = examine(corpus, sys.stderr)
     for sentence in found.sentences():
         print(sentence)
     if found.complaints:
@@ -106,7 +122,16 @@ def _verify(corpus: Corpus) -> int:
 
 
 def _numbers(text: str) -> tuple[float, ...]:
-    return tuple(float(number) for number in text.split(","))
+    try:
+        return tuple(float(number) for number in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"must be numbers with commas between them, not {text!r}") from None
+
+
+def _count(text: str) -> int:
+    if not (text.isdecimal() and int(text) > 0):
+        raise argparse.ArgumentTypeError(f"must be a whole number from 1, not {text!r}")
+    return int(text)
 
 
 def _shard(text: str) -> tuple[int, int]:

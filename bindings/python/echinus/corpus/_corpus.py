@@ -5,12 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import get_args
 
 from echinus import _core
+from echinus._arguments import of_kind, one_of, path_of, whole
 from echinus._meshes import Path
 from echinus.corpus._formats import Format
 from echinus.corpus._samples import Sampling
-from echinus.corpus._sources import Mesh
+from echinus.corpus._sources import Mesh, lies_below
 from echinus.corpus._tasks import Record, Task
 
 
@@ -43,14 +45,18 @@ class Corpus:
     shard: tuple[int, int] = (0, 1)
 
     def __post_init__(self) -> None:
-        if not os.fspath(self.output):
+        object.__setattr__(self, "meshes", tuple(_name_and_path(i, mesh) for i, mesh in enumerate(self.meshes)))
+        if not path_of(self.output):
             raise ValueError("output is an empty path; name the folder of the labels")
-        if self.form != "occupancy" and not self.sampling.distances:
+        one_of("form", self.form, get_args(Format))
+        if not of_kind("sampling", self.sampling, Sampling).distances and self.form != "occupancy":
             raise ValueError(f"labels as {self.form} need distances")
-        if self.archive_size < 1:
-            raise ValueError(f"archive_size must be 1 or more, not {self.archive_size}")
-        i, n = self.shard
-        if not 0 <= i < n:
+        whole("archive_size", self.archive_size, 1)
+        whole("max_bytes", self.max_bytes, 0, 2**63 - 1)
+        if not (isinstance(self.shard, tuple) and len(self.shard) == 2):
+            raise TypeError(f"shard must be (i, n), not {self.shard!r}")
+        i, n = (whole("each of shard", number) for number in self.shard)
+        if not i < n:
             raise ValueError(f"shard must be (i, n) with i from 0 to n - 1, not {self.shard}")
 
     def tasks(self) -> list[Task]:
@@ -77,3 +83,12 @@ class Corpus:
         sampling = self.sampling.to_json() | {"sigmas": list(self.sampling.sigmas)}
         del sampling["time_limit"]
         return {"echinus": _core.version, "format": self.form, "archive_size": self.archive_size, "max_bytes": self.max_bytes, "sampling": sampling}
+
+
+def _name_and_path(i: int, mesh: Mesh) -> Mesh:
+    if not (isinstance(mesh, tuple) and len(mesh) == 2):
+        raise TypeError(f"meshes[{i}] must be (name, path), as find_meshes() gives them, not {mesh!r}")
+    name, path = mesh
+    if not lies_below(name):
+        raise ValueError(f"meshes[{i}]: its labels go to {name!r} below the output folder, which is no name of a file there")
+    return name, path_of(path)

@@ -5,8 +5,11 @@ An engine yields each task with its records as they come, in any order; or with 
 
 from __future__ import annotations
 
+import asyncio
+import concurrent.futures
 import contextlib
 import ctypes
+import functools
 import importlib
 import itertools
 import multiprocessing
@@ -14,13 +17,15 @@ import os
 import resource
 import signal
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
 from echinus.corpus._tasks import Record, Task, run
 
 Outcome = tuple[Task, "list[Record] | str"]
+Engine = Callable[[Iterable[Task]], Iterator[Outcome]]
 ATTEMPTS = 3  # a worker may be killed for other reasons than its task
 
 
@@ -30,7 +35,8 @@ class _Worker:
         context = multiprocessing.get_context("spawn")
         self.pipe, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs, memory), daemon=True)
-        self.process.start()
+        with _deaf_to_interrupts():
+            self.process.start()
         theirs.close()
         self.task: Task | None = None
 
@@ -61,7 +67,6 @@ class _Worker:
 
 def _serve(pipe: Connection, memory: int) -> None:
     """The life of a worker: with an address space so large that a mesh that needs more is refused."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that gave the tasks hears it, too
     _end_with_parent()
     resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     _keep_freed_memory()
@@ -74,6 +79,17 @@ def _serve(pipe: Connection, memory: int) -> None:
             pipe.send(run(task))
         except Exception as error:  # for the one who started the run: a full disk, or a fault of ours
             pipe.send(error)
+
+
+@contextlib.contextmanager
+def _deaf_to_interrupts() -> Iterator[None]:
+    """What is started meanwhile stays so, from its first moment: the process that gives the tasks hears Ctrl-C, and ends its workers."""
+    resource_tracker.ensure_running()  # which would end this while it starts
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _end_with_parent() -> None:
@@ -138,36 +154,49 @@ def _next(worker: _Worker, source: Iterator[Task], again: deque[Task]) -> None:
             worker.give(task)
 
 
-def require_dask() -> Any:
+@contextlib.contextmanager
+def dask_cluster(scheduler: str) -> Iterator[Engine]:
+    """The workers of an existing cluster, which see the same files under the same names.
+
+    The scheduler repeats the tasks of workers that died, as often as its setting ``allowed-failures`` says.
+    """
+    dask = _distributed()
+    try:
+        dask.comm.get_address_host_port(scheduler)  # of what is none the client complains for seconds
+    except ValueError as error:
+        raise ValueError(f"scheduler {scheduler!r} is no address, for instance tcp://host:8786 ({error})") from None
+    try:
+        client = dask.Client(scheduler, set_as_default=False)
+    except OSError as error:
+        raise OSError(f"scheduler {scheduler} does not answer ({error})") from None
+    with client:
+        yield functools.partial(_on_dask, dask, client)
+
+
+def _distributed() -> Any:
     try:
         return importlib.import_module("distributed")
     except ModuleNotFoundError as error:
         raise ModuleNotFoundError(f"a scheduler needs Dask, Debian's package python3-distributed ({error})", name=error.name) from None
 
 
-def on_dask(tasks: Iterable[Task], scheduler: str, window: int = 1000) -> Iterator[Outcome]:
-    """On the workers of an existing cluster, which see the same files under the same names.
-
-    The scheduler repeats the tasks of workers that died, as often as its setting ``allowed-failures`` says.
-    """
-    dask = require_dask()
+def _on_dask(dask: Any, client: Any, tasks: Iterable[Task], window: int = 1000) -> Iterator[Outcome]:
     source = iter(tasks)
     task_of: dict[Any, Task] = {}
-    with dask.Client(scheduler, set_as_default=False) as client:
 
-        def submitted(task: Task) -> Any:
-            future = client.submit(run, task, pure=False)
-            task_of[future] = task
-            return future
+    def submitted(task: Task) -> Any:
+        future = client.submit(run, task, pure=False)
+        task_of[future] = task
+        return future
 
-        completed = dask.as_completed(
-            [submitted(task) for task in itertools.islice(source, window)], loop=client.loop
-        )
-        for future in completed:
-            task = task_of.pop(future)
-            for following in itertools.islice(source, 1):
-                completed.add(submitted(following))
-            try:
-                yield task, future.result()
-            except dask.KilledWorker:
-                yield task, "the cluster's workers died of it"
+    completed = dask.as_completed([submitted(task) for task in itertools.islice(source, window)], loop=client.loop)
+    for future in completed:
+        task = task_of.pop(future)
+        for following in itertools.islice(source, 1):
+            completed.add(submitted(following))
+        try:
+            yield task, future.result()
+        except dask.KilledWorker:
+            yield task, "the cluster's workers died of it"
+        except (asyncio.CancelledError, concurrent.futures.CancelledError):
+            raise RuntimeError(f"the cluster at {client.scheduler.address} has gone; the same command goes on from here") from None

@@ -5,14 +5,14 @@ from __future__ import annotations
 import collections
 import contextlib
 import json
-import os
 import pathlib
 import re
-from collections.abc import Iterable, Iterator
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, TextIO
 
 from echinus.corpus._corpus import Corpus
-from echinus.corpus._tasks import Record, Task
+from echinus.corpus._sources import Mesh, fingerprints, lies_below
+from echinus.corpus._tasks import Record, Task, naming, whole_file
 
 
 class Manifest:
@@ -31,9 +31,12 @@ class Manifest:
                 raise ValueError(f"{path}: the labels in this folder are made in {_parts(parts)}, now {_parts(n)}; choose another folder")
             if sentence := difference(path, self.settings):
                 raise ValueError(sentence)
+        if not self.path.exists():
+            self._write([])
 
-    def finished(self, tasks: Iterable[Task]) -> list[Task]:
-        """Those with a record of each mesh that need not be tried again, and with the files that the records name."""
+    def finished(self, tasks: Iterable[Task], progress: TextIO | None = None) -> list[Task]:
+        """Those with a record of each mesh that need not be tried again, whose mesh files are those of the records, and
+        with the files that the records name."""
         records = list(records_of(self.path))
         whole = {r["file"] for r in records if "file" in r and _size(self.path.parent / r["file"]) == r["bytes"]}
         record_of = {r["mesh"]: r for r in records if "mesh" in r}
@@ -42,7 +45,7 @@ class Manifest:
             for file in record.get("files", []):
                 meshes_of[file].add(name)
 
-        def is_finished(task: Task) -> bool:
+        def is_complete(task: Task) -> bool:
             names = {name for name, _ in task.meshes}
             if not all(name in record_of and "again" not in record_of[name] for name in names):
                 return False
@@ -51,35 +54,57 @@ class Manifest:
                 return files <= {task.archive} <= whole and meshes_of[task.archive] <= names
             return files <= whole
 
-        return [task for task in tasks if is_finished(task)]
+        complete = [task for task in tasks if is_complete(task)]
+        most = max((task.max_bytes for task in complete), default=0)
+        changed = changed_meshes([mesh for task in complete for mesh in task.meshes], record_of, most, progress)
+        return [task for task in complete if changed.isdisjoint(name for name, _ in task.meshes)]
 
-    def keep(self, tasks: Iterable[Task]) -> None:
-        """Forgets what is not about these tasks."""
-        meshes = {name for task in tasks for name, _ in task.meshes}
-        files = {task.archive for task in tasks}
-        files |= {name for r in records_of(self.path) if r.get("mesh") in meshes for name in r.get("files", [])}
+    def keep(self, finished: Iterable[Task], tasks: Iterable[Task]) -> None:
+        """Forgets what is not about finished tasks, and removes the files of the others: a mesh that is labelled anew may be
+        refused. Archives are written over, and what belongs to no task stays."""
+        meshes = {name for task in finished for name, _ in task.meshes}
+        files = {task.archive for task in finished}
+        others = {name for task in tasks if task.archive is None for name, _ in task.meshes} - meshes
+        for record in records_of(self.path):
+            if record.get("mesh") in meshes:
+                files |= set(record.get("files", []))
+            if record.get("mesh") in others:
+                for name in record.get("files", []):
+                    _remove(self.path.parent / name)
         self._write(r for r in records_of(self.path) if r.get("mesh") in meshes or ("file" in r and r["file"] in files))
 
     def add(self, records: Iterable[Record]) -> None:
-        with self.path.open("a") as file:
+        with naming(self.path), self.path.open("a") as file:
             file.writelines(_line(record) for record in records)
 
     def sort(self) -> None:
         """The same bytes for the same labels, in whatever order they came."""
         self._write(r for r in records_of(self.path) if "echinus" not in r)
 
+    def discard_settings(self) -> None:
+        """Of a run that ended without a record: they bind no other."""
+        if all("echinus" in record for record in records_of(self.path)):
+            self.path.unlink()
+
     def _write(self, records: Iterable[Record]) -> None:
         lines = sorted((r.get("mesh", ""), r.get("file", ""), _line(r)) for r in records)
-        part = self.path.with_suffix(".part")
-        with part.open("w") as file:
-            file.writelines([_line(self.settings), *(line for _, _, line in lines)])
-        os.replace(part, self.path)
+        with whole_file(self.path.parent, self.path.name) as file:
+            file.writelines(line.encode() for line in [_line(self.settings), *(line for _, _, line in lines)])
+
+
+def changed_meshes(meshes: Sequence[Mesh], record_of: Mapping[str, Record], most: int, progress: TextIO | None) -> set[str]:
+    """The names of those whose files are not those of their records, for instance because they can be read now."""
+    now = fingerprints([path for _, path in meshes], most, progress)
+    records = [record_of[name] for name, _ in meshes]
+    return {r["mesh"] for r, found in zip(records, now) if found != (r.get("source_bytes"), r.get("source_sha256"))}
 
 
 def records_of(manifest: pathlib.Path) -> Iterator[Record]:
     """Without a last line that was cut short."""
     if not manifest.exists():
         return
+    if not manifest.is_file():
+        raise ValueError(f"{manifest} is no file; remove it, or choose another folder")
     with manifest.open(errors="replace") as file:
         for number, line in enumerate(file, 1):
             if not line.endswith("\n"):
@@ -98,9 +123,9 @@ def _is_record(value: Any) -> bool:
         return False
     if "mesh" in value:
         files = value.get("files", [])
-        return "file" not in value and isinstance(files, list) and all(isinstance(name, str) for name in [value["mesh"], *files])
+        return "file" not in value and isinstance(value["mesh"], str) and isinstance(files, list) and all(map(lies_below, files))
     if "file" in value:
-        return isinstance(value["file"], str) and {"sha256", "bytes"} <= value.keys()
+        return lies_below(value["file"]) and {"sha256", "bytes"} <= value.keys()
     return "echinus" in value
 
 
@@ -146,3 +171,9 @@ def _size(path: pathlib.Path) -> int | None:
     with contextlib.suppress(OSError):
         return path.stat().st_size
     return None
+
+
+def _remove(path: pathlib.Path) -> None:
+    path.unlink(missing_ok=True)
+    with contextlib.suppress(OSError):  # other files are in its folder
+        path.parent.rmdir()

@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
+import functools
 import os
 import pathlib
 import shutil
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TextIO
+from typing import TextIO
 
+from echinus._arguments import of_kind, whole
 from echinus.corpus import _engines
 from echinus.corpus._corpus import Corpus
+from echinus.corpus._locks import alone, one_at_a_time
 from echinus.corpus._manifest import Manifest
+from echinus.corpus._progress import Bar
 from echinus.corpus._tasks import UNFINISHED, Record, Task
-
-LOG_SECONDS = 10  # between lines of the progress, where it is no terminal
 
 
 @dataclass
@@ -50,7 +51,9 @@ class Summary:
 
     def __str__(self) -> str:
         done, rate = self.labelled + self.refused, 1 / max(self.seconds, 1e-9)
-        return f"{done} meshes, {self.refused} of them refused; {done * rate:.3g} meshes/s, {self.points * rate:.3g} points/s"
+        meshes = "1 mesh" if done == 1 else f"{done} meshes"
+        refused = f", {self.refused} of them refused" if self.refused else ""
+        return f"{meshes}{refused}; {done * rate:.3g} meshes/s, {self.points * rate:.3g} points/s"
 
 
 def label(
@@ -61,7 +64,8 @@ def label(
     memory: int = 4 << 30,
     progress: TextIO | None = None,
 ) -> Summary:
-    """Labels all meshes that have no labels yet, also those that were refused for want of memory or time.
+    """Labels all meshes that have no labels yet, or other ones than those of the mesh file as it is now; also those that
+    were refused for want of memory or time.
 
     The labels are the same bytes whoever computes them.
 
@@ -79,118 +83,59 @@ def label(
     Raises
     ------
     ValueError
-        The folder has labels that were made with other settings, another run is writing them, or there are to be no
-        workers.
+        The folder has labels that were made with other settings, another run is writing them, there are to be no
+        workers, or ``scheduler`` is no address.
     OSError
-        A file cannot be written.
+        A file cannot be written, or the scheduler does not answer.
     ModuleNotFoundError
         A scheduler is given, and Dask is not installed.
     RuntimeError
-        An archive cannot be written for want of memory, though each of its meshes can be labelled.
+        An archive cannot be written for want of memory, though each of its meshes can be labelled; or the cluster has
+        gone.
     """
-    if scheduler is not None:
-        _engines.require_dask()
-    if workers is not None and workers < 1:
-        raise ValueError(f"workers must be 1 or more, not {workers}")
-    if not 0 < memory < 1 << 63:
-        raise ValueError(f"memory must be a positive number of bytes, not {memory}")
+    of_kind("corpus", corpus, Corpus)
+    worker_count = whole("workers", workers, 1) if workers is not None else os.cpu_count() or 1
+    whole("memory", memory, 1, 2**63 - 1)
     if os.path.exists(corpus.output) and not os.path.isdir(corpus.output):
         raise NotADirectoryError(f"{corpus.output} is a file; the labels take a folder")
-    os.makedirs(corpus.output, exist_ok=True)
-    with _alone(corpus):
-        return _label(corpus, workers, scheduler, memory, progress)
+    engine: contextlib.AbstractContextManager[_engines.Engine]
+    if scheduler is not None:
+        engine = _engines.dask_cluster(scheduler)
+    else:
+        engine = contextlib.nullcontext(functools.partial(_engines.on_processes, worker_count=worker_count, memory=memory))
+    with engine as run:
+        os.makedirs(corpus.output, exist_ok=True)
+        with alone(corpus):
+            return _label(corpus, run, progress)
 
 
-@contextlib.contextmanager
-def _alone(corpus: Corpus) -> Iterator[None]:
-    """While no other run works on the same part, or on the whole. The locks go with the process, however it ends.
-
-    All runs lock the folder: one of a part shares it. So what is in it is removed by none while another works.
-    """
-    i, n = corpus.shard
-    folder = os.open(corpus.output, os.O_RDONLY)
+def _label(corpus: Corpus, run: _engines.Engine, progress: TextIO | None) -> Summary:
+    with one_at_a_time(corpus):
+        manifest = Manifest(corpus)
     try:
-        _lock(folder, fcntl.LOCK_SH if n > 1 else fcntl.LOCK_EX)
-        with _part_locked(pathlib.Path(corpus.output, UNFINISHED, f"lock-{i}-of-{n}")):
-            yield
-    except BlockingIOError:
-        raise ValueError(f"{corpus.output}: another run is writing these labels; wait for it, or choose another folder") from None
-    finally:
-        os.close(folder)
-
-
-@contextlib.contextmanager
-def _part_locked(path: pathlib.Path) -> Iterator[None]:
-    path.parent.mkdir(exist_ok=True)
-    file = path.open("a")
-    try:
-        _lock(file.fileno(), fcntl.LOCK_EX)
-        while not _is(file, path):  # an earlier run removed it meanwhile
-            file.close()
-            file = path.open("a")
-            _lock(file.fileno(), fcntl.LOCK_EX)
-        try:
-            yield
-        finally:
-            if _is(file, path):  # else a whole run has removed it with its folder
-                path.unlink()
-    finally:
-        file.close()
-
-
-def _lock(descriptor: int, how: int) -> None:
-    """Raises BlockingIOError where another process holds the lock. Does nothing on a file system without locks."""
-    try:
-        fcntl.flock(descriptor, how | fcntl.LOCK_NB)
-    except BlockingIOError:
+        mine = corpus.tasks()
+        finished = manifest.finished(mine, progress)
+        manifest.keep(finished, mine)
+        done = {task.meshes for task in finished}
+        tasks = [task for task in mine if task.meshes not in done]
+        summary, began = Summary(already=sum(map(len, done))), time.monotonic()
+        bar = Bar(progress, sum(len(task.meshes) for task in tasks))
+        for records in _all_records(tasks, run):
+            manifest.add(records)
+            summary.count(records)
+            summary.seconds = time.monotonic() - began
+            bar.show(summary.labelled + summary.refused, str(summary))
+        bar.clear()
+        manifest.sort()
+    except BaseException:
+        manifest.discard_settings()
         raise
-    except OSError:
-        pass
-
-
-def _is(file: TextIO, path: pathlib.Path) -> bool:
-    try:
-        return os.path.samestat(os.fstat(file.fileno()), path.stat())
-    except FileNotFoundError:
-        return False
-
-
-def _label(corpus: Corpus, workers: int | None, scheduler: str | None, memory: int, progress: TextIO | None) -> Summary:
-    manifest = Manifest(corpus)
-    mine = corpus.tasks()
-    finished = manifest.finished(mine)
-    manifest.keep(finished)
-    done = {task.meshes for task in finished}
-    tasks = [task for task in mine if task.meshes not in done]
-    summary, began = Summary(already=sum(map(len, done))), time.monotonic()
-    shown = began
-    total = sum(len(task.meshes) for task in tasks)
-
-    def run(these: Iterable[Task]) -> Iterator[_engines.Outcome]:
-        if scheduler is not None:
-            return _engines.on_dask(these, scheduler)
-        return _engines.on_processes(these, workers or os.cpu_count() or 1, memory)
-
-    for records in _all_records(tasks, run):
-        manifest.add(records)
-        summary.count(records)
-        summary.seconds = time.monotonic() - began
-        if progress is not None and (progress.isatty() or time.monotonic() - shown > LOG_SECONDS):
-            shown = time.monotonic()
-            _show(summary, total, progress)
-    manifest.sort()
     if corpus.shard[1] == 1:
         shutil.rmtree(pathlib.Path(corpus.output, UNFINISHED), ignore_errors=True)
     return summary
 
 
-def _show(summary: Summary, total: int, progress: TextIO) -> None:
-    done = summary.labelled + summary.refused
-    bar = ("#" * (20 * done // max(total, 1))).ljust(20, ".")
-    print(f"[{bar}] of {total}: {summary}", end="\r" if progress.isatty() else "\n", file=progress, flush=True)
-
-
-def _all_records(tasks: Sequence[Task], run: Any) -> Iterator[list[Record]]:
+def _all_records(tasks: Sequence[Task], run: _engines.Engine) -> Iterator[list[Record]]:
     """The records of all tasks. A mesh that no worker survives is found, and refused like any other."""
     deadly: list[tuple[Task, str]] = []
     for task, result in run(tasks) if tasks else ():

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import hashlib
 import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from echinus._arguments import whole
+from echinus._arguments import flag, number, numbers, one_of, whole
 from echinus._errors import Error
 from echinus._maps import ExactMap
 from echinus._meshes import Mesh, MeshLike, as_mesh, inspect, repair
 from echinus.corpus._random import Random
 
 Frame = Literal["cube", "sphere", "none"]
+Stored = Literal["float16", "float32"]
 _LARGEST = 1e30  # of lengths: their squares are far from overflow, and float32 has room for them
 
 
@@ -77,11 +79,11 @@ class Sampling:
 
     uniform: int = 50_000
     near: int = 50_000
-    sigmas: tuple[float, ...] = (0.01, 0.05)
+    sigmas: Sequence[float] = (0.01, 0.05)
     surface: int = 10_000
     frame: Frame = "cube"
     padding: float = 0.1
-    dtype: Literal["float16", "float32"] = "float32"
+    dtype: Stored = "float32"
     distances: bool = True
     repair: bool = True
     close_holes: int = 0
@@ -93,9 +95,18 @@ class Sampling:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        for name in ("uniform", "near", "surface", "max_faces"):
-            whole(name, getattr(self, name))
-        whole("close_holes", self.close_holes, 0, 256)
+        def checked(check: Callable[..., Any], *names: str, bounds: tuple[int, ...] = ()) -> None:
+            for name in names:
+                object.__setattr__(self, name, check(name, getattr(self, name), *bounds))
+
+        checked(whole, "uniform", "near", "surface", "max_faces")
+        checked(whole, "close_holes", bounds=(0, 256))
+        checked(whole, "seed", bounds=(0, 2**63 - 1))
+        checked(number, "padding", "thicken", "min_certain", "time_limit")
+        checked(flag, "distances", "repair", "drop_inner_faces")
+        checked(numbers, "sigmas")
+        one_of("frame", self.frame, get_args(Frame))
+        one_of("dtype", self.dtype, get_args(Stored))
         for name, most in (("padding", _LARGEST), ("thicken", 0.5), ("min_certain", 1)):
             if not 0 <= getattr(self, name) <= most:
                 raise ValueError(f"{name} must be a number from 0 to {most:g}, not {getattr(self, name)}")

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 import pathlib
 import tempfile
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, BinaryIO
 
 from echinus._errors import Error
 from echinus._meshes import read_mesh
 from echinus.corpus._formats import Format, archive_of, files_of
 from echinus.corpus._samples import Refused, Sampling, sample
+from echinus.corpus._sources import fingerprint
 
 UNFINISHED = ".unfinished"  # below the output folder: files that are being written
 Record = dict[str, Any]  # a line of the manifest
@@ -56,19 +58,21 @@ def run(task: Task) -> list[Record]:
     records: list[Record] = []
     members: dict[str, bytes] = {}
     for name, path in task.meshes:
+        size, digest = fingerprint(path, task.max_bytes)  # before the mesh is read: of one that changes meanwhile it is another's
+        source = {"mesh": name, "source": path, "source_bytes": size, "source_sha256": digest}
         try:
             if name in reasons:
                 raise Refused(reasons[name], again=True)
             files, report = _labelled(name, path, task)
         except (Refused, Error, MemoryError) as error:
-            records.append({"mesh": name, "source": path} | _refusal(error))
+            records.append(source | _refusal(error))
             continue
         if task.archive is None:
             written = [_write(task.output, file, content) for file, content in files.items()]
-            records += [{"mesh": name, "source": path, "files": sorted(files), "report": report}, *written]
+            records += [source | {"files": sorted(files), "report": report}, *written]
         else:
             members |= files
-            records.append({"mesh": name, "source": path, "files": [task.archive], "report": report})
+            records.append(source | {"files": [task.archive], "report": report})
     if task.archive is not None:
         try:
             records.append(_write(task.output, task.archive, archive_of(members)))
@@ -96,23 +100,38 @@ def _labelled(name: str, path: str, task: Task) -> tuple[dict[str, bytes], Recor
 
 
 def _write(output: str, name: str, content: bytes) -> Record:
-    """Under another name first, so that the file appears whole."""
-    target = pathlib.Path(output, name)
-    unfinished = pathlib.Path(output, UNFINISHED)
-    for folder in (target.parent, unfinished):
-        folder.mkdir(parents=True, exist_ok=True)
-    handle, part = tempfile.mkstemp(dir=unfinished)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        os.chmod(part, 0o644)
-        os.replace(part, target)
-    except BaseException:
-        os.unlink(part)
-        raise
+    with whole_file(pathlib.Path(output), name) as file:
+        file.write(content)
     return {"file": name, "sha256": hashlib.sha256(content).hexdigest(), "bytes": len(content)}
 
 
-Run = Callable[[Task], list[Record]]
+@contextlib.contextmanager
+def whole_file(output: pathlib.Path, name: str) -> Iterator[BinaryIO]:
+    """A file below the output folder, under another name until it is whole. Errors of the system name it."""
+    target, unfinished = output / name, output / UNFINISHED
+    with naming(target):
+        for folder in (target.parent, unfinished):
+            folder.mkdir(parents=True, exist_ok=True)
+        handle, part = tempfile.mkstemp(dir=unfinished)
+        try:
+            with os.fdopen(handle, "wb") as file:
+                yield file
+                file.flush()
+                os.fsync(file.fileno())
+            os.chmod(part, 0o644)
+            os.replace(part, target)
+        except BaseException:
+            os.unlink(part)
+            raise
+
+
+@contextlib.contextmanager
+def naming(path: pathlib.Path) -> Iterator[None]:
+    """A full disk has no name of its own."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is not None or error.errno is None:
+            raise
+        raise OSError(error.errno, error.strerror, str(path)) from None
+

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import collections
-import hashlib
 import itertools
 import pathlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import TextIO
 
 from echinus.corpus._corpus import Corpus
-from echinus.corpus._manifest import difference, manifests, records_of
+from echinus.corpus._manifest import changed_meshes, difference, manifests, records_of
+from echinus.corpus._progress import watched
+from echinus.corpus._sources import hash_of
 from echinus.corpus._tasks import UNFINISHED, Record
 
 
@@ -53,7 +55,7 @@ def verify(corpus: Corpus) -> list[str]:
     return examine(corpus).sentences()
 
 
-def examine(corpus: Corpus) -> Findings:
+def examine(corpus: Corpus, progress: TextIO | None = None) -> Findings:
     folder, settings = pathlib.Path(corpus.output), corpus.settings()
     found = [path for path, _ in manifests(folder)]
     records = list(itertools.chain.from_iterable(map(records_of, found)))
@@ -63,16 +65,28 @@ def examine(corpus: Corpus) -> Findings:
     times = collections.Counter(r["mesh"] for r in ours)
     complaints += [f"{name}: is recorded {n} times" for name, n in sorted(times.items()) if n > 1]
     complaints += [f"{name}: has no labels" for name in archive_of if name not in times]
+    complaints += _of_other_meshes(corpus, ours, progress)
     complaints += _misplaced(records, archive_of)
     named = {name for r in ours for name in r.get("files", [])}
     hashes = {r["file"]: r["sha256"] for r in records if "file" in r}
     complaints += [f"{name}: has no hash" for name in sorted(named - set(hashes))]
     used = named | {archive for archive in archive_of.values() if archive is not None and archive in hashes}
-    complaints += _changed(folder, {name: hashes[name] for name in sorted(used) if name in hashes})
+    complaints += _changed(folder, {name: hashes[name] for name in sorted(used) if name in hashes}, progress)
     present = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file() and UNFINISHED not in path.parts}
     surplus = sorted(present - used - {path.name for path in found})
     refused = [r for r in ours if "refused" in r]
     return Findings(complaints, surplus, len(archive_of), len(refused), sum("again" in r for r in refused))
+
+
+def _of_other_meshes(corpus: Corpus, records: Iterable[Record], progress: TextIO | None) -> Iterator[str]:
+    """Labels, or refusals, of mesh files that have changed since."""
+    record_of = {record["mesh"]: record for record in records if "again" not in record}
+    meshes = [mesh for mesh in corpus.meshes if mesh[0] in record_of]
+    changed = changed_meshes(meshes, record_of, corpus.max_bytes, progress)
+    for name, path in meshes:
+        if name in changed:
+            what = "refused" if "refused" in record_of[name] else "labelled"
+            yield f"{name}: {path} has changed since it was {what}; the same command without --verify labels it anew"
 
 
 def _misplaced(records: Iterable[Record], archive_of: dict[str, str | None]) -> Iterator[str]:
@@ -85,15 +99,10 @@ def _misplaced(records: Iterable[Record], archive_of: dict[str, str | None]) -> 
                 yield f"{record['mesh']}: has labels in {file}, as before the corpus changed; the same command without --verify mends that"
 
 
-def _changed(folder: pathlib.Path, hashes: dict[str, str]) -> Iterator[str]:
-    for name, expected in hashes.items():
+def _changed(folder: pathlib.Path, hashes: Mapping[str, str], progress: TextIO | None) -> Iterator[str]:
+    for name, expected in watched(hashes.items(), progress, len(hashes), "files of labels compared with the manifest"):
         path = folder / name
-        if not path.exists():
-            yield f"{name}: is missing"
-        elif _hash_of(path) != expected:
-            yield f"{name}: has other bytes than it had"
-
-
-def _hash_of(path: pathlib.Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+        if not path.is_file():
+            yield f"{name}: is missing; the same command without --verify makes it anew"
+        elif hash_of(path) != expected:
+            yield f"{name}: has other bytes than it had; remove it, and the same command without --verify makes it anew"

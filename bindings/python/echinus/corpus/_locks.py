@@ -1,0 +1,91 @@
+"""Runs do not write the same labels at once. The locks go with the process, however it ends."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import os
+import pathlib
+from collections.abc import Iterator
+from typing import TextIO
+
+from echinus.corpus._corpus import Corpus
+from echinus.corpus._tasks import UNFINISHED
+
+
+@contextlib.contextmanager
+def alone(corpus: Corpus) -> Iterator[None]:
+    """While no other run works on the same part, or on the whole.
+
+    All runs lock the folder: one of a part shares it. So what is in it is removed by none while another works.
+
+    Raises
+    ------
+    ValueError
+        Another run does.
+    """
+    i, n = corpus.shard
+    folder = os.open(corpus.output, os.O_RDONLY)
+    try:
+        _lock(folder, fcntl.LOCK_NB | (fcntl.LOCK_SH if n > 1 else fcntl.LOCK_EX))
+        with _part_locked(pathlib.Path(corpus.output, UNFINISHED, f"lock-{i}-of-{n}")):
+            yield
+    except BlockingIOError:
+        raise ValueError(f"{corpus.output}: another run is writing these labels; wait for it, or choose another folder") from None
+    finally:
+        os.close(folder)
+
+
+@contextlib.contextmanager
+def one_at_a_time(corpus: Corpus) -> Iterator[None]:
+    """For the moments in which parts that run at once look at what the others have written. Within :func:`alone`."""
+    unfinished = os.open(pathlib.Path(corpus.output, UNFINISHED), os.O_RDONLY)
+    try:
+        _lock(unfinished, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(unfinished)
+
+
+@contextlib.contextmanager
+def _part_locked(path: pathlib.Path) -> Iterator[None]:
+    file = _opened(path)
+    try:
+        _lock(file.fileno(), fcntl.LOCK_NB | fcntl.LOCK_EX)
+        while not _is(file, path):  # an earlier run removed it meanwhile
+            file.close()
+            file = _opened(path)
+            _lock(file.fileno(), fcntl.LOCK_NB | fcntl.LOCK_EX)
+        try:
+            yield
+        finally:
+            if _is(file, path):  # else a whole run has removed it with its folder
+                path.unlink()
+            with contextlib.suppress(OSError):  # other files are in it, or it is gone
+                path.parent.rmdir()
+    finally:
+        file.close()
+
+
+def _opened(path: pathlib.Path) -> TextIO:
+    while True:
+        path.parent.mkdir(exist_ok=True)
+        with contextlib.suppress(FileNotFoundError):  # another run has just ended
+            return path.open("a")
+
+
+def _lock(descriptor: int, how: int) -> None:
+    """Raises BlockingIOError where another process holds the lock. Does nothing on a file system without locks."""
+    try:
+        fcntl.flock(descriptor, how)
+    except BlockingIOError:
+        raise
+    except OSError:
+        pass
+
+
+def _is(file: TextIO, path: pathlib.Path) -> bool:
+    try:
+        return os.path.samestat(os.fstat(file.fileno()), path.stat())
+    except FileNotFoundError:
+        return False

@@ -1,0 +1,40 @@
+"""Lines that say how far it is."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator
+from typing import TextIO, TypeVar
+
+Item = TypeVar("Item")
+TERMINAL_SECONDS, LOG_SECONDS = 0.1, 10  # between lines
+
+
+class Bar:
+    """A line that is written over on a terminal, and lines in a log."""
+
+    def __init__(self, stream: TextIO | None, total: int) -> None:
+        self._stream, self._total = stream, total
+        self._is_terminal = stream is not None and stream.isatty()
+        self._shown = time.monotonic()
+
+    def show(self, done: int, text: str) -> None:
+        now = time.monotonic()
+        if self._stream is None or now - self._shown < (TERMINAL_SECONDS if self._is_terminal else LOG_SECONDS):
+            return
+        self._shown = now
+        bar = ("#" * (20 * done // max(self._total, 1))).ljust(20, ".")
+        line = f"[{bar}] of {self._total}: {text}"
+        print(f"\r{line}\033[K" if self._is_terminal else line, end="" if self._is_terminal else "\n", file=self._stream, flush=True)
+
+    def clear(self) -> None:
+        if self._is_terminal:
+            print("\r\033[K", end="", file=self._stream, flush=True)
+
+
+def watched(items: Iterable[Item], stream: TextIO | None, total: int, text: str) -> Iterator[Item]:
+    bar = Bar(stream, total)
+    for done, item in enumerate(items, 1):
+        bar.show(done, f"{done} {text}")
+        yield item
+    bar.clear()
