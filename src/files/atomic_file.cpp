@@ -108,7 +108,8 @@ void AtomicFile::commit() {
 
 void AtomicFile::fail(const char* action) const {
     const std::string reason = std::strerror(errno);
-    throw Error(ErrorCode::Unwritable, target_.string() + ": cannot " + action + " the file: " + reason);
+    const std::string name = target_.empty() ? "a path that is empty" : target_.string();
+    throw Error(ErrorCode::Unwritable, name + ": cannot " + action + " the file: " + reason);
 }
 
 void write_file(const fs::path& target, std::string_view content) {

@@ -21,8 +21,9 @@ namespace {
 using FileHandle = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 [[noreturn]] void fail(const std::filesystem::path& path, const char* action) {
-    throw Error(ErrorCode::Unreadable,
-                path.string() + ": cannot " + action + " the file: " + std::strerror(errno));
+    const std::string reason = std::strerror(errno);
+    const std::string name = path.empty() ? "a path that is empty" : path.string();
+    throw Error(ErrorCode::Unreadable, name + ": cannot " + action + " the file: " + reason);
 }
 
 /// The file as a mapping, or nothing where it has to be read.

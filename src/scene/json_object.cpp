@@ -57,10 +57,17 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
-std::string expected_number(const char* kind, Range range) {
+std::string expected_number(Range range) {
     if (range.most == std::numeric_limits<double>::infinity())
-        return std::string(kind) + " of at least " + number_text(range.least);
-    return std::string(kind) + " from " + number_text(range.least) + " to " + number_text(range.most);
+        return "a number of at least " + number_text(range.least);
+    return "a number from " + number_text(range.least) + " to " + number_text(range.most);
+}
+
+std::string expected_whole_number(Range range) {
+    const auto text = [](double limit) {
+        return std::to_string(static_cast<std::uint32_t>(std::min(limit, double{UINT32_MAX})));
+    };
+    return "a whole number from " + text(range.least) + " to " + text(range.most);
 }
 
 std::string expected_array(std::size_t size, const std::string& element) {
@@ -145,7 +152,7 @@ void JsonObject::read(const char* key, bool& value) {
 void JsonObject::read(const char* key, double& value, Range range) {
     const json* found = find(key);
     if (found == nullptr) return;
-    if (!holds(*found, double{}, range)) refuse(key, expected_number("a number", range));
+    if (!holds(*found, double{}, range)) refuse(key, expected_number(range));
     value = found->get<double>();
 }
 
@@ -158,7 +165,7 @@ void JsonObject::read(const char* key, std::optional<double>& value, Range range
 void JsonObject::read(const char* key, std::uint32_t& value, Range range) {
     const json* found = find(key);
     if (found == nullptr) return;
-    if (!holds(*found, std::uint32_t{}, range)) refuse(key, expected_number("a whole number", range));
+    if (!holds(*found, std::uint32_t{}, range)) refuse(key, expected_whole_number(range));
     value = found->get<std::uint32_t>();
 }
 
@@ -166,32 +173,32 @@ void JsonObject::read(const char* key, Vec3d& value, Range range) {
     const json* found = find(key);
     std::array<double, 3> xyz{};
     if (found == nullptr) return;
-    if (!read_array(*found, xyz, range)) refuse(key, expected_array(3, expected_number("a number", range)));
+    if (!read_array(*found, xyz, range)) refuse(key, expected_array(3, expected_number(range)));
     value = {xyz[0], xyz[1], xyz[2]};
 }
 
 void JsonObject::read(const char* key, std::array<double, 2>& value, Range range) {
     const json* found = find(key);
     if (found != nullptr && !read_array(*found, value, range))
-        refuse(key, expected_array(2, expected_number("a number", range)));
+        refuse(key, expected_array(2, expected_number(range)));
 }
 
 void JsonObject::read(const char* key, std::array<double, 4>& value, Range range) {
     const json* found = find(key);
     if (found != nullptr && !read_array(*found, value, range))
-        refuse(key, expected_array(4, expected_number("a number", range)));
+        refuse(key, expected_array(4, expected_number(range)));
 }
 
 void JsonObject::read(const char* key, std::array<std::uint32_t, 2>& value, Range range) {
     const json* found = find(key);
     if (found != nullptr && !read_array(*found, value, range))
-        refuse(key, expected_array(2, expected_number("a whole number", range)));
+        refuse(key, expected_array(2, expected_whole_number(range)));
 }
 
 void JsonObject::read(const char* key, std::vector<std::array<std::uint32_t, 2>>& value, Range range) {
     const json* found = find(key);
     if (found == nullptr) return;
-    const std::string expected = "an array of " + expected_array(2, expected_number("a whole number", range));
+    const std::string expected = "an array of " + expected_array(2, expected_whole_number(range));
     if (!found->is_array()) refuse(key, expected);
     value.resize(found->size());
     for (std::size_t i = 0; i < value.size(); ++i)
@@ -201,7 +208,7 @@ void JsonObject::read(const char* key, std::vector<std::array<std::uint32_t, 2>>
 void JsonObject::read(const char* key, std::vector<std::uint32_t>& value, Range range) {
     const json* found = find(key);
     if (found == nullptr) return;
-    const std::string expected = "an array, each " + expected_number("a whole number", range);
+    const std::string expected = "an array, each " + expected_whole_number(range);
     if (!found->is_array()) refuse(key, expected);
     value.resize(found->size());
     for (std::size_t i = 0; i < value.size(); ++i) {

@@ -1,5 +1,6 @@
 #include "files/atomic_file.hpp"
 #include "files/part.hpp"
+#include "support/expect_error.hpp"
 
 #include <echinus/error.hpp>
 
@@ -121,5 +122,9 @@ TEST_F(AtomicFileTest, ReportsAFullDisk) {
 TEST_F(AtomicFileTest, RefusesADirectoryAndAMissingFolder) {
     EXPECT_THROW(AtomicFile{folder_}, Error);
     EXPECT_THROW(AtomicFile{folder_ / "missing" / "out.txt"}, Error);
+    test::expect_error(ErrorCode::Unwritable, "a path that is empty: cannot", [] {
+        AtomicFile file("");
+        file.commit();
+    });
     EXPECT_EQ(files_in_folder(), 0);
 }

@@ -65,4 +65,5 @@ TEST_F(MappedFileTest, RefusesAMissingFileAndADirectoryByName) {
     for (const fs::path& refused : {path("missing"), path("")}) {
         test::expect_error(ErrorCode::Unreadable, refused.string(), [&] { MappedFile file(refused); });
     }
+    test::expect_error(ErrorCode::Unreadable, "a path that is empty: cannot", [] { MappedFile file(""); });
 }

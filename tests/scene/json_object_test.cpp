@@ -98,6 +98,9 @@ TEST(JsonObject, SaysWhatAValueMustBe) {
     expect("count is 2.5; it must be a whole number from 1 to 9", [&] {
         object.read("count", count, {1, 9});
     });
+    expect("count is 2.5; it must be a whole number from 1 to 4000000000", [&] {
+        object.read("count", count, {1, 4e9});
+    });
     expect("vector is [1,2]; it must be an array of 3, each a number from -1 to 9", [&] {
         object.read("vector", vector, {-1, 9});
     });

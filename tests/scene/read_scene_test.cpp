@@ -308,7 +308,7 @@ TEST(Scene, RefusesTheKeysOfTheOtherSolver) {
               R"(a.json: material.shear is 1; it must be left out, or "solver" must be "verlet")");
     EXPECT_EQ(refusal_of(R"("solver": "pbd")"), R"(a.json: solver is "pbd"; it must be "verlet" or "xpbd")");
     EXPECT_EQ(refusal_of(R"("solver": "xpbd", "substeps": 0)"),
-              "a.json: substeps is 0; it must be a whole number from 1 to 1e+06");
+              "a.json: substeps is 0; it must be a whole number from 1 to 1000000");
     EXPECT_EQ(refusal_of(R"("solver": "xpbd", "material": {"compliance": {"bending": -1}})"),
               "a.json: material.compliance.bending is -1; it must be a number from 0 to 1e+09");
     EXPECT_EQ(
