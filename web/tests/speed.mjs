@@ -1,7 +1,7 @@
 // How long the built page takes, for docs/web.md: from the address to the first falling cloth and the horse's first
 // map, in browsers that have never seen the page, ones that stand open and ones that begin with it; and a time step of
-// 10 000 particles while they fall and come to rest, beside the native program with the scalar reference, and with
-// surfaces that collide. Run by scripts/web --speed:  speed.mjs PROGRAM SCENE
+// 10 000 particles while they fall and come to rest, with surfaces that collide and without, beside the native
+// program. Run by scripts/web --speed:  speed.mjs PROGRAM SCENE
 import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -15,6 +15,7 @@ const [FIRST_STEP, LAST_STEP] = [300, 1500];
 /** A small picture, since rendering is by software. */
 const TINY = { viewport: { width: 390, height: 300 } };
 
+const mean = (values) => values.reduce((a, b) => a + b) / values.length;
 const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 const all = (values) => values.map((value) => value.toFixed(0)).join(', ');
 
@@ -44,13 +45,14 @@ async function stepInPage(collision) {
         steps.push(numberOf(await figure(page, 'step')));
     }
     await browser.stop();
-    return median(steps);
+    return mean(steps);
 }
 
-function stepOfNativeScalar() {
+/** @param surfaces  on or off  @param environment  may choose the vector instructions */
+function stepOfNative(surfaces, environment = {}) {
     const folder = mkdtempSync(join(tmpdir(), 'echinus-'));
-    const options = ['simulate', scene, '-o', folder, '--frames', String(LAST_STEP), '--every', String(LAST_STEP), '--threads', '1', '--surfaces', 'off', '--self', 'off'];
-    execFileSync(program, options, { env: { ...process.env, ECHINUS_INSTRUCTION_SET: 'scalar' }, stdio: 'ignore' });
+    const options = ['simulate', scene, '-o', folder, '--frames', String(LAST_STEP), '--every', String(LAST_STEP), '--threads', '1', '--surfaces', surfaces, '--self', 'off'];
+    execFileSync(program, options, { env: { ...process.env, ...environment }, stdio: 'ignore' });
     const { ms_per_frame } = JSON.parse(readFileSync(join(folder, 'report.json'), 'utf8'));
     rmSync(folder, { recursive: true });
     return ms_per_frame.total;
@@ -66,9 +68,14 @@ for (const [browser, times] of Object.entries(loads))
         const ms = times.map((time) => time[key]);
         console.log(`${what}, in a browser ${browser}: ${median(ms).toFixed(0)} ms (${all(ms)})`);
     }
-const [page, native] = [await stepInPage('surfaces=false'), stepOfNativeScalar()];
-for (const collision of ['surfaces=true', 'surfaces=true&self=true']) {
-    const ms = await stepInPage(collision);
-    console.log(`a time step, ${collision}: ${ms.toFixed(1)} ms; of real time ${(1000 / 240).toFixed(1)} ms, ${(ms / page).toFixed(2)} times as long as particles alone`);
+const step = {};
+for (const collision of ['surfaces=false', 'surfaces=true', 'surfaces=true&self=true']) {
+    step[collision] = await stepInPage(collision);
+    console.log(`a time step, ${collision}: ${step[collision].toFixed(1)} ms; of real time ${(1000 / 240).toFixed(1)} ms, ${(step[collision] / step['surfaces=false']).toFixed(2)} times as long as particles alone`);
 }
-console.log(`a time step: ${page.toFixed(1)} ms, native scalar ${native.toFixed(1)} ms on ${scene}: ${(page / native).toFixed(2)}`);
+for (const [name, native, collision] of [
+    ['scalar, particles alone', stepOfNative('off', { ECHINUS_INSTRUCTION_SET: 'scalar' }), 'surfaces=false'],
+    ['particles alone', stepOfNative('off'), 'surfaces=false'],
+    ['surfaces', stepOfNative('on'), 'surfaces=true'],
+])
+    console.log(`native, ${name}: ${native.toFixed(1)} ms on ${scene}; the page takes ${(step[collision] / native).toFixed(2)} times as long`);
