@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import signal
 import statistics
 import subprocess
@@ -205,7 +206,10 @@ def test_a_setting_out_of_range_is_named_with_its_range(name, values, range_):
     (corpus.Corpus, {"max_bytes": -1}, ValueError, "max_bytes must be a whole number from 0"),
     (corpus.Corpus, {"shard": 3}, TypeError, "shard must be (i, n), not 3"),
     (corpus.Corpus, {"meshes": ["a.obj"]}, TypeError, "meshes[0] must be (name, path), as find_meshes() gives them, not 'a.obj'"),
-    (corpus.Corpus, {"meshes": [("../a", "a.obj")]}, ValueError, "meshes[0]: its labels go to '../a' below the output folder"),
+    (corpus.Corpus, {"meshes": None}, TypeError, "meshes must be a list of (name, path), not None"),
+    (corpus.Corpus, {"meshes": [("a", "a.obj"), ("a", "b.obj")]}, ValueError, "b.obj would both be labelled as a"),
+    (corpus.Corpus, {"meshes": [(".unfinished", "a.obj")]}, ValueError, "meshes[0]: its labels would go to '.unfinished' in the output folder"),
+    (corpus.Corpus, {"meshes": [("../a", "a.obj")]}, ValueError, "meshes[0]: its labels would go to '../a' in the output folder"),
 ])
 def test_settings_of_another_kind_are_named(of, wrong, error, words):
     needed = {"meshes": [], "output": "out"} if of is corpus.Corpus else {}
@@ -397,7 +401,7 @@ def test_workers_end_with_a_run_that_is_killed(folder, tmp_path):
 
 
 def test_workers_are_deaf_to_interrupts_from_their_first_moment(folder, tmp_path):
-    task = corpus_of(folder, tmp_path).tasks()[-1]
+    task = corpus_of(folder, tmp_path).tasks(str(tmp_path))[-1]
     worker = _engines._Worker(1 << 32)
     try:
         os.kill(worker.process.pid, signal.SIGINT)
@@ -513,6 +517,7 @@ def test_a_mesh_that_was_mended_or_added_after_its_refusal_is_labelled(own_folde
     c = corpus.Corpus(corpus.find_meshes([tmp_path / "list.txt"]), tmp_path / "labels", sampling=SIDES)
     for make_bad in (mesh.unlink, lambda: mesh.write_bytes(good[:-20])):
         make_bad()
+        shutil.rmtree(tmp_path / "labels", ignore_errors=True)
         summary = corpus.label(c, workers=1)
         assert (summary.refused, summary.again) == (1, 0) and corpus.verify(c) == []
         assert corpus.label(c, workers=1).already == 3  # the same refusal is not repeated
@@ -520,6 +525,86 @@ def test_a_mesh_that_was_mended_or_added_after_its_refusal_is_labelled(own_folde
         (complaint,) = corpus.verify(c)
         assert f"{mesh} has changed since it was refused" in complaint
         assert corpus.label(c, workers=1).labelled == 1 and corpus.verify(c) == []
+
+
+def test_paths_of_meshes_are_absolute_since_workers_may_stand_elsewhere(own_folder, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for meshes in (corpus.find_meshes("meshes"), [("box_0", "meshes/box_0.ply")]):
+        assert corpus.Corpus(meshes, "labels").tasks("")[0].meshes == (("box_0", str(own_folder / "box_0.ply")),)
+
+
+def test_a_mesh_whose_file_has_another_extension_now_is_labelled_anew(own_folder, tmp_path):
+    c = corpus_of(own_folder, tmp_path / "labels")
+    corpus.label(c, workers=1)
+    for before, after in ((".ply", ".stl"), (".stl", ".ply")):  # whoever reads it goes by its extension
+        os.rename(own_folder / f"box_1{before}", own_folder / f"box_1{after}")
+        c = corpus_of(own_folder, tmp_path / "labels")
+        assert f"box_1{after} has changed since" in corpus.verify(c)[0]
+        assert corpus.label(c, workers=1).refused == (after == ".stl") and corpus.verify(c) == []
+
+
+def test_labels_stay_while_their_mesh_file_cannot_be_read(own_folder, tmp_path):
+    (tmp_path / "list.txt").write_text("".join(f"{own_folder}/box_{i}.ply\n" for i in range(3)))
+    c = corpus.Corpus(corpus.find_meshes(tmp_path / "list.txt"), tmp_path / "labels", sampling=SIDES)
+    corpus.label(c, workers=1)
+    before = bytes_below(tmp_path / "labels")
+    (own_folder / "box_1.ply").unlink()
+    assert corpus.label(c, workers=1).already == 3 and bytes_below(tmp_path / "labels") == before
+    (complaint,) = corpus.verify(c)
+    assert "box_1.ply cannot be read any more; the mesh was labelled, and stays so" in complaint
+
+
+def test_a_gltf_that_was_refused_is_tried_again_since_its_other_files_may_have_come(own_folder, tmp_path):
+    (own_folder / "scene.gltf").write_text('{"asset":{"version":"2.0"},"buffers":[{"uri":"scene.bin","byteLength":36}]}')
+    assert corpus.label(corpus_of(own_folder, tmp_path / "labels"), workers=1).again == 1
+
+
+@pytest.mark.parametrize("form", ["occupancy", "deepsdf"])
+def test_a_worker_that_outlives_its_run_finishes_no_file(own_folder, tmp_path, form):
+    """As those of a cluster do."""
+    c = corpus_of(own_folder, tmp_path / "labels", form=form)
+    given = []
+
+    def remember(tasks, **_):
+        given.extend(tasks)
+        raise RuntimeError("the cluster has gone")
+
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(_engines, "on_processes", remember)
+        with pytest.raises(RuntimeError, match="has gone"):
+            corpus.label(c)
+    for task in given:
+        with pytest.raises(OSError):
+            _tasks.run(task)
+    assert corpus.label(c, workers=1).labelled == 3 and corpus.verify(c) == []
+
+
+def test_files_without_a_record_go_when_their_mesh_is_refused(own_folder, tmp_path):
+    """A run that was killed has written them, or one of another part did, before meshes came into the corpus."""
+    parts = [corpus_of(own_folder, tmp_path / "labels", shard=(i, 2)) for i in range(2)]
+    for part in parts:
+        corpus.label(part, workers=1)
+    ech.write_mesh(own_folder / "a.ply", ech.make_box((1, 1, 1), 1))  # the others are of the other part now
+    (own_folder / "box_1.ply").write_bytes(b"ply\n")
+    for i in range(2):
+        corpus.label(corpus_of(own_folder, tmp_path / "labels", shard=(i, 2)), workers=1)
+    assert corpus.verify(corpus_of(own_folder, tmp_path / "labels")) == []
+
+
+def test_meshes_beside_their_labels_are_not_surplus(own_folder):
+    c = corpus_of(own_folder, own_folder)
+    corpus.label(c, workers=1)
+    assert corpus.verify(c) == []
+
+
+def test_a_file_of_labels_that_cannot_be_read_is_one_complaint(own_folder, tmp_path):
+    c = corpus_of(own_folder, tmp_path)
+    corpus.label(c, workers=1)
+    for name in ("box_0", "box_2"):
+        (tmp_path / name / "points.npz").unlink()
+    (tmp_path / "box_0" / "points.npz").symlink_to("points.npz")
+    complaints = corpus.verify(c)
+    assert any(text.startswith("box_0/points.npz: ") for text in complaints) and any(text.startswith("box_2/points.npz: is missing") for text in complaints)
 
 
 def test_a_mesh_that_is_refused_after_a_change_keeps_no_labels(own_folder, tmp_path):
@@ -600,7 +685,8 @@ def test_a_manifest_that_is_none_is_an_error_that_names_its_line(folder, tmp_pat
             run(corpus_of(folder, tmp_path))
 
 
-@pytest.mark.parametrize("line", ["1", "null", '"mesh"', "[]", "{}", '{"mesh":1}', '{"mesh":"a","files":"b"}', '{"file":"a"}', '{"mesh":"a","file":"b"}', "[" * 100_000,
+@pytest.mark.parametrize("line", ["1", "null", '"mesh"', "[]", "{}", '{"mesh":1}', '{"mesh":"a","files":"b"}', '{"file":"a"}', '{"mesh":"a","file":"b"}', "[" * 100_000, '{"echinus":1,"files":["x"]}', '{"file":"a","bytes":"x","sha256":""}', '{"mesh":"a","files":[]}', '{"mesh":"a"}',
+                                  '{"mesh":"a","echinus":1,"files":["a"]}', 
                                   '{"file":"\\u0000","bytes":1,"sha256":""}', '{"file":"../a","bytes":1,"sha256":""}', '{"mesh":"a","files":["/dev/zero"]}'])
 def test_a_line_of_a_manifest_that_is_json_but_no_record_is_named(folder, tmp_path, line):
     c = corpus_of(folder, tmp_path)
@@ -681,7 +767,7 @@ def test_an_archive_that_a_worker_lacks_memory_for_is_a_sentence(folder, tmp_pat
 
     monkeypatch.setattr(_tasks, "archive_of", without_memory)
     with pytest.raises(RuntimeError, match="labels-000000.tar: a worker has too little memory for it"):
-        _tasks.run(corpus_of(folder, tmp_path, form="webdataset").tasks()[0])
+        _tasks.run(corpus_of(folder, tmp_path, form="webdataset").tasks(str(tmp_path))[0])
 
 
 def test_a_mesh_that_needs_too_much_memory_is_refused(folder, tmp_path):
@@ -711,7 +797,7 @@ def test_a_mesh_that_lacked_memory_is_labelled_by_the_next_run_with_more(folder,
     assert (found.refused, found.again) == (4, 1) and not found.sentences()
     assert str(found).splitlines() == [
         "16 meshes, 4 of them refused: each of the others has its labels once, unchanged",
-        "1 of the refused may succeed with more memory or time: the same command without --verify tries them again",
+        "1 of the refused may succeed another time, with more memory, more time or a file that was missing: the same command without --verify tries them again",
     ]
     summary = corpus.label(c, workers=1)
     assert (summary.already, summary.labelled, summary.again) == (15, 1, 0)
@@ -827,16 +913,32 @@ def test_the_command_says_what_is_wrong(tmp_path):
         wrong = subprocess.run([*command, str(tmp_path), "-o", str(tmp_path / "out"), "--memory", memory], capture_output=True, text=True)
         assert wrong.returncode == 2 and "echinus label: memory must be" in wrong.stderr
     for wrong in (["--shard", "3/3"], ["--shard", "1"], ["--format", "other"], ["--sigmas", "x"], ["--sigmas", ","], ["--padding", "-1"],
-                  ["--workers", "0", "--verify"], ["--archive-size", "0"], ["--uniform", "-5"], ["--seed", "-1"]):
+                  ["--workers", "0", "--verify"], ["--workers", "5000000000"], ["--shard", "0/99999999999"], ["--shard", "0/2", "--verify"], ["--memory", "1e-12"], ["--archive-size", "0"], ["--uniform", "-5"], ["--seed", "-1"]):
         refused = subprocess.run([*command, str(tmp_path), "-o", "x", *wrong], capture_output=True, text=True)
-        assert refused.returncode == 2 and wrong[0].strip("-") in refused.stderr and "_numbers" not in refused.stderr
+        assert refused.returncode == 2 and wrong[0].strip("-").replace("-", "_") in refused.stderr.replace("-", "_") and "_numbers" not in refused.stderr
     wrong = subprocess.run([*command, str(tmp_path), "-o", str(tmp_path / "torus.obj")], capture_output=True, text=True)
     assert wrong.returncode == 1 and "torus.obj is a file; the labels take a folder" in wrong.stderr
 
 
+def test_too_little_memory_for_any_worker_is_a_sentence(own_folder, tmp_path):
+    command = [sys.executable, "-m", "echinus", "label", str(own_folder), "-o", str(tmp_path / "labels"), "--workers", "1", "--memory"]
+    for memory in ("0.05", "0.001"):
+        failed = subprocess.run([*command, memory], capture_output=True, text=True)  # of the run, or of each mesh
+        assert "memory" in failed.stderr and "Traceback" not in failed.stderr and not list((tmp_path / "labels").rglob("*.npz"))
+
+
+def test_a_folder_that_cannot_be_read_is_an_error(own_folder, monkeypatch):
+    def denied(path):
+        raise PermissionError(13, "Permission denied", str(path))
+
+    monkeypatch.setattr(os, "scandir", denied)
+    with pytest.raises(PermissionError, match="meshes"):
+        corpus.find_meshes([own_folder])
+
+
 def test_a_run_with_nothing_to_do_says_so_only(own_folder, tmp_path, capsys):
     command = _command.parse(["label", str(own_folder), "-o", str(tmp_path / "labels"), "--uniform", "9", "--near", "9", "--surface", "0"])
-    for expected in ("3 meshes; ", "3 meshes were done already\n"):
+    for expected in ("3 meshes; ", "3 meshes done already\n"):
         assert _command.main(command) == 0
         said = capsys.readouterr().err
         assert said.startswith(expected) and said.count("\n") == 1

@@ -6,15 +6,17 @@ import argparse
 import logging
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 
 from echinus._errors import Error
 from echinus.corpus._corpus import Corpus
-from echinus.corpus._run import label
+from echinus.corpus._run import counted, label, may_succeed
 from echinus.corpus._samples import Frame, Sampling
-from echinus.corpus._sources import find_meshes
+from echinus.corpus._sources import Mesh, find_meshes
 from echinus.corpus._verification import examine
 
 DEFAULT = Sampling()
+MOST = 2**32 - 1  # of workers, parts and the like
 WRONG_OPTIONS = 2  # exit codes
 ONLY_SURPLUS = 3  # of --verify where all labels are right, and there are files besides
 
@@ -49,11 +51,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def main(arguments: argparse.Namespace) -> int:
     try:
         sampling, memory = _sampling_of(arguments), _memory_of(arguments)
+        # Without its meshes, for what else may be wrong with it: meshes that are not there are no fault of the options.
+        corpus = Corpus([], arguments.output, arguments.format, sampling, archive_size=arguments.archive_size, shard=arguments.shard)
+        if arguments.verify and corpus.shard != (0, 1):
+            raise ValueError("--verify checks all parts together; leave out --shard")
     except ValueError as error:
         print(f"echinus label: {error}", file=sys.stderr)
         return WRONG_OPTIONS
     try:
-        corpus = _corpus_of(arguments, sampling)
+        corpus = replace(corpus, meshes=_meshes_of(arguments))
         return _verify(corpus) if arguments.verify else _label(corpus, arguments, memory)
     except (Error, ValueError, OSError, RuntimeError, ModuleNotFoundError) as error:
         print(f"echinus label: {error}", file=sys.stderr)
@@ -86,16 +92,16 @@ def _sampling_of(a: argparse.Namespace) -> Sampling:
 
 
 def _memory_of(a: argparse.Namespace) -> int:
-    if not 0 < a.memory < 1 << 33:
+    if not 1e-9 < a.memory < 1 << 33:
         raise ValueError(f"memory must be a positive number of GiB, not {a.memory:g}")
     return int(a.memory * (1 << 30))
 
 
-def _corpus_of(a: argparse.Namespace, sampling: Sampling) -> Corpus:
+def _meshes_of(a: argparse.Namespace) -> list[Mesh]:
     meshes = find_meshes(a.meshes)
     if not meshes:
         raise ValueError("there are no meshes in " + ", ".join(a.meshes))
-    return Corpus(meshes, a.output, a.format, sampling, archive_size=a.archive_size, shard=a.shard)
+    return meshes
 
 
 def _label(corpus: Corpus, a: argparse.Namespace, memory: int) -> int:
@@ -103,11 +109,11 @@ def _label(corpus: Corpus, a: argparse.Namespace, memory: int) -> int:
         logging.disable()  # Dask's: it tells a lost connection as tracebacks, besides our sentence
     summary = label(corpus, workers=a.workers, scheduler=a.scheduler, memory=memory, progress=sys.stderr)
     if summary.already:
-        print(f"{summary.already} meshes were done already", file=sys.stderr)
+        print(f"{counted(summary.already)} done already", file=sys.stderr)
     if summary.labelled or summary.refused:
         print(summary, file=sys.stderr)
     if summary.again:
-        print(f"{summary.again} of the refused may succeed with more memory or time: the same command tries them again", file=sys.stderr)
+        print(f"{may_succeed(summary.again)}: the same command tries them again", file=sys.stderr)
     return 0
 
 
@@ -129,14 +135,14 @@ def _numbers(text: str) -> tuple[float, ...]:
 
 
 def _count(text: str) -> int:
-    if not (text.isdecimal() and int(text) > 0):
-        raise argparse.ArgumentTypeError(f"must be a whole number from 1, not {text!r}")
+    if not (text.isdecimal() and 0 < int(text) <= MOST):
+        raise argparse.ArgumentTypeError(f"must be a whole number from 1 to {MOST}, not {text!r}")
     return int(text)
 
 
 def _shard(text: str) -> tuple[int, int]:
     i, _, n = text.partition("/")
-    if not (i.isdecimal() and n.isdecimal() and int(i) < int(n)):
+    if not (i.isdecimal() and n.isdecimal() and int(i) < int(n) <= MOST):
         raise argparse.ArgumentTypeError(f"must be i/n, with i from 0 to n - 1, not {text!r}")
     return int(i), int(n)
 

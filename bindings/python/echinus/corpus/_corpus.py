@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import get_args
 
@@ -15,6 +15,8 @@ from echinus.corpus._samples import Sampling
 from echinus.corpus._sources import Mesh, lies_below
 from echinus.corpus._tasks import Record, Task
 
+UNFINISHED = ".unfinished"  # in the output folder: locks, and files that are being written
+
 
 @dataclass(frozen=True)
 class Corpus:
@@ -23,7 +25,7 @@ class Corpus:
     Attributes
     ----------
     meshes
-        What :func:`find_meshes` gives.
+        What :func:`find_meshes` gives, in any order.
     output
         The folder of the labels; all workers see it under this name.
     form
@@ -45,7 +47,7 @@ class Corpus:
     shard: tuple[int, int] = (0, 1)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "meshes", tuple(_name_and_path(i, mesh) for i, mesh in enumerate(self.meshes)))
+        object.__setattr__(self, "meshes", _sorted(self.meshes))
         if not path_of(self.output):
             raise ValueError("output is an empty path; name the folder of the labels")
         one_of("form", self.form, get_args(Format))
@@ -59,13 +61,15 @@ class Corpus:
         if not i < n:
             raise ValueError(f"shard must be (i, n) with i from 0 to n - 1, not {self.shard}")
 
-    def tasks(self) -> list[Task]:
+    def tasks(self, unfinished: str) -> list[Task]:
+        """The work. Files are in the folder ``unfinished`` until they are whole."""
         size = self.archive_size if self.form == "webdataset" else 1
         groups = [tuple(self.meshes[i : i + size]) for i in range(0, len(self.meshes), size)]
         tasks = [
             Task(
                 meshes=group,
                 output=os.path.abspath(self.output),
+                unfinished=unfinished,
                 sampling=self.sampling,
                 form=self.form,
                 max_bytes=self.max_bytes,
@@ -76,7 +80,7 @@ class Corpus:
         return tasks[self.shard[0] :: self.shard[1]]
 
     def settings(self) -> Record:
-        """The first line of the manifest: labels made with others do not belong into the same folder.
+        """The first line of the manifest: labels made with others do not belong in the same folder.
 
         The time limit is not among them: it decides which meshes have labels, but not what these are.
         """
@@ -85,10 +89,17 @@ class Corpus:
         return {"echinus": _core.version, "format": self.form, "archive_size": self.archive_size, "max_bytes": self.max_bytes, "sampling": sampling}
 
 
-def _name_and_path(i: int, mesh: Mesh) -> Mesh:
-    if not (isinstance(mesh, tuple) and len(mesh) == 2):
-        raise TypeError(f"meshes[{i}] must be (name, path), as find_meshes() gives them, not {mesh!r}")
-    name, path = mesh
-    if not lies_below(name):
-        raise ValueError(f"meshes[{i}]: its labels go to {name!r} below the output folder, which is no name of a file there")
-    return name, path_of(path)
+def _sorted(meshes: Iterable[Mesh]) -> tuple[Mesh, ...]:
+    """With absolute paths: workers may stand in other folders."""
+    if not isinstance(meshes, Iterable):
+        raise TypeError(f"meshes must be a list of (name, path), not {meshes!r}")
+    path_of_name: dict[str, str] = {}
+    for i, mesh in enumerate(meshes):
+        if not (isinstance(mesh, tuple) and len(mesh) == 2):
+            raise TypeError(f"meshes[{i}] must be (name, path), as find_meshes() gives them, not {mesh!r}")
+        name, path = mesh[0], os.path.abspath(path_of(mesh[1]))
+        if not lies_below(name) or name.startswith(UNFINISHED):
+            raise ValueError(f"meshes[{i}]: its labels would go to {name!r} in the output folder, where they cannot be")
+        if path_of_name.setdefault(name, path) != path:
+            raise ValueError(f"meshes[{i}]: {path_of_name[name]} and {path} would both be labelled as {name}")
+    return tuple(sorted(path_of_name.items()))

@@ -20,7 +20,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
-from typing import Any
+from typing import Any, TextIO
 
 from echinus.corpus._tasks import Record, Task, run
 
@@ -54,6 +54,8 @@ class _Worker:
         except (EOFError, OSError):
             self.process.join()
             return None
+        if isinstance(result, MemoryError):
+            raise RuntimeError("a worker has too little memory even to begin with; give it more")
         if isinstance(result, BaseException):
             raise result
         records: list[Record] = result
@@ -83,8 +85,8 @@ def _serve(pipe: Connection, memory: int) -> None:
 
 @contextlib.contextmanager
 def _deaf_to_interrupts() -> Iterator[None]:
-    """What is started meanwhile stays so, from its first moment: the process that gives the tasks hears Ctrl-C, and ends its workers."""
-    resource_tracker.ensure_running()  # which would end this while it starts
+    """A process that is started meanwhile never hears Ctrl-C; the one that gives the tasks does, and ends its workers."""
+    resource_tracker.ensure_running()  # its start, which comes with the first process, would unblock the signal
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
@@ -117,29 +119,30 @@ def on_processes(tasks: Iterable[Task], worker_count: int, memory: int) -> Itera
     again: deque[Task] = deque()
     source = iter(tasks)
     deaths: dict[Task, int] = {}
-    workers = [_Worker(memory) for _ in range(worker_count)]
+    workers: list[_Worker] = []
     try:
-        for worker in workers:
-            _next(worker, source, again)
+        for task in itertools.islice(source, worker_count):
+            workers.append(_Worker(memory))
+            workers[-1].give(task)
         while any(worker.task is not None for worker in workers):
             ready = wait([worker.pipe for worker in workers if worker.task is not None])
             for i, worker in enumerate(workers):
                 if worker.pipe not in ready:
                     continue
-                task, records = worker.task, worker.take()
-                assert task is not None
+                given, records = worker.task, worker.take()
+                assert given is not None
                 if records is None:
                     worker.stop()
                     workers[i] = worker = _Worker(memory)
-                    deaths[task] = deaths.get(task, 0) + 1
-                    if deaths[task] < ATTEMPTS:
-                        again.append(task)
+                    deaths[given] = deaths.get(given, 0) + 1
+                    if deaths[given] < ATTEMPTS:
+                        again.append(given)
                 _next(worker, source, again)
                 if records is not None:
-                    deaths.pop(task, None)
-                    yield task, records
-                elif deaths[task] >= ATTEMPTS:
-                    yield task, f"{ATTEMPTS} workers died of it"
+                    deaths.pop(given, None)
+                    yield given, records
+                elif deaths[given] >= ATTEMPTS:
+                    yield given, f"{ATTEMPTS} workers died of it"
     finally:
         for worker in workers:
             worker.stop()
@@ -155,14 +158,14 @@ def _next(worker: _Worker, source: Iterator[Task], again: deque[Task]) -> None:
 
 
 @contextlib.contextmanager
-def dask_cluster(scheduler: str) -> Iterator[Engine]:
+def dask_cluster(scheduler: str, progress: TextIO | None) -> Iterator[Engine]:
     """The workers of an existing cluster, which see the same files under the same names.
 
     The scheduler repeats the tasks of workers that died, as often as its setting ``allowed-failures`` says.
     """
     dask = _distributed()
     try:
-        dask.comm.get_address_host_port(scheduler)  # of what is none the client complains for seconds
+        dask.comm.get_address_host_port(scheduler)  # the client takes seconds, and a traceback, to complain
     except ValueError as error:
         raise ValueError(f"scheduler {scheduler!r} is no address, for instance tcp://host:8786 ({error})") from None
     try:
@@ -170,6 +173,8 @@ def dask_cluster(scheduler: str) -> Iterator[Engine]:
     except OSError as error:
         raise OSError(f"scheduler {scheduler} does not answer ({error})") from None
     with client:
+        if progress is not None and not client.scheduler_info()["workers"]:
+            print(f"{scheduler} has no workers yet; waiting for some", file=progress, flush=True)
         yield functools.partial(_on_dask, dask, client)
 
 
@@ -198,5 +203,7 @@ def _on_dask(dask: Any, client: Any, tasks: Iterable[Task], window: int = 1000) 
             yield task, future.result()
         except dask.KilledWorker:
             yield task, "the cluster's workers died of it"
+        except ModuleNotFoundError as error:
+            raise RuntimeError(f"the workers of {client.scheduler.address} cannot import echinus ({error}); install it there") from None
         except (asyncio.CancelledError, concurrent.futures.CancelledError):
             raise RuntimeError(f"the cluster at {client.scheduler.address} has gone; the same command goes on from here") from None

@@ -19,12 +19,19 @@ from echinus.corpus._samples import Samples
 Format = Literal["occupancy", "deepsdf", "webdataset"]
 
 
+def names_of(name: str, form: Format) -> list[str]:
+    """The files that a mesh may have, outside of archives."""
+    if form == "occupancy":
+        return [f"{name}/points.npz", f"{name}/pointcloud.npz"]
+    return [f"{name}.npz"] if form == "deepsdf" else []
+
+
 def files_of(samples: Samples, name: str, form: Format) -> dict[str, bytes]:
     """The files of one mesh, by their paths below the output folder, or in the archive of its shard."""
     if form == "occupancy":
         return _occupancy_networks(samples, name)
     if form == "deepsdf":
-        return {f"{name}.npz": _npz(_deepsdf(samples))}
+        return dict(zip(names_of(name, form), [_npz(_deepsdf(samples))]))
     return _webdataset(samples, name)
 
 
@@ -34,8 +41,7 @@ def _occupancy_networks(s: Samples, name: str) -> dict[str, bytes]:
     occupancies, certain = np.packbits(s.occupancy), np.packbits(s.certain)
     points = frame | {"points": s.points, "occupancies": occupancies, "certain": certain}
     cloud = frame | {"points": s.surface, "normals": s.normals}
-    files = {f"{name}/points.npz": _npz(points)}
-    return files | ({f"{name}/pointcloud.npz": _npz(cloud)} if len(s.surface) else {})
+    return dict(zip(names_of(name, "occupancy"), [_npz(points), *([_npz(cloud)] if len(s.surface) else [])]))
 
 
 def _deepsdf(s: Samples) -> dict[str, Any]:

@@ -1,4 +1,8 @@
-"""Runs do not write the same labels at once. The locks go with the process, however it ends."""
+"""Runs do not write the same labels at once.
+
+The locks go with the process, however it ends. What it has not finished goes with :func:`unfinished_files`, or with those
+of the next run.
+"""
 
 from __future__ import annotations
 
@@ -6,11 +10,12 @@ import contextlib
 import fcntl
 import os
 import pathlib
+import secrets
+import shutil
 from collections.abc import Iterator
 from typing import TextIO
 
-from echinus.corpus._corpus import Corpus
-from echinus.corpus._tasks import UNFINISHED
+from echinus.corpus._corpus import UNFINISHED, Corpus
 
 
 @contextlib.contextmanager
@@ -45,6 +50,21 @@ def one_at_a_time(corpus: Corpus) -> Iterator[None]:
         yield
     finally:
         os.close(unfinished)
+
+
+@contextlib.contextmanager
+def unfinished_files(corpus: Corpus) -> Iterator[str]:
+    """The path of a new folder for the files that a run is writing. Within :func:`alone`."""
+    i, n = corpus.shard
+    unfinished, prefix = pathlib.Path(corpus.output, UNFINISHED), f"part-{i}-of-{n}-"
+    for left in unfinished.glob(f"{prefix}*"):  # by a run that was killed
+        shutil.rmtree(left, ignore_errors=True)
+    folder = os.path.abspath(unfinished / f"{prefix}{secrets.token_hex(8)}")
+    os.mkdir(folder)
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 @contextlib.contextmanager

@@ -11,7 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, TextIO
 
 from echinus.corpus._corpus import Corpus
-from echinus.corpus._sources import Mesh, fingerprints, lies_below
+from echinus.corpus._formats import names_of
+from echinus.corpus._sources import Fingerprint, Mesh, fingerprints, lies_below
 from echinus.corpus._tasks import Record, Task, naming, whole_file
 
 
@@ -21,11 +22,12 @@ class Manifest:
     While a run goes on, lines are added as results come; one that a crash cut short is dropped.
     """
 
-    def __init__(self, corpus: Corpus) -> None:
+    def __init__(self, corpus: Corpus, unfinished: str) -> None:
         i, n = corpus.shard
         name = "manifest.jsonl" if n == 1 else f"manifest-{i}-of-{n}.jsonl"
         self.path = pathlib.Path(corpus.output, name)
         self.settings = corpus.settings()
+        self._unfinished = unfinished
         for path, parts in manifests(pathlib.Path(corpus.output)):
             if parts != n:
                 raise ValueError(f"{path}: the labels in this folder are made in {_parts(parts)}, now {_parts(n)}; choose another folder")
@@ -55,22 +57,20 @@ class Manifest:
             return files <= whole
 
         complete = [task for task in tasks if is_complete(task)]
+        meshes = [mesh for task in complete for mesh in task.meshes]
         most = max((task.max_bytes for task in complete), default=0)
-        changed = changed_meshes([mesh for task in complete for mesh in task.meshes], record_of, most, progress)
+        changed = {name for name, _ in changed_meshes(meshes, record_of, most, progress)}
         return [task for task in complete if changed.isdisjoint(name for name, _ in task.meshes)]
 
-    def keep(self, finished: Iterable[Task], tasks: Iterable[Task]) -> None:
+    def keep(self, finished: Sequence[Task], tasks: Iterable[Task]) -> None:
         """Forgets what is not about finished tasks, and removes the files of the others: a mesh that is labelled anew may be
         refused. Archives are written over, and what belongs to no task stays."""
         meshes = {name for task in finished for name, _ in task.meshes}
+        for name in (name for task in tasks for name, _ in task.meshes if name not in meshes):
+            for file in names_of(name, self.settings["format"]):
+                _remove(file, self.path.parent)
         files = {task.archive for task in finished}
-        others = {name for task in tasks if task.archive is None for name, _ in task.meshes} - meshes
-        for record in records_of(self.path):
-            if record.get("mesh") in meshes:
-                files |= set(record.get("files", []))
-            if record.get("mesh") in others:
-                for name in record.get("files", []):
-                    _remove(self.path.parent / name)
+        files |= {file for r in records_of(self.path) if r.get("mesh") in meshes for file in r.get("files", [])}
         self._write(r for r in records_of(self.path) if r.get("mesh") in meshes or ("file" in r and r["file"] in files))
 
     def add(self, records: Iterable[Record]) -> None:
@@ -83,20 +83,34 @@ class Manifest:
 
     def discard_settings(self) -> None:
         """Of a run that ended without a record: they bind no other."""
-        if all("echinus" in record for record in records_of(self.path)):
-            self.path.unlink()
+        with contextlib.suppress(OSError, ValueError):  # the error that ended the run says more
+            if all("echinus" in record for record in records_of(self.path)):
+                self.path.unlink()
 
     def _write(self, records: Iterable[Record]) -> None:
         lines = sorted((r.get("mesh", ""), r.get("file", ""), _line(r)) for r in records)
-        with whole_file(self.path.parent, self.path.name) as file:
+        with whole_file(self.path, self._unfinished) as file:
             file.writelines(line.encode() for line in [_line(self.settings), *(line for _, _, line in lines)])
 
 
-def changed_meshes(meshes: Sequence[Mesh], record_of: Mapping[str, Record], most: int, progress: TextIO | None) -> set[str]:
-    """The names of those whose files are not those of their records, for instance because they can be read now."""
+def changed_meshes(
+    meshes: Sequence[Mesh], record_of: Mapping[str, Record], most: int, progress: TextIO | None, *, gone: bool = False
+) -> list[Mesh]:
+    """Those whose files are not those of their records, for instance because they could not be read then. A file that
+    cannot be read now is no other one, except where what is ``gone`` is asked for."""
+
+    def is_changed(record: Record, path: str, now: Fingerprint | None) -> bool:
+        before = (record.get("source_bytes"), record.get("source_sha256"))
+        if now is None:
+            return gone and before != (None, None)
+        return now != before or _extension(record.get("source", "")) != _extension(path)  # which tells how to read it
+
     now = fingerprints([path for _, path in meshes], most, progress)
-    records = [record_of[name] for name, _ in meshes]
-    return {r["mesh"] for r, found in zip(records, now) if found != (r.get("source_bytes"), r.get("source_sha256"))}
+    return [mesh for mesh, found in zip(meshes, now) if is_changed(record_of[mesh[0]], mesh[1], found)]
+
+
+def _extension(path: Any) -> str:
+    return pathlib.PurePath(str(path)).suffix.lower()
 
 
 def records_of(manifest: pathlib.Path) -> Iterator[Record]:
@@ -121,12 +135,14 @@ def records_of(manifest: pathlib.Path) -> Iterator[Record]:
 def _is_record(value: Any) -> bool:
     if not isinstance(value, dict):
         return False
-    if "mesh" in value:
+    kinds = {"echinus", "mesh", "file"} & value.keys()
+    if kinds == {"mesh"}:
         files = value.get("files", [])
-        return "file" not in value and isinstance(value["mesh"], str) and isinstance(files, list) and all(map(lies_below, files))
-    if "file" in value:
-        return lies_below(value["file"]) and {"sha256", "bytes"} <= value.keys()
-    return "echinus" in value
+        is_labelled = isinstance(files, list) and len(files) > 0 and all(map(lies_below, files))
+        return lies_below(value["mesh"]) and is_labelled != ("refused" in value)
+    if kinds == {"file"}:
+        return lies_below(value["file"]) and isinstance(value.get("sha256"), str) and isinstance(value.get("bytes"), int)
+    return kinds == {"echinus"} and isinstance(value.get("sampling"), dict)
 
 
 def _no_record(manifest: pathlib.Path, number: int, why: str) -> str:
@@ -135,7 +151,7 @@ def _no_record(manifest: pathlib.Path, number: int, why: str) -> str:
 
 def manifests(folder: pathlib.Path) -> list[tuple[pathlib.Path, int]]:
     """The manifests of a folder, and of how many parts each is."""
-    names = ((path, re.fullmatch(r"manifest(?:-\d+-of-(\d+))?\.jsonl", path.name)) for path in sorted(folder.glob("manifest*.jsonl")))
+    names = ((path, re.fullmatch(r"manifest(?:-\d+-of-([1-9]\d*))?\.jsonl", path.name)) for path in sorted(folder.glob("manifest*.jsonl")))
     return [(path, int(match[1] or 1)) for path, match in names if match]
 
 
@@ -159,8 +175,8 @@ def difference(manifest: pathlib.Path, settings: Record) -> str | None:
 
 
 def _flat(settings: Record) -> Record:
-    sampling = settings.get("sampling")
-    return settings | sampling | {"sampling": None} if isinstance(sampling, dict) else settings
+    flat: Record = settings | settings["sampling"] | {"sampling": None}
+    return flat
 
 
 def _line(record: Record) -> str:
@@ -168,12 +184,13 @@ def _line(record: Record) -> str:
 
 
 def _size(path: pathlib.Path) -> int | None:
-    with contextlib.suppress(OSError):
-        return path.stat().st_size
-    return None
+    return path.stat().st_size if path.is_file() else None
 
 
-def _remove(path: pathlib.Path) -> None:
+def _remove(name: str, folder: pathlib.Path) -> None:
+    """A file, and the folders of its name that are empty then."""
+    path = folder / name
     path.unlink(missing_ok=True)
-    with contextlib.suppress(OSError):  # other files are in its folder
-        path.parent.rmdir()
+    with contextlib.suppress(OSError):  # other files are in it, or it is not there
+        for parent in path.parents[: len(pathlib.PurePath(name).parts) - 1]:
+            parent.rmdir()

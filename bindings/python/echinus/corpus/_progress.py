@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Iterator
-from typing import TextIO, TypeVar
+from typing import Self, TextIO, TypeVar
 
 Item = TypeVar("Item")
 TERMINAL_SECONDS, LOG_SECONDS = 0.1, 10  # between lines
@@ -27,14 +27,16 @@ class Bar:
         line = f"[{bar}] of {self._total}: {text}"
         print(f"\r{line}\033[K" if self._is_terminal else line, end="" if self._is_terminal else "\n", file=self._stream, flush=True)
 
-    def clear(self) -> None:
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
         if self._is_terminal:
             print("\r\033[K", end="", file=self._stream, flush=True)
 
 
 def watched(items: Iterable[Item], stream: TextIO | None, total: int, text: str) -> Iterator[Item]:
-    bar = Bar(stream, total)
-    for done, item in enumerate(items, 1):
-        bar.show(done, f"{done} {text}")
-        yield item
-    bar.clear()
+    with Bar(stream, total) as bar:
+        for done, item in enumerate(items, 1):
+            bar.show(done, f"{done} {text}")
+            yield item

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import functools
 import os
-import pathlib
 import shutil
 import time
 from collections.abc import Iterable, Iterator, Sequence
@@ -15,10 +14,10 @@ from typing import TextIO
 from echinus._arguments import of_kind, whole
 from echinus.corpus import _engines
 from echinus.corpus._corpus import Corpus
-from echinus.corpus._locks import alone, one_at_a_time
+from echinus.corpus._locks import alone, one_at_a_time, unfinished_files
 from echinus.corpus._manifest import Manifest
 from echinus.corpus._progress import Bar
-from echinus.corpus._tasks import UNFINISHED, Record, Task
+from echinus.corpus._tasks import Record, Task
 
 
 @dataclass
@@ -30,7 +29,7 @@ class Summary:
     labelled, refused, points
         Of this run.
     again
-        Those of the refused that the next run tries again: what they lacked is memory or time.
+        Those of the refused that the next run tries again: they lacked memory or time, or a glTF perhaps its other files.
     already
         Meshes that an earlier run had done.
     """
@@ -51,9 +50,16 @@ class Summary:
 
     def __str__(self) -> str:
         done, rate = self.labelled + self.refused, 1 / max(self.seconds, 1e-9)
-        meshes = "1 mesh" if done == 1 else f"{done} meshes"
         refused = f", {self.refused} of them refused" if self.refused else ""
-        return f"{meshes}{refused}; {done * rate:.3g} meshes/s, {self.points * rate:.3g} points/s"
+        return f"{counted(done)}{refused}; {done * rate:.3g} meshes/s, {self.points * rate:.3g} points/s"
+
+
+def counted(meshes: int) -> str:
+    return "1 mesh" if meshes == 1 else f"{meshes} meshes"
+
+
+def may_succeed(refused: int) -> str:
+    return f"{refused} of the refused may succeed another time, with more memory, more time or a file that was missing"
 
 
 def label(
@@ -74,7 +80,8 @@ def label(
     workers
         Processes of this machine, by default as many as it has cores.
     scheduler
-        The address of a Dask scheduler, whose workers are used instead.
+        The address of a Dask scheduler, whose workers are used instead. They need the package, and see the files of the
+        meshes and of the labels under the same absolute paths.
     memory
         The address space of a worker process, in bytes: a mesh that needs more is refused.
     progress
@@ -100,38 +107,35 @@ def label(
         raise NotADirectoryError(f"{corpus.output} is a file; the labels take a folder")
     engine: contextlib.AbstractContextManager[_engines.Engine]
     if scheduler is not None:
-        engine = _engines.dask_cluster(scheduler)
+        engine = _engines.dask_cluster(of_kind("scheduler", scheduler, str), progress)
     else:
         engine = contextlib.nullcontext(functools.partial(_engines.on_processes, worker_count=worker_count, memory=memory))
     with engine as run:
         os.makedirs(corpus.output, exist_ok=True)
-        with alone(corpus):
-            return _label(corpus, run, progress)
+        with alone(corpus), unfinished_files(corpus) as unfinished:
+            return _label(corpus, unfinished, run, progress)
 
 
-def _label(corpus: Corpus, run: _engines.Engine, progress: TextIO | None) -> Summary:
+def _label(corpus: Corpus, unfinished: str, run: _engines.Engine, progress: TextIO | None) -> Summary:
     with one_at_a_time(corpus):
-        manifest = Manifest(corpus)
+        manifest = Manifest(corpus, unfinished)
     try:
-        mine = corpus.tasks()
+        mine = corpus.tasks(unfinished)
         finished = manifest.finished(mine, progress)
         manifest.keep(finished, mine)
         done = {task.meshes for task in finished}
         tasks = [task for task in mine if task.meshes not in done]
         summary, began = Summary(already=sum(map(len, done))), time.monotonic()
-        bar = Bar(progress, sum(len(task.meshes) for task in tasks))
-        for records in _all_records(tasks, run):
-            manifest.add(records)
-            summary.count(records)
-            summary.seconds = time.monotonic() - began
-            bar.show(summary.labelled + summary.refused, str(summary))
-        bar.clear()
+        with Bar(progress, sum(len(task.meshes) for task in tasks)) as bar:
+            for records in _all_records(tasks, run):
+                manifest.add(records)
+                summary.count(records)
+                summary.seconds = time.monotonic() - began
+                bar.show(summary.labelled + summary.refused, str(summary))
         manifest.sort()
     except BaseException:
         manifest.discard_settings()
         raise
-    if corpus.shard[1] == 1:
-        shutil.rmtree(pathlib.Path(corpus.output, UNFINISHED), ignore_errors=True)
     return summary
 
 
@@ -144,13 +148,17 @@ def _all_records(tasks: Sequence[Task], run: _engines.Engine) -> Iterator[list[R
         else:
             yield result
     for task, reason in deadly:
-        alone = task.alone() if len(task.meshes) > 1 else []
-        culprits = [one.meshes[0][0] for one, result in run(alone) if isinstance(result, str)] if alone else [task.meshes[0][0]]
+        single = task.alone() if len(task.meshes) > 1 else []
+        culprits = [one.meshes[0][0] for one, result in run(single) if isinstance(result, str)] if single else [task.meshes[0][0]]
         shutil.rmtree(task.place_alone, ignore_errors=True)
         again = replace(task, refused=tuple((name, reason) for name in culprits))
         for _, result in run([again]):
             if isinstance(result, str):
-                raise RuntimeError(
-                    f"{task.archive}: no worker survives it, though each of its meshes alone; give workers more memory, or archives fewer meshes"
-                )
+                raise RuntimeError(_of_dead_workers(again))
             yield result
+
+
+def _of_dead_workers(task: Task) -> str:
+    if task.archive is not None and len(task.refused) < len(task.meshes):
+        return f"{task.archive}: no worker survives it, though each of its meshes alone; give workers more memory, or archives fewer meshes"
+    return 'workers die before their first mesh; give them more memory, and in a script call label() below `if __name__ == "__main__":`'

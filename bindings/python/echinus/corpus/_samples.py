@@ -11,7 +11,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from echinus._arguments import flag, number, numbers, one_of, whole
+from echinus._arguments import flag, number, numbers, of_kind, one_of, whole
 from echinus._errors import Error
 from echinus._maps import ExactMap
 from echinus._meshes import Mesh, MeshLike, as_mesh, inspect, repair
@@ -168,7 +168,7 @@ def sample(mesh: MeshLike, sampling: Sampling = Sampling()) -> Samples:
         ``invalid_mesh``.
     """
     mesh = as_mesh(mesh)
-    if len(mesh.faces) > sampling.max_faces:
+    if len(mesh.faces) > of_kind("sampling", sampling, Sampling).max_faces:
         raise Refused(f"it has {len(mesh.faces)} faces; at most {sampling.max_faces} are accepted")
     key = hashlib.sha256(b"%d/" % len(mesh.vertices))
     key.update(np.ascontiguousarray(mesh.vertices, "<f4").data)

@@ -6,7 +6,7 @@ import contextlib
 import hashlib
 import os
 import pathlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TextIO
 
@@ -16,38 +16,46 @@ from echinus.corpus._progress import watched
 
 EXTENSIONS = (".obj", ".ply", ".stl", ".off", ".gltf", ".glb", ".3ds")
 Mesh = tuple[str, str]  # name, path
-Fingerprint = tuple["int | None", "str | None"]  # bytes and SHA-256; None for what cannot be read
+Fingerprint = tuple[int, "str | None"]  # bytes and SHA-256
+SLICE = 10_000  # files whose fingerprints are under way at once
 
 
-def find_meshes(sources: Sequence[Path]) -> list[Mesh]:
+def find_meshes(sources: Path | Sequence[Path]) -> list[Mesh]:
     """Name and path of each mesh file, by name.
 
     Parameters
     ----------
     sources
-        Folders, with all below them; mesh files; and lists of such (``.txt``), one path a line, from the list's folder.
+        Folders, with all below them; mesh files; and lists of mesh files (``.txt``), one path a line, from the list's
+        folder. Or one of them.
 
     Raises
     ------
     FileNotFoundError
         A source does not exist. What a list names may be missing: it is refused like a broken mesh.
+    OSError
+        A folder cannot be read.
     ValueError
         Two files have the same name, which is their path below the source without the extension; a path is empty, or
         a list no text in UTF-8.
     """
+    if isinstance(sources, (str, bytes, os.PathLike)):
+        sources = [sources]
+    if not isinstance(sources, Iterable):
+        raise TypeError(f"sources must be paths, not {sources!r}")
     found: dict[str, str] = {}
     for source in sources:
         if not path_of(source):
             raise ValueError("a path of meshes is empty; name folders, mesh files or lists of them")
-        for name, path in _meshes_of(pathlib.Path(source)):
-            name = name.replace(".", "_")
-            if found.setdefault(name, str(path)) != str(path):
+        for name, place in _meshes_of(pathlib.Path(path_of(source))):
+            name, path = name.replace(".", "_"), os.path.abspath(place)
+            if found.setdefault(name, path) != path:
                 raise ValueError(f"{found[name]} and {path} would both be labelled as {name}; rename one")
     return sorted(found.items())
 
 
 def _meshes_of(source: pathlib.Path) -> Iterator[tuple[str, pathlib.Path]]:
-    if source.suffix == ".txt":
+    if source.suffix.lower() == ".txt" and not source.is_dir():
         for number, line in enumerate(_text_of(source).splitlines(), 1):
             if line.strip():
                 relative = pathlib.PurePath(line.strip())
@@ -55,7 +63,7 @@ def _meshes_of(source: pathlib.Path) -> Iterator[tuple[str, pathlib.Path]]:
                     raise ValueError(f"{source}, line {number}: {line.strip()!r} is the path of no file")
                 yield str(relative.relative_to(relative.anchor).with_suffix("")), source.parent / relative
     elif source.is_dir():
-        for folder, _, files in os.walk(source):
+        for folder, _, files in os.walk(source, onerror=_raise):
             for file in files:
                 path = pathlib.Path(folder, file)
                 if path.suffix.lower() in EXTENSIONS:
@@ -64,6 +72,10 @@ def _meshes_of(source: pathlib.Path) -> Iterator[tuple[str, pathlib.Path]]:
         yield source.stem, source
     else:
         raise FileNotFoundError(f"there is no folder or file {source}")
+
+
+def _raise(error: OSError) -> None:
+    raise error
 
 
 def _text_of(source: pathlib.Path) -> str:
@@ -77,28 +89,31 @@ def _text_of(source: pathlib.Path) -> str:
 
 
 def lies_below(name: Any) -> bool:
-    """Is it the name of a file in a folder, or in one below it?"""
+    """Is it the plain name of a file in a folder, or in one below it?"""
     if not isinstance(name, str) or "\0" in name:
         return False
     path = pathlib.PurePath(name)
-    return bool(path.name) and not path.is_absolute() and ".." not in path.parts
+    return bool(path.name) and not path.is_absolute() and ".." not in path.parts and str(path) == name
 
 
-def fingerprint(path: str, most: int) -> Fingerprint:
-    """Of a file larger than ``most`` bytes only its size."""
-    size = digest = None
+def fingerprint(path: str, most: int) -> Fingerprint | None:
+    """None of what cannot be read; of a file larger than ``most`` bytes only its size."""
     with contextlib.suppress(OSError):
         if os.path.isfile(path):
             size = os.path.getsize(path)
-            digest = hash_of(path) if size <= most else None
-    return size, digest
+            return size, hash_of(path) if size <= most else None
+    return None
 
 
-def fingerprints(paths: Sequence[str], most: int, progress: TextIO | None = None) -> list[Fingerprint]:
+def fingerprints(paths: Sequence[str], most: int, progress: TextIO | None = None) -> Iterator[Fingerprint | None]:
     """On all cores: for a file this takes about a hundredth of the time of its labels."""
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = pool.map(lambda path: fingerprint(path, most), paths)
-        return list(watched(found, progress, len(paths), "mesh files compared with the manifest"))
+
+    def computed() -> Iterator[Fingerprint | None]:
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            for i in range(0, len(paths), SLICE):
+                yield from pool.map(lambda path: fingerprint(path, most), paths[i : i + SLICE])
+
+    return watched(computed(), progress, len(paths), "mesh files compared with the manifest")
 
 
 def hash_of(path: Path) -> str:

@@ -6,7 +6,7 @@ import contextlib
 import hashlib
 import os
 import pathlib
-import tempfile
+import secrets
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, BinaryIO
@@ -17,7 +17,6 @@ from echinus.corpus._formats import Format, archive_of, files_of
 from echinus.corpus._samples import Refused, Sampling, sample
 from echinus.corpus._sources import fingerprint
 
-UNFINISHED = ".unfinished"  # below the output folder: files that are being written
 Record = dict[str, Any]  # a line of the manifest
 
 
@@ -29,6 +28,9 @@ class Task:
     ----------
     meshes
         (name, path) of each.
+    unfinished
+        The folder of files that are being written, which the run makes and removes: then no worker that still computes
+        for it can finish a file.
     archive
         The archive that they become, or None: files of their own.
     refused
@@ -37,6 +39,7 @@ class Task:
 
     meshes: tuple[tuple[str, str], ...]
     output: str
+    unfinished: str
     sampling: Sampling
     form: Format
     max_bytes: int
@@ -49,7 +52,7 @@ class Task:
 
     @property
     def place_alone(self) -> str:
-        return os.path.join(self.output, UNFINISHED, f"alone-{self.archive}")
+        return os.path.join(self.unfinished, f"alone-{self.archive}")
 
 
 def run(task: Task) -> list[Record]:
@@ -58,34 +61,35 @@ def run(task: Task) -> list[Record]:
     records: list[Record] = []
     members: dict[str, bytes] = {}
     for name, path in task.meshes:
-        size, digest = fingerprint(path, task.max_bytes)  # before the mesh is read: of one that changes meanwhile it is another's
+        # Before the mesh is read: where the file changes meanwhile, the next run sees it.
+        size, digest = fingerprint(path, task.max_bytes) or (None, None)
         source = {"mesh": name, "source": path, "source_bytes": size, "source_sha256": digest}
         try:
             if name in reasons:
                 raise Refused(reasons[name], again=True)
             files, report = _labelled(name, path, task)
         except (Refused, Error, MemoryError) as error:
-            records.append(source | _refusal(error))
+            records.append(source | _refusal(error, path))
             continue
         if task.archive is None:
-            written = [_write(task.output, file, content) for file, content in files.items()]
+            written = [_write(task, file, content) for file, content in files.items()]
             records += [source | {"files": sorted(files), "report": report}, *written]
         else:
             members |= files
             records.append(source | {"files": [task.archive], "report": report})
     if task.archive is not None:
         try:
-            records.append(_write(task.output, task.archive, archive_of(members)))
+            records.append(_write(task, task.archive, archive_of(members)))
         except MemoryError:
             raise RuntimeError(f"{task.archive}: a worker has too little memory for it; give it more, or archives fewer meshes") from None
     return records
 
 
-def _refusal(error: Refused | Error | MemoryError) -> Record:
-    """The next run tries meshes again that were refused for the machine's sake."""
+def _refusal(error: Refused | Error | MemoryError, path: str) -> Record:
+    """The next run tries meshes again whose own file is not to blame, as far as that is known."""
     if isinstance(error, MemoryError):
         error = Refused("it needs more memory than a worker has", again=True)
-    again = isinstance(error, Refused) and error.again
+    again = isinstance(error, Refused) and error.again or path.lower().endswith(".gltf")  # its other files may have been missing
     return {"refused": str(error)} | ({"again": True} if again else {})
 
 
@@ -99,29 +103,27 @@ def _labelled(name: str, path: str, task: Task) -> tuple[dict[str, bytes], Recor
     return files_of(samples, name, task.form), samples.report | {"points": len(samples.points)}
 
 
-def _write(output: str, name: str, content: bytes) -> Record:
-    with whole_file(pathlib.Path(output), name) as file:
+def _write(task: Task, name: str, content: bytes) -> Record:
+    with whole_file(pathlib.Path(task.output, name), task.unfinished) as file:
         file.write(content)
     return {"file": name, "sha256": hashlib.sha256(content).hexdigest(), "bytes": len(content)}
 
 
 @contextlib.contextmanager
-def whole_file(output: pathlib.Path, name: str) -> Iterator[BinaryIO]:
-    """A file below the output folder, under another name until it is whole. Errors of the system name it."""
-    target, unfinished = output / name, output / UNFINISHED
+def whole_file(target: pathlib.Path, unfinished: str) -> Iterator[BinaryIO]:
+    """A file that is in the second folder, under another name, until it is whole. Errors of the system name it."""
     with naming(target):
-        for folder in (target.parent, unfinished):
-            folder.mkdir(parents=True, exist_ok=True)
-        handle, part = tempfile.mkstemp(dir=unfinished)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        part = os.path.join(unfinished, secrets.token_hex(8))
         try:
-            with os.fdopen(handle, "wb") as file:
+            with open(part, "xb") as file:
                 yield file
                 file.flush()
                 os.fsync(file.fileno())
-            os.chmod(part, 0o644)
             os.replace(part, target)
         except BaseException:
-            os.unlink(part)
+            with contextlib.suppress(OSError):
+                os.unlink(part)
             raise
 
 

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import collections
 import itertools
+import os
 import pathlib
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TextIO
 
-from echinus.corpus._corpus import Corpus
+from echinus._arguments import of_kind
+from echinus.corpus._corpus import UNFINISHED, Corpus
 from echinus.corpus._manifest import changed_meshes, difference, manifests, records_of
 from echinus.corpus._progress import watched
-from echinus.corpus._sources import hash_of
-from echinus.corpus._tasks import UNFINISHED, Record
+from echinus.corpus._run import counted, may_succeed
+from echinus.corpus._sources import fingerprint, hash_of
+from echinus.corpus._tasks import Record
 
 
 @dataclass(frozen=True)
@@ -41,9 +44,9 @@ class Findings:
 
     def __str__(self) -> str:
         refused = f", {self.refused} of them refused: each of the others" if self.refused else ": each"
-        text = f"{self.meshes} meshes{refused} has its labels once, unchanged"
+        text = f"{counted(self.meshes)}{refused} has its labels once, unchanged"
         if self.again:
-            text += f"\n{self.again} of the refused may succeed with more memory or time: the same command without --verify tries them again"
+            text += f"\n{may_succeed(self.again)}: the same command without --verify tries them again"
         if self.surplus:
             text += f"\nfiles that belong to no labelled mesh of the corpus: {len(self.surplus)}; remove those that you do not want"
         return text
@@ -56,11 +59,13 @@ def verify(corpus: Corpus) -> list[str]:
 
 
 def examine(corpus: Corpus, progress: TextIO | None = None) -> Findings:
-    folder, settings = pathlib.Path(corpus.output), corpus.settings()
+    folder, settings = pathlib.Path(of_kind("corpus", corpus, Corpus).output), corpus.settings()
+    if folder.exists():
+        os.listdir(folder)  # raises where it cannot be read
     found = [path for path, _ in manifests(folder)]
     records = list(itertools.chain.from_iterable(map(records_of, found)))
     complaints = [sentence for path in found if (sentence := difference(path, settings))]
-    archive_of = {name: task.archive for task in replace(corpus, shard=(0, 1)).tasks() for name, _ in task.meshes}
+    archive_of = {name: task.archive for task in replace(corpus, shard=(0, 1)).tasks("") for name, _ in task.meshes}
     ours = [r for r in records if r.get("mesh") in archive_of]
     times = collections.Counter(r["mesh"] for r in ours)
     complaints += [f"{name}: is recorded {n} times" for name, n in sorted(times.items()) if n > 1]
@@ -73,7 +78,8 @@ def examine(corpus: Corpus, progress: TextIO | None = None) -> Findings:
     used = named | {archive for archive in archive_of.values() if archive is not None and archive in hashes}
     complaints += _changed(folder, {name: hashes[name] for name in sorted(used) if name in hashes}, progress)
     present = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file() and UNFINISHED not in path.parts}
-    surplus = sorted(present - used - {path.name for path in found})
+    meshes = {os.path.relpath(path, os.path.abspath(folder)) for _, path in corpus.meshes}
+    surplus = sorted(present - used - meshes - {path.name for path in found})
     refused = [r for r in ours if "refused" in r]
     return Findings(complaints, surplus, len(archive_of), len(refused), sum("again" in r for r in refused))
 
@@ -82,17 +88,18 @@ def _of_other_meshes(corpus: Corpus, records: Iterable[Record], progress: TextIO
     """Labels, or refusals, of mesh files that have changed since."""
     record_of = {record["mesh"]: record for record in records if "again" not in record}
     meshes = [mesh for mesh in corpus.meshes if mesh[0] in record_of]
-    changed = changed_meshes(meshes, record_of, corpus.max_bytes, progress)
-    for name, path in meshes:
-        if name in changed:
-            what = "refused" if "refused" in record_of[name] else "labelled"
+    for name, path in changed_meshes(meshes, record_of, corpus.max_bytes, progress, gone=True):
+        what = "refused" if "refused" in record_of[name] else "labelled"
+        if fingerprint(path, corpus.max_bytes) is None:
+            yield f"{name}: {path} cannot be read any more; the mesh was {what}, and stays so"
+        else:
             yield f"{name}: {path} has changed since it was {what}; the same command without --verify labels it anew"
 
 
 def _misplaced(records: Iterable[Record], archive_of: dict[str, str | None]) -> Iterator[str]:
     """Archives as they were before meshes came into the corpus or went."""
     archives = {archive for archive in archive_of.values() if archive is not None}
-    for record in records:
+    for record in (record for record in records if "mesh" in record):
         for file in record.get("files", []):
             place = archive_of.get(record["mesh"])
             if file != place and (place is not None or file in archives):
@@ -102,7 +109,10 @@ def _misplaced(records: Iterable[Record], archive_of: dict[str, str | None]) -> 
 def _changed(folder: pathlib.Path, hashes: Mapping[str, str], progress: TextIO | None) -> Iterator[str]:
     for name, expected in watched(hashes.items(), progress, len(hashes), "files of labels compared with the manifest"):
         path = folder / name
-        if not path.is_file():
-            yield f"{name}: is missing; the same command without --verify makes it anew"
-        elif hash_of(path) != expected:
-            yield f"{name}: has other bytes than it had; remove it, and the same command without --verify makes it anew"
+        try:
+            if not path.is_file():
+                yield f"{name}: is missing; the same command without --verify makes it anew"
+            elif hash_of(path) != expected:
+                yield f"{name}: has other bytes than it had; remove it, and the same command without --verify makes it anew"
+        except OSError as error:
+            yield f"{name}: cannot be read ({error.strerror})"
