@@ -96,8 +96,10 @@ class Manifest:
 def changed_meshes(
     meshes: Sequence[Mesh], record_of: Mapping[str, Record], most: int, progress: TextIO | None, *, gone: bool = False
 ) -> list[Mesh]:
-    """Those whose files are not those of their records, for instance because they could not be read then. A file that
-    cannot be read now is no other one, except where what is ``gone`` is asked for."""
+    """Those whose files are not the ones of their records, for instance because they could not be read then.
+
+    A file that cannot be read now counts as unchanged, unless ``gone`` is true.
+    """
 
     def is_changed(record: Record, path: str, now: Fingerprint | None) -> bool:
         before = (record.get("source_bytes"), record.get("source_sha256"))

@@ -7,7 +7,7 @@ import functools
 import os
 import shutil
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Generator, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import TextIO
 
@@ -97,8 +97,8 @@ def label(
     ModuleNotFoundError
         A scheduler is given, and Dask is not installed.
     RuntimeError
-        An archive cannot be written for want of memory, though each of its meshes can be labelled; or the cluster has
-        gone.
+        An archive cannot be written for want of memory, though each of its meshes can be labelled; workers die before
+        they label anything; or the cluster has gone.
     """
     of_kind("corpus", corpus, Corpus)
     worker_count = whole("workers", workers, 1) if workers is not None else os.cpu_count() or 1
@@ -126,8 +126,9 @@ def _label(corpus: Corpus, unfinished: str, run: _engines.Engine, progress: Text
         done = {task.meshes for task in finished}
         tasks = [task for task in mine if task.meshes not in done]
         summary, began = Summary(already=sum(map(len, done))), time.monotonic()
-        with Bar(progress, sum(len(task.meshes) for task in tasks)) as bar:
-            for records in _all_records(tasks, run):
+        bar = Bar(progress, sum(len(task.meshes) for task in tasks))
+        with bar, contextlib.closing(_all_records(tasks, run)) as results:  # which ends the workers
+            for records in results:
                 manifest.add(records)
                 summary.count(records)
                 summary.seconds = time.monotonic() - began
@@ -139,7 +140,7 @@ def _label(corpus: Corpus, unfinished: str, run: _engines.Engine, progress: Text
     return summary
 
 
-def _all_records(tasks: Sequence[Task], run: _engines.Engine) -> Iterator[list[Record]]:
+def _all_records(tasks: Sequence[Task], run: _engines.Engine) -> Generator[list[Record], None, None]:
     """The records of all tasks. A mesh that no worker survives is found, and refused like any other."""
     deadly: list[tuple[Task, str]] = []
     for task, result in run(tasks) if tasks else ():
