@@ -1,6 +1,7 @@
 /** The page: brings the panel, the pictures and the workers together. */
 import { type Ray, type Raycaster, Vector3 } from 'three';
-import { furthestAlong } from './axes';
+import { Address } from './address';
+import { UNIT, furthestAlong } from './axes';
 import { Client } from './client';
 import { enableFiles } from './files';
 import { fillGallery, showChosen } from './gallery';
@@ -18,7 +19,7 @@ import { enablePointer } from './pointer';
 import type { CellNews, FromWorker, MapNews, ModelNews, SurfaceNews, ToWorker, Triple } from './protocol';
 import { Recorder } from './recorder';
 import { objText, saveAs } from './saving';
-import { SAMPLES, type Settings, UNDER_SHEETS, besideOf, consistent, fromLink, toLink } from './settings';
+import { SAMPLES, type Sample, type Settings, UNDER_SHEETS, besideOf, consistent, fromLink, toLink, unknownIn } from './settings';
 import { Side } from './side';
 import { Tour } from './tour';
 import { BallView } from './view/ball_view';
@@ -33,11 +34,13 @@ const ZOOM = 1.1;
 /** How often the words beneath the halves and the headline may change. */
 const WORDS_MS = 250;
 
-const HINTS: Record<Settings['hand'], string> = {
-    cloth: 'Drag the cloth to pull it. Drag beside it to turn the view.',
-    ball: 'Move the pointer: the ball follows. Drag to turn the view.',
-    model: 'Drag the model to shake it. Drag beside it to turn the view.',
+const HINTS: Record<Settings['hand'], (held: string) => string> = {
+    cloth: () => 'Drag the cloth to pull it, beside it to turn the view.',
+    ball: () => 'The ball follows the pointer. Drag to turn the view.',
+    model: (held) => `Drag the ${held} to move it, beside it to turn the view.`,
 };
+/** What of a sample the pointer moves. */
+const HELD: Partial<Record<Sample, string>> = { figure: 'dancer', organ: 'probe', ring: 'ring', flag: 'pole', layers: 'ball' };
 
 /** A requested model: a file, or else the sample of the settings. */
 interface Opening {
@@ -57,6 +60,8 @@ class App {
     #map: MapNews | undefined;
     #paused = false;
     #rayAsked = false;
+    /** None is shown during parts of the tour. */
+    #rayWanted = true;
     #surface: SurfaceNews | undefined;
     #cells: CellNews | undefined;
     #worded = 0;
@@ -68,6 +73,7 @@ class App {
     readonly #figures = new FigureStrip();
     readonly #recorder = new Recorder();
     readonly #controls: Controls;
+    readonly #address: Address;
     readonly #main: Side;
     /** The cloth in the other half of the picture. */
     #other: Side | undefined;
@@ -77,12 +83,16 @@ class App {
         this.#main = new Side(client);
         this.#main.onCuts = (cuts) => this.#figures.showCuts(cuts);
         this.#stage.scene.add(this.#modelView.group, this.#main.view.group, this.#ballView.mesh, this.#mapView.group);
-        this.#controls = new Controls(this.#settings, (settings, key) => this.#change(settings, key));
         this.#tour = new Tour({
             model: () => this.#model,
-            choose: (key, value) => this.#settings[key] !== value && this.#choose(key, value),
-            tell: (message) => this.#main.client.tell(message),
+            settings: () => this.#settings,
+            choose: (key, value) => this.#settings[key] !== value && this.#change({ ...this.#settings, [key]: value }, key),
+            restart: () => this.#restart(),
+            showRay: (direction) => this.#askForRay(direction),
+            cut: (height) => this.#cut(height),
+            picture: () => this.#stage.directions,
         });
+        this.#controls = new Controls(this.#settings, (settings, key) => this.#follow(settings, key));
         this.#bindButtons();
         this.#bindKeys();
         enableFiles((file) => this.#open(file));
@@ -90,28 +100,38 @@ class App {
         enableClosing();
         fillDepthLegend();
         fillGallery();
-        // The visitor follows a link while the page is open.
-        addEventListener('hashchange', () => {
-            const settings = fromLink(location.hash);
-            if (toLink(settings) === toLink(this.#settings) && !this.#asked.file) return;
-            this.#settings = settings;
-            this.#inView = '';
-            this.#controls.show(settings);
-            this.#showAll();
-            this.#open(undefined); // a link cannot contain a file
-        });
+        this.#address = new Address((settings, file) => this.#arrive(settings, file));
         this.#stage.onArrival = () => this.#keepCamera();
         this.#stage.onLoss = () => say('The browser has lost the graphics context. If the picture does not come back, reload the page.');
         this.#stage.onLook = () => this.#passLook();
         client.listen((message) => this.#hear(message));
         this.#showAll();
         this.#open(undefined);
+        this.#sayWhatIsLacking();
         this.#stage.renderer.setAnimationLoop(() => this.#draw());
+    }
+
+    /** The visitor has followed a link in the page, or has gone back or forth. */
+    #arrive(settings: Settings, file: File | undefined): void {
+        if (toLink(settings) === toLink(this.#settings) && file === this.#asked.file) return;
+        this.#settings = settings;
+        this.#inView = '';
+        this.#controls.show(settings);
+        this.#showAll();
+        this.#open(file);
+        this.#sayWhatIsLacking();
+    }
+
+    #sayWhatIsLacking(): void {
+        const unknown = unknownIn(location.hash);
+        if (this.#address.lost) say(`${this.#address.lost} was open here. The page does not keep files when it is loaded again: open it once more.`);
+        else if (unknown.length > 0) say(`This page does not have what its link asks for, and leaves it out: ${shortened(unknown.join(', '))}`);
     }
 
     // ---- The worker
 
     #open(file: File | undefined): void {
+        this.#tour.leave();
         beQuiet();
         byId('subtitle').textContent = file ? `Opening ${file.name}` : 'Loading';
         this.#controls.showFile(file?.name);
@@ -153,7 +173,7 @@ class App {
                 return this.#mapView.showCut(message);
             case 'ray':
                 this.#rayAsked = false;
-                if (this.#settings.view !== 'map') return; // its view has gone meanwhile
+                if (this.#settings.view !== 'map' || !this.#rayWanted) return; // it has become unwanted meanwhile
                 this.#mapView.showRay(message);
                 return showRay(message, this.#model!.radius);
             case 'missed':
@@ -299,7 +319,8 @@ class App {
 
     #showTitle(model: ModelNews): void {
         byId('subtitle').textContent = `${model.name}, ${numbered(model.report.faceCount, 'face', 'faces')}`;
-        showChosen(this.#asked.file ? undefined : this.#settings);
+        this.#setLink(this.#settings); // the history knows the model now
+        this.#showHand();
         byId('cloths').hidden = !this.#hasSheets;
     }
 
@@ -315,9 +336,24 @@ class App {
         const { client } = this.#main;
         client.tell({ kind: 'surface' });
         this.#askForCells();
+        if (this.#tour.runs) return;
         client.tell({ kind: 'slice', height: this.#settings.slice });
         // Shows a ray before the pointer enters.
-        client.tell({ kind: 'ray', direction: towardsTop(this.#model!) });
+        this.#askForRay(towardsTop(this.#model!));
+    }
+
+    /** @param direction  from the map's centre; undefined: none is to be seen */
+    #askForRay(direction: Triple | undefined): void {
+        this.#rayWanted = direction !== undefined;
+        if (direction) return this.#main.client.tell({ kind: 'ray', direction });
+        this.#mapView.hideRay();
+        forgetRay();
+    }
+
+    /** For now: the visitor's own setting stays. */
+    #cut(height: number): void {
+        this.#controls.show({ ...this.#settings, slice: height });
+        this.#main.client.tell({ kind: 'slice', height });
     }
 
     /** Only where they are shown: there may be half a million. */
@@ -411,6 +447,12 @@ class App {
 
     // ---- The visitor's actions
 
+    /** What the visitor chooses ends the tour. */
+    #follow(settings: Settings, key: keyof Settings): void {
+        this.#tour.leave(); // which may have shown another cut than the visitor's
+        this.#change({ ...this.#settings, [key]: settings[key] }, key);
+    }
+
     #change(settings: Settings, key: keyof Settings): void {
         if (key === 'model' || key === 'up') settings = { ...settings, camera: '' };
         settings = consistent(settings, key);
@@ -448,8 +490,11 @@ class App {
     }
 
     #setLink(settings: Settings): void {
+        const { file } = this.#asked;
         this.#settings = settings;
-        history.replaceState(null, '', `#${toLink(settings)}`);
+        this.#address.show(settings, file);
+        showChosen(file ? undefined : settings);
+        byId('whole-view').hidden = settings.camera === '';
     }
 
     #showAll(): void {
@@ -466,9 +511,9 @@ class App {
     }
 
     #showHand(): void {
-        this.#main.keepsOffItself = this.#settings.self;
-        document.body.classList.toggle('self', this.#settings.self);
-        byId('hint').textContent = HINTS[this.#settings.hand];
+        this.#main.keepsOffItself = this.#figures.countsOwn = this.#settings.self;
+        const held = this.#asked.file ? undefined : HELD[this.#settings.model];
+        byId('hint').textContent = HINTS[this.#settings.hand](held ?? 'model');
     }
 
     #showLook(): void {
@@ -527,7 +572,7 @@ class App {
         this.#choose('beside', next[this.#settings.beside]);
     }
     #choose<K extends keyof Settings>(key: K, value: Settings[K]): void {
-        this.#change({ ...this.#settings, [key]: value }, key);
+        this.#follow({ ...this.#settings, [key]: value }, key);
     }
 
     #bindButtons(): void {
@@ -541,6 +586,7 @@ class App {
             'save-mesh': () => this.#saveMesh(),
             'copy-link': () => void this.#copyLink(),
             'tour-begin': () => this.#tour.begin(),
+            'whole-view': () => this.#showWhole(),
         };
         for (const [id, action] of Object.entries(actions)) byId(id).addEventListener('click', action);
     }
@@ -565,7 +611,12 @@ class App {
             arrowdown: () => this.#stage.turn(0, -TURN),
             '+': () => this.#stage.turn(0, 0, ZOOM),
             '-': () => this.#stage.turn(0, 0, 1 / ZOOM),
+            '0': () => this.#showWhole(),
         });
+    }
+
+    #showWhole(): void {
+        this.#stage.standpoint = '';
     }
 
     #bindPointer(): void {
@@ -595,7 +646,7 @@ class App {
         const way = this.#mapView.wayOf(ray);
         if (!way) return;
         const { centre } = this.#model;
-        this.#rayAsked = true;
+        this.#rayAsked = this.#rayWanted = true;
         if (this.#mapView.showsCells) this.#main.client.tell({ kind: 'ray', direction: [0, 1, 2].map((k) => way.from[k] - centre[k]) as Triple });
         else this.#main.client.tell({ kind: 'point', ...way });
     }
@@ -632,14 +683,15 @@ class App {
         if (this.#model) this.#keepCamera(); // the camera may still be moving
         const link = `${location.origin}${location.pathname}#${toLink(this.#settings)}`;
         const note = byId('link-note');
-        note.hidden = false;
+        const file = this.#asked.file ? ' The opened file is not part of it.' : '';
         try {
             await navigator.clipboard.writeText(link);
-            note.textContent = 'Copied.';
+            note.hidden = true;
+            remark(`The link is copied.${file}`);
         } catch {
-            note.textContent = link; // for copying by hand where the clipboard is not available
+            note.hidden = false;
+            note.textContent = `${link}${file}`; // for copying by hand where the clipboard is not available
         }
-        if (this.#asked.file) note.textContent += ' The opened file is not part of it.';
     }
 }
 
@@ -647,6 +699,9 @@ function fallsAnew(particles: number, cloths: number): string {
     const what = numbered(particles, 'particle', 'particles');
     return cloths === 1 ? `The cloth falls anew, with ${what}.` : `${cloths} cloths fall anew, with ${what} in all.`;
 }
+
+/** Of a link that may be anything. */
+const shortened = (text: string): string => (text.length > 80 ? `${text.slice(0, 80)}\u2026` : text);
 
 function mapNote(kind: MapNews['kind'], closed: boolean, surfaces: boolean): string {
     if (kind === 'distance') return 'Out along the ray from the centre, as in the paper: watch the cloth creep along a leg.';
@@ -657,7 +712,7 @@ function mapNote(kind: MapNews['kind'], closed: boolean, surfaces: boolean): str
 
 /** From the centre to the highest vertex: an instructive ray for most models. */
 function towardsTop({ vertices, centre, up }: ModelNews): Triple {
-    return furthestAlong(up, vertices).map((part, k) => part - centre[k]) as Triple;
+    return furthestAlong(UNIT[up], vertices).map((part, k) => part - centre[k]) as Triple;
 }
 
 export function begin(client: Client): void {

@@ -11,10 +11,12 @@ export function following(axis: Axis): [Axis, Axis] {
     return [AXES[(k + 1) % 3], AXES[(k + 2) % 3]];
 }
 
-/** The vertex that lies furthest along an axis, of [3 n] coordinates. */
-export function furthestAlong(axis: Axis, vertices: ArrayLike<number>): Triple {
-    const k = AXES.indexOf(axis);
-    let furthest = 0;
-    for (let i = 0; i < vertices.length; i += 3) if (vertices[i + k] > vertices[furthest + k]) furthest = i;
+/** The vertex that lies furthest along a direction, of [3 n] coordinates. */
+export function furthestAlong([x, y, z]: Triple, vertices: ArrayLike<number>): Triple {
+    let furthest = 0, most = -Infinity;
+    for (let i = 0; i < vertices.length; i += 3) {
+        const along = x * vertices[i] + y * vertices[i + 1] + z * vertices[i + 2];
+        if (along > most) [furthest, most] = [i, along];
+    }
     return [vertices[furthest], vertices[furthest + 1], vertices[furthest + 2]];
 }

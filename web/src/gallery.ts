@@ -19,7 +19,7 @@ const EXAMPLES: readonly Example[] = [
     { name: 'ring', title: 'Through a ring', caption: 'pulled through, let go', link: 'model=ring&particles=3600&self=true', model: 'ring' },
     { name: 'flag', title: 'A flag in the wind', caption: 'on a pole that you can shake', link: 'model=flag&particles=2500', model: 'flag' },
     { name: 'layers', title: 'Ten layers', caption: 'none through another', link: 'model=layers&particles=2500&self=true', model: 'layers' },
-    { name: 'beside', title: 'Exact or nearly', caption: 'beside an approximate map', link: 'beside=map&thickness=0.1', model: 'horse' },
+    { name: 'beside', title: 'Exact or nearly', caption: 'beside an approximate map', link: 'beside=map', model: 'horse' },
 ];
 
 export function fillGallery(): void {

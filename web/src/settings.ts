@@ -118,18 +118,29 @@ export function toLink(settings: Settings): string {
 
 /** The settings of a link. Numbers are clamped to their range; other invalid values fall back to their defaults, since links outlive pages. */
 export function fromLink(hash: string): Settings {
-    const said = new URLSearchParams(hash.replace(/^#/, ''));
+    const said = partsOf(hash);
     const settings: Record<string, unknown> = { ...DEFAULTS };
     for (const [key, text] of said) {
-        if (!Object.hasOwn(DEFAULTS, key)) continue;
-        const choices = CHOICES[key as keyof Settings] as readonly string[] | undefined;
-        const range = RANGES[key as keyof typeof RANGES] as readonly [number, number] | undefined;
-        if (choices?.includes(text)) settings[key] = text;
-        else if (range && text !== '' && Number.isFinite(Number(text))) settings[key] = Math.min(range[1], Math.max(range[0], Number(text)));
-        else if (typeof DEFAULTS[key as keyof Settings] === 'boolean' && ['true', 'false'].includes(text)) settings[key] = text === 'true';
-        else if (key === 'camera' && standpoint.fromText(text)) settings[key] = text;
+        const value = valueIn(key, text);
+        if (value !== undefined) settings[key] = value;
     }
     return consistent(settings as unknown as Settings, said.has('beside') ? 'beside' : 'surfaces');
+}
+
+/** What a link asks for and the page does not have. */
+export const unknownIn = (hash: string): string[] => [...partsOf(hash)].filter(([key, text]) => valueIn(key, text) === undefined).map((part) => part.join('='));
+
+const partsOf = (hash: string): URLSearchParams => new URLSearchParams(hash.replace(/^#/, ''));
+
+/** A setting's value in a link, if it is one. */
+function valueIn(key: string, text: string): string | number | boolean | undefined {
+    if (!Object.hasOwn(DEFAULTS, key)) return undefined;
+    const choices = CHOICES[key as keyof Settings] as readonly string[] | undefined;
+    const range = RANGES[key as keyof typeof RANGES] as readonly [number, number] | undefined;
+    if (choices) return choices.includes(text) ? text : undefined;
+    if (range) return text !== '' && Number.isFinite(Number(text)) ? Math.min(range[1], Math.max(range[0], Number(text))) : undefined;
+    if (key === 'camera') return standpoint.fromText(text) && text;
+    return text === 'true' ? true : text === 'false' ? false : undefined;
 }
 
 /** @param changed  the key that wins where two contradict each other */

@@ -1,12 +1,19 @@
 import { furthestAlong } from './axes';
 import { byId } from './panel/elements';
-import type { ModelNews, ToWorker, Triple } from './protocol';
+import type { ModelNews, Triple } from './protocol';
 import type { Settings } from './settings';
 
 export interface TourWishes {
     model(): ModelNews | undefined;
+    settings(): Settings;
     choose<K extends keyof Settings>(key: K, value: Settings[K]): void;
-    tell(message: ToWorker): void;
+    restart(): void;
+    /** Shows the map along this way from its centre; undefined: along none. */
+    showRay(direction: Triple | undefined): void;
+    /** Cuts the map open at this height; the visitor's own setting stays. */
+    cut(height: number): void;
+    /** The directions in which the picture goes up and right. */
+    picture(): { up: Triple; right: Triple };
 }
 
 /** How long a stop lasts. */
@@ -22,47 +29,51 @@ interface Stop {
     move?(tour: TourWishes, share: number): void;
 }
 
+/** The last one waits for the visitor, who may be pulling the cloth. */
 const STOPS: readonly Stop[] = [
     {
         words: 'A model, as its map has it. The map is built once, in milliseconds, and takes a few dozen bytes a face.',
         enter: (tour) => {
             tour.choose('map', 'exact'); // the paper's has no cells
             tour.choose('view', 'map');
-            tour.tell({ kind: 'slice', height: 1 });
+            tour.cut(1);
+            tour.showRay(undefined);
         },
     },
     {
         words: 'One ray from the centre outwards. It is thick where it is inside the model: the ray alone answers for every point on it.',
-        move: (tour, share) => tour.tell({ kind: 'ray', direction: around(tour.model()!, 0.35 * share) }),
+        move: (tour, share) => tour.showRay(acrossPicture(tour, share)),
     },
     {
         words: 'Many directions share a cell, outlined here. It knows between which distances surface may lie: its bands, in blue. Outside of them the answer needs no test at all.',
-        enter: (tour) => tour.tell({ kind: 'ray', direction: around(tour.model()!, 0.35) }),
+        enter: (tour) => tour.showRay(acrossPicture(tour, 1)),
     },
     {
         words: 'Cut open: the map\u2019s answers on a plane, red inside. They are decided in whole numbers, so they are exact.',
-        move: (tour, share) => tour.tell({ kind: 'slice', height: 0.9 - 1.6 * share }),
+        enter: (tour) => tour.showRay(undefined),
+        move: (tour, share) => tour.cut(0.9 - 1.6 * share),
     },
     {
         words: 'A cloth asks about each of its particles, many times a second, and each that would be inside is put back the shortest way. Now pull at it.',
         enter: (tour) => {
-            tour.tell({ kind: 'slice', height: 1 });
+            tour.cut(tour.settings().slice);
             tour.choose('view', 'cloth');
-            tour.tell({ kind: 'restart' });
+            tour.restart();
         },
     },
 ];
 
-/** Turned from the way to the highest vertex. @param share  of a full turn */
-function around({ vertices, centre, up }: ModelNews, share: number): Triple {
-    const top = furthestAlong(up, vertices).map((part, k) => part - centre[k]) as Triple;
-    const axis = 'xyz'.indexOf(up), [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
-    const [c, s] = [Math.cos(2 * Math.PI * share), Math.sin(2 * Math.PI * share)];
-    const turned: Triple = [...top];
-    turned[axis] = top[axis] * (1 - share);
-    turned[u] = c * top[u] - s * top[v] + 0.2 * share * top[axis];
-    turned[v] = s * top[u] + c * top[v];
-    return turned;
+/** From the vertex that is highest in the picture to the one farthest right, so that the ray is seen from the side and meets the model at both ends. */
+function acrossPicture(tour: TourWishes, share: number): Triple {
+    const { vertices, centre } = tour.model()!;
+    const { up, right } = tour.picture();
+    const [from, to] = [up, right].map((way) => unit(furthestAlong(way, vertices).map((part, k) => part - centre[k])));
+    return from.map((part, k) => (1 - share) * part + share * to[k]) as Triple;
+}
+
+function unit(vector: number[]): number[] {
+    const length = Math.hypot(...vector) || 1;
+    return vector.map((part) => part / length);
 }
 
 /** Half a minute on how it works. Enter goes on, Escape ends it. */
@@ -71,6 +82,8 @@ export class Tour {
     #stop = -1;
     #timer = 0;
     #since = 0;
+    /** What the visitor had chosen. */
+    #before: Settings['map'] = 'exact';
 
     constructor(wishes: TourWishes) {
         this.#wishes = wishes;
@@ -84,31 +97,43 @@ export class Tour {
 
     begin(): void {
         if (!this.#wishes.model()) return;
+        if (!this.runs) this.#before = this.#wishes.settings().map;
         this.#stop = -1;
+        scrollTo({ top: 0 }); // on a small screen its button is far below the picture
         this.#goOn();
     }
     next(): void {
         if (this.runs) this.#goOn();
     }
+    /** Back to the cloth, and to the visitor's own map. */
     end(): void {
+        if (!this.runs) return;
+        this.leave();
+        this.#wishes.choose('view', 'cloth');
+        this.#wishes.choose('map', this.#before);
+    }
+    /** Where the visitor goes elsewhere. */
+    leave(): void {
         if (!this.runs) return;
         clearInterval(this.#timer);
         this.#stop = -1;
         byId('tour').hidden = true;
-        this.#wishes.tell({ kind: 'slice', height: 1 });
-        this.#wishes.choose('view', 'cloth');
+        this.#wishes.cut(this.#wishes.settings().slice);
     }
 
     #goOn(): void {
         clearInterval(this.#timer);
         const stop = STOPS[++this.#stop];
         if (!stop) return this.end();
+        const isLast = this.#stop === STOPS.length - 1;
         byId('tour').hidden = false;
         byId('tour').querySelector('p')!.textContent = stop.words;
         byId('tour').dataset.stop = String(this.#stop); // the tests read this
+        byId('tour-next').textContent = isLast ? 'Done' : 'Next';
+        byId('tour-end').hidden = isLast;
         stop.enter?.(this.#wishes);
         this.#since = performance.now();
-        this.#timer = window.setInterval(() => this.#move(stop), STEP_MS);
+        if (!isLast) this.#timer = window.setInterval(() => this.#move(stop), STEP_MS);
     }
 
     #move(stop: Stop): void {

@@ -95,6 +95,7 @@ test('a broken file gives one sentence, and the page continues as it was', async
 
 for (const [kind, name, content, sentence] of [
     ['of which no map can be made', 'point.obj', 'v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\n', /^point\.obj: all vertices of the mesh lie on one point/],
+    ['of which a part is missing', 'short.glb', 'glTF\x02\0\0\0\x14\0\0\0', /^short\.glb: cannot be read \(it is no glTF 2\.0 file, or not all of one\)$/],
     ['of a kind that is not read', 'archive.zip', 'PK', /^archive\.zip: .*\.obj.*\.glb/],
 ])
     test(`a file ${kind} is refused by its name, with the reason`, async () => {
@@ -176,7 +177,7 @@ test('the words for one face, one vertex and one edge are in the singular', asyn
     await untilFrame(page, 1);
     const closed = tetrahedra()['t.obj'];
     await choose(page, 'doubled.obj', `${closed}${closed.trim().split('\n').at(-1)}\n`);
-    await untilReport(page, '1 doubled face left out');
+    await untilReport(page, '1 face left out that repeated others');
     await choose(page, 'one.obj', 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n');
     await untilTitle(page, 'one.obj, 1 face');
     assert.doesNotMatch(`${await page.locator('#subtitle').textContent()} ${await page.locator('#report').textContent()}`, /\b1 (faces|vertices|edges|parts|pairs)\b/);

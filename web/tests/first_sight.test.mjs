@@ -102,13 +102,14 @@ async function darkestBesideModel(data) {
 }
 
 test('in no window words or buttons lie over the model', async () => {
-    for (const [width, height] of [[700, 500], [900, 600], [1400, 900], [390, 844]]) {
-        const page = await browser.open('#model=torus&particles=400', { viewport: { width, height } });
+    const windows = [[700, 500], [900, 600], [1400, 900], [390, 844], [1000, 640, 'particles'], [844, 390, 'particles'], [320, 568, 'particles']];
+    for (const [width, height, beside = 'nothing'] of windows) {
+        const page = await browser.open(`#model=torus&particles=400&beside=${beside}`, { viewport: { width, height } });
         await untilFrame(page, 20);
         await page.locator('#remark').waitFor({ state: 'hidden' });
         const covers = await page.evaluate(() => {
             const picture = document.getElementById('canvas').getBoundingClientRect();
-            return ['header', '#transport', '#hands', '#hint', '#figures', '#panel'].filter((selector) => {
+            return ['header', '#halves', '#transport', '#hands', '#hint', '#figures', '#panel'].filter((selector) => {
                 const { width, height, left, right, top, bottom } = document.querySelector(selector).getBoundingClientRect();
                 return width * height > 0 && left < picture.right - 1 && right > picture.left + 1 && top < picture.bottom - 1 && bottom > picture.top + 1;
             });
@@ -116,13 +117,15 @@ test('in no window words or buttons lie over the model', async () => {
         assert.deepEqual(covers, [], `${width} x ${height}`);
         const cut = await page.evaluate(() => {
             const { right } = document.getElementById('figures').getBoundingClientRect();
-            return [...document.querySelectorAll('#figures dd')].filter((cell) => {
+            return [...document.querySelectorAll('#figures dd, #figures dt')].filter((cell) => {
                 const words = document.createRange();
                 words.selectNodeContents(cell);
-                return words.getBoundingClientRect().right > right;
-            }).length;
+                const next = cell.parentElement.nextElementSibling?.getBoundingClientRect();
+                const end = next && next.left > cell.getBoundingClientRect().left ? next.left : right;
+                return words.getBoundingClientRect().right > end;
+            }).map((cell) => cell.textContent);
         });
-        assert.equal(cut, 0, `figures cut off at ${width} x ${height}`);
+        assert.deepEqual(cut, [], `figures cut off or over each other at ${width} x ${height}`);
         await picture(page, `window_${width}`);
         await browser.close(page);
     }

@@ -145,8 +145,8 @@ test('an open model says what that means, and how much is certain', async () => 
     await page.locator('#file').setInputFiles({ name: 'open.obj', mimeType: 'model/obj', buffer: Buffer.from(closed.slice(0, closed.lastIndexOf('f '))) });
     await page.waitForFunction(() => /Open: sides/.test(document.getElementById('report').textContent));
     assert.match(await page.locator('#report').textContent(), /in \d+(\.\d+)?\u2009% of the ball around it the answer is certain.*Close its holes/);
-    await page.locator('#figure-inside').waitFor({ state: 'hidden' }); // it has no inside
     await untilFrame(page, 60);
+    assert.equal(await figure(page, 'inside'), '\u2013', 'it has no inside');
     assert.doesNotMatch(await page.locator('#headline').textContent(), /inside/);
     await browser.close(page);
 });
@@ -187,10 +187,43 @@ test('the tour goes through the exact map by itself or by a key, and ends at the
     await page.locator('#tour-next').click();
     await untilStop(2);
     await untilStop(3); // by itself
+    await page.waitForFunction(() => Number(document.querySelector('input[name=slice]').value) < 0.8); // the panel shows where it is cut
+    assert.equal(await page.locator('#ray').textContent(), 'Point at the surface.', 'the ray has gone');
     await picture(page, 'tour_slice');
     await page.keyboard.press('Escape');
     assert.ok(!(await page.locator('#tour').isVisible()));
-    assert.ok(!page.url().includes('view=map'));
+    await page.waitForFunction(() => location.hash === '#model=torus&map=distance&particles=400'); // as before
+    assert.equal(await page.locator('input[name=slice]').inputValue(), '1');
+    assert.deepEqual(page.complaints, []);
+    await browser.close(page);
+});
+
+test('the last stop of the tour waits while the visitor pulls the cloth', async () => {
+    const page = await browser.open('#model=torus&particles=400', SMALL);
+    await untilFrame(page, 5);
+    await page.locator('#tour-begin').click();
+    for (let stop = 0; stop < 4; ++stop) await page.keyboard.press('Enter');
+    await page.waitForTimeout(8000); // longer than any other stop lasts
+    assert.equal(await page.locator('#tour').getAttribute('data-stop'), '4');
+    assert.equal(await page.locator('#tour-next').textContent(), 'Done');
+    await page.locator('#tour-next').click();
+    assert.ok(!(await page.locator('#tour').isVisible()));
+    await browser.close(page);
+});
+
+test('the tour ends where the visitor goes elsewhere: back, to another example, to another view', async () => {
+    const page = await browser.open('#model=torus&particles=400', SMALL);
+    await untilFrame(page, 5);
+    await page.evaluate(() => (location.hash = '#model=sphere&particles=400'));
+    const leaves = { back: () => page.goBack(), tile: () => page.evaluate(() => document.querySelector('#gallery a[href*=flag]').click()), view: () => page.locator('input[name=view][value=cloth]').check() };
+    for (const [name, leave] of Object.entries(leaves)) {
+        await page.keyboard.press('t');
+        await page.locator('#tour').waitFor();
+        await leave();
+        await page.locator('#tour').waitFor({ state: 'hidden' });
+        await page.waitForTimeout(300);
+        assert.ok(!page.url().includes('view=map'), name);
+    }
     assert.deepEqual(page.complaints, []);
     await browser.close(page);
 });

@@ -72,6 +72,35 @@ test('a link to a sample closes the file that is open', async () => {
     await browser.close(page);
 });
 
+test('whoever goes back to a file finds it open; after the page is loaded again it says that the file is not', async () => {
+    const page = await openPage();
+    await drop(page, [['good.obj', GOOD]]);
+    await untilTitle(page, 'good.obj, 4 faces');
+    await page.locator('#gallery a', { hasText: 'flag' }).click();
+    await untilTitle(page, 'flag');
+    await page.goBack();
+    await untilTitle(page, 'good.obj, 4 faces');
+    await untilChosen(page, 'good.obj');
+    await page.goForward();
+    await untilTitle(page, 'flag');
+    await page.goBack();
+    await untilTitle(page, 'good.obj, 4 faces');
+    await page.reload();
+    await untilTitle(page, 'torus');
+    assert.match(await notice(page), /^good\.obj was open here\./);
+    await browser.close(page);
+});
+
+test('a link that asks for what the page does not have opens the rest and says so', async () => {
+    const page = await browser.open('#model=hors&particles=400&thickness=thin&beside=map&colour=fabric&__proto__=1', SMALL);
+    await untilFrame(page, 1);
+    assert.equal(await notice(page), 'This page does not have what its link asks for, and leaves it out: model=hors, thickness=thin, __proto__=1');
+    await page.evaluate(() => (location.hash = '#model=torus&particles=400'));
+    await untilTitle(page, 'torus');
+    assert.ok(!(await page.locator('#notice').isVisible()));
+    await browser.close(page);
+});
+
 test('a change made while a broken file is read takes effect, and the panel shows it', async () => {
     const page = await openPage();
     await page.evaluate(changeOnOpening);

@@ -47,6 +47,7 @@ test('a link contains the position of the camera, and a broken one gives the def
         const page = await browser.open(link, TINY);
         await untilRay(page);
         await page.waitForTimeout(500);
+        if (await page.locator('#notice').isVisible()) await page.locator('#notice button').click(); // it lies over the picture
         const canvas = await page.locator('#canvas').screenshot();
         await browser.close(page);
         return canvas;
@@ -96,6 +97,15 @@ async function linkAfterTurning() {
     return hash.split('&').at(-1);
 }
 
+test('a button leads back to the whole model', async () => {
+    const page = await browser.open('#model=torus&view=map&camera=10_80_1_0_0_0', SMALL);
+    await untilRay(page);
+    await page.locator('#whole-view').click();
+    await page.waitForFunction(() => location.hash === '#model=torus&view=map');
+    assert.ok(!(await page.locator('#whole-view').isVisible()));
+    await browser.close(page);
+});
+
 test('a choice that is not available is not shown as in force', { skip: !hasHorse && 'the horse is not installed' }, async () => {
     const page = await browser.open('#model=torus&particles=400', SMALL);
     await untilFrame(page, 1);
@@ -114,7 +124,7 @@ test('the link that is copied is the one of the address', async () => {
     await untilFrame(page, 1);
     await page.locator('input[name=friction]').fill('0.8');
     await page.locator('#copy-link').click();
-    await page.locator('#link-note:has-text("Copied.")').waitFor();
+    await page.locator('#remark', { hasText: 'The link is copied.' }).waitFor();
     assert.equal(await page.evaluate(() => navigator.clipboard.readText()), page.url());
     assert.match(page.url(), /#model=torus&particles=400&friction=0\.8$/);
     await browser.close(page);
@@ -172,7 +182,7 @@ test('a list gives the keys back once the pointer has chosen from it', async () 
 
 test('a click on a figure says what it means, and the time of a step stands beside what it simulates', async () => {
     const page = await browser.open('#model=torus&particles=400', SMALL);
-    await page.waitForFunction(() => /^\d+(\.\d+)?\u2009ms of 4\.17$/.test(document.getElementById('figure-step').textContent));
+    await page.waitForFunction(() => /^\d+(\.\d+)?\u2009ms$/.test(document.getElementById('figure-step').textContent) && document.getElementById('name-step').textContent === 'a 4.17\u2009ms step takes');
     for (const figure of await page.locator('#figures > div:visible').all()) {
         await figure.click();
         assert.match(await page.locator('#remark').textContent(), new RegExp(`^${await figure.locator('dt').textContent()}: .{20}`));

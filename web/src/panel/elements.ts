@@ -30,13 +30,10 @@ export function scaleBar(): HTMLElement {
 
 const css = (colour: number): string => `#${colour.toString(16).padStart(6, '0')}`;
 
-/** A number that should be 0, as a figure; without one, the figure is not there. */
-export function writeCount(id: string, number: number | undefined): void {
+/** A number that should be 0, as a figure. @param instead  what the figure says where there is no number */
+export function writeCount(id: string, number: number | undefined, instead = '\u2013'): void {
     const cell = byId(id);
-    const figure = cell.parentElement!;
-    figure.hidden = number === undefined;
-    if (number === undefined) return;
-    cell.textContent = count(number);
-    figure.classList.toggle('some', number > 0);
-    figure.classList.toggle('none', number === 0);
+    cell.textContent = number === undefined ? instead : count(number);
+    cell.parentElement!.classList.toggle('some', number !== undefined && number > 0);
+    cell.parentElement!.classList.toggle('none', number === 0);
 }

@@ -1,5 +1,5 @@
 import type { Cuts, Figures, MapNews } from '../protocol';
-import { byId, make, writeCount } from './elements';
+import { byId, writeCount } from './elements';
 import { remark } from './notice';
 import { bytes, milliseconds, perSecond } from './numbers';
 
@@ -18,6 +18,7 @@ export class FigureStrip {
     #sums: Sums = { ...NOTHING };
     #mostInside: number | undefined = 0;
     #stepSeconds = 0;
+    #countsOwn: boolean | undefined;
 
     constructor() {
         // A finger sees no titles.
@@ -45,14 +46,22 @@ export class FigureStrip {
 
     /** Nothing yet: a new cloth. */
     forgetCuts(): void {
-        for (const id of ['figure-pairs', 'figure-own-pairs']) {
-            byId(id).textContent = '\u2013';
-            byId(id).parentElement!.classList.remove('some', 'none');
-        }
+        writeCount('figure-pairs', undefined);
+        this.#writeOwn(undefined);
     }
     showCuts({ withModel, own }: Cuts): void {
         writeCount('figure-pairs', withModel);
-        writeCount('figure-own-pairs', own);
+        this.#writeOwn(own);
+    }
+    /** A cloth that need not keep off itself does nothing wrong. */
+    set countsOwn(counts: boolean) {
+        if (counts === this.#countsOwn) return;
+        this.#countsOwn = counts;
+        this.#writeOwn(undefined);
+    }
+    #writeOwn(own: number | undefined): void {
+        if (this.#countsOwn) writeCount('figure-own-pairs', own);
+        else writeCount('figure-own-pairs', undefined, 'off');
     }
 
     showMap({ byteCount, buildMs }: MapNews): void {
@@ -62,7 +71,8 @@ export class FigureStrip {
 
     #writeMeans(): void {
         const mean = (key: keyof Sums) => this.#sums[key] / this.#steps;
-        byId('figure-step').replaceChildren(milliseconds(mean('stepMs')), make('small', ` of ${(1000 * this.#stepSeconds).toFixed(2)}`));
+        byId('name-step').textContent = `a ${milliseconds(1000 * this.#stepSeconds)} step takes`;
+        byId('figure-step').textContent = milliseconds(mean('stepMs'));
         byId('figure-constraints').textContent = milliseconds(mean('constraintMs'));
         byId('figure-collision').textContent = milliseconds(mean('collisionMs'));
         byId('figure-queries').textContent = perSecond(mean('queriesPerSecond'));

@@ -15,6 +15,8 @@ export function bytes(value: number): string {
     return value < 1e6 ? `${(value / 1e3).toFixed(value < 1e5 ? 1 : 0)}\u2009kB` : `${(value / 1e6).toFixed(1)}\u2009MB`;
 }
 
+/** In two digits, since rates of small cloths are rough. */
 export function perSecond(value: number): string {
-    return value >= 1e6 ? `${(value / 1e6).toFixed(1)}\u2009M` : `${(value / 1e3).toFixed(0)}\u2009k`;
+    const [unit, name] = value >= 1e6 ? [1e6, 'M'] : [1e3, 'k'];
+    return `${Number((value / unit).toPrecision(2))}\u2009${name}`;
 }

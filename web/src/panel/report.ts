@@ -18,7 +18,7 @@ export function showReport({ report, mendedFaces, flippedParts, certainShare }: 
         ...faultLine(report.duplicateFaces.count, 'face that is there twice', 'faces that are there twice', FAULT.faces),
         ...faultLine(report.degenerateFaces.count, 'face without area', 'faces without area', FAULT.faces),
     ];
-    if (mendedFaces > 0) lines.push(make('p', `${numbered(mendedFaces, 'doubled face', 'doubled faces')} left out`));
+    if (mendedFaces > 0) lines.push(make('p', `${numbered(mendedFaces, 'face', 'faces')} left out that repeated others`));
     if (flippedParts > 0) lines.push(make('p', `${numbered(flippedParts, 'inside-out part', 'inside-out parts')} turned round`));
     byId('report').replaceChildren(...lines);
 }

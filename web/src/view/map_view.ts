@@ -98,10 +98,14 @@ export class MapView {
         const direction = new THREE.Vector3(...ray.direction).normalize();
         const at = (distance: number) => origin.clone().addScaledVector(direction, distance);
         for (const { from, to, inside } of ray.intervals)
-            this.#ray.add(rod(at(from), at(to), (inside ? 0.009 : 0.0025) * radius, inside ? CLOTH : lineColour()));
-        for (const [from, to] of ray.bands) this.#ray.add(rod(at(from), at(to), 0.022 * radius, BAND, 0.45));
-        for (const crossing of ray.crossings) this.#ray.add(ball(at(crossing), 0.018 * radius, lineColour()));
-        if (ray.outline.length === 3) this.#ray.add(this.#outline(ray.outline, origin, radius));
+            this.#ray.add(rod(at(from), at(to), (inside ? 0.016 : 0.005) * radius, inside ? CLOTH : lineColour()));
+        for (const [from, to] of ray.bands) this.#ray.add(rod(at(from), at(to), 0.034 * radius, BAND, 0.8));
+        for (const crossing of ray.crossings) this.#ray.add(ball(at(crossing), 0.024 * radius, lineColour()));
+        if (ray.outline.length === 3) this.#ray.add(...outline(ray.outline, origin, radius));
+    }
+
+    hideRay(): void {
+        clear(this.#ray);
     }
 
     /** The part of a ray inside the remainder of the bounding sphere below the cut. */
@@ -125,13 +129,6 @@ export class MapView {
         this.#surface.traverse((part) => {
             if (part instanceof THREE.Mesh || part instanceof THREE.Points) (part.material as THREE.Material).clippingPlanes = planes;
         });
-    }
-
-    /** The cell: its three edges on the bounding sphere, and the lines from the centre to its corners. */
-    #outline(corners: Triple[], origin: THREE.Vector3, radius: number): THREE.LineSegments {
-        const far = corners.map((corner) => origin.clone().addScaledVector(new THREE.Vector3(...corner), radius));
-        const geometry = new THREE.BufferGeometry().setFromPoints([0, 1, 2].flatMap((k) => [origin, far[k], far[k], far[(k + 1) % 3]]));
-        return new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ color: lineColour(), transparent: true, opacity: 0.55, depthTest: false }));
     }
 
     /** Keeps the part below the cut. */
@@ -191,6 +188,11 @@ function ball(at: THREE.Vector3, radius: number, colour: number): THREE.Mesh {
     mesh.position.copy(at);
     mesh.renderOrder = 4;
     return mesh;
+}
+/** The cell: its three edges on the bounding sphere, and the lines from the centre to its corners. */
+function outline(corners: Triple[], origin: THREE.Vector3, radius: number): THREE.Mesh[] {
+    const far = corners.map((corner) => origin.clone().addScaledVector(new THREE.Vector3(...corner), radius));
+    return far.flatMap((corner, k) => [rod(origin, corner, 0.003 * radius, lineColour(), 0.5), rod(corner, far[(k + 1) % 3], 0.003 * radius, lineColour(), 0.5)]);
 }
 const lineColour = (): number => (matchMedia('(prefers-color-scheme: dark)').matches ? CHALK : INK);
 

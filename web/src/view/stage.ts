@@ -84,12 +84,12 @@ export class Stage {
         this.#controls = new OrbitControls(this.camera, this.#canvas);
         this.#controls.enableDamping = true;
         this.#controls.dampingFactor = 0.12;
-        this.#controls.minDistance = 0.2 * radius;
+        this.#controls.minDistance = 0.35 * radius; // nearer, the picture is of a model's inside
         this.#controls.maxDistance = 20 * radius;
 
         const middle = new THREE.Vector3(...centre).addScaledVector(upward, 0.12 * radius);
         // Narrow screens show less to the sides, so the camera moves back.
-        const distance = 4.8 * radius * Math.max(1, 1.05 / this.camera.aspect);
+        const distance = 4.8 * radius * Math.max(1, 1.2 / this.camera.aspect);
         const from = sideways.clone().multiplyScalar(0.8).addScaledVector(forward, 0.55).addScaledVector(upward, 0.3).normalize();
         this.camera.position.copy(middle).addScaledVector(from, distance);
         this.camera.near = 0.02 * radius;
@@ -136,6 +136,12 @@ export class Stage {
     inHalf(x: number, y: number): THREE.Vector2 {
         const across = (x * this.#halves.length) % 1;
         return new THREE.Vector2(2 * across - 1, 1 - 2 * y);
+    }
+
+    /** In which the picture goes up and right. */
+    get directions(): { up: Triple; right: Triple } {
+        const [right, up] = [0, 1].map((column) => new THREE.Vector3().setFromMatrixColumn(this.camera.matrixWorld, column).toArray());
+        return { up, right };
     }
 
     get ground(): THREE.Object3D {

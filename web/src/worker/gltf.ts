@@ -4,10 +4,18 @@ import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
 /** The scene of a .glb, or of a self-contained .gltf. @throws Error with a sentence that names no file */
 export async function readGltf(bytes: ArrayBuffer): Promise<Object3D> {
     const manager = new LoadingManager().setURLModifier(withinFile);
-    const { scene, scenes } = await new GLTFLoader(manager).parseAsync(bytes, '');
+    const { scene, scenes } = await new GLTFLoader(manager).parseAsync(bytes, '').catch(explain);
     const root = scene ?? scenes[0]; // the default scene is optional
     if (!root) throw new Error('it contains no scene');
     return root;
+}
+
+/** The loader's own words are for those who call it. */
+function explain(error: unknown): never {
+    const words = error instanceof Error ? error.message : String(error);
+    if (/draco|meshopt/i.test(words)) throw new Error('its shapes are compressed, which this page cannot read: save it without compression');
+    if (/^THREE\.|^Invalid|Unexpected token|JSON/.test(words)) throw new Error('it is no glTF 2.0 file, or not all of one');
+    throw error;
 }
 
 const ONE_PIXEL = 'data:image/gif;base64,R0lGODlhAQABAAAAACH5BAEAAAAALAAAAAABAAEAAAICRAEAOw==';

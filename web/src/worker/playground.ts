@@ -431,7 +431,7 @@ function unlessRefused<T>(scene: Scene, act: () => T): T {
 function bodyOf(mesh: Mesh, map: ExactMap, up: Axis, act: Act): Body {
     const { vertices } = mesh;
     const k = AXES.indexOf(up);
-    const top = furthestAlong(up, vertices)[k], bottom = -furthestAlong(up, vertices.map((part) => -part))[k];
+    const top = furthestAlong(UNIT[up], vertices)[k], bottom = furthestAlong(UNIT[up].map((part) => -part) as Triple, vertices)[k];
     const { centre, radius } = act.body ?? map;
     // Room for a cloth that hangs over a flat model.
     const floor = act.floor ?? bottom - Math.max(0, 0.65 * radius - (top - bottom));

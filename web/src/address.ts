@@ -1,0 +1,53 @@
+/** The page's address, which holds the settings, and the browser's history, whose entries remember which file was open. */
+import { type Settings, fromLink, toLink } from './settings';
+
+interface Entry {
+    file?: { key: string; name: string };
+}
+
+/** How long a browser that was asked too often gets before it is asked again. Safari refuses more than 100 changes in 30 s. */
+const PATIENCE_MS = 1000;
+
+export class Address {
+    /** What was opened since the page was loaded, by the keys in the history. */
+    readonly #files = new Map<string, File>();
+    #again = 0;
+
+    /** @param followed  called when the visitor follows a link in the page, or goes back or forth, with what is there */
+    constructor(followed: (settings: Settings, file: File | undefined) => void) {
+        addEventListener('popstate', () => {
+            clearTimeout(this.#again);
+            followed(fromLink(location.hash), this.#file);
+        });
+    }
+
+    get #entry(): Entry {
+        return (history.state as Entry | null) ?? {};
+    }
+    get #file(): File | undefined {
+        return this.#files.get(this.#entry.file?.key ?? '');
+    }
+
+    /** The name of a file that was open here before the page was loaded again, and is not any more. */
+    get lost(): string | undefined {
+        return this.#file ? undefined : this.#entry.file?.name;
+    }
+
+    /** What the page shows, in place of what the address said. */
+    show(settings: Settings, file: File | undefined): void {
+        clearTimeout(this.#again);
+        const entry: Entry = file ? { file: { key: this.#keyOf(file), name: file.name } } : {};
+        try {
+            history.replaceState(entry, '', `#${toLink(settings)}`);
+        } catch {
+            this.#again = window.setTimeout(() => this.show(settings, file), PATIENCE_MS);
+        }
+    }
+
+    #keyOf(file: File): string {
+        for (const [key, known] of this.#files) if (known === file) return key;
+        const key = `${performance.timeOrigin}/${this.#files.size}`; // unlike those of this page loaded at another time
+        this.#files.set(key, file);
+        return key;
+    }
+}
