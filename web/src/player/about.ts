@@ -17,11 +17,17 @@ export function showAbout(description: Description): void {
 
 /** The facts of one frame. */
 export function showFrame({ number, inside, intersecting_pairs, self_intersecting_pairs }: RecordedFrame, timeStep: number): void {
-    writeCount('figure-inside', inside);
-    writeCount('figure-pairs', intersecting_pairs);
-    writeCount('figure-own-pairs', self_intersecting_pairs);
+    showCount('figure-inside', inside);
+    showCount('figure-pairs', intersecting_pairs);
+    showCount('figure-own-pairs', self_intersecting_pairs);
     byId('figure-time').textContent = `${(number * timeStep).toFixed(2)}\u2009s`;
     byId('figure-frame').textContent = count(number);
+}
+
+/** What a recording does not count has no figure. */
+function showCount(id: string, number: number | undefined): void {
+    writeCount(id, number);
+    byId(id).parentElement!.hidden = number === undefined;
 }
 
 function showMeans({ particles, ms_per_frame: ms, ns_per_query }: Description['figures']): void {

@@ -10,12 +10,13 @@ export async function readGltf(bytes: ArrayBuffer): Promise<Object3D> {
     return root;
 }
 
+class Elsewhere extends Error {}
+
 /** The loader's own words are for those who call it. */
 function explain(error: unknown): never {
-    const words = error instanceof Error ? error.message : String(error);
-    if (/draco|meshopt/i.test(words)) throw new Error('its shapes are compressed, which this page cannot read: save it without compression');
-    if (/^THREE\.|^Invalid|Unexpected token|JSON/.test(words)) throw new Error('it is no glTF 2.0 file, or not all of one');
-    throw error;
+    if (error instanceof Elsewhere) throw error;
+    if (/draco|meshopt/i.test(String(error))) throw new Error('its shapes are compressed, which this page cannot read: save it without compression');
+    throw new Error('it is no glTF 2.0 file, or not all of one');
 }
 
 const ONE_PIXEL = 'data:image/gif;base64,R0lGODlhAQABAAAAACH5BAEAAAAALAAAAAABAAEAAAICRAEAOw==';
@@ -24,5 +25,5 @@ const ONE_PIXEL = 'data:image/gif;base64,R0lGODlhAQABAAAAACH5BAEAAAAALAAAAAABAAE
 function withinFile(address: string): string {
     if (/^(data|blob):/.test(address)) return address;
     if (/\.(png|jpe?g|webp|avif|ktx2|gif)$/i.test(address)) return ONE_PIXEL;
-    throw new Error(`it refers to another file, ${address}: save the model as one .glb`);
+    throw new Elsewhere(`it refers to another file, ${address}: save the model as one .glb`);
 }
