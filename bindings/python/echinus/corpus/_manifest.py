@@ -8,12 +8,14 @@ import json
 import pathlib
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, TextIO
+from typing import Any, Literal, TextIO
 
 from echinus.corpus._corpus import Corpus
 from echinus.corpus._formats import names_of
-from echinus.corpus._sources import Fingerprint, Mesh, fingerprints, lies_below
+from echinus.corpus._sources import UNREADABLE, Mesh, fingerprints, lies_below
 from echinus.corpus._tasks import Record, Task, naming, whole_file
+
+Change = Literal["changed", "unreadable"]
 
 
 class Manifest:
@@ -58,9 +60,9 @@ class Manifest:
 
         complete = [task for task in tasks if is_complete(task)]
         meshes = [mesh for task in complete for mesh in task.meshes]
-        most = max((task.max_bytes for task in complete), default=0)
-        changed = {name for name, _ in changed_meshes(meshes, record_of, most, progress)}
-        return [task for task in complete if changed.isdisjoint(name for name, _ in task.meshes)]
+        # What cannot be read now keeps the labels that it has.
+        changed = {mesh for mesh, change in changes_of(meshes, record_of, self.settings["max_bytes"], progress) if change == "changed"}
+        return [task for task in complete if changed.isdisjoint(task.meshes)]
 
     def keep(self, finished: Sequence[Task], tasks: Iterable[Task]) -> None:
         """Forgets what is not about finished tasks, and removes the files of the others: a mesh that is labelled anew may be
@@ -93,22 +95,18 @@ class Manifest:
             file.writelines(line.encode() for line in [_line(self.settings), *(line for _, _, line in lines)])
 
 
-def changed_meshes(
-    meshes: Sequence[Mesh], record_of: Mapping[str, Record], most: int, progress: TextIO | None, *, gone: bool = False
-) -> list[Mesh]:
-    """Those whose files are not the ones of their records, for instance because they could not be read then.
-
-    A file that cannot be read now counts as unchanged, unless ``gone`` is true.
-    """
-
-    def is_changed(record: Record, path: str, now: Fingerprint | None) -> bool:
+def changes_of(
+    meshes: Sequence[Mesh], record_of: Mapping[str, Record], most: int, progress: TextIO | None
+) -> Iterator[tuple[Mesh, Change]]:
+    """Meshes whose files are not the ones of their records, for instance because they could not be read then."""
+    for mesh, now in zip(meshes, fingerprints([path for _, path in meshes], most, progress), strict=True):
+        record = record_of[mesh[0]]
         before = (record.get("source_bytes"), record.get("source_sha256"))
-        if now is None:
-            return gone and before != (None, None)
-        return now != before or _extension(record.get("source", "")) != _extension(path)  # which tells how to read it
-
-    now = fingerprints([path for _, path in meshes], most, progress)
-    return [mesh for mesh, found in zip(meshes, now) if is_changed(record_of[mesh[0]], mesh[1], found)]
+        if now == UNREADABLE:
+            if before != UNREADABLE:
+                yield mesh, "unreadable"
+        elif now != before or _extension(record.get("source", "")) != _extension(mesh[1]):  # which tells how to read it
+            yield mesh, "changed"
 
 
 def _extension(path: Any) -> str:

@@ -16,7 +16,8 @@ from echinus.corpus._progress import watched
 
 EXTENSIONS = (".obj", ".ply", ".stl", ".off", ".gltf", ".glb", ".3ds")
 Mesh = tuple[str, str]  # name, path
-Fingerprint = tuple[int, "str | None"]  # bytes and SHA-256
+Fingerprint = tuple["int | None", "str | None"]  # bytes and SHA-256
+UNREADABLE: Fingerprint = (None, None)
 SLICE = 10_000  # files whose fingerprints are under way at once
 
 
@@ -96,19 +97,19 @@ def lies_below(name: Any) -> bool:
     return bool(path.name) and not path.is_absolute() and ".." not in path.parts and str(path) == name
 
 
-def fingerprint(path: str, most: int) -> Fingerprint | None:
-    """None of what cannot be read; of a file larger than ``most`` bytes only its size."""
+def fingerprint(path: str, most: int) -> Fingerprint:
+    """Of a file larger than ``most`` bytes only its size."""
     with contextlib.suppress(OSError):
         if os.path.isfile(path):
             size = os.path.getsize(path)
             return size, hash_of(path) if size <= most else None
-    return None
+    return UNREADABLE
 
 
-def fingerprints(paths: Sequence[str], most: int, progress: TextIO | None = None) -> Iterator[Fingerprint | None]:
+def fingerprints(paths: Sequence[str], most: int, progress: TextIO | None = None) -> Iterator[Fingerprint]:
     """On all cores: for a file this takes about a hundredth of the time of its labels."""
 
-    def computed() -> Iterator[Fingerprint | None]:
+    def computed() -> Iterator[Fingerprint]:
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             for i in range(0, len(paths), SLICE):
                 yield from pool.map(lambda path: fingerprint(path, most), paths[i : i + SLICE])

@@ -62,12 +62,12 @@ def run(task: Task) -> list[Record]:
     members: dict[str, bytes] = {}
     for name, path in task.meshes:
         # Before the mesh is read: where the file changes meanwhile, the next run sees it.
-        size, digest = fingerprint(path, task.max_bytes) or (None, None)
+        size, digest = fingerprint(path, task.max_bytes)
         source = {"mesh": name, "source": path, "source_bytes": size, "source_sha256": digest}
         try:
             if name in reasons:
                 raise Refused(reasons[name], again=True)
-            files, report = _labelled(name, path, task)
+            files, report = _labelled(name, path, size, task)
         except (Refused, Error, MemoryError) as error:
             records.append(source | _refusal(error, path))
             continue
@@ -93,11 +93,10 @@ def _refusal(error: Refused | Error | MemoryError, path: str) -> Record:
     return {"refused": str(error)} | ({"again": True} if again else {})
 
 
-def _labelled(name: str, path: str, task: Task) -> tuple[dict[str, bytes], Record]:
+def _labelled(name: str, path: str, size: int | None, task: Task) -> tuple[dict[str, bytes], Record]:
     if os.path.exists(path) and not os.path.isfile(path):
         raise Refused(f"{path}: it is no file")  # a pipe would be waited for without end
-    size = os.path.getsize(path) if os.path.exists(path) else 0
-    if size > task.max_bytes:
+    if size is not None and size > task.max_bytes:
         raise Refused(f"{path}: the file has {size} bytes; at most {task.max_bytes} are accepted")
     samples = sample(read_mesh(path), task.sampling)
     return files_of(samples, name, task.form), samples.report | {"points": len(samples.points)}

@@ -12,10 +12,10 @@ from typing import TextIO
 
 from echinus._arguments import of_kind
 from echinus.corpus._corpus import UNFINISHED, Corpus
-from echinus.corpus._manifest import changed_meshes, difference, manifests, records_of
+from echinus.corpus._manifest import changes_of, difference, manifests, records_of
 from echinus.corpus._progress import watched
 from echinus.corpus._run import counted, may_succeed
-from echinus.corpus._sources import fingerprint, hash_of
+from echinus.corpus._sources import hash_of
 from echinus.corpus._tasks import Record
 
 
@@ -88,9 +88,9 @@ def _of_other_meshes(corpus: Corpus, records: Iterable[Record], progress: TextIO
     """Labels, or refusals, of mesh files that have changed since."""
     record_of = {record["mesh"]: record for record in records if "again" not in record}
     meshes = [mesh for mesh in corpus.meshes if mesh[0] in record_of]
-    for name, path in changed_meshes(meshes, record_of, corpus.max_bytes, progress, gone=True):
+    for (name, path), change in changes_of(meshes, record_of, corpus.max_bytes, progress):
         what = "refused" if "refused" in record_of[name] else "labelled"
-        if fingerprint(path, corpus.max_bytes) is None:
+        if change == "unreadable":
             yield f"{name}: {path} cannot be read any more; the mesh was {what}, and stays so"
         else:
             yield f"{name}: {path} has changed since it was {what}; the same command without --verify labels it anew"
