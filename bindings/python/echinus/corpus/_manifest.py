@@ -38,9 +38,12 @@ class Manifest:
         if not self.path.exists():
             self._write([])
 
-    def finished(self, tasks: Iterable[Task], progress: TextIO | None = None) -> list[Task]:
-        """Those with a record of each mesh that need not be tried again, whose mesh files are those of the records, and
-        with the files that the records name."""
+    def divide(self, tasks: Sequence[Task], progress: TextIO | None) -> tuple[list[Task], list[Task]]:
+        """Into those that are finished, and those that are left.
+
+        A task is finished where each of its meshes has a record, need not be tried again, and has the mesh file of its
+        record, and where the files that the records name are there.
+        """
         records = list(records_of(self.path))
         whole = {r["file"] for r in records if "file" in r and _size(self.path.parent / r["file"]) == r["bytes"]}
         record_of = {r["mesh"]: r for r in records if "mesh" in r}
@@ -62,15 +65,16 @@ class Manifest:
         meshes = [mesh for task in complete for mesh in task.meshes]
         # What cannot be read now keeps the labels that it has.
         changed = {mesh for mesh, change in changes_of(meshes, record_of, self.settings["max_bytes"], progress) if change == "changed"}
-        return [task for task in complete if changed.isdisjoint(task.meshes)]
+        finished = {task.meshes for task in complete if changed.isdisjoint(task.meshes)}
+        return [task for task in tasks if task.meshes in finished], [task for task in tasks if task.meshes not in finished]
 
-    def keep(self, finished: Sequence[Task], tasks: Iterable[Task]) -> None:
-        """Forgets what is not about finished tasks, and removes the files of the others: a mesh that is labelled anew may be
-        refused. Archives are written over, and what belongs to no task stays."""
-        meshes = {name for task in finished for name, _ in task.meshes}
-        for name in (name for task in tasks for name, _ in task.meshes if name not in meshes):
+    def keep(self, finished: Sequence[Task], left: Iterable[Task]) -> None:
+        """Forgets what is not about finished tasks, and removes the files of those that are left: a mesh that is labelled
+        anew may be refused. Archives are written over, and what belongs to no task stays."""
+        for name in (name for task in left for name, _ in task.meshes):
             for file in names_of(name, self.settings["format"]):
                 _remove(file, self.path.parent)
+        meshes = {name for task in finished for name, _ in task.meshes}
         files = {task.archive for task in finished}
         files |= {file for r in records_of(self.path) if r.get("mesh") in meshes for file in r.get("files", [])}
         self._write(r for r in records_of(self.path) if r.get("mesh") in meshes or ("file" in r and r["file"] in files))

@@ -120,14 +120,11 @@ def _label(corpus: Corpus, unfinished: str, run: _engines.Engine, progress: Text
     with one_at_a_time(corpus):
         manifest = Manifest(corpus, unfinished)
     try:
-        mine = corpus.tasks(unfinished)
-        finished = manifest.finished(mine, progress)
-        manifest.keep(finished, mine)
-        done = {task.meshes for task in finished}
-        tasks = [task for task in mine if task.meshes not in done]
-        summary, began = Summary(already=sum(map(len, done))), time.monotonic()
-        bar = Bar(progress, sum(len(task.meshes) for task in tasks))
-        with bar, contextlib.closing(_all_records(tasks, run)) as results:  # which ends the workers
+        finished, left = manifest.divide(corpus.tasks(unfinished), progress)
+        manifest.keep(finished, left)
+        summary, began = Summary(already=sum(len(task.meshes) for task in finished)), time.monotonic()
+        bar = Bar(progress, sum(len(task.meshes) for task in left))
+        with bar, contextlib.closing(_all_records(left, run)) as results:  # which ends the workers
             for records in results:
                 manifest.add(records)
                 summary.count(records)
