@@ -530,7 +530,7 @@ def test_a_mesh_that_was_mended_or_added_after_its_refusal_is_labelled(own_folde
 def test_paths_of_meshes_are_absolute_since_workers_may_stand_elsewhere(own_folder, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for meshes in (corpus.find_meshes("meshes"), [("box_0", "meshes/box_0.ply")]):
-        assert corpus.Corpus(meshes, "labels").tasks("")[0].meshes == (("box_0", str(own_folder / "box_0.ply")),)
+        assert corpus.Corpus(meshes, "labels").meshes[0] == ("box_0", str(own_folder / "box_0.ply"))
 
 
 def test_a_mesh_whose_file_has_another_extension_now_is_labelled_anew(own_folder, tmp_path):

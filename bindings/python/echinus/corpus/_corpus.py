@@ -61,23 +61,28 @@ class Corpus:
         if not i < n:
             raise ValueError(f"shard must be (i, n) with i from 0 to n - 1, not {self.shard}")
 
+    def groups(self) -> list[tuple[str | None, tuple[Mesh, ...]]]:
+        """Meshes of all parts that are labelled together, and their archive, if they come into one."""
+        if self.form != "webdataset":
+            return [(None, (mesh,)) for mesh in self.meshes]
+        starts = range(0, len(self.meshes), self.archive_size)
+        return [(f"labels-{i:06d}.tar", tuple(self.meshes[start : start + self.archive_size])) for i, start in enumerate(starts)]
+
     def tasks(self, unfinished: str) -> list[Task]:
-        """The work. Files are in the folder ``unfinished`` until they are whole."""
-        size = self.archive_size if self.form == "webdataset" else 1
-        groups = [tuple(self.meshes[i : i + size]) for i in range(0, len(self.meshes), size)]
-        tasks = [
+        """The work of this part. Files are in the folder ``unfinished`` until they are whole."""
+        i, n = self.shard
+        return [
             Task(
-                meshes=group,
+                meshes=meshes,
                 output=os.path.abspath(self.output),
                 unfinished=unfinished,
                 sampling=self.sampling,
                 form=self.form,
                 max_bytes=self.max_bytes,
-                archive=f"labels-{i:06d}.tar" if self.form == "webdataset" else None,
+                archive=archive,
             )
-            for i, group in enumerate(groups)
+            for archive, meshes in self.groups()[i::n]
         ]
-        return tasks[self.shard[0] :: self.shard[1]]
 
     def settings(self) -> Record:
         """The first line of the manifest: labels made with others do not belong in the same folder.

@@ -7,7 +7,7 @@ import itertools
 import os
 import pathlib
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TextIO
 
 from echinus._arguments import of_kind
@@ -65,7 +65,7 @@ def examine(corpus: Corpus, progress: TextIO | None = None) -> Findings:
     found = [path for path, _ in manifests(folder)]
     records = list(itertools.chain.from_iterable(map(records_of, found)))
     complaints = [sentence for path in found if (sentence := difference(path, settings))]
-    archive_of = {name: task.archive for task in replace(corpus, shard=(0, 1)).tasks("") for name, _ in task.meshes}
+    archive_of = {name: archive for archive, meshes in corpus.groups() for name, _ in meshes}
     ours = [r for r in records if r.get("mesh") in archive_of]
     times = collections.Counter(r["mesh"] for r in ours)
     complaints += [f"{name}: is recorded {n} times" for name, n in sorted(times.items()) if n > 1]
@@ -78,8 +78,8 @@ def examine(corpus: Corpus, progress: TextIO | None = None) -> Findings:
     used = named | {archive for archive in archive_of.values() if archive is not None and archive in hashes}
     complaints += _changed(folder, {name: hashes[name] for name in sorted(used) if name in hashes}, progress)
     present = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file() and UNFINISHED not in path.parts}
-    meshes = {os.path.relpath(path, os.path.abspath(folder)) for _, path in corpus.meshes}
-    surplus = sorted(present - used - meshes - {path.name for path in found})
+    sources = {os.path.relpath(path, os.path.abspath(folder)) for _, path in corpus.meshes}
+    surplus = sorted(present - used - sources - {path.name for path in found})
     refused = [r for r in ours if "refused" in r]
     return Findings(complaints, surplus, len(archive_of), len(refused), sum("again" in r for r in refused))
 
