@@ -10,7 +10,8 @@ from dataclasses import replace
 
 from echinus._errors import Error
 from echinus.corpus._corpus import Corpus
-from echinus.corpus._run import counted, label, may_succeed
+from echinus.corpus._progress import counted, may_succeed
+from echinus.corpus._run import label
 from echinus.corpus._samples import Frame, Sampling
 from echinus.corpus._sources import Mesh, find_meshes
 from echinus.corpus._verification import examine

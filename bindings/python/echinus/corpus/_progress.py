@@ -1,4 +1,4 @@
-"""Lines that say how far it is."""
+"""How far a run is, and what runs and verification both say."""
 
 from __future__ import annotations
 
@@ -8,6 +8,14 @@ from typing import Self, TextIO, TypeVar
 
 Item = TypeVar("Item")
 TERMINAL_SECONDS, LOG_SECONDS = 0.1, 10  # between lines
+
+
+def counted(meshes: int) -> str:
+    return "1 mesh" if meshes == 1 else f"{meshes} meshes"
+
+
+def may_succeed(refused: int) -> str:
+    return f"{refused} of the refused may succeed another time, with more memory, more time or a file that was missing"
 
 
 class Bar:

@@ -16,7 +16,7 @@ from echinus.corpus import _engines
 from echinus.corpus._corpus import Corpus
 from echinus.corpus._locks import alone, one_at_a_time, unfinished_files
 from echinus.corpus._manifest import Manifest
-from echinus.corpus._progress import Bar
+from echinus.corpus._progress import Bar, counted
 from echinus.corpus._tasks import Record, Task
 
 
@@ -52,14 +52,6 @@ class Summary:
         done, rate = self.labelled + self.refused, 1 / max(self.seconds, 1e-9)
         refused = f", {self.refused} of them refused" if self.refused else ""
         return f"{counted(done)}{refused}; {done * rate:.3g} meshes/s, {self.points * rate:.3g} points/s"
-
-
-def counted(meshes: int) -> str:
-    return "1 mesh" if meshes == 1 else f"{meshes} meshes"
-
-
-def may_succeed(refused: int) -> str:
-    return f"{refused} of the refused may succeed another time, with more memory, more time or a file that was missing"
 
 
 def label(

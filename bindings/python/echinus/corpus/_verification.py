@@ -13,8 +13,7 @@ from typing import TextIO
 from echinus._arguments import of_kind
 from echinus.corpus._corpus import UNFINISHED, Corpus
 from echinus.corpus._manifest import changes_of, difference, manifests, records_of
-from echinus.corpus._progress import watched
-from echinus.corpus._run import counted, may_succeed
+from echinus.corpus._progress import counted, may_succeed, watched
 from echinus.corpus._sources import hash_of
 from echinus.corpus._tasks import Record
 
