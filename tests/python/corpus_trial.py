@@ -17,6 +17,7 @@ import subprocess
 import sys
 import threading
 import time
+from dataclasses import replace
 
 import numpy as np
 
@@ -128,7 +129,7 @@ def on_local_cluster(made, kills):
 
 
 def run_ways(meshes, folder, form):
-    sampling = corpus.Sampling(**{**SAMPLING.__dict__, "distances": form != "occupancy"})
+    sampling = replace(SAMPLING, distances=form != "occupancy")
 
     def made(name, shard=(0, 1)):
         return corpus.Corpus(meshes, folder / f"{form}_{name}", form, sampling, archive_size=16, shard=shard)

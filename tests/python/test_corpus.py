@@ -26,7 +26,7 @@ from echinus.corpus import _command, _engines, _locks, _random, _samples, _tasks
 from support import open_torus, torus
 
 SMALL = corpus.Sampling(uniform=300, near=200, sigmas=(0.01, 0.1), surface=100)
-SIDES = corpus.Sampling(**{**SMALL.__dict__, "distances": False})  # as the command takes them for occupancies
+SIDES = replace(SMALL, distances=False)  # as the command takes them for occupancies
 
 
 @pytest.fixture(scope="module")
@@ -122,13 +122,13 @@ def test_sides_without_distances_are_the_same(mesh):
 def test_samples_depend_on_the_mesh_and_the_seed_only():
     a, b = corpus.sample(torus(), SMALL), corpus.sample(ech.Mesh(torus().vertices.copy(), torus().faces.astype(int)), SMALL)
     assert np.array_equal(a.points, b.points)
-    other_seed = corpus.sample(torus(), corpus.Sampling(**{**SMALL.__dict__, "seed": 1}))
+    other_seed = corpus.sample(torus(), replace(SMALL, seed=1))
     other_mesh = corpus.sample(ech.make_torus(1, 0.4, 30, 13), SMALL)
     assert not np.array_equal(a.points, other_seed.points) and not np.array_equal(a.points, other_mesh.points)
 
 
 def test_more_of_one_kind_does_not_change_another():
-    more = corpus.sample(torus(), corpus.Sampling(**{**SMALL.__dict__, "near": 0, "surface": 0}))
+    more = corpus.sample(torus(), replace(SMALL, near=0, surface=0))
     assert np.array_equal(more.points, corpus.sample(torus(), SMALL).points[:300])
 
 
@@ -145,14 +145,14 @@ def test_a_mesh_that_is_not_to_be_labelled_is_refused_with_a_reason():
     ]
     for mesh, options, reason in cases:
         with pytest.raises(corpus.Refused, match=reason) as refusal:  # and without a warning of NumPy
-            corpus.sample(mesh, corpus.Sampling(**{**SMALL.__dict__, **options}))
+            corpus.sample(mesh, replace(SMALL, **options))
         assert refusal.value.again == ("time_limit" in options)
     assert 0 < corpus.sample(open_torus(), SMALL).certain.mean() < 1
 
 
 def test_meshes_become_solid_on_request_and_the_report_says_how():
     def sampled(mesh, **options):
-        return corpus.sample(mesh, corpus.Sampling(**{**SMALL.__dict__, **options}))
+        return corpus.sample(mesh, replace(SMALL, **options))
 
     filled = sampled(ech.Mesh(torus().vertices, torus().faces[7:]), close_holes=16)
     assert filled.report["made_solid"]["holes_closed"] >= 1 and filled.report["closed"] and filled.certain.all()
@@ -218,7 +218,7 @@ def test_settings_of_another_kind_are_named(of, wrong, error, words):
 
 
 def test_numbers_of_numpy_are_settings_like_others(folder, tmp_path):
-    sampling = corpus.Sampling(**{**SIDES.__dict__, "uniform": np.int64(300), "sigmas": np.array([0.01, 0.1]), "padding": np.float32(0.5)})
+    sampling = replace(SIDES, uniform=np.int64(300), sigmas=np.array([0.01, 0.1]), padding=np.float32(0.5))
     summary = corpus.label(corpus.Corpus(corpus.find_meshes([folder / "class_0"]), tmp_path, sampling=sampling), workers=1)
     assert summary.labelled == 6
 
@@ -325,7 +325,7 @@ def test_two_workers_give_the_same_bytes(folder, tmp_path, reference):
 
 
 def test_solids_have_the_same_bytes_with_more_workers(folder, tmp_path):
-    solid = corpus.Sampling(**{**SIDES.__dict__, "close_holes": 64, "drop_inner_faces": True, "thicken": 0.01})
+    solid = replace(SIDES, close_holes=64, drop_inner_faces=True, thicken=0.01)
     for workers in (1, 2):
         corpus.label(corpus_of(folder, tmp_path / str(workers), sampling=solid), workers=workers)
     assert bytes_below(tmp_path / "1") == bytes_below(tmp_path / "2")
@@ -439,7 +439,7 @@ def test_a_second_run_computes_nothing(folder, tmp_path):
 
 def test_other_settings_need_another_folder(folder, tmp_path):
     corpus.label(corpus_of(folder, tmp_path), workers=1)
-    other = corpus_of(folder, tmp_path, sampling=corpus.Sampling(**{**SIDES.__dict__, "uniform": 7}))
+    other = corpus_of(folder, tmp_path, sampling=replace(SIDES, uniform=7))
     with pytest.raises(ValueError, match="manifest.jsonl: .* made with other settings: uniform was 300, and is 7 now"):
         corpus.label(other, workers=1)
     assert "uniform was 300, and is 7 now" in corpus.verify(other)[0]
@@ -448,7 +448,7 @@ def test_other_settings_need_another_folder(folder, tmp_path):
 def test_all_parts_of_a_folder_have_the_same_settings_and_are_as_many(folder, tmp_path):
     corpus.label(corpus_of(folder, tmp_path, shard=(0, 2)), workers=1)
     before = bytes_below(tmp_path)
-    other = corpus.Sampling(**{**SIDES.__dict__, "seed": 5})
+    other = replace(SIDES, seed=5)
     for options, words in [
         ({"shard": (1, 2), "sampling": other}, "made with other settings: seed was 0, and is 5 now"),
         ({"shard": (1, 3)}, r"made in 2 parts \(--shard i/2\), now 3 parts \(--shard i/3\)"),

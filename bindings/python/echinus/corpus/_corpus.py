@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import get_args
 
 from echinus import _core
@@ -89,7 +89,7 @@ class Corpus:
 
         The time limit is not among them: it decides which meshes have labels, but not what these are.
         """
-        sampling = self.sampling.to_json() | {"sigmas": list(self.sampling.sigmas)}
+        sampling = asdict(self.sampling) | {"sigmas": list(self.sampling.sigmas)}
         del sampling["time_limit"]
         return {"echinus": _core.version, "format": self.form, "archive_size": self.archive_size, "max_bytes": self.max_bytes, "sampling": sampling}
 
