@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import get_args
 
@@ -12,7 +12,7 @@ from echinus._arguments import of_kind, one_of, path_of, whole
 from echinus._meshes import Path
 from echinus.corpus._formats import Format
 from echinus.corpus._samples import Sampling
-from echinus.corpus._sources import Mesh, lies_below
+from echinus.corpus._sources import Mesh, by_name, lies_below
 from echinus.corpus._tasks import Record, Task
 
 UNFINISHED = ".unfinished"  # in the output folder: locks, and files that are being written
@@ -47,7 +47,7 @@ class Corpus:
     shard: tuple[int, int] = (0, 1)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "meshes", _sorted(self.meshes))
+        object.__setattr__(self, "meshes", tuple(by_name(_checked(self.meshes))))
         if not path_of(self.output):
             raise ValueError("output is an empty path; name the folder of the labels")
         one_of("form", self.form, get_args(Format))
@@ -94,17 +94,12 @@ class Corpus:
         return {"echinus": _core.version, "format": self.form, "archive_size": self.archive_size, "max_bytes": self.max_bytes, "sampling": sampling}
 
 
-def _sorted(meshes: Iterable[Mesh]) -> tuple[Mesh, ...]:
-    """With absolute paths: workers may stand in other folders."""
+def _checked(meshes: Iterable[Mesh]) -> Iterator[Mesh]:
     if not isinstance(meshes, Iterable):
         raise TypeError(f"meshes must be a list of (name, path), not {meshes!r}")
-    path_of_name: dict[str, str] = {}
     for i, mesh in enumerate(meshes):
         if not (isinstance(mesh, tuple) and len(mesh) == 2):
             raise TypeError(f"meshes[{i}] must be (name, path), as find_meshes() gives them, not {mesh!r}")
-        name, path = mesh[0], os.path.abspath(path_of(mesh[1]))
-        if not lies_below(name) or name.startswith(UNFINISHED):
-            raise ValueError(f"meshes[{i}]: its labels would go to {name!r} in the output folder, where they cannot be")
-        if path_of_name.setdefault(name, path) != path:
-            raise ValueError(f"meshes[{i}]: {path_of_name[name]} and {path} would both be labelled as {name}")
-    return tuple(sorted(path_of_name.items()))
+        if not lies_below(mesh[0]) or mesh[0].startswith(UNFINISHED):
+            raise ValueError(f"meshes[{i}]: its labels would go to {mesh[0]!r} in the output folder, where they cannot be")
+        yield mesh

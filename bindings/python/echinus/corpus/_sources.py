@@ -44,18 +44,23 @@ def find_meshes(sources: Path | Sequence[Path]) -> list[Mesh]:
         sources = [sources]
     if not isinstance(sources, Iterable):
         raise TypeError(f"sources must be paths, not {sources!r}")
-    found: dict[str, str] = {}
-    for source in sources:
-        if not path_of(source):
-            raise ValueError("a path of meshes is empty; name folders, mesh files or lists of them")
-        for name, place in _meshes_of(pathlib.Path(path_of(source))):
-            name, path = name.replace(".", "_"), os.path.abspath(place)
-            if found.setdefault(name, path) != path:
-                raise ValueError(f"{found[name]} and {path} would both be labelled as {name}; rename one")
-    return sorted(found.items())
+    return by_name((name.replace(".", "_"), path) for source in sources for name, path in _meshes_of(path_of(source)))
 
 
-def _meshes_of(source: pathlib.Path) -> Iterator[tuple[str, pathlib.Path]]:
+def by_name(meshes: Iterable[tuple[str, Path]]) -> list[Mesh]:
+    """Sorted, each once, and with absolute paths: workers may stand in other folders."""
+    path_of_name: dict[str, str] = {}
+    for name, place in meshes:
+        path = os.path.abspath(path_of(place))
+        if path_of_name.setdefault(name, path) != path:
+            raise ValueError(f"{path_of_name[name]} and {path} would both be labelled as {name}; rename one")
+    return sorted(path_of_name.items())
+
+
+def _meshes_of(path: str) -> Iterator[tuple[str, pathlib.Path]]:
+    if not path:
+        raise ValueError("a path of meshes is empty; name folders, mesh files or lists of them")
+    source = pathlib.Path(path)
     if source.suffix.lower() == ".txt" and not source.is_dir():
         for number, line in enumerate(_text_of(source).splitlines(), 1):
             if line.strip():
@@ -66,9 +71,9 @@ def _meshes_of(source: pathlib.Path) -> Iterator[tuple[str, pathlib.Path]]:
     elif source.is_dir():
         for folder, _, files in os.walk(source, onerror=_raise):
             for file in files:
-                path = pathlib.Path(folder, file)
-                if path.suffix.lower() in EXTENSIONS:
-                    yield str(path.relative_to(source).with_suffix("")), path
+                mesh = pathlib.Path(folder, file)
+                if mesh.suffix.lower() in EXTENSIONS:
+                    yield str(mesh.relative_to(source).with_suffix("")), mesh
     elif source.exists():
         yield source.stem, source
     else:
