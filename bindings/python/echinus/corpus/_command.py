@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from echinus._errors import Error
 from echinus.corpus._corpus import Corpus
+from echinus.corpus._engines import MalformedAddress
 from echinus.corpus._progress import counted, may_succeed
 from echinus.corpus._run import label
 from echinus.corpus._samples import Frame, Sampling
@@ -64,7 +65,7 @@ def main(arguments: argparse.Namespace) -> int:
         return _verify(corpus) if arguments.verify else _label(corpus, arguments, memory)
     except (Error, ValueError, OSError, RuntimeError, ModuleNotFoundError) as error:
         print(f"echinus label: {error}", file=sys.stderr)
-        return 1
+        return WRONG_OPTIONS if isinstance(error, MalformedAddress) else 1
     except KeyboardInterrupt:
         print("\nechinus label: interrupted; the same command goes on from here", file=sys.stderr)
         return 130

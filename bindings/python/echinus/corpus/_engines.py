@@ -29,6 +29,10 @@ Engine = Callable[[Iterable[Task]], Iterator[Outcome]]
 ATTEMPTS = 3  # a worker may be killed for other reasons than its task
 
 
+class MalformedAddress(ValueError):
+    """The address of a scheduler is malformed; one where nothing answers is an OSError."""
+
+
 class _Worker:
     def __init__(self, memory: int) -> None:
         # Not by fork: threads of this process would be missing in the child, with their locks.
@@ -167,7 +171,7 @@ def dask_cluster(scheduler: str, progress: TextIO | None) -> Iterator[Engine]:
     try:
         dask.comm.get_address_host_port(scheduler)  # the client takes seconds, and a traceback, to complain
     except ValueError as error:
-        raise ValueError(f"scheduler {scheduler!r} is no address, for instance tcp://host:8786 ({error})") from None
+        raise MalformedAddress(f"scheduler {scheduler!r} is no address, for instance tcp://host:8786 ({error})") from None
     try:
         client = dask.Client(scheduler, set_as_default=False)
     except OSError as error:
