@@ -12,6 +12,7 @@ import ctypes
 import functools
 import importlib
 import itertools
+import mmap
 import multiprocessing
 import os
 import resource
@@ -76,6 +77,11 @@ def _serve(pipe: Connection, memory: int) -> None:
     _end_with_parent()
     resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     _keep_freed_memory()
+    try:
+        mmap.mmap(-1, 1).close()  # not malloc: it may have kept a page though the process alone exceeds the limit
+    except OSError:
+        pipe.send(MemoryError())
+        return
     while True:
         try:
             task = pipe.recv()
