@@ -69,13 +69,12 @@ def unfinished_files(corpus: Corpus) -> Iterator[str]:
 
 @contextlib.contextmanager
 def _part_locked(path: pathlib.Path) -> Iterator[None]:
-    file = _opened(path)
-    try:
-        _lock(file.fileno(), fcntl.LOCK_NB | fcntl.LOCK_EX)
-        while not _is(file, path):  # an earlier run removed it meanwhile
-            file.close()
-            file = _opened(path)
+    with contextlib.ExitStack() as stack:
+        while True:
+            file = stack.enter_context(_opened(path))
             _lock(file.fileno(), fcntl.LOCK_NB | fcntl.LOCK_EX)
+            if _is(file, path):  # else an earlier run removed it meanwhile
+                break
         try:
             yield
         finally:
@@ -83,8 +82,6 @@ def _part_locked(path: pathlib.Path) -> Iterator[None]:
                 path.unlink()
             with contextlib.suppress(OSError):  # other files are in it, or it is gone
                 path.parent.rmdir()
-    finally:
-        file.close()
 
 
 def _opened(path: pathlib.Path) -> TextIO:
