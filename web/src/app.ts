@@ -1,29 +1,27 @@
 /** The page: brings the panel, the pictures and the workers together. */
-import { type Ray, type Raycaster, Vector3 } from 'three';
+import { type Ray, Vector3 } from 'three';
 import { Address } from './address';
-import { UNIT, furthestAlong } from './axes';
 import { Client } from './client';
 import { enableFiles } from './files';
 import { fillGallery, showChosen } from './gallery';
 import { enableKeys } from './keys';
+import { MapInspector } from './map_inspector';
 import { Controls } from './panel/controls';
 import { fillDepthLegend } from './panel/depth_legend';
 import { byId } from './panel/elements';
 import { FigureStrip } from './panel/figures';
 import { showHalf, showHeadline } from './panel/headline';
-import { forgetRay, showLegend, showMapFigures, showRay } from './panel/map_figures';
+import { Keep, type KeepWishes } from './panel/keep';
+import { showMapFigures } from './panel/map_figures';
 import { beQuiet, enableClosing, remark, say, showProgress } from './panel/notice';
 import { numbered } from './panel/numbers';
 import { showReport } from './panel/report';
 import { enablePointer } from './pointer';
-import type { CellNews, FromWorker, MapNews, ModelNews, SurfaceNews, ToWorker, Triple } from './protocol';
-import { Recorder } from './recorder';
-import { objText, saveAs } from './saving';
+import type { FromWorker, MapNews, ModelNews, ToWorker } from './protocol';
 import { SAMPLES, type Sample, type Settings, UNDER_SHEETS, besideOf, consistent, fromLink, toLink, unknownIn } from './settings';
 import { Side } from './side';
 import { Tour } from './tour';
 import { BallView } from './view/ball_view';
-import { MapView } from './view/map_view';
 import { ModelView } from './view/model_view';
 import { Stage } from './view/stage';
 
@@ -59,19 +57,18 @@ class App {
     #model: ModelNews | undefined;
     #map: MapNews | undefined;
     #paused = false;
-    #rayAsked = false;
-    /** None is shown during parts of the tour. */
-    #rayWanted = true;
-    #surface: SurfaceNews | undefined;
-    #cells: CellNews | undefined;
     #worded = 0;
 
     readonly #stage = new Stage(byId<HTMLCanvasElement>('canvas'));
     readonly #modelView = new ModelView();
     readonly #ballView = new BallView();
-    readonly #mapView = new MapView();
+    readonly #inspector = new MapInspector({
+        settings: () => this.#settings,
+        isGuided: () => this.#tour.runs,
+        tell: (message) => this.#main.client.tell(message),
+    });
     readonly #figures = new FigureStrip();
-    readonly #recorder = new Recorder();
+    readonly #keep: Keep;
     readonly #controls: Controls;
     readonly #address: Address;
     readonly #main: Side;
@@ -82,17 +79,23 @@ class App {
     constructor(client: Client) {
         this.#main = new Side(client);
         this.#main.onCuts = (cuts) => this.#figures.showCuts(cuts);
-        this.#stage.scene.add(this.#modelView.group, this.#main.view.group, this.#ballView.mesh, this.#mapView.group);
+        this.#stage.scene.add(this.#modelView.group, this.#main.view.group, this.#ballView.mesh, this.#inspector.view.group);
         this.#tour = new Tour({
             model: () => this.#model,
             settings: () => this.#settings,
             choose: (key, value) => this.#settings[key] !== value && this.#change({ ...this.#settings, [key]: value }, key),
             restart: () => this.#restart(),
-            showRay: (direction) => this.#askForRay(direction),
+            showRay: (direction) => this.#inspector.showRay(direction),
             cut: (height) => this.#cut(height),
             picture: () => this.#stage.directions,
         });
         this.#controls = new Controls(this.#settings, (settings, key) => this.#follow(settings, key));
+        this.#keep = new Keep({
+            picture: () => this.#stage.picture(),
+            meshes: () => this.#meshes(),
+            link: () => this.#link(),
+            hasFile: () => this.#asked.file !== undefined,
+        });
         this.#bindButtons();
         this.#bindKeys();
         enableFiles((file) => this.#open(file));
@@ -148,6 +151,7 @@ class App {
     }
 
     #hear(message: FromWorker): void {
+        if (this.#inspector.hear(message)) return;
         if (this.#main.hear(message)) {
             if (message.kind === 'cloth') this.#beginCloth(message.why);
             return;
@@ -157,28 +161,10 @@ class App {
                 return this.#showModel(message);
             case 'progress':
                 return this.#showProgress(message);
-            case 'surface':
-                this.#surface = message;
-                this.#mapView.showSurface(message);
-                return this.#showSurface();
-            case 'cells':
-                this.#cells = message;
-                this.#mapView.showCells(message);
-                return this.#showSurface();
             case 'map':
                 return this.#useMap(message.map);
             case 'rebuilt':
                 return this.#showMap(message.map);
-            case 'cut':
-                return this.#mapView.showCut(message);
-            case 'ray':
-                this.#rayAsked = false;
-                if (this.#settings.view !== 'map' || !this.#rayWanted) return; // it has become unwanted meanwhile
-                this.#mapView.showRay(message);
-                return showRay(message, this.#model!.radius);
-            case 'missed':
-                this.#rayAsked = false;
-                return;
             case 'failed':
                 return this.#fail(message);
             case 'settled':
@@ -212,7 +198,7 @@ class App {
         this.#main.client.stop();
         this.#main.forget();
         this.#openings = [];
-        this.#rayAsked = false;
+        this.#inspector.forgive();
         showProgress(undefined);
         if (this.#inForce) this.#setLink(this.#withOwn(this.#inForce));
         this.#showAll();
@@ -224,7 +210,7 @@ class App {
 
     #fail({ sentence, code, turn }: FromWorker & { kind: 'failed' }): void {
         if (turn === undefined) {
-            this.#rayAsked = false;
+            this.#inspector.forgive();
             this.#main.forgive(); // the frame may have been waiting for one of these
         } else if (turn < this.#asked.turn) return; // another model has been opened since
         if (code === 'Diverged') this.#pause(true);
@@ -277,7 +263,7 @@ class App {
         this.#model = model;
         this.#main.model = model;
         this.#modelView.show(model);
-        this.#mapView.begin(model);
+        this.#inspector.model = model;
         this.#pointCamera(model);
         this.#showTitle(model);
         showReport(model);
@@ -301,10 +287,7 @@ class App {
         this.#showNote(map.kind);
         document.body.classList.toggle('map-exact', map.kind === 'exact');
         document.body.classList.toggle('map-distance', map.kind === 'distance');
-        this.#mapView.forget();
-        this.#cells = undefined;
-        forgetRay();
-        if (this.#settings.view === 'map') this.#askForMap();
+        this.#inspector.map = map;
     }
 
     #showNote(map: MapNews['kind']): void {
@@ -332,33 +315,10 @@ class App {
         return this.#hasSheets ? this.#settings.cloths : 1;
     }
 
-    #askForMap(): void {
-        const { client } = this.#main;
-        client.tell({ kind: 'surface' });
-        this.#askForCells();
-        if (this.#tour.runs) return;
-        client.tell({ kind: 'slice', height: this.#settings.slice });
-        // Shows a ray before the pointer enters.
-        this.#askForRay(towardsTop(this.#model!));
-    }
-
-    /** @param direction  from the map's centre; undefined: none is to be seen */
-    #askForRay(direction: Triple | undefined): void {
-        this.#rayWanted = direction !== undefined;
-        if (direction) return this.#main.client.tell({ kind: 'ray', direction });
-        this.#mapView.hideRay();
-        forgetRay();
-    }
-
     /** For now: the visitor's own setting stays. */
     #cut(height: number): void {
         this.#controls.show({ ...this.#settings, slice: height });
         this.#main.client.tell({ kind: 'slice', height });
-    }
-
-    /** Only where they are shown: there may be half a million. */
-    #askForCells(): void {
-        if (this.#settings.shown === 'cells' && this.#map?.kind === 'exact' && !this.#cells) this.#main.client.tell({ kind: 'cells' });
     }
 
     // ---- The other half
@@ -426,7 +386,7 @@ class App {
             this.#modelView.deform(this.#main.shape);
             this.#ballView.show(asks ? this.#main.ball : undefined);
         }
-        this.#mapView.reveal();
+        this.#inspector.view.reveal();
         this.#stage.draw();
         this.#figures.countDrawing();
         this.#word();
@@ -468,8 +428,8 @@ class App {
             case 'slice':
                 return this.#main.client.tell({ kind: 'slice', height: settings.slice });
             case 'shown':
-                if (this.#settings.view === 'map') this.#askForCells();
-                return this.#showSurface();
+                this.#inspector.askForCells();
+                return this.#inspector.showColours();
             case 'model':
                 return this.#open(undefined);
             case 'mend':
@@ -527,12 +487,6 @@ class App {
         document.body.dataset.look = this.#stage.fine ? 'fine' : 'light'; // the tests read this
     }
 
-    #showSurface(): void {
-        if (!this.#surface) return;
-        this.#mapView.shown = this.#settings.shown;
-        showLegend(this.#surface, this.#cells, this.#settings.shown);
-    }
-
     #showView(): void {
         const map = this.#settings.view === 'map';
         document.body.classList.toggle('view-map', map);
@@ -540,10 +494,10 @@ class App {
         this.#modelView.group.visible = !map;
         this.#main.view.group.visible = !map;
         this.#stage.ground.visible = !map;
-        this.#mapView.group.visible = map;
+        this.#inspector.view.group.visible = map;
         if (map && this.#other) this.#endBeside();
         else if (!map && this.#settings.beside !== 'nothing' && this.#model && !this.#other) this.#beginBeside();
-        if (map && this.#model) this.#askForMap();
+        this.#inspector.ask();
     }
 
     #pause(paused: boolean): void {
@@ -581,10 +535,6 @@ class App {
             step: () => this.#step(),
             restart: () => this.#restart(),
             rebuild: () => this.#main.client.tell({ kind: 'rebuild' }),
-            record: () => void this.#record(),
-            'save-picture': () => void this.#savePicture(),
-            'save-mesh': () => this.#saveMesh(),
-            'copy-link': () => void this.#copyLink(),
             'tour-begin': () => this.#tour.begin(),
             'whole-view': () => this.#showWhole(),
         };
@@ -602,7 +552,7 @@ class App {
             m: () => this.#switchView(),
             x: () => this.#switchMap(),
             t: () => this.#tour.begin(),
-            p: () => void this.#savePicture(),
+            p: () => void this.#keep.savePicture(),
             enter: () => this.#tour.next(),
             escape: () => this.#tour.end(),
             arrowleft: () => this.#stage.turn(-TURN, 0),
@@ -628,7 +578,7 @@ class App {
             hold: (offset) => this.#tell({ kind: 'hold', offset }),
             release: () => this.#tell({ kind: 'release' }),
             lead: (ray) => this.#lead(ray),
-            hover: (ray) => this.#lookUnder(ray),
+            hover: (ray) => this.#inspector.lookUnder(ray),
             obstacle: this.#modelView.clay,
         });
     }
@@ -640,58 +590,22 @@ class App {
         this.#tell({ kind: 'pointer', from: ray.origin.toArray(), to: ray.at(reach, new Vector3()).toArray() });
     }
 
-    /** The ray of the map through the point under the pointer. One query at a time, so that slow ones do not queue up. */
-    #lookUnder(ray: Raycaster): void {
-        if (this.#settings.view !== 'map' || this.#rayAsked || !this.#model || this.#tour.runs) return;
-        const way = this.#mapView.wayOf(ray);
-        if (!way) return;
-        const { centre } = this.#model;
-        this.#rayAsked = this.#rayWanted = true;
-        if (this.#mapView.showsCells) this.#main.client.tell({ kind: 'ray', direction: [0, 1, 2].map((k) => way.from[k] - centre[k]) as Triple });
-        else this.#main.client.tell({ kind: 'point', ...way });
-    }
+    // ---- What is kept
 
-    // ---- Saving
-
-    async #savePicture(): Promise<void> {
-        saveAs('echinus.png', await this.#stage.picture());
-    }
-
-    async #record(): Promise<void> {
-        if (this.#recorder.runs) return this.#recorder.stop();
-        const button = byId('record');
-        try {
-            const { clip, ending } = await this.#recorder.record(byId<HTMLCanvasElement>('canvas'), (seconds) => (button.textContent = seconds > 0 ? `Stop (${seconds}\u2009s left)` : 'Record clip'));
-            saveAs(`echinus.${ending}`, clip);
-        } catch (error) {
-            say(error instanceof Error ? error.message : String(error));
-        }
-    }
-
-    #saveMesh(): void {
+    #meshes(): ReturnType<KeepWishes['meshes']> {
         const { positions, faces } = this.#main.view;
-        if (!positions || !this.#model) return say('there is no cloth to save yet');
-        const model = { name: 'model', vertices: this.#modelView.verticesNow(this.#main.shape?.vertices ?? this.#model.vertices), faces: this.#model.faces };
-        const notices = ['Cloth and model, by Echinus'];
-        if (this.#model.name === 'horse.3ds')
-            notices.push('The object "model" is horse.3ds of glmark2-data, licence GPL-3 or later; it is not part of Echinus.');
-        const text = objText([{ name: 'cloth', vertices: positions, faces }, model], notices);
-        saveAs('echinus.obj', new Blob([text], { type: 'model/obj' }));
+        if (!positions || !this.#model) return undefined;
+        const vertices = this.#modelView.verticesNow(this.#main.shape?.vertices ?? this.#model.vertices);
+        const ofHorse = 'The object "model" is horse.3ds of glmark2-data, licence GPL-3 or later; it is not part of Echinus.';
+        return {
+            meshes: [{ name: 'cloth', vertices: positions, faces }, { name: 'model', vertices, faces: this.#model.faces }],
+            notices: this.#model.name === 'horse.3ds' ? [ofHorse] : [],
+        };
     }
 
-    async #copyLink(): Promise<void> {
+    #link(): string {
         if (this.#model) this.#keepCamera(); // the camera may still be moving
-        const link = `${location.origin}${location.pathname}#${toLink(this.#settings)}`;
-        const note = byId('link-note');
-        const file = this.#asked.file ? ' The opened file is not part of it.' : '';
-        try {
-            await navigator.clipboard.writeText(link);
-            note.hidden = true;
-            remark(`The link is copied.${file}`);
-        } catch {
-            note.hidden = false;
-            note.textContent = `${link}${file}`; // for copying by hand where the clipboard is not available
-        }
+        return `${location.origin}${location.pathname}#${toLink(this.#settings)}`;
     }
 }
 
@@ -708,11 +622,6 @@ function mapNote(kind: MapNews['kind'], closed: boolean, surfaces: boolean): str
     if (surfaces) return 'Out by the shortest way. No face of the cloth gets through the surface, closed or open.';
     if (closed) return 'Out by the shortest way. No particle gets through; sharp parts may show between particles.';
     return 'Out by the shortest way. The mesh is open: near its gaps sides are estimated, and particles may get in there.';
-}
-
-/** From the centre to the highest vertex: an instructive ray for most models. */
-function towardsTop({ vertices, centre, up }: ModelNews): Triple {
-    return furthestAlong(UNIT[up], vertices).map((part, k) => part - centre[k]) as Triple;
 }
 
 export function begin(client: Client): void {
