@@ -33,15 +33,21 @@ export class Address {
         return this.#file ? undefined : this.#entry.file?.name;
     }
 
-    /** What the page shows, in place of what the address said. */
+    /** What the page shows, in place of what the address said. A file that is opened has an entry of its own. */
     show(settings: Settings, file: File | undefined): void {
         clearTimeout(this.#again);
         const entry: Entry = file ? { file: { key: this.#keyOf(file), name: file.name } } : {};
         try {
-            history.replaceState(entry, '', `#${toLink(settings)}`);
+            if (file && this.#file !== file) history.pushState(entry, '', `#${toLink(settings)}`);
+            else history.replaceState(entry, '', `#${toLink(settings)}`);
         } catch {
             this.#again = window.setTimeout(() => this.show(settings, file), PATIENCE_MS);
         }
+    }
+
+    /** Something begins that going back ends. */
+    enter(): void {
+        history.pushState(this.#entry, '');
     }
 
     #keyOf(file: File): string {

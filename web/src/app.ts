@@ -18,7 +18,7 @@ import { numbered } from './panel/numbers';
 import { showReport } from './panel/report';
 import { enablePointer } from './pointer';
 import type { FromWorker, MapNews, ModelNews, ToWorker } from './protocol';
-import { SAMPLES, type Sample, type Settings, UNDER_SHEETS, besideOf, consistent, fromLink, toLink, unknownIn } from './settings';
+import { SAMPLES, type Sample, type Settings, UNDER_SHEETS, besideOf, consistent, fromLink, toLink, notTakenIn } from './settings';
 import { Side } from './side';
 import { Tour } from './tour';
 import { BallView } from './view/ball_view';
@@ -85,6 +85,7 @@ class App {
             settings: () => this.#settings,
             choose: (key, value) => this.#settings[key] !== value && this.#change({ ...this.#settings, [key]: value }, key),
             restart: () => this.#restart(),
+            enter: () => this.#address.enter(),
             showRay: (direction) => this.#inspector.showRay(direction),
             cut: (height) => this.#cut(height),
             picture: () => this.#stage.directions,
@@ -116,6 +117,7 @@ class App {
 
     /** The visitor has followed a link in the page, or has gone back or forth. */
     #arrive(settings: Settings, file: File | undefined): void {
+        this.#tour.end();
         if (toLink(settings) === toLink(this.#settings) && file === this.#asked.file) return;
         this.#settings = settings;
         this.#inView = '';
@@ -126,9 +128,9 @@ class App {
     }
 
     #sayWhatIsLacking(): void {
-        const unknown = unknownIn(location.hash);
+        const notTaken = notTakenIn(location.hash);
         if (this.#address.lost) say(`${this.#address.lost} was open here. The page does not keep files when it is loaded again: open it once more.`);
-        else if (unknown.length > 0) say(`This page does not have what its link asks for, and leaves it out: ${shortened(unknown.join(', '))}`);
+        else if (notTaken.length > 0) say(`Of the link, the page cannot take ${shortened(notTaken.join(', '))}.`);
     }
 
     // ---- The worker
@@ -452,7 +454,7 @@ class App {
     #setLink(settings: Settings): void {
         const { file } = this.#asked;
         this.#settings = settings;
-        this.#address.show(settings, file);
+        if (!this.#tour.runs) this.#address.show(settings, file); // which would come back without the tour
         showChosen(file ? undefined : settings);
         byId('whole-view').hidden = settings.camera === '';
     }
@@ -473,7 +475,10 @@ class App {
     #showHand(): void {
         this.#main.keepsOffItself = this.#figures.countsOwn = this.#settings.self;
         const held = this.#asked.file ? undefined : HELD[this.#settings.model];
-        byId('hint').textContent = HINTS[this.#settings.hand](held ?? 'model');
+        const hint = HINTS[this.#settings.hand](held ?? 'model');
+        if (byId('hint').textContent === hint) return;
+        byId('hint').textContent = hint;
+        if (this.#settings.view === 'cloth' && byId('hint').offsetParent === null) remark(hint); // a small window has no place for it
     }
 
     #showLook(): void {
@@ -525,6 +530,10 @@ class App {
         const next = { nothing: 'map', map: 'particles', particles: 'nothing' } as const;
         this.#choose('beside', next[this.#settings.beside]);
     }
+    #compareWith(beside: Settings['beside']): void {
+        scrollTo({ top: 0 }); // to the picture, on a small screen
+        this.#choose('beside', beside);
+    }
     #choose<K extends keyof Settings>(key: K, value: Settings[K]): void {
         this.#follow({ ...this.#settings, [key]: value }, key);
     }
@@ -537,6 +546,8 @@ class App {
             rebuild: () => this.#main.client.tell({ kind: 'rebuild' }),
             'tour-begin': () => this.#tour.begin(),
             'whole-view': () => this.#showWhole(),
+            'see-particles': () => this.#compareWith('particles'),
+            'see-map': () => this.#compareWith('map'),
         };
         for (const [id, action] of Object.entries(actions)) byId(id).addEventListener('click', action);
     }

@@ -127,8 +127,13 @@ export function fromLink(hash: string): Settings {
     return consistent(settings as unknown as Settings, said.has('beside') ? 'beside' : 'surfaces');
 }
 
-/** What a link asks for and the page does not have. */
-export const unknownIn = (hash: string): string[] => [...partsOf(hash)].filter(([key, text]) => valueIn(key, text) === undefined).map((part) => part.join('='));
+/** What a link asks for and the page cannot take as it stands. */
+export const notTakenIn = (hash: string): string[] =>
+    [...partsOf(hash)].flatMap(([key, text]) => {
+        const value = valueIn(key, text);
+        if (value === undefined) return [`${key}=${text}`];
+        return typeof value === 'number' && value !== Number(text) ? [`${key}=${text} (but ${value})`] : [];
+    });
 
 const partsOf = (hash: string): URLSearchParams => new URLSearchParams(hash.replace(/^#/, ''));
 

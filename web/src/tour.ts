@@ -1,5 +1,6 @@
 import { furthestAlong } from './axes';
 import { byId } from './panel/elements';
+import { count } from './panel/numbers';
 import type { ModelNews, Triple } from './protocol';
 import type { Settings } from './settings';
 
@@ -8,6 +9,8 @@ export interface TourWishes {
     settings(): Settings;
     choose<K extends keyof Settings>(key: K, value: Settings[K]): void;
     restart(): void;
+    /** Going back in the browser ends what begins now. */
+    enter(): void;
     /** Shows the map along this way from its centre; undefined: along none. */
     showRay(direction: Triple | undefined): void;
     /** Cuts the map open at this height; the visitor's own setting stays. */
@@ -22,7 +25,7 @@ const STOP_MS = 6500;
 const STEP_MS = 50;
 
 interface Stop {
-    words: string;
+    words: string | ((tour: TourWishes) => string);
     /** At the beginning. */
     enter?(tour: TourWishes): void;
     /** @param share  of the stop that has passed */
@@ -32,7 +35,7 @@ interface Stop {
 /** The last one waits for the visitor, who may be pulling the cloth. */
 const STOPS: readonly Stop[] = [
     {
-        words: 'A model, as its map has it. The map is built once, in milliseconds, and takes a few dozen bytes a face.',
+        words: (tour) => `A model, as its map has it. The darker, the more faces may have to be tested beside it: few, out of ${count(tour.model()!.report.faceCount)}. The map is built once, in milliseconds.`,
         enter: (tour) => {
             tour.choose('map', 'exact'); // the paper's has no cells
             tour.choose('view', 'map');
@@ -45,7 +48,7 @@ const STOPS: readonly Stop[] = [
         move: (tour, share) => tour.showRay(acrossPicture(tour, share)),
     },
     {
-        words: 'Many directions share a cell, outlined here. It knows between which distances surface may lie: its bands, in blue. Outside of them the answer needs no test at all.',
+        words: 'Many directions share a cell, outlined here. It knows at which distances there may be surface: its bands, in blue. Outside of them the answer needs no test at all.',
         enter: (tour) => tour.showRay(acrossPicture(tour, 1)),
     },
     {
@@ -87,6 +90,7 @@ export class Tour {
 
     constructor(wishes: TourWishes) {
         this.#wishes = wishes;
+        byId('tour-back').addEventListener('click', () => this.#goTo(this.#stop - 1));
         byId('tour-next').addEventListener('click', () => this.next());
         byId('tour-end').addEventListener('click', () => this.end());
     }
@@ -97,13 +101,15 @@ export class Tour {
 
     begin(): void {
         if (!this.#wishes.model()) return;
-        if (!this.runs) this.#before = this.#wishes.settings().map;
-        this.#stop = -1;
+        if (!this.runs) {
+            this.#before = this.#wishes.settings().map;
+            this.#wishes.enter();
+        }
         scrollTo({ top: 0 }); // on a small screen its button is far below the picture
-        this.#goOn();
+        this.#goTo(0);
     }
     next(): void {
-        if (this.runs) this.#goOn();
+        if (this.runs) this.#goTo(this.#stop + 1);
     }
     /** Back to the cloth, and to the visitor's own map. */
     end(): void {
@@ -121,14 +127,17 @@ export class Tour {
         this.#wishes.cut(this.#wishes.settings().slice);
     }
 
-    #goOn(): void {
+    #goTo(number: number): void {
         clearInterval(this.#timer);
-        const stop = STOPS[++this.#stop];
+        const stop = STOPS[number];
         if (!stop) return this.end();
-        const isLast = this.#stop === STOPS.length - 1;
+        const isLast = number === STOPS.length - 1;
+        this.#stop = number;
         byId('tour').hidden = false;
-        byId('tour').querySelector('p')!.textContent = stop.words;
-        byId('tour').dataset.stop = String(this.#stop); // the tests read this
+        byId('tour').querySelector('p')!.textContent = typeof stop.words === 'string' ? stop.words : stop.words(this.#wishes);
+        byId('tour').dataset.stop = String(number); // the tests read this
+        byId('tour-place').textContent = `${number + 1} of ${STOPS.length}`;
+        byId('tour-back').hidden = number === 0;
         byId('tour-next').textContent = isLast ? 'Done' : 'Next';
         byId('tour-end').hidden = isLast;
         stop.enter?.(this.#wishes);
@@ -138,7 +147,7 @@ export class Tour {
 
     #move(stop: Stop): void {
         const share = (performance.now() - this.#since) / STOP_MS;
-        if (share >= 1) this.#goOn();
+        if (share >= 1) this.next();
         else if (this.#wishes.model()) stop.move?.(this.#wishes, share);
     }
 }

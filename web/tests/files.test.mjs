@@ -95,7 +95,7 @@ test('a broken file gives one sentence, and the page continues as it was', async
 
 for (const [kind, name, content, sentence] of [
     ['of which no map can be made', 'point.obj', 'v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\n', /^point\.obj: all vertices of the mesh lie on one point/],
-    ['of which a part is missing', 'short.glb', 'glTF\x02\0\0\0\x14\0\0\0', /^short\.glb: cannot be read \(it is no glTF 2\.0 file, or not all of one\)$/],
+    ['of which a part is missing', 'short.glb', 'glTF\x02\0\0\0\x14\0\0\0', /^short\.glb: cannot be read \(it is not a complete glTF 2\.0 file\)$/],
     ['of a kind that is not read', 'archive.zip', 'PK', /^archive\.zip: .*\.obj.*\.glb/],
 ])
     test(`a file ${kind} is refused by its name, with the reason`, async () => {

@@ -82,7 +82,7 @@ export class FigureStrip {
     }
 
     #writeInside(): void {
-        writeCount('figure-inside', this.#mostInside);
+        writeCount('figure-inside', this.#mostInside, 'no inside'); // of an open model
         this.#mostInside = 0;
     }
 }

@@ -1,7 +1,7 @@
 import type { MapNews } from '../protocol';
 import type { Counts } from '../side';
 import { byId, make } from './elements';
-import { bytes, count, milliseconds } from './numbers';
+import { bytes, count, milliseconds, numbered } from './numbers';
 
 /** What falls, and what is counted of it. */
 export interface Cloth {
@@ -34,7 +34,7 @@ function verdict(counts: Counts): HTMLElement {
 }
 
 /** What is wrong with a cloth, in words; nothing, where nothing is. */
-export function wrongsOf({ inside = 0, withModel = 0 }: Counts): string[] {
+function wrongsOf({ inside = 0, withModel = 0 }: Counts): string[] {
     return [
         ...(inside > 0 ? [`${count(inside)} inside the model`] : []),
         ...(withModel > 0 ? [`${count(withModel)} ${withModel === 1 ? 'pair of faces' : 'pairs of faces'} cut`] : []),
@@ -44,8 +44,9 @@ export function wrongsOf({ inside = 0, withModel = 0 }: Counts): string[] {
 /** Beneath a half of the picture. */
 export function showHalf(id: 'half-left' | 'half-right', title: string | undefined, counts: Counts): void {
     const half = byId(id);
-    const wrong = wrongsOf(counts);
+    const { inside = 0, withModel } = counts;
     if (title) half.querySelector('strong')!.textContent = title;
-    half.querySelector('span')!.textContent = wrong.length > 0 ? wrong.join(', ') : counts.withModel === undefined ? 'none inside' : 'nothing inside, nothing cut';
-    half.className = wrong.length > 0 ? 'bad' : 'good';
+    const cut = withModel === undefined ? '' : withModel === 0 ? ', none cut' : `, ${numbered(withModel, 'pair', 'pairs')} of faces cut`;
+    half.querySelector('span')!.textContent = `${inside === 0 ? 'none' : count(inside)} inside${cut}`;
+    half.className = wrongsOf(counts).length > 0 ? 'bad' : 'good';
 }

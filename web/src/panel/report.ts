@@ -26,7 +26,7 @@ export function showReport({ report, mendedFaces, flippedParts, certainShare }: 
 /** For somebody who has never had to think about it. */
 function whatOpenMeans(certainShare: number): string {
     const share = `${(100 * certainShare).toFixed(certainShare > 0.995 && certainShare < 1 ? 2 : 0)}\u2009%`;
-    return `Its faces do not enclose a solid, so near its gaps what is inside is a guess; in ${share} of the ball around it the answer is certain. As long as surfaces collide, no face of the cloth gets through it all the same. Close its holes in the program that it is from, or by "echinus mesh repair", and all answers are certain.`;
+    return `Its faces do not enclose a solid, so near its gaps what is inside is a guess; in ${share} of the ball around it the answer is certain. As long as surfaces collide, no face of the cloth gets through it all the same. Close its holes in the program it came from, or by "echinus mesh repair", and all answers are certain.`;
 }
 
 function faultLine(number: number, one: string, many: string, colour: number): HTMLElement[] {

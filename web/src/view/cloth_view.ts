@@ -1,6 +1,6 @@
 import * as THREE from 'three';
 import type { ClothNews, FrameArrays } from '../protocol';
-import { CLOTH, CLOTH_BACK, FAULT, FLESH } from './colours';
+import { CLOTH, CLOTH_BACK, FLESH, WRONG } from './colours';
 import { Edge } from './edge';
 import { FabricUniforms, fabric, weaveTexture } from './fabric';
 import { glow } from './glow';
@@ -26,6 +26,7 @@ export class ClothView {
     readonly #edge = new Edge();
     readonly #cut = new THREE.Mesh(facesOf(this.mesh.geometry), warning());
     readonly #threads = new THREE.LineSegments(threadsOf(this.mesh.geometry), new THREE.LineBasicMaterial({ color: CLOTH }));
+    readonly #cutMarks = glow(this.#cut.geometry);
     readonly #wrong = glow();
     #weave: THREE.Texture | undefined;
     #cloth: Partial<ClothNews> & Pick<ClothNews, 'faces'> = NO_CLOTH;
@@ -33,15 +34,16 @@ export class ClothView {
     #fine = false;
 
     constructor() {
-        this.group.add(this.mesh, this.#back, this.#edge.mesh, this.#cut, this.#threads, this.#wrong);
+        this.group.add(this.mesh, this.#back, this.#edge.mesh, this.#cut, this.#cutMarks, this.#threads, this.#wrong);
         for (const part of this.#parts) part.frustumCulled = false; // it moves: its bounding sphere would be wrong a frame later
         for (const part of [this.mesh, this.#edge.mesh]) part.castShadow = part.receiveShadow = true;
         this.#back.receiveShadow = true;
+        this.#wrong.visible = false;
         this.#back.visible = this.#edge.mesh.visible = false;
     }
 
     get #parts() {
-        return [this.mesh, this.#back, this.#edge.mesh, this.#cut, this.#threads, this.#wrong];
+        return [this.mesh, this.#back, this.#edge.mesh, this.#cut, this.#cutMarks, this.#threads, this.#wrong];
     }
 
     /**
@@ -96,7 +98,7 @@ export class ClothView {
     #lay(geometry: THREE.BufferGeometry): void {
         for (const part of [this.mesh, this.#cut, this.#threads]) part.geometry.dispose();
         this.mesh.geometry = this.#back.geometry = geometry;
-        this.#cut.geometry = facesOf(geometry);
+        this.#cut.geometry = this.#cutMarks.geometry = facesOf(geometry);
         this.#threads.geometry = threadsOf(geometry);
     }
 
@@ -173,7 +175,7 @@ function backSide(uniforms: FabricUniforms, drop: { value: number }): THREE.Mesh
 
 /** Over the cloth, from both sides, in a colour that no light changes. */
 function warning(): THREE.MeshBasicMaterial {
-    return new THREE.MeshBasicMaterial({ color: FAULT.faces, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -8 });
+    return new THREE.MeshBasicMaterial({ color: WRONG, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -8 });
 }
 
 /** No cloth yet, but with all attributes of one, since three.js compiles the program for them at once. */

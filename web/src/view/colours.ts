@@ -19,6 +19,9 @@ export const SCALE = [0xfff7bc, 0xfec44f, 0xfb9a29, 0xcc4c02, 0x662506];
 /** Where a map searches for surface along a ray. */
 export const BAND = 0x2f6f8f;
 
+/** What is wrong with a cloth: unlike everything that lies around it. */
+export const WRONG = 0x16c5f5;
+
 /** The faults of a mesh, by kind: vivid, since they must be seen. */
 export const FAULT = { borderEdges: 0xd1242f, nonmanifoldEdges: 0x8250df, misorientedEdges: 0xbf8700, faces: 0xd1242f } as const;
 

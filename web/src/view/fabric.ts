@@ -1,5 +1,5 @@
 import * as THREE from 'three';
-import { FAULT, HEM, SCALE, TINTS } from './colours';
+import { HEM, SCALE, TINTS, WRONG } from './colours';
 import { matte } from './matte';
 
 /** What the materials of both sides and of the edge of a cloth share. */
@@ -13,11 +13,11 @@ export class FabricUniforms {
     readonly scale = { value: SCALE.map((hex) => new THREE.Color(hex)) };
     readonly tints = { value: TINTS.map((hex) => new THREE.Color(hex)) };
     readonly hemColour = { value: new THREE.Color(HEM) };
-    readonly inside = { value: new THREE.Color(FAULT.faces) };
+    readonly inside = { value: new THREE.Color(WRONG) };
 }
 
 /**
- * For colours by depth, each particle's depth is mapped to the palette's scale; a particle inside gets the colour of faults.
+ * For colours by depth, each particle's depth is mapped to the palette's scale; a particle inside gets the colour of what is wrong.
  * @param lift  how far this side is from the particles, along their normals
  */
 export function fabric(front: number, back: number, uniforms: FabricUniforms, lift: { value: number }): THREE.MeshLambertMaterial {

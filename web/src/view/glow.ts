@@ -1,15 +1,14 @@
 import * as THREE from 'three';
-import { FAULT } from './colours';
+import { WRONG } from './colours';
 
-/** Marks on what is wrong, seen through everything in front. */
-export function glow(): THREE.Points {
+/** Marks on what is wrong, seen through everything in front: a face may be smaller than a pixel. */
+export function glow(geometry = new THREE.BufferGeometry()): THREE.Points {
     const points = new THREE.Points(
-        new THREE.BufferGeometry(),
-        new THREE.PointsMaterial({ color: FAULT.faces, size: 15, sizeAttenuation: false, map: spot(), transparent: true, depthTest: false, depthWrite: false }),
+        geometry,
+        new THREE.PointsMaterial({ color: WRONG, size: 15, sizeAttenuation: false, map: spot(), transparent: true, depthTest: false, depthWrite: false }),
     );
     points.renderOrder = 5;
     points.frustumCulled = false;
-    points.visible = false;
     return points;
 }
 

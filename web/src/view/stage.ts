@@ -89,7 +89,7 @@ export class Stage {
 
         const middle = new THREE.Vector3(...centre).addScaledVector(upward, 0.12 * radius);
         // Narrow screens show less to the sides, so the camera moves back.
-        const distance = 4.8 * radius * Math.max(1, 1.2 / this.camera.aspect);
+        const distance = 4.8 * radius * Math.max(1, 1.3 / this.camera.aspect);
         const from = sideways.clone().multiplyScalar(0.8).addScaledVector(forward, 0.55).addScaledVector(upward, 0.3).normalize();
         this.camera.position.copy(middle).addScaledVector(from, distance);
         this.camera.near = 0.02 * radius;

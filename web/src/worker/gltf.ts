@@ -16,7 +16,7 @@ class Elsewhere extends Error {}
 function explain(error: unknown): never {
     if (error instanceof Elsewhere) throw error;
     if (/draco|meshopt/i.test(String(error))) throw new Error('its shapes are compressed, which this page cannot read: save it without compression');
-    throw new Error('it is no glTF 2.0 file, or not all of one');
+    throw new Error('it is not a complete glTF 2.0 file');
 }
 
 const ONE_PIXEL = 'data:image/gif;base64,R0lGODlhAQABAAAAACH5BAEAAAAALAAAAAABAAEAAAICRAEAOw==';
