@@ -338,7 +338,7 @@ class Simulation {
     /// about them: no face meets a collider, or another face with options.self_collision, in any frame;
     /// docs/surfaces.md has the limits, and squeezed_count counts where they were met. The arrays of pairs
     /// that are near grow as far as needed, geometrically; a step that does not need more allocates nothing.
-    /// @throws Error Diverged, naming the frame; afterwards only reading is allowed
+    /// @throws Error Diverged, naming the frame, and so does each further step
     void step();
 
     const Deformable& deformable() const;

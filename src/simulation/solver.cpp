@@ -144,7 +144,9 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
 
 void Simulation::Solver::step() {
     const Workers::Session session(workers_);
+    if (!diverged_.empty()) throw Error(ErrorCode::Diverged, diverged_);
     begin_frame();
+    require_finite_ways();
     const std::uint32_t part_count = begin_collisions();
     if (part_count > 1) divide_frame(part_count);
     for (std::uint32_t part = 0; part < part_count; ++part) {
@@ -153,7 +155,7 @@ void Simulation::Solver::step() {
     }
     if (part_count > 1) join_parts();
     publish();
-    require_within(bound_);
+    require_within(particles_.positions, bound_);
     ++frame;
     judge_frame();
 }
@@ -173,7 +175,7 @@ void Simulation::Solver::step_part(bool is_first) {
         }
     }
     // What would be far out may be stopped on its way, but the way has to be one.
-    require_within(kLongestWay);
+    require_within(particles_.positions, kLongestWay);
     keep_free();
 }
 
@@ -348,16 +350,35 @@ void Simulation::Solver::publish() {
     particles_.previous.store(deformable.previous_positions);
 }
 
-/// @param most  distance of a particle from the middle of where the deformable began
-void Simulation::Solver::require_within(double most) const {
+/// Callers set velocities, which may be of any size.
+void Simulation::Solver::require_finite_ways() {
+    require_within(particles_.positions, kLongestWay);
+    require_within(particles_.previous, kLongestWay);
+    for (std::size_t i = 0; i < colliders.size(); ++i) {
+        const Collider& collider = colliders[i];
+        const Vec3d way = collider.linear_velocity * options.time_step;
+        const Vec3d turn = collider.angular_velocity * options.time_step;
+        // Written so that NaN fails it.
+        for (const Vec3d& length : {collider.pose.translation, way, turn})
+            if (!(dot(length, length) <= kLongestWay * kLongestWay))
+                diverge(name_of_collider(i) + " left all bounds; try a smaller velocity");
+    }
+}
+
+/// @param most  distance from the middle of where the deformable began
+void Simulation::Solver::require_within(const PointArrays& points, double most) {
     for (std::size_t i = 0; i < particles_.count(); ++i) {
-        const Vec3d from_start = Vec3d(particles_.positions[i]) - start_centre_;
+        const Vec3d from_start = Vec3d(points[i]) - start_centre_;
         // Written so that NaN fails it.
         if (!(dot(from_start, from_start) <= most * most))
-            throw Error(ErrorCode::Diverged, "the simulation diverged in frame " + std::to_string(frame + 1) +
-                                                 ": particle " + std::to_string(i) +
-                                                 " left all bounds; try a smaller time step or stiffness");
+            diverge("particle " + std::to_string(i) +
+                    " left all bounds; try a smaller time step or stiffness");
     }
+}
+
+void Simulation::Solver::diverge(const std::string& what) {
+    diverged_ = "the simulation diverged in frame " + std::to_string(frame + 1) + ": " + what;
+    throw Error(ErrorCode::Diverged, diverged_);
 }
 
 void Simulation::Solver::judge_frame() {

@@ -79,7 +79,9 @@ class Simulation::Solver {
     void relax_stretched_part();
     void keep_free();
     void publish();
-    void require_within(double most) const;
+    void require_finite_ways();
+    void require_within(const PointArrays& points, double most);
+    [[noreturn]] void diverge(const std::string& what);
     void judge_frame();
     void archive_colliders(StateArchive& state);
 
@@ -108,6 +110,7 @@ class Simulation::Solver {
     std::vector<RigidTransform> start_poses_; ///< of the colliders
     Vec3d start_centre_;
     double bound_ = 0;
+    std::string diverged_; ///< what did, if anything has
 };
 
 } // namespace echinus

@@ -1,3 +1,6 @@
+#include "support/draping.hpp"
+#include "support/expect_error.hpp"
+
 #include <echinus/error.hpp>
 #include <echinus/simulation.hpp>
 
@@ -184,6 +187,33 @@ TEST(Solver, NamesTheFrameInWhichItDiverges) {
 TEST(Solver, TakesOverflowForDivergence) {
     Simulation simulation(single_particle({}, {1e38F, 0, 0}), {}, {.gravity = {}, .bound = 1e30});
     EXPECT_THROW(simulation.step(), Error);
+}
+
+TEST(Solver, VelocitiesBeyondAllBoundsDivergeInEachFurtherStepToo) {
+    const auto expect_divergence = [&](const char* of, const auto& disturb) {
+        for (const bool surfaces : {false, true}) {
+            Simulation simulation(test::sheet_at(0.2, 0.5, 9),
+                                  test::colliders_of({make_sphere(0.15, 24, 12)}),
+                                  {.thickness = 0.01, .surface_collision = surfaces});
+            simulation.step();
+            disturb(simulation);
+            for (int i = 0; i < 3; ++i)
+                test::expect_error(ErrorCode::Diverged, of, [&] { simulation.step(); });
+            EXPECT_EQ(simulation.frame(), 1);
+        }
+    };
+    for (const double large : {1e50, 1e300, -1e300}) {
+        expect_divergence("in frame 2: particle 0", [&](Simulation& s) {
+            s.set_particle_velocity(0, {large, 0, 0});
+        });
+        expect_divergence("in frame 2: collider 0", [&](Simulation& s) {
+            s.set_collider_velocity(0, {large, 0, 0}, {});
+        });
+        expect_divergence("in frame 2: collider 0", [&](Simulation& s) {
+            s.set_collider_velocity(0, {}, {0, 0, large});
+        });
+        expect_divergence("in frame 2: particle 0", [&](Simulation& s) { s.blow({0, 0, large}, 1e9); });
+    }
 }
 
 TEST(Solver, TellsHowFarStructuralSticksAreFromTheirLength) {
