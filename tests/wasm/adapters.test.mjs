@@ -82,6 +82,22 @@ describe('In Jolt', async () => {
         assert.ok(risen > 100, `${risen} were lifted`);
         for (let k = 0; k < 3; ++k) assert.ok(Math.abs(after[3 * pin + k] - before[3 * pin + k]) < 1e-5);
     });
+    test('a vertex that is pinned later stays from then on', () => {
+        const { jolt, bodies } = makeWorld(Jolt, [0, 0, 0]);
+        const cloth = addCloth(Jolt, bodies, sheet, { position: [0, 0, 0.5] });
+        const collision = new JoltCollision(echinus, Jolt, cloth, { colliders: [{ map }], thickness: 0.03 });
+        const pin = 8 * 16 + 13; // over the torus
+        Jolt.castObject(cloth.GetMotionProperties(), Jolt.SoftBodyMotionProperties).GetVertices().at(pin).mInvMass = 0;
+        const before = positionsOf(Jolt, cloth);
+        for (let step = 0; step < 30; ++step) {
+            collision.collision.setColliderPose(0, [0, 0, 0.01 * step]);
+            jolt.Step(SECONDS, 1);
+            collision.step(SECONDS);
+        }
+        const after = positionsOf(Jolt, cloth);
+        assert.ok([...Array(256).keys()].some((i) => after[3 * i + 2] > before[3 * i + 2] + 0.1), 'others were lifted');
+        assert.ok(Math.abs(after[3 * pin + 2] - before[3 * pin + 2]) < 1e-5);
+    });
     test('a soft body that is turned is refused', () => {
         const { bodies } = makeWorld(Jolt, GRAVITY);
         const cloth = addCloth(Jolt, bodies, sheet, {
@@ -114,6 +130,23 @@ describe('In Rapier', async () => {
         assert.ok(inside[0] > 20, `${inside[0]} inside without it`);
         assert.equal(inside[1], 0);
     });
+    test('pinned particles stay where Rapier has them, and surfaces take the faces of the body', () => {
+        const world = new RAPIER.World({ x: 0, y: 0, z: 0 });
+        const edge = 2 / 15, pin = 8 * 16 + 13;
+        const desc = RAPIER.SoftBodyDesc.cloth({ x: -1, y: -1, z: 0.5 }, { x: edge, y: 0, z: 0 }, { x: 0, y: edge, z: 0 }, 16, 16);
+        desc.pinnedParticles = [pin];
+        const cloth = world.createSoftBody(desc);
+        const collision = new RapierCollision(echinus, cloth, { colliders: [{ map }], thickness: 0.02, surfaces: true });
+        const before = cloth.particlePositions().slice();
+        for (let step = 0; step < 30; ++step) {
+            collision.collision.setColliderPose(0, [0, 0, 0.01 * step]);
+            world.step();
+            collision.step(world.timestep);
+        }
+        const after = cloth.particlePositions();
+        assert.ok([...Array(256).keys()].some((i) => after[3 * i + 2] > before[3 * i + 2] + 0.1), 'others were lifted');
+        assert.ok(Math.abs(after[3 * pin + 2] - before[3 * pin + 2]) < 1e-5);
+    });
 });
 
 describe('In three.js', async () => {
@@ -136,6 +169,23 @@ describe('In three.js', async () => {
         const mirrored = meshOfGeometry(echinus, box, new Matrix4().makeScale(-2, 1, 1)).report();
         assert.equal(mirrored.closed, true);
         assert.ok(Math.abs(mirrored.signedVolume - 2) < 1e-6);
+    });
+    test('a place far away joins no more vertices than one nearby', () => {
+        const { closed, faceCount } = meshOfGeometry(echinus, new SphereGeometry(1, 64, 32), new Matrix4().makeTranslation(3000, 0, 0)).report();
+        assert.ok(closed);
+        assert.equal(faceCount, new SphereGeometry(1, 64, 32).index.count / 3);
+    });
+    test('what is no vertex, or no place, is refused, and what no face uses does not matter', () => {
+        const assertRefused = (geometry) => assert.throws(() => meshOfGeometry(echinus, geometry), { code: 'InvalidMesh' });
+        const triangle = () => new BufferGeometry().setAttribute('position', new BoxGeometry(1, 1, 1).attributes.position);
+        assertRefused(triangle().setIndex([0, 1, 700]));
+        const holed = new SphereGeometry(1, 64, 32);
+        holed.attributes.position.setX(200, NaN);
+        assertRefused(holed);
+        const box = new BoxGeometry(1, 1, 1).toNonIndexed();
+        box.setIndex([...Array(box.attributes.position.count - 3).keys()]);
+        box.attributes.position.setX(box.attributes.position.count - 1, 1e30);
+        assert.equal(meshOfGeometry(echinus, box).faceCount, 11);
     });
     test('interleaved attributes are read', () => {
         const geometry = new BufferGeometry();
@@ -161,5 +211,6 @@ describe('In three.js', async () => {
         assert.ok(geometry.attributes.position.version > version);
         assert.ok(geometry.boundingSphere.center.z < z);
         assert.equal(geometry.index.count, simulation.faces.length);
+        assert.deepEqual(geometry.clone().attributes.position.array, geometry.attributes.position.array);
     });
 });

@@ -137,12 +137,29 @@ describe('A collision', () => {
         assert.match(refusal({ positions: [1, 2] }).message, /three numbers for each vertex/);
         assert.match(refusal({ positions: [] }).message, /no particles/);
         assert.match(refusal({ faces: [0, 1, 2], surfaces: true }).message, /names particle 1/);
-        assert.match(refusal({ selfCollision: true }).message, /needs surface_collision/);
+        assert.match(refusal({ selfCollision: true }).message, /needs surfaces/);
+        assert.match(refusal({ surfaces: true }).message, /give the faces/);
         const collision = echinus.makeCollision(good);
         assert.match(errorOf(() => collision.correct(0)).message, /0 seconds/);
+        assert.equal(errorOf(() => collision.correct(1n)).code, 'InvalidArgument');
         assert.match(errorOf(() => collision.setColliderPose(1, [0, 0, 0])).message, /no collider 1; there are 1/);
         collision.delete();
         assert.equal(errorOf(() => collision.correct(SECONDS)).code, 'Deleted');
+    });
+    test('takes undefined for an option that is not given, and the positions of a simulation while memory grows', () => {
+        const scene = echinus.parseScene({ model: { torus: {} }, cloth: { size: [2, 2], particles: [60, 60], position: [0, 0, 0.6] } });
+        const simulation = scene.makeSimulation(map);
+        const made = Array.from({ length: 120 }, () =>
+            echinus.makeCollision({ positions: simulation.positions, faces: undefined, friction: undefined, colliders: [{ map, position: undefined }], thickness: 0.01 }));
+        assert.deepEqual(made.at(-1).positions.slice(), simulation.positions.slice());
+        for (const each of [...made, simulation, scene]) each.delete();
+    });
+    test('parts faces that intersect at the start, if it may', () => {
+        const plate = echinus.buildMap(echinus.makeBox([2, 2, 0.1], 4));
+        const given = { positions: [-0.3, -0.3, 0.03, 0.3, -0.3, 0.12, 0, 0.3, 0.12], faces: [0, 1, 2], colliders: [{ map: plate }], thickness: 0.01, surfaces: true };
+        assert.match(errorOf(() => echinus.makeCollision(given)).message, /untangle/);
+        const collision = echinus.makeCollision({ ...given, untangle: true });
+        assert.ok(collision.positions[2] > 0.05);
     });
     test('outlives its map, and its views outlive growth of memory', () => {
         const own = echinus.buildMap(torus);

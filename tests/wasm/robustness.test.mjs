@@ -145,6 +145,27 @@ describe('Hostile input', () => {
         assertAlive();
     });
 
+    test('of velocities beyond all bounds ends a simulation, in each further step too', () => {
+        const scene = echinus.parseScene({ model: { torus: {} }, cloth: { size: [3, 3], particles: [20, 20], position: [0, 0, 0.5] } });
+        const map = scene.buildMap(scene.makeModel());
+        const disturbances = [
+            (simulation) => simulation.setParticleVelocity(0, [1e300, 0, 0]),
+            (simulation) => simulation.setColliderVelocity([1e50, 0, 0], [0, 0, 0]),
+            (simulation) => simulation.blow([1e50, 0, 0], 5),
+        ];
+        for (const disturb of disturbances) {
+            const simulation = scene.makeSimulation(map);
+            disturb(simulation);
+            for (let i = 0; i < 3; ++i) assert.equal(errorOf(() => simulation.step()).code, 'Diverged');
+        }
+        assertAlive();
+    });
+    test('in arguments that are no numbers is refused', () => {
+        const map = echinus.buildMap(echinus.makeTorus(1, 0.4, 8, 6));
+        for (const call of [() => map.contact([0, 0, 0], 1n), () => echinus.makeTorus(1n, 0.4, 8, 6)]) assert.equal(errorOf(call).code, 'InvalidArgument');
+        assert.match(errorOf(() => echinus.parseScene({ model: { torus: {} }, cloth: { size: [1, 1] } }).makeSimulation(map, { allowOpenColiders: true })).message, /'allowOpenColiders' is not an option of a simulation/);
+        assertAlive();
+    });
     test('in files gives our sentence with the name of the file', () => {
         const text = (string) => new TextEncoder().encode(string);
         const files = [

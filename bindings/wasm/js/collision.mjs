@@ -1,5 +1,5 @@
 import { Handle } from './core.mjs';
-import { refuse, requireFinite } from './errors.mjs';
+import { EchinusError, refuse, requireFinite, withDefaults } from './errors.mjs';
 import { requireMap } from './maps.mjs';
 import { asIndices, asVertices } from './mesh.mjs';
 
@@ -11,10 +11,11 @@ export class Collision extends Handle {
 
     constructor(core, options) {
         const { positions, faces, ...rest } = complete(options);
+        const [particleCount, faceCount] = [positions, faces].map(({ length }) => length / 3); // now: see Mesh.fromArrays
         super(core, core.withCopies([positions, faces, mapsOf(core, rest.colliders)], (p, f, m) =>
             core.withTexts([JSON.stringify(rest, withoutMaps)], (...text) =>
-                core.try('collision_make', p, positions.length / 3, f, faces.length / 3, m, rest.colliders.length, ...text))), 'collision_delete');
-        Object.defineProperty(this, 'particleCount', { value: positions.length / 3, enumerable: true });
+                inOwnWords(() => core.try('collision_make', p, particleCount, f, faceCount, m, rest.colliders.length, ...text)))), 'collision_delete');
+        Object.defineProperty(this, 'particleCount', { value: particleCount, enumerable: true });
         Object.defineProperty(this, 'colliderCount', { value: rest.colliders.length, enumerable: true });
     }
 
@@ -59,7 +60,7 @@ export class Collision extends Handle {
     }
 }
 
-const DEFAULTS = { positions: undefined, faces: [], colliders: undefined, thickness: undefined, friction: 0.5, surfaces: false, selfCollision: false, allowOpenColliders: false };
+const DEFAULTS = { positions: undefined, faces: [], colliders: undefined, thickness: undefined, friction: 0.5, surfaces: false, selfCollision: false, allowOpenColliders: false, untangle: false };
 const COLLIDER_DEFAULTS = { map: undefined, position: [0, 0, 0], rotation: NO_TURN, scale: 1 };
 
 /** The options with all their defaults, checked as far as C++ does not. */
@@ -67,7 +68,7 @@ function complete(options) {
     const all = withDefaults(options, DEFAULTS, 'an option of a collision');
     if (!Array.isArray(all.colliders) || all.colliders.length === 0) refuse('colliders must be an array of at least one collider');
     for (const name of ['thickness', 'friction']) if (!Number.isFinite(all[name])) refuse(`${name} is ${String(all[name])}; it must be a number`);
-    for (const name of ['surfaces', 'selfCollision', 'allowOpenColliders']) if (typeof all[name] !== 'boolean') refuse(`${name} must be true or false`);
+    for (const name of ['surfaces', 'selfCollision', 'allowOpenColliders', 'untangle']) if (typeof all[name] !== 'boolean') refuse(`${name} must be true or false`);
     const colliders = all.colliders.map((given) => {
         const collider = withDefaults(given, COLLIDER_DEFAULTS, 'a key of a collider');
         const scale = typeof collider.scale === 'number' ? Array(3).fill(collider.scale) : collider.scale;
@@ -78,13 +79,22 @@ function complete(options) {
             scale: Array.from(requireFinite(scale, 'the scale of a collider')),
         };
     });
-    return { ...all, positions: asVertices(all.positions), faces: asIndices(all.faces, 'faces', 3), colliders };
+    const faces = asIndices(all.faces, 'faces', 3);
+    if (all.surfaces && faces.length === 0) refuse('surfaces collide where there are faces: give the faces of the deformable, three particles each');
+    return { ...all, positions: asVertices(all.positions), faces, colliders };
 }
 
-function withDefaults(given, defaults, what) {
-    if (given === null || typeof given !== 'object') refuse(`${what} is needed in an object`);
-    for (const key of Object.keys(given)) if (!(key in defaults)) refuse(`'${key}' is not ${what}; there are ${Object.keys(defaults).join(', ')}`);
-    return { ...defaults, ...given };
+/** The library's names of options, and those that they have here. */
+const OWN_NAMES = { surface_collision: 'surfaces', self_collision: 'selfCollision', allow_open_colliders: 'allowOpenColliders' };
+
+/** Calls `make`, whose errors name options. */
+function inOwnWords(make) {
+    try {
+        return make();
+    } catch (error) {
+        if (!(error instanceof EchinusError)) throw error;
+        throw new EchinusError(error.code, error.message.replace(/\w+/g, (word) => OWN_NAMES[word] ?? word), { cause: error });
+    }
 }
 
 function requireRotation(rotation) {

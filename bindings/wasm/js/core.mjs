@@ -48,6 +48,7 @@ export class Core {
         try {
             return this.#exports[name](...args);
         } catch (error) {
+            if (error instanceof TypeError) refuse(`an argument is no number (${error.message})`); // before the module runs
             // A trap: a fault of the module, not of its arguments. Its memory may be corrupt.
             this.#crash = error;
             throw this.#deadModule();
@@ -82,10 +83,12 @@ export class Core {
 
     /** Calls `use` with the addresses of temporary copies of typed arrays. */
     withCopies(arrays, use) {
+        // Views of the module's own memory would be empty once that grows.
+        const lasting = arrays.map((array) => (array.buffer === this.memory.buffer ? array.slice() : array));
         const addresses = [];
         try {
-            for (const array of arrays) addresses.push(this.take(Math.max(array.byteLength, 1)));
-            arrays.forEach((array, i) => this.views.bytes.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength), addresses[i]));
+            for (const array of lasting) addresses.push(this.take(Math.max(array.byteLength, 1)));
+            lasting.forEach((array, i) => this.views.bytes.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength), addresses[i]));
             return use(...addresses);
         } finally {
             addresses.forEach((address) => this.giveBack(address));

@@ -431,7 +431,7 @@ export interface CollisionOptions {
     thickness: number;
     /** Coulomb's coefficient. Default: 0.5. */
     friction?: number;
-    /** With `surfaces`: [3 face_count] particles of each face. */
+    /** [3 face_count] particles of each face, which `surfaces` needs. */
     faces?: ArrayLike<number>;
     /** No face meets a model, not only no particle (docs/surfaces.md). Needs exact maps. Default: false. */
     surfaces?: boolean;
@@ -439,6 +439,8 @@ export interface CollisionOptions {
     selfCollision?: boolean;
     /** Accept the exact map of an open mesh, near whose gaps particles get in and out. Default: false. */
     allowOpenColliders?: boolean;
+    /** With `surfaces`: part faces that intersect at the start, where that can be done; otherwise they are refused. Default: false. */
+    untangle?: boolean;
 }
 
 /**
@@ -642,7 +644,7 @@ export class Simulation extends Deletable {
      *              has them, and those beyond the scene's are left out. By default the colliders stay
      * @throws InvalidOptions when the scene sets surface_collision and the cloth intersects now; set untangle too
      */
-    continueWith(scene: Scene, maps?: readonly AnyMap[]): Simulation;
+    continueWith(scene: Scene, maps?: AnyMap | readonly AnyMap[]): Simulation;
     /** Steers a collider, the first by default: it keeps these velocities until they are set again. Units and radians per second. */
     setColliderVelocity(linear: Vec3, angular: Vec3, index?: number): void;
     /**

@@ -12,6 +12,14 @@ export function refuse(sentence) {
     throw new EchinusError('InvalidArgument', sentence);
 }
 
+/** Options with all their defaults; undefined is none. @param what  an unknown key is not */
+export function withDefaults(given, defaults, what) {
+    if (given === null || typeof given !== 'object') refuse(`${what} is needed in an object`);
+    const known = Object.keys(defaults);
+    for (const key of Object.keys(given)) if (!known.includes(key)) refuse(`'${key}' is not ${what}; there are ${known.join(', ')}`);
+    return { ...defaults, ...Object.fromEntries(Object.entries(given).filter(([, value]) => value !== undefined)) };
+}
+
 /** A whole number that fits into 32 bits. */
 export function requireCount(value, what) {
     if (!Number.isInteger(value) || value < 0 || value > 0xffffffff)

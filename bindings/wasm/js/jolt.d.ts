@@ -9,7 +9,7 @@ export interface JoltCollisionOptions extends Omit<CollisionOptions, 'positions'
 
 /**
  * After each JoltInterface.Step() of the soft body, step() takes back what led its vertices into a model. Leave shapes of
- * the same model out of the soft body's collision in Jolt, by its object layers. Vertices with mInvMass 0 stay as they are. Four steps of 1/240 s stretch a cloth less than one of 1/60 s.
+ * the same model out of the soft body's collision in Jolt, by its object layers. Vertices whose mInvMass is 0 at that time stay as they are. Four steps of 1/240 s stretch a cloth less than one of 1/60 s.
  */
 export class JoltCollision {
     /**

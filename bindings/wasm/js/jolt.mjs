@@ -41,8 +41,8 @@ function verticesOf(jolt, array) {
         count,
         position: (first + traits.mPositionOffset) >>> 2,
         velocity: (first + traits.mVelocityOffset) >>> 2,
+        array,
         stride: count > 1 ? (jolt.getPointer(array.at(1)) - first) >>> 2 : 0,
-        isPinned: Array.from({ length: count }, (_, i) => array.at(i).mInvMass === 0),
     };
 }
 
@@ -63,9 +63,9 @@ function readPositions(heap, { count, position, stride }, [x, y, z], positions) 
     }
 }
 
-function writeCorrected(heap, { position, velocity, stride, isPinned }, centre, { corrected, positions, velocities }) {
+function writeCorrected(heap, { array, position, velocity, stride }, centre, { corrected, positions, velocities }) {
     for (const i of corrected) {
-        if (isPinned[i]) continue;
+        if (array.at(i).mInvMass === 0) continue; // pinned
         for (let k = 0; k < 3; ++k) {
             heap[position + i * stride + k] = positions[3 * i + k] - centre[k];
             heap[velocity + i * stride + k] = velocities[3 * i + k];

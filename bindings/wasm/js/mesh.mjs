@@ -10,13 +10,15 @@ export class Mesh extends Handle {
     }
 
     static fromArrays(core, vertices, faces) {
-        return core.withCopies([asVertices(vertices), asIndices(faces, 'faces', 3)], (v, f) =>
-            new Mesh(core, core.try('mesh_make', v, vertices.length / 3, f, faces.length / 3)));
+        const arrays = [asVertices(vertices), asIndices(faces, 'faces', 3)];
+        const [vertexCount, faceCount] = arrays.map(({ length }) => length / 3); // now: the module's own arrays are empty once its memory grows
+        return core.withCopies(arrays, (v, f) => new Mesh(core, core.try('mesh_make', v, vertexCount, f, faceCount)));
     }
     static fromPolygons(core, vertices, corners, cornerCounts) {
         const arrays = [asVertices(vertices), asIndices(corners, 'corners', 1), asIndices(cornerCounts, 'corner counts', 1)];
+        const [coordinateCount, cornerCount, polygonCount] = arrays.map(({ length }) => length);
         return core.withCopies(arrays, (v, c, n) =>
-            new Mesh(core, core.try('mesh_make_from_polygons', v, vertices.length / 3, c, corners.length, n, cornerCounts.length)));
+            new Mesh(core, core.try('mesh_make_from_polygons', v, coordinateCount / 3, c, cornerCount, n, polygonCount)));
     }
     static fromBytes(core, bytes, name) {
         if (typeof name !== 'string') refuse('the name of the file is required; its extension gives the format');

@@ -9,7 +9,8 @@ export interface RapierCollisionOptions extends Omit<CollisionOptions, 'position
 
 /**
  * After each World.step(), step() takes back what led the particles of a soft body into a model. Give the same model no
- * collider that meets the soft body in Rapier. Four steps of 1/240 s stretch a cloth less than one of 1/60 s.
+ * collider that meets the soft body in Rapier. Pinned particles stay as they are. With `surfaces`, `faces` is the body's
+ * boundary() unless given. A body that tears needs a new collision. Four steps of 1/240 s stretch a cloth less than one of 1/60 s.
  */
 export class RapierCollision {
     constructor(echinus: Echinus, softBody: SoftBody, options: RapierCollisionOptions);

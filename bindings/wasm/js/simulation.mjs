@@ -1,6 +1,6 @@
 import { ContactBuffer, FlagBuffer, requireWithin, withPoints } from './buffers.mjs';
 import { Handle, requireOwn } from './core.mjs';
-import { refuse, requireCount, requireFinite } from './errors.mjs';
+import { refuse, requireCount, requireFinite, withDefaults } from './errors.mjs';
 import { asJson, requireMap, wrapMap } from './maps.mjs';
 import { Mesh } from './mesh.mjs';
 
@@ -17,7 +17,8 @@ export class Scene extends Handle {
     buildMap(mesh) {
         return wrapMap(this.core, this.core.try('scene_build_map', this.address, requireOwn(this.core, mesh, Mesh)));
     }
-    makeSimulation(maps, { allowOpenCollider = false, cloth = null, clothAtRest = null, bodies = [] } = {}) {
+    makeSimulation(maps, options = {}) {
+        const { allowOpenCollider, cloth, clothAtRest, bodies } = withDefaults(options, SIMULATION_DEFAULTS, 'an option of a simulation');
         const mesh = (own) => (own === null ? 0 : requireOwn(this.core, own, Mesh));
         const addresses = [addressesOf(this.core, [maps].flat()), Uint32Array.from(bodies, mesh)];
         const [mapCount, bodyCount] = addresses.map(({ length }) => length);
@@ -26,6 +27,8 @@ export class Scene extends Handle {
             new Simulation(this.core, this.core.try('simulation_make', this.address, mapsAt, mapCount, ...given, bodiesAt, bodyCount)));
     }
 }
+
+const SIMULATION_DEFAULTS = { allowOpenCollider: false, cloth: null, clothAtRest: null, bodies: [] };
 
 const addressesOf = (core, maps) => Uint32Array.from(maps, (map) => requireMap(core, map));
 
@@ -41,8 +44,9 @@ export class Simulation extends Handle {
     /** Continues with the options of another scene; particles and colliders keep their state. */
     continueWith(scene, maps = []) {
         const own = requireOwn(this.core, scene, Scene);
-        return this.core.withCopies([addressesOf(this.core, maps)], (mapsAt) =>
-            new Simulation(this.core, this.core.try('simulation_continue', this.address, own, mapsAt, maps.length)));
+        const addresses = addressesOf(this.core, [maps].flat());
+        return this.core.withCopies([addresses], (mapsAt) =>
+            new Simulation(this.core, this.core.try('simulation_continue', this.address, own, mapsAt, addresses.length)));
     }
 
     step(frameCount = 1) {

@@ -7,12 +7,11 @@ export function meshOfGeometry(echinus, geometry, matrix = null) {
     const vertex = new Vector3();
     for (let i = 0; i < position.count; ++i) {
         vertex.fromBufferAttribute(position, i); // attributes may be interleaved, quantised and normalised
-        if (matrix) vertex.applyMatrix4(matrix);
         vertex.toArray(vertices, 3 * i);
     }
     const corners = Uint32Array.from({ length: geometry.index?.count ?? position.count }, geometry.index ? (_, i) => geometry.index.getX(i) : (_, i) => i);
-    const places = joined(vertices);
-    corners.forEach((corner, i) => (corners[i] = places[corner]));
+    join(corners, vertices);
+    if (matrix) for (let i = 0; i < vertices.length; i += 3) vertex.fromArray(vertices, i).applyMatrix4(matrix).toArray(vertices, i);
     const mesh = echinus.makeMesh(vertices, isMirror(matrix) ? turnedRound(corners) : corners);
     try {
         return mesh.weld(); // drops the vertices that are not used any more
@@ -40,6 +39,11 @@ export class ClothGeometry extends BufferGeometry {
         this.update();
     }
 
+    /** As it is now; it does not follow the simulation. */
+    clone() {
+        return new BufferGeometry().copy(this);
+    }
+
     update() {
         const { position } = this.attributes;
         position.array.set(this.#simulation.positions);
@@ -55,16 +59,18 @@ const TOLERANCE = 1e-6;
 const CELLS = 1e4; // to the largest coordinate: a place is rarely so near to another cell that two have to be looked at
 
 /**
- * For each vertex the first one at its place. A geometry has a vertex for each normal and texture coordinate, and where its
- * shape closes, those of its beginning and its end differ by rounding.
+ * Gives each corner the first vertex at its place. A geometry has a vertex for each normal and texture coordinate, and where
+ * its shape closes, those of its beginning and its end differ by rounding. What is no vertex or no place stays, to be refused.
  */
-function joined(vertices) {
-    const largest = vertices.reduce((most, c) => Math.max(most, Math.abs(c)), 0);
+function join(corners, vertices) {
+    const used = [...Uint32Array.from(new Set(corners)).sort()].filter((i) => 3 * i < vertices.length);
+    const largest = used.reduce((most, i) => Math.max(most, Math.abs(vertices[3 * i]), Math.abs(vertices[3 * i + 1]), Math.abs(vertices[3 * i + 2])), 0);
+    if (!(largest > 0 && largest < Infinity)) return;
     const tolerance = TOLERANCE * largest;
     const cellsAround = (c) => [...new Set([c - tolerance, c, c + tolerance].map((x) => Math.floor((x / largest) * CELLS)))];
     const cells = new Map();
     const isNear = (a, b) => [0, 1, 2].every((k) => Math.abs(vertices[3 * a + k] - vertices[3 * b + k]) <= tolerance);
-    return Uint32Array.from({ length: vertices.length / 3 }, (_, i) => {
+    const firstAt = (i) => {
         const around = [0, 1, 2].map((k) => cellsAround(vertices[3 * i + k]));
         for (const x of around[0])
             for (const y of around[1])
@@ -76,7 +82,9 @@ function joined(vertices) {
         if (!cells.has(own)) cells.set(own, []);
         cells.get(own).push(i);
         return i;
-    });
+    };
+    const places = new Map(used.map((i) => [i, firstAt(i)]));
+    corners.forEach((corner, at) => (corners[at] = places.get(corner) ?? corner));
 }
 
 const isMirror = (matrix) => matrix !== null && matrix.determinant() < 0;

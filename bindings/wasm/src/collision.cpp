@@ -65,6 +65,7 @@ SimulationOptions options_of(const json& description) {
     options.surface_collision = description.at("surfaces");
     options.self_collision = description.at("selfCollision");
     options.allow_open_colliders = description.at("allowOpenColliders");
+    options.untangle = description.at("untangle");
     options.iteration_count = options.surface_collision ? kSurfaceIterations : kIterations;
     return options;
 }
