@@ -136,6 +136,7 @@ describe('In Rapier', async () => {
         const desc = RAPIER.SoftBodyDesc.cloth({ x: -1, y: -1, z: 0.5 }, { x: edge, y: 0, z: 0 }, { x: 0, y: edge, z: 0 }, 16, 16);
         desc.pinnedParticles = [pin];
         const cloth = world.createSoftBody(desc);
+        for (const options of [undefined, {}, { colliders: [null] }]) assert.throws(() => new RapierCollision(echinus, cloth, options), { code: 'InvalidArgument', message: /^colliders must be/ });
         const collision = new RapierCollision(echinus, cloth, { colliders: [{ map }], thickness: 0.02, surfaces: true });
         const before = cloth.particlePositions().slice();
         for (let step = 0; step < 30; ++step) {
@@ -150,7 +151,7 @@ describe('In Rapier', async () => {
 });
 
 describe('In three.js', async () => {
-    const { BoxGeometry, BufferGeometry, InterleavedBuffer, InterleavedBufferAttribute, Matrix4, SphereGeometry, TorusGeometry, TorusKnotGeometry } = await fromExamples('three/src/Three.js');
+    const { BoxGeometry, BufferGeometry, InterleavedBuffer, InterleavedBufferAttribute, Matrix4, Mesh, SphereGeometry, TorusGeometry, TorusKnotGeometry } = await fromExamples('three/src/Three.js');
     const { ClothGeometry, geometryOfMesh, meshOfGeometry } = await fromExamples('echinus/three');
 
     test('geometries of closed shapes become closed meshes, indexed or not', () => {
@@ -176,6 +177,8 @@ describe('In three.js', async () => {
         assert.equal(faceCount, new SphereGeometry(1, 64, 32).index.count / 3);
     });
     test('what is no vertex, or no place, is refused, and what no face uses does not matter', () => {
+        for (const [given, matrix] of [[new Mesh(), null], [new BufferGeometry(), null], [new BoxGeometry(1, 1, 1), [1]]])
+            assert.throws(() => meshOfGeometry(echinus, given, matrix), { code: 'InvalidArgument' });
         const assertRefused = (geometry) => assert.throws(() => meshOfGeometry(echinus, geometry), { code: 'InvalidMesh' });
         const triangle = () => new BufferGeometry().setAttribute('position', new BoxGeometry(1, 1, 1).attributes.position);
         assertRefused(triangle().setIndex([0, 1, 700]));

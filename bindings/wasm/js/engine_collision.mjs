@@ -1,3 +1,5 @@
+import { refuse } from './errors.mjs';
+
 /** What the adapters to engines have in common: a collision whose colliders follow rigid bodies of the engine. */
 export class EngineCollision {
     #collision;
@@ -7,7 +9,9 @@ export class EngineCollision {
      * @param positions  [3 n] of the soft body's particles
      * @param poseOf     position and rotation (w, x, y, z) of a rigid body of the engine
      */
-    constructor(echinus, positions, { colliders, ...options }, poseOf) {
+    constructor(echinus, positions, { colliders, ...options } = {}, poseOf) {
+        if (!Array.isArray(colliders) || colliders.some((collider) => collider === null || typeof collider !== 'object'))
+            refuse('colliders must be an array of objects, each with a map, and the body that it moves with, if there is one');
         const placed = colliders.map(({ body, ...collider }) => (body ? { ...collider, ...poseOf(body) } : collider));
         this.#followers = colliders.flatMap(({ body }, i) => (body ? [{ i, pose: () => poseOf(body), last: placed[i] }] : []));
         this.#collision = echinus.makeCollision({ ...options, positions, colliders: placed });

@@ -6,7 +6,7 @@ export class RapierCollision extends EngineCollision {
     #softBody;
 
     constructor(echinus, softBody, options) {
-        super(echinus, softBody.particlePositions(), options.surfaces ? { faces: softBody.boundary(), ...options } : options, poseOf);
+        super(echinus, softBody.particlePositions(), options?.surfaces ? { faces: softBody.boundary(), ...options } : options, poseOf);
         this.#softBody = softBody;
     }
 
