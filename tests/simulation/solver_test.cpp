@@ -1,5 +1,6 @@
 #include "support/draping.hpp"
 #include "support/expect_error.hpp"
+#include "support/surface_judge.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/simulation.hpp>

@@ -26,7 +26,7 @@ export class ClothView {
     readonly #edge = new Edge();
     readonly #cut = new THREE.Mesh(facesOf(this.mesh.geometry), warning());
     readonly #threads = new THREE.LineSegments(threadsOf(this.mesh.geometry), new THREE.LineBasicMaterial({ color: CLOTH }));
-    readonly #cutMarks = glow(this.#cut.geometry);
+    readonly #cutMarks = glow(this.#cut.geometry, 0.25); // three on a face, and faces that are cut lie side by side
     readonly #wrong = glow();
     #weave: THREE.Texture | undefined;
     #cloth: Partial<ClothNews> & Pick<ClothNews, 'faces'> = NO_CLOTH;

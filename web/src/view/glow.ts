@@ -2,10 +2,10 @@ import * as THREE from 'three';
 import { WRONG } from './colours';
 
 /** Marks on what is wrong, seen through everything in front: a face may be smaller than a pixel. */
-export function glow(geometry = new THREE.BufferGeometry()): THREE.Points {
+export function glow(geometry = new THREE.BufferGeometry(), opacity = 1): THREE.Points {
     const points = new THREE.Points(
         geometry,
-        new THREE.PointsMaterial({ color: WRONG, size: 15, sizeAttenuation: false, map: spot(), transparent: true, depthTest: false, depthWrite: false }),
+        new THREE.PointsMaterial({ color: WRONG, size: 15, sizeAttenuation: false, map: spot(), opacity, transparent: true, depthTest: false, depthWrite: false }),
     );
     points.renderOrder = 5;
     points.frustumCulled = false;
