@@ -117,6 +117,16 @@ describe('A collision', () => {
         assert.deepEqual(fallen({ faces, surfaces: true }), [0, 0]);
         assert.ok(fallen({})[0] > 0);
     });
+    test('does not follow a place that is absurdly far, and goes on once the particle is back', () => {
+        const collision = echinus.makeCollision({ positions: [3, 0, 0], colliders: [{ map }], thickness: 0.01 });
+        for (const far of [1e20, 3e38]) {
+            collision.positions.set([far, 0, 0]);
+            assert.equal(collision.correct(SECONDS), 0);
+        }
+        collision.positions.set([1, 0, 0]);
+        assert.equal(collision.correct(SECONDS), 1);
+        assert.ok(!map.contains([...collision.positions]));
+    });
     test('does not follow a place that is not finite', () => {
         const collision = echinus.makeCollision({ positions: [3, 0, 0, 0, 0, 0], colliders: [{ map }], thickness: 0.01 });
         collision.positions.set([NaN, 0, 0, 0, 0, Infinity]);

@@ -454,7 +454,7 @@ export interface CollisionOptions {
 export class Collision extends Deletable {
     readonly particleCount: number;
     readonly colliderCount: number;
-    /** [3 particleCount] world units. A particle whose place is not finite stays where it was, for others to meet. */
+    /** [3 particleCount] world units. A particle whose place is not finite, or more than 1e12 units from where it was, stays there, for others to meet. */
     readonly positions: Float32Array;
     /** [3 particleCount] units per second, of the particles in `corrected`. */
     readonly velocities: Float32Array;

@@ -79,10 +79,14 @@ Deformable deformable_of(std::span<const Vec3f> positions, std::span<const Trian
     return particles;
 }
 
-/// Moves a particle by its other solver's step. A place that is not finite is not followed.
+/// Farther than this in a step, units, a particle has exploded.
+constexpr double kFarthest = 1e12;
+
+/// Moves a particle by its other solver's step. It does not follow one that has exploded.
 /// @return where the simulation's integration puts it, to the bit
 Vec3f send(Simulation& simulation, std::size_t particle, const Vec3f& from, const Vec3f& to) {
-    const Vec3d way = is_finite(to) ? Vec3d(to) - Vec3d(from) : Vec3d{};
+    Vec3d way = Vec3d(to) - Vec3d(from);
+    if (!(dot(way, way) <= kFarthest * kFarthest)) way = {}; // NaN, too
     simulation.set_particle_velocity(particle, way * (1 / kStep));
     return from + (from - simulation.deformable().previous_positions[particle]);
 }
