@@ -20,16 +20,6 @@ namespace echinus {
 
 namespace {
 
-Sphere box_sphere(std::span<const Vec3f> points) {
-    Vec3d low(points.front());
-    Vec3d high = low;
-    for (const Vec3f& p : points) {
-        low = {std::min(low.x, double{p.x}), std::min(low.y, double{p.y}), std::min(low.z, double{p.z})};
-        high = {std::max(high.x, double{p.x}), std::max(high.y, double{p.y}), std::max(high.z, double{p.z})};
-    }
-    return {(low + high) * 0.5, length(high - low) / 2};
-}
-
 /// Half the particles' spacing: of a cloth at rest hardly a face is cut by the model, and it lies close
 /// (docs/thickness.md).
 double default_thickness(const Deformable& deformable) {
@@ -77,9 +67,6 @@ Deformable valid_start(Deformable deformable, const std::vector<Collider>& colli
 /// Particles that are worth a piece of the integration.
 constexpr std::size_t kParticlesPerPiece = 1 << 14;
 
-/// Lengths whose squares are floats, too.
-constexpr double kLongestWay = 1e18;
-
 /// x' = x + (1 - drag) (x - x_previous) + a dt^2 (Jakobsen 2001, section 2), of one coordinate. Plain arrays
 /// that do not overlap and no branch, for the compiler's vectors.
 /// @param mobility  1, or 0 of a particle that is pinned
@@ -121,7 +108,7 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
       tetrahedra_(weighted_tetrahedra(deformable, options)), attachments_(deformable, colliders),
       deforming_(colliders.size()), surface_motions_(colliders.size()), clearances_(particles_.count()),
       collisions_(colliders, particles_, options), rest_(options.rest, deformable.positions),
-      goals_give_way_(sticks_.gives_way()), part_(options),
+      bounds_(options, deformable), goals_give_way_(sticks_.gives_way()), part_(options),
       substep_seconds_(options.time_step / options.substep_count),
       start_hash_(hash_of(deformable.positions)) {
     for (const Collider& collider : colliders) start_poses_.push_back(collider.pose);
@@ -136,17 +123,12 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
     }
     if (options.multilevel) coarse_sheets_.emplace(deformable);
     if (options.measure_loads) meter_.emplace(deformable, colliders.size());
-    const Sphere start = box_sphere(deformable.positions);
-    start_centre_ = start.centre;
-    // A single particle has no extent; its bound is then in the caller's unit.
-    bound_ = options.bound > 0 ? options.bound : 1e4 * (start.radius > 0 ? 2 * start.radius : 1);
 }
 
 void Simulation::Solver::step() {
     const Workers::Session session(workers_);
-    if (!diverged_.empty()) throw Error(ErrorCode::Diverged, diverged_);
+    bounds_.require_sound();
     begin_frame();
-    require_finite_ways();
     const std::uint32_t part_count = begin_collisions();
     if (part_count > 1) divide_frame(part_count);
     for (std::uint32_t part = 0; part < part_count; ++part) {
@@ -155,7 +137,7 @@ void Simulation::Solver::step() {
     }
     if (part_count > 1) join_parts();
     publish();
-    require_within(particles_.positions, bound_);
+    bounds_.require_ends(particles_, frame);
     ++frame;
     judge_frame();
 }
@@ -174,8 +156,7 @@ void Simulation::Solver::step_part(bool is_first) {
             collide();
         }
     }
-    // What would be far out may be stopped on its way, but the way has to be one.
-    require_within(particles_.positions, kLongestWay);
+    bounds_.require_ways(particles_, frame);
     keep_free();
 }
 
@@ -183,6 +164,11 @@ void Simulation::Solver::begin_frame() {
     const Stopwatch stopwatch(profile.integration_seconds);
     particles_.frame_start = particles_.positions;
     motions.begin_frame(colliders, (frame + 1.0) * options.time_step, options.time_step);
+    // Velocities that callers set may be of any size.
+    bounds_.require_ways(particles_, frame);
+    for (std::size_t i = 0; i < colliders.size(); ++i)
+        if (!Bounds::contain_way(colliders[i], options.time_step))
+            bounds_.diverge(frame, name_of_collider(i) + " left all bounds; try a smaller velocity");
     if (meter_) meter_->begin_frame(colliders);
     if (stretched_part_ && frame % StretchedPart::kFrames == 0)
         stretched_part_->find(sticks_, particles_.positions);
@@ -348,37 +334,6 @@ void Simulation::Solver::publish() {
     const Stopwatch stopwatch(profile.integration_seconds);
     particles_.positions.store(deformable.positions);
     particles_.previous.store(deformable.previous_positions);
-}
-
-/// Callers set velocities, which may be of any size.
-void Simulation::Solver::require_finite_ways() {
-    require_within(particles_.positions, kLongestWay);
-    require_within(particles_.previous, kLongestWay);
-    for (std::size_t i = 0; i < colliders.size(); ++i) {
-        const Collider& collider = colliders[i];
-        const Vec3d way = collider.linear_velocity * options.time_step;
-        const Vec3d turn = collider.angular_velocity * options.time_step;
-        // Written so that NaN fails it.
-        for (const Vec3d& length : {collider.pose.translation, way, turn})
-            if (!(dot(length, length) <= kLongestWay * kLongestWay))
-                diverge(name_of_collider(i) + " left all bounds; try a smaller velocity");
-    }
-}
-
-/// @param most  distance from the middle of where the deformable began
-void Simulation::Solver::require_within(const PointArrays& points, double most) {
-    for (std::size_t i = 0; i < particles_.count(); ++i) {
-        const Vec3d from_start = Vec3d(points[i]) - start_centre_;
-        // Written so that NaN fails it.
-        if (!(dot(from_start, from_start) <= most * most))
-            diverge("particle " + std::to_string(i) +
-                    " left all bounds; try a smaller time step or stiffness");
-    }
-}
-
-void Simulation::Solver::diverge(const std::string& what) {
-    diverged_ = "the simulation diverged in frame " + std::to_string(frame + 1) + ": " + what;
-    throw Error(ErrorCode::Diverged, diverged_);
 }
 
 void Simulation::Solver::judge_frame() {

@@ -2,6 +2,7 @@
 
 #include "geometry/workers.hpp"
 #include "simulation/attachments.hpp"
+#include "simulation/bounds.hpp"
 #include "simulation/coarse_sheets.hpp"
 #include "simulation/collider_motions.hpp"
 #include "simulation/collisions.hpp"
@@ -79,9 +80,6 @@ class Simulation::Solver {
     void relax_stretched_part();
     void keep_free();
     void publish();
-    void require_finite_ways();
-    void require_within(const PointArrays& points, double most);
-    [[noreturn]] void diverge(const std::string& what);
     void judge_frame();
     void archive_colliders(StateArchive& state);
 
@@ -101,6 +99,7 @@ class Simulation::Solver {
     std::optional<GentleSticks> gentle_sticks_;   ///< with contact of the deformable with itself, by Verlet
     std::optional<LoadMeter> meter_;
     RestWatch rest_;
+    Bounds bounds_;
     Wind wind_;
     bool goals_give_way_;
     std::optional<FrameParts> parts_;         ///< with contact of the deformable with itself
@@ -108,9 +107,6 @@ class Simulation::Solver {
     double substep_seconds_;                  ///< of that
     std::uint64_t start_hash_;                ///< of where particles began
     std::vector<RigidTransform> start_poses_; ///< of the colliders
-    Vec3d start_centre_;
-    double bound_ = 0;
-    std::string diverged_; ///< what did, if anything has
 };
 
 } // namespace echinus

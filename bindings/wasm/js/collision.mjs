@@ -93,7 +93,7 @@ function inOwnWords(make) {
         return make();
     } catch (error) {
         if (!(error instanceof EchinusError)) throw error;
-        throw new EchinusError(error.code, error.message.replace(/\w+/g, (word) => OWN_NAMES[word] ?? word), { cause: error });
+        throw new EchinusError(error.code, error.message.replace(/\w+/g, (word) => OWN_NAMES[word] ?? word));
     }
 }
 

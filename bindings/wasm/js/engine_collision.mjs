@@ -11,7 +11,7 @@ export class EngineCollision {
      */
     constructor(echinus, positions, { colliders, ...options } = {}, poseOf) {
         if (!Array.isArray(colliders) || colliders.some((collider) => collider === null || typeof collider !== 'object'))
-            refuse('colliders must be an array of objects, each with a map, and the body that it moves with, if there is one');
+            refuse('colliders must be an array of objects, each with a map');
         const placed = colliders.map(({ body, ...collider }) => (body ? { ...collider, ...poseOf(body) } : collider));
         this.#followers = colliders.flatMap(({ body }, i) => (body ? [{ i, pose: () => poseOf(body), last: placed[i] }] : []));
         this.#collision = echinus.makeCollision({ ...options, positions, colliders: placed });

@@ -4,7 +4,6 @@ import { refuse } from './errors.mjs';
 
 export function meshOfGeometry(echinus, geometry, matrix = null) {
     if (!geometry?.attributes?.position?.count) refuse('a BufferGeometry with positions is needed here; of an object, its geometry');
-    if (matrix !== null && !matrix?.isMatrix4) refuse('the matrix must be a Matrix4');
     const { position } = geometry.attributes;
     const vertices = new Float32Array(3 * position.count);
     const vertex = new Vector3();

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "simulation/particles.hpp"
+
+#include <echinus/simulation.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace echinus {
+
+/// What particles and colliders must stay within. A simulation in which something did not has diverged, and
+/// ends.
+class Bounds {
+  public:
+    Bounds(const SimulationOptions& options, const Deformable& start);
+
+    /// @throws Error Diverged once anything has
+    void require_sound() const;
+
+    // These throw Error Diverged, with the frame. NaN is in no bounds.
+    /// In the middle of a frame, in which what would be far out may be stopped on its way; but the way has to
+    /// be one.
+    void require_ways(const Particles& particles, std::uint32_t frame);
+    void require_ends(const Particles& particles, std::uint32_t frame);
+    [[noreturn]] void diverge(std::uint32_t frame, const std::string& what);
+
+    /// Whether the collider goes a way that is one, in so many seconds.
+    static bool contain_way(const Collider& collider, double seconds);
+
+  private:
+    void require_within(const PointArrays& points, std::size_t count, double most, std::uint32_t frame);
+
+    Vec3d centre_;    ///< of where the deformable began
+    double farthest_; ///< that a particle may be from there when a frame ends
+    std::string diverged_;
+};
+
+} // namespace echinus
