@@ -17,7 +17,7 @@ for (const file of readdirSync(inProject('docs'))) if (file.endsWith('.md')) pag
 
 const folder = process.argv[2];
 mkdirSync(join(folder, 'images'), { recursive: true });
-copyFileSync(inProject('web/documents.css'), join(folder, 'documents.css'));
+writeFileSync(join(folder, 'documents.css'), ['web/src/palette.css', 'web/documents.css'].map(read).join('\n'));
 for (const [document, page] of pages) writeFileSync(join(folder, page), inPage(page, convert(document)));
 
 function pageOf(file) {

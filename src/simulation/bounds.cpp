@@ -2,6 +2,9 @@
 
 #include <echinus/error.hpp>
 
+#include <algorithm>
+#include <span>
+
 namespace echinus {
 
 namespace {
