@@ -176,7 +176,7 @@ class App {
 
     #beginCloth(why: 'changed' | 'map' | undefined): void {
         if (this.#paused) this.#pause(false); // a new cloth falls
-        this.#figures.forgetCuts();
+        this.#figures.forgetCounts();
         this.#main.view.byDepth = this.#settings.colour === 'depth';
         if (why) remark(why === 'map' ? 'The cloth falls anew, on the other map.' : fallsAnew(this.#particles, this.#cloths));
         if (this.#settings.beside !== 'nothing' && !this.#other) this.#beginBeside();

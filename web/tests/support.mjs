@@ -97,7 +97,14 @@ export async function picture(page, name) {
     await page.screenshot({ path: inProject(`out/web/${name}.png`) });
 }
 
-export const figure = (page, name) => page.locator(`#figure-${name}`).textContent();
+/** What a figure says, once it says something. */
+export async function figure(page, name) {
+    const text = await page.waitForFunction((id) => {
+        const says = document.getElementById(id).textContent;
+        return says !== '\u2013' && says;
+    }, `figure-${name}`);
+    return text.jsonValue();
+}
 
 /** Waits until the cloth has made this many time steps. */
 export const untilFrame = (page, frame) => page.waitForFunction((least) => Number(document.body.dataset.frame) >= least, frame, { timeout: 60_000 });

@@ -44,8 +44,10 @@ export class FigureStrip {
         if (figures.stepCount === 0) this.#writeInside();
     }
 
-    /** Nothing yet: a new cloth. */
-    forgetCuts(): void {
+    /** A new cloth, of which nothing is known yet: what was counted of the one before is not its own. */
+    forgetCounts(): void {
+        this.#forgetSteps();
+        writeCount('figure-inside', undefined);
         writeCount('figure-pairs', undefined);
         this.#writeOwn(undefined);
     }
@@ -77,12 +79,16 @@ export class FigureStrip {
         byId('figure-collision').textContent = milliseconds(mean('collisionMs'));
         byId('figure-queries').textContent = perSecond(mean('queriesPerSecond'));
         this.#writeInside();
-        this.#steps = 0;
-        this.#sums = { ...NOTHING };
+        this.#forgetSteps();
     }
 
     #writeInside(): void {
         writeCount('figure-inside', this.#mostInside, 'no inside'); // of an open model
+        this.#mostInside = 0;
+    }
+    #forgetSteps(): void {
+        this.#steps = 0;
+        this.#sums = { ...NOTHING };
         this.#mostInside = 0;
     }
 }
