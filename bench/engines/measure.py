@@ -31,7 +31,8 @@ LARGEST = 200  # for the plot of time against particles only: the horse, recomme
 CONTACT_FRAMES = 30  # in which every cloth meets the model; what falls on costs nothing
 PATIENCE = 600  # processor seconds; slower runs are stopped and recorded as that
 WAIT = 4  # times as long, whatever the processor does
-COLUMNS = ("model", "side", "setup", "engine", "platform", "version", "substeps", "status", "frames", *judge.COLUMNS, "contact_ms", "frame_ms",
+KEYS = ("model", "side", "setup", "engine")
+COLUMNS = (*KEYS, "platform", "version", "substeps", "status", "frames", *judge.COLUMNS, "contact_ms", "frame_ms",
            "frame_ms_99", "settings")
 PICTURED = (50, "recommended")
 SHEET_COLUMNS = 4
@@ -51,7 +52,7 @@ class Run:
 
     @property
     def keys(self):
-        return {"model": self.model, "side": str(self.side), "setup": self.setup, "engine": self.runner.name}
+        return dict(zip(KEYS, (self.model, str(self.side), self.setup, self.runner.name)))
 
 
 # ---- What falls on what
@@ -155,24 +156,31 @@ def runs_of(options, names):
 
 
 def read_records(path):
+    """Machines, commits, and records by their keys."""
     if not path.exists():
-        return []
-    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
-    return list(csv.DictReader(lines))
+        return "", "", {}
+    lines = path.read_text().splitlines()
+    machines, commits = (line.removeprefix("# ") for line in lines if line.startswith("#"))
+    records = csv.DictReader(line for line in lines if not line.startswith("#"))
+    return machines, commits, {tuple(r[k] for k in KEYS): r for r in records}
+
+
+def with_one_more(names, name):
+    return names if name in names.split("; ") else "; ".join(filter(None, [names, name]))
 
 
 def rounded(value):
     return f"{value:.4g}" if isinstance(value, float) else value
 
 
-def write_records(path, records, machine, commit):
+def write_records(path, records, machines, commits):
     """Whole or not at all, in the form of bench/records.hpp; in the order of runners.py."""
     order = {r.name: i for i, r in enumerate(RUNNERS)}
     records = sorted(records, key=lambda r: (r["model"], int(r["side"]), r["setup"], order.get(r["engine"], len(order))))
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_suffix(".part")
     with unfinished.open("w", newline="") as file:
-        file.write(f"# {machine}\n# {commit}\n")
+        file.write(f"# {machines}\n# {commits}\n")
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n", extrasaction="ignore")
         writer.writeheader()
         writer.writerows({key: rounded(value) for key, value in record.items()} for record in records)
@@ -234,6 +242,7 @@ def options_of_command_line():
     parser.add_argument("--images", type=pathlib.Path, required=True, help="folder for the sheets of pictures")
     parser.add_argument("--short", action="store_true", help="one small cloth, one second")
     parser.add_argument("--only", action="append", default=[], metavar="NAME", help="measures this engine; the others' records stay")
+    parser.add_argument("--resume", action="store_true", help="goes on after the runs that are recorded")
     parser.add_argument("-o", dest="output", type=pathlib.Path, required=True)
     options = parser.parse_args()
     options.frames, options.sizes, options.setups, options.patience = FRAMES, SIZES, SETUPS, PATIENCE
@@ -257,11 +266,14 @@ def main():
         judged[name] = judge.Model(mesh)
         for side in (*options.sizes, LARGEST):
             ech.write_mesh(options.work / name / f"cloth_{side}.obj", sheet(mesh, side))
-    records = {tuple(r[k] for k in ("model", "side", "setup", "engine")): r for r in read_records(options.output)} if options.only else {}
+    keeps = options.only or options.resume
+    machines, commits, records = read_records(options.output) if keeps else ("", "", {})
+    machines, commits = with_one_more(machines, options.machine), with_one_more(commits, options.commit)
     missing, stopped = set(), {}
     for run in runs_of(options, judged):
         slow = stopped.get((run.runner.name, run.setup), 1 << 30)
-        if run.runner.name in missing:
+        keys = tuple(run.keys.values())
+        if run.runner.name in missing or (options.resume and keys in records):
             continue
         start = time.monotonic()
         # What was too slow with fewer particles is so with more.
@@ -272,8 +284,8 @@ def main():
         if status.startswith("stopped"):
             stopped[run.runner.name, run.setup] = min(slow, run.side)
         record = record_of(run, options, judged[run.model], status)
-        records[tuple(run.keys.values())] = record
-        write_records(options.output, records.values(), options.machine, options.commit)
+        records[keys] = record
+        write_records(options.output, records.values(), machines, commits)
         print(f"engines: {run.folder}: {status} in {time.monotonic() - start:.0f} s", file=sys.stderr)
     draw(options, judged)
 
