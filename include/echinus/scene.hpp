@@ -70,8 +70,9 @@ struct SceneBody {
     double element = 0;      ///< about their size, units; 0 where the file has them
     SoftBodyOptions options; ///< without pins and attachments
     VertexChoice pins;
-    VertexChoice attachments; ///< move with the collider
-    Vec3d velocity;           ///< of all particles at the start that are not pinned
+    VertexChoice attachments;           ///< move with the collider
+    Vec3d velocity;                     ///< of all particles at the start that are not pinned
+    std::vector<std::uint32_t> ignores; ///< colliders that it passes through, by their numbers
 };
 
 /// The meshes of a scene's cloth and bodies that come from files, as the caller has read them; the others are
@@ -108,10 +109,11 @@ struct Scene {
     MapOptions map;                       ///< of each collider
     bool has_cloth = true;
     ClothOptions cloth;
-    std::optional<MeshCloth> mesh_cloth; ///< in place of `cloth`
-    Vec3d cloth_velocity;                ///< of all particles at the start that are not pinned
-    std::optional<double> cloth_density; ///< mass per area; without one particles have the mean mass 1
-    std::vector<SceneBody> bodies;       ///< soft bodies, after the cloth
+    std::optional<MeshCloth> mesh_cloth;      ///< in place of `cloth`
+    Vec3d cloth_velocity;                     ///< of all particles at the start that are not pinned
+    std::optional<double> cloth_density;      ///< mass per area; without one particles have the mean mass 1
+    std::vector<std::uint32_t> cloth_ignores; ///< colliders that it passes through, by their numbers
+    std::vector<SceneBody> bodies;            ///< soft bodies, after the cloth
     SimulationOptions simulation;
     std::uint32_t frame_limit = 3000; ///< the simulation ends here at the latest
 };

@@ -76,6 +76,13 @@ struct Attachment {
     std::uint32_t collider = 0; ///< index in the simulation's colliders
 };
 
+/// A particle and a collider that do not collide. Faces and edges of the particle pass through that collider,
+/// too.
+struct CollisionFilter {
+    std::uint32_t particle;
+    std::uint32_t collider = 0; ///< index in the simulation's colliders
+};
+
 /// Particles and what holds them together, all in world units and axes.
 struct Deformable {
     std::vector<Vec3f> positions; ///< [particle_count]
@@ -93,9 +100,22 @@ struct Deformable {
     /// In the order in which they are relaxed, after the sticks. A particle of theirs that is in no face lies
     /// inside: where surfaces collide, those around it do, and it does not.
     std::vector<ElasticTetrahedron> tetrahedra{};
+    std::vector<CollisionFilter> filters{}; ///< in any order
 
     std::size_t particle_count() const { return positions.size(); }
 };
+
+/// The same deformable, of which nothing collides with a collider. combine() makes a filter by pair of it: of
+/// this part and that collider.
+Deformable passing_through(std::uint32_t collider, Deformable deformable);
+
+/// [particle_count] 1 for the particles that a collider lets through by the deformable's filters; empty if
+/// there are none. Filters of particles that the deformable does not have are left out.
+std::vector<std::uint8_t> let_through(const Deformable& deformable, std::size_t collider);
+/// The same of a face: does one of its particles pass? @param passes  as let_through() has it
+inline bool passes_through(const Triangle& face, std::span<const std::uint8_t> passes) {
+    return !passes.empty() && (passes[face[0]] | passes[face[1]] | passes[face[2]]) != 0;
+}
 
 // ---- Cloth ----
 

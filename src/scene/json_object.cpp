@@ -138,8 +138,11 @@ JsonObject::JsonObject(const json& value, const std::string& scene_name, const s
              "; it must be an object");
 }
 
-void JsonObject::require(const char* key) {
-    if (!has(key)) fail("the key " + path_of(key) + " is missing");
+void JsonObject::require(const char* key, const char* other) {
+    if (has(key)) return;
+    const std::string in_place =
+        other != nullptr ? ", and so is " + path_of(other) + "; one of them is needed" : "";
+    fail("the key " + path_of(key) + " is missing" + in_place);
 }
 
 void JsonObject::read(const char* key, bool& value) {

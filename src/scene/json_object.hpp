@@ -32,7 +32,8 @@ class JsonObject {
     JsonObject(const nlohmann::json& value, const std::string& scene_name, const std::string& key_path);
 
     bool has(const char* key) const { return value_.contains(key); }
-    void require(const char* key);
+    /// @param other  a key that may stand for it, for the sentence
+    void require(const char* key, const char* other = nullptr);
 
     void read(const char* key, bool& value);
     void read(const char* key, double& value, Range range);

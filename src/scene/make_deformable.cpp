@@ -74,6 +74,12 @@ Deformable make_body(const SceneBody& body, const TetrahedralMesh* read,
     return made;
 }
 
+Deformable passing_through(const std::vector<std::uint32_t>& colliders, Deformable deformable) {
+    for (const std::uint32_t collider : colliders)
+        deformable = echinus::passing_through(collider, std::move(deformable));
+    return deformable;
+}
+
 } // namespace
 
 TetrahedralMesh fill_body(const SceneBody& body, const TriangleMesh& surface) {
@@ -91,11 +97,12 @@ TetrahedralMesh make_solid(const SceneModel& shape, double element) {
 
 Deformable make_deformable(const Scene& scene, const ClothMeshes& meshes) {
     std::vector<Deformable> parts;
-    if (scene.has_cloth) parts.push_back(cloth_of(scene, meshes));
+    if (scene.has_cloth) parts.push_back(passing_through(scene.cloth_ignores, cloth_of(scene, meshes)));
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
         try {
             const TetrahedralMesh* read = i < meshes.bodies.size() ? &meshes.bodies[i] : nullptr;
-            parts.push_back(make_body(scene.bodies[i], read, scene.simulation));
+            parts.push_back(
+                passing_through(scene.bodies[i].ignores, make_body(scene.bodies[i], read, scene.simulation)));
         } catch (const Error& error) {
             throw Error(error.code(), "bodies[" + std::to_string(i) + "]: " + error.what());
         }

@@ -3,6 +3,7 @@
 #include <echinus/error.hpp>
 #include <echinus/scene.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <initializer_list>
@@ -65,7 +66,12 @@ SceneModel read_box(JsonObject box) {
 /// A file's name, or an object with the one key that names a generated shape.
 /// @pre the key is there
 SceneModel read_model(JsonObject& parent, const char* key) {
-    if (parent.is_string(key)) return ModelFile{*parent.read_string(key)};
+    if (parent.is_string(key)) {
+        const std::string name = *parent.read_string(key);
+        if (std::any_of(name.begin(), name.end(), [](char c) { return c >= 0 && c < ' '; }))
+            parent.refuse(key, "a file's name, which has no control characters");
+        return ModelFile{name};
+    }
     std::optional<JsonObject> model = parent.object(key);
     std::vector<SceneModel> found;
     if (auto torus = model->object("torus")) found.push_back(read_torus(*torus));
@@ -282,7 +288,7 @@ void read_colliders(JsonObject& root, Scene& scene) {
         return;
     }
     SceneCollider& collider = scene.colliders.emplace_back();
-    root.require("model");
+    root.require("model", "colliders");
     collider.model = read_model(root, "model");
     collider.repair = read_repair(root);
     auto object = root.object("collider");
@@ -352,6 +358,17 @@ void read_mesh_cloth(JsonObject& cloth, Scene& scene) {
     made.attachments = read_vertices(cloth, "attachments");
 }
 
+/// @pre the colliders were read
+std::vector<std::uint32_t> read_ignores(JsonObject& object, const Scene& scene) {
+    std::vector<std::uint32_t> numbers;
+    object.read("ignores", numbers, {0, 4e9});
+    for (const std::uint32_t number : numbers)
+        if (number >= scene.colliders.size())
+            object.refuse("ignores", "numbers of colliders, the last of which is " +
+                                         std::to_string(scene.colliders.size() - 1));
+    return numbers;
+}
+
 /// Is it a file of tetrahedra? By its ending, as for read_tetrahedra().
 bool has_tetrahedra(const SceneModel& model) {
     const auto* file = std::get_if<ModelFile>(&model);
@@ -362,7 +379,7 @@ bool has_tetrahedra(const SceneModel& model) {
     return ending == ".msh" || ending == ".vtk" || ending == ".node" || ending == ".ele";
 }
 
-SceneBody read_body(JsonObject& object) {
+SceneBody read_body(JsonObject& object, const Scene& scene) {
     SceneBody body;
     SoftBodyOptions& options = body.options;
     object.require("mesh");
@@ -382,13 +399,14 @@ SceneBody read_body(JsonObject& object) {
     object.read("velocity", body.velocity, kCoordinate);
     body.pins = read_vertices(object, "pins");
     body.attachments = read_vertices(object, "attachments");
+    body.ignores = read_ignores(object, scene);
     object.finish();
     return body;
 }
 
 /// @pre the map was read
 void read_cloth(JsonObject& root, Scene& scene) {
-    for (JsonObject& object : root.objects("bodies")) scene.bodies.push_back(read_body(object));
+    for (JsonObject& object : root.objects("bodies")) scene.bodies.push_back(read_body(object, scene));
     scene.has_cloth = scene.bodies.empty() || root.has("cloth");
     if (!scene.has_cloth) return;
     root.require("cloth");
@@ -398,6 +416,7 @@ void read_cloth(JsonObject& root, Scene& scene) {
     cloth->read("velocity", scene.cloth_velocity, kCoordinate);
     cloth->read("thickness", scene.simulation.thickness, {0, 1e9});
     cloth->read("self_thickness", scene.simulation.self_thickness, {0, 1e9});
+    scene.cloth_ignores = read_ignores(*cloth, scene);
     if (!std::holds_alternative<ExactMapOptions>(scene.map))
         refuse_keys_of_other_choice(*cloth, {"self_thickness"}, "map.kind", "exact");
     cloth->has("mesh") ? read_mesh_cloth(*cloth, scene) : read_sheet(*cloth, scene);

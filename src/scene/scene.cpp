@@ -21,6 +21,8 @@ fs::path find(const std::string& name, std::span<const fs::path> folders, const 
         if (is_right(path)) return path;
         tried += (tried.empty() ? "" : ", ") + folder.string();
     }
+    if (fs::path(name).is_absolute())
+        throw Error(ErrorCode::Unreadable, what + name + " is not there, or no file");
     throw Error(ErrorCode::Unreadable, std::string(what) + name + " is in none of the folders " + tried +
                                            "; scripts/setup puts the models of the scenes into models/");
 }

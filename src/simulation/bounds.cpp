@@ -22,6 +22,9 @@ Sphere box_sphere(std::span<const Vec3f> points) {
 /// Lengths whose squares are floats, too.
 constexpr double kLongestWay = 1e18;
 
+/// A particle that goes so many times the bound in a frame is not brought back by anything.
+constexpr double kFartherOnTheWay = 100;
+
 /// Written so that NaN fails it.
 bool is_within(const Vec3d& length, double most) {
     return dot(length, length) <= most * most;
@@ -41,8 +44,9 @@ void Bounds::require_sound() const {
 }
 
 void Bounds::require_ways(const Particles& particles, std::uint32_t frame) {
-    require_within(particles.positions, particles.count(), kLongestWay, frame);
-    require_within(particles.previous, particles.count(), kLongestWay, frame);
+    const double most = std::min(kLongestWay, kFartherOnTheWay * farthest_);
+    require_within(particles.positions, particles.count(), most, frame);
+    require_within(particles.previous, particles.count(), most, frame);
 }
 
 bool Bounds::contain_way(const Collider& collider, double seconds) {

@@ -59,7 +59,9 @@ class Collision {
 };
 
 /// By the kind of the collider's map. @pre the collider is valid, and the options have a thickness
+/// @param passes  [particle_count] 1 for those that the collider lets through, or none
 std::unique_ptr<Collision> make_collision(const Collider& collider, const Particles& particles,
+                                          std::span<const std::uint8_t> passes,
                                           const SimulationOptions& options);
 
 } // namespace echinus

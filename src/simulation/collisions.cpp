@@ -12,12 +12,12 @@ constexpr double kAwayInThicknesses = 4;
 
 } // namespace
 
-Collisions::Collisions(const std::vector<Collider>& colliders, const Particles& particles,
-                       const SimulationOptions& options)
+Collisions::Collisions(const Deformable& deformable, const std::vector<Collider>& colliders,
+                       const Particles& particles, const SimulationOptions& options)
     : broad_phase_(colliders), was_away_(colliders.size()), frame_start_poses_(colliders.size()),
       rescues_(options.keep_free) {
-    for (const Collider& collider : colliders)
-        collisions_.push_back(make_collision(collider, particles, options));
+    for (std::size_t i = 0; i < colliders.size(); ++i)
+        collisions_.push_back(make_collision(colliders[i], particles, let_through(deformable, i), options));
     unproven_.reserve(collisions_.size() * particles.count());
 }
 

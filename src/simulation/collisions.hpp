@@ -14,8 +14,8 @@ namespace echinus {
 /// Keeps the particles off all colliders, in the order of the colliders.
 class Collisions {
   public:
-    Collisions(const std::vector<Collider>& colliders, const Particles& particles,
-               const SimulationOptions& options);
+    Collisions(const Deformable& deformable, const std::vector<Collider>& colliders,
+               const Particles& particles, const SimulationOptions& options);
     Collisions(const Collisions& other);
     Collisions& operator=(const Collisions&) = delete;
 

@@ -43,9 +43,10 @@ Vec3f answer(const Collider& collider, const Contact& contact, const Vec3f& posi
 } // namespace
 
 ContactCollision::ContactCollision(const Collider& collider, const Particles& particles,
-                                   const SimulationOptions& options)
+                                   std::span<const std::uint8_t> passes, const SimulationOptions& options)
     : collider_(collider), rules_{static_cast<float>(options.thickness.value()),
                                   static_cast<float>(options.friction)},
+      passes_(passes.begin(), passes.end()),
       reach_(plan_for(collider).reach_in_thicknesses * rules_.thickness),
       places_(std::min(plan_for(collider).piece_size, particles.count())), contacts_(places_.size()) {}
 
@@ -70,6 +71,7 @@ std::size_t ContactCollision::relax_piece(std::size_t begin, Particles& particle
     for (std::size_t k = 0; k < count; ++k) {
         const std::size_t i = begin + k;
         if (!needs_response(places_[k], contacts_[k], rules_.thickness) || particles.pinned(i)) continue;
+        if (!passes_.empty() && passes_[i] != 0) continue;
         const Vec3f start = particles.previous[i] + material_.at(places_[k]);
         particles.positions.set(i, answer(collider_, contacts_[k], places_[k], start, rules_));
         ++pushed_count;

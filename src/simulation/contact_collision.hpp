@@ -12,7 +12,8 @@ namespace echinus {
 /// relaxation.
 class ContactCollision final : public Collision {
   public:
-    ContactCollision(const Collider& collider, const Particles& particles, const SimulationOptions& options);
+    ContactCollision(const Collider& collider, const Particles& particles,
+                     std::span<const std::uint8_t> passes, const SimulationOptions& options);
     std::unique_ptr<Collision> clone() const override { return std::make_unique<ContactCollision>(*this); }
 
     void begin_substep(const Collider& collider, const RigidTransform& previous_pose) override;
@@ -24,9 +25,10 @@ class ContactCollision final : public Collision {
     Collider collider_;
     MaterialMotion material_;
     ResponseRules rules_;
-    float reach_;                   ///< how far outside a particle still has a contact
-    std::vector<Vec3f> places_;     ///< of a piece of the particles,
-    std::vector<Contact> contacts_; ///< and their contacts
+    std::vector<std::uint8_t> passes_; ///< by particle: the collider lets it through; or none
+    float reach_;                      ///< how far outside a particle still has a contact
+    std::vector<Vec3f> places_;        ///< of a piece of the particles,
+    std::vector<Contact> contacts_;    ///< and their contacts
 };
 
 } // namespace echinus

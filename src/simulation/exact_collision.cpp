@@ -21,9 +21,9 @@ constexpr std::size_t kSharedSize = 2048;
 } // namespace
 
 ExactCollision::ExactCollision(const Collider& collider, const Particles& particles,
-                               const SimulationOptions& options)
+                               std::span<const std::uint8_t> passes, const SimulationOptions& options)
     : options_(options), now_(collider, collider.pose, options), frame_start_pose_(collider.pose),
-      known_(particles), free_places_(now_, particles), unproven_(2 * particles.count()) {
+      known_(particles, passes), free_places_(now_, particles, passes), unproven_(2 * particles.count()) {
     const bool is_shared = worker_count(options.thread_count) > 1;
     const std::size_t most = is_shared ? kSharedSize : std::max<std::size_t>(particles.count(), 1);
     pieces_.assign(Workers::piece_count(particles.count(), most), Piece{ParticleList(most)});
@@ -215,11 +215,11 @@ std::span<const std::uint32_t> ExactCollision::find_unproven(const Particles& pa
 }
 
 bool ExactCollision::is_unproven(std::size_t i, const Particles& particles) const {
-    return swept(i, particles).is_unproven();
+    return !known_.is_never_asked(i) && swept(i, particles).is_unproven();
 }
 
 bool ExactCollision::is_lost(std::size_t i, const Particles& particles) const {
-    return free_places_.has(i) && swept(i, particles).is_lost();
+    return !known_.is_never_asked(i) && free_places_.has(i) && swept(i, particles).is_lost();
 }
 
 void ExactCollision::rescue(std::size_t i, Particles& particles) const {

@@ -26,7 +26,8 @@ namespace echinus {
 class ExactCollision final : public Collision {
   public:
     /// Particles that are outside now are free, all of them beside a surface with two sides.
-    ExactCollision(const Collider& collider, const Particles& particles, const SimulationOptions& options);
+    ExactCollision(const Collider& collider, const Particles& particles, std::span<const std::uint8_t> passes,
+                   const SimulationOptions& options);
     std::unique_ptr<Collision> clone() const override { return std::make_unique<ExactCollision>(*this); }
 
     void begin_frame(const Collider& collider, const SurfaceMotion* motion) override;

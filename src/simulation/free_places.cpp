@@ -2,12 +2,14 @@
 
 namespace echinus {
 
-FreePlaces::FreePlaces(const ColliderNow& collider, const Particles& particles)
+FreePlaces::FreePlaces(const ColliderNow& collider, const Particles& particles,
+                       std::span<const std::uint8_t> passes)
     : frame_start_(collider.local), states_(particles.count(), State::FrameStart), stored_(particles.count()),
       lost_(particles.count(), 0) {
     exceptions_.reserve(particles.count());
     for (std::uint32_t i = 0; i < particles.count(); ++i) {
-        if (collider.outside(particles.positions[i])) continue;
+        const bool is_let_through = !passes.empty() && passes[i] != 0;
+        if (is_let_through || collider.outside(particles.positions[i])) continue;
         states_[i] = State::Never;
         exceptions_.push_back(i);
     }

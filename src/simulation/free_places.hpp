@@ -12,12 +12,14 @@
 namespace echinus {
 
 /// Where each particle was free last, by one collider with an exact map. A particle that begins outside is
-/// free there; one that begins inside has no such place yet.
+/// free there; one that begins inside has no such place yet. One that the collider lets through is free
+/// everywhere.
 ///
 /// Nearly always that is where the particle was when the frame began; other places are stored.
 class FreePlaces {
   public:
-    FreePlaces(const ColliderNow& collider, const Particles& particles);
+    /// @param passes  [count] 1 for the particles that the collider lets through, or none
+    FreePlaces(const ColliderNow& collider, const Particles& particles, std::span<const std::uint8_t> passes);
 
     /// @param carried  how the surface takes each particle along (SurfaceMotion), or null: it does not deform
     void begin_frame(const Collider& collider, const PointArrays* carried);

@@ -4,13 +4,13 @@
 
 namespace echinus {
 
-KnownContacts::KnownContacts(const Particles& particles) {
+KnownContacts::KnownContacts(const Particles& particles, std::span<const std::uint8_t> passes) {
     const std::size_t count = particles.count();
     for (PointArrays* points : {&asked_at_body, &asked_at, &normal_body, &normal}) points->resize(count);
     clearance.assign(count + PointArrays::kPadding, kNeverAsk);
     height.assign(count + PointArrays::kPadding, kNoPlane);
     for (std::size_t i = 0; i < count; ++i)
-        if (!particles.pinned(i)) clearance[i] = -1;
+        if (!particles.pinned(i) && (passes.empty() || passes[i] == 0)) clearance[i] = -1;
 }
 
 void KnownContacts::follow(const ColliderNow& collider) {
@@ -22,7 +22,7 @@ void KnownContacts::follow(const ColliderNow& collider) {
 
 void KnownContacts::weaken(float most) {
     for (std::size_t i = 0; i + PointArrays::kPadding < clearance.size(); ++i) {
-        if (clearance[i] == kNeverAsk) continue;
+        if (is_never_asked(i)) continue;
         clearance[i] = height[i] == kNoPlane ? clearance[i] - most : -1;
         height[i] = kNoPlane;
     }

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace echinus {
@@ -19,7 +20,8 @@ namespace echinus {
 struct KnownContacts {
     /// Marks a missing plane.
     static constexpr float kNoPlane = std::numeric_limits<float>::infinity();
-    /// A pinned particle has this clearance, so that the map is never asked. Its square is finite.
+    /// A particle that is pinned, or that the collider lets through, has this clearance, so that the map is
+    /// never asked. Its square is finite.
     static constexpr float kNeverAsk = 1e18F;
 
     PointArrays asked_at_body, asked_at; ///< where the particle was when the map was asked
@@ -29,7 +31,10 @@ struct KnownContacts {
     PointArrays normal_body, normal; ///< of the contact plane, towards where the particle has to be
     std::vector<float> height; ///< [count + PointArrays::kPadding] of asked_at over the plane, or kNoPlane
 
-    explicit KnownContacts(const Particles& particles);
+    /// @param passes  [count] 1 for the particles that the collider lets through, or none
+    KnownContacts(const Particles& particles, std::span<const std::uint8_t> passes);
+
+    bool is_never_asked(std::size_t i) const { return clearance[i] == kNeverAsk; }
 
     /// Moves along with the collider, which has moved.
     void follow(const ColliderNow& collider);

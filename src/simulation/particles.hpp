@@ -48,14 +48,15 @@ struct Particles {
     PointArrays positions;
     PointArrays previous;    ///< one substep ago
     PointArrays frame_start; ///< where they were when the frame began
-    /// What rounding took off positions and previous ones, with XPBD: a place is the sum of both. In small
-    /// steps gravity and constraints move a particle by little more than a position's last digit.
+    /// What rounding took off positions and previous ones: a place is the sum of both. For small steps and
+    /// places far from the origin, where gravity and constraints move a particle by little more than a
+    /// position's last digit.
     PointArrays remainders, previous_remainders;
     bool keeps_remainders;       ///< else they are 0
     std::vector<float> mobility; ///< 1, or 0 for a particle that is pinned
 
-    explicit Particles(const Deformable& deformable, SolverKind solver = SolverKind::Verlet)
-        : keeps_remainders(solver == SolverKind::Xpbd) {
+    explicit Particles(const Deformable& deformable, bool keeps_remainders_in = false)
+        : keeps_remainders(keeps_remainders_in) {
         for (const float inverse_mass : deformable.inverse_masses)
             mobility.push_back(inverse_mass == 0 ? 0.0F : 1.0F);
         positions.load(deformable.positions);

@@ -139,6 +139,10 @@ void require_part(const Deformable& part, std::size_t number, std::size_t partic
         require_option(attachment.particle < part.particle_count(),
                        name + "an attachment names particle " + std::to_string(attachment.particle) +
                            "; the last one is " + std::to_string(part.particle_count() - 1));
+    for (const CollisionFilter& filter : part.filters)
+        require_option(filter.particle < part.particle_count(),
+                       name + "a filter names particle " + std::to_string(filter.particle) +
+                           "; the last one is " + std::to_string(part.particle_count() - 1));
     require_option(part.particle_count() <= std::numeric_limits<std::uint32_t>::max() - particles_before,
                    name + "it would have particles beyond number 4294967295");
 }
@@ -164,6 +168,10 @@ void append(Deformable& to, const Deformable& part) {
     for (Attachment attachment : part.attachments) {
         attachment.particle += first;
         to.attachments.push_back(attachment);
+    }
+    for (CollisionFilter filter : part.filters) {
+        filter.particle += first;
+        to.filters.push_back(filter);
     }
     for (ElasticTetrahedron tetrahedron : part.tetrahedra) {
         for (std::uint32_t& corner : tetrahedron.particles) corner += first;

@@ -59,9 +59,23 @@ Deformable valid_start(Deformable deformable, const std::vector<Collider>& colli
     require_solver(deformable, options);
     require_valid(colliders, options);
     require_valid_attachments(deformable, colliders.size());
+    require_valid_filters(deformable, colliders.size());
     if (options.untangle)
         untangle(deformable, with_unit_rotations(colliders), with_thickness(options, deformable));
     return deformable;
+}
+
+/// XPBD's steps are small. Elsewhere gravity decides: is what it moves a particle by in a frame not many
+/// times the last digit of a coordinate?
+bool needs_remainders(const Deformable& deformable, const SimulationOptions& options) {
+    constexpr double kManyDigits = 50; // gravity is right to 1 %
+    if (options.solver == SolverKind::Xpbd) return true;
+    float largest = 0;
+    for (const Vec3f& p : deformable.positions)
+        largest = std::max({largest, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+    const double digit = double{largest} * std::numeric_limits<float>::epsilon();
+    const double fall = length(options.gravity) * options.time_step * options.time_step;
+    return fall > 0 && fall < kManyDigits * digit;
 }
 
 /// Particles that are worth a piece of the integration.
@@ -103,11 +117,11 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
     : deformable(valid_start(std::move(deformable_in), colliders_in, options_in)),
       colliders(with_unit_rotations(std::move(colliders_in))), motions(colliders.size()),
       options(with_thickness(options_in, deformable)), largest_speed(std::numeric_limits<double>::infinity()),
-      workers_(options.thread_count), particles_(deformable, options.solver),
+      workers_(options.thread_count), particles_(deformable, needs_remainders(deformable, options)),
       sticks_(weighted_sticks(deformable, options)), folds_(weighted_folds(deformable, options)),
       tetrahedra_(weighted_tetrahedra(deformable, options)), attachments_(deformable, colliders),
       deforming_(colliders.size()), surface_motions_(colliders.size()), clearances_(particles_.count()),
-      collisions_(colliders, particles_, options), rest_(options.rest, deformable.positions),
+      collisions_(deformable, colliders, particles_, options), rest_(options.rest, deformable.positions),
       bounds_(options, deformable), goals_give_way_(sticks_.gives_way()), part_(options),
       substep_seconds_(options.time_step / options.substep_count),
       start_hash_(hash_of(deformable.positions)) {
@@ -249,7 +263,7 @@ void Simulation::Solver::integrate(double share_kept) {
                 integrate_compensated(positions + begin, previous + begin, (lost.*axis).data() + begin,
                                       (lost_before.*axis).data() + begin, mobility + begin, count, keep,
                                       fall_along);
-            else // whole frames, whose ways are far longer than what is rounded
+            else
                 integrate_coordinate(positions + begin, previous + begin, mobility + begin, count, keep,
                                      fall_along);
         };

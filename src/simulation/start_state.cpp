@@ -1,8 +1,8 @@
 #include "simulation/start_state.hpp"
 
-#include "collider/frame_change.hpp"
 #include "simulation/surfaces/elements.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
+#include "simulation/surfaces/model_pairs.hpp"
 #include "simulation/validation.hpp"
 
 #include <echinus/error.hpp>
@@ -45,12 +45,13 @@ std::string name_of(const Elements& elements, std::uint32_t number) {
     return "the edge from particle " + std::to_string(a) + " to " + std::to_string(b);
 }
 
+/// @param what      it does, such as "touching the box"
 /// @param describe  a pair
 template <typename Describe>
-[[noreturn]] void refuse(const std::vector<FacePair>& pairs, const std::string& whom,
+[[noreturn]] void refuse(const std::string& what, const std::vector<FacePair>& pairs,
                          const SimulationOptions& options, const char* option, const Describe& describe) {
-    std::string sentence = "the deformable begins intersecting " + whom + " in " +
-                           std::to_string(pairs.size()) + (pairs.size() == 1 ? " pair" : " pairs") +
+    std::string sentence = "the deformable begins " + what + " in " + std::to_string(pairs.size()) +
+                           (pairs.size() == 1 ? " pair" : " pairs") +
                            (options.untangle ? " that untangle could not part: " : ": ");
     for (std::size_t i = 0; i < std::min(pairs.size(), kNamedPairs); ++i)
         sentence += (i == 0 ? "" : ", ") + describe(pairs[i]);
@@ -58,10 +59,13 @@ template <typename Describe>
     throw Error(ErrorCode::InvalidOptions, sentence + remedy(options, option));
 }
 
-void require_outside(const std::vector<Vec3f>& positions, const std::vector<float>& inverse_masses,
+void require_outside(const Deformable& deformable, std::span<const std::uint8_t> passes,
                      const Collider& collider, const SimulationOptions& options, const std::string& name) {
-    std::vector<std::uint8_t> inside(positions.size());
-    contains_batch(collider, std::span(positions), inside);
+    const std::vector<float>& inverse_masses = deformable.inverse_masses;
+    std::vector<std::uint8_t> inside(deformable.particle_count());
+    contains_batch(collider, std::span(deformable.positions), inside);
+    for (std::size_t v = 0; v < passes.size(); ++v)
+        if (passes[v] != 0) inside[v] = 0;
     const auto first = std::find(inside.begin(), inside.end(), std::uint8_t{1});
     if (first == inside.end()) return;
     std::size_t pinned = 0;
@@ -76,22 +80,20 @@ void require_outside(const std::vector<Vec3f>& positions, const std::vector<floa
                     remedy(options, "surface_collision", pinned > 0));
 }
 
-void require_apart(const TriangleMesh& surface, const std::vector<float>& inverse_masses,
-                   const Elements& elements, const Collider& collider, const SimulationOptions& options,
-                   const std::string& name) {
-    const ExactMap& exact = *map_of_surface(collider);
-    const ExactMapView& map = exact.view();
-    const FrameChange body(collider.pose, {1, 1, 1});
-    TriangleMesh in_body = surface;
-    for (Vec3f& p : in_body.vertices) p = body.point_to_local(p);
-    const std::vector<FacePair> pairs = intersecting_pairs(in_body, model_mesh(map, collider.scale));
-    if (!pairs.empty())
-        refuse(pairs, name, options, "surface_collision", [&](const FacePair& pair) {
-            return name_of(elements, pair.a) + " and its face " + std::to_string(pair.b);
-        });
+void require_apart(const Deformable& deformable, const TriangleMesh& surface, const Elements& elements,
+                   std::span<const std::uint8_t> passes, const Collider& collider,
+                   const SimulationOptions& options, const std::string& name) {
+    const ModelPairs pairs(collider, {passes.begin(), passes.end()});
+    const auto [intersecting, touching] = pairs.with(surface);
+    const auto describe = [&](const FacePair& pair) {
+        return name_of(elements, pair.a) + " and its face " + std::to_string(pair.b);
+    };
+    if (!intersecting.empty())
+        refuse("intersecting " + name, intersecting, options, "surface_collision", describe);
+    if (!touching.empty()) refuse("touching " + name, touching, options, "surface_collision", describe);
     // Where nothing intersects, a piece is inside as a whole. An open surface has no inside.
-    if (map.border.empty())
-        require_outside(surface.vertices, inverse_masses, with_map(collider, exact), options, name);
+    if (pairs.has_inside())
+        require_outside(deformable, passes, with_map(collider, *map_of_surface(collider)), options, name);
 }
 
 } // namespace
@@ -101,12 +103,12 @@ void require_apart(const Deformable& deformable, const std::vector<Collider>& co
     const Elements elements = elements_of(deformable);
     const TriangleMesh surface = surface_of(deformable, elements);
     for (std::size_t i = 0; i < colliders.size(); ++i)
-        require_apart(surface, deformable.inverse_masses, elements, colliders[i], options,
+        require_apart(deformable, surface, elements, let_through(deformable, i), colliders[i], options,
                       name_of(colliders[i], i));
     if (!options.self_collision) return;
     const std::vector<FacePair> pairs = self_intersecting_pairs(surface);
     if (!pairs.empty())
-        refuse(pairs, "itself", options, "self_collision", [&](const FacePair& pair) {
+        refuse("intersecting itself", pairs, options, "self_collision", [&](const FacePair& pair) {
             return name_of(elements, pair.a) + " and " + name_of(elements, pair.b);
         });
 }

@@ -31,8 +31,7 @@ void untangle(Deformable& deformable, const std::vector<Collider>& colliders,
     const float gap =
         std::clamp(kGapInThicknesses * thickness, kLeastGap * edge_length, kMostGap * edge_length);
     for (int turn = 0; turn < kMostTurns; ++turn) {
-        const bool left_models =
-            part_from_models(elements, deformable.inverse_masses, colliders, options, positions);
+        const bool left_models = part_from_models(elements, deformable, colliders, options, positions);
         const bool face_moves = turn % 2 != 0; // the other way round has led into a model
         const bool left_itself = options.self_collision &&
                                  part_layers(elements, deformable.inverse_masses, gap, face_moves, positions);

@@ -104,6 +104,12 @@ void require_valid(const Fold& fold, std::size_t particle_count, const std::stri
         fail(name + " has a rest angle that is not between -pi and pi, or a lever that is not positive");
 }
 
+/// As models are: distances, areas and volumes of what is so large are floats, too.
+bool is_within_reach(const Vec3f& position) {
+    constexpr float kFarthest = 1e15F;
+    return std::max({std::fabs(position.x), std::fabs(position.y), std::fabs(position.z)}) <= kFarthest;
+}
+
 void require_valid(const ElasticTetrahedron& tetrahedron, std::size_t particle_count,
                    const std::string& name) {
     std::array corners = tetrahedron.particles;
@@ -135,6 +141,8 @@ void require_valid(const Deformable& deformable) {
             !(inverse_mass >= 0) || !std::isfinite(inverse_mass))
             fail("particle " + std::to_string(i) +
                  " has a position that is not finite or an inverse mass that is negative or not finite");
+        if (!is_within_reach(deformable.positions[i]))
+            fail("particle " + std::to_string(i) + " begins farther than 1e15 from the origin along an axis");
     }
     for (std::size_t i = 0; i < deformable.sticks.size(); ++i) {
         const Stick& stick = deformable.sticks[i];
@@ -162,21 +170,39 @@ void require_solver(const Deformable& deformable, const SimulationOptions& optio
              "substep_count to 10 or more with an iteration_count of 1");
 }
 
+namespace {
+
+/// @param name  of what names them
+void require_there(const std::string& name, std::uint32_t particle, std::uint32_t collider,
+                   std::size_t particle_count, std::size_t collider_count) {
+    if (particle >= particle_count)
+        fail(name + ": the last particle is " + std::to_string(particle_count - 1));
+    if (collider >= collider_count)
+        fail(name + " names collider " + std::to_string(collider) + " of " + std::to_string(collider_count) +
+             ", numbered from 0");
+}
+
+} // namespace
+
 void require_valid_attachments(const Deformable& deformable, std::size_t collider_count) {
     std::vector<bool> is_attached(deformable.particle_count(), false);
     for (std::size_t i = 0; i < deformable.attachments.size(); ++i) {
         const auto& [particle, collider] = deformable.attachments[i];
         const std::string name =
             "attachment " + std::to_string(i) + " of particle " + std::to_string(particle);
-        if (particle >= deformable.particle_count())
-            fail(name + ": the last particle is " + std::to_string(deformable.particle_count() - 1));
-        if (collider >= collider_count)
-            fail(name + " names collider " + std::to_string(collider) + " of " +
-                 std::to_string(collider_count) + ", numbered from 0");
+        require_there(name, particle, collider, deformable.particle_count(), collider_count);
         if (deformable.inverse_masses[particle] != 0)
             fail(name + ": an attached particle must be pinned, with the inverse mass 0");
         if (is_attached[particle]) fail(name + " is not its first; a particle has at most one");
         is_attached[particle] = true;
+    }
+}
+
+void require_valid_filters(const Deformable& deformable, std::size_t collider_count) {
+    for (std::size_t i = 0; i < deformable.filters.size(); ++i) {
+        const auto& [particle, collider] = deformable.filters[i];
+        const std::string name = "filter " + std::to_string(i) + " of particle " + std::to_string(particle);
+        require_there(name, particle, collider, deformable.particle_count(), collider_count);
     }
 }
 

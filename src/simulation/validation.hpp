@@ -24,6 +24,7 @@ void require_solver(const Deformable& deformable, const SimulationOptions& optio
 void require_valid(const std::vector<Collider>& colliders, const SimulationOptions& options);
 /// @pre the deformable is valid
 void require_valid_attachments(const Deformable& deformable, std::size_t collider_count);
+void require_valid_filters(const Deformable& deformable, std::size_t collider_count);
 /// @param owner  of the pose, as the sentence begins: "collider 0"
 void require_valid(const RigidTransform& pose, const std::string& owner);
 

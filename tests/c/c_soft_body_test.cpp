@@ -191,6 +191,21 @@ TEST(CSoftBodies, AreCombinedWithClothAsInCpp) {
     Pair(both, combine(expected)).expect_same_after(30);
 }
 
+TEST(CSoftBodies, PassThroughAColliderAsInCpp) {
+    const Deformable expected = passing_through(0, sheet());
+    CDeformable through, again;
+    expect_ok(echinus_deformable_passing_through(c_sheet().get(), 0, out(through)));
+    echinus_deformable_arrays arrays{};
+    arrays.size = sizeof arrays;
+    expect_ok(echinus_deformable_read(through.get(), &arrays));
+    ASSERT_EQ(arrays.filter_count, expected.particle_count());
+    EXPECT_EQ(arrays.filters[1].particle, 1U);
+    expect_ok(echinus_deformable_create(&arrays, out(again)));
+    Pair(again, expected).expect_same_after(30);
+    expect_refused(echinus_deformable_passing_through(nullptr, 0, out(again)), ECHINUS_INVALID_ARGUMENT,
+                   "deformable");
+}
+
 TEST(CSoftBodies, ThatCannotBeAreRefused) {
     const CTetrahedra body = c_block();
     echinus_soft_body_options options;

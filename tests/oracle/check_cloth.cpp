@@ -23,7 +23,8 @@ std::optional<FacePair> first_of(const std::vector<FacePair>& pairs) {
 JudgedFrame judge(const SimulationFolder& folder, std::size_t sample) {
     const MeshAndEdges saved = folder.cloth(sample);
     const TriangleMesh cloth{saved.mesh.vertices, surface_of(saved)};
-    const auto model_pairs = intersecting_pairs_by_cgal(cloth, folder.colliders(sample));
+    auto model_pairs = intersecting_pairs_by_cgal(cloth, folder.colliders(sample));
+    folder.drop_let_through(cloth.faces, model_pairs);
     const auto own_pairs = self_intersecting_pairs_by_cgal(cloth);
     return {.frame = folder.frame_of(sample),
             .model_pairs = model_pairs.size(),

@@ -72,6 +72,27 @@ TEST_F(CheckClothTest, FindsTheFramesInWhichTheClothCutsTheModel) {
     EXPECT_NE(to_json(result).find("\"frames_with_pairs\": 3"), std::string::npos);
 }
 
+TEST_F(CheckClothTest, CountsNoFacesThatTheModelLetsThrough) {
+    write_mesh(path("collider.obj"), make_box({1, 1, 1}));
+    const auto with_runs = [&](const std::string& runs) {
+        write("report.json", R"({"gravity": [0, 0, -9.81], "frames_to_rest": null, "colliders": [{
+            "mesh": "collider.obj", "lets_through": )" +
+                                 runs + R"(, "poses": [
+                {"frame": 0, "translation": [0, 0, 0], "rotation": [1, 0, 0, 0]}]}]})");
+    };
+    with_runs("[[3, 3]]"); // of the second face
+    const ClothCheckResult of_one = check_cloth(path(""));
+    EXPECT_GT(of_one.frames[3].model_pairs, 0U);
+    EXPECT_EQ(of_one.frames[3].first_model_pair->a, 0U);
+    with_runs("[[0, 1], [3, 3]]");
+    const ClothCheckResult of_none = check_cloth(path(""));
+    for (const JudgedFrame& frame : of_none.frames) EXPECT_EQ(frame.model_pairs, 0U) << frame.frame;
+    for (const char* runs : {"[[2, 4]]", "[[3, 1]]", "[3]", "[[-1, 2]]", "[]", "[[0.5, 1]]"}) {
+        with_runs(runs);
+        expect_error(ErrorCode::Damaged, "lets_through", [&] { check_cloth(path("")); });
+    }
+}
+
 TEST_F(CheckClothTest, JudgesEverySoManyFramesAndTheLast) {
     const ClothCheckResult result = check_cloth(path(""), {.stride = 3});
     ASSERT_EQ(result.frames.size(), 4U);

@@ -254,10 +254,23 @@ def test_a_wrong_type_is_refused_by_the_argument_s_name(call, words):
         call()
 
 
+def test_one_part_passes_through_a_collider_that_holds_the_other():
+    table = ech.Collider(ech.ExactMap(ech.make_box((4, 4, 0.2))))
+    sheets = [ech.make_cloth(column_count=6, row_count=6, width=0.5, height=0.5, position=(x, 0, 0.2)) for x in (-1, 1)]
+    both = ech.combine([ech.passing_through(0, sheets[0]), sheets[1]])
+    run = ech.Simulation(both, [table], surface_collision=True, self_collision=True, thickness=0.01)
+    run.step(120)
+    assert run.positions[:36, 2].max() < -0.1 and run.positions[36:, 2].min() > 0.1
+    for collider, error in ((-1, ValueError), ("0", TypeError)):
+        with pytest.raises(error, match="collider"):
+            ech.passing_through(collider, sheets[0])
+    assert refusal(ech.Simulation, ech.passing_through(1, sheets[0]), [table])[0] == "invalid_options"
+
+
 def test_deformables_and_caches_are_pickled_whole():
     both = ech.combine([cloth(pins=[3], position=(0, 0, 2)), soft_box(attachments=[[0, 0]])])
     threaded = ech.make_cloth_of_mesh(BALL, position=(0, 0, 1))
-    for deformable in (both, threaded):
+    for deformable in (both, threaded, ech.passing_through(0, threaded)):
         again = pickle.loads(pickle.dumps(deformable))
         assert repr(again) == repr(deformable) and again.fold_count == deformable.fold_count
         runs = [ech.Simulation(d, [BELOW], solver="xpbd") for d in (deformable, again)]

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -72,6 +73,27 @@ TEST(SceneBodies, FollowTheClothWhoseDensityIsThenGiven) {
     EXPECT_NEAR(mass_of(all, 0, 12), 0.4, 1e-6);
     EXPECT_NEAR(mass_of(all, 12, 8), 1000, 1e-3);
     EXPECT_EQ(all.positions[12], Vec3f(-0.5F, -0.5F, 2.5F));
+}
+
+TEST(SceneBodies, AndTheClothPassThroughTheCollidersThatTheyIgnore) {
+    const std::string colliders = R"("colliders": [{"model": {"box": {}}}, {"model": {"sphere": {}}}])";
+    const auto scene = [&](const std::string& of_cloth, const std::string& of_body) {
+        return parse_scene("{" + colliders +
+                               R"(, "cloth": {"size": [2, 1], "particles": [4, 3], "density": 1)" + of_cloth +
+                               R"(}, "bodies": [{"mesh": {"box": {}}, "element": 1)" + of_body + "}]}",
+                           "a.json");
+    };
+    const auto count = [](const std::vector<std::uint8_t>& passes) {
+        return std::count(passes.begin(), passes.end(), std::uint8_t{1});
+    };
+    const Deformable all = make_deformable(scene(R"(, "ignores": [1])", R"(, "ignores": [0, 1])"));
+    EXPECT_EQ(count(let_through(all, 0)), 8);
+    EXPECT_EQ(count(let_through(all, 1)), 12 + 8);
+    EXPECT_TRUE(let_through(make_deformable(scene("", "")), 0).empty());
+    for (const char* words : {R"(, "ignores": [2])", R"(, "ignores": [-1])", R"(, "ignores": 0)"}) {
+        test::expect_error(ErrorCode::InvalidScene, "cloth.ignores", [&] { scene(words, ""); });
+        test::expect_error(ErrorCode::InvalidScene, "bodies[0].ignores", [&] { scene("", words); });
+    }
 }
 
 TEST(SceneBodies, AreTakenAsTheyAreFromFilesOfTetrahedra) {

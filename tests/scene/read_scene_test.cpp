@@ -175,7 +175,8 @@ TEST(Scene, NeedsOnlyAModelAndTheSizeOfTheCloth) {
     EXPECT_EQ(std::get<TorusModel>(scene.colliders.front().model).major_segments, 60u);
     EXPECT_EQ(scene.cloth.column_count, 100u);
     EXPECT_EQ(scene.simulation.iteration_count, 10u);
-    EXPECT_EQ(refusal(R"({"cloth": {"size": [2, 2]}})"), "a.json: the key model is missing");
+    EXPECT_EQ(refusal(R"({"cloth": {"size": [2, 2]}})"),
+              "a.json: the key model is missing, and so is colliders; one of them is needed");
     EXPECT_EQ(refusal(R"({"model": {"torus": {}}})"), "a.json: the key cloth is missing");
     EXPECT_EQ(refusal(R"({"model": {"torus": {}}, "cloth": {}})"), "a.json: the key cloth.size is missing");
 }

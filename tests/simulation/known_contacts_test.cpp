@@ -25,7 +25,7 @@ Particles particles_around(const Vec3f& centre, std::size_t count, float half_wi
 
 /// Asks the map about every particle that is not pinned.
 KnownContacts known_of(const Particles& particles, const ColliderNow& collider, float reach) {
-    KnownContacts known(particles);
+    KnownContacts known(particles, {});
     for (std::size_t i = 0; i < particles.count(); ++i) {
         if (particles.pinned(i)) continue;
         const Vec3f position = particles.positions[i];

@@ -201,6 +201,21 @@ TEST(SurfaceCollision, LeavesFreeFallAsItIs) {
     ASSERT_EQ(surfaces.profile().contact_count, 0u);
 }
 
+TEST(SurfaceCollision, LetsASheetFallOnAModelFarFromTheOriginAsNearIt) {
+    for (const double far : {0.0, 300.0, 3000.0}) {
+        Deformable sheet = sheet_at(0.05, 1, 15);
+        for (Vec3f& p : sheet.positions) p = Vec3f(Vec3d(p) + Vec3d{far, -far, far});
+        sheet.previous_positions = sheet.positions;
+        std::vector<Collider> colliders = colliders_of({make_box({0.5, 0.5, 0.02}, 4)});
+        colliders[0].pose.translation = {far, -far, far};
+        Simulation simulation(sheet, colliders, kSurfaces);
+        for (int frame = 0; frame < 24; ++frame) simulation.step(); // a tenth of a second
+        const double corner = double{simulation.positions().front().z} - far;
+        EXPECT_NEAR(corner, 0.05 - 9.81 * 0.1 * 0.1 / 2, 0.003) << far;
+        EXPECT_EQ(simulation.profile().squeezed_count, 0U);
+    }
+}
+
 TEST(SurfaceCollision, ComesToRestWithHardlyAVertexTruncatedAndAtItsThickness) {
     const std::vector<Collider> ball = colliders_of({make_sphere(1, 48, 24)});
     Simulation simulation(sheet_at(1.05, 2, 30), ball, kSurfaces);

@@ -111,6 +111,15 @@ TEST(Untangle, PartsASheetFromModelsThatAreTurnedScaledAndMirrored) {
     expect_parted(sheet_at(0, 1.6, 30), models, colliders);
 }
 
+TEST(Untangle, LiftsASheetThatLiesExactlyOnAModelOrALatticeStepInsideIt) {
+    const TriangleMesh table = make_box({4, 4, 1});
+    for (const double height : {0.5, 0.5000002, 0.4999998, 0.499999})
+        expect_parted(sheet_at(height, 2, 9), {table}, colliders_of({table}));
+    const TriangleMesh plane = sheet_mesh(5, 5); // open
+    Deformable on_it = sheet_at(0, 0.5, 7);
+    expect_parted(on_it, {plane}, colliders_of({plane}));
+}
+
 TEST(Untangle, PartsASheetFromAnOpenSurface) {
     TriangleMesh dome = make_sphere(0.4, 20, 10);
     std::erase_if(dome.faces, [&](const Triangle& f) {

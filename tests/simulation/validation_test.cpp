@@ -139,6 +139,8 @@ TEST(SimulationSetUp, NamesTheParticleStickOrFaceAtFault) {
     expect_names(refusal([](Deformable& d, auto&) { d.sticks[1].rest_length = float(kNaN); }), "stick 1");
     expect_names(refusal([](Deformable& d, auto&) { d.faces[5][2] = 9; }), "face 5 names particle 9");
     expect_names(refusal([](Deformable& d, auto&) { d.inverse_masses.pop_back(); }), "8 inverse masses");
+    expect_names(refusal([](Deformable& d, auto&) { d.positions[7].y = -1.1e15F; }),
+                 "particle 7 begins farther than 1e15");
     expect_names(refusal([](Deformable& d, auto&) { d = {}; }), "no particles");
 }
 
@@ -188,6 +190,17 @@ TEST(SimulationSetUp, NamesTheFacesWithWhichADeformableBeginsIntersecting) {
                        [&] { Simulation(thread, box, surfaces); });
     // Particles alone may begin anywhere.
     EXPECT_NO_THROW(Simulation(wide, box, {}));
+}
+
+TEST(SimulationSetUp, RefusesADeformableThatLiesOnAModelAsNearAsTheLatticeOfItsMapTells) {
+    const std::vector<Collider> table{{.map = ExactMap::build(make_box({4, 4, 1})), .name = "the table"}};
+    const SimulationOptions surfaces{.surface_collision = true};
+    for (const double height : {0.5, 0.5000002, 0.4999998, 0.499999})
+        test::expect_error(ErrorCode::InvalidOptions,
+                           "begins touching the table in 128 pairs: face 0 and its face",
+                           [&] { Simulation(sheet_at(height, 2, 9), table, surfaces); });
+    EXPECT_NO_THROW(Simulation(sheet_at(0.50001, 2, 9), table, surfaces));
+    EXPECT_NO_THROW(Simulation(sheet_at(0.5, 2, 9), table, {}));
 }
 
 TEST(SimulationSetUp, NamesTheFacesOfADeformableThatBeginIntersecting) {

@@ -165,9 +165,27 @@ inline KindOfSimulation sheet_on_deforming_balls() {
     return kind;
 }
 
+/// One of two sheets falls through the box on which the other lands, far from the origin.
+inline KindOfSimulation sheet_that_passes_through() {
+    std::vector<Deformable> sheets(2, sheet_at(0.2, 1, 20));
+    for (Vec3f& p : sheets[0].positions) p = p + Vec3f(0, 0, 0.1F);
+    sheets[0].previous_positions = sheets[0].positions;
+    KindOfSimulation kind{.name = "a sheet that a model lets through",
+                          .deformable = combine(std::vector{sheets[0], passing_through(1, sheets[1])}),
+                          .colliders = colliders_of({make_box({3, 3, 0.1}), make_box({0.5, 0.5, 0.2}, 4)}),
+                          .options = surfaces_for_kinds(true)};
+    const Vec3f far(300, 200, -400);
+    for (Vec3f& p : kind.deformable.positions) p = p + far;
+    kind.deformable.previous_positions = kind.deformable.positions;
+    for (Collider& collider : kind.colliders) collider.pose.translation = Vec3d(far);
+    kind.colliders[0].pose.translation.z -= 0.4;
+    return kind;
+}
+
 inline std::vector<KindOfSimulation> kinds_of_simulations() {
     return {particles_beside_all_maps(), stretched_sheet(), sheet_among_moving_colliders(),
-            springs_with_folds(),        soft_bodies(),     sheet_on_deforming_balls()};
+            springs_with_folds(),        soft_bodies(),     sheet_on_deforming_balls(),
+            sheet_that_passes_through()};
 }
 
 } // namespace echinus::test

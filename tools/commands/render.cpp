@@ -190,11 +190,13 @@ void mark(RenderedObject& drawn, std::uint32_t number, std::size_t face_count) {
         drawn.marked_faces.push_back(first_of_tubes + kTubeFaces * (number - first_of_tubes) + i);
 }
 
-void mark_intersections(const MeshAndEdges& cloth, RenderedObject& drawn_collider,
-                        RenderedObject& drawn_cloth) {
+void mark_intersections(const SimulationFolder& folder, const MeshAndEdges& cloth,
+                        RenderedObject& drawn_collider, RenderedObject& drawn_cloth) {
     const TriangleMesh surface{cloth.mesh.vertices, surface_of(cloth)};
     const auto mark_cloth = [&](std::uint32_t number) { mark(drawn_cloth, number, cloth.mesh.faces.size()); };
-    for (const auto& [number, face] : intersecting_pairs(surface, drawn_collider.mesh)) {
+    std::vector<FacePair> pairs = intersecting_pairs(surface, drawn_collider.mesh);
+    folder.drop_let_through(surface.faces, pairs);
+    for (const auto& [number, face] : pairs) {
         mark_cloth(number);
         drawn_collider.marked_faces.push_back(face);
     }
@@ -213,7 +215,7 @@ std::array<RenderedObject, 2> objects_at(const SimulationFolder& folder, std::si
     objects[1].colour = palette::kCloth;
     objects[1].back_colour = palette::kClothBack;
     objects[1].crease_angle_deg = 180; // cloth has folds, not edges
-    mark_intersections(cloth, objects[0], objects[1]);
+    mark_intersections(folder, cloth, objects[0], objects[1]);
     return objects;
 }
 

@@ -101,19 +101,34 @@ Json to_json(const std::optional<WorstFrames>& worst) {
             {"self_intersecting_pairs", to_json(worst->own)}};
 }
 
-Json to_json(const ColliderResult& collider) {
+/// The first and the last of each run of particles that a collider lets through.
+Json runs_of(const std::vector<std::uint8_t>& passes) {
+    Json runs = Json::array();
+    for (std::size_t first = 0; first < passes.size(); ++first) {
+        if (passes[first] == 0) continue;
+        std::size_t last = first;
+        while (last + 1 < passes.size() && passes[last + 1] != 0) ++last;
+        runs.push_back(std::vector{first, last});
+        first = last;
+    }
+    return runs;
+}
+
+Json to_json(const ColliderResult& collider, const std::vector<std::uint8_t>& passes) {
     Json result{{"mesh", collider.mesh_name},
                 {"faces", collider.model.face_count},
                 {"vertices", collider.model.vertex_count},
                 {"radius", collider.radius},
                 {"poses", to_json(collider.poses)}};
     if (!collider.cache_name.empty()) result.add("cache", collider.cache_name);
+    if (!passes.empty()) result.add("lets_through", runs_of(passes));
     return result;
 }
 
-Json to_json(const std::vector<ColliderResult>& colliders) {
+Json to_json(const std::vector<ColliderResult>& colliders, const Deformable& deformable) {
     Json list = Json::array();
-    for (const ColliderResult& collider : colliders) list.push_back(to_json(collider));
+    for (std::size_t c = 0; c < colliders.size(); ++c)
+        list.push_back(to_json(colliders[c], let_through(deformable, c)));
     return list;
 }
 
@@ -184,7 +199,7 @@ Json to_json(const SimulationResult& result) {
           {"vertices", first.model.vertex_count},
           {"radius", first.radius}}},
         {"collider", {{"mesh", first.mesh_name}, {"poses", to_json(first.poses)}}},
-        {"colliders", to_json(result.colliders)},
+        {"colliders", to_json(result.colliders, deformable)},
         {"state_hash", fmt::format("{:016x}", simulation.state_hash())},
     };
 }

@@ -14,6 +14,16 @@ using namespace echinus;
 
 namespace {
 
+/// The positions of the particles that collide with a collider.
+std::vector<Vec3f> stopped_by(std::size_t collider, const Deformable& deformable) {
+    const std::vector<std::uint8_t> passes = let_through(deformable, collider);
+    if (passes.empty()) return deformable.positions;
+    std::vector<Vec3f> positions;
+    for (std::size_t i = 0; i < passes.size(); ++i)
+        if (passes[i] == 0) positions.push_back(deformable.positions[i]);
+    return positions;
+}
+
 /// Depths of the particles inside, by the mesh itself.
 void judge_particles(std::span<const Vec3f> positions, const TriangleMesh& solid, const RigidTransform& pose,
                      unsigned thread_count, Verdict& verdict) {
@@ -64,9 +74,14 @@ PairCounts count_pairs(const Simulation& simulation, std::span<const TriangleMes
     const TriangleMesh surface{simulation.deformable().positions, surface_of(simulation.deformable())};
     if (surface.faces.empty()) return {};
     PairCounts counts{.own = self_intersecting_pairs(surface).size()};
-    for (std::size_t c = 0; c < models.size(); ++c)
+    for (std::size_t c = 0; c < models.size(); ++c) {
+        const std::vector<std::uint8_t> passes = let_through(simulation.deformable(), c);
+        const auto pairs = intersecting_pairs(surface, placed(models[c], simulation.colliders()[c].pose));
         counts.with_models +=
-            intersecting_pairs(surface, placed(models[c], simulation.colliders()[c].pose)).size();
+            static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(), [&](const FacePair& pair) {
+                return !passes_through(surface.faces[pair.a], passes);
+            }));
+    }
     return counts;
 }
 
@@ -76,12 +91,12 @@ Verdict judge(const Simulation& simulation, std::span<const JudgedModel> models,
     std::vector<TriangleMesh> solids;
     for (std::size_t c = 0; c < models.size(); ++c) {
         const Collider& collider = simulation.colliders()[c];
+        const std::vector<Vec3f> positions = stopped_by(c, simulation.deformable());
         solids.push_back(scaled(models[c].mesh, collider.scale));
         // An open mesh has no inside.
         if (models[c].map.view().border.empty())
-            judge_particles(simulation.positions(), solids.back(), collider.pose, thread_count, verdict);
-        add_gap(simulation.positions(),
-                {.map = models[c].map, .pose = collider.pose, .scale = collider.scale},
+            judge_particles(positions, solids.back(), collider.pose, thread_count, verdict);
+        add_gap(positions, {.map = models[c].map, .pose = collider.pose, .scale = collider.scale},
                 simulation.options().thickness.value(), verdict.gap);
     }
     verdict.pairs = count_pairs(simulation, solids);

@@ -17,11 +17,15 @@ namespace {
 constexpr std::uint64_t kMostPositions = 64'000'000;
 
 /// An open model has no inside.
-std::size_t count_inside(const ExactMap& model, const Collider& collider, std::span<const Vec3f> positions) {
+/// @param passes  particles that the collider lets through, as let_through() has them
+std::size_t count_inside(const ExactMap& model, const Collider& collider, std::span<const Vec3f> positions,
+                         std::span<const std::uint8_t> passes) {
     if (!model.view().border.empty()) return 0;
     const Collider judge{.map = model, .pose = collider.pose, .scale = collider.scale};
     std::vector<std::uint8_t> inside(positions.size());
     contains_batch(judge, positions, inside);
+    for (std::size_t i = 0; i < passes.size(); ++i)
+        if (passes[i] != 0) inside[i] = 0;
     return static_cast<std::size_t>(std::count(inside.begin(), inside.end(), 1));
 }
 
@@ -51,7 +55,8 @@ void Recording::add(const Simulation& simulation) {
     for (std::size_t c = 0; c < models_.size(); ++c) {
         const Collider& collider = simulation.colliders()[c];
         frame.poses.push_back(collider.pose);
-        frame.inside_count += count_inside(models_[c], collider, positions);
+        frame.inside_count +=
+            count_inside(models_[c], collider, positions, let_through(simulation.deformable(), c));
     }
 }
 

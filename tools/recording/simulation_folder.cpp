@@ -2,6 +2,7 @@
 
 #include <echinus/error.hpp>
 #include <echinus/mesh_io.hpp>
+#include <echinus/simulation.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -71,7 +72,23 @@ RigidTransform read_transform(const ReportReader& reader, const json& pose) {
     return {Rotation{q[0], q[1], q[2], q[3]}.normalised(), {x, y, z}};
 }
 
-SavedCollider read_collider(const ReportReader& reader, const json& collider, const fs::path& folder) {
+/// Runs of particles: first and last.
+std::vector<std::uint8_t> read_let_through(const ReportReader& reader, const json& collider,
+                                           std::size_t particle_count) {
+    if (!collider.contains("lets_through")) return {};
+    std::vector<std::uint8_t> passes(particle_count);
+    for (const json& run : reader.list(collider, "lets_through")) {
+        if (!run.is_array() || run.size() != 2 || !run[0].is_number_unsigned() ||
+            !run[1].is_number_unsigned() || run[0] > run[1] || run[1] >= particle_count)
+            reader.fail("\"lets_through\" has something else than the first and the last of particles");
+        std::fill(passes.begin() + run[0].get<std::ptrdiff_t>(),
+                  passes.begin() + run[1].get<std::ptrdiff_t>() + 1, std::uint8_t{1});
+    }
+    return passes;
+}
+
+SavedCollider read_collider(const ReportReader& reader, const json& collider, const fs::path& folder,
+                            std::size_t particle_count) {
     SavedCollider saved;
     const json& mesh_name = reader.member(collider, "mesh");
     if (!mesh_name.is_string()) reader.fail("the collider's \"mesh\" is not a file name");
@@ -89,6 +106,7 @@ SavedCollider read_collider(const ReportReader& reader, const json& collider, co
         if (saved.cache->point_count() != saved.mesh.vertices.size())
             reader.fail("the collider's cache has not the points of its mesh");
     }
+    saved.passes = read_let_through(reader, collider, particle_count);
     return saved;
 }
 
@@ -131,11 +149,11 @@ void SimulationFolder::read_report(const fs::path& path) {
     const ReportReader reader(path);
     // Folders from before there were several have one.
     if (!reader.root().contains("colliders"))
-        colliders_.push_back(
-            read_collider(reader, reader.member(reader.root(), "collider"), path.parent_path()));
+        colliders_.push_back(read_collider(reader, reader.member(reader.root(), "collider"),
+                                           path.parent_path(), cache_.point_count()));
     else
         for (const json& collider : reader.list(reader.root(), "colliders"))
-            colliders_.push_back(read_collider(reader, collider, path.parent_path()));
+            colliders_.push_back(read_collider(reader, collider, path.parent_path(), cache_.point_count()));
     for (const SavedCollider& collider : colliders_)
         if (collider.cache && collider.cache->sample_count() != sample_count())
             reader.fail("a collider's cache has not as many samples as cloth.pc2");
@@ -163,7 +181,7 @@ MeshAndEdges SimulationFolder::cloth(std::size_t sample) const {
 
 TriangleMesh SimulationFolder::colliders(std::size_t sample) const {
     TriangleMesh all;
-    for (const auto& [mesh, poses, cache] : colliders_) {
+    for (const auto& [mesh, poses, cache, passes] : colliders_) {
         const auto after = std::upper_bound(
             poses.begin() + 1, poses.end(), frame_of(sample),
             [](double frame, const SavedCollider::Pose& pose) { return frame < pose.frame; });
@@ -174,6 +192,18 @@ TriangleMesh SimulationFolder::colliders(std::size_t sample) const {
         for (const auto& [a, b, c] : mesh.faces) all.faces.push_back({first + a, first + b, first + c});
     }
     return all;
+}
+
+void SimulationFolder::drop_let_through(const std::vector<Triangle>& surface,
+                                        std::vector<FacePair>& pairs) const {
+    std::size_t first = 0;
+    for (const SavedCollider& collider : colliders_) {
+        const std::size_t end = first + collider.mesh.faces.size();
+        std::erase_if(pairs, [&](const FacePair& pair) {
+            return pair.b >= first && pair.b < end && passes_through(surface[pair.a], collider.passes);
+        });
+        first = end;
+    }
 }
 
 std::vector<std::size_t> choose_moments(const SimulationFolder& folder, std::size_t count) {

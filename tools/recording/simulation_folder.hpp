@@ -2,6 +2,7 @@
 
 #include "mesh_io/point_cache.hpp"
 
+#include <echinus/intersections.hpp>
 #include <echinus/mesh_io.hpp>
 
 #include <cstdint>
@@ -22,6 +23,8 @@ struct SavedCollider {
     std::vector<Pose> poses; ///< ascending frames, at least one
     /// Of its vertices where it deforms, as long as the cloth's; else null.
     std::shared_ptr<const echinus::PointCacheReader> cache;
+    /// [particle_count of the cloth] 1 for the particles that it lets through, or none.
+    std::vector<std::uint8_t> passes;
 };
 
 /// The output folder of `echinus simulate SCENE -o DIR`: cloth.obj, cloth.pc2, report.json and the collider's
@@ -42,6 +45,9 @@ class SimulationFolder {
     echinus::MeshAndEdges cloth(std::size_t sample) const;
     /// All colliders as one mesh, in the world, at their poses in that sample.
     echinus::TriangleMesh colliders(std::size_t sample) const;
+    /// Drops the pairs of a face of the cloth's surface and one of colliders() that need not keep apart.
+    void drop_let_through(const std::vector<echinus::Triangle>& surface,
+                          std::vector<echinus::FacePair>& pairs) const;
 
     /// Against gravity; +z where there is none.
     const echinus::Vec3d& up() const { return up_; }

@@ -12,7 +12,7 @@
 
 namespace echinus::c {
 
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_deformable_arrays, tetrahedron_count);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_deformable_arrays, filter_count);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_soft_body_options, attachment_count);
 template <>
 inline constexpr std::size_t kFirstSize<echinus_deformable_arrays> = offsetof(echinus_deformable_arrays,
@@ -32,6 +32,8 @@ static_assert(sizeof(echinus_fold) == sizeof(Fold) && offsetof(echinus_fold, d) 
               offsetof(echinus_fold, lever) == offsetof(Fold, lever));
 static_assert(sizeof(echinus_attachment) == sizeof(Attachment) &&
               offsetof(echinus_attachment, collider) == offsetof(Attachment, collider));
+static_assert(sizeof(echinus_collision_filter) == sizeof(CollisionFilter) &&
+              offsetof(echinus_collision_filter, collider) == offsetof(CollisionFilter, collider));
 static_assert(sizeof(echinus_elastic_tetrahedron) == sizeof(ElasticTetrahedron) &&
               offsetof(echinus_elastic_tetrahedron, gradients) == offsetof(ElasticTetrahedron, gradients) &&
               offsetof(echinus_elastic_tetrahedron, volume) == offsetof(ElasticTetrahedron, volume) &&
@@ -55,6 +57,8 @@ echinus_deformable_arrays arrays_of(const Deformable& deformable) {
     arrays.attachment_count = deformable.attachments.size();
     arrays.tetrahedra = reinterpret_cast<const echinus_elastic_tetrahedron*>(deformable.tetrahedra.data());
     arrays.tetrahedron_count = deformable.tetrahedra.size();
+    arrays.filters = reinterpret_cast<const echinus_collision_filter*>(deformable.filters.data());
+    arrays.filter_count = deformable.filters.size();
     return arrays;
 }
 
@@ -89,6 +93,12 @@ std::vector<Attachment> attachments_from(std::span<const echinus_attachment> att
     return result;
 }
 
+std::vector<CollisionFilter> filters_from(std::span<const echinus_collision_filter> filters) {
+    std::vector<CollisionFilter> result;
+    for (const echinus_collision_filter& f : filters) result.push_back({f.particle, f.collider});
+    return result;
+}
+
 std::vector<ElasticTetrahedron> tetrahedra_from(std::span<const echinus_elastic_tetrahedron> tetrahedra) {
     std::vector<ElasticTetrahedron> result;
     for (const echinus_elastic_tetrahedron& t : tetrahedra)
@@ -113,6 +123,7 @@ Deformable deformable_from(const echinus_deformable_arrays& arrays) {
         .attachments =
             attachments_from(values_at(arrays.attachments, arrays.attachment_count, "attachments")),
         .tetrahedra = tetrahedra_from(values_at(arrays.tetrahedra, arrays.tetrahedron_count, "tetrahedra")),
+        .filters = filters_from(values_at(arrays.filters, arrays.filter_count, "filters")),
     };
 }
 
@@ -214,6 +225,7 @@ void require_own_particles(const Deformable& part, std::size_t number) {
     for (const Triangle& face : part.faces)
         for (const std::uint32_t particle : face) require_there(particle, "face");
     for (const Attachment& a : part.attachments) require_there(a.particle, "attachment");
+    for (const CollisionFilter& f : part.filters) require_there(f.particle, "filter");
     for (const ElasticTetrahedron& t : part.tetrahedra)
         for (const std::uint32_t particle : t.particles) require_there(particle, "tetrahedron");
 }
@@ -276,6 +288,11 @@ echinus_status echinus_deformable_with_masses_times(const echinus_deformable* de
                                                     echinus_deformable** result) {
     return make(__func__, result,
                 [&] { return with_masses_times(factor, at(deformable, "deformable").value); });
+}
+echinus_status echinus_deformable_passing_through(const echinus_deformable* deformable, uint32_t collider,
+                                                  echinus_deformable** result) {
+    return make(__func__, result,
+                [&] { return passing_through(collider, at(deformable, "deformable").value); });
 }
 
 echinus_status echinus_deformable_read(const echinus_deformable* deformable,

@@ -20,7 +20,15 @@ from echinus._colliders import (
     read_vertex_cache,
     rotation_about,
 )
-from echinus._deformables import Deformable, combine, make_cloth, make_cloth_of_mesh, make_soft_body, with_masses_times
+from echinus._deformables import (
+    Deformable,
+    combine,
+    make_cloth,
+    make_cloth_of_mesh,
+    make_soft_body,
+    passing_through,
+    with_masses_times,
+)
 from echinus._errors import Error, ErrorCode
 from echinus._maps import (
     AnyMap,
@@ -120,6 +128,7 @@ __all__ = [
     "make_sphere",
     "make_torus",
     "measure_distance",
+    "passing_through",
     "pose_at",
     "read_mesh",
     "read_tetrahedra",

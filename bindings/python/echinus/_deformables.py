@@ -247,5 +247,14 @@ def with_masses_times(factor: float, deformable: Deformable) -> Deformable:
     return Deformable._of(_core.with_masses_times(number("factor", factor), core))
 
 
+def passing_through(collider: int, deformable: Deformable) -> Deformable:
+    """The same deformable, of which nothing collides with a collider, by its index in the simulation's.
+
+    As a part of what :func:`combine` makes, it is a filter by pair: of this part and that collider.
+    """
+    core = of_kind("deformable", deformable, Deformable)._deformable
+    return Deformable._of(_core.passing_through(whole("collider", collider, 0), core))
+
+
 def _deformable_of(parts: tuple[bytes, ...]) -> Deformable:
     return Deformable._of(_core.deformable_of(parts))

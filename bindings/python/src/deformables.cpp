@@ -92,8 +92,9 @@ void for_each_part(const Use& use) {
     use(&Deformable::folds);
     use(&Deformable::attachments);
     use(&Deformable::tetrahedra);
+    use(&Deformable::filters);
 }
-constexpr std::size_t kPartCount = 8;
+constexpr std::size_t kPartCount = 9;
 
 py::tuple parts_of(const Deformable& deformable) {
     py::tuple parts(kPartCount);
@@ -160,6 +161,9 @@ void bind_deformables(py::module_& module) {
     module.def("combine", combined);
     module.def("with_masses_times", [](double factor, const Deformable& deformable) {
         return with_masses_times(factor, deformable);
+    });
+    module.def("passing_through", [](std::uint32_t collider, const Deformable& deformable) {
+        return passing_through(collider, deformable);
     });
 }
 

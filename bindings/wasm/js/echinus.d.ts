@@ -499,6 +499,8 @@ export interface SceneDescription {
         thickness?: number;
         /** Between layers of the cloth. Default: the thickness. */
         self_thickness?: number;
+        /** Colliders, by their numbers, that it passes through. */
+        ignores?: readonly number[];
     };
     bodies?: readonly Body[];
     material?: {
@@ -552,6 +554,8 @@ export interface Body {
     velocity?: Vec3;
     pins?: VertexChoice;
     attachments?: VertexChoice;
+    /** Colliders, by their numbers, that it passes through. */
+    ignores?: readonly number[];
 }
 
 /** A rectangular cloth. */

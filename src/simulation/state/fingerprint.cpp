@@ -66,6 +66,7 @@ std::uint64_t hash_of(const Deformable& deformable, std::uint64_t start_hash) {
         hasher.add(fold.a, fold.b, fold.c, fold.d, fold.rest_angle, fold.lever);
     for (const Attachment& attachment : deformable.attachments)
         hasher.add(attachment.particle, attachment.collider);
+    for (const CollisionFilter& filter : deformable.filters) hasher.add(filter.particle, filter.collider);
     for (const ElasticTetrahedron& t : deformable.tetrahedra)
         hasher.add(t.particles, t.gradients, t.volume, t.mu, t.lambda, t.damping);
     return hasher.hash();

@@ -89,14 +89,18 @@ Elements::Elements(std::size_t vertex_count, std::span<const Triangle> faces,
     list_around(vertex_count, *this);
 }
 
-Elements elements_of(const Deformable& deformable) {
+Elements elements_of(const Deformable& deformable, std::span<const std::uint8_t> passes) {
+    std::vector<Triangle> faces;
+    for (const Triangle& face : deformable.faces)
+        if (!passes_through(face, passes)) faces.push_back(face);
     std::vector<Edge> threads;
-    for (const Stick& stick : deformable.sticks)
-        if (stick.kind == StickKind::Structural) threads.push_back({stick.a, stick.b});
-    std::vector<bool> inner(deformable.particle_count(), false);
+    for (const auto& [a, b, rest_length, kind] : deformable.sticks)
+        if (kind == StickKind::Structural && !passes_through({a, b, b}, passes)) threads.push_back({a, b});
+    std::vector<bool> inner(passes.begin(), passes.end());
+    inner.resize(deformable.particle_count(), false);
     for (const ElasticTetrahedron& tetrahedron : deformable.tetrahedra)
         for (const std::uint32_t i : tetrahedron.particles) inner[i] = true;
-    return {deformable.particle_count(), deformable.faces, threads, inner};
+    return {deformable.particle_count(), faces, threads, inner};
 }
 
 } // namespace echinus

@@ -1,10 +1,10 @@
 #include "simulation/surfaces/part_from_models.hpp"
 
-#include "collider/frame_change.hpp"
 #include "mesh/union_find.hpp"
 #include "simulation/collider_now.hpp"
 #include "simulation/surfaces/best_places.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
+#include "simulation/surfaces/model_pairs.hpp"
 #include "simulation/surfaces/progress.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -51,27 +51,26 @@ std::vector<std::uint32_t> joined(std::vector<std::uint32_t> a, const std::vecto
 }
 
 struct Model {
+    ModelPairs pairs;
     Collider collider; ///< with its exact map
-    FrameChange body;
-    TriangleMesh mesh; ///< in the body frame
     float thickness;
     double reach; ///< in the world, farther than from any point inside to any outside
-    bool has_inside;
 
-    Model(const Collider& of, const SimulationOptions& options)
-        : collider(with_map(of, *map_of_surface(of))), body(of.pose, {1, 1, 1}),
-          mesh(model_mesh(map_of_surface(of)->view(), of.scale)) {
+    Model(const Collider& of, std::vector<std::uint8_t> passes, const SimulationOptions& options)
+        : pairs(of, std::move(passes)), collider(with_map(of, *map_of_surface(of))) {
         const ColliderNow now(of, of.pose, options);
         thickness = now.thickness;
         const Vec3d& s = of.scale;
         reach = 3.0 * static_cast<double>(now.map.radius) *
                 std::max({std::fabs(s.x), std::fabs(s.y), std::fabs(s.z)});
-        has_inside = now.map.border.empty();
     }
 
-    std::vector<FacePair> pairs_with(TriangleMesh surface) const {
-        for (Vec3f& p : surface.vertices) p = body.point_to_local(p);
-        return surface.faces.empty() ? std::vector<FacePair>{} : intersecting_pairs(surface, mesh);
+    /// Those that touch too, ascending.
+    std::vector<FacePair> pairs_with(const TriangleMesh& surface) const {
+        auto [all, touching] = pairs.with(surface);
+        all.insert(all.end(), touching.begin(), touching.end());
+        std::sort(all.begin(), all.end());
+        return all;
     }
 
     /// The first place outside on a straight way out, at the thickness.
@@ -171,11 +170,11 @@ class Attempt {
 
     template <typename Visit>
     void for_each_inside(const Model& model, const Visit& visit) const {
-        if (!model.has_inside) return;
+        if (!model.pairs.has_inside()) return;
         std::vector<std::uint8_t> inside(positions_.size());
         contains_batch(model.collider, std::span(positions_), inside);
         for (std::size_t v = 0; v < positions_.size(); ++v)
-            if (inside[v] != 0) visit(v);
+            if (inside[v] != 0 && !model.pairs.passes(v)) visit(v);
     }
 
     std::size_t inside_count() const {
@@ -268,14 +267,15 @@ class Attempt {
 
 } // namespace
 
-bool part_from_models(const Elements& elements, const std::vector<float>& inverse_masses,
+bool part_from_models(const Elements& elements, const Deformable& deformable,
                       const std::vector<Collider>& colliders, const SimulationOptions& options,
                       std::vector<Vec3f>& positions) {
     std::vector<Model> models;
     models.reserve(colliders.size());
-    for (const Collider& collider : colliders) models.emplace_back(collider, options);
+    for (std::size_t c = 0; c < colliders.size(); ++c)
+        models.emplace_back(colliders[c], let_through(deformable, c), options);
     BestPlaces best(elements, positions);
-    const Attempt start(elements, inverse_masses, models, positions);
+    const Attempt start(elements, deformable.inverse_masses, models, positions);
     best.consider(positions, start.tangle_count());
     if (best.pair_count() == 0) return false;
     for (const Way way : {Way::Nearest, Way::Forwards, Way::Backwards}) Attempt(start).go(way, best);

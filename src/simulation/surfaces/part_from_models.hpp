@@ -22,7 +22,7 @@ namespace echinus {
 /// @param positions  [particle_count] of the particles; pinned ones stay where they are
 /// @return whether a particle was moved
 /// @pre the options have a thickness, and every collider an exact map
-bool part_from_models(const Elements& elements, const std::vector<float>& inverse_masses,
+bool part_from_models(const Elements& elements, const Deformable& deformable,
                       const std::vector<Collider>& colliders, const SimulationOptions& options,
                       std::vector<Vec3f>& positions);
 

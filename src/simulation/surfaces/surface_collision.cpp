@@ -74,6 +74,9 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
       is_leaving_(particles.count()), is_truncated_(particles.count()) {
     const float edge_length = mean_edge_length(*elements_, particles.positions);
     for (const Collider& collider : colliders) {
+        const std::vector<std::uint8_t> passes = let_through(deformable, models_.size());
+        const auto own =
+            passes.empty() ? elements_ : std::make_shared<const Elements>(elements_of(deformable, passes));
         const ColliderNow now(collider, collider.pose, options);
         const float most = edge_length > 0 ? kMostThickness * edge_length : now.thickness;
         const float thickness = std::min(kSurfaceShare * now.thickness, most);
@@ -81,7 +84,7 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
         const PairReach reach = reach_of(thickness, edge_length, least_gap(now, extents_.back()));
         // A face that is near has a vertex no farther than its edges are long.
         carry_reaches_.push_back(reach.listed + 2 * edge_length);
-        models_.emplace_back(collider, elements_, reach, thickness, now.friction);
+        models_.emplace_back(collider, own, reach, thickness, now.friction);
     }
     if (options.self_collision) {
         const float thickness =

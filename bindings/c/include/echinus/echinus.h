@@ -840,6 +840,13 @@ typedef struct echinus_attachment {
     uint32_t collider; ///< index in the simulation's colliders
 } echinus_attachment;
 
+/// A particle and a collider of a simulation that do not collide. Faces and edges of the particle pass
+/// through that collider, too.
+typedef struct echinus_collision_filter {
+    uint32_t particle;
+    uint32_t collider; ///< index in the simulation's colliders
+} echinus_collision_filter;
+
 /// Elastic material between four particles, for the solver XPBD; echinus_deformable_soft_body() computes
 /// them.
 typedef struct echinus_elastic_tetrahedron {
@@ -870,6 +877,8 @@ typedef struct echinus_deformable_arrays {
     size_t attachment_count;
     const echinus_elastic_tetrahedron* tetrahedra; ///< in the order in which they are relaxed
     size_t tetrahedron_count;
+    const echinus_collision_filter* filters;
+    size_t filter_count;
 } echinus_deformable_arrays;
 
 /// Copies the arrays. Whether they fit together is checked when a simulation is made of them.
@@ -965,6 +974,12 @@ ECHINUS_API echinus_status echinus_deformable_combine(const echinus_deformable* 
 /// mass 1, so its mass / its particle_count brings it to the unit of that mass.
 ECHINUS_API echinus_status echinus_deformable_with_masses_times(const echinus_deformable* deformable,
                                                                 double factor, echinus_deformable** result);
+
+/// The same deformable, of which nothing collides with a collider. As a part of what
+/// echinus_deformable_combine() makes, it is a filter by pair.
+/// @param collider  index in the simulation's colliders
+ECHINUS_API echinus_status echinus_deformable_passing_through(const echinus_deformable* deformable,
+                                                              uint32_t collider, echinus_deformable** result);
 
 /// @param arrays  out, its size is set; its pointers are valid as long as the deformable
 ECHINUS_API echinus_status echinus_deformable_read(const echinus_deformable* deformable,

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "collider/frame_change.hpp"
+
+#include <echinus/collider.hpp>
+#include <echinus/intersections.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace echinus {
+
+/// Which faces of a deformable's surface must be parted from a collider's before the first frame: those that
+/// intersect it, and those that touch it on the map's lattice, where a face less than a step inside is not
+/// told from one outside.
+class ModelPairs {
+  public:
+    /// @param passes  [particle_count] 1 for particles that the collider lets through, or none
+    /// @pre the collider has an exact map
+    ModelPairs(const Collider& collider, std::vector<std::uint8_t> passes);
+
+    struct Found {
+        std::vector<FacePair> intersecting; ///< ascending
+        std::vector<FacePair> touching;     ///< ascending, each face once, and none that intersects
+    };
+    /// @param surface  in the world, with edges and vertices as faces without area
+    Found with(const TriangleMesh& surface) const;
+
+    bool passes(std::size_t particle) const { return !passes_.empty() && passes_[particle] != 0; }
+    bool has_inside() const { return map_.border.empty(); }
+
+  private:
+    ExactMapView map_;
+    FrameChange local_, body_;
+    TriangleMesh in_body_;
+    std::vector<std::uint8_t> passes_;
+};
+
+} // namespace echinus
