@@ -367,6 +367,9 @@ describe('The module', () => {
             assert.equal(instance.instructionSet, 'wasm');
         }
         await assert.rejects(module.load(new Response('', { status: 404 })), { code: 'Unreadable' });
+        for (const wrong of [new Uint8Array(4), new Response('no module'), 'http://127.0.0.1:1/echinus.wasm', 7, null]) {
+            await assert.rejects(module.load(wrong), { name: 'EchinusError', code: 'Unreadable' });
+        }
     });
     test('chooses between its kernels and the reference', () => {
         echinus.instructionSet = 'scalar';

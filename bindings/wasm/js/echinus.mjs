@@ -28,7 +28,17 @@ export async function load(source = new URL('./echinus.wasm', import.meta.url)) 
     return new Echinus(await Core.start(await compile(await source)));
 }
 
+/** Whatever is wrong with the module or its address. */
 async function compile(source) {
+    try {
+        return await compileAny(source);
+    } catch (error) {
+        if (error instanceof EchinusError) throw error;
+        throw new EchinusError('Unreadable', `echinus.wasm cannot be loaded: ${error.message}`, { cause: error });
+    }
+}
+
+async function compileAny(source) {
     if (source instanceof WebAssembly.Module) return source;
     if (typeof Response === 'function' && source instanceof Response) return compileResponse(source);
     if (source instanceof ArrayBuffer || ArrayBuffer.isView(source)) return WebAssembly.compile(source);
