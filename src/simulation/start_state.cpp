@@ -21,7 +21,7 @@ namespace echinus {
 
 namespace {
 
-constexpr std::size_t kNamedPairs = 3;
+constexpr std::size_t kNamed = 3;
 
 /// @param option  that asks for this
 /// @param pinned  untangle() moves no pinned particle
@@ -45,17 +45,17 @@ std::string name_of(const Elements& elements, std::uint32_t number) {
     return "the edge from particle " + std::to_string(a) + " to " + std::to_string(b);
 }
 
-/// @param what      it does, such as "touching the box"
-/// @param describe  a pair
-template <typename Describe>
-[[noreturn]] void refuse(const std::string& what, const std::vector<FacePair>& pairs,
-                         const SimulationOptions& options, const char* option, const Describe& describe) {
-    std::string sentence = "the deformable begins " + what + " in " + std::to_string(pairs.size()) +
-                           (pairs.size() == 1 ? " pair" : " pairs") +
+/// @param what  it does, such as "touching the box with", before their number and `noun`
+/// @param name  of one of them
+template <typename Item, typename Name>
+[[noreturn]] void refuse(const std::string& what, const std::vector<Item>& found, const char* noun,
+                         const SimulationOptions& options, const char* option, const Name& name) {
+    std::string sentence = "the deformable begins " + what + " " + std::to_string(found.size()) + " " + noun +
+                           (found.size() == 1 ? "" : "s") +
                            (options.untangle ? " that untangle could not part: " : ": ");
-    for (std::size_t i = 0; i < std::min(pairs.size(), kNamedPairs); ++i)
-        sentence += (i == 0 ? "" : ", ") + describe(pairs[i]);
-    if (pairs.size() > kNamedPairs) sentence += ", ...";
+    for (std::size_t i = 0; i < std::min(found.size(), kNamed); ++i)
+        sentence += (i == 0 ? "" : ", ") + name(found[i]);
+    if (found.size() > kNamed) sentence += ", ...";
     throw Error(ErrorCode::InvalidOptions, sentence + remedy(options, option));
 }
 
@@ -85,12 +85,14 @@ void require_apart(const Deformable& deformable, const TriangleMesh& surface, co
                    const SimulationOptions& options, const std::string& name) {
     const ModelPairs pairs(collider, {passes.begin(), passes.end()});
     const auto [intersecting, touching] = pairs.with(surface);
-    const auto describe = [&](const FacePair& pair) {
-        return name_of(elements, pair.a) + " and its face " + std::to_string(pair.b);
-    };
     if (!intersecting.empty())
-        refuse("intersecting " + name, intersecting, options, "surface_collision", describe);
-    if (!touching.empty()) refuse("touching " + name, touching, options, "surface_collision", describe);
+        refuse("intersecting " + name + " in", intersecting, "pair", options, "surface_collision",
+               [&](const FacePair& pair) {
+                   return name_of(elements, pair.a) + " and its face " + std::to_string(pair.b);
+               });
+    if (!touching.empty())
+        refuse("touching " + name + " with", touching, "face", options, "surface_collision",
+               [&](std::uint32_t face) { return name_of(elements, face); });
     // Where nothing intersects, a piece is inside as a whole. An open surface has no inside.
     if (pairs.has_inside())
         require_outside(deformable, passes, with_map(collider, *map_of_surface(collider)), options, name);
@@ -108,7 +110,7 @@ void require_apart(const Deformable& deformable, const std::vector<Collider>& co
     if (!options.self_collision) return;
     const std::vector<FacePair> pairs = self_intersecting_pairs(surface);
     if (!pairs.empty())
-        refuse("intersecting itself", pairs, options, "self_collision", [&](const FacePair& pair) {
+        refuse("intersecting itself in", pairs, "pair", options, "self_collision", [&](const FacePair& pair) {
             return name_of(elements, pair.a) + " and " + name_of(elements, pair.b);
         });
 }

@@ -197,7 +197,7 @@ TEST(SimulationSetUp, RefusesADeformableThatLiesOnAModelAsNearAsTheLatticeOfItsM
     const SimulationOptions surfaces{.surface_collision = true};
     for (const double height : {0.5, 0.5000002, 0.4999998, 0.499999})
         test::expect_error(ErrorCode::InvalidOptions,
-                           "begins touching the table in 128 pairs: face 0 and its face",
+                           "begins touching the table with 128 faces: face 0, face 1, face 2, ...; move",
                            [&] { Simulation(sheet_at(height, 2, 9), table, surfaces); });
     EXPECT_NO_THROW(Simulation(sheet_at(0.50001, 2, 9), table, surfaces));
     EXPECT_NO_THROW(Simulation(sheet_at(0.5, 2, 9), table, {}));

@@ -31,9 +31,7 @@ ModelPairs::Found ModelPairs::with(const TriangleMesh& surface) const {
         const TrianglePoints corners{local_.point_to_local(surface.vertices[a]),
                                      local_.point_to_local(surface.vertices[b]),
                                      local_.point_to_local(surface.vertices[c])};
-        if (!intersects(map_, corners)) continue;
-        const std::int32_t face = clearance(map_, corners).face;
-        found.touching.push_back({f, static_cast<std::uint32_t>(face)});
+        if (intersects(map_, corners)) found.touching.push_back(f);
     }
     return found;
 }

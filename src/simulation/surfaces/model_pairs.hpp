@@ -20,8 +20,8 @@ class ModelPairs {
     ModelPairs(const Collider& collider, std::vector<std::uint8_t> passes);
 
     struct Found {
-        std::vector<FacePair> intersecting; ///< ascending
-        std::vector<FacePair> touching;     ///< ascending, each face once, and none that intersects
+        std::vector<FacePair> intersecting;  ///< ascending
+        std::vector<std::uint32_t> touching; ///< faces of the surface, ascending; none that intersects
     };
     /// @param surface  in the world, with edges and vertices as faces without area
     Found with(const TriangleMesh& surface) const;

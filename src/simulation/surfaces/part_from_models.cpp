@@ -65,14 +65,6 @@ struct Model {
                 std::max({std::fabs(s.x), std::fabs(s.y), std::fabs(s.z)});
     }
 
-    /// Those that touch too, ascending.
-    std::vector<FacePair> pairs_with(const TriangleMesh& surface) const {
-        auto [all, touching] = pairs.with(surface);
-        all.insert(all.end(), touching.begin(), touching.end());
-        std::sort(all.begin(), all.end());
-        return all;
-    }
-
     /// The first place outside on a straight way out, at the thickness.
     std::optional<Vec3f> out_along(Vec3f from, const Vec3f& direction) const {
         for (int i = 0; i < kMostCrossings; ++i) {
@@ -101,7 +93,10 @@ class Attempt {
     /// Pairs that intersect, and particles inside.
     std::size_t tangle_count() const {
         std::size_t count = inside_count();
-        for (const Model& model : models_) count += model.pairs_with(mesh_of(everything())).size();
+        for (const Model& model : models_) {
+            const auto [intersecting, touching] = model.pairs.with(mesh_of(everything()));
+            count += intersecting.size() + touching.size();
+        }
         return count;
     }
 
@@ -139,7 +134,9 @@ class Attempt {
     void choose_directions(std::span<const std::uint32_t> all, float sign) {
         std::vector<std::uint8_t> tangled(elements_.all.size());
         for (const Model& model : models_) {
-            for (const auto& [e, face] : model.pairs_with(mesh_of(all))) tangled[e] = 1;
+            const auto [intersecting, touching] = model.pairs.with(mesh_of(all));
+            for (const auto& [e, face] : intersecting) tangled[e] = 1;
+            for (const std::uint32_t e : touching) tangled[e] = 1;
             for_each_inside(model, [&](std::size_t v) {
                 for (const std::uint32_t e : elements_.at(v)) tangled[e] = 1;
             });
@@ -203,14 +200,17 @@ class Attempt {
         pair_count_ = 0;
         float step = 0;
         for (const Model& model : models_) {
-            const std::vector<FacePair> pairs = model.pairs_with(mesh_of(judged));
-            pair_count_ += pairs.size();
-            if (!pairs.empty()) step = std::max({step, model.thickness / 2, kStepShare * edge_length_});
-            for (std::size_t i = 0; i < pairs.size(); ++i) {
-                if (i > 0 && pairs[i].a == pairs[i - 1].a) continue;
-                tangled.push_back(judged[pairs[i].a]);
+            const auto [intersecting, touching] = model.pairs.with(mesh_of(judged));
+            const std::size_t count = intersecting.size() + touching.size();
+            pair_count_ += count;
+            if (count != 0) step = std::max({step, model.thickness / 2, kStepShare * edge_length_});
+            const auto push_one = [&](std::uint32_t number) {
+                tangled.push_back(judged[number]);
                 push(tangled.back(), model, pushes);
-            }
+            };
+            for (std::size_t i = 0; i < intersecting.size(); ++i)
+                if (i == 0 || intersecting[i].a != intersecting[i - 1].a) push_one(intersecting[i].a);
+            for (const std::uint32_t number : touching) push_one(number);
         }
         best.consider(positions_, pair_count_ + inside_count());
         for (std::size_t v = 0; v < positions_.size(); ++v) {
