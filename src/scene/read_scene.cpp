@@ -361,11 +361,7 @@ void read_mesh_cloth(JsonObject& cloth, Scene& scene) {
 /// @pre the colliders were read
 std::vector<std::uint32_t> read_ignores(JsonObject& object, const Scene& scene) {
     std::vector<std::uint32_t> numbers;
-    object.read("ignores", numbers, {0, 4e9});
-    for (const std::uint32_t number : numbers)
-        if (number >= scene.colliders.size())
-            object.refuse("ignores", "numbers of colliders, the last of which is " +
-                                         std::to_string(scene.colliders.size() - 1));
+    object.read("ignores", numbers, {0, static_cast<double>(scene.colliders.size() - 1)});
     return numbers;
 }
 

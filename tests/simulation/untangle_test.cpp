@@ -115,6 +115,13 @@ TEST(Untangle, LiftsASheetThatLiesExactlyOnAModelOrALatticeStepInsideIt) {
     const TriangleMesh table = make_box({4, 4, 1});
     for (const double height : {0.5, 0.5000002, 0.4999998, 0.499999})
         expect_parted(sheet_at(height, 2, 9), {table}, colliders_of({table}));
+    // Across an edge of the table, whose middle the map has a little inside.
+    for (const double depth : {0.0, 1e-7, -1e-6}) {
+        TriangleMesh slanted{{{1.5F, -0.4F, 1}, {2.5F, -0.4F, 0}, {1.5F, 0.4F, 1}, {2.5F, 0.4F, 0}},
+                             {{0, 1, 2}, {2, 1, 3}}};
+        for (Vec3f& p : slanted.vertices) p = p - Vec3f(Vec3d{depth, 0, depth});
+        expect_parted(cloth_of(slanted), {table}, colliders_of({table}));
+    }
     const TriangleMesh plane = sheet_mesh(5, 5); // open
     Deformable on_it = sheet_at(0, 0.5, 7);
     expect_parted(on_it, {plane}, colliders_of({plane}));

@@ -195,12 +195,25 @@ TEST(SimulationSetUp, NamesTheFacesWithWhichADeformableBeginsIntersecting) {
 TEST(SimulationSetUp, RefusesADeformableThatLiesOnAModelAsNearAsTheLatticeOfItsMapTells) {
     const std::vector<Collider> table{{.map = ExactMap::build(make_box({4, 4, 1})), .name = "the table"}};
     const SimulationOptions surfaces{.surface_collision = true};
-    for (const double height : {0.5, 0.5000002, 0.4999998, 0.499999})
+    for (const double height : {0.5, 0.50001, 0.4999998, 0.499999})
         test::expect_error(ErrorCode::InvalidOptions,
                            "begins touching the table with 128 faces: face 0, face 1, face 2, ...; move",
                            [&] { Simulation(sheet_at(height, 2, 9), table, surfaces); });
-    EXPECT_NO_THROW(Simulation(sheet_at(0.50001, 2, 9), table, surfaces));
+    EXPECT_NO_THROW(Simulation(sheet_at(0.50002, 2, 9), table, surfaces));
     EXPECT_NO_THROW(Simulation(sheet_at(0.5, 2, 9), table, {}));
+}
+
+TEST(SimulationSetUp, RefusesLayersThatFloatsDoNotTellApartSoFarFromTheOrigin) {
+    const std::vector<Collider> box{
+        {.map = ExactMap::build(make_box({1, 1, 1})), .pose = {{}, {4000, 0, 0}}}};
+    Deformable sheet = sheet_at(0.7, 1, 20);
+    for (Vec3f& p : sheet.positions) p.x += 4000;
+    sheet.previous_positions = sheet.positions;
+    SimulationOptions options{.surface_collision = true};
+    EXPECT_NO_THROW(Simulation(sheet, box, options));
+    options.self_collision = true;
+    test::expect_error(ErrorCode::InvalidOptions, "move the scene nearer to the origin",
+                       [&] { Simulation(sheet, box, options); });
 }
 
 TEST(SimulationSetUp, NamesTheFacesOfADeformableThatBeginIntersecting) {

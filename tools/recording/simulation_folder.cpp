@@ -93,6 +93,9 @@ SavedCollider read_collider(const ReportReader& reader, const json& collider, co
     const json& mesh_name = reader.member(collider, "mesh");
     if (!mesh_name.is_string()) reader.fail("the collider's \"mesh\" is not a file name");
     saved.mesh = read_mesh(folder / mesh_name.get<std::string>());
+    if (collider.contains("faces") && collider["faces"] != saved.mesh.faces.size())
+        reader.fail("the collider's mesh has " + std::to_string(saved.mesh.faces.size()) +
+                    " faces, not as many as \"faces\" says");
     for (const json& pose : reader.list(collider, "poses")) {
         const double frame = reader.number(reader.member(pose, "frame"), "frame");
         if (!saved.poses.empty() && !(frame > saved.poses.back().frame))

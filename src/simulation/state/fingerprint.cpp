@@ -5,6 +5,8 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <set>
+#include <utility>
 #include <variant>
 
 namespace echinus {
@@ -66,7 +68,10 @@ std::uint64_t hash_of(const Deformable& deformable, std::uint64_t start_hash) {
         hasher.add(fold.a, fold.b, fold.c, fold.d, fold.rest_angle, fold.lever);
     for (const Attachment& attachment : deformable.attachments)
         hasher.add(attachment.particle, attachment.collider);
-    for (const CollisionFilter& filter : deformable.filters) hasher.add(filter.particle, filter.collider);
+    std::set<std::pair<std::uint32_t, std::uint32_t>> filters; // in any order, some perhaps twice
+    for (const CollisionFilter& filter : deformable.filters)
+        filters.emplace(filter.collider, filter.particle);
+    for (const auto& [collider, particle] : filters) hasher.add(collider, particle);
     for (const ElasticTetrahedron& t : deformable.tetrahedra)
         hasher.add(t.particles, t.gradients, t.volume, t.mu, t.lambda, t.damping);
     return hasher.hash();

@@ -59,7 +59,8 @@ void require_same(const StateFingerprint& saved, const StateFingerprint& here, c
         throw Error(ErrorCode::InvalidOptions, name + " is of a simulation with " + what +
                                                    "; it goes on only in one that was made of the same");
     };
-    if (saved.deformable != here.deformable) refuse("another deformable, or one that began elsewhere");
+    if (saved.deformable != here.deformable)
+        refuse("another deformable, or one with other filters or that began elsewhere");
     if (saved.colliders.size() != here.colliders.size())
         refuse(std::to_string(saved.colliders.size()) + " colliders, not " +
                std::to_string(here.colliders.size()));

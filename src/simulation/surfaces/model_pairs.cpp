@@ -1,5 +1,6 @@
 #include "simulation/surfaces/model_pairs.hpp"
 
+#include "directions/lattice.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -9,6 +10,13 @@
 #include <utility>
 
 namespace echinus {
+
+namespace {
+
+/// The mesh and a particle are each off by less than a step.
+constexpr float kTouchInSteps = 2;
+
+} // namespace
 
 ModelPairs::ModelPairs(const Collider& collider, std::vector<std::uint8_t> passes)
     : map_(map_of_surface(collider)->view()), local_(collider), body_(collider.pose, {1, 1, 1}),
@@ -22,6 +30,7 @@ ModelPairs::Found ModelPairs::with(const TriangleMesh& surface) const {
     found.intersecting = intersecting_pairs(moved, in_body_);
     std::erase_if(found.intersecting,
                   [&](const FacePair& pair) { return passes_through(surface.faces[pair.a], passes_); });
+    const float touch = kTouchInSteps * map_.radius / static_cast<float>(kLatticeExtent);
     std::size_t next = 0;
     for (std::uint32_t f = 0; f < surface.faces.size(); ++f) {
         while (next < found.intersecting.size() && found.intersecting[next].a < f) ++next;
@@ -31,7 +40,7 @@ ModelPairs::Found ModelPairs::with(const TriangleMesh& surface) const {
         const TrianglePoints corners{local_.point_to_local(surface.vertices[a]),
                                      local_.point_to_local(surface.vertices[b]),
                                      local_.point_to_local(surface.vertices[c])};
-        if (intersects(map_, corners)) found.touching.push_back(f);
+        if (clearance(map_, corners, touch).found()) found.touching.push_back(f);
     }
     return found;
 }

@@ -11,8 +11,8 @@
 namespace echinus {
 
 /// Which faces of a deformable's surface must be parted from a collider's before the first frame: those that
-/// intersect it, and those that touch it on the map's lattice, where a face less than a step inside is not
-/// told from one outside.
+/// intersect it, and those that touch it: within two steps of the map's lattice a face inside is not told
+/// from one outside.
 class ModelPairs {
   public:
     /// @param passes  [particle_count] 1 for particles that the collider lets through, or none

@@ -1,8 +1,11 @@
 #include "simulation/surfaces/surface_collision.hpp"
 
 #include "directions/lattice.hpp"
+#include "geometry/number_text.hpp"
 #include "simulation/collider_now.hpp"
 #include "simulation/surfaces/edge_lengths.hpp"
+
+#include <echinus/error.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -60,6 +63,17 @@ float least_gap(float extent) {
     return extent * (1.0F / (1 << 17));
 }
 
+/// Layers that could come no nearer to each other than this would hold the deformable where it is.
+void require_resolved(float extent, float edge_length) {
+    if (!(least_gap(extent) > edge_length / 4)) return;
+    throw Error(ErrorCode::InvalidOptions,
+                "the deformable begins " + number_text(double{extent}) +
+                    " from the origin, where floats tell its layers apart only from " +
+                    number_text(double{least_gap(extent)}) + " on, and its mean edge is " +
+                    number_text(double{edge_length}) +
+                    "; move the scene nearer to the origin, or switch self_collision off");
+}
+
 PairReach reach_of(float thickness, float edge_length, float least_gap) {
     const float slack = std::max(edge_length / 8, thickness / 4);
     return {.listed = thickness + edge_length / 4 + 2 * slack, .slack = slack, .least_gap = least_gap};
@@ -92,6 +106,7 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
                      kMostSelfThickness * edge_length);
         const float near = std::max(kSelfReach * thickness, kLeastSelfReach * edge_length);
         extents_.push_back(largest_coordinate(particles.positions));
+        require_resolved(extents_.back(), edge_length);
         self_.emplace(elements_, deformable.tetrahedra, particles,
                       SelfSurface::Reach{near, near / 4, least_gap(extents_.back())}, thickness,
                       static_cast<float>(options.friction));
