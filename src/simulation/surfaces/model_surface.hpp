@@ -54,11 +54,12 @@ class ModelSurface {
     /// @param from  in the world, at the end of the frame; none for one that is carried along
     Shares allowed(std::uint32_t vertex, const Vec3f* from) const {
         return pairs_.allowed(vertex, from != nullptr ? now_.point_to_local(*from) : bases_[vertex],
-                              goals_[vertex]);
+                              goals_[vertex], pairs_.rounding());
     }
-    /// May a vertex end the frame at a place in the world?
-    bool permits(std::uint32_t vertex, const Vec3f& place) const {
-        return pairs_.permits(vertex, now_.point_to_local(place));
+    /// May a vertex end the frame at a place in the world? Where it is carried along it may, but for
+    /// rounding.
+    bool permits(std::uint32_t vertex, const Vec3f& place, bool is_carried) const {
+        return pairs_.permits(vertex, now_.point_to_local(place), is_carried ? pairs_.rounding() : 0);
     }
     const SurfacePairs& pairs() const { return pairs_; }
     /// Where a vertex would be that is carried along from where the frame began.

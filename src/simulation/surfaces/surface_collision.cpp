@@ -347,7 +347,7 @@ void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles, c
         const Vec3f from = base_of(v, is_first, particles);
         ends_.set(v, from + (end - from) * shares[v]);
         // Where one of the models takes a vertex may be none that another allows.
-        if (!is_one_frame && !is_permitted(v, ends_[v])) ++squeezed_now_;
+        if (!is_one_frame && !is_permitted(v, ends_[v], true)) ++squeezed_now_;
     }
 }
 
@@ -386,19 +386,20 @@ Vec3f SurfaceCollision::base_of(std::uint32_t vertex, bool is_first, const Parti
 /// where it was, or where one of them takes it.
 Vec3f SurfaceCollision::carried_between(std::uint32_t vertex, const Vec3f& start) const {
     const Vec3f mean = mean_of_carried(vertex, start);
-    if (is_permitted(vertex, mean)) return mean;
-    if (is_permitted(vertex, start)) return start;
+    if (is_permitted(vertex, mean, false)) return mean;
+    if (is_permitted(vertex, start, false)) return start;
     for (std::size_t c = 0; c < models_.size(); ++c) {
         if (is_near_[c] == 0 || moves_[c] == 0) continue;
         const Vec3f carried = models_[c].carried(vertex);
-        if (is_permitted(vertex, carried)) return carried;
+        if (is_permitted(vertex, carried, true)) return carried;
     }
     return mean;
 }
 
-bool SurfaceCollision::is_permitted(std::uint32_t vertex, const Vec3f& place) const {
+/// @param is_carried  there by one of the models
+bool SurfaceCollision::is_permitted(std::uint32_t vertex, const Vec3f& place, bool is_carried) const {
     for (std::size_t c = 0; c < models_.size(); ++c)
-        if (is_near_[c] != 0 && !models_[c].permits(vertex, place)) return false;
+        if (is_near_[c] != 0 && !models_[c].permits(vertex, place, is_carried)) return false;
     return true;
 }
 

@@ -63,7 +63,7 @@ class SurfaceCollision {
     const ModelSurface* carrier() const;
     Vec3f carried_between(std::uint32_t vertex, const Vec3f& start) const;
     Vec3f mean_of_carried(std::uint32_t vertex, const Vec3f& start) const;
-    bool is_permitted(std::uint32_t vertex, const Vec3f& place) const;
+    bool is_permitted(std::uint32_t vertex, const Vec3f& place, bool is_carried) const;
     Vec3f base_of(std::uint32_t vertex, bool is_first, const Particles& particles) const;
     template <typename Visit>
     void for_each_near(const Visit& visit);

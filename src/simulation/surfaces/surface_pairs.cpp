@@ -423,7 +423,7 @@ bool SurfacePairs::renew(std::uint32_t vertex, const Workers& workers) {
     return true;
 }
 
-Shares SurfacePairs::allowed(std::uint32_t vertex, const Vec3f& from, const Vec3f& to) const {
+Shares SurfacePairs::allowed(std::uint32_t vertex, const Vec3f& from, const Vec3f& to, float rounding) const {
     const Vec3f start = (*starts_)[vertex], base = (*bases_)[vertex];
     Shares shares;
     float bound = kInfinity;
@@ -441,8 +441,9 @@ Shares SurfacePairs::allowed(std::uint32_t vertex, const Vec3f& from, const Vec3
             for (std::size_t k = 0; k < own_count(pair.kind); ++k)
                 above = std::min(above, dot(apart.normal, points[k] - start));
             const float allowed_way = std::max(usable(apart.gap), 0.0F) - above - advance(pair, apart.normal);
-            shares.keep_not_negative(dot(apart.normal, from - start) + allowed_way,
-                                     dot(apart.normal, to - start) + allowed_way);
+            float at_from = dot(apart.normal, from - start) + allowed_way;
+            if (at_from < 0 && at_from >= -rounding) at_from = 0;
+            shares.keep_not_negative(at_from, dot(apart.normal, to - start) + allowed_way);
         }
     }
     shares.keep_in_ball(from - base, to - from, bound);

@@ -92,12 +92,15 @@ class SurfacePairs {
 
     /// The shares of the way of one of them that nothing forbids.
     /// @param from, to  the way's ends, in this frame
-    Shares allowed(std::uint32_t vertex, const Vec3f& from, const Vec3f& to) const;
+    /// @param rounding  by which the way's beginning may be too near
+    Shares allowed(std::uint32_t vertex, const Vec3f& from, const Vec3f& to, float rounding) const;
 
     /// Is one of the shares of a vertex's way that ends here?
-    bool permits(std::uint32_t vertex, const Vec3f& place) const {
-        return !is_beyond(vertex, place, rooms_[vertex]) || !allowed(vertex, place, place).none();
+    bool permits(std::uint32_t vertex, const Vec3f& place, float rounding) const {
+        return !is_beyond(vertex, place, rooms_[vertex]) || !allowed(vertex, place, place, rounding).none();
     }
+    /// By which the place of a vertex that is carried along, and so keeps its gap, may seem too near.
+    float rounding() const { return reach_.least_gap / 4; }
 
     /// @param opponent_count  of vertices
     void archive(StateArchive& state, std::size_t opponent_count);
