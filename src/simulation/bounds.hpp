@@ -20,8 +20,8 @@ class Bounds {
     void require_sound() const;
 
     // These throw Error Diverged, with the frame. NaN is in no bounds.
-    /// In the middle of a frame, in which what would be far out may be stopped on its way; but the way has to
-    /// be one.
+    /// In the middle of a frame, in which what would be far out may be stopped on its way; but not from a
+    /// hundred times as far.
     void require_ways(const Particles& particles, std::uint32_t frame);
     void require_ends(const Particles& particles, std::uint32_t frame);
     [[noreturn]] void diverge(std::uint32_t frame, const std::string& what);

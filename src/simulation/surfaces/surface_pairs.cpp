@@ -442,7 +442,7 @@ Shares SurfacePairs::allowed(std::uint32_t vertex, const Vec3f& from, const Vec3
                 above = std::min(above, dot(apart.normal, points[k] - start));
             const float allowed_way = std::max(usable(apart.gap), 0.0F) - above - advance(pair, apart.normal);
             float at_from = dot(apart.normal, from - start) + allowed_way;
-            if (at_from < 0 && at_from >= -rounding) at_from = 0;
+            if (at_from < 0 && at_from >= -rounding) at_from = 0; // it may stay, and come no nearer
             shares.keep_not_negative(at_from, dot(apart.normal, to - start) + allowed_way);
         }
     }
