@@ -8,6 +8,7 @@
 // After foreach_target.h, which includes this file once for each instruction set.
 #include "simd/dispatch.hpp"
 #include "simd/lanes-inl.hpp"
+#include "simulation/disjoint.hpp"
 #include "simulation/places-inl.hpp"
 #include "simulation/sticks.hpp"
 
@@ -18,20 +19,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace echinus {
 namespace HWY_NAMESPACE {
-
-/// Do loads and stores under a mask leave alone what is not in it? Elsewhere it is read and written back.
-#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
-constexpr bool kMasksAreExact = true;
-#else
-constexpr bool kMasksAreExact = false;
-#endif
-
-/// @return 0 or anything outside of the mask
-HWY_INLINE FloatLanes load_part(const FloatMask& mask, const float* from) {
-    const Floats d;
-    if constexpr (kMasksAreExact) return hn::MaskedLoad(mask, d, from);
-    return hn::LoadU(d, from);
-}
 
 /// How sticks of a run share their corrections.
 class LaneStick {
@@ -50,8 +37,7 @@ class LaneStick {
         const PointLanes across = b.from(a);
         const FloatLanes least = hn::Set(d, std::numeric_limits<float>::min());
         const FloatLanes distance = hn::Sqrt(dot(across, across) + least);
-        const FloatLanes goal =
-            left < hn::Lanes(d) ? load_part(hn::FirstN(d, left), goal_lengths) : hn::LoadU(d, goal_lengths);
+        const FloatLanes goal = hn::LoadU(d, goal_lengths);
         const FloatLanes factor = hn::Set(d, 1.0F) - goal / distance;
         const PointLanes correction = across * factor;
         a.move(correction * share_a_);
@@ -83,15 +69,13 @@ struct Row {
     }
 };
 
-/// Of which only some are loaded and stored.
+/// Of which only some are stored.
 struct PartOfRow {
     using Point = PointLanes;
     std::size_t i;
     FloatMask mask;
 
-    HWY_INLINE PointLanes load(const PointArrays& p) const {
-        return {load_part(mask, &p.x[i]), load_part(mask, &p.y[i]), load_part(mask, &p.z[i])};
-    }
+    HWY_INLINE PointLanes load(const PointArrays& p) const { return Row{i}.load(p); }
     HWY_INLINE void store(const PointLanes& points, PointArrays& p) const {
         const Floats d;
         hn::BlendedStore(points.x, mask, d, &p.x[i]);
@@ -110,24 +94,18 @@ HWY_INLINE void relax_at(const Where& a, const Where& b, const LaneStick& stick,
     places.store(place_b, b);
 }
 
-/// What follows a run's particles belongs to the run's thread.
-enum class Beyond : bool { Own, Others };
-
-/// @return how many
 template <typename Places>
-std::size_t relax_side_by_side(const StickRun& run, float* goal_lengths, Beyond beyond,
-                               const Places& places) {
+void relax_side_by_side(const StickRun& run, float* goal_lengths, const Places& places) {
     const Floats d;
     const LaneStick stick(run);
     const std::size_t lanes = hn::Lanes(d);
     std::size_t i = 0;
     for (; i + lanes <= run.count; i += lanes)
         relax_at(Row{run.a + i}, Row{run.b + i}, stick, goal_lengths + i, run.count - i, places);
-    if (i == run.count || (beyond == Beyond::Others && !kMasksAreExact)) return i;
+    if (i == run.count) return;
     const FloatMask rest = hn::FirstN(d, run.count - i);
     relax_at(PartOfRow{run.a + i, rest}, PartOfRow{run.b + i, rest}, stick, goal_lengths + i, run.count - i,
              places);
-    return run.count;
 }
 
 /// Both ends of sticks, in turn those of ends a and ends b.
@@ -212,20 +190,18 @@ HWY_INLINE void relax_ends_at(const Where& where, const LaneStick& stick, float*
     places.store(both, where);
 }
 
-/// @return how many
 template <typename Element, typename Places>
-std::size_t relax_alternating(const StickRun& run, float* goal_lengths, Beyond beyond, const Places& places) {
+void relax_alternating(const StickRun& run, float* goal_lengths, const Places& places) {
     const Floats d;
     const LaneStick stick(run);
     const std::size_t lanes = hn::Lanes(d);
     std::size_t i = 0;
     for (; i + lanes <= run.count; i += lanes)
         relax_ends_at(Alternating<Element>{run.a + 2 * i}, stick, goal_lengths + i, run.count - i, places);
-    if (i == run.count || beyond == Beyond::Others) return i;
+    if (i == run.count) return;
     const FloatMask rest = hn::FirstN(d, run.count - i);
     relax_ends_at(PartOfAlternating<Element>{{run.a + 2 * i}, rest}, stick, goal_lengths + i, run.count - i,
                   places);
-    return run.count;
 }
 
 /// Relaxes as many sticks as fill whole vectors. @return how many
@@ -245,16 +221,19 @@ std::size_t relax_disjoint_sticks(const StickRun& run, StickArrays& sticks, cons
 }
 
 template <typename Places>
-std::size_t relax_lanes(const StickRun& run, StickArrays& sticks, Beyond beyond, const Places& places) {
+std::size_t relax_lanes(const StickRun& run, StickArrays& sticks, const Places& places) {
     float* goal_lengths = &sticks.goal_lengths[run.first];
     switch (run.shape) {
     case RunShape::SideBySide:
-        return relax_side_by_side(run, goal_lengths, beyond, places);
+        relax_side_by_side(run, goal_lengths, places);
+        return run.count;
     case RunShape::Neighbours:
-        return relax_alternating<float>(run, goal_lengths, beyond, places);
+        relax_alternating<float>(run, goal_lengths, places);
+        return run.count;
     case RunShape::EverySecond:
 #if HWY_TARGET != HWY_SCALAR // compiled by Highway, never chosen by dispatch.hpp, and too narrow for a pair
-        return relax_alternating<double>(run, goal_lengths, beyond, places);
+        relax_alternating<double>(run, goal_lengths, places);
+        return run.count;
 #endif
     case RunShape::Disjoint:
         return relax_disjoint_sticks(run, sticks, places);
@@ -265,11 +244,10 @@ std::size_t relax_lanes(const StickRun& run, StickArrays& sticks, Beyond beyond,
 }
 
 /// Relaxes the sticks of a run, from the first on. @return how many
-std::size_t relax_run(const StickRun& run, StickArrays& sticks, bool is_shared, PointArrays& positions,
-                      PointArrays* remainders) {
-    const Beyond beyond = is_shared ? Beyond::Others : Beyond::Own;
-    return remainders != nullptr ? relax_lanes(run, sticks, beyond, CompensatedPlaces{positions, *remainders})
-                                 : relax_lanes(run, sticks, beyond, RoundedPlaces{positions});
+std::size_t relax_lanes_of_run(const StickRun& run, StickArrays& sticks, PointArrays& positions,
+                               PointArrays* remainders) {
+    return remainders != nullptr ? relax_lanes(run, sticks, CompensatedPlaces{positions, *remainders})
+                                 : relax_lanes(run, sticks, RoundedPlaces{positions});
 }
 
 template <typename Places>
@@ -297,18 +275,18 @@ namespace echinus {
 
 namespace {
 
-HWY_EXPORT(relax_run);
+HWY_EXPORT(relax_lanes_of_run);
+
+constexpr std::size_t kSticksPerPiece = 1024;
 
 template <typename Places>
 void relax_one_by_one(StickArrays& sticks, std::size_t first, std::size_t count, const Places& places) {
     for (std::size_t i = first; i < first + count; ++i) HWY_NAMESPACE::relax_one(sticks, i, places);
 }
 
-/// @param is_shared  other threads are about, and only the particles of the run are touched
-void relax_whole_run(const StickRun& run, StickArrays& sticks, bool is_shared, PointArrays& positions,
-                     PointArrays* remainders) {
+void relax_run(const StickRun& run, StickArrays& sticks, PointArrays& positions, PointArrays* remainders) {
     const std::size_t done =
-        use_kernels() ? ECHINUS_DISPATCH(relax_run)(run, sticks, is_shared, positions, remainders) : 0;
+        use_kernels() ? ECHINUS_DISPATCH(relax_lanes_of_run)(run, sticks, positions, remainders) : 0;
     const std::size_t left = run.count - done;
     if (remainders != nullptr)
         relax_one_by_one(sticks, run.first + done, left,
@@ -324,19 +302,18 @@ void relax(StickArrays& sticks, std::span<const std::uint32_t> chosen, PointArra
         HWY_NAMESPACE::relax_one(sticks, i, HWY_NAMESPACE::RoundedPlaces{positions});
 }
 
-void relax(StickArrays& sticks, PointArrays& positions, PointArrays* remainders) noexcept {
-    for (const StickRun& run : sticks.runs) relax_whole_run(run, sticks, false, positions, remainders);
-}
-
-void relax_tiles(StickArrays& sticks, PointArrays& positions, PointArrays* remainders,
-                 const Workers& workers) noexcept {
-    const StickTiles& all = sticks.tiles;
-    for (const StickTiles::Range& step : all.steps)
-        workers.for_pieces(step.count, [&](std::size_t, std::size_t n) {
-            const StickTiles::Range& tile = all.tiles[step.first + n];
-            for (std::size_t i = tile.first; i < tile.first + tile.count; ++i)
-                relax_whole_run(all.parts[i], sticks, true, positions, remainders);
+void relax(StickArrays& sticks, PointArrays& positions, PointArrays* remainders,
+           const Workers& workers) noexcept {
+    for (const StickRun& run : sticks.runs) {
+        if (run.shape != RunShape::Disjoint) {
+            relax_run(run, sticks, positions, remainders);
+            continue;
+        }
+        for_parts_of({run.first, run.count}, kSticksPerPiece, workers, [&](const ConstraintRun& part) {
+            relax_run({.shape = run.shape, .first = part.first, .count = part.count}, sticks, positions,
+                      remainders);
         });
+    }
 }
 
 } // namespace echinus

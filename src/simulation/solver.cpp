@@ -306,10 +306,7 @@ void Simulation::Solver::relax_constraints() {
     if (meter_) meter_->note(particles_);
     PointArrays* const remainders = particles_.keeps_remainders ? &particles_.remainders : nullptr;
     relax(folds_, particles_.positions, remainders, workers_);
-    if (workers_.count() == 1)
-        relax(sticks_, particles_.positions, remainders);
-    else
-        relax_tiles(sticks_, particles_.positions, remainders, workers_);
+    relax(sticks_, particles_.positions, remainders, workers_);
     relax(tetrahedra_, particles_, workers_);
     if (meter_) meter_->charge_holder(particles_);
 }

@@ -1,11 +1,8 @@
 #include "simulation/sticks.hpp"
 
-#include "geometry/parallel.hpp"
 #include "simulation/disjoint.hpp"
-#include "simulation/stick_tiles.hpp"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 namespace echinus {
@@ -148,14 +145,6 @@ Shares shares_of_spring(double inverse_mass_a, double inverse_mass_b, double com
 
 } // namespace
 
-StickRun part_of(const StickRun& run, std::size_t first, std::size_t count) {
-    StickRun part = run;
-    std::tie(part.a, part.b) = nth_stick(run.shape, run.a, run.b, static_cast<std::uint32_t>(first));
-    part.first = run.first + first;
-    part.count = count;
-    return part;
-}
-
 bool StickArrays::gives_way() const {
     return std::any_of(yield.begin(), yield.end(), [](float share) { return share != 0; });
 }
@@ -181,8 +170,6 @@ StickArrays weighted_sticks(const Deformable& deformable, const SimulationOption
         sticks.rest_lengths.push_back(stick.rest_length);
     }
     sticks.runs = runs_of(sticks, deformable.particle_count());
-    const std::size_t thread_count = worker_count(options.thread_count);
-    if (thread_count > 1) sticks.tiles = cut_into_tiles(sticks, deformable.particle_count(), thread_count);
     sticks.rest_lengths.resize(sticks.count() + PointArrays::kPadding);
     sticks.goal_lengths = sticks.rest_lengths;
     return sticks;

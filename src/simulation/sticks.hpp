@@ -35,17 +35,6 @@ struct StickRun {
 /// @pre first + count <= run.count, and first is even in a run of every second
 StickRun part_of(const StickRun& run, std::size_t first, std::size_t count);
 
-/// Runs cut into parts for several threads. Tiles of a step share no particle; sticks that share one keep
-/// their order, so that the bits are those of one run after the other.
-struct StickTiles {
-    struct Range {
-        std::size_t first, count;
-    };
-    std::vector<StickRun> parts;
-    std::vector<Range> tiles; ///< of parts
-    std::vector<Range> steps; ///< of tiles
-};
-
 /// All sticks with what their relaxation needs, in the order in which they are relaxed.
 ///
 /// A spring is relaxed like a stick whose length gives way. XPBD (Macklin et al. 2016, equation 18) changes
@@ -66,7 +55,6 @@ struct StickArrays {
     std::vector<float> rest_lengths; ///< [count + PointArrays::kPadding]
     std::vector<float> goal_lengths; ///< the same
     std::vector<StickRun> runs;
-    StickTiles tiles; ///< where several threads relax; else empty
 
     std::size_t count() const { return a.size(); }
     bool gives_way() const;
@@ -75,13 +63,11 @@ struct StickArrays {
 /// By the solver that the options choose, in the deformable's order.
 StickArrays weighted_sticks(const Deformable& deformable, const SimulationOptions& options);
 
-/// One relaxation of all sticks, in order. The same bits under every instruction set.
+/// One relaxation of all sticks, in order. The same bits under every instruction set, and for any number of
+/// threads: they share disjoint runs, and those along the rows of a rectangle are too short to be shared.
 /// @param remainders  what rounding took off the positions, taken along; null: it is lost
-void relax(StickArrays& sticks, PointArrays& positions, PointArrays* remainders = nullptr) noexcept;
-
-/// The same on several threads, which share tiles; the same bits. @pre the sticks have tiles
-void relax_tiles(StickArrays& sticks, PointArrays& positions, PointArrays* remainders,
-                 const Workers& workers) noexcept;
+void relax(StickArrays& sticks, PointArrays& positions, PointArrays* remainders = nullptr,
+           const Workers& workers = Workers()) noexcept;
 
 /// The same of some sticks, by their numbers, without remainders.
 void relax(StickArrays& sticks, std::span<const std::uint32_t> chosen, PointArrays& positions) noexcept;
