@@ -179,6 +179,26 @@ TEST(WindingTree, HoldsCapsWhereTheyAreFarFewerThanTheFaces) {
     }
 }
 
+/// They have as many edges as the tube has faces, but most of their triangles are short.
+TEST(WindingTree, HoldsCapsOfATubeOfLongFaces) {
+    TriangleMesh tube;
+    constexpr std::uint32_t kSides = 300;
+    for (std::uint32_t i = 0; i < kSides; ++i) {
+        const double angle = 2 * std::numbers::pi * i / kSides;
+        const auto x = static_cast<float>(std::cos(angle)), y = static_cast<float>(std::sin(angle));
+        tube.vertices.insert(tube.vertices.end(), {{x, y, -1}, {x, y, 1}});
+        const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % kSides);
+        tube.faces.insert(tube.faces.end(), {{a, b, b + 1}, {a, b + 1, a + 1}});
+    }
+    const ExactMap map = ExactMap::build(tube);
+    EXPECT_TRUE(map.view().winding_tree_has_caps);
+    test::Random random(6);
+    for (int i = 0; i < 200; ++i) {
+        const Vec3f p = test::in_cube(random, 1.5F);
+        EXPECT_NEAR(winding_number(map, p, 1e-3F), winding_number(tube, Vec3d(p)), 2e-3);
+    }
+}
+
 TEST(BorderCaps, CloseAnySurface) {
     TriangleMesh torn =
         make_sphere(1, 40, 20); // any three of its vertices but those of a parallel have an area

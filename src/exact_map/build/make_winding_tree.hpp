@@ -17,7 +17,7 @@ struct OwnedWindingTree {
 };
 
 /// What a map's queries sum for the winding number of an open surface: caps of its border where they are far
-/// fewer than its faces, else the faces. Time O(n log n) of the caps, O(n) of the faces.
+/// fewer than its faces, or far shorter, else the faces. Time O(n log n) of the caps, O(n) of the faces.
 /// @param map  its nodes, corners, vertices and border are set
 OwnedWindingTree make_winding_tree(const ExactMapView& map);
 

@@ -38,19 +38,16 @@ class FacesFromAfar {
     }
 
     /// @param searches  one at least, and no more than there are lanes; is_for() holds
-    void find(std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) {
+    /// @returns  false, and no faces, where too many faces are about equally near to be told apart together
+    bool find(std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) {
         std::array<NearestSearch, kMaxLanes> near;
         for (std::size_t i = 0; i < searches.size(); ++i)
             near[i] = {brought_within_reach(searches[i].place), searches[i].farthest};
         const std::span<const NearestSearch> asked(near.data(), searches.size());
         start(asked);
-        if (!walk()) {
-            for (std::size_t i = 0; i < asked.size(); ++i)
-                faces[i] = nearest_face(map_, searches[i].place, kUnstretched, searches[i].farthest)
-                               .value_or(kNoFace);
-            return;
-        }
+        if (!walk()) return false;
         candidates_.choose(map_, kUnstretched, asked, upper_, faces);
+        return true;
     }
 
   private:

@@ -60,15 +60,14 @@ class NearestFaceFinder {
     }
 
     /// @param searches  one at least, and no more than there are lanes
-    void find(std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) {
-        const bool within_range = std::all_of(searches.begin(), searches.end(), is_within_range);
-        if (within_range) start(searches);
-        if (!within_range || !search()) {
-            for (std::size_t i = 0; i < searches.size(); ++i)
-                faces[i] = nearest_by_reference(map_, stretch_, searches[i]);
-            return;
-        }
+    /// @returns  false, and no faces, where one is out of range or too many faces are about equally near to
+    /// be told apart together
+    bool find(std::span<const NearestSearch> searches, std::span<std::uint32_t> faces) {
+        if (!std::all_of(searches.begin(), searches.end(), is_within_range)) return false;
+        start(searches);
+        if (!search()) return false;
         candidates_.choose(map_, stretch_, searches, upper_, faces);
+        return true;
     }
 
     static bool is_within_range(const NearestSearch& search) {
@@ -327,9 +326,7 @@ void find_nearest_faces(const ExactMapView& map, const Vec3d& stretch,
             const std::size_t count = std::min(lanes, searches.size() - begin);
             const auto group = searches.subspan(begin, count);
             const auto found = faces.subspan(begin, count);
-            if (pays_to_share(group, farthest_apart, distance))
-                finder.find(group, found);
-            else
+            if (!pays_to_share(group, farthest_apart, distance) || !finder.find(group, found))
                 for (std::size_t i = 0; i < count; ++i) found[i] = search_alone(map, stretch, group[i]);
             if (found.back() != kNoFace)
                 distance = std::sqrt(distance_sq_to_face(map, found.back(), group.back().place, stretch));
