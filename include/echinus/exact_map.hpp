@@ -52,7 +52,7 @@ struct ExactMapStatistics {
     /// Faces with two corners on one point of the lattice, where they have no area: they count for distances
     /// only.
     std::uint32_t dropped_faces = 0;
-    /// Most faces of one band. In that band contains() looks at each of them, at 1 to 6 ns a face.
+    /// Most faces of one band. In that band contains() looks at each of them, at 1 to 13 ns a face.
     std::uint32_t longest_list = 0;
     float mean_list = 0; ///< faces of a band, mean over all bands
     /// The cost of contains() near the surface: the faces that a query in a band looks at, expected for a
@@ -164,7 +164,7 @@ void winding_number_batch(const ExactMapView& map, StridedSpan<const Vec3f> poin
 /// Aanaes 2005).
 ///
 /// Cost: contains(), and for particles inside or with a margin the search, by vector instructions
-/// (instruction_set.hpp): near the surface about 0.4 microseconds for a particle, of which 0.1 are for the
+/// (instruction_set.hpp): near the surface about 0.3 microseconds for a particle, of which 0.1 are for the
 /// side. It grows with the number of faces that are about equally near: from the centre of a sphere it visits
 /// them all, at 13 to 40 ns each (0.5 ms for 40 000 faces, 38 ms for a million). A margin bounds the search
 /// for particles outside.
@@ -173,7 +173,7 @@ void winding_number_batch(const ExactMapView& map, StridedSpan<const Vec3f> poin
 Contact contact(const ExactMapView& map, Vec3f point_local, float margin = 0) noexcept;
 
 /// contains() for many points, by vector instructions (instruction_set.hpp): the same answers, up to
-/// four times as fast, for 8 points or more. Takes 90 KB of the stack; on one thread it does not allocate.
+/// eight times as fast, for 8 points or more. Takes 90 KB of the stack; on one thread it does not allocate.
 /// @param points_local  [n]
 /// @param inside        [n] out: 1 inside, 0 outside. Does not overlap points_local
 /// @param thread_count  0: all cores. Used for 32 768 points or more; the answers do not depend on it
@@ -211,8 +211,8 @@ void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 ///                  medial axis), it is that of the first of their faces in the map's order
 float signed_distance(const ExactMapView& map, Vec3f point_local, Vec3f* gradient = nullptr) noexcept;
 
-/// signed_distance() for many points: the same answers, bit for bit. As fast as contacts: see
-/// contacts_batch(). Takes 150 KB of the stack. For more than 256 points it allocates for the time of the
+/// signed_distance() for many points: the same answers, bit for bit. A point takes as long as
+/// in contacts_batch() with an infinite margin. Takes 150 KB of the stack. For more than 256 points it allocates for the time of the
 /// call up to 4.2 MB a thread and 1 byte a point; where that fails, it answers one by one.
 /// @param points_local  [n]
 /// @param distances     [n] out. Does not overlap points_local
