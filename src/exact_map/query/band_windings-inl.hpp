@@ -142,16 +142,20 @@ class BandWindings {
             const IntLanes left = hn::Set(i, static_cast<std::int32_t>(end - from));
             const Compressor compress(hn::AndNot(hn::Eq(touched, hn::Zero(i)), hn::Lt(hn::Iota(i, 0), left)));
             const IntLanes faces = load(&references[from]);
-            hn::StoreU(hn::Set(i, particle), i, &pair_particles_[pair_count]);
             hn::StoreU(compress(hn::Add(hn::Add(faces, faces), faces)), i, &pair_corners_[pair_count]);
             pair_count += compress.count();
         };
+        std::size_t first = pair_count;
         // Twice in any case: few lists are longer, and a branch less is mispredicted less.
         do {
             add(begin);
             add(begin + kLanes);
             begin += 2 * kLanes;
         } while (begin < end);
+        do {
+            hn::StoreU(hn::Set(i, particle), i, &pair_particles_[first]);
+            first += kLanes;
+        } while (first < pair_count);
         return pair_count;
     }
 
