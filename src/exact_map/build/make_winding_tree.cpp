@@ -52,7 +52,8 @@ std::vector<Triangle> find_caps(const ExactMapView& map) {
     constexpr double kFewNearby = 8, kGain = 4;
     const std::size_t edges = edge_count(map);
     if (kFewestFacesPerCap * edges <= map.face_count()) return cap_border(map.border, map.vertices);
-    if (edges > 3 * map.face_count()) return {}; // in a file, where nothing compares the border with the faces
+    if (edges > 3 * map.face_count())
+        return {}; // in a file, where nothing compares the border with the faces
     const double faces_nearby = count_nearby_faces(map);
     if (faces_nearby < kFewNearby) return {};
     std::vector<Triangle> caps = cap_border(map.border, map.vertices);
