@@ -211,7 +211,7 @@ void contacts_batch(const ExactMapView& map, StridedSpan<const Vec3f> points_loc
 ///                  medial axis), it is that of the first of their faces in the map's order
 float signed_distance(const ExactMapView& map, Vec3f point_local, Vec3f* gradient = nullptr) noexcept;
 
-/// signed_distance() for many points: the same answers, bit for bit. Costs as much as contacts_batch() with an
+/// signed_distance() for many points: the same answers, bit for bit, at the cost of contacts_batch() with an
 /// infinite margin. Takes 150 KB of the stack; for more than 256 points up to 4.2 MB a thread and 1 byte a
 /// point, for the time of the call. Where these cannot be had, it answers one by one.
 /// @param points_local  [n]
