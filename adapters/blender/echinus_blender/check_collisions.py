@@ -9,13 +9,12 @@ from .meshes import (
     in_world,
     leave_edit_mode,
     matrix_of,
-    modifiers_after_deformation,
     require_mesh,
     triangles_of,
     vertices_of,
-    without,
     world_mesh,
 )
+from .modifiers import modifiers_after_motion, unchecked_movers, without
 from .reporting import Reporting
 
 INSIDE, CUT = "Echinus Inside", "Echinus Cut"
@@ -40,7 +39,10 @@ class CheckCollisions(Reporting, bpy.types.Operator):
         sentence = f"{cloth.name}: {len(inside)} vertices inside, {len(cut_faces)} faces cut"
         if open_bodies:
             sentence += f"; {', '.join(open_bodies)} not closed, where inside is a guess"
-        self.tell(context, sentence, is_bad=bool(len(inside) or len(cut_faces) or open_bodies))
+        movers = unchecked_movers(cloth)
+        if movers:
+            sentence += f"; {movers}"
+        self.tell(context, sentence, is_bad=bool(len(inside) or len(cut_faces) or open_bodies or movers))
         return {"FINISHED"}
 
 
@@ -48,7 +50,7 @@ def find_collisions(echinus, context, settings):
     """Vertices inside, polygons cut, the vertices of these, and the names of bodies that are not closed."""
     require_mesh(settings.cloth, "cloth")
     bodies = bodies_of(settings)
-    with without(modifiers_after_deformation(settings.cloth)):
+    with without(modifiers_after_motion(settings.cloth)):
         with evaluated_mesh(context, settings.cloth) as (evaluated, mesh):
             vertices = in_world(vertices_of(mesh), matrix_of(evaluated))
             triangles, polygons = triangles_of(mesh)

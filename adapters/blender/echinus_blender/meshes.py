@@ -7,31 +7,6 @@ import numpy as np
 
 from .refusal import Refusal
 
-#: Modifiers that move vertices and leave their number alone; a cloth's motion comes after the last of them.
-DEFORMING = {
-    "ARMATURE",
-    "CAST",
-    "CLOTH",
-    "COLLISION",
-    "CORRECTIVE_SMOOTH",
-    "CURVE",
-    "DISPLACE",
-    "HOOK",
-    "LAPLACIANDEFORM",
-    "LAPLACIANSMOOTH",
-    "LATTICE",
-    "MESH_CACHE",
-    "MESH_DEFORM",
-    "SHRINKWRAP",
-    "SIMPLE_DEFORM",
-    "SMOOTH",
-    "SOFT_BODY",
-    "SURFACE_DEFORM",
-    "WARP",
-    "WAVE",
-}
-
-
 def require_mesh(candidate, what):
     """
     Raises
@@ -101,25 +76,6 @@ def evaluated_mesh(context, thing):
         yield evaluated, mesh
     finally:
         evaluated.to_mesh_clear()
-
-
-@contextlib.contextmanager
-def without(modifiers):
-    """The view does not show these modifiers meanwhile."""
-    shown = [modifier for modifier in modifiers if modifier.show_viewport]
-    for modifier in shown:
-        modifier.show_viewport = False
-    try:
-        yield
-    finally:
-        for modifier in shown:
-            modifier.show_viewport = True
-
-
-def modifiers_after_deformation(thing):
-    """The first modifier that may change the number of vertices, and all after it."""
-    kinds = [modifier.type in DEFORMING for modifier in thing.modifiers]
-    return thing.modifiers[kinds.index(False) :] if False in kinds else []
 
 
 def world_mesh(context, thing):

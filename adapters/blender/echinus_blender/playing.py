@@ -5,9 +5,8 @@ import pathlib
 import bpy
 import numpy as np
 
-from .meshes import DEFORMING
+from .modifiers import MOTION, motion_modifier_of, place_motion
 from .point_cache import write_point_cache
-from .sampling import MODIFIER
 
 
 def to_object_frame(recorded, matrices):
@@ -32,19 +31,9 @@ def cache_path_of(settings):
 def play(cloth, recorded, matrices, path, first_frame):
     """Writes the cache, and has a modifier of the cloth play it from ``first_frame`` on."""
     write_point_cache(path, to_object_frame(recorded, matrices))
-    modifier = cloth.modifiers.get(MODIFIER)
-    if modifier is None or modifier.type != "MESH_CACHE":
-        modifier = cloth.modifiers.new(MODIFIER, "MESH_CACHE")
-        _move_after_deformation(cloth, modifier)
+    modifier = motion_modifier_of(cloth) or cloth.modifiers.new(MOTION, "MESH_CACHE")
+    place_motion(cloth, modifier)
     modifier.cache_format = "PC2"
     modifier.filepath = bpy.path.relpath(str(path)) if bpy.data.filepath else str(path)
     modifier.frame_start = first_frame
     modifier.show_viewport = modifier.show_render = True
-
-
-def _move_after_deformation(cloth, modifier):
-    """Before the first modifier that may change the number of vertices."""
-    others = [each.type in DEFORMING for each in cloth.modifiers if each.name != modifier.name]
-    if False in others:
-        with bpy.context.temp_override(object=cloth):
-            bpy.ops.object.modifier_move_to_index(modifier=modifier.name, index=others.index(False))

@@ -9,20 +9,16 @@ from .meshes import (
     evaluated_mesh,
     in_world,
     matrix_of,
-    modifiers_after_deformation,
     outwards,
     require_mesh,
     triangles_of,
     vertices_of,
     loose_edges_of,
-    without,
 )
+from .modifiers import modifiers_after_motion, motion_modifier_of, without
 from .motions import BodySamples
 from .refusal import Refusal
 from .run import Garment
-
-#: The name of the modifier that plays the motion.
-MODIFIER = "Echinus"
 
 
 @dataclass
@@ -72,8 +68,8 @@ def sample(context):
 
 def played_modifiers(cloth):
     """What a cloth does not begin with: its earlier motion, and what may change the number of its vertices."""
-    mine = cloth.modifiers.get(MODIFIER)
-    return list(modifiers_after_deformation(cloth)) + ([mine] if mine else [])
+    mine = motion_modifier_of(cloth)
+    return list(modifiers_after_motion(cloth)) + ([mine] if mine else [])
 
 
 def _garment(context):

@@ -6,6 +6,7 @@ import time
 import bpy
 
 from .meshes import leave_edit_mode
+from .modifiers import unchecked_movers
 from .playing import cache_path_of, play
 from .refusal import Refusal
 from .reporting import Reporting
@@ -129,8 +130,10 @@ class SimulateCloth(Reporting, bpy.types.Operator):
             sentence += f"; no room {profile.squeezed_count} times, {profile.lost_count} vertices lost"
         if not lasts:
             sentence += "; the cache is temporary: save the file and simulate again to keep it"
-        is_bad = bool(profile.lost_count or profile.squeezed_count)
-        self.tell(context, sentence, is_bad)
+        movers = unchecked_movers(cloth)
+        if movers:
+            sentence += f"; {movers}"
+        self.tell(context, sentence, is_bad=bool(profile.lost_count or profile.squeezed_count or movers))
 
 
 class Computation:
