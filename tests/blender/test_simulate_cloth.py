@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import echinus as ech
+from echinus_blender import simulate_cloth
 from objects import activate, add, add_sheet, add_sphere, choose, cut_count, result, shown
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -39,8 +40,8 @@ def test_a_sheet_on_a_sphere_plays_what_the_library_computes(saved_file):
         assert np.allclose(shown(sheet, frame).vertices, mine.positions, atol=1e-6), f"frame {frame}"
         mine.step(10)
     assert abs(shown(sheet, 13).vertices - start.vertices).max() > 0.3
-    assert sheet.modifiers["Echinus"].filepath == "//echinus_cache/Sheet.pc2"
-    assert (saved_file / "echinus_cache" / "Sheet.pc2").exists()
+    assert sheet.modifiers["Echinus"].filepath == "//echinus_cache/scene/Sheet.pc2"
+    assert (saved_file / "echinus_cache" / "scene" / "Sheet.pc2").exists()
     assert result().startswith("Sheet: 13 frames in ")
 
 
@@ -251,16 +252,6 @@ def test_undo_takes_the_motion_away():
     assert len(bpy.data.objects["Sheet"].modifiers) == 0
 
 
-def test_a_file_that_was_never_saved_is_told_that_its_cache_is_temporary():
-    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    sheet, sphere = add_sheet(), add_sphere()
-    choose(sheet, sphere)
-    bpy.context.scene.frame_end = 3
-    simulate()
-    assert "the cache is temporary" in result()
-    assert sheet.modifiers["Echinus"].filepath.startswith(bpy.app.tempdir)
-
-
 def test_the_cloth_on_the_horse_is_never_cut():
     file = ROOT / "models" / "horse.3ds"
     if not file.exists():
@@ -276,3 +267,66 @@ def test_the_cloth_on_the_horse_is_never_cut():
     assert not ech.ExactMap(shown(horse)).contains(shown(sheet, 36).vertices).any()
     assert len(ech.self_intersecting_pairs(shown(sheet, 36))) == 0
     assert shown(sheet, 36).vertices[:, 2].min() < 0.2
+
+
+def change_while_computing(monkeypatch, change):
+    """The next simulation meets this change of the scene, as by a user, once it is computed."""
+    compute_at_once = simulate_cloth.compute_at_once
+
+    def compute_and_change(*arguments):
+        done = compute_at_once(*arguments)
+        change()
+        return done
+
+    monkeypatch.setattr(simulate_cloth, "compute_at_once", compute_and_change)
+
+
+def test_what_is_chosen_while_it_computes_is_for_the_next_run(monkeypatch):
+    sheet, sphere, other = add_sheet(), add_sphere(), add_sheet(count=5)
+    choose(sheet, sphere)
+    scene = bpy.context.scene
+
+    def change():
+        scene.echinus.cloth, scene.echinus.cache_path, scene.frame_start = other, "//other.pc2", 11
+
+    change_while_computing(monkeypatch, change)
+    simulate()
+    assert not other.modifiers and result().startswith("Sheet: 13 frames")
+    assert sheet.modifiers["Echinus"].filepath == "//echinus_cache/scene/Sheet.pc2"
+    assert sheet.modifiers["Echinus"].frame_start == 1
+
+
+def test_the_cloth_may_be_cleared_while_it_computes(monkeypatch):
+    sheet = add_sheet()
+    choose(sheet, add_sphere())
+    change_while_computing(monkeypatch, lambda: choose(None, None))
+    simulate()
+    assert sheet.modifiers["Echinus"].filepath == "//echinus_cache/scene/Sheet.pc2"
+
+
+def test_the_result_is_kept_in_the_scene_that_was_simulated(monkeypatch):
+    choose(add_sheet(), add_sphere())
+    scene = bpy.context.scene
+
+    def change():
+        bpy.context.window.scene = bpy.data.scenes.new("Other")
+
+    change_while_computing(monkeypatch, change)
+    simulate()
+    assert scene.echinus.result.startswith("Sheet: 13 frames") and not result()
+
+
+def test_a_cloth_that_is_deleted_while_it_computes_is_named(monkeypatch):
+    sheet = add_sheet()
+    choose(sheet, add_sphere())
+    change_while_computing(monkeypatch, lambda: bpy.data.objects.remove(sheet))
+    with pytest.raises(RuntimeError, match="Error: Sheet is no longer in the scene Scene: simulate again"):
+        bpy.ops.echinus.simulate_cloth()
+
+
+def test_a_cloth_that_is_edited_while_it_computes_is_named(monkeypatch):
+    sheet = add_sheet()
+    choose(sheet, add_sphere())
+    change_while_computing(monkeypatch, lambda: sheet.data.vertices.add(1))
+    with pytest.raises(RuntimeError, match="Error: Sheet has other vertices than when the simulation began"):
+        bpy.ops.echinus.simulate_cloth()

@@ -25,7 +25,7 @@ class BakeMap(Reporting, bpy.types.Operator, ExportHelper):
         if refused:
             return {"CANCELLED"}
         sentence, is_closed = found
-        self.tell(context, sentence, is_bad=not is_closed)
+        self.tell(context.scene, sentence, is_bad=not is_closed)
         return {"FINISHED"}
 
 

@@ -42,7 +42,7 @@ class CheckCollisions(Reporting, bpy.types.Operator):
         movers = unchecked_movers(cloth)
         if movers:
             sentence += f"; {movers}"
-        self.tell(context, sentence, is_bad=bool(len(inside) or len(cut_faces) or open_bodies or movers))
+        self.tell(context.scene, sentence, is_bad=bool(len(inside) or len(cut_faces) or open_bodies or movers))
         return {"FINISHED"}
 
 

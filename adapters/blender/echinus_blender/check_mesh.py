@@ -43,9 +43,9 @@ class CheckMesh(Reporting, bpy.types.Operator):
         bpy.ops.object.mode_set(mode="EDIT")
         select(context, places)
         if counts:
-            self.tell(context, f"{name}: {', '.join(counts)}; selected", is_bad=True)
+            self.tell(context.scene, f"{name}: {', '.join(counts)}; selected", is_bad=True)
         else:
-            self.tell(context, f"{name}: no faults")
+            self.tell(context.scene, f"{name}: no faults")
         return {"FINISHED"}
 
 

@@ -1,12 +1,14 @@
 """The motion of a cloth as a file and as a modifier that plays it."""
 
-import pathlib
+from dataclasses import dataclass
 
 import bpy
 import numpy as np
 
 from .modifiers import MOTION, motion_modifier_of, place_motion
+from .motion_files import place_of_motion, remember
 from .point_cache import write_point_cache
+from .refusal import Refusal
 
 
 def to_object_frame(recorded, matrices):
@@ -18,22 +20,45 @@ def to_object_frame(recorded, matrices):
     return np.array(frames, np.float32)
 
 
-def cache_path_of(settings):
-    """Where the motion goes, and whether it lasts: a file that was never saved has no folder beside it."""
-    if settings.cache_path:
-        return pathlib.Path(bpy.path.abspath(settings.cache_path)), True
-    file_name = bpy.path.clean_name(settings.cloth.name) + ".pc2"
-    if bpy.data.filepath:
-        return pathlib.Path(bpy.path.abspath("//")) / "echinus_cache" / file_name, True
-    return pathlib.Path(bpy.app.tempdir) / file_name, False
+@dataclass(frozen=True)
+class Destination:
+    """Where a motion goes, as it was chosen when its run began: the user may change the scene meanwhile.
+
+    Attributes
+    ----------
+    cache
+        The file in words of the user; empty: one beside the blend file.
+    """
+
+    scene_name: str
+    cloth_name: str
+    cache: str
+    first_frame: int
 
 
-def play(cloth, recorded, matrices, path, first_frame):
-    """Writes the cache, and has a modifier of the cloth play it from ``first_frame`` on."""
+def destination_of(scene):
+    """
+    Raises
+    ------
+    Refusal
+        The motion cannot be written, or the cloth cannot have a modifier.
+    """
+    cloth = scene.echinus.cloth
+    if cloth.library:
+        raise Refusal(f"{cloth.name} is linked from another file: simulate it there, or make a library override of it")
+    place_of_motion(cloth, scene.echinus.cache_path)
+    return Destination(scene.name, cloth.name, scene.echinus.cache_path, scene.frame_start)
+
+
+def play(cloth, destination, recorded, matrices):
+    """Writes the motion, and has a modifier of the cloth play it from the first frame on."""
+    path = place_of_motion(cloth, destination.cache)
     write_point_cache(path, to_object_frame(recorded, matrices))
+    if not destination.cache:
+        remember(path)
     modifier = motion_modifier_of(cloth) or cloth.modifiers.new(MOTION, "MESH_CACHE")
     place_motion(cloth, modifier)
     modifier.cache_format = "PC2"
     modifier.filepath = bpy.path.relpath(str(path)) if bpy.data.filepath else str(path)
-    modifier.frame_start = first_frame
+    modifier.frame_start = destination.first_frame
     modifier.show_viewport = modifier.show_render = True

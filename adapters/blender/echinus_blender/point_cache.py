@@ -18,8 +18,11 @@ def write_point_cache(path, samples):
     path = pathlib.Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(path.name + ".unfinished")
-    with open(unfinished, "wb") as file:
-        # signature, version, vertices, first frame, frames from one sample to the next, samples
-        file.write(struct.pack("<12siiffi", b"POINTCACHE2\0", 1, samples.shape[1], 0, 1, samples.shape[0]))
-        file.write(samples.tobytes())
-    os.replace(unfinished, path)
+    try:
+        with open(unfinished, "wb") as file:
+            # signature, version, vertices, first frame, frames from one sample to the next, samples
+            file.write(struct.pack("<12siiffi", b"POINTCACHE2\0", 1, samples.shape[1], 0, 1, samples.shape[0]))
+            file.write(samples.tobytes())
+        os.replace(unfinished, path)
+    finally:
+        unfinished.unlink(missing_ok=True)

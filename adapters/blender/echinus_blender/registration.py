@@ -2,6 +2,7 @@
 
 import bpy
 
+from . import motion_files
 from .bake_map import BakeMap
 from .check_collisions import CheckCollisions
 from .check_mesh import CheckMesh
@@ -27,9 +28,11 @@ def register():
     for each in CLASSES:
         bpy.utils.register_class(each)
     bpy.types.Scene.echinus = bpy.props.PointerProperty(type=Settings)
+    motion_files.register()
 
 
 def unregister():
+    motion_files.unregister()
     del bpy.types.Scene.echinus
     for each in reversed(CLASSES):
         bpy.utils.unregister_class(each)

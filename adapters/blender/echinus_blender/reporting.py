@@ -20,7 +20,7 @@ class Reporting:
             self.report({"ERROR"}, str(error))
             return None, True
 
-    def tell(self, context, sentence, is_bad=False):
+    def tell(self, scene, sentence, is_bad=False):
         """Shows a result, and keeps it for the panel and for scripts."""
-        context.scene.echinus.result = sentence
+        scene.echinus.result = sentence
         self.report({"WARNING" if is_bad else "INFO"}, sentence)

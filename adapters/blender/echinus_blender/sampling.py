@@ -17,6 +17,7 @@ from .meshes import (
 )
 from .modifiers import modifiers_after_motion, motion_modifier_of, without
 from .motions import BodySamples
+from .playing import Destination, destination_of
 from .refusal import Refusal
 from .run import Garment
 
@@ -31,6 +32,7 @@ class Sampled:
         (4, 4) of the cloth in each frame: its motion is stored in its own frame.
     """
 
+    destination: Destination
     garment: Garment
     bodies: list
     matrices: list = field(default_factory=list)
@@ -52,11 +54,13 @@ def sample(context):
     if last <= first:
         raise Refusal(f"The scene ends with frame {last}, where it begins: there is nothing to simulate")
     require_mesh(scene.echinus.cloth, "cloth")
+    destination = destination_of(scene)
     names = [body.name for body in bodies_of(scene.echinus)]
     present = scene.frame_current, scene.frame_subframe
     try:
         scene.frame_set(first)
-        sampled = Sampled(_garment(context), [_first_sample(context, scene.objects[name]) for name in names])
+        bodies = [_first_sample(context, scene.objects[name]) for name in names]
+        sampled = Sampled(destination, _garment(context), bodies)
         for frame in range(first, last + 1):
             scene.frame_set(frame)
             _add_frame(context, sampled, frame)

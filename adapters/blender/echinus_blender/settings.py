@@ -70,7 +70,8 @@ class Settings(bpy.types.PropertyGroup):
     )
     cache_path: bpy.props.StringProperty(
         name="Cache",
-        description="The PC2 file that takes the motion. Empty: in a folder beside the blend file",
+        description="The PC2 file that takes the motion, replaced by every run, which undo does not bring back."
+        " Empty: a file of its own for every run, in a folder beside the blend file",
         subtype="FILE_PATH",
     )
 

@@ -7,7 +7,7 @@ import bpy
 
 from .meshes import leave_edit_mode
 from .modifiers import unchecked_movers
-from .playing import cache_path_of, play
+from .playing import play
 from .refusal import Refusal
 from .reporting import Reporting
 from .run import Run, RunOptions
@@ -18,7 +18,7 @@ SAMPLING_SECONDS = 0.05
 
 
 class SimulateCloth(Reporting, bpy.types.Operator):
-    """Simulate the cloth from the scene's first frame to its last. Esc cancels"""
+    """Simulate the cloth from the scene's first frame to its last. Esc cancels; undo brings the motion before back"""
 
     bl_idname = "echinus.simulate_cloth"
     bl_label = "Simulate Cloth"
@@ -38,7 +38,7 @@ class SimulateCloth(Reporting, bpy.types.Operator):
         done, refused = self.refused_by(compute_at_once, context)
         if refused:
             return {"CANCELLED"}
-        return self.finish(context, *done, time.monotonic() - began)
+        return self.finish(*done, time.monotonic() - began)
 
     def invoke(self, context, event):
         if bpy.app.background:
@@ -71,7 +71,7 @@ class SimulateCloth(Reporting, bpy.types.Operator):
         if done is None:
             return {"RUNNING_MODAL"}
         self.end(context)
-        return self.finish(context, *done, time.monotonic() - self.began)
+        return self.finish(*done, time.monotonic() - self.began)
 
     def cancel(self, context):
         """Also called by Blender, when it closes or loads a file."""
@@ -112,28 +112,29 @@ class SimulateCloth(Reporting, bpy.types.Operator):
         context.window_manager.progress_update(round(100 * share))
         context.workspace.status_text_set(f"{sentence}; Esc cancels")
 
-    def finish(self, context, sampled, run, seconds):
-        _, refused = self.refused_by(self.keep, context, sampled, run, seconds)
+    def finish(self, sampled, run, seconds):
+        _, refused = self.refused_by(self.keep, sampled, run, seconds)
         return {"CANCELLED"} if refused else {"FINISHED"}
 
-    def keep(self, echinus, context, sampled, run, seconds):
-        scene = context.scene
-        name = sampled.garment.name
-        cloth = scene.objects.get(name)
-        if cloth is None or len(cloth.data.vertices) != len(sampled.garment.vertices):
-            raise Refusal(f"{name} is no longer what it was when the simulation began")
-        path, lasts = cache_path_of(scene.echinus)
-        play(cloth, run.recorded, sampled.matrices, path, scene.frame_start)
+    def keep(self, echinus, sampled, run, seconds):
+        name, scene_name = sampled.garment.name, sampled.destination.scene_name
+        scene = bpy.data.scenes.get(scene_name)
+        cloth = scene and scene.objects.get(name)
+        if cloth is None:
+            raise Refusal(f"{name} is no longer in the scene {scene_name}: simulate again")
+        if cloth.type != "MESH" or len(cloth.data.vertices) != len(sampled.garment.vertices):
+            raise Refusal(f"{name} has other vertices than when the simulation began: simulate again")
+        play(cloth, sampled.destination, run.recorded, sampled.matrices)
         profile = run.simulation.profile
         sentence = f"{name}: {len(run.recorded)} frames in {seconds:.1f} s"
         if profile.lost_count or profile.squeezed_count:
             sentence += f"; no room {profile.squeezed_count} times, {profile.lost_count} vertices lost"
-        if not lasts:
-            sentence += "; the cache is temporary: save the file and simulate again to keep it"
+        if not bpy.data.filepath and not sampled.destination.cache:
+            sentence += "; save the blend file to keep the motion"
         movers = unchecked_movers(cloth)
         if movers:
             sentence += f"; {movers}"
-        self.tell(context, sentence, is_bad=bool(profile.lost_count or profile.squeezed_count or movers))
+        self.tell(scene, sentence, is_bad=bool(profile.lost_count or profile.squeezed_count or movers))
 
 
 class Computation:

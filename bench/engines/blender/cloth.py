@@ -108,7 +108,7 @@ def simulate_with_echinus(cloth, model, out):
     """The operator of the add-on, sampling and writing included; its time is spread evenly over the frames."""
     scene = bpy.context.scene
     scene.echinus.cloth, scene.echinus.body = cloth, model
-    scene.echinus.cache_path = str(out / "cloth.pc2")
+    scene.echinus.cache_path = str(out.resolve() / "cloth.pc2")
     began = time.process_time()
     bpy.ops.echinus.simulate_cloth()
     seconds = time.process_time() - began

@@ -1,0 +1,95 @@
+"""The files of motions. Each run writes one of its own, so that undo, and blend files that were saved before, keep theirs.
+
+What no saved blend file plays is removed when another one is opened, which ends undo, or Blender closes; what the scene
+plays then stays, for File > Recover > Last Session.
+"""
+
+import itertools
+import pathlib
+
+import bpy
+
+from .places import require_writable, writable_place
+from .refusal import Refusal
+
+FOLDER = "echinus_cache"
+
+#: Written by this session, and played by no blend file that it saved.
+_unsaved = set()
+
+
+def place_of_motion(cloth, chosen):
+    """Where its next motion goes: the file that the user has chosen, or one that is not there yet.
+
+    Raises
+    ------
+    Refusal
+        It cannot be written, or another cloth plays it.
+    """
+    if chosen:
+        path = writable_place(chosen, "cache")
+        _require_no_other_player(cloth, path)
+        return path
+    folder = _folder()
+    require_writable(folder)
+    name = bpy.path.clean_name(cloth.name)
+    numbered = (folder / f"{name}{number}.pc2" for number in itertools.chain([""], (f"_{i}" for i in itertools.count(2))))
+    return next(path for path in numbered if not path.exists())
+
+
+def _folder():
+    """One for each blend file; a file that was never saved has no folder beside it."""
+    if not bpy.data.filepath:
+        return pathlib.Path(bpy.utils.user_resource("DATAFILES", path=FOLDER))
+    blend = pathlib.Path(bpy.data.filepath)
+    return blend.parent / FOLDER / blend.stem
+
+
+def remember(path):
+    """Says that a run wrote a file of its own."""
+    _unsaved.add(path.resolve())
+
+
+def _played_by(thing):
+    caches = (each for each in thing.modifiers if each.type == "MESH_CACHE" and each.filepath)
+    return {pathlib.Path(bpy.path.abspath(each.filepath, library=thing.library)).resolve() for each in caches}
+
+
+def _played():
+    return set().union(*(_played_by(thing) for thing in bpy.data.objects))
+
+
+def _require_no_other_player(cloth, path):
+    for thing in bpy.data.objects:
+        if thing != cloth and path.resolve() in _played_by(thing):
+            raise Refusal(f"{path.name} has the motion of {thing.name}: name another cache for {cloth.name}")
+
+
+@bpy.app.handlers.persistent
+def _keep_what_is_played(_):
+    _unsaved.difference_update(_played())
+
+
+@bpy.app.handlers.persistent
+def _forget_undo(_):
+    _remove_what_is_not_played()
+
+
+def _remove_what_is_not_played():
+    removed = _unsaved - _played()
+    _unsaved.difference_update(removed)
+    for path in removed:
+        path.unlink(missing_ok=True)
+
+
+def register():
+    bpy.app.handlers.save_post.append(_keep_what_is_played)
+    bpy.app.handlers.load_post.append(_forget_undo)
+
+
+def unregister():
+    """Blender calls it when it closes, too."""
+    bpy.app.handlers.save_post.remove(_keep_what_is_played)
+    bpy.app.handlers.load_post.remove(_forget_undo)
+    _remove_what_is_not_played()
+    _unsaved.clear()
