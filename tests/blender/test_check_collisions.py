@@ -120,3 +120,18 @@ def test_undo_takes_the_groups_away():
     assert len(bpy.data.objects["Sheet"].vertex_groups) == 2
     bpy.ops.ed.undo()
     assert len(bpy.data.objects["Sheet"].vertex_groups) == 0
+
+
+def test_the_mode_is_what_it_was():
+    sheet, sphere = add_sheet(height=0.5), add_sphere()
+    choose(sheet, sphere)
+    activate(sheet)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.echinus.check_collisions()
+    assert sheet.mode == "EDIT"
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert len(members(sheet, "Echinus Inside")) > 10
+    bpy.ops.object.armature_add()
+    bpy.ops.object.mode_set(mode="POSE")
+    bpy.ops.echinus.check_collisions()
+    assert bpy.context.object.mode == "POSE"

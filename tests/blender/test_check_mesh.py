@@ -101,3 +101,41 @@ def test_undo_brings_mode_and_selection_back():
     bpy.ops.ed.undo()
     assert bpy.context.object.mode == "OBJECT"
     assert [v.index for v in bpy.context.object.data.vertices if v.select] == [100]
+
+
+def test_hidden_faults_are_shown_and_selected():
+    sheet = add_sheet(count=4)
+    for elements in (sheet.data.vertices, sheet.data.edges, sheet.data.polygons):
+        elements.foreach_set("hide", [True] * len(elements))
+    check(sheet)
+    assert result() == "Sheet: 12 open edges; selected"
+    assert len(selected("edges")) == 12
+
+
+def test_no_kind_of_fault_is_refused():
+    activate(add_sheet())
+    with pytest.raises(RuntimeError, match="^Error: Choose at least one kind of fault to look for$"):
+        bpy.ops.echinus.check_mesh(kinds=set())
+
+
+def test_a_linked_mesh_is_refused(tmp_path):
+    add_sheet()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "library.blend"))
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    with bpy.data.libraries.load(str(tmp_path / "library.blend"), link=True) as (_, taken):
+        taken.objects = ["Sheet"]
+    (linked,) = taken.objects
+    override = linked.override_create()
+    for thing in (linked, override):
+        bpy.context.scene.collection.objects.link(thing)
+        bpy.context.view_layer.objects.active = thing
+        with pytest.raises(RuntimeError, match="^Error: Sheet is linked from another file, .*: check it there$"):
+            bpy.ops.echinus.check_mesh()
+
+
+def test_a_refusal_leaves_the_mode():
+    activate(add_sheet())
+    bpy.ops.object.mode_set(mode="EDIT")
+    with pytest.raises(RuntimeError):
+        bpy.ops.echinus.check_mesh(kinds=set())
+    assert bpy.context.object.mode == "EDIT"

@@ -1,11 +1,12 @@
 """The operator that writes the exact map of a mesh as a file."""
 
-import pathlib
-
 import bpy
 from bpy_extras.io_utils import ExportHelper
 
-from .meshes import leave_edit_mode, require_mesh, world_mesh
+from .meshes import require_mesh, world_mesh
+from .modes import object_mode
+from .places import writable_place
+from .refusal import Refusal
 from .reporting import Reporting
 
 
@@ -20,8 +21,8 @@ class BakeMap(Reporting, bpy.types.Operator, ExportHelper):
     filter_glob: bpy.props.StringProperty(default="*.ech", options={"HIDDEN"})
 
     def execute(self, context):
-        leave_edit_mode(context)
-        found, refused = self.refused_by(write_map, context, self.filepath)
+        with object_mode(context):
+            found, refused = self.refused_by(write_map, context, self.filepath)
         if refused:
             return {"CANCELLED"}
         sentence, is_closed = found
@@ -29,12 +30,15 @@ class BakeMap(Reporting, bpy.types.Operator, ExportHelper):
         return {"FINISHED"}
 
 
-def write_map(echinus, context, path):
+def write_map(echinus, context, file):
     """A sentence about the file, and whether the mesh is closed."""
     require_mesh(context.object, "active object")
+    if not file:
+        raise Refusal("Name the file that takes the map")
+    path = writable_place(file, "file")
     mesh = echinus.Mesh(*world_mesh(context, context.object))
     exact = echinus.ExactMap(mesh)
-    exact.save(bpy.path.abspath(path))
-    sentence = f"{pathlib.Path(path).name}: {len(mesh.faces)} faces, {exact.byte_count / 1e6:.2f} MB"
+    exact.save(path)
+    sentence = f"{path.name}: {len(mesh.faces)} faces, {exact.byte_count / 1e6:.2f} MB"
     is_closed = echinus.inspect(mesh).closed
     return sentence + ("" if is_closed else "; not closed, where inside is a guess"), is_closed

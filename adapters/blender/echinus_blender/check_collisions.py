@@ -1,19 +1,21 @@
 """The operator that finds where a cloth is inside bodies or cut by them, at the present frame."""
 
+from dataclasses import dataclass
+
 import bpy
 import numpy as np
 
+from .bodies import bodies_of, said_of
 from .meshes import (
-    bodies_of,
     evaluated_mesh,
     in_world,
-    leave_edit_mode,
     matrix_of,
     require_mesh,
     triangles_of,
     vertices_of,
     world_mesh,
 )
+from .modes import object_mode
 from .modifiers import modifiers_after_motion, unchecked_movers, without
 from .reporting import Reporting
 
@@ -28,43 +30,50 @@ class CheckCollisions(Reporting, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     def execute(self, context):
-        leave_edit_mode(context)
-        found, refused = self.refused_by(find_collisions, context, context.scene.echinus)
-        if refused:
-            return {"CANCELLED"}
-        cloth = context.scene.echinus.cloth
-        inside, cut_faces, cut_vertices, open_bodies = found
-        fill_group(cloth, INSIDE, inside)
-        fill_group(cloth, CUT, cut_vertices)
-        sentence = f"{cloth.name}: {len(inside)} vertices inside, {len(cut_faces)} faces cut"
-        if open_bodies:
-            sentence += f"; {', '.join(open_bodies)} not closed, where inside is a guess"
-        movers = unchecked_movers(cloth)
-        if movers:
-            sentence += f"; {movers}"
-        self.tell(context.scene, sentence, is_bad=bool(len(inside) or len(cut_faces) or open_bodies or movers))
+        with object_mode(context):
+            found, refused = self.refused_by(find_collisions, context)
+            if refused:
+                return {"CANCELLED"}
+            cloth = context.scene.echinus.cloth
+            fill_group(cloth, INSIDE, found.inside)
+            fill_group(cloth, CUT, found.cut_vertices)
+        sentence = f"{cloth.name}: {len(found.inside)} vertices inside, {len(found.cut_faces)} faces cut"
+        is_bad = bool(len(found.inside) or len(found.cut_faces) or found.reservations)
+        self.tell(context.scene, sentence + found.reservations, is_bad)
         return {"FINISHED"}
 
 
-def find_collisions(echinus, context, settings):
-    """Vertices inside, polygons cut, the vertices of these, and the names of bodies that are not closed."""
-    require_mesh(settings.cloth, "cloth")
-    bodies = bodies_of(settings)
-    with without(modifiers_after_motion(settings.cloth)):
-        with evaluated_mesh(context, settings.cloth) as (evaluated, mesh):
+@dataclass(frozen=True)
+class Collisions:
+    """Vertices inside, polygons cut and the vertices of these, and what the count leaves open, in words."""
+
+    inside: np.ndarray
+    cut_faces: np.ndarray
+    cut_vertices: np.ndarray
+    reservations: str
+
+
+def find_collisions(echinus, context):
+    cloth = context.scene.echinus.cloth
+    require_mesh(cloth, "cloth")
+    bodies, skipped = bodies_of(context)
+    with without(modifiers_after_motion(cloth)):
+        with evaluated_mesh(context, cloth) as (evaluated, mesh):
             vertices = in_world(vertices_of(mesh), matrix_of(evaluated))
             triangles, polygons = triangles_of(mesh)
-    cloth = echinus.Mesh(vertices, triangles)
+    surface = echinus.Mesh(vertices, triangles)
     inside = np.zeros(len(vertices), bool)
     cut, open_bodies = [], []
     for body in bodies:
         mesh = echinus.Mesh(*world_mesh(context, body))
-        inside |= echinus.ExactMap(mesh).contains(cloth.vertices)
-        cut.append(echinus.intersecting_pairs(cloth, mesh)[:, 0])
+        inside |= echinus.ExactMap(mesh).contains(surface.vertices)
+        cut.append(echinus.intersecting_pairs(surface, mesh)[:, 0])
         if not echinus.inspect(mesh).closed:
             open_bodies.append(body.name)
     cut = np.unique(np.concatenate(cut))
-    return np.flatnonzero(inside), np.unique(polygons[cut]), np.unique(triangles[cut]), open_bodies
+    reservations = f"; {', '.join(open_bodies)} not closed, where inside is a guess" if open_bodies else ""
+    reservations += said_of(skipped) + unchecked_movers(cloth)
+    return Collisions(np.flatnonzero(inside), np.unique(polygons[cut]), np.unique(triangles[cut]), reservations)
 
 
 def fill_group(thing, name, vertices):

@@ -5,7 +5,9 @@ import bpy
 import numpy as np
 
 from .faults import find_faults
-from .meshes import leave_edit_mode, require_mesh, triangles_of, vertices_of
+from .meshes import require_mesh, triangles_of, vertices_of
+from .modes import object_mode
+from .refusal import Refusal
 from .reporting import Reporting
 
 KINDS = [
@@ -34,8 +36,8 @@ class CheckMesh(Reporting, bpy.types.Operator):
     )
 
     def execute(self, context):
-        leave_edit_mode(context)
-        found, refused = self.refused_by(find_selection, context.object, self.kinds)
+        with object_mode(context):
+            found, refused = self.refused_by(find_selection, context.object, self.kinds)
         if refused:
             return {"CANCELLED"}
         counts, places = found
@@ -52,6 +54,10 @@ class CheckMesh(Reporting, bpy.types.Operator):
 def find_selection(echinus, thing, kinds):
     """What was counted, in words, and where it is: vertices, edges (k, 2) and polygons."""
     require_mesh(thing, "active object")
+    if thing.library or thing.data.library or thing.data.override_library:
+        raise Refusal(f"{thing.name} is linked from another file, and nothing can be selected: check it there")
+    if not kinds:
+        raise Refusal("Choose at least one kind of fault to look for")
     vertices = vertices_of(thing.data)
     triangles, polygons = triangles_of(thing.data)
     mesh = echinus.Mesh(vertices, triangles)
@@ -99,12 +105,10 @@ def select(context, places):
         sequence.ensure_lookup_table()
         for element in sequence:
             element.select = False
-    for vertex in points:
-        shape.verts[vertex].select_set(True)
-    for a, b in edges:
-        edge = shape.edges.get((shape.verts[a], shape.verts[b]))
-        if edge:  # none is where triangles of a polygon meet
-            edge.select_set(True)
-    for face in faces:
-        shape.faces[face].select_set(True)
+    found = [shape.verts[vertex] for vertex in points]
+    found += [shape.edges.get((shape.verts[a], shape.verts[b])) for a, b in edges]
+    found += [shape.faces[face] for face in faces]
+    for element in filter(None, found):  # no edge is where triangles of a polygon meet
+        element.hide_set(False)  # what is hidden cannot be selected
+        element.select_set(True)
     bmesh.update_edit_mesh(data)

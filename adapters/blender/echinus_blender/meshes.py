@@ -2,7 +2,6 @@
 
 import contextlib
 
-import bpy
 import numpy as np
 
 from .refusal import Refusal
@@ -22,10 +21,15 @@ def require_mesh(candidate, what):
         raise Refusal(f"{candidate.name} has no faces")
 
 
-def leave_edit_mode(context):
-    """So that the data of the object in edit mode are what the user sees."""
-    if context.object and context.object.mode != "OBJECT":
-        bpy.ops.object.mode_set(mode="OBJECT")
+def hindrance(context, thing):
+    """Why Blender need not have computed the object, and the remedy; None if it has."""
+    if context.scene not in thing.users_scene:
+        return "not in the scene", "choose another object"
+    if thing.name not in context.view_layer.objects:
+        return "excluded from the view layer", "include its collection"
+    if not thing.visible_get():
+        return f"hidden in frame {context.scene.frame_current}", "show it in the viewport"
+    return None
 
 
 def vertices_of(mesh):
@@ -66,10 +70,11 @@ def evaluated_mesh(context, thing):
     Raises
     ------
     Refusal
-        It is hidden: Blender need not have computed it.
+        It is hidden, or not in the scene.
     """
-    if not thing.visible_get():
-        raise Refusal(f"{thing.name} is hidden: show it in the viewport")
+    found = hindrance(context, thing)
+    if found:
+        raise Refusal(f"{thing.name} is {found[0]}: {found[1]}")
     evaluated = thing.evaluated_get(context.evaluated_depsgraph_get())
     mesh = evaluated.to_mesh()
     try:
@@ -102,22 +107,3 @@ def in_world(vertices, matrix):
 def outwards(triangles, matrix):
     """A matrix that mirrors turns faces round."""
     return triangles[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0 else triangles
-
-
-def bodies_of(settings):
-    """The objects that a cloth collides with, each once.
-
-    Raises
-    ------
-    Refusal
-        There is none, or one without faces.
-    """
-    chosen = [settings.body] if settings.body else []
-    if settings.more_bodies:
-        chosen += [each for each in settings.more_bodies.all_objects if each.type == "MESH"]
-    bodies = [each for each in dict.fromkeys(chosen) if each != settings.cloth]
-    if not bodies:
-        raise Refusal("Choose a mesh other than the cloth as the body")
-    for body in bodies:
-        require_mesh(body, "body")
-    return bodies

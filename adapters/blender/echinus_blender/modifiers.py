@@ -81,13 +81,13 @@ def place_motion(cloth, modifier):
 
 
 def unchecked_movers(cloth):
-    """A sentence about modifiers that move the cloth after its motion; empty if there are none."""
+    """The end of a sentence, about modifiers that move the cloth after its motion; empty if there are none."""
     adding, *later = list(modifiers_after_motion(cloth)) or [None]
     moving = [each for each in later if each.type in MOVING and not _may_add(each)]
     movers = [each.name for each in moving if each.show_viewport or each.show_render]
     if not movers:
         return ""
-    return f"{', '.join(movers)} after {adding.name} can move the cloth into bodies: put it before {adding.name}"
+    return f"; {', '.join(movers)} after {adding.name} can move the cloth into bodies: put it before {adding.name}"
 
 
 @contextlib.contextmanager

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .bodies import bodies_of
 from .meshes import (
-    bodies_of,
     evaluated_mesh,
     in_world,
     matrix_of,
@@ -28,6 +28,8 @@ class Sampled:
 
     Attributes
     ----------
+    skipped
+        What was to be a body and is none, in words.
     matrices
         (4, 4) of the cloth in each frame: its motion is stored in its own frame.
     """
@@ -35,6 +37,7 @@ class Sampled:
     destination: Destination
     garment: Garment
     bodies: list
+    skipped: list
     matrices: list = field(default_factory=list)
 
 
@@ -55,12 +58,12 @@ def sample(context):
         raise Refusal(f"The scene ends with frame {last}, where it begins: there is nothing to simulate")
     require_mesh(scene.echinus.cloth, "cloth")
     destination = destination_of(scene)
-    names = [body.name for body in bodies_of(scene.echinus)]
     present = scene.frame_current, scene.frame_subframe
     try:
         scene.frame_set(first)
-        bodies = [_first_sample(context, scene.objects[name]) for name in names]
-        sampled = Sampled(destination, _garment(context), bodies)
+        bodies, skipped = bodies_of(context)
+        samples = [_first_sample(context, body) for body in bodies]
+        sampled = Sampled(destination, _garment(context), samples, skipped)
         for frame in range(first, last + 1):
             scene.frame_set(frame)
             _add_frame(context, sampled, frame)
@@ -114,7 +117,10 @@ def _add_frame(context, sampled, frame):
     scene = context.scene
     depsgraph = context.evaluated_depsgraph_get()
     cloth = _existing(scene, sampled.garment.name)
-    sampled.matrices.append(matrix_of(cloth.evaluated_get(depsgraph)))
+    matrix = matrix_of(cloth.evaluated_get(depsgraph))
+    if not np.isfinite(matrix).all() or np.linalg.matrix_rank(matrix[:3, :3]) < 3:
+        raise Refusal(f"{cloth.name} is scaled to nothing in frame {frame}: give it a scale other than 0 there")
+    sampled.matrices.append(matrix)
     for body in sampled.bodies:
         with evaluated_mesh(context, _existing(scene, body.name)) as (evaluated, mesh):
             shape = vertices_of(mesh)
@@ -123,9 +129,10 @@ def _add_frame(context, sampled, frame):
                     f"{body.name} has {len(shape)} vertices in frame {frame} and {len(body.shapes[0])} before:"
                     " its modifiers must keep their number"
                 )
-            if not np.isfinite(shape).all():
+            matrix = matrix_of(evaluated)
+            if not (np.isfinite(shape).all() and np.isfinite(matrix).all()):
                 raise Refusal(f"{body.name} has a vertex that is nowhere (not a number) in frame {frame}")
-            body.add(shape, matrix_of(evaluated))
+            body.add(shape, matrix)
 
 
 def _existing(scene, name):

@@ -1,11 +1,13 @@
 """The operator that simulates a cloth: sample the scene, compute in a thread, play the result."""
 
+import contextlib
 import threading
 import time
 
 import bpy
 
-from .meshes import leave_edit_mode
+from .bodies import said_of
+from .modes import object_mode
 from .modifiers import unchecked_movers
 from .playing import play
 from .refusal import Refusal
@@ -33,9 +35,9 @@ class SimulateCloth(Reporting, bpy.types.Operator):
 
     def execute(self, context):
         """All at once: for scripts."""
-        leave_edit_mode(context)
         began = time.monotonic()
-        done, refused = self.refused_by(compute_at_once, context)
+        with object_mode(context):
+            done, refused = self.refused_by(compute_at_once, context)
         if refused:
             return {"CANCELLED"}
         return self.finish(*done, time.monotonic() - began)
@@ -43,7 +45,8 @@ class SimulateCloth(Reporting, bpy.types.Operator):
     def invoke(self, context, event):
         if bpy.app.background:
             return self.execute(context)
-        leave_edit_mode(context)
+        self.mode = contextlib.ExitStack()
+        self.mode.enter_context(object_mode(context))
         self.began = time.monotonic()
         self.sampling, self.computing = sample(context), None
         self.timer = context.window_manager.event_timer_add(0.05, window=context.window)
@@ -76,6 +79,7 @@ class SimulateCloth(Reporting, bpy.types.Operator):
     def cancel(self, context):
         """Also called by Blender, when it closes or loads a file."""
         self.sampling.close()
+        self.mode.close()
         if self.computing:
             self.computing.cancel()
         self.end(context)
@@ -94,6 +98,7 @@ class SimulateCloth(Reporting, bpy.types.Operator):
             share = 0
             for share, self.sampled in self.sampling:
                 if self.sampled:
+                    self.mode.close()
                     make = run_maker(echinus, context, self.sampled)
                     self.computing = Computation(make)
                     break
@@ -131,10 +136,9 @@ class SimulateCloth(Reporting, bpy.types.Operator):
             sentence += f"; no room {profile.squeezed_count} times, {profile.lost_count} vertices lost"
         if not bpy.data.filepath and not sampled.destination.cache:
             sentence += "; save the blend file to keep the motion"
-        movers = unchecked_movers(cloth)
-        if movers:
-            sentence += f"; {movers}"
-        self.tell(scene, sentence, is_bad=bool(profile.lost_count or profile.squeezed_count or movers))
+        reservations = said_of(sampled.skipped) + unchecked_movers(cloth)
+        is_bad = bool(profile.lost_count or profile.squeezed_count or reservations)
+        self.tell(scene, sentence + reservations, is_bad)
 
 
 class Computation:

@@ -1,0 +1,43 @@
+"""The objects that a cloth collides with."""
+
+from .meshes import hindrance, require_mesh
+from .refusal import Refusal
+
+#: Objects with a surface that are no meshes.
+SURFACES = {"CURVE", "FONT", "META", "SURFACE"}
+
+
+def bodies_of(context):
+    """The bodies, each once, and what *More Bodies* has that is none, in words.
+
+    Raises
+    ------
+    Refusal
+        There is none, or one without faces.
+    """
+    settings = context.scene.echinus
+    more = [each for each in settings.more_bodies.all_objects if each != settings.cloth] if settings.more_bodies else []
+    left_out = {each: why for each in more if (why := _why_left_out(context, each))}
+    meshes = [each for each in more if each.type == "MESH" and each not in left_out]
+    chosen = ([settings.body] if settings.body and settings.body != settings.cloth else []) + meshes
+    skipped = [f"{each.name} ({why})" for each, why in left_out.items() if each != settings.body]
+    if not chosen:
+        raise Refusal("Choose a mesh other than the cloth as the body" + said_of(skipped))
+    for body in chosen:
+        require_mesh(body, "body")
+    return list(dict.fromkeys(chosen)), skipped
+
+
+def said_of(skipped):
+    """The end of a sentence; empty if nothing was skipped."""
+    return f"; without {', '.join(skipped)}" if skipped else ""
+
+
+def _why_left_out(context, thing):
+    """Empty for bodies, and for what has no surface, such as a lamp."""
+    if thing.type in SURFACES:
+        return "not a mesh"
+    if thing.type == "EMPTY" and thing.instance_type == "COLLECTION":
+        return "an instance"
+    found = hindrance(context, thing)
+    return found[0] if found and thing.type == "MESH" else ""
