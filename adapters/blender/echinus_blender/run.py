@@ -6,6 +6,7 @@ import numpy as np
 
 from .motions import motion_of
 from .refusal import Refusal
+from .start_errors import in_words_of_the_panel
 
 
 @dataclass(frozen=True)
@@ -93,7 +94,7 @@ class Run:
                 untangle=options.untangle,
             )
         except echinus.Error as error:
-            raise Refusal(f"{garment.name}: {error}. {START_HINT}") from error
+            raise Refusal(in_words_of_the_panel(str(error), garment.name)) from error
         for index, motion in enumerate(motions):
             _set_motion(echinus, self.simulation, index, motion, frames_per_second)
         self.recorded = [self.simulation.positions.copy()]
@@ -112,9 +113,6 @@ class Run:
         self.simulation.step()
         if self.simulation.frame % self.steps_per_frame == 0:
             self.recorded.append(self.simulation.positions.copy())
-
-
-START_HINT = 'Check Collisions shows where a start intersects; "Part the Start" moves the cloth out'
 
 
 def _collider(echinus, body, motion):
