@@ -200,7 +200,8 @@ def test_a_body_with_an_edge_of_three_faces_is_met():
 def test_a_cloth_that_begins_inside_is_refused_and_parted_on_request():
     sheet, sphere = add_sheet(height=0.5), add_sphere()
     choose(sheet, sphere)
-    with pytest.raises(RuntimeError, match="Sheet: .*Part the Start"):
+    remedy = 'Check Collisions in the first frame shows where; tick "Part the Start" or move them apart'
+    with pytest.raises(RuntimeError, match=rf"^Error: Sheet begins intersecting Sphere in \d+ pairs of faces: {remedy}$"):
         bpy.ops.echinus.simulate_cloth()
     assert not sheet.modifiers
     bpy.context.scene.echinus.untangle = True
@@ -330,3 +331,89 @@ def test_a_cloth_that_is_edited_while_it_computes_is_named(monkeypatch):
     change_while_computing(monkeypatch, lambda: sheet.data.vertices.add(1))
     with pytest.raises(RuntimeError, match="Error: Sheet has other vertices than when the simulation began"):
         bpy.ops.echinus.simulate_cloth()
+
+
+@pytest.mark.parametrize(("old", "new"), [(100, 200), (100, 50), (90, 70)])
+def test_time_stretching_plays_each_frame_as_it_was_simulated(old, new):
+    sheet, sphere = add_sheet(height=1.2), add_sphere()
+    choose(sheet, sphere)
+    scene = bpy.context.scene
+    scene.frame_start, scene.frame_end = 5, 45
+    scene.render.frame_map_old, scene.render.frame_map_new = old, new
+    for frame, height in ((1, -0.5), (60, 1.5)):
+        sphere.location.z = height
+        sphere.keyframe_insert("location", frame=frame)
+    simulate()
+    assert_never_cut(sheet, sphere)
+    fall = [1.2 - shown(sheet, frame).vertices[0, 2] for frame in (5, 9)]
+    assert fall == pytest.approx([0, 9.81 * (4 / 24) ** 2 / 2], abs=0.02)
+
+
+def delete(thing):
+    """As the key X does: the panel still points to it."""
+    bpy.ops.object.select_all(action="DESELECT")
+    activate(thing)
+    bpy.ops.object.delete()
+
+
+def test_what_was_deleted_is_named():
+    sheet, sphere = add_sheet(), add_sphere()
+    choose(sheet, sphere)
+    delete(sphere)
+    for operator in (bpy.ops.echinus.simulate_cloth, bpy.ops.echinus.check_collisions):
+        with pytest.raises(RuntimeError, match="^Error: Sphere is not in the scene: choose another object$"):
+            operator()
+    choose(sheet, add_sphere())
+    delete(sheet)
+    for operator in (bpy.ops.echinus.simulate_cloth, bpy.ops.echinus.check_collisions):
+        with pytest.raises(RuntimeError, match="^Error: Sheet is not in the scene: choose another object$"):
+            operator()
+
+
+def test_a_cloth_that_is_scaled_to_nothing_is_refused_with_the_frame():
+    sheet = add_sheet(scale=(1, 1, 0))
+    choose(sheet, add_sphere())
+    with pytest.raises(RuntimeError, match="^Error: Sheet is scaled to nothing in frame 1: give it a scale other than 0"):
+        bpy.ops.echinus.simulate_cloth()
+    sheet.scale.z = 1
+    sheet.keyframe_insert("scale", frame=1)
+    sheet.scale = (0, 0, 0)
+    sheet.keyframe_insert("scale", frame=9)
+    with pytest.raises(RuntimeError, match="^Error: Sheet is scaled to nothing in frame 9"):
+        bpy.ops.echinus.simulate_cloth()
+
+
+def test_a_linked_cloth_is_refused_and_its_override_is_simulated(saved_file):
+    add_sheet().modifiers.new("Finer", "SUBSURF")
+    bpy.ops.wm.save_as_mainfile(filepath=str(saved_file / "library.blend"))
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    scene = bpy.context.scene
+    scene.frame_end = 5
+    with bpy.data.libraries.load(str(saved_file / "library.blend"), link=True) as (_, taken):
+        taken.objects = ["Sheet"]
+    (linked,) = taken.objects
+    scene.collection.objects.link(linked)
+    choose(linked, add_sphere())
+    with pytest.raises(RuntimeError, match="Sheet is linked from another file: .* library override"):
+        bpy.ops.echinus.simulate_cloth()
+    sheet = linked.override_create()
+    scene.collection.objects.link(sheet)
+    scene.collection.objects.unlink(linked)
+    scene.echinus.cloth = sheet
+    simulate()
+    assert [m.name for m in sheet.modifiers] == ["Echinus", "Finer"]
+    bpy.ops.wm.read_homefile(use_empty=True)
+
+
+def test_the_mode_is_what_it_was():
+    sheet = add_sheet()
+    choose(sheet, add_sphere())
+    activate(sheet)
+    for mode in ("EDIT", "WEIGHT_PAINT", "SCULPT"):
+        bpy.ops.object.mode_set(mode=mode)
+        simulate()
+        assert sheet.mode == mode
+    bpy.context.scene.echinus.pin_group = "Needles"
+    with pytest.raises(RuntimeError):
+        bpy.ops.echinus.simulate_cloth()
+    assert sheet.mode == "SCULPT"

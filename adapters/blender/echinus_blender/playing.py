@@ -28,12 +28,15 @@ class Destination:
     ----------
     cache
         The file in words of the user; empty: one beside the blend file.
+    frame_length
+        Of a frame of the scene, in frames of Blender's animation: *Time Stretching*.
     """
 
     scene_name: str
     cloth_name: str
     cache: str
     first_frame: int
+    frame_length: float
 
 
 def destination_of(scene):
@@ -47,7 +50,8 @@ def destination_of(scene):
     if cloth.library:
         raise Refusal(f"{cloth.name} is linked from another file: simulate it there, or make a library override of it")
     place_of_motion(cloth, scene.echinus.cache_path)
-    return Destination(scene.name, cloth.name, scene.echinus.cache_path, scene.frame_start)
+    frame_length = scene.render.frame_map_old / scene.render.frame_map_new
+    return Destination(scene.name, cloth.name, scene.echinus.cache_path, scene.frame_start, frame_length)
 
 
 def play(cloth, destination, recorded, matrices):
@@ -61,4 +65,5 @@ def play(cloth, destination, recorded, matrices):
     modifier.cache_format = "PC2"
     modifier.filepath = bpy.path.relpath(str(path)) if bpy.data.filepath else str(path)
     modifier.frame_start = destination.first_frame
+    modifier.frame_scale = 1 / destination.frame_length
     modifier.show_viewport = modifier.show_render = True
