@@ -1,5 +1,5 @@
 """Tries the add-on in a window, by events as of a user: its panels are drawn, a simulation runs and plays, Ctrl-Z takes
-it back, and Esc cancels others. Run by scripts/blender.
+it back, another one outlives an undo, and Esc cancels others. Run by scripts/blender.
 """
 
 import os
@@ -42,8 +42,27 @@ def trial():
     yield
     assert not cloth().modifiers, "Ctrl-Z left the motion"
 
+    bpy.context.scene.frame_end = 200
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.ed.undo_push(message="edited")
+    user.run(bpy.ops.echinus.simulate_cloth)
+    while not is_computing():
+        yield
+    assert cloth().mode == "EDIT", "reading the frames left Edit mode"
+    user.press("Z", ctrl=True)
+    yield
+    assert is_running(), "the simulation ended before the undo"
+    bpy.context.scene.echinus.cloth = None
+    while is_running():
+        yield
+    assert "Echinus" in cloth().modifiers, "an undo took what was being computed away"
+    assert result().startswith("Sheet: 200 frames in "), result()
+    cloth().modifiers.clear()
+    bpy.context.scene.echinus.cloth = cloth()
+
     for frame_end, is_ready in ((100_000, is_running), (2000, is_computing)):
         bpy.context.scene.frame_end = frame_end
+        mode = cloth().mode
         user.run(bpy.ops.echinus.simulate_cloth)
         yield
         while not is_ready():
@@ -53,6 +72,7 @@ def trial():
         yield
         assert not is_running(), "Esc did not cancel"
         assert not cloth().modifiers and bpy.context.scene.frame_current == 1
+        assert cloth().mode == mode, "Esc left another mode"
 
 
 class User:
@@ -100,7 +120,7 @@ def go_on():
         next(STEPS)
         return 0.2
     except StopIteration:
-        print("window: panels were drawn; a simulation ran and was undone; two were cancelled by Esc")
+        print("window: panels were drawn; a simulation ran and was undone, another ran through an undo; two were cancelled by Esc")
         finish(0)
     except BaseException:
         traceback.print_exc()
