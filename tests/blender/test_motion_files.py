@@ -183,12 +183,13 @@ def test_a_path_that_begins_nowhere_is_refused(text, tmp_path, monkeypatch):
 
 def test_only_files_are_replaced(tmp_path):
     set_up()
-    (tmp_path / "link").symlink_to("/dev/null")
-    for place in (tmp_path, tmp_path / "link", "/dev/null"):
+    os.mkfifo(tmp_path / "pipe")
+    (tmp_path / "link").symlink_to("pipe")
+    for place in (tmp_path, tmp_path / "link", tmp_path / "pipe"):
         bpy.context.scene.echinus.cache_path = str(place)
         with pytest.raises(RuntimeError, match=f"{place} is not a file that may be replaced"):
             bpy.ops.echinus.simulate_cloth()
-    assert os.listdir(tmp_path) == ["link"]
+    assert set(os.listdir(tmp_path)) == {"link", "pipe"}
 
 
 def test_a_file_in_the_way_of_the_folder_is_named_before_the_run(folder):
