@@ -1,9 +1,10 @@
-"""The files of motions. Each run writes one of its own, so that undo, and blend files that were saved before, keep theirs.
+"""The files of motions. Each run writes one of its own, so that undo, and blend files saved before, keep theirs.
 
 What no saved blend file plays is removed when another one is opened, which ends undo, or Blender closes; what the scene
 plays then stays, for File > Recover > Last Session.
 """
 
+import contextlib
 import itertools
 import pathlib
 
@@ -33,8 +34,8 @@ def place_of_motion(cloth, chosen):
     folder = _folder()
     require_writable(folder)
     name = bpy.path.clean_name(cloth.name)
-    numbered = (folder / f"{name}{number}.pc2" for number in itertools.chain([""], (f"_{i}" for i in itertools.count(2))))
-    return next(path for path in numbered if not path.exists())
+    names = itertools.chain([name], (f"{name}_{number}" for number in itertools.count(2)))
+    return next(path for each in names if not (path := folder / f"{each}.pc2").exists())
 
 
 def _folder():
@@ -79,7 +80,8 @@ def _remove_what_is_not_played():
     removed = _unsaved - _played()
     _unsaved.difference_update(removed)
     for path in removed:
-        path.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):  # a file that cannot be removed stays
+            path.unlink()
 
 
 def register():
