@@ -16,6 +16,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <vector>
 
 using namespace echinus;
@@ -78,6 +79,8 @@ class World {
     void step(int frames, btScalar rate = 60) {
         for (int frame = 0; frame < frames; ++frame) world_->stepSimulation(1 / rate, 0);
     }
+    void step_with_substeps(int count) { world_->stepSimulation(btScalar(count) / 60, count); }
+    void set_near_callback(btNearCallback callback) { dispatcher_.setNearCallback(callback); }
 
   private:
     btSoftBodyRigidBodyCollisionConfiguration configuration_;
@@ -117,6 +120,23 @@ btScalar highest(const btSoftBody& cloth) {
     btScalar height = -SIMD_INFINITY;
     for (int i = 0; i < cloth.m_nodes.size(); ++i) height = btMax(height, cloth.m_nodes[i].m_x.z());
     return height;
+}
+
+std::vector<btVector3> places_of(const btSoftBody& cloth) {
+    std::vector<btVector3> places;
+    for (int i = 0; i < cloth.m_nodes.size(); ++i) places.push_back(cloth.m_nodes[i].m_x);
+    return places;
+}
+
+/// Nodes that started near the axis, within a distance along x and y, and are below a height now.
+int count_below(const btSoftBody& cloth, std::span<const btVector3> start, btScalar distance,
+                btScalar height) {
+    int count = 0;
+    for (int i = 0; i < cloth.m_nodes.size(); ++i) {
+        const btVector3 place = start[static_cast<std::size_t>(i)].absolute();
+        if (place.x() < distance && place.y() < distance && cloth.m_nodes[i].m_x.z() < height) ++count;
+    }
+    return count;
 }
 
 /// Of a coordinate of all nodes.
@@ -177,6 +197,108 @@ TEST(BulletAdapter, KinematicColliderThatIsLedThroughAClothTakesItAlong) {
         if (frame % 10 == 0) ASSERT_EQ(inside_count(cloth, mesh, pose), 0) << "frame " << frame;
     }
     EXPECT_GT(highest(cloth), 1);
+}
+
+TEST(BulletAdapter, KinematicColliderThatLeapsOverAClothTakesItAlong) {
+    bullet::MapShape shape(ExactMap::build(make_box({0.6, 0.6, 0.1})));
+    for (const int substeps : {1, 4})
+        for (const btScalar leap : {btScalar(1.5), btScalar(6)}) {
+            World world;
+            btRigidBody& plate = world.add_kinematic(shape, at(0, 0, -leap * btScalar(1.7)));
+            const btSoftBody& cloth = world.add_cloth(2, 0);
+            world.step(1);
+            const std::vector<btVector3> start = places_of(cloth);
+            for (const btScalar height : {-leap * btScalar(0.7), leap * btScalar(0.3)}) {
+                plate.setWorldTransform(at(0, 0, height));
+                world.step_with_substeps(substeps);
+            }
+            EXPECT_EQ(count_below(cloth, start, btScalar(0.25), leap * btScalar(0.3)), 0)
+                << substeps << " sub-steps, " << leap;
+        }
+}
+
+TEST(BulletAdapter, FastDynamicCompoundTakesAClothAlong) {
+    bullet::MapShape shape(ExactMap::build(make_box({3, 3, 0.1})));
+    btCompoundShape compound;
+    compound.addChildShape(btTransform::getIdentity(), &shape);
+    World world;
+    btRigidBody& plate = world.add(compound, at(0, 0, btScalar(-17.6)), 1000);
+    plate.setLinearVelocity({0, 0, 300}); // 5 a frame
+    const btSoftBody& cloth = world.add_cloth(2, 0);
+    const std::vector<btVector3> start = places_of(cloth);
+    world.step(8);
+    EXPECT_EQ(count_below(cloth, start, 1, plate.getWorldTransform().getOrigin().z()), 0);
+}
+
+TEST(BulletAdapter, StaticColliderThatIsPutOnTheOtherSideTakesAClothAlong) {
+    bullet::MapShape shape(ExactMap::build(make_box({0.6, 0.6, 0.1})));
+    World world;
+    btRigidBody& plate = world.add(shape, at(0, 0, -3));
+    const btSoftBody& cloth = world.add_cloth(2, 0);
+    const std::vector<btVector3> start = places_of(cloth);
+    world.step(1);
+    plate.setWorldTransform(at(0, 0, 3));
+    world.step(1);
+    EXPECT_EQ(count_below(cloth, start, btScalar(0.25), 3), 0);
+}
+
+TEST(BulletAdapter, ChildOfACompoundThatLeapsInItTakesAClothAlong) {
+    bullet::MapShape shape(ExactMap::build(make_box({0.6, 0.6, 0.1})));
+    btCompoundShape compound;
+    compound.addChildShape(at(9, 0, 0), &shape);
+    compound.addChildShape(at(0, 0, -3), &shape);
+    World world;
+    world.add(compound);
+    const btSoftBody& cloth = world.add_cloth(2, 0);
+    const std::vector<btVector3> start = places_of(cloth);
+    world.step(1);
+    compound.updateChildTransform(1, at(0, 0, 3));
+    world.step(1);
+    EXPECT_EQ(count_below(cloth, start, btScalar(0.25), 3), 0);
+}
+
+TEST(BulletAdapter, BulletsFiltersHoldForAColliderThatLeapsOverACloth) {
+    bullet::MapShape shape(ExactMap::build(make_box({0.6, 0.6, 0.1})));
+    const auto mean_after_leap = [&](auto&& filter) {
+        World world;
+        btRigidBody& plate = world.add_kinematic(shape, at(0, 0, -3));
+        btSoftBody& cloth = world.add_cloth(2, 0);
+        filter(world, plate, cloth);
+        world.step(1);
+        plate.setWorldTransform(at(0, 0, 3));
+        world.step(1);
+        return mean_of(cloth, 2);
+    };
+    EXPECT_GT(mean_after_leap([](World&, btRigidBody&, btSoftBody&) {}), btScalar(0.1));
+    const auto expect_untouched = [&](const char* filter, auto&& set) {
+        EXPECT_NEAR(mean_after_leap(set), 0, btScalar(0.01)) << filter;
+    };
+    expect_untouched("groups", [](World&, btRigidBody& plate, btSoftBody&) {
+        plate.getBroadphaseHandle()->m_collisionFilterMask = 0;
+    });
+    expect_untouched("near callback", [](World& world, btRigidBody&, btSoftBody&) {
+        world.set_near_callback([](btBroadphasePair&, btCollisionDispatcher&, const btDispatcherInfo&) {});
+    });
+    expect_untouched("one object", [](World&, btRigidBody& plate, btSoftBody& cloth) {
+        cloth.m_collisionDisabledObjects.push_back(&plate);
+    });
+    expect_untouched("ignored", [](World&, btRigidBody& plate, btSoftBody& cloth) {
+        cloth.setIgnoreCollisionCheck(&plate, true);
+    });
+}
+
+TEST(BulletAdapter, ColliderThatPassedAClothWithoutContactDoesNotTakeItAlongLater) {
+    bullet::MapShape shape(ExactMap::build(make_box({1, 1, 0.2})));
+    World world;
+    btRigidBody& plate = world.add_kinematic(shape, at(0, 0, btScalar(-0.5)));
+    btSoftBody& cloth = world.add_cloth(2, 0, 15);
+    world.step(1);
+    cloth.m_collisionDisabledObjects.push_back(&plate);
+    plate.setWorldTransform(at(0, 0, btScalar(0.5)));
+    world.step(1);
+    cloth.m_collisionDisabledObjects.clear();
+    world.step(1);
+    EXPECT_LT(highest(cloth), btScalar(0.01));
 }
 
 TEST(BulletAdapter, DynamicBodyIsStoppedByAClothThatHoldsIt) {
