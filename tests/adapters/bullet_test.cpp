@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <span>
@@ -80,7 +81,7 @@ class World {
         for (int frame = 0; frame < frames; ++frame) world_->stepSimulation(1 / rate, 0);
     }
     void step_with_substeps(int count) { world_->stepSimulation(btScalar(count) / 60, count); }
-    void set_near_callback(btNearCallback callback) { dispatcher_.setNearCallback(callback); }
+    btCollisionDispatcher& dispatcher() { return dispatcher_; }
 
   private:
     btSoftBodyRigidBodyCollisionConfiguration configuration_;
@@ -277,7 +278,8 @@ TEST(BulletAdapter, BulletsFiltersHoldForAColliderThatLeapsOverACloth) {
         plate.getBroadphaseHandle()->m_collisionFilterMask = 0;
     });
     expect_untouched("near callback", [](World& world, btRigidBody&, btSoftBody&) {
-        world.set_near_callback([](btBroadphasePair&, btCollisionDispatcher&, const btDispatcherInfo&) {});
+        world.dispatcher().setNearCallback(
+            [](btBroadphasePair&, btCollisionDispatcher&, const btDispatcherInfo&) {});
     });
     expect_untouched("one object", [](World&, btRigidBody& plate, btSoftBody& cloth) {
         cloth.m_collisionDisabledObjects.push_back(&plate);
@@ -513,4 +515,44 @@ TEST(BulletAdapter, NamesAnOpenSurfaceAndAScaleOfZero) {
     bullet::MapShape shape(ExactMap::build(torus()));
     expect_error(ErrorCode::InvalidOptions, "scale", [&] { shape.setLocalScaling({1, 0, 1}); });
     EXPECT_EQ(shape.getLocalScaling(), btVector3(1, 1, 1));
+}
+
+TEST(BulletAdapter, NamesAMarginThatIsNotANumberOrFarTooLarge) {
+    using Limits = std::numeric_limits<btScalar>;
+    bullet::MapShape shape(ExactMap::build(torus()));
+    for (const btScalar margin : {Limits::infinity(), Limits::quiet_NaN(), btScalar(1e9), btScalar(-1)}) {
+        expect_error(ErrorCode::InvalidOptions, "the margin of a MapShape", [&] { shape.setMargin(margin); });
+        EXPECT_EQ(shape.getMargin(), 0);
+        World world;
+        world.add_cloth(1, 0).getCollisionShape()->setMargin(margin);
+        expect_error(ErrorCode::InvalidOptions, "the margin of a soft body", [&] { world.step(1); });
+    }
+}
+
+TEST(BulletAdapter, NamesAWorldWithoutASolver) {
+    bullet::MapShape shape(ExactMap::build(torus()));
+    for (const bool is_in_dispatcher : {false, true}) {
+        std::unique_ptr<bullet::Solver> not_in_world; // outlives the world
+        World world(false);
+        if (is_in_dispatcher) not_in_world = std::make_unique<bullet::Solver>(world.dispatcher());
+        world.add(shape);
+        world.add_cloth(2, 0);
+        expect_error(ErrorCode::InvalidOptions, "echinus::bullet::Solver", [&] { world.step(1); });
+    }
+}
+
+TEST(BulletAdapter, NodesStayOutsideWhereBulletsFloatsAreCoarse) {
+    const btTransform away = at(btScalar(1e5), btScalar(1e5), 0); // floats are 0.008 apart
+    const TriangleMesh mesh = torus();
+    bullet::MapShape shape(ExactMap::build(mesh));
+    World world;
+    world.add(shape, away);
+    btSoftBody& cloth = world.add_cloth(2.4, 0.5);
+    cloth.transform(away);
+    cloth.getCollisionShape()->setMargin(0);
+    for (int frame = 0; frame < 60; ++frame) {
+        world.step(1);
+        ASSERT_EQ(inside_count(cloth, mesh, away), 0) << "frame " << frame;
+    }
+    EXPECT_GT(highest(cloth), btScalar(0.3));
 }

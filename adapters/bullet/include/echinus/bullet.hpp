@@ -14,14 +14,18 @@
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 #include <BulletSoftBody/btDefaultSoftBodySolver.h>
 #include <BulletSoftBody/btSoftBody.h>
+#include <BulletSoftBody/btSoftBodyConcaveCollisionAlgorithm.h>
 #include <LinearMath/btAabbUtil2.h>
 #include <LinearMath/btTransformUtil.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -46,6 +50,23 @@ inline RigidTransform to_echinus(const btTransform& pose) {
     const btQuaternion q = pose.getRotation();
     const Rotation rotation{double{q.w()}, double{q.x()}, double{q.y()}, double{q.z()}};
     return {rotation.normalised(), to_echinus(pose.getOrigin())};
+}
+
+/// Bullet itself stops bodies whose boxes reach about so far.
+constexpr btScalar kLargestMargin = 1e5;
+
+/// @throws Error InvalidOptions unless the margin is from 0 to kLargestMargin
+inline void check_margin(btScalar margin, const char* owner) {
+    if (margin >= 0 && margin <= kLargestMargin) return;
+    throw Error(ErrorCode::InvalidOptions, std::string("the margin of ") + owner + " is " +
+                                               std::to_string(margin) + "; expected 0 to 1e5");
+}
+
+[[noreturn]] inline void throw_no_solver() {
+    throw Error(
+        ErrorCode::InvalidOptions,
+        "a soft body meets a MapShape in a world that was not given an echinus::bullet::Solver for its "
+        "dispatcher, and would fall through; give it to btSoftRigidDynamicsWorld as the last argument");
 }
 
 /// A box along the axes; empty unless points are added.
@@ -75,7 +96,8 @@ struct Box {
 /// A closed surface as a shape of Bullet's, for static, kinematic and dynamic objects, and in compounds. Soft
 /// bodies meet it in a world with a Solver. Any number of objects may share it.
 ///
-/// Margin: added to that of the soft body; 0 unless set.
+/// Margin: added to that of the soft body; 0 unless set. Where a soft body meets the shape in a world without
+/// a Solver, the step throws Error InvalidOptions.
 class MapShape : public btConcaveShape {
   public:
     /// @param for_rigid_bodies  what rigid bodies and rays meet instead, such as a btBvhTriangleMeshShape of
@@ -116,9 +138,16 @@ class MapShape : public btConcaveShape {
         low = centre - btVector3(reach, reach, reach);
         high = centre + btVector3(reach, reach, reach);
     }
+    /// @throws Error InvalidOptions when Bullet asks for a soft body
     void processAllTriangles(btTriangleCallback* callback, const btVector3& low,
                              const btVector3& high) const override {
+        if (dynamic_cast<btSoftBodyTriangleCallback*>(callback) != nullptr) throw_no_solver();
         if (for_rigid_bodies_ != nullptr) for_rigid_bodies_->processAllTriangles(callback, low, high);
+    }
+    /// @throws Error InvalidOptions unless it is from 0 to kLargestMargin
+    void setMargin(btScalar margin) override {
+        check_margin(margin, "a MapShape");
+        btConcaveShape::setMargin(margin);
     }
     /// Of soft bodies' collider only: set the scale of the shape for rigid bodies, too. Negative numbers
     /// mirror. @throws Error InvalidOptions for 0 or a number that is not finite
@@ -444,7 +473,7 @@ class NodeKeeper {
                 if (stop(node))
                     moved = true;
                 else if (is_inside) { // and was when the step began
-                    put(node, inside.point(k) + inside.normal(k) * gap(), inside.normal(k));
+                    put(node, inside.point(k) + inside.normal(k) * gap(node), inside.normal(k));
                     moved = true;
                 }
             }
@@ -455,10 +484,13 @@ class NodeKeeper {
     }
 
   private:
-    /// How far from the surface a node is put: enough for floats, and not so much that one sees it.
-    float gap() const {
+    /// How far from the surface a node is put: enough for floats, and not so much that one sees it. Far from
+    /// the origin it is some of the steps between Bullet's numbers there, to which the place is rounded.
+    float gap(const btSoftBody::Node& node) const {
         const auto radius = static_cast<float>(meeting_.shape->radius());
-        return std::clamp(static_cast<float>(meeting_.margin()), 1e-5F * radius, 1e-3F * radius);
+        const btScalar farthest = node.m_x.absolute()[node.m_x.absolute().maxAxis()];
+        return std::max(std::clamp(static_cast<float>(meeting_.margin()), 1e-5F * radius, 1e-3F * radius),
+                        static_cast<float>(4 * std::numeric_limits<btScalar>::epsilon() * farthest));
     }
 
     static bool is_held(const btSoftBody::Node& node) { return node.m_im == 0 || node.m_battach != 0; }
@@ -470,20 +502,23 @@ class NodeKeeper {
         const Vec3f from = sleeps ? to : collider_.to_local(node.m_q);
         const SweepHit hit = collider_.sweep(from, to);
         if (!hit.found() || !hit.entering) return false;
-        put(node, collider_.to_world(free_place(from, to, hit)), to_bullet(hit.normal));
+        put(node, free_place(from, to, hit, gap(node)), to_bullet(hit.normal));
         return true;
     }
 
     /// Near where the node was going: along the face that it met, or where it met it, or where it came from,
-    /// carried along with the collider. A place is free when no surface lies on the way there.
-    Vec3f free_place(const Vec3f& from, const Vec3f& to, const SweepHit& hit) const {
+    /// carried along with the collider. A place is free when no surface lies on the way there, as Bullet's
+    /// numbers have it.
+    btVector3 free_place(const Vec3f& from, const Vec3f& to, const SweepHit& hit, float gap) const {
         const Vec3f carried = collider_.carried(from);
-        const Vec3f beside = hit.point + hit.normal * gap();
+        const Vec3f beside = hit.point + hit.normal * gap;
         const Vec3f along = to + hit.normal * dot(hit.normal, beside - to);
         for (const Vec3f& place :
-             std::array{along - rubbed(along - carried, hit.normal, length(along - to)), beside})
-            if (!collider_.sweep(from, place).found()) return place;
-        return carried;
+             std::array{along - rubbed(along - carried, hit.normal, length(along - to)), beside}) {
+            const btVector3 rounded = collider_.to_world(place);
+            if (!collider_.sweep(from, collider_.to_local(rounded)).found()) return rounded;
+        }
+        return collider_.to_world(carried);
     }
 
     /// What Coulomb's friction takes of a way along the surface, after a push of this length.
@@ -539,6 +574,14 @@ class Solver : public btDefaultSoftBodySolver {
     Solver(const Solver&) = delete;
     Solver& operator=(const Solver&) = delete;
 
+    /// @throws Error InvalidOptions for a margin of a soft body that is not from 0 to kLargestMargin
+    void predictMotion(btScalar seconds) override {
+        for (int i = 0; i < m_softBodySet.size(); ++i)
+            check_margin(m_softBodySet[i]->getCollisionShape()->getMargin(), "a soft body");
+        btDefaultSoftBodySolver::predictMotion(seconds);
+    }
+
+    /// @throws Error InvalidOptions for a soft body of which the world is not known (see above)
     void solveConstraints(btScalar seconds) override {
         for (int i = 0; i < m_softBodySet.size(); ++i)
             if (m_softBodySet[i]->isActive()) add_contacts(*m_softBodySet[i]);
@@ -638,7 +681,9 @@ class Solver : public btDefaultSoftBodySolver {
                               const btDispatcherInfo&, btManifoldResult*) override {
             if (!first->getCollisionShape()->isSoftBody()) std::swap(first, second);
             auto* object = const_cast<btCollisionObject*>(first->getCollisionObject());
-            pair_->begin_step(*btSoftBody::upcast(object), *second);
+            btSoftBody& body = *btSoftBody::upcast(object);
+            if (body.getSoftBodySolver() != &solver_) throw_no_solver();
+            pair_->begin_step(body, *second);
         }
         btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
                                        btManifoldResult*) override {
