@@ -176,20 +176,25 @@ void DeformingCollider::find_motion(const Collider& collider) {
     motion_.most = std::sqrt(most_sq);
 }
 
-/// As the point of the surface that is nearest when the frame begins.
+/// As the point of the surface that is nearest when the frame begins. What is farther off goes the mean way
+/// of all vertices, as if the collider were rigid, and what is between fades: a body that is wider than the
+/// reach is then led as a whole, not torn where the reach ends.
 void DeformingCollider::find_carried(const Collider& collider, const Particles& particles,
                                      std::span<const float> clearances, float reach) {
+    constexpr float kFading = 4; // times the longest way: then ways differ by a quarter of the distance
+    const float fading = kFading * motion_.most;
+    const Vec3f mean = mean_way();
     motion_.carried.resize(particles.count());
-    motion_.carried.fill(0);
     near_.clear();
     near_positions_.clear();
     for (std::uint32_t i = 0; i < particles.count(); ++i) {
-        if (clearances[i] > reach) continue;
+        motion_.carried.set(i, mean);
+        if (clearances[i] > reach + fading) continue;
         near_.push_back(i);
         near_positions_.push_back(particles.positions[i]);
     }
     contacts_.resize(near_.size());
-    contacts_batch(collider, near_positions_, reach, contacts_);
+    contacts_batch(collider, near_positions_, reach + fading, contacts_);
     const FrameChange body(collider.pose, {1, 1, 1});
     for (std::size_t n = 0; n < near_.size(); ++n) {
         if (!contacts_[n].found() || contacts_[n].face == Contact::kUnknownFace) continue;
@@ -199,8 +204,15 @@ void DeformingCollider::find_carried(const Collider& collider, const Particles& 
                       body.point_to_local(contacts_[n].point));
         Vec3f way;
         for (std::size_t k = 0; k < 3; ++k) way += (motion_.to[face[k]] - motion_.from[face[k]]) * shares[k];
-        motion_.carried.set(near_[n], way);
+        const float beyond = std::max(std::fabs(contacts_[n].depth) - reach, 0.0F);
+        motion_.carried.set(near_[n], mean + (way - mean) * std::max(1 - beyond / fading, 0.0F));
     }
+}
+
+Vec3f DeformingCollider::mean_way() const {
+    Vec3d sum;
+    for (std::size_t i = 0; i < vertices_.size(); ++i) sum += Vec3d(motion_.to[i] - motion_.from[i]);
+    return Vec3f(sum * (1 / static_cast<double>(vertices_.size())));
 }
 
 } // namespace echinus

@@ -64,6 +64,7 @@ class DeformingCollider {
     template <typename Build>
     ExactMap naming_it(const std::string& vertices, const Build& build) const;
     void find_motion(const Collider& collider);
+    Vec3f mean_way() const;
     void find_carried(const Collider& collider, const Particles& particles, std::span<const float> clearances,
                       float reach);
 

@@ -9,8 +9,8 @@ namespace echinus {
 struct SurfaceMotion {
     PointArrays from, to; ///< [vertex_count of the model]
     float most = 0;       ///< no vertex goes farther
-    /// [particle_count] The way of the surface beside each particle, 0 where none is near: one that goes it
-    /// stays beside the surface, as one does that a rigid model takes along.
+    /// [particle_count] The way of the surface beside each particle, the mean way of all vertices where none
+    /// is near: one that goes it stays beside the surface, as one does that a rigid model takes along.
     PointArrays carried;
 };
 

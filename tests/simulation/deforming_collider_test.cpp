@@ -7,6 +7,8 @@
 #include "support/surface_judge.hpp"
 
 #include <echinus/simulation.hpp>
+#include <echinus/soft_body.hpp>
+#include <echinus/tetrahedra.hpp>
 
 #include <gtest/gtest.h>
 
@@ -127,6 +129,27 @@ TEST(DeformingCollider, IsFollowedInSmallSteps) {
     options.iteration_count = 1;
     options.substep_count = 10;
     expect_nothing_meets_while(make_sphere(0.4, 24, 12), breathe, sheet_at(0.43, 1.2, 19), 160, options);
+}
+
+/// Ten thicknesses and more in a frame, which part of the body is beside: it is led as a whole.
+TEST(DeformingCollider, LeadsABodyAsAPoseDoesWhenAllVerticesJump) {
+    const TriangleMesh ball = make_sphere(0.3, 30, 20);
+    const Deformable body =
+        make_soft_body(make_solid_box({0.2, 0.2, 0.2}, {4, 4, 4}),
+                       {.young_modulus = 1e4, .damping = 0.02, .pose = {{}, {0, 0, 0.41}}});
+    SimulationOptions options = surfaces(true);
+    options.solver = SolverKind::Xpbd;
+    options.iteration_count = 1;
+    options.substep_count = 10;
+    options.gravity = {0, 0, 0};
+    const auto jump = [](const Vec3d& p, double t) { return p + Vec3d{0, 0, t > 0.01 ? 0.1 : 0}; };
+    const auto grow = [](const Vec3d& p, double t) { return p * (t > 0.01 ? 1.3 : 1.0); };
+    for (const Deformation& deform : {Deformation(jump), Deformation(grow)}) {
+        Simulation simulation(body, colliders_of({ball}), options);
+        EXPECT_EQ(most_pairs(simulation, ball, deform, 9), 0u);
+        EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+        EXPECT_EQ(simulation.profile().lost_count, 0u);
+    }
 }
 
 TEST(DeformingCollider, TakesASheetAlongByFriction) {

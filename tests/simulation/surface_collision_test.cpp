@@ -94,6 +94,21 @@ TEST(SurfaceCollision, KeepsASheetOffABoxThatTurns) {
                                      sheet_at(0.4, 1, 20), 200);
 }
 
+/// Seven thicknesses a frame, over a side cut into hundreds of faces. Without friction nothing stops it.
+TEST(SurfaceCollision, LetsASheetSlideOverTheEdgesWithinAFlatSide) {
+    constexpr double kThin = 0.003, kSpeed = 5;
+    Deformable sheet = sheet_at(0.0535, 0.2, 8, {kSpeed / 240, 0, 0});
+    Simulation simulation(
+        sheet, colliders_of({make_box({20, 2, 0.1}, 40)}),
+        {.drag = 0, .thickness = kThin, .friction = 0, .surface_collision = true, .self_collision = true});
+    for (int i = 0; i < 120; ++i) simulation.step();
+    for (std::size_t i = 0; i < sheet.particle_count(); ++i) {
+        const Vec3f way = simulation.positions()[i] - sheet.positions[i];
+        EXPECT_NEAR(way.x, 0.5 * kSpeed, 1e-4) << i;
+        EXPECT_NEAR(way.z, 0.05 + kThin - 0.0535, 1e-4) << i;
+    }
+}
+
 TEST(SurfaceCollision, KeepsASheetOffScaledAndMirroredModels) {
     const Rotation tilt = Rotation::about({1, 1, 0}, 0.4);
     for (const Vec3d& scale : {Vec3d{0.4, 0.6, 0.2}, Vec3d{-0.5, 0.3, 0.4}, Vec3d{0.1, -0.6, -0.4}})
