@@ -1,6 +1,7 @@
 #include "simulation/surfaces/model_surface.hpp"
 
 #include "simulation/surfaces/model_mesh.hpp"
+#include "simulation/surfaces/sliding.hpp"
 
 #include <echinus/exact_map.hpp>
 
@@ -122,62 +123,17 @@ float ModelSurface::consider(std::uint32_t element, const Pair& pair, const Sepa
     return kContactReuse * thickness_;
 }
 
-/// Does the deformable's part of a pair go along the faces around the model's part rather than towards them,
-/// and do these rise above the contact's plane? Then they are nearer than the model's part, and the plane
-/// would stop what slides along a flat side at every edge within it.
 bool ModelSurface::slides_past(const Pair& pair, const Separation& apart) const {
-    constexpr float kSliding = 0.25F;
-    const Corners corners = corners_of(pair, apart);
-    if (!rises_above(corners, apart.normal)) return false;
+    const std::size_t own = own_count(pair.kind);
+    const auto ridge = ridge_of(std::span(pair.points).subspan(own), std::span(apart.weights).subspan(own));
+    if (!ridge) return false;
     Vec3f way;
-    for (std::size_t k = 0; k < own_count(pair.kind); ++k)
+    for (std::size_t k = 0; k < own; ++k)
         way += (goals_[pair.points[k]] - bases_[pair.points[k]]) * apart.weights[k];
-    return -dot(face_normal(corners, apart.normal), way) < kSliding * -dot(apart.normal, way);
-}
-
-ModelSurface::Corners ModelSurface::corners_of(const Pair& pair, const Separation& apart) {
-    const std::uint32_t a = pair.points[3], b = pair.points[2];
-    if (pair.kind != PairKind::EdgeEdge || apart.weights[2] == 0) return {a, a};
-    return {apart.weights[3] == 0 ? b : a, b};
-}
-
-template <typename Visit>
-void ModelSurface::for_each_face_at(const Corners& corners, const Visit& visit) const {
-    const Elements& elements = shape_->elements;
-    for (const std::uint32_t number : elements.at(corners[0]))
-        if (elements.all[number].has(corners[1])) visit(elements.all[number].vertices);
-}
-
-bool ModelSurface::rises_above(const Corners& corners, const Vec3f& normal) const {
-    constexpr float kFlat = 1e-3F; // the sine of an angle
-    const PointArrays& places = places_at_start();
-    bool rises = false;
-    for_each_face_at(corners, [&](const std::array<std::uint32_t, 3>& face) {
-        for (const std::uint32_t vertex : face) {
-            const Vec3f away = places[vertex] - places[corners[0]];
-            rises = rises || (vertex != corners[1] && dot(normal, away) > kFlat * length(away));
-        }
-    });
-    return rises;
-}
-
-/// Of the faces there the normal, from either side, that is most like another one; 0 if they have no area.
-Vec3f ModelSurface::face_normal(const Corners& corners, const Vec3f& like) const {
-    const PointArrays& places = places_at_start();
-    Vec3f best;
-    for_each_face_at(corners, [&](const std::array<std::uint32_t, 3>& face) {
-        const Vec3f a = places[face[0]];
-        const Vec3f across = cross(places[face[1]] - a, places[face[2]] - a);
-        const float size = length(across);
-        if (!(size > 0)) return;
-        const Vec3f normal = across * ((dot(across, like) > 0 ? 1 : -1) / size);
-        if (dot(normal, like) > dot(best, like)) best = normal;
-    });
-    return best;
-}
-
-const PointArrays& ModelSurface::places_at_start() const {
-    return motion_ != nullptr ? motion_->from : deformed_ ? deformed_->positions : shape_->positions;
+    const PointArrays& places = motion_ != nullptr ? motion_->from
+                                : deformed_        ? deformed_->positions
+                                                   : shape_->positions;
+    return echinus::slides_past(*ridge, shape_->elements, places, apart.normal, way);
 }
 
 void ModelSurface::add_contact(std::uint32_t element, const Pair& pair, const Separation& apart) {

@@ -9,7 +9,6 @@
 #include <echinus/collider.hpp>
 #include <echinus/simulation.hpp>
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -91,14 +90,6 @@ class ModelSurface {
     void forget_contacts(std::span<const std::uint32_t> elements);
     float consider(std::uint32_t element, const Pair& pair, const Separation& apart);
     bool slides_past(const Pair& pair, const Separation& apart) const;
-    /// Between which the model's point of a pair lies: the ends of an edge, or one corner twice.
-    using Corners = std::array<std::uint32_t, 2>;
-    static Corners corners_of(const Pair& pair, const Separation& apart);
-    template <typename Visit>
-    void for_each_face_at(const Corners& corners, const Visit& visit) const;
-    bool rises_above(const Corners& corners, const Vec3f& normal) const;
-    Vec3f face_normal(const Corners& corners, const Vec3f& like) const;
-    const PointArrays& places_at_start() const;
     void add_contact(std::uint32_t element, const Pair& pair, const Separation& apart);
     void place(Contact& contact) const;
 

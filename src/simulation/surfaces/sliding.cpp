@@ -1,0 +1,63 @@
+#include "simulation/surfaces/sliding.hpp"
+
+namespace echinus {
+
+namespace {
+
+template <typename Visit>
+void for_each_face_at(const Ridge& ridge, const Elements& elements, const Visit& visit) {
+    for (const std::uint32_t number : elements.at(ridge.a)) {
+        const Element& element = elements.all[number];
+        if (element.is_face() && element.has(ridge.b)) visit(element.vertices);
+    }
+}
+
+bool rise_above(const Ridge& ridge, const Elements& elements, const PointArrays& positions,
+                const Vec3f& normal) {
+    constexpr float kFlat = 1e-3F; // the sine of an angle
+    bool rise = false;
+    for_each_face_at(ridge, elements, [&](const std::array<std::uint32_t, 3>& face) {
+        for (const std::uint32_t vertex : face) {
+            const Vec3f away = positions[vertex] - positions[ridge.a];
+            rise = rise || (vertex != ridge.b && dot(normal, away) > kFlat * length(away));
+        }
+    });
+    return rise;
+}
+
+/// Of the faces there the normal, from either side, that is most like another one; 0 if they have no area.
+Vec3f face_normal(const Ridge& ridge, const Elements& elements, const PointArrays& positions,
+                  const Vec3f& like) {
+    Vec3f best;
+    for_each_face_at(ridge, elements, [&](const std::array<std::uint32_t, 3>& face) {
+        const Vec3f a = positions[face[0]];
+        const Vec3f across = cross(positions[face[1]] - a, positions[face[2]] - a);
+        const float size = length(across);
+        if (!(size > 0)) return;
+        const Vec3f normal = across * ((dot(across, like) > 0 ? 1 : -1) / size);
+        if (dot(normal, like) > dot(best, like)) best = normal;
+    });
+    return best;
+}
+
+} // namespace
+
+std::optional<Ridge> ridge_of(std::span<const std::uint32_t> vertices, std::span<const float> weights) {
+    std::optional<Ridge> ridge;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+        if (weights[k] == 0) continue;
+        ridge = {vertices[k], count == 0 ? vertices[k] : ridge->a};
+        ++count;
+    }
+    return count < 3 ? ridge : std::nullopt;
+}
+
+bool slides_past(const Ridge& ridge, const Elements& elements, const PointArrays& positions,
+                 const Vec3f& normal, const Vec3f& way) {
+    constexpr float kSliding = 0.25F;
+    return rise_above(ridge, elements, positions, normal) &&
+           -dot(face_normal(ridge, elements, positions, normal), way) < kSliding * -dot(normal, way);
+}
+
+} // namespace echinus
