@@ -33,6 +33,25 @@ Strain strain_of(const Deformable& deformable) {
             .largest = shares.back()};
 }
 
+/// Elements of less than a twentieth of their volume at rest, or inside out.
+std::size_t count_crushed(const Deformable& deformable) {
+    constexpr double kCrushed = 0.05;
+    const auto determinant = [](const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+        return dot(a, cross(b, c));
+    };
+    return static_cast<std::size_t>(
+        std::ranges::count_if(deformable.tetrahedra, [&](const ElasticTetrahedron& tetrahedron) {
+            const auto& [a, b, c, d] = tetrahedron.particles;
+            const auto edge = [&, first = a](std::uint32_t corner) {
+                return Vec3d(deformable.positions[corner]) - Vec3d(deformable.positions[first]);
+            };
+            const auto& [at_b, at_c, at_d] = tetrahedron.gradients;
+            const double share =
+                determinant(edge(b), edge(c), edge(d)) * determinant(Vec3d(at_b), Vec3d(at_c), Vec3d(at_d));
+            return share < kCrushed;
+        }));
+}
+
 struct Rates {
     double integration_ms, constraints_ms, collision_ms, total_ms;
     double queries_per_frame, map_queries_per_frame, ns_per_query, frames_per_second;
@@ -160,6 +179,7 @@ Json to_json(const SimulationResult& result) {
         {"scene", result.scene_name},
         {"particles", deformable.particle_count()},
         {"sticks", deformable.sticks.size()},
+        {"tetrahedra", {{"count", deformable.tetrahedra.size()}, {"crushed", count_crushed(deformable)}}},
         {"solver", solver_of(options)},
         {"substeps", options.substep_count},
         {"iterations", options.iteration_count},
@@ -215,6 +235,9 @@ std::string to_text(const SimulationResult& result) {
         text += fmt::format("  {:<22}{}\n", label, value);
     };
     add("particles, sticks", fmt::format("{}, {}", particle_count, simulation.deformable().sticks.size()));
+    if (const Deformable& body = simulation.deformable(); !body.tetrahedra.empty())
+        add("tetrahedra",
+            fmt::format("{}, {} flat or inside out at the end", body.tetrahedra.size(), count_crushed(body)));
     add("solver", fmt::format("{}, substeps x iterations per frame: {} x {}", solver_of(simulation.options()),
                               simulation.options().substep_count, simulation.options().iteration_count));
     add("frames", fmt::format("{}, {}", simulation.frame(),
