@@ -118,10 +118,11 @@ void require_valid(const ElasticTetrahedron& tetrahedron, std::size_t particle_c
         std::adjacent_find(corners.begin(), corners.end()) != corners.end())
         fail(name + " needs four different particles of " + std::to_string(particle_count));
     const auto is_in = [](float value, float least) { return value >= least && std::isfinite(value); };
-    const auto& gradients = tetrahedron.gradients;
-    if (!std::all_of(gradients.begin(), gradients.end(), [](const Vec3f& v) { return is_finite(v); }) ||
-        !(tetrahedron.volume > 0) || !(tetrahedron.mu > 0) || !is_in(tetrahedron.volume, 0) ||
-        !is_in(tetrahedron.mu, 0) || !is_in(tetrahedron.lambda, 0) || !is_in(tetrahedron.damping, 0))
+    const auto& [at_b, at_c, at_d] = tetrahedron.gradients;
+    const double determinant = dot(Vec3d(at_b), cross(Vec3d(at_c), Vec3d(at_d)));
+    if (!std::isfinite(determinant) || determinant == 0 || !(tetrahedron.volume > 0) ||
+        !(tetrahedron.mu > 0) || !is_in(tetrahedron.volume, 0) || !is_in(tetrahedron.mu, 0) ||
+        !is_in(tetrahedron.lambda, 0) || !is_in(tetrahedron.damping, 0))
         fail(name +
              " has a rest shape, a stiffness or a damping out of range; make_soft_body() computes them");
 }
@@ -252,11 +253,13 @@ void require_valid(const VertexCache& cache, std::size_t vertex_count, const std
     if (cache.samples == nullptr || cache.samples->empty() || cache.samples->size() % vertex_count != 0)
         fail(owner + ": " + name + " has no samples, or the last one is not complete");
     const auto bad = std::find_if(cache.samples->begin(), cache.samples->end(),
-                                  [](const Vec3f& p) { return !is_finite(p); });
+                                  [](const Vec3f& p) { return !is_finite(p) || !is_within_reach(p); });
     if (bad != cache.samples->end())
         fail(owner + ": vertex " +
              std::to_string(static_cast<std::size_t>(bad - cache.samples->begin()) % vertex_count) + " of " +
-             name + " is not finite in sample " +
+             name +
+             (is_finite(*bad) ? " is farther than 1e15 from the origin in sample "
+                              : " is not finite in sample ") +
              std::to_string(static_cast<std::size_t>(bad - cache.samples->begin()) / vertex_count));
 }
 

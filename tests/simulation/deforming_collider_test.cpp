@@ -318,6 +318,9 @@ TEST(DeformingCollider, RefusesOtherTopologiesAndKeepsWhatItHas) {
     const auto bad = std::make_shared<std::vector<Vec3f>>(places);
     refuse("vertex 3 of its vertex cache is not finite in sample 0",
            [&] { simulation.set_collider_cache(0, {.vertex_count = ball.vertices.size(), .samples = bad}); });
+    (*bad)[3].y = 1e20F;
+    refuse("vertex 3 of its vertex cache is farther than 1e15 from the origin in sample 0",
+           [&] { simulation.set_collider_cache(0, {.vertex_count = ball.vertices.size(), .samples = bad}); });
     simulation.step();
 
     Simulation particles(sheet_at(1, 1, 5), {{.map = ExactMap::build(ball)}}, {});

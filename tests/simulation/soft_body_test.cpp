@@ -139,6 +139,10 @@ TEST(SoftBody, NeedsXpbdAndFittingTetrahedra) {
     wrong.tetrahedra[1].mu = 0;
     test::expect_error(ErrorCode::InvalidOptions, "tetrahedron 1 has a rest shape",
                        [&] { Simulation(wrong, {}, {.solver = SolverKind::Xpbd}); });
+    wrong = body;
+    wrong.tetrahedra[2].gradients[1] = wrong.tetrahedra[2].gradients[0];
+    test::expect_error(ErrorCode::InvalidOptions, "tetrahedron 2 has a rest shape",
+                       [&] { Simulation(wrong, {}, {.solver = SolverKind::Xpbd}); });
 }
 
 TEST(SoftBody, ThrownOutOfAllBoundsDivergesWhateverItCollidesWith) {

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -88,10 +89,21 @@ Json json_of(const Outcome& outcome) {
             {"milliseconds", milliseconds}};
 }
 
-std::string text_of(const Outcome& outcome, const std::string& title) {
+/// @param asked  the count that was asked for, or 0
+std::string count_text(std::size_t count, std::size_t asked) {
+    constexpr double kTolerance = 0.05; // of tetrahedralize()
+    const bool misses =
+        asked > 0 && std::abs(static_cast<double>(count) / static_cast<double>(asked) - 1) > kTolerance;
+    return std::to_string(count) +
+           (misses ? fmt::format(", in place of {}: the model does not let them be so large or small", asked)
+                   : "");
+}
+
+/// @param asked  the count that was asked for, or 0
+std::string text_of(const Outcome& outcome, const std::string& title, std::size_t asked) {
     const auto& [body, report, distance, repairs, milliseconds] = outcome;
     Table table(title);
-    table.add("tetrahedra", std::to_string(report.tetrahedron_count));
+    table.add("tetrahedra", count_text(report.tetrahedron_count, asked));
     table.add("vertices", std::to_string(report.vertex_count));
     table.add("size", fmt::format("{:.6g}", body.size));
     table.add("edges", fmt::format("{:.4g} to {:.4g}", report.shortest_edge, report.longest_edge));
@@ -133,7 +145,7 @@ void run(TetrahedralizeArguments& arguments) {
         if (arguments.repair) object.add("repairs", to_json(outcome.repairs));
         print(object.indented());
     } else if (arguments.target != kStandardStream) {
-        print(text_of(outcome, arguments.target.string()));
+        print(text_of(outcome, arguments.target.string(), arguments.count));
         if (arguments.repair) print("\nRepair: " + to_text(outcome.repairs) + ".\n");
     }
 }
