@@ -31,10 +31,6 @@ struct StickRun {
     float share_a = 0, share_b = 0, yield = 0; ///< of the first stick
 };
 
-/// Some sticks of a run, a run of the same shape.
-/// @pre first + count <= run.count, and first is even in a run of every second
-StickRun part_of(const StickRun& run, std::size_t first, std::size_t count);
-
 /// All sticks with what their relaxation needs, in the order in which they are relaxed.
 ///
 /// A spring is relaxed like a stick whose length gives way. XPBD (Macklin et al. 2016, equation 18) changes
