@@ -170,7 +170,7 @@ def test_pins_stay_or_go_with_the_nearest_body():
 
 def test_a_cloth_that_begins_inside_is_refused_with_a_hint_and_parted_on_request():
     body = samples_of(ech.make_sphere(1, 24, 12), [matrix()] * 2)
-    with pytest.raises(Refusal, match="sheet: .*Part the Start"):
+    with pytest.raises(Refusal, match='sheet begins .*"Part the Start"'):
         Run(ech, sheet(height=0.5), [body], RunOptions(), frame_count=1, frames_per_second=24)
     parted = Run(ech, sheet(height=0.5), [body], RunOptions(untangle=True), frame_count=1, frames_per_second=24)
     assert len(ech.intersecting_pairs(parted.simulation.mesh, ech.make_sphere(1, 24, 12))) == 0
