@@ -14,6 +14,7 @@ matplotlib.rcParams.update({"svg.hashsalt": "echinus", "svg.fonttype": "none", "
                             "axes.spines.top": False, "axes.spines.right": False})
 import matplotlib.pyplot as pyplot  # noqa: E402: after the choice of the backend
 
+COLOURS = 10  # then they come again
 SMALLEST_ERROR = 1e-4  # per cent: an error of 0 is drawn at the edge
 
 
@@ -25,8 +26,9 @@ def records(folder, task):
 def plot(curves, x_label, y_label, path):
     """curves: name -> (points, is ours)"""
     figure, axes = pyplot.subplots(figsize=(7, 4.2), layout="constrained")
-    for name, (points, ours) in curves.items():
-        axes.plot(*zip(*sorted(points)), "o-" if ours else "s--", label=name, markersize=4, linewidth=1.2)
+    for number, (name, (points, ours)) in enumerate(curves.items()):
+        style = "s--" if not ours else "o-" if number < COLOURS else "^-."
+        axes.plot(*zip(*sorted(points)), style, label=name, markersize=4, linewidth=1.2)
     axes.set(xscale="log", yscale="log", xlabel=x_label, ylabel=y_label)
     axes.grid(True, which="major", alpha=0.3)
     axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False)
