@@ -205,7 +205,8 @@ void DeformingCollider::find_carried(const Collider& collider, const Particles& 
         Vec3f way;
         for (std::size_t k = 0; k < 3; ++k) way += (motion_.to[face[k]] - motion_.from[face[k]]) * shares[k];
         const float beyond = std::max(std::fabs(contacts_[n].depth) - reach, 0.0F);
-        motion_.carried.set(near_[n], mean + (way - mean) * std::max(1 - beyond / fading, 0.0F));
+        const float share = beyond > 0 ? std::max(1 - beyond / fading, 0.0F) : 1;
+        motion_.carried.set(near_[n], mean + (way - mean) * share);
     }
 }
 
