@@ -133,9 +133,12 @@ function changeOnOpening() {
     observer.observe(title, { childList: true });
 }
 
-/** As many as the saved mesh has. */
+/** As many as the saved mesh has; undefined where the page says that there is no cloth yet. */
 async function particlesIn(page) {
-    const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#save-mesh').click()]);
+    const saved = page.waitForEvent('download', { timeout: 2000 }).catch(() => undefined);
+    await page.locator('#save-mesh').click();
+    const download = await saved;
+    if (!download) return undefined;
     const text = await readFile(await download.path(), 'utf8');
     return text.slice(text.indexOf('o cloth'), text.indexOf('o model')).match(/^v /gm).length;
 }
