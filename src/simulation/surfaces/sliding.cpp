@@ -1,5 +1,8 @@
 #include "simulation/surfaces/sliding.hpp"
 
+#include <array>
+#include <cmath>
+
 namespace echinus {
 
 namespace {
@@ -25,19 +28,35 @@ bool rise_above(const Ridge& ridge, const Elements& elements, const PointArrays&
     return rise;
 }
 
+Vec3f across_of(const std::array<std::uint32_t, 3>& face, const PointArrays& positions) {
+    const Vec3f a = positions[face[0]];
+    return cross(positions[face[1]] - a, positions[face[2]] - a);
+}
+
 /// Of the faces there the normal, from either side, that is most like another one; 0 if they have no area.
 Vec3f face_normal(const Ridge& ridge, const Elements& elements, const PointArrays& positions,
                   const Vec3f& like) {
     Vec3f best;
     for_each_face_at(ridge, elements, [&](const std::array<std::uint32_t, 3>& face) {
-        const Vec3f a = positions[face[0]];
-        const Vec3f across = cross(positions[face[1]] - a, positions[face[2]] - a);
+        const Vec3f across = across_of(face, positions);
         const float size = length(across);
         if (!(size > 0)) return;
         const Vec3f normal = across * ((dot(across, like) > 0 ? 1 : -1) / size);
         if (dot(normal, like) > dot(best, like)) best = normal;
     });
     return best;
+}
+
+/// Is no face there turned against this one, from either side, by more than ten degrees?
+bool are_smooth(const Ridge& ridge, const Elements& elements, const PointArrays& positions,
+                const Vec3f& normal) {
+    constexpr float kSmooth = 0.985F;
+    bool smooth = true;
+    for_each_face_at(ridge, elements, [&](const std::array<std::uint32_t, 3>& face) {
+        const Vec3f across = across_of(face, positions);
+        smooth = smooth && std::fabs(dot(across, normal)) >= kSmooth * length(across);
+    });
+    return smooth;
 }
 
 } // namespace
@@ -56,8 +75,9 @@ std::optional<Ridge> ridge_of(std::span<const std::uint32_t> vertices, std::span
 bool slides_past(const Ridge& ridge, const Elements& elements, const PointArrays& positions,
                  const Vec3f& normal, const Vec3f& way) {
     constexpr float kSliding = 0.25F;
-    return rise_above(ridge, elements, positions, normal) &&
-           -dot(face_normal(ridge, elements, positions, normal), way) < kSliding * -dot(normal, way);
+    if (!rise_above(ridge, elements, positions, normal)) return false;
+    const Vec3f side = face_normal(ridge, elements, positions, normal);
+    return are_smooth(ridge, elements, positions, side) && -dot(side, way) < kSliding * -dot(normal, way);
 }
 
 } // namespace echinus
