@@ -54,7 +54,14 @@ struct Workers::Team {
     void work(std::size_t worker) {
         Patience patience;
         while (!is_over.load(std::memory_order_acquire))
-            if (!take_one(worker)) patience.wait();
+            if (!take_one(worker) && !take_offer()) patience.wait();
+    }
+
+    bool take_offer() {
+        if (!is_offered.load(std::memory_order_acquire)) return false;
+        if (!is_offered.exchange(false, std::memory_order_acq_rel)) return false;
+        offered();
+        return true;
     }
 
     /// @return whether there was a piece left
@@ -101,6 +108,8 @@ struct Workers::Team {
     tbb::task_arena arena;
     tbb::task_group group;
     std::atomic<bool> is_over = true;
+    std::atomic<bool> is_offered = false;
+    std::function<void()> offered;
     std::atomic<const Body*> body = nullptr;
     std::atomic<std::size_t> piece_count = 0;
     std::atomic<bool> has_failed = false;
@@ -124,8 +133,15 @@ void Workers::begin_session() const {
 
 void Workers::end_session() const noexcept {
     if (!team_) return;
+    team_->is_offered.store(false, std::memory_order_release);
     team_->is_over.store(true, std::memory_order_release);
     team_->arena.execute([&] { team_->group.wait(); });
+}
+
+void Workers::offer(std::function<void()> task) const {
+    if (!team_) return;
+    team_->offered = std::move(task);
+    team_->is_offered.store(true, std::memory_order_release);
 }
 
 void Workers::run(std::size_t piece_count, const Body& body) const {
@@ -139,6 +155,7 @@ struct Workers::Team {};
 Workers::Workers(unsigned) : count_(1) {}
 void Workers::begin_session() const {}
 void Workers::end_session() const noexcept {}
+void Workers::offer(std::function<void()>) const {}
 void Workers::run(std::size_t, const std::function<void(std::size_t, std::size_t)>&) const {}
 
 #endif

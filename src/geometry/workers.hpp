@@ -37,6 +37,11 @@ class Workers {
         const Workers& workers_;
     };
 
+    /// In a session: a thread that finds no piece to take calls task() once. Nobody does if none comes free
+    /// before the session ends, or if there is but one. The session's end waits for it.
+    /// @pre the task throws nothing, starts no loop here, and the last one is done or its session over
+    void offer(std::function<void()> task) const;
+
     /// Calls body(worker, piece) for each piece below piece_count, in any order, with worker < count(). No
     /// two calls with the same worker overlap in time, so each can have its own memory. Exceptions reach the
     /// caller. A single worker allocates nothing, and takes the pieces in order.

@@ -100,6 +100,7 @@ void DeformingCollider::follow(VertexCache cache) {
     require_valid(cache, vertices_.size(), name_);
     cache_ = std::move(cache);
     cache_hash_ = hash_of(*cache_);
+    prepared_map_.reset();
 }
 
 std::array<Vec3f, 3> DeformingCollider::corners(const Triangle& face, const Vec3d& scale) const {
@@ -111,21 +112,37 @@ bool DeformingCollider::has_arrived(double time) const {
     return !cache_ || time >= cache_->end_time();
 }
 
-void DeformingCollider::begin_frame(Collider& collider, double end_time, const Particles& particles,
-                                    std::span<const float> clearances, float reach) {
-    if (cache_) {
-        std::vector<Vec3f> goal = vertices_at(*cache_, end_time);
-        if (goal != vertices_) {
-            next_map_ = naming_it(", with the vertices of " + name_of(*cache_) + " at " +
-                                      number_text(end_time) + " s",
-                                  [&] { return built_of(goal); });
-            next_vertices_ = std::move(goal);
-        }
+void DeformingCollider::prepare(double end_time) noexcept {
+    prepared_map_.reset();
+    if (!cache_) return;
+    try {
+        prepared_vertices_ = vertices_at(*cache_, end_time);
+        if (prepared_vertices_ != vertices_) prepared_map_ = built_of(prepared_vertices_);
+    } catch (...) {
+        return; // the frame itself will say so
     }
+}
+
+void DeformingCollider::follow_cache(double end_time) {
+    std::vector<Vec3f> goal = vertices_at(*cache_, end_time);
+    std::optional<ExactMap> prepared = std::exchange(prepared_map_, std::nullopt);
+    if (goal == vertices_) return;
+    if (prepared && goal == prepared_vertices_)
+        next_map_ = std::move(prepared);
+    else
+        next_map_ =
+            naming_it(", with the vertices of " + name_of(*cache_) + " at " + number_text(end_time) + " s",
+                      [&] { return built_of(goal); });
+    next_vertices_ = std::move(goal);
+}
+
+void DeformingCollider::begin_frame(Collider& collider, double end_time, const Particles& particles,
+                                    std::span<const float> clearances, float reach, const Workers& workers) {
+    if (cache_) follow_cache(end_time);
     deforms_ = next_map_.has_value() && next_vertices_ != vertices_;
     if (deforms_) {
         find_motion(collider);
-        find_carried(collider, particles, clearances, reach);
+        find_carried(collider, particles, clearances, reach, workers);
     }
     if (!next_map_) return;
     collider.map = *next_map_;
@@ -154,6 +171,7 @@ void DeformingCollider::archive(StateArchive& state, Collider& collider) {
     }
     if (!state.reads()) return;
     deforms_ = false;
+    prepared_map_.reset();
     for (const std::vector<Vec3f>* points : {&vertices_, &next_vertices_})
         for (const Vec3f& p : *points) state.require(is_finite(p));
     collider.map = has_deformed_ ? built_of(vertices_) : first_map_;
@@ -180,7 +198,8 @@ void DeformingCollider::find_motion(const Collider& collider) {
 /// of all vertices, as if the collider were rigid, and what is between fades: a body that is wider than the
 /// reach is then led as a whole, not torn where the reach ends.
 void DeformingCollider::find_carried(const Collider& collider, const Particles& particles,
-                                     std::span<const float> clearances, float reach) {
+                                     std::span<const float> clearances, float reach, const Workers& workers) {
+    constexpr std::size_t kPointsPerPiece = 256;
     constexpr float kFading = 4; // times the longest way: then ways differ by a quarter of the distance
     const float fading = kFading * motion_.most;
     const Vec3f mean = mean_way();
@@ -194,7 +213,11 @@ void DeformingCollider::find_carried(const Collider& collider, const Particles& 
         near_positions_.push_back(particles.positions[i]);
     }
     contacts_.resize(near_.size());
-    contacts_batch(collider, near_positions_, reach + fading, contacts_);
+    workers.for_ranges(near_.size(), kPointsPerPiece,
+                       [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
+                           contacts_batch(collider, std::span(near_positions_).subspan(begin, end - begin),
+                                          reach + fading, std::span(contacts_).subspan(begin, end - begin));
+                       });
     const FrameChange body(collider.pose, {1, 1, 1});
     for (std::size_t n = 0; n < near_.size(); ++n) {
         if (!contacts_[n].found() || contacts_[n].face == Contact::kUnknownFace) continue;

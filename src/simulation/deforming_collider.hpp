@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/workers.hpp"
 #include "simulation/state/state_archive.hpp"
 #include "simulation/surface_motion.hpp"
 
@@ -35,13 +36,17 @@ class DeformingCollider {
     /// Along a cache, from the next frame on. @throws Error InvalidOptions
     void follow(VertexCache cache);
 
+    /// Builds the map of a later frame, if it follows a cache there. Another thread may do so while a frame
+    /// is computed, and begin_frame() need not then. What fails is left to that.
+    void prepare(double end_time) noexcept;
     /// Gives the collider the map of the frame's end.
     /// @throws Error as ExactMapBuilder::rebuild() of the cache's vertices
     /// @param end_time    when the frame ends, seconds since the simulation began
     /// @param clearances  lower bounds of the particles' distances from the surface
     /// @param reach       particles so near are beside it
+    /// @param workers     share what is asked about the particles
     void begin_frame(Collider& collider, double end_time, const Particles& particles,
-                     std::span<const float> clearances, float reach);
+                     std::span<const float> clearances, float reach, const Workers& workers);
     /// As it was before it deformed.
     const ExactMap& first_map() const { return first_map_; }
     /// Reading gives the collider the map of the surface as it is.
@@ -61,12 +66,13 @@ class DeformingCollider {
 
   private:
     ExactMap built_of(std::span<const Vec3f> vertices);
+    void follow_cache(double end_time);
     template <typename Build>
     ExactMap naming_it(const std::string& vertices, const Build& build) const;
     void find_motion(const Collider& collider);
     Vec3f mean_way() const;
     void find_carried(const Collider& collider, const Particles& particles, std::span<const float> clearances,
-                      float reach);
+                      float reach, const Workers& workers);
 
     std::string name_;
     ExactMap first_map_;
@@ -81,6 +87,8 @@ class DeformingCollider {
     std::uint64_t cache_hash_ = 0;
     std::vector<Vec3f> next_vertices_;
     std::optional<ExactMap> next_map_;
+    std::vector<Vec3f> prepared_vertices_;
+    std::optional<ExactMap> prepared_map_; ///< of these
     bool deforms_ = false;
     SurfaceMotion motion_;
     std::vector<std::uint32_t> near_;   ///< particles that may be beside the surface,

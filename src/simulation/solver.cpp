@@ -144,6 +144,7 @@ void Simulation::Solver::step() {
     bounds_.require_sound();
     begin_frame();
     const std::uint32_t part_count = begin_collisions();
+    prepare_next_frame();
     if (part_count > 1) divide_frame(part_count);
     for (std::uint32_t part = 0; part < part_count; ++part) {
         begin_part(part_count > 1);
@@ -221,12 +222,22 @@ void Simulation::Solver::deform() {
         collisions_.known_clearances(c, particles_, clearances_);
         try {
             deforming_[c]->begin_frame(colliders[c], (frame + 1.0) * options.time_step, particles_,
-                                       clearances_, surfaces_->carry_reach(c));
+                                       clearances_, surfaces_->carry_reach(c), workers_);
         } catch (const Error& error) {
             throw Error(error.code(), "in frame " + std::to_string(frame + 1) + ": " + error.what());
         }
         surface_motions_[c] = deforming_[c]->motion();
     }
+}
+
+/// A thread that has nothing to do builds the maps of the next frame meanwhile.
+void Simulation::Solver::prepare_next_frame() {
+    if (std::none_of(deforming_.begin(), deforming_.end(), [](const auto& collider) { return !!collider; }))
+        return;
+    workers_.offer([this, end_time = (frame + 2.0) * options.time_step] {
+        for (std::optional<DeformingCollider>& collider : deforming_)
+            if (collider) collider->prepare(end_time);
+    });
 }
 
 /// @return into how many parts the frame is divided

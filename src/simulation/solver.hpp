@@ -63,6 +63,7 @@ class Simulation::Solver {
   private:
     DeformingCollider& deforming(std::size_t collider);
     void deform();
+    void prepare_next_frame();
     bool all_arrived() const;
     void begin_frame();
     void integrate(double share_kept);

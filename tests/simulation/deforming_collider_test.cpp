@@ -275,20 +275,25 @@ TEST(DeformingCollider, CountsWhatItLeavesNoRoom) {
 TEST(DeformingCollider, ThatDeformsToNothingIsNamedWithItsCacheAndTheFrame) {
     const TriangleMesh ball = make_sphere(0.4, 12, 6);
     const std::size_t n = ball.vertices.size();
-    Simulation simulation(sheet_at(1, 1, 5), {{.map = ExactMap::build(ball), .name = "the ball"}},
-                          surfaces());
     const std::vector<Vec3f> one_point(n, Vec3f{0.1F, 0.2F, 0.3F});
-    expect_error(ErrorCode::InvalidMesh,
-                 "the ball, with the vertices that it was given: all vertices of the mesh",
-                 [&] { simulation.set_collider_vertices(0, one_point); });
     const auto samples = std::make_shared<std::vector<Vec3f>>(ball.vertices);
     samples->insert(samples->end(), one_point.begin(), one_point.end());
-    simulation.set_collider_cache(
-        0, {.sample_seconds = 2.0 / 240, .vertex_count = n, .samples = samples, .name = "walk.pc2"});
-    simulation.step();
-    expect_error(ErrorCode::InvalidMesh,
-                 "in frame 2: the ball, with the vertices of its vertex cache walk.pc2 at 0.00833333 s: all",
-                 [&] { simulation.step(); });
+    for (const unsigned thread_count : {1u, 2u}) { // a second one builds the maps of frames to come
+        SimulationOptions options = surfaces();
+        options.thread_count = thread_count;
+        Simulation simulation(sheet_at(1, 1, 5), {{.map = ExactMap::build(ball), .name = "the ball"}},
+                              options);
+        expect_error(ErrorCode::InvalidMesh,
+                     "the ball, with the vertices that it was given: all vertices of the mesh",
+                     [&] { simulation.set_collider_vertices(0, one_point); });
+        simulation.set_collider_cache(
+            0, {.sample_seconds = 2.0 / 240, .vertex_count = n, .samples = samples, .name = "walk.pc2"});
+        simulation.step();
+        expect_error(
+            ErrorCode::InvalidMesh,
+            "in frame 2: the ball, with the vertices of its vertex cache walk.pc2 at 0.00833333 s: all",
+            [&] { simulation.step(); });
+    }
 }
 
 TEST(DeformingCollider, RefusesOtherTopologiesAndKeepsWhatItHas) {
