@@ -29,6 +29,10 @@ constexpr float kMostWay = 4;
 /// Pairs of a vertex are listed for one pass only: for this one, for one before.
 constexpr std::uint8_t kNow = 1, kOver = 2;
 
+/// A pair that is led on one way stays as far apart but for rounding, which is so large a share of the least
+/// gap. Half of that may be lost, frame by frame.
+constexpr float kRounding = 1.0F / 32;
+
 /// No way is shortened to quite the length that is left.
 constexpr float kAlmost = 1 - 1.0F / (1 << 10);
 
@@ -487,7 +491,7 @@ void SelfSurface::relax(Particles& particles, std::span<const float> inverse_mas
 std::span<const float> SelfSurface::allowed_shares(const RigidTransform* frame, const PointArrays& goals,
                                                    const PointArrays* bases, const Workers& workers) {
     set_goals(frame, goals);
-    stuck_count_ = 0;
+    stuck_.clear();
     if (all_within(rooms_)) return {};
     if (bases != nullptr)
         to_frame(frame, *bases, bases_);
@@ -516,12 +520,14 @@ SelfSurface::Ending SelfSurface::ending_of(std::size_t i) const {
     const std::size_t own = own_count(pair.kind);
     const Vec3f origin = starts_[pair.points[0]];
     float least = kInfinity, most = -kInfinity, least_base = kInfinity, most_base = -kInfinity;
-    bool stays = true;
+    const Vec3f led = bases_[pair.points[0]] - origin;
+    bool stays = true, is_rigid = 2 * apart.gap > reach_.least_gap;
     for (std::size_t k = 0; k < 4; ++k) {
         const std::uint32_t v = pair.points[k];
         const float height = dot(apart.normal, place_at_share(v) - origin);
         const float base = dot(apart.normal, bases_[v] - origin);
         stays = stays && bases_[v] == starts_[v];
+        is_rigid = is_rigid && length(bases_[v] - starts_[v] - led) <= kRounding * reach_.least_gap;
         least = k < own ? std::min(least, height) : least;
         most = k < own ? most : std::max(most, height);
         least_base = k < own ? std::min(least_base, base) : least_base;
@@ -529,8 +535,8 @@ SelfSurface::Ending SelfSurface::ending_of(std::size_t i) const {
     }
     return {.kept = apart.gap - std::max(usable_gap(apart.gap, reach_.least_gap), 0.0F),
             .at_end = least - most,
-            .at_base = stays ? apart.gap : least_base - most_base,
-            .stays = stays};
+            .at_base = stays || is_rigid ? apart.gap : least_base - most_base,
+            .stays = stays || is_rigid};
 }
 
 /// Of the ways as they are.
@@ -548,7 +554,7 @@ void SelfSurface::find_meeting(const Workers& workers) {
 bool SelfSurface::shorten_ways(int round, const Workers& workers) {
     find_meeting(workers);
     bool found = false;
-    stuck_count_ = 0;
+    stuck_.clear();
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
         const Pair& pair = pairs_[i];
         if (meets_[i] == 0 && std::none_of(pair.points.begin(), pair.points.end(),
@@ -569,7 +575,7 @@ bool SelfSurface::shorten_ways(int round, const Workers& workers) {
             can_be_shortened = true;
         }
         found = found || can_be_shortened;
-        if (!can_be_shortened && moves) ++stuck_count_;
+        if (!can_be_shortened && moves) stuck_.push_back(pair.points);
     }
     return found;
 }

@@ -57,7 +57,7 @@ class SelfSurface {
     std::span<const float> allowed_shares(const RigidTransform* frame, const PointArrays& goals,
                                           const PointArrays* bases, const Workers& workers);
     /// Pairs that could meet nevertheless, since a vertex is led on while the others stay behind.
-    std::uint64_t stuck_count() const { return stuck_count_; }
+    std::span<const std::array<std::uint32_t, 4>> stuck() const { return stuck_; }
 
     void archive(StateArchive& state);
 
@@ -105,7 +105,7 @@ class SelfSurface {
     struct Ending {
         float kept;            ///< of its gap, at least
         float at_end, at_base; ///< its gap
-        bool stays;            ///< where its vertices go none of their ways
+        bool stays;            ///< as far apart where its vertices go none of their ways
     };
     Ending ending_of(std::size_t pair) const;
     bool is_apart(std::size_t pair, const Ending& ending) const {
@@ -157,7 +157,7 @@ class SelfSurface {
     std::vector<std::uint8_t> was_shortened_; ///< by vertex, in this round
     PointArrays bases_;                       ///< at a share of 0
     PointArrays whole_goals_;                 ///< before any way was shortened
-    std::uint64_t stuck_count_ = 0;
+    std::vector<std::array<std::uint32_t, 4>> stuck_;
     // Contacts
     std::vector<Contact> contacts_;
     PiecewiseList<Contact> contacts_found_;

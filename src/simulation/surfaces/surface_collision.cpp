@@ -38,6 +38,9 @@ constexpr float kPullReach = 4;
 /// A vertex that is too fast for what is listed goes its way in several passes.
 constexpr int kMostPasses = 8;
 
+/// Pairs that are led on one way may be stuck with others.
+constexpr int kMostLeads = 8;
+
 /// No model.
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
@@ -335,20 +338,44 @@ void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles, c
         std::any_of(motions_.begin(), motions_.end(), [](const SurfaceMotion* m) { return m != nullptr; });
     const bool moves = std::count(moves_.begin(), moves_.end(), std::uint8_t{1}) != 0;
     const bool is_one_frame = !is_first || !moves || (own_pose() != nullptr && !deforms);
-    if (!is_one_frame)
-        for (std::uint32_t v = 0; v < particles.count(); ++v) bases_.set(v, base_of(v, is_first, particles));
-    const std::span<const float> shares =
-        self_->allowed_shares(own_pose(), ends_, is_one_frame ? nullptr : &bases_, workers);
-    squeezed_now_ += self_->stuck_count();
+    for (std::uint32_t v = 0; v < particles.count(); ++v) bases_.set(v, base_of(v, is_first, particles));
+    std::span<const float> shares;
+    for (int round = 0; round < kMostLeads; ++round) {
+        shares = self_->allowed_shares(own_pose(), ends_, is_one_frame ? nullptr : &bases_, workers);
+        if (is_one_frame || !is_first || !lead_together(self_->stuck(), particles)) break;
+    }
+    squeezed_now_ += self_->stuck().size();
     if (shares.empty()) return;
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
         if (shares[v] == 1) continue;
-        const Vec3f end = ends_[v];
-        const Vec3f from = base_of(v, is_first, particles);
+        const Vec3f end = ends_[v], from = bases_[v];
         ends_.set(v, from + (end - from) * shares[v]);
         // Where one of the models takes a vertex may be none that another allows.
         if (!is_one_frame && !is_permitted(v, ends_[v], true)) ++squeezed_now_;
     }
+}
+
+/// Vertices between models that move are led on different ways, and may meet where they go none of their own:
+/// then one of these ways, which all models permit, is led by all four. @return whether some are led anew
+bool SurfaceCollision::lead_together(std::span<const std::array<std::uint32_t, 4>> pairs,
+                                     const Particles& particles) {
+    bool is_led = false;
+    for (const std::array<std::uint32_t, 4>& points : pairs) {
+        const auto place_on_way_of = [&](std::uint32_t leader, std::uint32_t v) {
+            return particles.frame_start[v] + (bases_[leader] - particles.frame_start[leader]);
+        };
+        const auto leads = [&](std::uint32_t leader) {
+            return std::all_of(points.begin(), points.end(), [&](std::uint32_t v) {
+                return is_permitted(v, place_on_way_of(leader, v), true);
+            });
+        };
+        const auto* const leader = std::find_if(points.begin(), points.end(), leads);
+        if (leader == points.end()) continue;
+        const Vec3f way = bases_[*leader] - particles.frame_start[*leader];
+        for (const std::uint32_t v : points) bases_.set(v, particles.frame_start[v] + way);
+        is_led = true;
+    }
+    return is_led;
 }
 
 /// A vertex that leaves its room beside one model is looked at beside all of them.

@@ -59,6 +59,7 @@ class SurfaceCollision {
     bool pass(Particles& particles, bool is_first, const Workers& workers);
     void find_leaving(const Workers& workers);
     void shorten_ways(bool is_first, const Particles& particles, const Workers& workers);
+    bool lead_together(std::span<const std::array<std::uint32_t, 4>> pairs, const Particles& particles);
     Vec3f find_place(std::uint32_t vertex, bool is_first, const Particles& particles);
     const ModelSurface* carrier() const;
     Vec3f carried_between(std::uint32_t vertex, const Vec3f& start) const;
