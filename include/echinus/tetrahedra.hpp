@@ -86,7 +86,7 @@ struct Tetrahedralization {
 /// or features finer than the lattice; parts that are nearer than a size to each other may join.
 ///
 /// For an open model, inside is where the generalised winding number says so (exact_map.hpp).
-///
+/// The vertices are numbered along its longest axis.
 /// Time: about 1.5 s for a million tetrahedra on one core, all tries for a count included.
 /// @throws Error InvalidOptions when not exactly one of size and count is positive, a size is not finite, is
 /// smaller than 1/4096 of the model's largest coordinate, where float is too coarse, or would take more

@@ -2,6 +2,7 @@
 
 #include "geometry/parallel.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <exception>
@@ -43,11 +44,17 @@ class Patience {
 
 } // namespace
 
-/// The pieces of a loop are claimed by a ticket: the number of the loop above, the next piece below. Before
-/// a loop is described anew, the ticket is closed, so that whoever has read a part of the old description and
-/// a part of the new one cannot claim anything.
+/// The pieces of a loop are claimed by a ticket: the number of the loop, and how many pieces were taken from
+/// the front and from the back. Each worker takes from one end, so that it mostly finds what it had in the
+/// loop before: memory that another one wrote comes slowly. Before a loop is described anew, the ticket is
+/// closed, so that whoever has read a part of the old description and a part of the new one cannot claim
+/// anything.
 struct Workers::Team {
-    static constexpr std::uint64_t kClosed = 0xFFFF'FFFF;
+    static constexpr unsigned kBits = 20; ///< of each end
+    static constexpr std::uint64_t kMostPieces = (std::uint64_t{1} << kBits) - 1;
+    static constexpr std::uint64_t kFromBack = std::uint64_t{1} << kBits;
+    static constexpr std::uint64_t kNextLoop = kFromBack << kBits;
+    static constexpr std::uint64_t kClosed = kNextLoop - 1; ///< of a loop
 
     explicit Team(int thread_count) : arena(thread_count) {}
 
@@ -70,12 +77,13 @@ struct Workers::Team {
         for (;;) {
             const std::size_t count = piece_count.load(std::memory_order_acquire);
             const Body* const what = body.load(std::memory_order_acquire);
-            const std::uint64_t piece = now & kClosed;
-            if (piece >= count) return false;
-            if (!ticket.compare_exchange_weak(now, now + 1, std::memory_order_acq_rel,
-                                              std::memory_order_acquire))
+            const std::uint64_t from_front = now & kMostPieces, from_back = now >> kBits & kMostPieces;
+            if (from_front + from_back >= count) return false;
+            const bool is_front = worker % 2 == 0;
+            if (!ticket.compare_exchange_weak(now, now + (is_front ? 1 : kFromBack),
+                                              std::memory_order_acq_rel, std::memory_order_acquire))
                 continue;
-            answer(*what, worker, static_cast<std::size_t>(piece));
+            answer(*what, worker, is_front ? from_front : count - 1 - from_back);
             return true;
         }
     }
@@ -145,7 +153,10 @@ void Workers::offer(std::function<void()> task) const {
 }
 
 void Workers::run(std::size_t piece_count, const Body& body) const {
-    team_->run(piece_count, body);
+    constexpr std::size_t kMost = Team::kMostPieces;
+    for (std::size_t first = 0; first < piece_count; first += kMost)
+        team_->run(std::min(kMost, piece_count - first),
+                   [&](std::size_t worker, std::size_t piece) { body(worker, first + piece); });
 }
 
 #else

@@ -25,9 +25,10 @@ FoldArrays weighted_folds(const Deformable& deformable, const SimulationOptions&
         folds.compliances.push_back(springs ? static_cast<float>(options.compliance[kKind] / (lever * lever))
                                             : 0.0F);
     }
-    folds.runs = disjoint_runs(folds.count(), deformable.particle_count(), [&](std::size_t i) {
+    const ConstraintParticles particles(folds.count(), deformable.particle_count(), [&](std::size_t i) {
         return std::array{folds.a[i], folds.b[i], folds.c[i], folds.d[i]};
     });
+    folds.schedule = schedule_of(particles, kFoldsPerSlab);
     folds.goal_angles = folds.rest_angles;
     return folds;
 }

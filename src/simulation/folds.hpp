@@ -1,7 +1,7 @@
 #pragma once
 
 #include "geometry/workers.hpp"
-#include "simulation/disjoint.hpp"
+#include "simulation/constraint_schedule.hpp"
 #include "simulation/particles.hpp"
 
 #include <echinus/simulation.hpp>
@@ -14,6 +14,9 @@ namespace echinus {
 
 /// The angle between the faces (a, b, c) and (b, a, d), as Fold has it; 0 where one of them has no area.
 float fold_angle(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d);
+
+/// That are worth handing to another thread.
+inline constexpr std::size_t kFoldsPerSlab = 512;
 
 /// All folds with what their relaxation needs, in the order in which they are relaxed.
 ///
@@ -34,7 +37,7 @@ struct FoldArrays {
     std::vector<float> rest_angles, goal_angles; ///< [count]
     std::vector<float> compliances;              ///< [count] of the angle, over substep^2; 0 with Verlet
     float stiffness = 1;                         ///< with Verlet
-    std::vector<ConstraintRun> runs;
+    ConstraintSchedule<ConstraintRun> schedule;
 
     std::size_t count() const { return a.size(); }
     /// Multipliers begin at 0 in each substep (Macklin et al. 2016, algorithm 1).
@@ -44,9 +47,9 @@ struct FoldArrays {
 /// By the solver that the options choose, in the deformable's order.
 FoldArrays weighted_folds(const Deformable& deformable, const SimulationOptions& options);
 
-/// One relaxation of all folds, run by run. The same bits under every instruction set and number of threads.
+/// One relaxation of all folds, in order. The same bits under every instruction set and number of threads.
 /// @param remainders  what rounding took off the positions, taken along; null: it is lost
-/// @param workers     share the folds of a run
+/// @param workers     share the pieces of a phase
 void relax(FoldArrays& folds, PointArrays& positions, PointArrays* remainders = nullptr,
            const Workers& workers = Workers()) noexcept;
 

@@ -1,6 +1,7 @@
 #include "simulation/cloth_surface.hpp"
-#include "simulation/disjoint.hpp"
+#include "simulation/constraint_order.hpp"
 #include "simulation/folds.hpp"
+#include "simulation/sticks.hpp"
 #include "simulation/validation.hpp"
 
 #include <echinus/error.hpp>
@@ -165,7 +166,7 @@ class Tailor {
         if (options_.bending == BendingKind::Sticks)
             for (const auto& [a, b, c, d] : others) add_stick(c, d, StickKind::Bending);
         stiffen_threads();
-        order_in_disjoint_groups(cloth_.sticks, rest_.size(), [](const Stick& stick) {
+        order_for_relaxation(cloth_.sticks, rest_.size(), kSticksPerSlab, [](const Stick& stick) {
             return std::array{stick.a, stick.b};
         });
     }
@@ -186,7 +187,7 @@ class Tailor {
             cloth_.folds.push_back({a, b, c, d, fold_angle(rest_[a], rest_[b], rest_[c], rest_[d]),
                                     static_cast<float>(height_sum / 2)});
         }
-        order_in_disjoint_groups(cloth_.folds, rest_.size(), [](const Fold& fold) {
+        order_for_relaxation(cloth_.folds, rest_.size(), kFoldsPerSlab, [](const Fold& fold) {
             return std::array{fold.a, fold.b, fold.c, fold.d};
         });
     }

@@ -108,8 +108,6 @@ namespace {
 
 HWY_EXPORT(relax_fold_run);
 
-constexpr std::size_t kFoldsPerPiece = 256;
-
 /// A fold as its particles lie now.
 struct FoldNow {
     Vec3f edge, to_c, to_d; ///< from a
@@ -163,11 +161,10 @@ void relax_one(FoldArrays& folds, std::size_t i, const Places& places) {
     goal = goal - step * folds.compliances[i];
 }
 
-void relax_part(const ConstraintRun& part, FoldArrays& folds, PointArrays& positions,
-                PointArrays* remainders) {
+void relax_run(const ConstraintRun& run, FoldArrays& folds, PointArrays& positions, PointArrays* remainders) {
     const std::size_t done =
-        use_kernels() ? ECHINUS_DISPATCH(relax_fold_run)(part, folds, positions, remainders) : 0;
-    for (std::size_t i = part.first + done; i < part.first + part.count; ++i)
+        use_kernels() ? ECHINUS_DISPATCH(relax_fold_run)(run, folds, positions, remainders) : 0;
+    for (std::size_t i = run.first + done; i < run.first + run.count; ++i)
         if (remainders != nullptr)
             relax_one(folds, i, HWY_NAMESPACE::CompensatedPlaces{positions, *remainders});
         else
@@ -184,9 +181,8 @@ float fold_angle(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d)
 
 void relax(FoldArrays& folds, PointArrays& positions, PointArrays* remainders,
            const Workers& workers) noexcept {
-    for (const ConstraintRun& run : folds.runs)
-        for_parts_of(run, kFoldsPerPiece, workers,
-                     [&](const ConstraintRun& part) { relax_part(part, folds, positions, remainders); });
+    folds.schedule.for_each_run(
+        workers, [&](const ConstraintRun& run) { relax_run(run, folds, positions, remainders); });
 }
 
 } // namespace echinus

@@ -8,7 +8,6 @@
 // After foreach_target.h, which includes this file once for each instruction set.
 #include "simd/dispatch.hpp"
 #include "simd/lanes-inl.hpp"
-#include "simulation/disjoint.hpp"
 #include "simulation/places-inl.hpp"
 #include "simulation/sticks.hpp"
 
@@ -277,8 +276,6 @@ namespace {
 
 HWY_EXPORT(relax_lanes_of_run);
 
-constexpr std::size_t kSticksPerPiece = 1024;
-
 template <typename Places>
 void relax_one_by_one(StickArrays& sticks, std::size_t first, std::size_t count, const Places& places) {
     for (std::size_t i = first; i < first + count; ++i) HWY_NAMESPACE::relax_one(sticks, i, places);
@@ -304,16 +301,8 @@ void relax(StickArrays& sticks, std::span<const std::uint32_t> chosen, PointArra
 
 void relax(StickArrays& sticks, PointArrays& positions, PointArrays* remainders,
            const Workers& workers) noexcept {
-    for (const StickRun& run : sticks.runs) {
-        if (run.shape != RunShape::Disjoint) {
-            relax_run(run, sticks, positions, remainders);
-            continue;
-        }
-        for_parts_of({run.first, run.count}, kSticksPerPiece, workers, [&](const ConstraintRun& part) {
-            relax_run({.shape = run.shape, .first = part.first, .count = part.count}, sticks, positions,
-                      remainders);
-        });
-    }
+    sticks.schedule.for_each_run(workers,
+                                 [&](const StickRun& run) { relax_run(run, sticks, positions, remainders); });
 }
 
 } // namespace echinus

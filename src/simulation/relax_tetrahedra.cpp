@@ -64,29 +64,25 @@ namespace {
 HWY_EXPORT(relax_tetrahedron_run);
 HWY_EXPORT(damp_tetrahedron_run);
 
-constexpr std::size_t kTetrahedraPerPiece = 128;
-
 } // namespace
 
 void damp(const TetrahedronArrays& all, Particles& particles, const Workers& workers) noexcept {
     if (!all.is_viscous) return;
-    for (const ConstraintRun& run : all.runs)
-        for_parts_of(run, kTetrahedraPerPiece, workers, [&](const ConstraintRun& part) {
-            const std::size_t done =
-                use_kernels() ? ECHINUS_DISPATCH(damp_tetrahedron_run)(part, all, particles) : 0;
-            for (std::size_t i = done; i < part.count; ++i)
-                HWY_NAMESPACE::damp_at<HWY_NAMESPACE::OneByOne>(part.first + i, all, particles);
-        });
+    all.schedule.for_each_run(workers, [&](const ConstraintRun& run) {
+        const std::size_t done =
+            use_kernels() ? ECHINUS_DISPATCH(damp_tetrahedron_run)(run, all, particles) : 0;
+        for (std::size_t i = done; i < run.count; ++i)
+            HWY_NAMESPACE::damp_at<HWY_NAMESPACE::OneByOne>(run.first + i, all, particles);
+    });
 }
 
 void relax(TetrahedronArrays& all, Particles& particles, const Workers& workers) noexcept {
-    for (const ConstraintRun& run : all.runs)
-        for_parts_of(run, kTetrahedraPerPiece, workers, [&](const ConstraintRun& part) {
-            const std::size_t done =
-                use_kernels() ? ECHINUS_DISPATCH(relax_tetrahedron_run)(part, all, particles) : 0;
-            for (std::size_t i = done; i < part.count; ++i)
-                HWY_NAMESPACE::relax_at<HWY_NAMESPACE::OneByOne>(part.first + i, all, particles);
-        });
+    all.schedule.for_each_run(workers, [&](const ConstraintRun& run) {
+        const std::size_t done =
+            use_kernels() ? ECHINUS_DISPATCH(relax_tetrahedron_run)(run, all, particles) : 0;
+        for (std::size_t i = done; i < run.count; ++i)
+            HWY_NAMESPACE::relax_at<HWY_NAMESPACE::OneByOne>(run.first + i, all, particles);
+    });
 }
 
 } // namespace echinus

@@ -1,5 +1,6 @@
 #include "geometry/number_text.hpp"
-#include "simulation/disjoint.hpp"
+#include "simulation/constraint_order.hpp"
+#include "simulation/tetrahedra.hpp"
 #include "simulation/validation.hpp"
 
 #include <echinus/error.hpp>
@@ -60,8 +61,8 @@ class Moulder {
         place_particles();
         for (std::size_t i = 0; i < mesh_.tetrahedra.size(); ++i) add_tetrahedron(i);
         weigh_particles();
-        order_in_disjoint_groups(body_.tetrahedra, mesh_.vertices.size(),
-                                 [](const ElasticTetrahedron& tetrahedron) { return tetrahedron.particles; });
+        order_for_relaxation(body_.tetrahedra, mesh_.vertices.size(), kTetrahedraPerSlab,
+                             [](const ElasticTetrahedron& tetrahedron) { return tetrahedron.particles; });
         return std::move(body_);
     }
 

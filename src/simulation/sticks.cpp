@@ -1,8 +1,7 @@
 #include "simulation/sticks.hpp"
 
-#include "simulation/disjoint.hpp"
-
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace echinus {
@@ -11,7 +10,6 @@ namespace {
 
 /// Shorter runs are not worth a kernel's start.
 constexpr std::size_t kShortestRun = 4;
-constexpr std::size_t kShortestDisjointRun = 16;
 
 std::pair<std::uint32_t, std::uint32_t> nth_stick(RunShape shape, std::uint32_t a, std::uint32_t b,
                                                   std::uint32_t n) {
@@ -46,9 +44,9 @@ std::size_t longest_run(RunShape shape, std::uint32_t a, std::uint32_t b) {
     return 1;
 }
 
-std::size_t run_length(const StickArrays& sticks, std::size_t first, RunShape shape) {
+std::size_t run_length(const StickArrays& sticks, std::size_t first, std::size_t end, RunShape shape) {
     const std::uint32_t a = sticks.a[first], b = sticks.b[first];
-    const std::size_t most = std::min(longest_run(shape, a, b), sticks.count() - first);
+    const std::size_t most = std::min(longest_run(shape, a, b), end - first);
     std::size_t n = 1;
     for (; n < most; ++n) {
         const std::pair expected = nth_stick(shape, a, b, static_cast<std::uint32_t>(n));
@@ -60,7 +58,7 @@ std::size_t run_length(const StickArrays& sticks, std::size_t first, RunShape sh
     return n;
 }
 
-StickRun longest_run_from(const StickArrays& sticks, std::size_t first) {
+StickRun longest_run_from(const StickArrays& sticks, std::size_t first, std::size_t end) {
     StickRun run{.a = sticks.a[first],
                  .b = sticks.b[first],
                  .first = first,
@@ -69,7 +67,7 @@ StickRun longest_run_from(const StickArrays& sticks, std::size_t first) {
                  .share_b = sticks.share_b[first],
                  .yield = sticks.yield[first]};
     for (const RunShape shape : {RunShape::SideBySide, RunShape::Neighbours, RunShape::EverySecond}) {
-        const std::size_t count = run_length(sticks, first, shape);
+        const std::size_t count = run_length(sticks, first, end, shape);
         if (count < kShortestRun || count <= run.count) continue;
         run.shape = shape;
         run.count = count;
@@ -96,23 +94,24 @@ void add_cut(std::vector<StickRun>& runs, const StickRun& scattered, const Stick
         while (end < scattered.first + scattered.count &&
                particles.add(std::array{sticks.a[end], sticks.b[end]}))
             ++end;
-        const std::size_t count = end - first;
-        add(runs, {.shape = count < kShortestDisjointRun ? RunShape::Scattered : RunShape::Disjoint,
+        const std::size_t count = whole_packs(end - first);
+        end = first + count;
+        add(runs, {.shape = count < kConstraintsPerPack ? RunShape::Scattered : RunShape::Disjoint,
                    .first = first,
                    .count = count});
     }
 }
 
-std::vector<StickRun> runs_of(const StickArrays& sticks, std::size_t particle_count) {
+std::vector<StickRun> runs_of(const StickArrays& sticks, const ConstraintRun& piece, DisjointRun& particles) {
     std::vector<StickRun> runs;
-    DisjointRun particles(particle_count);
     StickRun scattered;
     const auto add_scattered = [&] {
         add_cut(runs, scattered, sticks, particles);
         scattered.count = 0;
     };
-    for (std::size_t first = 0, count = 0; first < sticks.count(); first += count) {
-        const StickRun run = longest_run_from(sticks, first);
+    const std::size_t end = piece.first + piece.count;
+    for (std::size_t first = piece.first, count = 0; first < end; first += count) {
+        const StickRun run = longest_run_from(sticks, first, end);
         count = run.count;
         if (run.shape == RunShape::Scattered) {
             if (scattered.count == 0) scattered.first = first;
@@ -124,6 +123,16 @@ std::vector<StickRun> runs_of(const StickArrays& sticks, std::size_t particle_co
     }
     add_scattered();
     return runs;
+}
+
+ConstraintSchedule<StickRun> schedule_of(const StickArrays& sticks, std::size_t particle_count) {
+    const ConstraintParticles ends(sticks.count(), particle_count, [&](std::size_t i) {
+        return std::array{sticks.a[i], sticks.b[i]};
+    });
+    DisjointRun particles(particle_count);
+    return ConstraintSchedule<StickRun>::of(
+        independent_pieces(ends, kSticksPerSlab),
+        [&](const ConstraintRun& piece) { return runs_of(sticks, piece, particles); });
 }
 
 /// How the ends share the correction, and what is left to the goal.
@@ -169,7 +178,7 @@ StickArrays weighted_sticks(const Deformable& deformable, const SimulationOption
         sticks.yield.push_back(asked_again ? static_cast<float>(shares.yield) : 0.0F);
         sticks.rest_lengths.push_back(stick.rest_length);
     }
-    sticks.runs = runs_of(sticks, deformable.particle_count());
+    sticks.schedule = schedule_of(sticks, deformable.particle_count());
     sticks.rest_lengths.resize(sticks.count() + PointArrays::kPadding);
     sticks.goal_lengths = sticks.rest_lengths;
     return sticks;

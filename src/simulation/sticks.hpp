@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/workers.hpp"
+#include "simulation/constraint_schedule.hpp"
 #include "simulation/particles.hpp"
 
 #include <echinus/simulation.hpp>
@@ -31,6 +32,9 @@ struct StickRun {
     float share_a = 0, share_b = 0, yield = 0; ///< of the first stick
 };
 
+/// That are worth handing to another thread.
+inline constexpr std::size_t kSticksPerSlab = 2048;
+
 /// All sticks with what their relaxation needs, in the order in which they are relaxed.
 ///
 /// A spring is relaxed like a stick whose length gives way. XPBD (Macklin et al. 2016, equation 18) changes
@@ -50,7 +54,7 @@ struct StickArrays {
     std::vector<float> yield;        ///< [count] The part by which its goal gives way; 0 for a stick
     std::vector<float> rest_lengths; ///< [count + PointArrays::kPadding]
     std::vector<float> goal_lengths; ///< the same
-    std::vector<StickRun> runs;
+    ConstraintSchedule<StickRun> schedule;
 
     std::size_t count() const { return a.size(); }
     bool gives_way() const;
@@ -60,7 +64,7 @@ struct StickArrays {
 StickArrays weighted_sticks(const Deformable& deformable, const SimulationOptions& options);
 
 /// One relaxation of all sticks, in order. The same bits under every instruction set, and for any number of
-/// threads: they share disjoint runs, and those along the rows of a rectangle are too short to be shared.
+/// threads: they share the slabs of a mesh. The rows of a rectangle need one another.
 /// @param remainders  what rounding took off the positions, taken along; null: it is lost
 void relax(StickArrays& sticks, PointArrays& positions, PointArrays* remainders = nullptr,
            const Workers& workers = Workers()) noexcept;

@@ -53,9 +53,10 @@ TetrahedronArrays weighted_tetrahedra(const Deformable& deformable, const Simula
     all.keeps_multipliers = options.iteration_count > 1;
     all.shape_multipliers.assign(all.count(), 0);
     all.volume_multipliers.assign(all.count(), 0);
-    all.runs = disjoint_runs(all.count(), deformable.particle_count(), [&](std::size_t i) {
+    const ConstraintParticles particles(all.count(), deformable.particle_count(), [&](std::size_t i) {
         return std::array{all.particles[0][i], all.particles[1][i], all.particles[2][i], all.particles[3][i]};
     });
+    all.schedule = schedule_of(particles, kTetrahedraPerSlab);
     return all;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "geometry/workers.hpp"
-#include "simulation/disjoint.hpp"
+#include "simulation/constraint_schedule.hpp"
 #include "simulation/particles.hpp"
 
 #include <echinus/simulation.hpp>
@@ -12,6 +12,9 @@
 #include <vector>
 
 namespace echinus {
+
+/// That are worth handing to another thread.
+inline constexpr std::size_t kTetrahedraPerSlab = 512;
 
 /// All tetrahedra with what their relaxation needs, in the order in which they are relaxed.
 ///
@@ -49,7 +52,7 @@ struct TetrahedronArrays {
     std::vector<float> shape_stiffnesses, volume_stiffnesses;
     std::vector<float> viscosities;                           ///< shape stiffness times damping / substep
     std::vector<float> shape_multipliers, volume_multipliers; ///< as in XPBD
-    std::vector<ConstraintRun> runs;
+    ConstraintSchedule<ConstraintRun> schedule;
     bool is_viscous = false;
     bool keeps_multipliers = false; ///< over more than one relaxation
 
@@ -63,11 +66,11 @@ TetrahedronArrays weighted_tetrahedra(const Deformable& deformable, const Simula
 
 /// Takes off a share of the strain that each tetrahedron gains in this substep, as viscosity does; once in a
 /// substep, before relaxations. @pre the particles keep remainders
-/// @param workers  share the tetrahedra of a run, as those of relax() do
+/// @param workers  share the pieces of a phase, as those of relax() do
 void damp(const TetrahedronArrays& tetrahedra, Particles& particles,
           const Workers& workers = Workers()) noexcept;
 
-/// One relaxation of all tetrahedra, run by run. The same bits under every instruction set and number of
+/// One relaxation of all tetrahedra, in order. The same bits under every instruction set and number of
 /// threads. @pre the particles keep remainders
 void relax(TetrahedronArrays& tetrahedra, Particles& particles, const Workers& workers = Workers()) noexcept;
 

@@ -13,7 +13,10 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace echinus {
 
@@ -30,6 +33,11 @@ struct Box {
         for (const double c : {low.x, low.y, low.z, high.x, high.y, high.z})
             largest = std::max(largest, std::abs(c));
         return largest;
+    }
+    double Vec3d::*longest_axis() const {
+        const Vec3d extent = high - low;
+        if (extent.x >= extent.y && extent.x >= extent.z) return &Vec3d::x;
+        return extent.y >= extent.z ? &Vec3d::y : &Vec3d::z;
     }
     double volume() const {
         const Vec3d extent = high - low;
@@ -188,6 +196,24 @@ Tetrahedralization stuff_count(const ExactMapView& map, const Box& box,
     return best;
 }
 
+/// Neighbours have near numbers then, and the body's parts their own stretches of memory.
+void number_along(double Vec3d::*axis, TetrahedralMesh& mesh) {
+    std::vector<std::uint32_t> order(mesh.vertices.size()), number_of(order.size());
+    std::iota(order.begin(), order.end(), 0U);
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return Vec3d(mesh.vertices[a]).*axis < Vec3d(mesh.vertices[b]).*axis;
+    });
+    std::vector<Vec3f> vertices;
+    vertices.reserve(order.size());
+    for (const std::uint32_t vertex : order) {
+        number_of[vertex] = static_cast<std::uint32_t>(vertices.size());
+        vertices.push_back(mesh.vertices[vertex]);
+    }
+    mesh.vertices = std::move(vertices);
+    for (Tetrahedron& tetrahedron : mesh.tetrahedra)
+        for (std::uint32_t& vertex : tetrahedron) vertex = number_of[vertex];
+}
+
 } // namespace
 
 Tetrahedralization tetrahedralize(const ExactMapView& model, const TetrahedralizeOptions& options) {
@@ -195,7 +221,10 @@ Tetrahedralization tetrahedralize(const ExactMapView& model, const Tetrahedraliz
     const Box box = box_of(model);
     Tetrahedralization body =
         options.count > 0 ? stuff_count(model, box, options) : stuff(model, box, options.size, options);
-    if (!body.mesh.tetrahedra.empty()) return body;
+    if (!body.mesh.tetrahedra.empty()) {
+        number_along(box.longest_axis(), body.mesh);
+        return body;
+    }
     if (options.count > 0)
         throw Error(ErrorCode::InvalidMesh,
                     "no size was found at which about " + std::to_string(options.count) +

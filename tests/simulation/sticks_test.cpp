@@ -48,7 +48,8 @@ void expect_same_bits_under_each_instruction_set(const Deformable& cloth,
 
 std::size_t scattered_count(const StickArrays& sticks) {
     std::size_t count = 0;
-    for (const StickRun& run : sticks.runs) count += run.shape == RunShape::Scattered ? run.count : 0;
+    for (const StickRun& run : sticks.schedule.runs)
+        count += run.shape == RunShape::Scattered ? run.count : 0;
     return count;
 }
 
@@ -98,7 +99,7 @@ TEST(Sticks, StandInRunsThatFollowEachOtherAndShareNoParticle) {
           make_cloth(make_torus(1, 0.4, 30, 20), {}), make_cloth(make_sphere(1, 100, 20), {})}) {
         const StickArrays sticks = weighted_sticks(cloth, {});
         std::size_t next = 0;
-        for (const StickRun& run : sticks.runs) {
+        for (const StickRun& run : sticks.schedule.runs) {
             EXPECT_EQ(run.first, next);
             next += run.count;
             if (run.shape == RunShape::Scattered) continue;
