@@ -21,17 +21,24 @@ namespace echinus {
 namespace HWY_NAMESPACE {
 
 /// No relaxation changes the deformation gradient by more than this: near states without volume, gradients
-/// vanish, and a whole step to the goal would throw the particles far beyond it.
+/// vanish, and a whole step to the goal would throw the particles far beyond it. Where an element is
+/// stretched beyond kStretched, as the norm of the gradient, by so much more: otherwise it would be drawn out
+/// against less of a force than its energy has, and give back more.
 constexpr float kLargestChange = 0.5F;
+constexpr float kStretched = 2;
 
 /// The square of a strain far below what the rounding of positions makes: what is divided by is never 0.
 constexpr float kNoStrain = 1e-13F;
 constexpr float kNoGain = 1e-24F; ///< that of the strain of a substep
 
-/// Elements that are flatter, or bend or turn farther in a substep, follow the gradient where they are.
+/// Elements that are flatter or larger, or bend or turn farther in a substep, follow the gradient where they
+/// are, less its moment. Turned back it would give energy to changes of shape at a constant volume where the
+/// pressure in the element draws: the direction is that of a step before.
 constexpr float kLeastVolume = 0.2F;
+constexpr float kMostVolume = 1.5F;
 constexpr float kLeastAlong = 0.5F;
 constexpr float kMostTurned = 2;
+constexpr float kOfALine = 1e-6F, kOfAPoint = 1e-10F; ///< so that what is divided by is never 0
 
 /// An element that is pressed together from all sides, to about 0.6 of its size, is pushed apart: the energy
 /// would have a minimum where it is but a point.
@@ -55,6 +62,12 @@ HWY_INLINE bool both(bool a, bool b) {
 }
 HWY_INLINE FloatMask both(FloatMask a, FloatMask b) {
     return hn::And(a, b);
+}
+HWY_INLINE bool everywhere(bool condition) {
+    return condition;
+}
+HWY_INLINE bool everywhere(FloatMask condition) {
+    return hn::AllTrue(kFloat, condition);
 }
 
 /// How numbers of one tetrahedron are read and written, or of several.
@@ -160,7 +173,7 @@ class Tetrahedra {
             product(before_, with_diagonal(times(square_of<Real>(cof), away / volume), own));
         const Real square = positive(shape_squared(f, volume - one)) + push * lacking;
         const Real value = root(square + Kind::number(kNoStrain));
-        correct(gradient, turned, volume, value, one / value, stiffness, multiplier);
+        correct(f, gradient, turned, value, one / value, stiffness, multiplier);
     }
 
     HWY_INLINE void relax_volume(const Real& stiffness, Real& multiplier) {
@@ -168,7 +181,7 @@ class Tetrahedra {
         const Real one = Kind::number(1);
         const Real volume = dot(f.x, cof.x);
         const Columns<Point> turned = product(before_, times(square_of<Real>(cof), one / volume));
-        correct(cof, turned, volume, volume - one, one, stiffness, multiplier);
+        correct(f, cof, turned, volume - one, one, stiffness, multiplier);
     }
 
     /// As if the strain of this substep, sym(F_middle^T (F - F_before)), were a constraint, with the
@@ -193,8 +206,7 @@ class Tetrahedra {
         const Real value = root(two * square + Kind::number(kNoGain));
         const Symmetric<Real> twice = times(strain, two);
         Real multiplier = Kind::number(0);
-        correct(product(f, twice), product(before_, twice), dot(f.x, cross(f.y, f.z)), value, one / value,
-                viscosity, multiplier);
+        correct(f, product(f, twice), product(before_, twice), value, one / value, viscosity, multiplier);
     }
 
     HWY_INLINE void store(const CompensatedPlaces& places) {
@@ -264,25 +276,54 @@ class Tetrahedra {
         }
     }
 
+    /// The nearest of those stresses whose forces have no moment about the places where the substep began:
+    /// the stress less an infinitesimal turn of that deformation.
+    HWY_INLINE Columns<Point> without_moment(const Columns<Point>& stress) const {
+        const Columns<Point>& f = before_;
+        const Point moment = cross(f.x, stress.x) + cross(f.y, stress.y) + cross(f.z, stress.z);
+        const Point x{f.x.x, f.y.x, f.z.x}, y{f.x.y, f.y.y, f.z.y}, z{f.x.z, f.y.z, f.z.z};
+        const Real xx = dot(x, x), yy = dot(y, y), zz = dot(z, z), zero = Kind::number(0);
+        // Of an element that is but a line no turn is defined about it, nor has it a moment there.
+        const Real some = (xx + yy + zz) * Kind::number(kOfALine) + Kind::number(kOfAPoint);
+        const Point a{yy + zz + some, zero - dot(x, y), zero - dot(x, z)},
+            b{a.y, zz + xx + some, zero - dot(y, z)}, c{a.z, b.z, xx + yy + some};
+        const Point across = cross(b, c);
+        const Point turn = Point{dot(moment, across), dot(moment, cross(c, a)), dot(moment, cross(a, b))} *
+                           (Kind::number(1) / dot(a, across));
+        return {stress.x - cross(turn, f.x), stress.y - cross(turn, f.y), stress.z - cross(turn, f.z)};
+    }
+
+    /// @param change  of the deformation gradient by a whole step  @return how much of that step is taken
+    static HWY_INLINE Real share_of_step(const Columns<Point>& f, const Real& change) {
+        const Real one = Kind::number(1), most = Kind::number(kLargestChange);
+        if (everywhere(change <= most)) return one;
+        const Real stretch = root(dot(f, f)) * Kind::number(1 / kStretched);
+        const Real most_here = most * choose(one < stretch, stretch, one);
+        return choose(most_here < change, most_here / change, one);
+    }
+
+    /// @param f  the deformation now
     /// @param gradient, turned  of the constraint times its value, where `per_value` is not 1
-    HWY_INLINE void correct(const Columns<Point>& gradient, const Columns<Point>& turned, const Real& volume,
-                            const Real& value, const Real& per_value, const Real& stiffness,
-                            Real& multiplier) {
+    HWY_INLINE void correct(const Columns<Point>& f, const Columns<Point>& gradient,
+                            const Columns<Point>& turned, const Real& value, const Real& per_value,
+                            const Real& stiffness, Real& multiplier) {
         std::array<Point, 4> forces = forces_of(gradient);
         const std::array<Point, 4> turned_forces = forces_of(turned);
         const Real own = work(forces, forces), along = work(forces, turned_forces);
         const Real own_sq = dot(gradient, gradient), turned_sq = dot(turned, turned);
+        const Real volume = dot(f.x, cross(f.y, f.z));
         const auto is_along = both(
             both(along >= own * Kind::number(kLeastAlong), turned_sq <= own_sq * Kind::number(kMostTurned)),
-            volume >= Kind::number(kLeastVolume));
+            both(volume >= Kind::number(kLeastVolume), volume <= Kind::number(kMostVolume)));
+        if (!everywhere(is_along)) forces = forces_of(without_moment(gradient));
         for (std::size_t k = 0; k < 4; ++k) forces[k] = choose(is_along, turned_forces[k], forces[k]);
         const Real rate = choose(is_along, along, own) * per_value * per_value;
         const Real size = root(choose(is_along, turned_sq, own_sq));
 
-        const Real one = Kind::number(1), zero = Kind::number(0), most = Kind::number(kLargestChange);
+        const Real one = Kind::number(1), zero = Kind::number(0);
         const Real wanted = zero - (stiffness * value + multiplier) / (stiffness * rate + one);
         const Real change = choose(wanted < zero, zero - wanted, wanted) * per_value * size * spread_;
-        const Real step = wanted * choose(most < change, most / change, one);
+        const Real step = wanted * share_of_step(f, change);
         move(forces, step * per_value);
         multiplier = multiplier + step;
     }

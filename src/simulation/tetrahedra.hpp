@@ -41,7 +41,8 @@ inline constexpr std::size_t kTetrahedraPerSlab = 512;
 /// Corrections are directed as the gradients turned back to where the substep began: with S = F^-1 times the
 /// gradient, which is symmetric, along (F then) S. No force then has a moment about the positions by which
 /// the momentum of a step is measured, and free bodies keep theirs to rounding, as in SHAKE (Ryckaert,
-/// Ciccotti and Berendsen 1977). Where an element turns or bends too far in one substep, the gradient is.
+/// Ciccotti and Berendsen 1977). Where an element turns or bends too far in one substep, is flat or is blown
+/// up, they follow the gradient less its moment about those positions.
 struct TetrahedronArrays {
     std::array<std::vector<std::uint32_t>, 4> particles; ///< [count] each
     std::array<std::vector<float>, 4> inverse_masses;    ///< the same

@@ -32,6 +32,13 @@ void shake(Deformable& body, test::Random& random, float distance) {
     body.previous_positions = body.positions;
 }
 
+/// Particles of a body at rest get velocities of their own, each coordinate up to `speed` * sqrt(3), hence
+/// `speed` in the root mean square.
+void set_in_motion(Simulation& simulation, test::Random& random, float speed) {
+    for (std::size_t i = 0; i < simulation.deformable().particle_count(); ++i)
+        simulation.set_particle_velocity(i, Vec3d(test::in_cube(random, speed * std::sqrt(3.0F))));
+}
+
 struct Momentum {
     Vec3d linear, angular;
     double of_all = 0; ///< sum of the particles' linear ones, whatever their directions
@@ -137,6 +144,60 @@ TEST(Tetrahedra, NeverGainEnergyWithoutALoad) {
                         << "frame " << frame << ", Poisson " << poisson << ", Young " << young;
                 }
             }
+}
+
+TEST(Tetrahedra, NeverGainEnergyWhereParticlesMoveFasterThanWaves) {
+    for (const double poisson : {0.0, 0.3, 0.45, 0.49})
+        for (const float wave_speeds : {2.0F, 4.0F, 10.0F}) {
+            test::Random random(19);
+            Simulation simulation(cube(4, {.young_modulus = 1e3, .poisson_ratio = poisson}), {},
+                                  weightless());
+            set_in_motion(simulation, random, wave_speeds);
+            const double start = test::energy(simulation);
+            for (int frame = 0; frame < 120; ++frame) {
+                simulation.step();
+                ASSERT_LE(test::energy(simulation), 1.001 * start)
+                    << "frame " << frame << ", Poisson " << poisson << ", wave speeds " << wave_speeds;
+            }
+            EXPECT_LT(test::energy(simulation), 0.6 * start);
+        }
+}
+
+TEST(Tetrahedra, KeepTheMomentumOfABodyWhoseElementsAreThrownInsideOut) {
+    for (const double poisson : {0.0, 0.45})
+        for (const float wave_speeds : {2.0F, 10.0F}) {
+            test::Random random(23);
+            const Deformable body = cube(4, {.young_modulus = 1e3, .poisson_ratio = poisson});
+            Simulation simulation(body, {}, weightless());
+            set_in_motion(simulation, random, wave_speeds);
+            const Momentum start = momentum(simulation);
+            double least = 1;
+            for (int frame = 0; frame < 120; ++frame) {
+                simulation.step();
+                least = std::min(least, test::least_volume_ratio(body, simulation.positions()));
+                const Momentum now = momentum(simulation);
+                ASSERT_LT(length(now.linear - start.linear), 1e-4 * start.of_all) << "frame " << frame;
+                ASSERT_LT(length(now.angular - start.angular), 2e-3 * length(start.angular))
+                    << "frame " << frame << ", Poisson " << poisson << ", wave speeds " << wave_speeds;
+            }
+            EXPECT_LT(least, -0.1);
+        }
+}
+
+TEST(Tetrahedra, DoNotStayInsideOutInABodyThatNothingDamps) {
+    for (const double poisson : {0.0, 0.3, 0.45}) {
+        test::Random random(29);
+        const Deformable body = cube(3, {.young_modulus = 1e3, .poisson_ratio = poisson});
+        Simulation simulation(body, {}, weightless());
+        set_in_motion(simulation, random, 5);
+        double least = 1;
+        for (int frame = 0; frame < 2400; ++frame) {
+            simulation.step();
+            least = std::min(least, test::least_volume_ratio(body, simulation.positions()));
+        }
+        EXPECT_LT(least, -1) << "Poisson " << poisson;
+        EXPECT_GT(test::least_volume_ratio(body, simulation.positions()), 0.4) << "Poisson " << poisson;
+    }
 }
 
 TEST(Tetrahedra, KeepTheMomentumOfAFreeBodyThatTurnsAndTrembles) {
