@@ -135,6 +135,7 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
         parts_.emplace(deformable, options);
         if (options.solver == SolverKind::Verlet) gentle_sticks_.emplace();
     }
+    if (tetrahedra_.count() > 0) energy_limit_.emplace(tetrahedra_, particles_, deformable.inverse_masses);
     if (options.multilevel) coarse_sheets_.emplace(deformable);
     if (options.measure_loads) meter_.emplace(deformable, colliders.size());
 }
@@ -160,6 +161,7 @@ void Simulation::Solver::step() {
 /// @param is_first  of the frame, which drags once
 void Simulation::Solver::step_part(bool is_first) {
     for (std::uint32_t substep = 0; substep < part_.substep_count; ++substep) {
+        if (energy_limit_) energy_limit_->begin_substep(tetrahedra_, particles_);
         integrate(is_first && substep == 0 ? 1 - options.drag : 1);
         if (substep == 0) look_ahead();
         move_colliders(substep);
@@ -170,6 +172,7 @@ void Simulation::Solver::step_part(bool is_first) {
             relax_stretched_part();
             collide();
         }
+        if (energy_limit_) energy_limit_->end_substep(particles_);
     }
     bounds_.require_ways(particles_, frame);
     keep_free();
@@ -185,6 +188,7 @@ void Simulation::Solver::begin_frame() {
         if (!Bounds::contain_way(colliders[i], options.time_step))
             bounds_.diverge(frame, name_of_collider(i) + " left all bounds; try a smaller velocity");
     if (meter_) meter_->begin_frame(colliders);
+    if (energy_limit_) energy_limit_->begin_frame(particles_);
     if (stretched_part_ && frame % StretchedPart::kFrames == 0)
         stretched_part_->find(sticks_, particles_.positions);
 }
@@ -318,8 +322,14 @@ void Simulation::Solver::relax_constraints() {
     PointArrays* const remainders = particles_.keeps_remainders ? &particles_.remainders : nullptr;
     relax(folds_, particles_.positions, remainders, workers_);
     relax(sticks_, particles_.positions, remainders, workers_);
-    relax(tetrahedra_, particles_, workers_);
+    relax_tetrahedra();
     if (meter_) meter_->charge_holder(particles_);
+}
+
+void Simulation::Solver::relax_tetrahedra() {
+    if (energy_limit_) energy_limit_->note(tetrahedra_, particles_);
+    relax(tetrahedra_, particles_, workers_);
+    if (energy_limit_) energy_limit_->charge(tetrahedra_, particles_);
 }
 
 void Simulation::Solver::collide() {

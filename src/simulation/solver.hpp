@@ -7,6 +7,7 @@
 #include "simulation/collider_motions.hpp"
 #include "simulation/collisions.hpp"
 #include "simulation/deforming_collider.hpp"
+#include "simulation/energy_limit.hpp"
 #include "simulation/folds.hpp"
 #include "simulation/frame_parts.hpp"
 #include "simulation/gentle_sticks.hpp"
@@ -77,6 +78,7 @@ class Simulation::Solver {
     void begin_constraints();
     void relax_coarse_sheets();
     void relax_constraints();
+    void relax_tetrahedra();
     void collide();
     void relax_stretched_part();
     void keep_free();
@@ -89,6 +91,7 @@ class Simulation::Solver {
     StickArrays sticks_;
     FoldArrays folds_;
     TetrahedronArrays tetrahedra_;
+    std::optional<EnergyLimit> energy_limit_; ///< with tetrahedra
     std::optional<CoarseSheets> coarse_sheets_;
     Attachments attachments_;
     std::vector<std::optional<DeformingCollider>> deforming_; ///< by collider; none where it never deformed
