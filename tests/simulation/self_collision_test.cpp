@@ -5,6 +5,8 @@
 #include "support/surface_judge.hpp"
 
 #include <echinus/simulation.hpp>
+#include <echinus/soft_body.hpp>
+#include <echinus/tetrahedra.hpp>
 
 #include <gtest/gtest.h>
 
@@ -49,6 +51,54 @@ Deformable folded_in_four(std::uint32_t count, float height) {
         v = {twice.x, twice.y, twice.z + height};
     }
     return make_cloth(mesh, {.rest_vertices = flat});
+}
+
+constexpr double kThin = 0.003;
+
+/// How far a deformable goes along x in so many seconds over a layer that is pinned.
+float slid_over(Deformable layer, Deformable slider, double speed, double seconds,
+                SimulationOptions options) {
+    options.drag = 0;
+    options.thickness = options.self_thickness = kThin;
+    options.surface_collision = options.self_collision = true;
+    for (float& inverse_mass : layer.inverse_masses) inverse_mass = 0;
+    const auto step = static_cast<float>(speed * options.time_step / options.substep_count);
+    for (Vec3f& previous : slider.previous_positions) previous.x -= step;
+    const std::size_t first = layer.particle_count();
+    const std::vector<Deformable> parts{layer, slider};
+    Simulation simulation(combine(parts), {}, options);
+    const auto middle = [&] {
+        double sum = 0;
+        for (std::size_t i = first; i < simulation.positions().size(); ++i)
+            sum += static_cast<double>(simulation.positions()[i].x);
+        return static_cast<float>(sum / static_cast<double>(slider.particle_count()));
+    };
+    const float before = middle();
+    while (simulation.frame() * options.time_step < seconds) simulation.step();
+    EXPECT_EQ(self_intersecting_pairs(surface_of(simulation.deformable())).size(), 0u);
+    return middle() - before;
+}
+
+float sheet_slid_over_sheet(double speed, double friction, double seconds) {
+    const Deformable layer = make_cloth(
+        {.column_count = 61, .row_count = 13, .width = 3, .height = 0.6, .pose = {Rotation{}, {1.2, 0, 0}}});
+    return slid_over(layer, sheet_at(1.05 * kThin, 0.2, 8), speed, seconds, {.friction = friction});
+}
+
+float block_slid_over_block(double speed, double friction, double seconds) {
+    const Deformable layer =
+        make_soft_body(make_solid_box({3, 0.4, 0.1}, {30, 4, 1}), {.pose = {Rotation{}, {1.2, 0, -0.05}}});
+    const Deformable block = make_soft_body(
+        make_solid_box({0.15, 0.15, 0.15}, {4, 4, 4}),
+        {.young_modulus = 1e5, .damping = 0.02, .pose = {Rotation{}, {0.013, 0.017, 0.075 + 1.05 * kThin}}});
+    return slid_over(
+        layer, block, speed, seconds,
+        {.solver = SolverKind::Xpbd, .iteration_count = 1, .substep_count = 10, .friction = friction});
+}
+
+/// Until friction alone has stopped it.
+float coulomb(double speed, double friction) {
+    return static_cast<float>(speed * speed / (2 * friction * 9.81));
 }
 
 /// Does it intersect itself where only contact with the model is looked for?
@@ -172,6 +222,25 @@ TEST(SelfCollision, OpensTheKnotOfASheetThatWasFoldedInFourTooSharply) {
     EXPECT_GT(in_the_beginning, 0u);
     EXPECT_EQ(simulation.profile().truncated_count, in_the_beginning);
     EXPECT_LT(simulation.residual().largest, 0.5);
+}
+
+TEST(SelfCollision, LetsASheetWithoutFrictionSlideOverAnother) {
+    for (const double speed : {0.3, 2.0, 5.0}) {
+        const auto way = static_cast<float>(0.5 * speed);
+        EXPECT_NEAR(sheet_slid_over_sheet(speed, 0, 0.5), way, 0.01F * way) << speed;
+    }
+}
+
+TEST(SelfCollision, LetsASoftBodyWithoutFrictionSlideOverAnother) {
+    for (const double speed : {0.3, 2.0}) {
+        const auto way = static_cast<float>(0.5 * speed);
+        EXPECT_NEAR(block_slid_over_block(speed, 0, 0.5), way, 0.01F * way) << speed;
+    }
+}
+
+TEST(SelfCollision, BrakesWhatSlidesOverALayerAsFrictionSays) {
+    EXPECT_NEAR(sheet_slid_over_sheet(1, 0.3, 0.5), coulomb(1, 0.3), 0.03F * coulomb(1, 0.3));
+    EXPECT_NEAR(block_slid_over_block(1, 0.3, 0.5), coulomb(1, 0.3), 0.05F * coulomb(1, 0.3));
 }
 
 TEST(SelfCollision, LeavesTheFastFlightOfASheetAsItIs) {

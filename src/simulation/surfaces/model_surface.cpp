@@ -15,6 +15,9 @@ namespace echinus {
 
 namespace {
 
+/// Ten degrees, and at a shallow angle.
+constexpr SlidingLimits kSliding{.smoothness = 0.985F, .towards = 0.25F};
+
 bool is_identity(const RigidTransform& pose) {
     const Rotation& r = pose.rotation;
     return pose.translation == Vec3d{} && r.x == 0 && r.y == 0 && r.z == 0;
@@ -133,7 +136,7 @@ bool ModelSurface::slides_past(const Pair& pair, const Separation& apart) const 
     const PointArrays& places = motion_ != nullptr ? motion_->from
                                 : deformed_        ? deformed_->positions
                                                    : shape_->positions;
-    return echinus::slides_past(*ridge, shape_->elements, places, apart.normal, way);
+    return faces_at(*ridge, shape_->elements, places, {apart.normal, way}, kSliding) == Faces::Passed;
 }
 
 void ModelSurface::add_contact(std::uint32_t element, const Pair& pair, const Separation& apart) {

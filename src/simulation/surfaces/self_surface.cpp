@@ -2,6 +2,7 @@
 
 #include "simulation/surfaces/pair_lists.hpp"
 #include "simulation/surfaces/shares.hpp"
+#include "simulation/surfaces/sliding.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -32,6 +33,11 @@ constexpr std::uint8_t kNow = 1, kOver = 2;
 /// A pair that is led on one way stays as far apart but for rounding, which is so large a share of the least
 /// gap. Half of that may be lost, frame by frame.
 constexpr float kRounding = 1.0F / 32;
+
+/// Of layers that slide over each other: three degrees, since a sheet that crumples needs the contacts of its
+/// edges. What is nearer to the faces around an edge than half a thickness lies beside it.
+constexpr SlidingLimits kSliding{.smoothness = 0.9985F, .towards = 0.7F};
+constexpr float kLeastHeight = 0.5F;
 
 /// No way is shortened to quite the length that is left.
 constexpr float kAlmost = 1 - 1.0F / (1 << 10);
@@ -458,6 +464,29 @@ float SelfSurface::closing(const Pair& pair, const Separation& apart) const {
     return std::max(most - least, 0.0F);
 }
 
+/// Does one part of a pair slide along the faces around the other? Two edges need each other where either
+/// belongs to a crumpled side.
+bool SelfSurface::slides_past(const Pair& pair, const Separation& apart, float thickness) const {
+    const std::size_t own = own_count(pair.kind);
+    Vec3f way;
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::uint32_t v = pair.points[k];
+        way += (goals_[v] - starts_[v]) * (k < own ? apart.weights[k] : -apart.weights[k]);
+    }
+    SlidingLimits limits = kSliding;
+    limits.least_height = kLeastHeight * thickness / apart.gap;
+    const std::span<const std::uint32_t> points(pair.points);
+    const std::span<const float> weights(apart.weights);
+    const auto ridge = ridge_of(points.first(own), weights.first(own));
+    const auto other = ridge_of(points.subspan(own), weights.subspan(own));
+    const Faces around = ridge ? faces_at(*ridge, *own_, starts_, {-apart.normal, -way}, limits) : Faces::Low;
+    const Faces around_other =
+        other ? faces_at(*other, *own_, starts_, {apart.normal, way}, limits) : Faces::Low;
+    const bool are_edges = ridge && other && ridge->a != ridge->b && other->a != other->b;
+    if (are_edges && (around == Faces::Crumpled || around_other == Faces::Crumpled)) return false;
+    return around == Faces::Passed || around_other == Faces::Passed;
+}
+
 /// @return how far each of the pair's vertices may go before it has to be measured again
 float SelfSurface::consider(const Pair& pair, const Separation& apart, std::vector<Contact>& contacts) const {
     const float thickness = thickness_of(pair);
@@ -465,6 +494,7 @@ float SelfSurface::consider(const Pair& pair, const Separation& apart, std::vect
                                       [&](std::uint32_t v) { return is_alert_[v] != 0; });
     const float ready = thickness * (1 + (is_alert ? kAlertReadiness : kReadiness));
     if (!(apart.gap < ready + closing(pair, apart))) return (apart.gap - thickness) / 2;
+    if (slides_past(pair, apart, thickness)) return kContactReuse * thickness;
     const std::size_t own = own_count(pair.kind);
     Contact& contact = contacts.emplace_back();
     contact.pair.particles = pair.points;

@@ -100,6 +100,7 @@ class SelfSurface {
     void lessen(std::vector<float>& radii, float most, const Workers& workers, const RadiusOf& radius_of);
     float thickness_of(const Pair& pair) const;
     float closing(const Pair& pair, const Separation& apart) const;
+    bool slides_past(const Pair& pair, const Separation& apart, float thickness) const;
     float consider(const Pair& pair, const Separation& apart, std::vector<Contact>& contacts) const;
     /// How a pair would end by the present shares.
     struct Ending {

@@ -47,14 +47,13 @@ Vec3f face_normal(const Ridge& ridge, const Elements& elements, const PointArray
     return best;
 }
 
-/// Is no face there turned against this one, from either side, by more than ten degrees?
+/// Is no face there turned against this one, from either side, by more than the angle with this cosine?
 bool are_smooth(const Ridge& ridge, const Elements& elements, const PointArrays& positions,
-                const Vec3f& normal) {
-    constexpr float kSmooth = 0.985F;
+                const Vec3f& normal, float cosine) {
     bool smooth = true;
     for_each_face_at(ridge, elements, [&](const std::array<std::uint32_t, 3>& face) {
         const Vec3f across = across_of(face, positions);
-        smooth = smooth && std::fabs(dot(across, normal)) >= kSmooth * length(across);
+        smooth = smooth && std::fabs(dot(across, normal)) >= cosine * length(across);
     });
     return smooth;
 }
@@ -62,22 +61,25 @@ bool are_smooth(const Ridge& ridge, const Elements& elements, const PointArrays&
 } // namespace
 
 std::optional<Ridge> ridge_of(std::span<const std::uint32_t> vertices, std::span<const float> weights) {
+    constexpr float kNoShare = 1e-6F; // rounded: on an edge of a face the three sum up to 1
     std::optional<Ridge> ridge;
     std::size_t count = 0;
     for (std::size_t k = 0; k < vertices.size(); ++k) {
-        if (weights[k] == 0) continue;
+        if (std::fabs(weights[k]) < kNoShare) continue;
         ridge = {vertices[k], count == 0 ? vertices[k] : ridge->a};
         ++count;
     }
     return count < 3 ? ridge : std::nullopt;
 }
 
-bool slides_past(const Ridge& ridge, const Elements& elements, const PointArrays& positions,
-                 const Vec3f& normal, const Vec3f& way) {
-    constexpr float kSliding = 0.25F;
-    if (!rise_above(ridge, elements, positions, normal)) return false;
+Faces faces_at(const Ridge& ridge, const Elements& elements, const PointArrays& positions,
+               const Passage& passage, const SlidingLimits& limits) {
+    const auto& [normal, way] = passage;
+    if (!rise_above(ridge, elements, positions, normal)) return Faces::Low;
     const Vec3f side = face_normal(ridge, elements, positions, normal);
-    return are_smooth(ridge, elements, positions, side) && -dot(side, way) < kSliding * -dot(normal, way);
+    if (!are_smooth(ridge, elements, positions, side, limits.smoothness)) return Faces::Crumpled;
+    const bool is_above = dot(side, normal) >= limits.least_height;
+    return is_above && -dot(side, way) < limits.towards * -dot(normal, way) ? Faces::Passed : Faces::Low;
 }
 
 } // namespace echinus
