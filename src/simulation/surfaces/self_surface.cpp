@@ -31,8 +31,8 @@ constexpr float kMostWay = 4;
 constexpr std::uint8_t kNow = 1, kOver = 2;
 
 /// A pair that is led on one way stays as far apart but for rounding, which is so large a share of the least
-/// gap. Half of that may be lost, frame by frame.
-constexpr float kRounding = 1.0F / 32;
+/// gap. Of that more may be lost, frame by frame, but for a rest that no rounding in a frame takes.
+constexpr float kRounding = 1.0F / 32, kLeastShare = 1.0F / 8;
 
 /// Of layers that slide over each other: three degrees, since a sheet that crumples needs the contacts of its
 /// edges. What is nearer to the faces around an edge than half a thickness lies beside it.
@@ -551,7 +551,7 @@ SelfSurface::Ending SelfSurface::ending_of(std::size_t i) const {
     const Vec3f origin = starts_[pair.points[0]];
     float least = kInfinity, most = -kInfinity, least_base = kInfinity, most_base = -kInfinity;
     const Vec3f led = bases_[pair.points[0]] - origin;
-    bool stays = true, is_rigid = 2 * apart.gap > reach_.least_gap;
+    bool stays = true, is_rigid = apart.gap > kLeastShare * reach_.least_gap;
     for (std::size_t k = 0; k < 4; ++k) {
         const std::uint32_t v = pair.points[k];
         const float height = dot(apart.normal, place_at_share(v) - origin);

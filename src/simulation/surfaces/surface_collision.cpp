@@ -318,7 +318,7 @@ bool SurfaceCollision::pass(Particles& particles, bool is_first, const Workers& 
     find_leaving(workers);
     ends_ = goals_;
     for (const std::uint32_t v : leaving_) {
-        ends_.set(v, find_place(v, is_first, particles));
+        ends_.set(v, find_place(v, is_first, particles, workers));
         is_leaving_[v] = 0;
     }
     if (self_) shorten_ways(is_first, particles, workers);
@@ -338,11 +338,12 @@ void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles, c
         std::any_of(motions_.begin(), motions_.end(), [](const SurfaceMotion* m) { return m != nullptr; });
     const bool moves = std::count(moves_.begin(), moves_.end(), std::uint8_t{1}) != 0;
     const bool is_one_frame = !is_first || !moves || (own_pose() != nullptr && !deforms);
-    for (std::uint32_t v = 0; v < particles.count(); ++v) bases_.set(v, base_of(v, is_first, particles));
+    for (std::uint32_t v = 0; v < particles.count(); ++v)
+        bases_.set(v, base_of(v, is_first, particles, workers));
     std::span<const float> shares;
     for (int round = 0; round < kMostLeads; ++round) {
         shares = self_->allowed_shares(own_pose(), ends_, is_one_frame ? nullptr : &bases_, workers);
-        if (is_one_frame || !is_first || !lead_together(self_->stuck(), particles)) break;
+        if (is_one_frame || !is_first || !lead_together(self_->stuck(), particles, workers)) break;
     }
     squeezed_now_ += self_->stuck().size();
     if (shares.empty()) return;
@@ -355,10 +356,17 @@ void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles, c
     }
 }
 
+float SurfaceCollision::most_pull(std::uint32_t vertex) const {
+    float most = 0;
+    for (const std::vector<float>& pulls : pulls_)
+        if (has_pulls_) most = std::max(most, pulls[vertex]);
+    return most;
+}
+
 /// Vertices between models that move are led on different ways, and may meet where they go none of their own:
 /// then one of these ways, which all models permit, is led by all four. @return whether some are led anew
 bool SurfaceCollision::lead_together(std::span<const std::array<std::uint32_t, 4>> pairs,
-                                     const Particles& particles) {
+                                     const Particles& particles, const Workers& workers) {
     bool is_led = false;
     for (const std::array<std::uint32_t, 4>& points : pairs) {
         const auto place_on_way_of = [&](std::uint32_t leader, std::uint32_t v) {
@@ -366,11 +374,15 @@ bool SurfaceCollision::lead_together(std::span<const std::array<std::uint32_t, 4
         };
         const auto leads = [&](std::uint32_t leader) {
             return std::all_of(points.begin(), points.end(), [&](std::uint32_t v) {
-                return is_permitted(v, place_on_way_of(leader, v), true);
+                return may_end(v, place_on_way_of(leader, v), true, workers);
             });
         };
-        const auto* const leader = std::find_if(points.begin(), points.end(), leads);
-        if (leader == points.end()) continue;
+        // The one that a model pulls most comes first, so that neighbours follow the same.
+        std::array<std::uint32_t, 4> by_pull = points;
+        std::stable_sort(by_pull.begin(), by_pull.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return most_pull(a) > most_pull(b); });
+        const auto* const leader = std::find_if(by_pull.begin(), by_pull.end(), leads);
+        if (leader == by_pull.end()) continue;
         const Vec3f way = bases_[*leader] - particles.frame_start[*leader];
         for (const std::uint32_t v : points) bases_.set(v, particles.frame_start[v] + way);
         is_led = true;
@@ -403,22 +415,23 @@ const ModelSurface* SurfaceCollision::carrier() const {
 }
 
 /// Where a vertex ends that goes none of its way.
-Vec3f SurfaceCollision::base_of(std::uint32_t vertex, bool is_first, const Particles& particles) const {
+Vec3f SurfaceCollision::base_of(std::uint32_t vertex, bool is_first, const Particles& particles,
+                                const Workers& workers) {
     if (!is_first) return particles.positions[vertex];
-    if (has_pulls_) return carried_between(vertex, particles.frame_start[vertex]);
+    if (has_pulls_) return carried_between(vertex, particles.frame_start[vertex], workers);
     return carrier() != nullptr ? carrier()->carried(vertex) : particles.frame_start[vertex];
 }
 
 /// The mean of where the models take it. Beside one that it all but touches, a mean may be too coarse; then
 /// where it was, or where one of them takes it.
-Vec3f SurfaceCollision::carried_between(std::uint32_t vertex, const Vec3f& start) const {
+Vec3f SurfaceCollision::carried_between(std::uint32_t vertex, const Vec3f& start, const Workers& workers) {
     const Vec3f mean = mean_of_carried(vertex, start);
-    if (is_permitted(vertex, mean, false)) return mean;
-    if (is_permitted(vertex, start, false)) return start;
+    if (may_end(vertex, mean, false, workers)) return mean;
+    if (may_end(vertex, start, false, workers)) return start;
     for (std::size_t c = 0; c < models_.size(); ++c) {
         if (is_near_[c] == 0 || moves_[c] == 0) continue;
         const Vec3f carried = models_[c].carried(vertex);
-        if (is_permitted(vertex, carried, true)) return carried;
+        if (may_end(vertex, carried, true, workers)) return carried;
     }
     return mean;
 }
@@ -428,6 +441,16 @@ bool SurfaceCollision::is_permitted(std::uint32_t vertex, const Vec3f& place, bo
     for (std::size_t c = 0; c < models_.size(); ++c)
         if (is_near_[c] != 0 && !models_[c].permits(vertex, place, is_carried)) return false;
     return true;
+}
+
+/// The same, after a closer look where little is known of what is around.
+bool SurfaceCollision::may_end(std::uint32_t vertex, const Vec3f& place, bool is_carried,
+                               const Workers& workers) {
+    if (is_permitted(vertex, place, is_carried)) return true;
+    bool is_renewed = false;
+    for_each_near(
+        [&](std::size_t, ModelSurface& model) { is_renewed = model.renew(vertex, workers) || is_renewed; });
+    return is_renewed && is_permitted(vertex, place, is_carried);
 }
 
 Vec3f SurfaceCollision::mean_of_carried(std::uint32_t vertex, const Vec3f& start) const {
@@ -441,14 +464,15 @@ Vec3f SurfaceCollision::mean_of_carried(std::uint32_t vertex, const Vec3f& start
     return start + way * (1 / sum);
 }
 
-Vec3f SurfaceCollision::find_place(std::uint32_t vertex, bool is_first, const Particles& particles) {
+Vec3f SurfaceCollision::find_place(std::uint32_t vertex, bool is_first, const Particles& particles,
+                                   const Workers& workers) {
     const Vec3f goal = goals_[vertex];
     if (particles.pinned(vertex)) {
         ++squeezed_now_;
         return goal;
     }
     const ModelSurface* only = is_first ? carrier() : nullptr;
-    const Vec3f from = base_of(vertex, is_first, particles);
+    const Vec3f from = base_of(vertex, is_first, particles, workers);
     Shares shares;
     for_each_near([&](std::size_t c, ModelSurface& model) {
         const float most = shares.most;

@@ -59,13 +59,16 @@ class SurfaceCollision {
     bool pass(Particles& particles, bool is_first, const Workers& workers);
     void find_leaving(const Workers& workers);
     void shorten_ways(bool is_first, const Particles& particles, const Workers& workers);
-    bool lead_together(std::span<const std::array<std::uint32_t, 4>> pairs, const Particles& particles);
-    Vec3f find_place(std::uint32_t vertex, bool is_first, const Particles& particles);
+    float most_pull(std::uint32_t vertex) const;
+    bool lead_together(std::span<const std::array<std::uint32_t, 4>> pairs, const Particles& particles,
+                       const Workers& workers);
+    Vec3f find_place(std::uint32_t vertex, bool is_first, const Particles& particles, const Workers& workers);
     const ModelSurface* carrier() const;
-    Vec3f carried_between(std::uint32_t vertex, const Vec3f& start) const;
+    Vec3f carried_between(std::uint32_t vertex, const Vec3f& start, const Workers& workers);
     Vec3f mean_of_carried(std::uint32_t vertex, const Vec3f& start) const;
     bool is_permitted(std::uint32_t vertex, const Vec3f& place, bool is_carried) const;
-    Vec3f base_of(std::uint32_t vertex, bool is_first, const Particles& particles) const;
+    bool may_end(std::uint32_t vertex, const Vec3f& place, bool is_carried, const Workers& workers);
+    Vec3f base_of(std::uint32_t vertex, bool is_first, const Particles& particles, const Workers& workers);
     template <typename Visit>
     void for_each_near(const Visit& visit);
 
