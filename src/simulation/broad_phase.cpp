@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <variant>
 
@@ -74,7 +75,6 @@ BroadPhase::BroadPhase(const std::vector<Collider>& colliders)
     : models_(colliders.size(), empty_box()), can_be_away_(colliders.size(), 0), away_(colliders.size(), 0),
       start_poses_(colliders.size()) {
     met_late_.reserve(colliders.size());
-    if (colliders.size() < 2) return;
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         const auto* exact = std::get_if<ExactMap>(&colliders[c].map.kind);
         if (exact == nullptr) continue;
@@ -96,7 +96,12 @@ void BroadPhase::deform(std::size_t collider, const PointArrays& from, const Poi
 
 void BroadPhase::begin_frame(const std::vector<Collider>& colliders, const Particles& particles,
                              double frame_seconds, double keep, std::uint32_t substeps) {
-    if (colliders.size() < 2) return;
+    // What falls on a single one that stands is mostly near.
+    if (colliders.size() < 2 &&
+        std::none_of(colliders.begin(), colliders.end(), std::mem_fn(&Collider::moves))) {
+        std::fill(away_.begin(), away_.end(), std::uint8_t{0});
+        return;
+    }
     start_ = box_of(particles.positions, particles.count());
     const WideBox before = box_of(particles.previous, particles.count());
     // All go on as the box has moved, and half as far again.

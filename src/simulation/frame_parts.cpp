@@ -13,6 +13,9 @@ namespace {
 /// In mean edges.
 constexpr double kMostWay = 1;
 
+/// A model that moves takes along what goes farther than is listed beside it: half a mean edge.
+constexpr double kBesideWhatMoves = 2;
+
 /// However fast they are.
 constexpr double kMostParts = 32;
 
@@ -36,7 +39,8 @@ std::uint32_t FrameParts::count(const std::vector<Collider>& colliders, const Co
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         if (collisions.is_away(c) || (!colliders[c].moves() && longest_of_all <= most)) continue;
         collisions.known_clearances(c, particles, clearances_);
-        longest = std::max(longest, longest_beside(colliders[c], particles));
+        const double beside = longest_beside(colliders[c], particles);
+        longest = std::max(longest, colliders[c].moves() ? beside * kBesideWhatMoves : beside);
     }
     if (longest <= most) return 1;
     auto count = static_cast<std::uint32_t>(std::ceil(std::min(longest / most, kMostParts)));
