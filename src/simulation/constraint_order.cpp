@@ -128,6 +128,9 @@ Slabs slabs_of(const ConstraintParticles& constraints, std::size_t per_slab) {
         last.insert(last.end(), all.slabs.back().begin(), all.slabs.back().end());
         all.slabs.pop_back();
     }
+    // In the order in which they were given: edges before what only stiffens. A cloth that is relaxed from
+    // one end to the other may tremble for ever.
+    for (std::vector<std::uint32_t>& slab : all.slabs) std::sort(slab.begin(), slab.end());
     if (all.slabs.size() < kFewestSlabs) return {.slabs = {as_they_stand(constraints.count())}, .rest = {}};
     return all;
 }
