@@ -238,6 +238,24 @@ TEST(SoftBody, UnderALightSheetIsPressedByAPlateThatMeetsNeither) {
     EXPECT_GT(truncated, 0u);
 }
 
+TEST(SoftBody, IsNotTakenAlongByAModelThatFallsAwayFromIt) {
+    const std::vector<TriangleMesh> models{make_box({2, 2, 0.1}, 4)};
+    for (const double speed : {1.0, 10.0, 20.0, 25.0, 60.0}) {
+        std::vector<Collider> colliders = test::colliders_of(models);
+        colliders[0].linear_velocity = {0, 0, -speed};
+        SimulationOptions options = with_surfaces();
+        options.gravity = {};
+        options.friction = 0;
+        options.drag = 0;
+        const Deformable body = cube(5, {.young_modulus = 1e4, .pose = {{}, {0, 0, 0.154}}});
+        Simulation simulation(body, colliders, options);
+        for (int frame = 0; frame < 12; ++frame) simulation.step();
+        EXPECT_EQ(simulation.profile().truncated_count, 0u) << speed;
+        for (std::size_t i = 0; i < body.particle_count(); ++i)
+            ASSERT_NEAR(simulation.positions()[i].z, body.positions[i].z, 0.002) << speed;
+    }
+}
+
 TEST(SoftBody, CollidesWithAnotherAndWithClothAsWithItself) {
     const std::vector<TriangleMesh> models{make_box({1, 1, 0.1})};
     const auto at = [](double height, double young) {
