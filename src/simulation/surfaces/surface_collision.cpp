@@ -87,10 +87,9 @@ PairReach reach_of(float thickness, float edge_length, float least_gap) {
 SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vector<Collider>& colliders,
                                    const Particles& particles, const SimulationOptions& options)
     : options_(options), elements_(std::make_shared<Elements>(elements_of(deformable))),
-      inverse_masses_(deformable.inverse_masses),
-      edge_length_(mean_edge_length(*elements_, particles.positions)), expected_(particles.positions),
-      goals_(particles.positions), is_leaving_(particles.count()), is_truncated_(particles.count()) {
-    const float edge_length = edge_length_;
+      inverse_masses_(deformable.inverse_masses), expected_(particles.positions), goals_(particles.positions),
+      is_leaving_(particles.count()), is_truncated_(particles.count()) {
+    const float edge_length = mean_edge_length(*elements_, particles.positions);
     for (const Collider& collider : colliders) {
         const std::vector<std::uint8_t> passes = let_through(deformable, models_.size());
         const auto own =
@@ -178,24 +177,7 @@ void SurfaceCollision::begin_frame(const std::vector<Collider>& colliders,
         model.begin_frame(colliders[c], motions[c], particles.positions, clearances_[c], workers);
     });
     find_pulls(colliders, particles);
-    rides_ = carrier() != nullptr && rides_on(colliders[own_frame_], particles);
     if (self_) self_->begin_pass(own_pose(), particles.positions, true);
-}
-
-/// Beside a model that falls away from it the deformable goes a long way, and in the world hardly any. On
-/// long ways its own layers pass planes that lie between them.
-bool SurfaceCollision::rides_on(const Collider& collider, const Particles& particles) const {
-    Vec3d centre, way;
-    for (std::size_t i = 0; i < particles.count(); ++i) {
-        centre += Vec3d(particles.positions[i]);
-        way += Vec3d(particles.step(i));
-    }
-    const double share = 1 / static_cast<double>(particles.count());
-    centre = centre * share;
-    way = way * (share * options_.substep_count);
-    const RigidTransform at_end = pose_after(collider, options_.time_step);
-    const Vec3d led = at_end.to_world(collider.pose.to_local(centre)) - centre;
-    return length(way - led) <= std::max(length(way), double{edge_length_});
 }
 
 /// Where several models are near and move, a vertex between them is taken along by all of them, the more the

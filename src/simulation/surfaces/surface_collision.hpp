@@ -53,7 +53,6 @@ class SurfaceCollision {
 
   private:
     void keep_gaps(const std::vector<Collider>& colliders, const Particles& particles);
-    bool rides_on(const Collider& collider, const Particles& particles) const;
     void find_pulls(const std::vector<Collider>& colliders, const Particles& particles);
     void begin_pulls(std::size_t particle_count);
     void find_pulls_of(std::size_t model, const Collider& collider, const Particles& particles);
@@ -81,12 +80,12 @@ class SurfaceCollision {
     std::optional<SelfSurface> self_;
     std::vector<RigidTransform> poses_; ///< of the colliders, as of the last substep
     std::vector<float> inverse_masses_;
-    float edge_length_; ///< the mean
     /// Where one model is near, the deformable's own pairs are looked at in its frame, so that what it takes
-    /// along rests; else in the world.
-    const RigidTransform* own_pose() const { return rides_ ? &poses_[own_frame_] : nullptr; }
-    std::size_t own_frame_ = 0;                 ///< the only model that is near and moves, or beyond the last
-    bool rides_ = false;                        ///< the deformable goes along with it rather than not
+    /// along rests.
+    const RigidTransform* own_pose() const {
+        return own_frame_ < models_.size() ? &poses_[own_frame_] : nullptr;
+    }
+    std::size_t own_frame_ = 0;                 ///< a collider, or beyond the last: the world
     std::vector<const SurfaceMotion*> motions_; ///< by collider, in this frame
     std::vector<std::uint8_t> moves_;           ///< by collider
     std::vector<std::uint8_t> is_near_;         ///< by collider: not away (BroadPhase)
