@@ -31,35 +31,45 @@ class Packer {
 
     /// What finds no place begins anew.
     void pack_some(std::span<const std::uint32_t> some, std::vector<std::uint32_t>& order) {
-        std::vector<std::uint32_t> left(some.begin(), some.end());
+        std::vector<std::uint32_t> left(some.begin(), some.end()), next, packed;
         while (!left.empty()) {
-            std::vector<std::vector<std::uint32_t>> packs(
-                std::max<std::size_t>(left.size() / kConstraintsPerPack, 1));
-            std::vector<std::uint32_t> next;
-            for (const std::uint32_t constraint : left)
-                if (!add(constraint, packs)) next.push_back(constraint);
+            sizes_.assign(std::max<std::size_t>(left.size() / kConstraintsPerPack, 1), 0);
+            packed.resize(sizes_.size() * kConstraintsPerPack);
+            next.clear();
+            for (const std::uint32_t constraint : left) {
+                const std::size_t pack = emptiest_without(constraint);
+                if (pack == sizes_.size()) {
+                    next.push_back(constraint);
+                    continue;
+                }
+                packed[pack * kConstraintsPerPack + sizes_[pack]++] = constraint;
+                for (const std::uint32_t particle : constraints_.of(constraint))
+                    packs_at_[particle].set(pack);
+            }
             for (const std::uint32_t constraint : left)
                 for (const std::uint32_t particle : constraints_.of(constraint)) packs_at_[particle].reset();
-            for (const auto& pack : packs) order.insert(order.end(), pack.begin(), pack.end());
-            left = std::move(next);
+            for (std::size_t pack = 0; pack < sizes_.size(); ++pack)
+                for (std::size_t i = 0; i < sizes_[pack]; ++i)
+                    order.push_back(packed[pack * kConstraintsPerPack + i]);
+            left.swap(next);
         }
     }
-    bool add(std::uint32_t constraint, std::vector<std::vector<std::uint32_t>>& packs) {
+    /// @return the pack, or their number if none has a place
+    std::size_t emptiest_without(std::uint32_t constraint) const {
         Packs taken;
         for (const std::uint32_t particle : constraints_.of(constraint)) taken |= packs_at_[particle];
-        std::size_t best = packs.size();
-        for (std::size_t pack = 0; pack < packs.size(); ++pack)
-            if (!taken[pack] && packs[pack].size() < kConstraintsPerPack &&
-                (best == packs.size() || packs[pack].size() < packs[best].size()))
-                best = pack;
-        if (best == packs.size()) return false;
-        packs[best].push_back(constraint);
-        for (const std::uint32_t particle : constraints_.of(constraint)) packs_at_[particle].set(best);
-        return true;
+        std::size_t best = sizes_.size(), least = kConstraintsPerPack;
+        for (std::size_t pack = 0; pack < sizes_.size(); ++pack) {
+            if (taken[pack] || sizes_[pack] >= least) continue;
+            best = pack;
+            least = sizes_[pack];
+        }
+        return best;
     }
 
     const ConstraintParticles& constraints_;
-    std::vector<Packs> packs_at_; ///< that have the particle
+    std::vector<Packs> packs_at_;    ///< that have the particle
+    std::vector<std::size_t> sizes_; ///< of the packs
 };
 
 /// From the least to the greatest number of a constraint's particles.
@@ -107,14 +117,15 @@ Slabs slabs_of(const ConstraintParticles& constraints, std::size_t per_slab) {
     const std::vector<Span> spans = spans_of(constraints);
     const std::uint32_t reach = usual_length(spans);
     Slabs all;
-    std::vector<std::uint32_t> order;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> order; // by the first particle
     for (std::uint32_t i = 0; i < spans.size(); ++i)
-        (spans[i].length() > reach ? all.rest : order).push_back(i);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return spans[a].first < spans[b].first; });
+        if (spans[i].length() > reach)
+            all.rest.push_back(i);
+        else
+            order.emplace_back(spans[i].first, i);
+    std::sort(order.begin(), order.end());
     std::uint32_t begin = 0;
-    for (const std::uint32_t i : order) {
-        const std::uint32_t first = spans[i].first;
+    for (const auto& [first, i] : order) {
         const bool is_full = !all.slabs.empty() && all.slabs.back().size() >= per_slab &&
                              first >= begin + reach + kParticlesPerLine;
         if (all.slabs.empty() || is_full) {

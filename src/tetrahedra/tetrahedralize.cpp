@@ -13,7 +13,6 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,10 +33,10 @@ struct Box {
             largest = std::max(largest, std::abs(c));
         return largest;
     }
-    double Vec3d::*longest_axis() const {
+    float Vec3f::*longest_axis() const {
         const Vec3d extent = high - low;
-        if (extent.x >= extent.y && extent.x >= extent.z) return &Vec3d::x;
-        return extent.y >= extent.z ? &Vec3d::y : &Vec3d::z;
+        if (extent.x >= extent.y && extent.x >= extent.z) return &Vec3f::x;
+        return extent.y >= extent.z ? &Vec3f::y : &Vec3f::z;
     }
     double volume() const {
         const Vec3d extent = high - low;
@@ -197,15 +196,15 @@ Tetrahedralization stuff_count(const ExactMapView& map, const Box& box,
 }
 
 /// Neighbours have near numbers then, and the body's parts their own stretches of memory.
-void number_along(double Vec3d::*axis, TetrahedralMesh& mesh) {
-    std::vector<std::uint32_t> order(mesh.vertices.size()), number_of(order.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return Vec3d(mesh.vertices[a]).*axis < Vec3d(mesh.vertices[b]).*axis;
-    });
+void number_along(float Vec3f::*axis, TetrahedralMesh& mesh) {
+    std::vector<std::pair<float, std::uint32_t>> order;
+    for (const Vec3f& vertex : mesh.vertices)
+        order.emplace_back(vertex.*axis, static_cast<std::uint32_t>(order.size()));
+    std::sort(order.begin(), order.end());
+    std::vector<std::uint32_t> number_of(order.size());
     std::vector<Vec3f> vertices;
     vertices.reserve(order.size());
-    for (const std::uint32_t vertex : order) {
+    for (const auto& [along, vertex] : order) {
         number_of[vertex] = static_cast<std::uint32_t>(vertices.size());
         vertices.push_back(mesh.vertices[vertex]);
     }
