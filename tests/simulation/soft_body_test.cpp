@@ -238,6 +238,27 @@ TEST(SoftBody, UnderALightSheetIsPressedByAPlateThatMeetsNeither) {
     EXPECT_GT(truncated, 0u);
 }
 
+TEST(SoftBody, MeetsNoLightSheetOnItUnderAnotherWhileAPlateComesDown) {
+    // The sheet lies at its least gap from both, far from the floor and from the plate, which take them
+    // along.
+    const std::vector<TriangleMesh> plates{make_box({1.2, 1.2, 0.1}, 4), make_box({0.6, 0.6, 0.04}, 6)};
+    std::vector<Collider> colliders = test::colliders_of(plates);
+    colliders[1].pose.translation = {0, 0, 0.42};
+    colliders[1].linear_velocity = {0, 0, -0.5};
+    const auto block_at = [](double height) {
+        return make_soft_body(
+            make_solid_box({0.15, 0.15, 0.15}, {4, 4, 4}),
+            {.young_modulus = 5e3, .poisson_ratio = 0.3, .damping = 0.02, .pose = {{}, {0, 0, height}}});
+    };
+    const Deformable sheet = make_cloth(
+        {.column_count = 25, .row_count = 25, .width = 0.4, .height = 0.4, .pose = {{}, {0, 0, 0.212}}});
+    const std::vector<Deformable> parts{block_at(0.13), with_masses_times(0.02 / 625, sheet),
+                                        block_at(0.294)};
+    Simulation simulation(combine(parts), colliders, with_surfaces());
+    test::expect_nothing_meets(simulation, plates, 60);
+    EXPECT_EQ(simulation.profile().lost_count, 0u);
+}
+
 TEST(SoftBody, IsNotTakenAlongByAModelThatFallsAwayFromIt) {
     const std::vector<TriangleMesh> models{make_box({2, 2, 0.1}, 4)};
     for (const double speed : {1.0, 10.0, 20.0, 25.0, 60.0}) {

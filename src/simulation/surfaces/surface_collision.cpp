@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace echinus {
@@ -39,7 +40,7 @@ constexpr float kPullReach = 4;
 constexpr int kMostPasses = 8;
 
 /// Pairs that are led on one way may be stuck with others.
-constexpr int kMostLeads = 8;
+constexpr int kMostLeads = 16;
 
 /// No model.
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -340,6 +341,8 @@ void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles, c
     const bool is_one_frame = !is_first || !moves || (own_pose() != nullptr && !deforms);
     for (std::uint32_t v = 0; v < particles.count(); ++v)
         bases_.set(v, base_of(v, is_first, particles, workers));
+    groups_.resize(particles.count());
+    std::iota(groups_.begin(), groups_.end(), 0U);
     std::span<const float> shares;
     for (int round = 0; round < kMostLeads; ++round) {
         shares = self_->allowed_shares(own_pose(), ends_, is_one_frame ? nullptr : &bases_, workers);
@@ -363,31 +366,61 @@ float SurfaceCollision::most_pull(std::uint32_t vertex) const {
     return most;
 }
 
-/// Vertices between models that move are led on different ways, and may meet where they go none of their own:
-/// then one of these ways, which all models permit, is led by all four. @return whether some are led anew
+std::uint32_t SurfaceCollision::group_of(std::uint32_t vertex) {
+    while (groups_[vertex] != vertex) vertex = groups_[vertex] = groups_[groups_[vertex]];
+    return vertex;
+}
+
+/// Vertices between models that move are led on different ways, and may meet where they go none of their own.
+/// All that hang together by pairs which do, in this round and before, are led on one way then, which all
+/// models permit. @return whether some are led anew
 bool SurfaceCollision::lead_together(std::span<const std::array<std::uint32_t, 4>> pairs,
                                      const Particles& particles, const Workers& workers) {
+    for (const std::array<std::uint32_t, 4>& points : pairs)
+        for (const std::uint32_t v : points) groups_[group_of(v)] = group_of(points[0]);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> members; // by group
+    for (std::uint32_t v = 0; v < particles.count(); ++v) members.emplace_back(group_of(v), v);
+    std::sort(members.begin(), members.end());
+    std::vector<std::uint32_t> barred; // groups
     bool is_led = false;
+    for (auto first = members.begin(), end = first; first != members.end(); first = end) {
+        while (end != members.end() && end->first == first->first) ++end;
+        if (end - first > 1 && lead_group({first, end}, particles, workers))
+            is_led = true;
+        else
+            barred.push_back(first->first);
+    }
+    // What no way leads as a whole may be led pair by pair.
     for (const std::array<std::uint32_t, 4>& points : pairs) {
-        const auto place_on_way_of = [&](std::uint32_t leader, std::uint32_t v) {
-            return particles.frame_start[v] + (bases_[leader] - particles.frame_start[leader]);
-        };
-        const auto leads = [&](std::uint32_t leader) {
-            return std::all_of(points.begin(), points.end(), [&](std::uint32_t v) {
-                return may_end(v, place_on_way_of(leader, v), true, workers);
-            });
-        };
-        // The one that a model pulls most comes first, so that neighbours follow the same.
-        std::array<std::uint32_t, 4> by_pull = points;
-        std::stable_sort(by_pull.begin(), by_pull.end(),
-                         [&](std::uint32_t a, std::uint32_t b) { return most_pull(a) > most_pull(b); });
-        const auto* const leader = std::find_if(by_pull.begin(), by_pull.end(), leads);
-        if (leader == by_pull.end()) continue;
-        const Vec3f way = bases_[*leader] - particles.frame_start[*leader];
-        for (const std::uint32_t v : points) bases_.set(v, particles.frame_start[v] + way);
-        is_led = true;
+        if (!std::binary_search(barred.begin(), barred.end(), group_of(points[0]))) continue;
+        std::array<std::pair<std::uint32_t, std::uint32_t>, 4> alone;
+        for (std::size_t k = 0; k < 4; ++k) alone[k] = {points[0], points[k]};
+        is_led = lead_group(alone, particles, workers) || is_led;
     }
     return is_led;
+}
+
+/// On the way of one of those that models pull most, or on none.
+bool SurfaceCollision::lead_group(std::span<const std::pair<std::uint32_t, std::uint32_t>> members,
+                                  const Particles& particles, const Workers& workers) {
+    constexpr std::size_t kMostTried = 8;
+    std::vector<std::pair<float, std::uint32_t>> by_pull; // the strongest first, then by number
+    for (const auto& member : members) by_pull.emplace_back(-most_pull(member.second), member.second);
+    std::sort(by_pull.begin(), by_pull.end());
+    const auto leads = [&](const Vec3f& way) {
+        const bool all_may = std::all_of(members.begin(), members.end(), [&](const auto& member) {
+            return may_end(member.second, particles.frame_start[member.second] + way, true, workers);
+        });
+        if (!all_may) return false;
+        for (const auto& member : members)
+            bases_.set(member.second, particles.frame_start[member.second] + way);
+        return true;
+    };
+    for (std::size_t i = 0; i < std::min(by_pull.size(), kMostTried); ++i) {
+        const std::uint32_t v = by_pull[i].second;
+        if (leads(bases_[v] - particles.frame_start[v])) return true;
+    }
+    return leads({});
 }
 
 /// A vertex that leaves its room beside one model is looked at beside all of them.

@@ -62,6 +62,9 @@ class SurfaceCollision {
     float most_pull(std::uint32_t vertex) const;
     bool lead_together(std::span<const std::array<std::uint32_t, 4>> pairs, const Particles& particles,
                        const Workers& workers);
+    std::uint32_t group_of(std::uint32_t vertex);
+    bool lead_group(std::span<const std::pair<std::uint32_t, std::uint32_t>> members,
+                    const Particles& particles, const Workers& workers);
     Vec3f find_place(std::uint32_t vertex, bool is_first, const Particles& particles, const Workers& workers);
     const ModelSurface* carrier() const;
     Vec3f carried_between(std::uint32_t vertex, const Vec3f& start, const Workers& workers);
@@ -98,6 +101,7 @@ class SurfaceCollision {
     std::vector<std::uint32_t> beside_;          ///< vertices that a model may take along,
     std::vector<Vec3f> places_;                  ///< where they are,
     std::vector<Contact> contacts_;              ///< and what is nearest to them
+    std::vector<std::uint32_t> groups_; ///< by vertex: another one that is led with it, up to one that leads
     std::vector<std::uint32_t> leaving_;
     std::vector<std::uint8_t> is_leaving_, is_truncated_;
     std::vector<std::uint32_t> stopped_by_; ///< by vertex: the model beside which its way ended last
