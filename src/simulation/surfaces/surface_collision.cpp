@@ -383,12 +383,13 @@ bool SurfaceCollision::lead_together(std::span<const std::array<std::uint32_t, 4
     std::sort(members.begin(), members.end());
     std::vector<std::uint32_t> barred; // groups
     bool is_led = false;
-    for (auto first = members.begin(), end = first; first != members.end(); first = end) {
-        while (end != members.end() && end->first == first->first) ++end;
-        if (end - first > 1 && lead_group({first, end}, particles, workers))
+    for (std::size_t first = 0, end = 0; first < members.size(); first = end) {
+        while (end < members.size() && members[end].first == members[first].first) ++end;
+        if (end - first == 1) continue;
+        if (lead_group(std::span(members).subspan(first, end - first), particles, workers))
             is_led = true;
         else
-            barred.push_back(first->first);
+            barred.push_back(members[first].first);
     }
     // What no way leads as a whole may be led pair by pair.
     for (const std::array<std::uint32_t, 4>& points : pairs) {
