@@ -64,6 +64,15 @@ void expect_sound(const ConstraintPieces& cut, const ConstraintParticles& constr
     EXPECT_EQ(next_piece, cut.pieces.size());
 }
 
+void expect_slabs(const Pairs& pairs, std::size_t particle_count, std::size_t most_phases,
+                  std::size_t least_pieces) {
+    const ConstraintParticles constraints = particles_of(pairs, particle_count);
+    const ConstraintPieces cut = independent_pieces(constraints, kPerSlab);
+    expect_sound(cut, constraints);
+    EXPECT_LE(cut.phases.size(), most_phases);
+    EXPECT_GT(cut.pieces.size(), least_pieces);
+}
+
 } // namespace
 
 TEST(ConstraintOrder, HasEachConstraintOnce) {
@@ -97,12 +106,7 @@ TEST(ConstraintOrder, LeavesWhatClosesARingToTheEnd) {
     constexpr std::uint32_t kParticles = 3000;
     Pairs ring = strip(kParticles, 3);
     for (std::uint32_t i = 0; i < 3; ++i) ring.push_back({i, kParticles - 1 - i});
-    const Pairs pairs = ordered(ring, kParticles);
-    const ConstraintParticles constraints = particles_of(pairs, kParticles);
-    const ConstraintPieces cut = independent_pieces(constraints, kPerSlab);
-    expect_sound(cut, constraints);
-    EXPECT_LE(cut.phases.size(), 3u);
-    EXPECT_GT(cut.pieces.size(), 60u);
+    expect_slabs(ordered(ring, kParticles), kParticles, 3, 60);
 }
 
 TEST(ConstraintSchedule, FindsTheSlabsWhereConstraintsAreMissing) {
@@ -110,11 +114,7 @@ TEST(ConstraintSchedule, FindsTheSlabsWhereConstraintsAreMissing) {
     test::Random random(2);
     Pairs pairs = ordered(strip(kParticles, 3), kParticles);
     std::erase_if(pairs, [&](const auto&) { return random() % 5 == 0; });
-    const ConstraintParticles constraints = particles_of(pairs, kParticles);
-    const ConstraintPieces cut = independent_pieces(constraints, kPerSlab);
-    expect_sound(cut, constraints);
-    EXPECT_LE(cut.phases.size(), 4u);
-    EXPECT_GT(cut.pieces.size(), 50u);
+    expect_slabs(pairs, kParticles, 4, 50);
 }
 
 TEST(ConstraintSchedule, IsSoundWhateverTheOrder) {

@@ -90,9 +90,14 @@ struct Body {
             particles.move(i, way);
         }
     }
-    /// In place of a relaxation: all particles are moved away from the middle.
-    void swell(float share) {
-        for (std::size_t i = 0; i < particles.count(); ++i) particles.move(i, particles.positions[i] * share);
+    /// A substep but for its end. In place of a relaxation all particles are moved away from the middle.
+    void swell_in_a_substep() {
+        limit.begin_frame(particles);
+        limit.begin_substep(tetrahedra, particles);
+        go();
+        limit.note(tetrahedra, particles);
+        for (std::size_t i = 0; i < particles.count(); ++i) particles.move(i, particles.positions[i] * 0.02F);
+        limit.charge(tetrahedra, particles);
     }
 };
 
@@ -102,12 +107,7 @@ TEST(EnergyLimit, TakesOffWhatARelaxationAddsAndLeavesTheMomentum) {
     Body body(cube(3, 0.3));
     body.set_in_motion(8);
     const double start = body.energy();
-    body.limit.begin_frame(body.particles);
-    body.limit.begin_substep(body.tetrahedra, body.particles);
-    body.go();
-    body.limit.note(body.tetrahedra, body.particles);
-    body.swell(0.02F);
-    body.limit.charge(body.tetrahedra, body.particles);
+    body.swell_in_a_substep();
     const Vec3d momentum = body.momentum(), angular = body.angular_momentum();
     ASSERT_GT(body.energy(), 1.1 * start);
     body.limit.end_substep(body.particles);
@@ -122,12 +122,7 @@ TEST(EnergyLimit, LeavesBodiesAsTheyAreThatMoveAsAWholeOrSlowly) {
         body.set_in_motion(own_speed);
         for (std::size_t i = 0; i < body.particles.count(); ++i)
             body.particles.move_previous(i, Vec3f{0.01F, 0, 0});
-        body.limit.begin_frame(body.particles);
-        body.limit.begin_substep(body.tetrahedra, body.particles);
-        body.go();
-        body.limit.note(body.tetrahedra, body.particles);
-        body.swell(0.02F);
-        body.limit.charge(body.tetrahedra, body.particles);
+        body.swell_in_a_substep();
         const PointArrays previous = body.particles.previous;
         body.limit.end_substep(body.particles);
         EXPECT_EQ(body.particles.previous.x, previous.x);
