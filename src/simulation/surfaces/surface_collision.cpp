@@ -123,6 +123,7 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
     moves_.resize(models_.size());
     is_near_.assign(models_.size(), 1);
     bases_.resize(particles.count());
+    groups_.resize(particles.count());
     clearances_.assign(models_.size(), std::vector<float>(particles.count()));
 }
 
@@ -339,20 +340,22 @@ void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles, c
         std::any_of(motions_.begin(), motions_.end(), [](const SurfaceMotion* m) { return m != nullptr; });
     const bool moves = std::count(moves_.begin(), moves_.end(), std::uint8_t{1}) != 0;
     const bool is_one_frame = !is_first || !moves || (own_pose() != nullptr && !deforms);
-    for (std::uint32_t v = 0; v < particles.count(); ++v)
-        bases_.set(v, base_of(v, is_first, particles, workers));
-    groups_.resize(particles.count());
-    std::iota(groups_.begin(), groups_.end(), 0U);
+    if (!is_one_frame)
+        for (std::uint32_t v = 0; v < particles.count(); ++v)
+            bases_.set(v, base_of(v, is_first, particles, workers));
     std::span<const float> shares;
     for (int round = 0; round < kMostLeads; ++round) {
         shares = self_->allowed_shares(own_pose(), ends_, is_one_frame ? nullptr : &bases_, workers);
-        if (is_one_frame || !is_first || !lead_together(self_->stuck(), particles, workers)) break;
+        if (is_one_frame || !is_first || self_->stuck().empty()) break;
+        if (round == 0) std::iota(groups_.begin(), groups_.end(), 0U);
+        if (!lead_together(self_->stuck(), particles, workers)) break;
     }
     squeezed_now_ += self_->stuck().size();
     if (shares.empty()) return;
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
         if (shares[v] == 1) continue;
-        const Vec3f end = ends_[v], from = bases_[v];
+        const Vec3f end = ends_[v];
+        const Vec3f from = is_one_frame ? base_of(v, is_first, particles, workers) : bases_[v];
         ends_.set(v, from + (end - from) * shares[v]);
         // Where one of the models takes a vertex may be none that another allows.
         if (!is_one_frame && !is_permitted(v, ends_[v], true)) ++squeezed_now_;
