@@ -12,6 +12,15 @@ namespace {
 
 /// As the relaxation has it: an element that is pressed together from all sides is pushed apart.
 constexpr double kLeastSquare = 1.2, kPush = 0.5;
+/// Undamped bodies, in which waves cross more of an element in a substep in the mean, were seen to gain
+/// energy.
+constexpr double kResolvedSquared = 0.25;
+/// A relaxation that adds more of a body's energy is followed by another: what it left undone is more than
+/// the motion should answer for. More of them no longer help bodies that fly apart in a single substep.
+constexpr double kMuch = 0.01;
+constexpr std::uint32_t kMostRelaxations = 20;
+/// Of strain: what is less is rounding.
+constexpr double kLeastStrainSquared = 1e-10;
 
 Vec3d place_of(std::size_t i, const Particles& particles) {
     return Vec3d(particles.positions[i]) + Vec3d(particles.remainders[i]);
@@ -44,6 +53,12 @@ class Connected {
 double stiffness_of(std::size_t i, const TetrahedronArrays& all) {
     const double mu{all.shape_stiffnesses[i]}, lambda{all.volume_stiffnesses[i]};
     return mu * (3 * lambda + 2 * mu) / (lambda + mu);
+}
+
+/// About the square of how many times its own height a wave of compression crosses in a substep.
+double crossed_squared(std::size_t i, const TetrahedronArrays& all) {
+    const double modulus = 2 * double{all.shape_stiffnesses[i]} + double{all.volume_stiffnesses[i]};
+    return modulus * double{all.spreads[i]};
 }
 
 /// The energy whose constraints are relaxed.
@@ -103,11 +118,18 @@ EnergyLimit::EnergyLimit(const TetrahedronArrays& tetrahedra, const Particles& p
     for (Body& body : bodies_) weigh(body, tetrahedra);
 }
 
-void EnergyLimit::weigh(Body& body, const TetrahedronArrays& tetrahedra) const {
+void EnergyLimit::weigh(Body& body, const TetrahedronArrays& all) const {
     for (const std::uint32_t i : body.particles) body.mass += masses_[i];
-    double stiffness = 0;
-    for (const std::uint32_t i : body.tetrahedra) stiffness += stiffness_of(i, tetrahedra);
+    double stiffness = 0, crossed_sq = 0;
+    bool is_damped = true;
+    for (const std::uint32_t i : body.tetrahedra) {
+        stiffness += stiffness_of(i, all);
+        crossed_sq += crossed_squared(i, all);
+        is_damped = is_damped && all.viscosities[i] >= all.shape_stiffnesses[i];
+    }
     body.wave_way_sq = stiffness / body.mass;
+    body.is_unresolved =
+        !is_damped && crossed_sq > kResolvedSquared * static_cast<double>(body.tetrahedra.size());
 }
 
 bool EnergyLimit::is_violent(const Body& body, const Particles& particles) const {
@@ -125,8 +147,8 @@ void EnergyLimit::begin_frame(const Particles& particles) {
     measures_ = false;
     for (Body& body : bodies_) {
         body.excess = 0;
-        body.is_violent = is_violent(body, particles);
-        measures_ = measures_ || body.is_violent;
+        body.is_measured = body.is_unresolved || is_violent(body, particles);
+        measures_ = measures_ || body.is_measured;
     }
 }
 
@@ -134,7 +156,7 @@ void EnergyLimit::begin_substep(const TetrahedronArrays& tetrahedra, const Parti
     if (!measures_) return;
     has_begun_ = false;
     for (Body& body : bodies_)
-        if (body.is_violent) body.elastic = elastic_energy(body.tetrahedra, tetrahedra, particles);
+        if (body.is_measured) body.elastic = elastic_energy(body.tetrahedra, tetrahedra, particles);
 }
 
 /// The first relaxation of a substep answers for what elastic energy particles gained on their way, too.
@@ -142,23 +164,33 @@ void EnergyLimit::note(const TetrahedronArrays& tetrahedra, const Particles& par
     if (!measures_) return;
     if (has_begun_) begin_substep(tetrahedra, particles);
     has_begun_ = true;
-    for (const Body& body : bodies_)
-        if (body.is_violent)
+    relaxations_ = 0;
+    for (Body& body : bodies_) {
+        body.gain = 0;
+        if (body.is_measured)
             for (const std::uint32_t i : body.particles) noted_[i] = Vec3d(particles.step(i));
+    }
 }
 
-void EnergyLimit::charge(const TetrahedronArrays& tetrahedra, const Particles& particles) {
-    if (!measures_) return;
+bool EnergyLimit::charge(const TetrahedronArrays& tetrahedra, const Particles& particles) {
+    if (!measures_) return false;
+    bool is_much = false;
     for (Body& body : bodies_) {
         // What leads pinned particles does work on the body, which nothing here measures.
-        if (!body.is_violent || is_led(body, particles)) continue;
-        double gain = elastic_energy(body.tetrahedra, tetrahedra, particles) - body.elastic;
+        if (!body.is_measured || is_led(body, particles)) continue;
+        const double elastic = elastic_energy(body.tetrahedra, tetrahedra, particles);
+        double gain = elastic - body.elastic, motion = 0;
         for (const std::uint32_t i : body.particles) {
             const Vec3d way(particles.step(i));
             gain += masses_[i] * dot(way - noted_[i], way + noted_[i]) / 2;
+            motion += masses_[i] * dot(way, way) / 2;
         }
-        body.excess += gain;
+        body.excess += gain - body.gain;
+        body.gain = gain;
+        const double rounding = kLeastStrainSquared * body.wave_way_sq * body.mass;
+        is_much = is_much || gain > kMuch * (elastic + motion) + rounding;
     }
+    return is_much && ++relaxations_ < kMostRelaxations;
 }
 
 bool EnergyLimit::is_led(const Body& body, const Particles& particles) {
@@ -169,7 +201,7 @@ bool EnergyLimit::is_led(const Body& body, const Particles& particles) {
 void EnergyLimit::end_substep(Particles& particles) {
     if (!measures_) return;
     for (Body& body : bodies_)
-        if (body.is_violent && body.excess > 0) take_off(body, particles);
+        if (body.is_measured && body.excess > 0) take_off(body, particles);
 }
 
 EnergyLimit::RigidMotion EnergyLimit::rigid_motion(const Body& body, const Particles& particles) const {

@@ -188,9 +188,17 @@ void Simulation::Solver::begin_frame() {
         if (!Bounds::contain_way(colliders[i], options.time_step))
             bounds_.diverge(frame, name_of_collider(i) + " left all bounds; try a smaller velocity");
     if (meter_) meter_->begin_frame(colliders);
-    if (energy_limit_) energy_limit_->begin_frame(particles_);
+    begin_energy_limit();
     if (stretched_part_ && frame % StretchedPart::kFrames == 0)
         stretched_part_->find(sticks_, particles_.positions);
+}
+
+/// Which may repeat relaxations, so that multipliers are kept.
+void Simulation::Solver::begin_energy_limit() {
+    if (!energy_limit_) return;
+    energy_limit_->begin_frame(particles_);
+    tetrahedra_.begin_substep(); // none is left of a frame that kept them
+    tetrahedra_.keeps_multipliers = options.iteration_count > 1 || energy_limit_->measures();
 }
 
 /// Velocities are ways in a substep, which is a shorter one now.
@@ -328,8 +336,8 @@ void Simulation::Solver::relax_constraints() {
 
 void Simulation::Solver::relax_tetrahedra() {
     if (energy_limit_) energy_limit_->note(tetrahedra_, particles_);
-    relax(tetrahedra_, particles_, workers_);
-    if (energy_limit_) energy_limit_->charge(tetrahedra_, particles_);
+    do relax(tetrahedra_, particles_, workers_);
+    while (energy_limit_ && energy_limit_->charge(tetrahedra_, particles_));
 }
 
 void Simulation::Solver::collide() {

@@ -67,6 +67,7 @@ class Simulation::Solver {
     void prepare_next_frame();
     bool all_arrived() const;
     void begin_frame();
+    void begin_energy_limit();
     void integrate(double share_kept);
     std::uint32_t begin_collisions();
     void divide_frame(std::uint32_t part_count);

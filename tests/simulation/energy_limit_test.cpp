@@ -24,9 +24,9 @@ SimulationOptions weightless(unsigned thread_count = 1) {
     return options;
 }
 
-Deformable cube(std::uint32_t segments, double poisson_ratio) {
+Deformable cube(std::uint32_t segments, double poisson_ratio, double young_modulus = kYoung) {
     return make_soft_body(make_solid_box({0.2, 0.2, 0.2}, {segments, segments, segments}),
-                          {.young_modulus = kYoung, .poisson_ratio = poisson_ratio});
+                          {.young_modulus = young_modulus, .poisson_ratio = poisson_ratio});
 }
 
 Simulation violent(const Deformable& body, const SimulationOptions& options, float wave_speeds) {
@@ -142,8 +142,28 @@ TEST(EnergyLimit, KeepsBodiesFromGainingEnergyWhereSubstepsDoNotResolveTheirMoti
         }
 }
 
+TEST(EnergyLimit, KeepsAStiffBodyThatTurnsFromGainingEnergyWhereSubstepsDoNotResolveItsWaves) {
+    constexpr double kStiff = 1e6; // waves go 32 m/s, and cross 2.6 elements in a substep of 1/240 s
+    for (const std::uint32_t substeps : {1U, 2U})
+        for (const double wave_speeds : {0.3, 0.7}) { // of its corners
+            SimulationOptions options = weightless();
+            options.substep_count = substeps;
+            const Deformable body = cube(4, 0.3, kStiff);
+            Simulation simulation(body, {}, options);
+            const Vec3d turn{0, 0, wave_speeds * std::sqrt(kStiff / 1000) / std::hypot(0.1, 0.1)};
+            for (std::size_t i = 0; i < body.particle_count(); ++i)
+                simulation.set_particle_velocity(i, cross(turn, Vec3d(body.positions[i])));
+            const double start = test::energy(simulation);
+            for (int frame = 0; frame < 240; ++frame) {
+                simulation.step();
+                ASSERT_LE(test::energy(simulation), 1.001 * start)
+                    << "frame " << frame << ", substeps " << substeps << ", wave speeds " << wave_speeds;
+            }
+        }
+}
+
 TEST(EnergyLimit, GivesTheSameBitsOnAnyNumberOfThreadsAndUnderEachInstructionSet) {
-    const Deformable bodies[] = {cube(8, 0.3), cube(4, 0.45)};
+    const Deformable bodies[] = {cube(8, 0.3), cube(4, 0.45), cube(4, 0.3, 1e7)};
     std::set<std::uint64_t> hashes;
     const auto run = [&](unsigned thread_count) {
         Simulation simulation = violent(combine(bodies), weightless(thread_count), 40);
