@@ -7,9 +7,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 using namespace echinus;
 
@@ -257,6 +259,41 @@ TEST(SoftBody, MeetsNoLightSheetOnItUnderAnotherWhileAPlateComesDown) {
     Simulation simulation(combine(parts), colliders, with_surfaces());
     test::expect_nothing_meets(simulation, plates, 60);
     EXPECT_EQ(simulation.profile().lost_count, 0u);
+}
+
+TEST(SoftBody, OnAWallThatSwaysOverAFloorMeetsNothingThatFallsOnIt) {
+    // It hangs down to the floor, and the other presses on what is drawn long between there and the wall.
+    const ExactMap map = ExactMap::build(make_sphere(0.1, 60, 30));
+    const TetrahedralMesh ball = tetrahedralize(map, {.count = 400}).mesh;
+    float left = 0;
+    for (const Vec3f& v : ball.vertices) left = std::min(left, v.x);
+    const std::vector<TriangleMesh> models{make_box({4, 4, 0.1}, 4), make_box({0.1, 1, 1}, 2)};
+    for (const auto& [young_modulus, substeps] : {std::pair{600.0, 10U}, std::pair{1030.0, 5U}}) {
+        SoftBodyOptions soft{.young_modulus = young_modulus, .poisson_ratio = 0.49, .damping = 0};
+        soft.pose.translation = {0.02, 0.01, 0.53};
+        const Deformable falling = make_soft_body(ball, soft);
+        soft.pose.translation = {0, 0, 0.3};
+        for (std::uint32_t v = 0; v < ball.vertices.size(); ++v)
+            if (ball.vertices[v].x < left + 0.01F) soft.attachments.push_back({v, 1});
+        const std::vector<Deformable> parts{make_soft_body(ball, soft), falling};
+        std::vector<Collider> colliders = test::colliders_of(models);
+        colliders[0].pose.translation = {};
+        colliders[1].pose.translation = {double{left} - 0.056, 0, 0.3};
+        SimulationOptions options = with_surfaces();
+        options.substep_count = substeps;
+        options.thickness = 0.003;
+        options.drag = 0;
+        options.friction = 0.5;
+        Simulation simulation(combine(parts), colliders, options);
+        for (int frame = 0; frame < 110; ++frame) {
+            const Vec3d sway{-0.05 * std::sin(frame * 0.05), 0.03 * std::sin(frame * 0.07), 0};
+            simulation.set_collider_pose(1, {{}, colliders[1].pose.translation + sway});
+            simulation.step();
+            ASSERT_EQ(test::meeting_faces(simulation, models).size(), 0u) << young_modulus << " " << frame;
+        }
+        EXPECT_EQ(simulation.profile().squeezed_count, 0u) << young_modulus;
+        EXPECT_GT(simulation.profile().truncated_count, 0u) << young_modulus;
+    }
 }
 
 TEST(SoftBody, IsNotTakenAlongByAModelThatFallsAwayFromIt) {

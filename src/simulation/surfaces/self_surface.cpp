@@ -527,6 +527,8 @@ std::span<const float> SelfSurface::allowed_shares(const RigidTransform* frame, 
         to_frame(frame, *bases, bases_);
     else
         bases_ = starts_;
+    for (const std::uint32_t v : surface_)
+        if (mobility_[v] == 0) bases_.set(v, goals_[v]);
     list_pairs(workers);
     measure(workers);
     shares_.assign(own_->vertex_count(), 1);
@@ -596,16 +598,15 @@ bool SelfSurface::shorten_ways(int round, const Workers& workers) {
         const float share = round < kRounds && at_base > kept
                                 ? std::clamp((at_base - kept) / (at_base - at_end), 0.0F, 1.0F) * kAlmost
                                 : 0.0F;
-        bool can_be_shortened = false, moves = !stays;
+        bool can_be_shortened = false;
         for (const std::uint32_t v : pair.points) {
-            moves = moves || (mobility_[v] == 0 && whole_goals_[v] != starts_[v]);
             if (shares_[v] == 0 || mobility_[v] == 0) continue;
             shares_[v] *= share;
             was_shortened_[v] = 1;
             can_be_shortened = true;
         }
         found = found || can_be_shortened;
-        if (!can_be_shortened && moves) stuck_.push_back(pair.points);
+        if (!can_be_shortened && !stays) stuck_.push_back(pair.points);
     }
     return found;
 }

@@ -53,10 +53,11 @@ class SelfSurface {
     void relax(Particles& particles, std::span<const float> inverse_masses, SimulationProfile& profile);
 
     /// The shares of the ways to the goals that vertices may go, or none where all may go the whole way.
-    /// @param bases  [vertex_count] where the vertices end that go none of their ways, or null: they stay
+    /// @param bases  [vertex_count] where the vertices end that go none of their ways, or null: they stay.
+    ///               What is pinned goes all of its way.
     std::span<const float> allowed_shares(const RigidTransform* frame, const PointArrays& goals,
                                           const PointArrays* bases, const Workers& workers);
-    /// Pairs that could meet nevertheless, since a vertex is led on while the others stay behind.
+    /// Pairs that could meet nevertheless, since a vertex is led on, or pinned, while others stay behind.
     std::span<const std::array<std::uint32_t, 4>> stuck() const { return stuck_; }
 
     void archive(StateArchive& state);

@@ -404,20 +404,24 @@ bool SurfaceCollision::lead_together(std::span<const std::array<std::uint32_t, 4
     return is_led;
 }
 
-/// On the way of one of those that models pull most, or on none.
+/// On the way of one that is pinned and goes it anyway, or of one of those that models pull most, or on none.
 bool SurfaceCollision::lead_group(std::span<const std::pair<std::uint32_t, std::uint32_t>> members,
                                   const Particles& particles, const Workers& workers) {
     constexpr std::size_t kMostTried = 8;
     std::vector<std::pair<float, std::uint32_t>> by_pull; // the strongest first, then by number
-    for (const auto& member : members) by_pull.emplace_back(-most_pull(member.second), member.second);
+    std::vector<std::uint32_t> led;
+    for (const auto& [group, v] : members) {
+        const bool is_pinned = particles.pinned(v);
+        by_pull.emplace_back(is_pinned ? -std::numeric_limits<float>::infinity() : -most_pull(v), v);
+        if (!is_pinned) led.push_back(v);
+    }
     std::sort(by_pull.begin(), by_pull.end());
     const auto leads = [&](const Vec3f& way) {
-        const bool all_may = std::all_of(members.begin(), members.end(), [&](const auto& member) {
-            return may_end(member.second, particles.frame_start[member.second] + way, true, workers);
+        const bool all_may = std::all_of(led.begin(), led.end(), [&](std::uint32_t v) {
+            return may_end(v, particles.frame_start[v] + way, true, workers);
         });
         if (!all_may) return false;
-        for (const auto& member : members)
-            bases_.set(member.second, particles.frame_start[member.second] + way);
+        for (const std::uint32_t v : led) bases_.set(v, particles.frame_start[v] + way);
         return true;
     };
     for (std::size_t i = 0; i < std::min(by_pull.size(), kMostTried); ++i) {
@@ -455,6 +459,7 @@ const ModelSurface* SurfaceCollision::carrier() const {
 Vec3f SurfaceCollision::base_of(std::uint32_t vertex, bool is_first, const Particles& particles,
                                 const Workers& workers) {
     if (!is_first) return particles.positions[vertex];
+    if (particles.pinned(vertex)) return goals_[vertex]; // nothing holds it back
     if (has_pulls_) return carried_between(vertex, particles.frame_start[vertex], workers);
     return carrier() != nullptr ? carrier()->carried(vertex) : particles.frame_start[vertex];
 }
