@@ -11,7 +11,6 @@
 #include <cmath>
 #include <limits>
 #include <set>
-#include <utility>
 
 using namespace echinus;
 
@@ -261,14 +260,19 @@ TEST(SoftBody, MeetsNoLightSheetOnItUnderAnotherWhileAPlateComesDown) {
     EXPECT_EQ(simulation.profile().lost_count, 0u);
 }
 
-TEST(SoftBody, OnAWallThatSwaysOverAFloorMeetsNothingThatFallsOnIt) {
+TEST(SoftBody, OnAWallThatSwaysOrTurnsOverAFloorMeetsNothingThatFallsOnIt) {
     // It hangs down to the floor, and the other presses on what is drawn long between there and the wall.
     const ExactMap map = ExactMap::build(make_sphere(0.1, 60, 30));
     const TetrahedralMesh ball = tetrahedralize(map, {.count = 400}).mesh;
     float left = 0;
     for (const Vec3f& v : ball.vertices) left = std::min(left, v.x);
     const std::vector<TriangleMesh> models{make_box({4, 4, 0.1}, 4), make_box({0.1, 1, 1}, 2)};
-    for (const auto& [young_modulus, substeps] : {std::pair{600.0, 10U}, std::pair{1030.0, 5U}}) {
+    struct Case {
+        double young_modulus;
+        std::uint32_t substeps;
+        double turn;
+    };
+    for (const auto& [young_modulus, substeps, turn] : {Case{600, 10, 0}, Case{1030, 5, 0.3}}) {
         SoftBodyOptions soft{.young_modulus = young_modulus, .poisson_ratio = 0.49, .damping = 0};
         soft.pose.translation = {0.02, 0.01, 0.53};
         const Deformable falling = make_soft_body(ball, soft);
@@ -287,7 +291,9 @@ TEST(SoftBody, OnAWallThatSwaysOverAFloorMeetsNothingThatFallsOnIt) {
         Simulation simulation(combine(parts), colliders, options);
         for (int frame = 0; frame < 110; ++frame) {
             const Vec3d sway{-0.05 * std::sin(frame * 0.05), 0.03 * std::sin(frame * 0.07), 0};
-            simulation.set_collider_pose(1, {{}, colliders[1].pose.translation + sway});
+            const double half_angle = turn * std::sin(frame * 0.05) / 2;
+            simulation.set_collider_pose(1, {{std::cos(half_angle), std::sin(half_angle), 0, 0},
+                                             colliders[1].pose.translation + sway});
             simulation.step();
             ASSERT_EQ(test::meeting_faces(simulation, models).size(), 0u) << young_modulus << " " << frame;
         }

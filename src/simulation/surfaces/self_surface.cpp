@@ -519,14 +519,16 @@ void SelfSurface::relax(Particles& particles, std::span<const float> inverse_mas
 /// A vertex that ends early does not drift on with the others: it leaves the way for which its pairs were
 /// listed, and the next round finds what is near its new one.
 std::span<const float> SelfSurface::allowed_shares(const RigidTransform* frame, const PointArrays& goals,
-                                                   const PointArrays* bases, const Workers& workers) {
+                                                   const Bases* bases, const Workers& workers) {
     set_goals(frame, goals);
     stuck_.clear();
     if (all_within(rooms_)) return {};
     if (bases != nullptr)
-        to_frame(frame, *bases, bases_);
+        to_frame(frame, bases->places, bases_);
     else
         bases_ = starts_;
+    bodies_ =
+        bases != nullptr ? std::span<const std::uint32_t>(bases->bodies) : std::span<const std::uint32_t>();
     for (const std::uint32_t v : surface_)
         if (mobility_[v] == 0) bases_.set(v, goals_[v]);
     list_pairs(workers);
@@ -546,6 +548,20 @@ Vec3f SelfSurface::place_at_share(std::uint32_t v) const {
     return bases_[v] + (whole_goals_[v] - bases_[v]) * shares_[v];
 }
 
+/// Parts of one rigid body that do not meet do not meet on straight ways to another place of it either, if it
+/// turns by less than half a turn: at any time, one affine map, which has an inverse, has taken all of it
+/// there. How far apart they end is measured, since places are rounded.
+bool SelfSurface::is_led_as_one(std::size_t i) const {
+    const Pair& pair = pairs_[i];
+    if (bodies_.empty() || bodies_[pair.points[0]] == Bases::kAlone) return false;
+    std::array<Vec3f, 4> points;
+    for (std::size_t k = 0; k < 4; ++k) {
+        if (bodies_[pair.points[k]] != bodies_[pair.points[0]]) return false;
+        points[k] = bases_[pair.points[k]];
+    }
+    return separation(pair.kind, points).gap > kLeastShare * reach_.least_gap;
+}
+
 SelfSurface::Ending SelfSurface::ending_of(std::size_t i) const {
     const Pair& pair = pairs_[i];
     const Separation& apart = separations_[i];
@@ -553,7 +569,8 @@ SelfSurface::Ending SelfSurface::ending_of(std::size_t i) const {
     const Vec3f origin = starts_[pair.points[0]];
     float least = kInfinity, most = -kInfinity, least_base = kInfinity, most_base = -kInfinity;
     const Vec3f led = bases_[pair.points[0]] - origin;
-    bool stays = true, is_rigid = apart.gap > kLeastShare * reach_.least_gap;
+    const bool keeps_gap = apart.gap > kLeastShare * reach_.least_gap;
+    bool stays = true, is_rigid = keeps_gap;
     for (std::size_t k = 0; k < 4; ++k) {
         const std::uint32_t v = pair.points[k];
         const float height = dot(apart.normal, place_at_share(v) - origin);
@@ -565,6 +582,7 @@ SelfSurface::Ending SelfSurface::ending_of(std::size_t i) const {
         least_base = k < own ? std::min(least_base, base) : least_base;
         most_base = k < own ? most_base : std::max(most_base, base);
     }
+    is_rigid = is_rigid || (keeps_gap && is_led_as_one(i));
     return {.kept = apart.gap - std::max(usable_gap(apart.gap, reach_.least_gap), 0.0F),
             .at_end = least - most,
             .at_base = stays || is_rigid ? apart.gap : least_base - most_base,

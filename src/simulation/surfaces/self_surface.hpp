@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -52,11 +53,18 @@ class SelfSurface {
     void look_ahead(const RigidTransform* frame, const PointArrays& goals, const Workers& workers);
     void relax(Particles& particles, std::span<const float> inverse_masses, SimulationProfile& profile);
 
+    /// Where vertices end that go none of their ways. What is pinned goes all of its way.
+    struct Bases {
+        static constexpr std::uint32_t kAlone = std::numeric_limits<std::uint32_t>::max();
+
+        PointArrays places;
+        std::vector<std::uint32_t> bodies; ///< by vertex: what has one number goes there as one rigid body
+    };
+
     /// The shares of the ways to the goals that vertices may go, or none where all may go the whole way.
-    /// @param bases  [vertex_count] where the vertices end that go none of their ways, or null: they stay.
-    ///               What is pinned goes all of its way.
+    /// @param bases  or null: what is not pinned stays
     std::span<const float> allowed_shares(const RigidTransform* frame, const PointArrays& goals,
-                                          const PointArrays* bases, const Workers& workers);
+                                          const Bases* bases, const Workers& workers);
     /// Pairs that could meet nevertheless, since a vertex is led on, or pinned, while others stay behind.
     std::span<const std::array<std::uint32_t, 4>> stuck() const { return stuck_; }
 
@@ -110,6 +118,7 @@ class SelfSurface {
         bool stays;            ///< as far apart where its vertices go none of their ways
     };
     Ending ending_of(std::size_t pair) const;
+    bool is_led_as_one(std::size_t pair) const;
     bool is_apart(std::size_t pair, const Ending& ending) const {
         return separations_[pair].gap > 0 && ending.at_end >= ending.kept;
     }
@@ -158,6 +167,7 @@ class SelfSurface {
     std::vector<std::uint8_t> meets_;         ///< by pair, as the ways are when a round begins
     std::vector<std::uint8_t> was_shortened_; ///< by vertex, in this round
     PointArrays bases_;                       ///< at a share of 0
+    std::span<const std::uint32_t> bodies_;   ///< by vertex, as Bases has them, or none
     PointArrays whole_goals_;                 ///< before any way was shortened
     std::vector<std::array<std::uint32_t, 4>> stuck_;
     // Contacts

@@ -122,7 +122,10 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
     motions_.resize(models_.size());
     moves_.resize(models_.size());
     is_near_.assign(models_.size(), 1);
-    bases_.resize(particles.count());
+    bases_.places.resize(particles.count());
+    bases_.bodies.assign(particles.count(), SelfSurface::Bases::kAlone);
+    attached_.assign(particles.count(), kNone);
+    for (const auto& [particle, collider] : deformable.attachments) attached_[particle] = collider;
     groups_.resize(particles.count());
     clearances_.assign(models_.size(), std::vector<float>(particles.count()));
 }
@@ -341,8 +344,10 @@ void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles, c
     const bool moves = std::count(moves_.begin(), moves_.end(), std::uint8_t{1}) != 0;
     const bool is_one_frame = !is_first || !moves || (own_pose() != nullptr && !deforms);
     if (!is_one_frame)
-        for (std::uint32_t v = 0; v < particles.count(); ++v)
-            bases_.set(v, base_of(v, is_first, particles, workers));
+        for (std::uint32_t v = 0; v < particles.count(); ++v) {
+            bases_.places.set(v, base_of(v, is_first, particles, workers));
+            bases_.bodies[v] = body_of(v);
+        }
     std::span<const float> shares;
     for (int round = 0; round < kMostLeads; ++round) {
         shares = self_->allowed_shares(own_pose(), ends_, is_one_frame ? nullptr : &bases_, workers);
@@ -355,11 +360,18 @@ void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles, c
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
         if (shares[v] == 1) continue;
         const Vec3f end = ends_[v];
-        const Vec3f from = is_one_frame ? base_of(v, is_first, particles, workers) : bases_[v];
+        const Vec3f from = is_one_frame ? base_of(v, is_first, particles, workers) : bases_.places[v];
         ends_.set(v, from + (end - from) * shares[v]);
         // Where one of the models takes a vertex may be none that another allows.
         if (!is_one_frame && !is_permitted(v, ends_[v], true)) ++squeezed_now_;
     }
+}
+
+/// The model that takes an attached vertex along, if as one rigid body.
+std::uint32_t SurfaceCollision::body_of(std::uint32_t vertex) const {
+    const std::uint32_t model = attached_[vertex];
+    const bool is_rigid = model != kNone && is_near_[model] != 0 && motions_[model] == nullptr;
+    return is_rigid ? model : SelfSurface::Bases::kAlone;
 }
 
 float SurfaceCollision::most_pull(std::uint32_t vertex) const {
@@ -408,7 +420,8 @@ bool SurfaceCollision::lead_together(std::span<const std::array<std::uint32_t, 4
 bool SurfaceCollision::lead_group(std::span<const std::pair<std::uint32_t, std::uint32_t>> members,
                                   const Particles& particles, const Workers& workers) {
     constexpr std::size_t kMostTried = 8;
-    std::vector<std::pair<float, std::uint32_t>> by_pull; // the strongest first, then by number
+    // What is pinned first, then what is pulled most, then by number.
+    std::vector<std::pair<float, std::uint32_t>> by_pull;
     std::vector<std::uint32_t> led;
     for (const auto& [group, v] : members) {
         const bool is_pinned = particles.pinned(v);
@@ -416,19 +429,28 @@ bool SurfaceCollision::lead_group(std::span<const std::pair<std::uint32_t, std::
         if (!is_pinned) led.push_back(v);
     }
     std::sort(by_pull.begin(), by_pull.end());
-    const auto leads = [&](const Vec3f& way) {
-        const bool all_may = std::all_of(led.begin(), led.end(), [&](std::uint32_t v) {
-            return may_end(v, particles.frame_start[v] + way, true, workers);
-        });
-        if (!all_may) return false;
-        for (const std::uint32_t v : led) bases_.set(v, particles.frame_start[v] + way);
-        return true;
-    };
     for (std::size_t i = 0; i < std::min(by_pull.size(), kMostTried); ++i) {
         const std::uint32_t v = by_pull[i].second;
-        if (leads(bases_[v] - particles.frame_start[v])) return true;
+        const Vec3f way = bases_.places[v] - particles.frame_start[v];
+        if (lead_on(led, way, bases_.bodies[v], particles, workers)) return true;
     }
-    return leads({});
+    return lead_on(led, {}, SelfSurface::Bases::kAlone, particles, workers);
+}
+
+/// @param body  that leads them in place of the way: a model, which may turn, or none
+/// @return whether all models permit it
+bool SurfaceCollision::lead_on(std::span<const std::uint32_t> vertices, const Vec3f& way, std::uint32_t body,
+                               const Particles& particles, const Workers& workers) {
+    const auto place_of = [&](std::uint32_t v) {
+        return body == SelfSurface::Bases::kAlone ? particles.frame_start[v] + way : models_[body].carried(v);
+    };
+    for (const std::uint32_t v : vertices)
+        if (!may_end(v, place_of(v), true, workers)) return false;
+    for (const std::uint32_t v : vertices) {
+        bases_.places.set(v, place_of(v));
+        bases_.bodies[v] = body;
+    }
+    return true;
 }
 
 /// A vertex that leaves its room beside one model is looked at beside all of them.

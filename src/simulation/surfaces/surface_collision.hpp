@@ -60,11 +60,14 @@ class SurfaceCollision {
     void find_leaving(const Workers& workers);
     void shorten_ways(bool is_first, const Particles& particles, const Workers& workers);
     float most_pull(std::uint32_t vertex) const;
+    std::uint32_t body_of(std::uint32_t vertex) const;
     bool lead_together(std::span<const std::array<std::uint32_t, 4>> pairs, const Particles& particles,
                        const Workers& workers);
     std::uint32_t group_of(std::uint32_t vertex);
     bool lead_group(std::span<const std::pair<std::uint32_t, std::uint32_t>> members,
                     const Particles& particles, const Workers& workers);
+    bool lead_on(std::span<const std::uint32_t> vertices, const Vec3f& way, std::uint32_t body,
+                 const Particles& particles, const Workers& workers);
     Vec3f find_place(std::uint32_t vertex, bool is_first, const Particles& particles, const Workers& workers);
     const ModelSurface* carrier() const;
     Vec3f carried_between(std::uint32_t vertex, const Vec3f& start, const Workers& workers);
@@ -93,7 +96,9 @@ class SurfaceCollision {
     std::vector<std::uint8_t> moves_;           ///< by collider
     std::vector<std::uint8_t> is_near_;         ///< by collider: not away (BroadPhase)
     std::vector<RigidTransform> start_poses_;   ///< of the colliders
-    PointArrays expected_, goals_, ends_, bases_;
+    PointArrays expected_, goals_, ends_;
+    SelfSurface::Bases bases_;                   ///< where vertices are led by models
+    std::vector<std::uint32_t> attached_;        ///< by vertex: to a model, or to none
     std::vector<std::vector<float>> clearances_; ///< by model and vertex
     bool has_pulls_ = false;                     ///< in this frame
     float rest_pull_ = 0;                        ///< how much what is between takes none along
