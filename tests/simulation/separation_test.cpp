@@ -1,6 +1,7 @@
 // How far apart a vertex and a face or two edges are: a bound that holds, and a plane between them.
 
 #include "simulation/surfaces/separation.hpp"
+#include "simulation/surfaces/turning_plane.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/random_points.hpp"
 
@@ -189,4 +190,18 @@ TEST(Separation, HasTheSameBitsInVectorLanes) {
             }
         });
     }
+}
+
+TEST(TurningPlane, ShowsThatWhatIsPressedTogetherAsAWholeStaysApart) {
+    // A vertex over the middle of a steep face, both pressed to half their height: the plane of the face
+    // turns.
+    const float gap = 1e-3F;
+    const Points points{{{0.5F, 0, 0.5F + gap}, {0, -1, 0}, {1, 0, 1}, {0, 1, 0}}};
+    Points pressed = points;
+    for (Vec3f& p : pressed) p.z *= 0.5F;
+    EXPECT_TRUE(stay_apart(PairKind::VertexFace, points, pressed, 0.1F * gap));
+    Points through = points;
+    through[0].z -= 1;
+    EXPECT_GT(separation(PairKind::VertexFace, through).gap, gap);
+    EXPECT_FALSE(stay_apart(PairKind::VertexFace, points, through, 0.1F * gap));
 }

@@ -3,6 +3,7 @@
 #include "simulation/surfaces/pair_lists.hpp"
 #include "simulation/surfaces/shares.hpp"
 #include "simulation/surfaces/sliding.hpp"
+#include "simulation/surfaces/turning_plane.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -33,6 +34,8 @@ constexpr std::uint8_t kNow = 1, kOver = 2;
 /// A pair that is led on one way stays as far apart but for rounding, which is so large a share of the least
 /// gap. Of that more may be lost, frame by frame, but for a rest that no rounding in a frame takes.
 constexpr float kRounding = 1.0F / 32, kLeastShare = 1.0F / 8;
+/// A pair that a plane kept apart which turned can still be led on one way in later frames.
+constexpr float kLeastTurningShare = 1.0F / 4;
 
 /// Of layers that slide over each other: three degrees, since a sheet that crumples needs the contacts of its
 /// edges. What is nearer to the faces around an edge than half a thickness lies beside it.
@@ -600,6 +603,18 @@ void SelfSurface::find_meeting(const Workers& workers) {
     was_shortened_.assign(own_->vertex_count(), 0);
 }
 
+/// Faces that models press together turn, and so do the planes between them: no plane along one normal may
+/// separate them all the way, though they never meet.
+bool SelfSurface::stays_apart(const Pair& pair) const {
+    std::array<Vec3f, 4> from, to;
+    for (std::size_t k = 0; k < 4; ++k) {
+        from[k] = starts_[pair.points[k]];
+        to[k] = place_at_share(pair.points[k]);
+    }
+    return separation(pair.kind, to).gap >= kLeastTurningShare * reach_.least_gap &&
+           stay_apart(pair.kind, from, to, kLeastShare * reach_.least_gap);
+}
+
 /// Shortens the ways of pairs that could meet, one after the other. @return whether there were any
 bool SelfSurface::shorten_ways(int round, const Workers& workers) {
     find_meeting(workers);
@@ -624,7 +639,7 @@ bool SelfSurface::shorten_ways(int round, const Workers& workers) {
             can_be_shortened = true;
         }
         found = found || can_be_shortened;
-        if (!can_be_shortened && !stays) stuck_.push_back(pair.points);
+        if (!can_be_shortened && !stays && !stays_apart(pair)) stuck_.push_back(pair.points);
     }
     return found;
 }

@@ -123,6 +123,7 @@ class SelfSurface {
         return separations_[pair].gap > 0 && ending.at_end >= ending.kept;
     }
     void find_meeting(const Workers& workers);
+    bool stays_apart(const Pair& pair) const;
     bool shorten_ways(int round, const Workers& workers);
     Vec3f place_at_share(std::uint32_t vertex) const;
 
