@@ -173,6 +173,23 @@ TEST(SelfCollision, KeepsAFastSheetOffItself) {
     }
 }
 
+TEST(SelfCollision, KeepsABallThatTwoPlatesCrushPoleFirstOffItself) {
+    // The fans at its poles are folded between what lies on the floor and what the plate takes along.
+    const std::vector<TriangleMesh> plates{make_box({1, 1, 0.1}), make_box({1, 1, 0.04})};
+    std::vector<Collider> colliders = colliders_of(plates);
+    colliders[1].pose.translation = {0, 0, 0.485};
+    colliders[1].linear_velocity = {0, 0, -1};
+    const Deformable ball = make_cloth(make_sphere(0.2, 30, 18), {.pose = {{}, {0, 0, 0.255}}});
+    for (const double friction : {0.0, 0.5}) {
+        Simulation simulation(
+            ball, colliders,
+            {.thickness = 0.004, .friction = friction, .surface_collision = true, .self_collision = true});
+        expect_nothing_meets(simulation, plates, 88);
+        EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+        EXPECT_GT(simulation.profile().truncated_count, 0u);
+    }
+}
+
 TEST(SelfCollision, KeepsAThreadOffItselfAndASheet) {
     // A thread falls end first, and coils up on a pinned sheet.
     Deformable both = sheet_at(0, 0.6, 9);

@@ -36,6 +36,13 @@ constexpr float kLeastDistance = 1.0F / 1024;
 /// Models pull at what is within so many of their reaches.
 constexpr float kPullReach = 4;
 
+/// How much a model takes along what is so far from it. Where pulls are the inverse of the distance, two
+/// plates lead all that lies between them by one affine map, under which nothing meets. From half the reach
+/// on the pull goes on along the tangent, until it ends.
+float pull_at(float distance, float reach) {
+    return distance < reach / 2 ? 1 / distance : std::max(4 * (reach - distance) / (reach * reach), 0.0F);
+}
+
 /// A vertex that is too fast for what is listed goes its way in several passes.
 constexpr int kMostPasses = 8;
 
@@ -198,14 +205,14 @@ void SurfaceCollision::find_pulls(const std::vector<Collider>& colliders, const 
 
 void SurfaceCollision::begin_pulls(std::size_t particle_count) {
     has_pulls_ = true;
-    rest_pull_ = 1 / (kPullReach * *std::max_element(carry_reaches_.begin(), carry_reaches_.end()));
+    pull_reach_ = kPullReach * *std::max_element(carry_reaches_.begin(), carry_reaches_.end());
     pulls_.resize(models_.size());
     for (std::vector<float>& pulls : pulls_) pulls.assign(particle_count, 0.0F);
 }
 
 /// @param collider  as the frame begins
 void SurfaceCollision::find_pulls_of(std::size_t c, const Collider& collider, const Particles& particles) {
-    const float reach = 1 / rest_pull_;
+    const float reach = pull_reach_;
     beside_.clear();
     places_.clear();
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
@@ -218,7 +225,7 @@ void SurfaceCollision::find_pulls_of(std::size_t c, const Collider& collider, co
     for (std::size_t n = 0; n < beside_.size(); ++n) {
         if (!contacts_[n].found()) continue;
         const float distance = std::max(std::fabs(contacts_[n].depth), kLeastDistance * reach);
-        pulls_[c][beside_[n]] = std::max(1 / distance - 1 / reach, 0.0F);
+        pulls_[c][beside_[n]] = pull_at(distance, reach);
     }
 }
 
@@ -416,7 +423,8 @@ bool SurfaceCollision::lead_together(std::span<const std::array<std::uint32_t, 4
     return is_led;
 }
 
-/// On the way of one that is pinned and goes it anyway, or of one of those that models pull most, or on none.
+/// On the way of one that is pinned and goes it anyway; otherwise on the mean way of the models, on that of one
+/// of those that models pull most, or on none.
 bool SurfaceCollision::lead_group(std::span<const std::pair<std::uint32_t, std::uint32_t>> members,
                                   const Particles& particles, const Workers& workers) {
     constexpr std::size_t kMostTried = 8;
@@ -429,6 +437,10 @@ bool SurfaceCollision::lead_group(std::span<const std::pair<std::uint32_t, std::
         if (!is_pinned) led.push_back(v);
     }
     std::sort(by_pull.begin(), by_pull.end());
+    const bool has_pinned = led.size() < members.size();
+    if (!has_pinned && has_pulls_ &&
+        lead_on(led, mean_way(members, particles), SelfSurface::Bases::kAlone, particles, workers))
+        return true;
     for (std::size_t i = 0; i < std::min(by_pull.size(), kMostTried); ++i) {
         const std::uint32_t v = by_pull[i].second;
         const Vec3f way = bases_.places[v] - particles.frame_start[v];
@@ -482,14 +494,17 @@ Vec3f SurfaceCollision::base_of(std::uint32_t vertex, bool is_first, const Parti
                                 const Workers& workers) {
     if (!is_first) return particles.positions[vertex];
     if (particles.pinned(vertex)) return goals_[vertex]; // nothing holds it back
-    if (has_pulls_) return carried_between(vertex, particles.frame_start[vertex], workers);
+    if (has_pulls_) return carried_between(vertex, particles, workers);
     return carrier() != nullptr ? carrier()->carried(vertex) : particles.frame_start[vertex];
 }
 
 /// The mean of where the models take it. Beside one that it all but touches, a mean may be too coarse; then
 /// where it was, or where one of them takes it.
-Vec3f SurfaceCollision::carried_between(std::uint32_t vertex, const Vec3f& start, const Workers& workers) {
-    const Vec3f mean = mean_of_carried(vertex, start);
+Vec3f SurfaceCollision::carried_between(std::uint32_t vertex, const Particles& particles,
+                                        const Workers& workers) {
+    const std::pair alone{vertex, vertex};
+    const Vec3f start = particles.frame_start[vertex];
+    const Vec3f mean = start + mean_way({&alone, 1}, particles);
     if (may_end(vertex, mean, false, workers)) return mean;
     if (may_end(vertex, start, false, workers)) return start;
     for (std::size_t c = 0; c < models_.size(); ++c) {
@@ -517,15 +532,24 @@ bool SurfaceCollision::may_end(std::uint32_t vertex, const Vec3f& place, bool is
     return is_renewed && is_permitted(vertex, place, is_carried);
 }
 
-Vec3f SurfaceCollision::mean_of_carried(std::uint32_t vertex, const Vec3f& start) const {
-    float sum = rest_pull_;
+/// On which models take along one vertex, or several as one that is as near to each model as any of them.
+Vec3f SurfaceCollision::mean_way(std::span<const std::pair<std::uint32_t, std::uint32_t>> members,
+                                 const Particles& particles) const {
+    float sum = 0;
     Vec3f way;
     for (std::size_t c = 0; c < models_.size(); ++c) {
-        if (is_near_[c] == 0 || !(pulls_[c][vertex] > 0)) continue;
-        sum += pulls_[c][vertex];
-        if (moves_[c] != 0) way += (models_[c].carried(vertex) - start) * pulls_[c][vertex];
+        if (is_near_[c] == 0) continue;
+        const auto& pulls = pulls_[c];
+        const auto pulls_less = [&](const auto& a, const auto& b) {
+            return pulls[a.second] < pulls[b.second];
+        };
+        const std::uint32_t nearest = std::max_element(members.begin(), members.end(), pulls_less)->second;
+        if (!(pulls[nearest] > 0)) continue;
+        sum += pulls[nearest];
+        if (moves_[c] != 0)
+            way += (models_[c].carried(nearest) - particles.frame_start[nearest]) * pulls[nearest];
     }
-    return start + way * (1 / sum);
+    return way * (1 / std::max(sum, pull_at(pull_reach_ / 2, pull_reach_)));
 }
 
 Vec3f SurfaceCollision::find_place(std::uint32_t vertex, bool is_first, const Particles& particles,

@@ -70,8 +70,9 @@ class SurfaceCollision {
                  const Particles& particles, const Workers& workers);
     Vec3f find_place(std::uint32_t vertex, bool is_first, const Particles& particles, const Workers& workers);
     const ModelSurface* carrier() const;
-    Vec3f carried_between(std::uint32_t vertex, const Vec3f& start, const Workers& workers);
-    Vec3f mean_of_carried(std::uint32_t vertex, const Vec3f& start) const;
+    Vec3f carried_between(std::uint32_t vertex, const Particles& particles, const Workers& workers);
+    Vec3f mean_way(std::span<const std::pair<std::uint32_t, std::uint32_t>> members,
+                   const Particles& particles) const;
     bool is_permitted(std::uint32_t vertex, const Vec3f& place, bool is_carried) const;
     bool may_end(std::uint32_t vertex, const Vec3f& place, bool is_carried, const Workers& workers);
     Vec3f base_of(std::uint32_t vertex, bool is_first, const Particles& particles, const Workers& workers);
@@ -101,7 +102,7 @@ class SurfaceCollision {
     std::vector<std::uint32_t> attached_;        ///< by vertex: to a model, or to none
     std::vector<std::vector<float>> clearances_; ///< by model and vertex
     bool has_pulls_ = false;                     ///< in this frame
-    float rest_pull_ = 0;                        ///< how much what is between takes none along
+    float pull_reach_ = 0;                       ///< what is farther from a model is not taken along by it
     std::vector<std::vector<float>> pulls_;      ///< by model and vertex: how much the model takes it along
     std::vector<std::uint32_t> beside_;          ///< vertices that a model may take along,
     std::vector<Vec3f> places_;                  ///< where they are,
