@@ -66,7 +66,7 @@ DeformingCollider::DeformingCollider(const ExactMap& map, std::string name)
     for (std::size_t f = 0; f < faces.size(); ++f) faces[view.face_numbers[f]] = in_map_order.faces[f];
     faces_ = std::make_shared<const std::vector<Triangle>>(std::move(faces));
     vertices_ = in_map_order.vertices;
-    options_ = {.rule = view.rule, .thread_count = 1};
+    options_ = {.rule = view.rule, .find_certain_gaps = false, .thread_count = 1};
 }
 
 DeformingCollider::DeformingCollider(const DeformingCollider& other)

@@ -37,6 +37,22 @@ struct Counter {
     static void add(void* context) { ++static_cast<Counter*>(context)->count; }
 };
 
+TEST(CMaps, OfOpenSurfacesHaveTheBytesOfCppWithAndWithoutCertainGaps) {
+    TriangleMesh open = make_torus(1.0, 0.4, 60, 24);
+    open.faces.pop_back();
+    CMesh mesh;
+    expect_ok(echinus_mesh_create(&open.vertices.data()->x, open.vertices.size(), 0,
+                                  open.faces.data()->data(), open.faces.size(), out(mesh)));
+    echinus_exact_map_options options;
+    echinus_exact_map_options_init(&options, sizeof options);
+    for (const bool finds : {true, false}) {
+        options.find_certain_gaps = finds ? 1 : 0;
+        CMap map;
+        expect_ok(echinus_map_build_exact(mesh.get(), &options, out(map)));
+        EXPECT_EQ(bytes_of(map), serialise(ExactMap::build(open, {.find_certain_gaps = finds})));
+    }
+}
+
 TEST(CMaps, HaveTheBytesOfCpp) {
     const CMesh mesh = c_torus();
     const TriangleMesh torus = make_torus(1.0, 0.4, 60, 24);

@@ -33,13 +33,6 @@ void expect_same_mesh(const CMesh& mesh, const TriangleMesh& expected) {
     EXPECT_TRUE(same_bits(faces_of(mesh), std::span<const Triangle>(expected.faces)));
 }
 
-CMesh c_mesh_of(const TriangleMesh& mesh) {
-    CMesh result;
-    expect_ok(echinus_mesh_create(&mesh.vertices.data()->x, mesh.vertices.size(), 0,
-                                  mesh.faces.data()->data(), mesh.faces.size(), out(result)));
-    return result;
-}
-
 /// A box with a duplicate face, inside out.
 TriangleMesh broken_box() {
     TriangleMesh box = make_box({1, 1, 1});

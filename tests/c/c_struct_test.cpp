@@ -56,7 +56,8 @@ TEST(CStructs, AreRefusedWithASizeThatCannotBeRight) {
     echinus_exact_map_options_init(&options, sizeof options);
     CMap map;
     for (const std::size_t wrong :
-         {std::size_t{0}, std::size_t{8}, sizeof options - 1, std::size_t{5000}, SIZE_MAX}) {
+         {std::size_t{0}, std::size_t{8}, offsetof(echinus_exact_map_options, find_certain_gaps) - 1,
+          std::size_t{5000}, SIZE_MAX}) {
         options.size = wrong;
         expect_refused(echinus_map_build_exact(mesh.get(), &options, out(map)), ECHINUS_INVALID_ARGUMENT,
                        "the size of options is " + std::to_string(wrong));
@@ -99,6 +100,7 @@ TEST(CStructs, AreFilledWithTheDefaultsOfCpp) {
     EXPECT_EQ(exact.byte_budget, exact_defaults.byte_budget);
     EXPECT_EQ(static_cast<int>(exact.rule), static_cast<int>(exact_defaults.rule));
     EXPECT_EQ(static_cast<int>(exact.centre), static_cast<int>(exact_defaults.centre));
+    EXPECT_EQ(exact.find_certain_gaps != 0, exact_defaults.find_certain_gaps);
 
     echinus_distance_map_options distance;
     echinus_distance_map_options_init(&distance, sizeof distance);

@@ -2,6 +2,7 @@
 
 #include <echinus/echinus.h>
 #include <echinus/geometry.hpp>
+#include <echinus/mesh.hpp>
 
 #include <gtest/gtest.h>
 
@@ -62,6 +63,12 @@ inline void expect_refused(echinus_status status, echinus_status expected, const
         << "expected \"" << words << "\" in: " << echinus_last_error();
 }
 
+inline CMesh c_mesh_of(const TriangleMesh& mesh) {
+    CMesh result;
+    expect_ok(echinus_mesh_create(&mesh.vertices.data()->x, mesh.vertices.size(), 0,
+                                  mesh.faces.data()->data(), mesh.faces.size(), out(result)));
+    return result;
+}
 inline CMesh c_torus() {
     CMesh mesh;
     expect_ok(echinus_mesh_torus(1.0, 0.4, 60, 24, out(mesh)));

@@ -70,6 +70,23 @@ TEST(ExactMapOfAnOpenSurface, ReportsTheShareThatNeedNotBeComputed) {
     EXPECT_NEAR(double{pierced.statistics().certain_share}, known / double{kCount}, 0.01);
 }
 
+TEST(ExactMapOfAnOpenSurface, AnswersTheSameWithoutALookForGapsThatAreCertain) {
+    test::Random random(5);
+    for (const TriangleMesh& mesh : {without_faces(make_torus(1, 0.4, 30, 12), 100, 40), bowl(-0.5)}) {
+        const ExactMap with = ExactMap::build(mesh),
+                       without = ExactMap::build(mesh, {.find_certain_gaps = false});
+        EXPECT_LT(without.statistics().certain_share, 0.01);
+        EXPECT_NE(without.source_hash(), with.source_hash());
+        for (int n = 0; n < 3000; ++n) {
+            const Vec3f p = test::in_sphere(random, 1.2F * with.view().radius) + with.view().centre;
+            const Containment found = classify(without, p), expected = classify(with, p);
+            ASSERT_EQ(found.inside, expected.inside) << n;
+            ASSERT_EQ(found.certain, expected.certain) << n;
+            ASSERT_EQ(signed_distance(without, p), signed_distance(with, p)) << n;
+        }
+    }
+}
+
 TEST(ExactMapOfAnOpenSurface, IsCertainEverywhereWhenTheSurfaceIsClosedAfterAll) {
     // Every face has its own vertices, as in STL files: closed by position, though not by index.
     const TriangleMesh box = make_box({2, 1, 1}, 3);

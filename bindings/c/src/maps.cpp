@@ -5,7 +5,10 @@
 
 namespace echinus::c {
 
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_exact_map_options, centre);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_exact_map_options, reserved);
+template <>
+inline constexpr std::size_t kFirstSize<echinus_exact_map_options> = offsetof(echinus_exact_map_options,
+                                                                              find_certain_gaps);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_distance_map_options, reserved);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_map_info, source_hash);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_exact_map_statistics, reserved);
@@ -46,16 +49,20 @@ echinus_exact_map_options as_c(const ExactMapOptions& options) {
             .thread_count = options.thread_count,
             .byte_budget = options.byte_budget,
             .rule = static_cast<echinus_inside_rule>(options.rule),
-            .centre = static_cast<echinus_centre_choice>(options.centre)};
+            .centre = static_cast<echinus_centre_choice>(options.centre),
+            .find_certain_gaps = options.find_certain_gaps,
+            .reserved = 0};
 }
 
 ExactMapOptions options_from(const echinus_exact_map_options* options) {
     if (options == nullptr) return {};
     const auto given = read_struct(options, as_c(ExactMapOptions{}), "options");
+    require_unused(given.reserved);
     return {.divisions = given.divisions,
             .byte_budget = given.byte_budget,
             .rule = enumerator(given.rule, InsideRule::Parity, "options.rule"),
             .centre = enumerator(given.centre, CentreChoice::Search, "options.centre"),
+            .find_certain_gaps = flag(given.find_certain_gaps, "options.find_certain_gaps"),
             .thread_count = given.thread_count};
 }
 

@@ -58,9 +58,11 @@ std::string size_text(std::size_t byte_count) {
 }
 
 std::uint64_t hash_of(std::span<const Vec3f> vertices, std::span<const Triangle> faces,
-                      const ExactMapOptions& options) {
-    const std::array<std::uint64_t, 4> fields{options.divisions, options.byte_budget,
-                                              static_cast<std::uint64_t>(options.rule),
+                      const ExactMapOptions& options, bool is_closed) {
+    constexpr std::uint64_t kWithoutCertainGaps = std::uint64_t{1} << 32;
+    const bool finds_gaps = options.find_certain_gaps || is_closed; // where all are certain
+    const std::array<std::uint64_t, 4> fields{options.divisions | (finds_gaps ? 0 : kWithoutCertainGaps),
+                                              options.byte_budget, static_cast<std::uint64_t>(options.rule),
                                               static_cast<std::uint64_t>(options.centre)};
     return mesh_hash(vertices, faces, XXH64(fields.data(), sizeof fields, 0));
 }
@@ -215,8 +217,8 @@ void MapMaker::set_surface(std::span<const Vec3f> vertices) {
     parallel_invoke(
         options_.thread_count,
         [&] {
-            source_hash_ = hash_of(vertices, faces_, options_);
             if (!closed_) closed_ = is_closed(faces_, vertices.size());
+            source_hash_ = hash_of(vertices, faces_, options_, *closed_);
         },
         [&] { build_face_tree(lattice_, options_.thread_count, tree_); });
     order_faces();
@@ -236,6 +238,7 @@ bool MapMaker::find_bands(std::uint32_t divisions, std::size_t byte_limit) {
     BandDetail detail{OctahedralCells(divisions)};
     // The last way out must be a small map, as default_byte_limit() says.
     if (divisions == 1 && options_.divisions == 0) detail.gap_halvings = 1;
+    if (!options_.find_certain_gaps) detail.gap_halvings = GapStates::kNone;
     return finder_.find(lattice_, surface_of(*arrays_), detail, options_.thread_count, byte_limit,
                         arrays_->bands);
 }

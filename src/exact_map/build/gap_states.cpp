@@ -27,12 +27,12 @@ double distance_to_segment(const Vec3d& place, const Vec3d& a, const Vec3d& b) {
 /// most of them: about a tenth of a second on one core.
 int affordable_halvings(std::size_t edge_count, std::size_t cell_count, int most) {
     constexpr std::size_t kManyEdges = 200; // beside so many, little is found
-    if (edge_count > kManyEdges) return -1;
+    if (edge_count > kManyEdges) return GapStates::kNone;
     constexpr double kMostDistances = 1e8;
     constexpr double kGapsPerCell = 3;
     const double distances_per_piece =
         kGapsPerCell * static_cast<double>(edge_count) * static_cast<double>(cell_count);
-    int halvings = -1;
+    int halvings = GapStates::kNone;
     for (double pieces = 1; halvings < most && pieces * distances_per_piece <= kMostDistances;
          pieces = 2 * pieces + 1)
         ++halvings;
@@ -70,7 +70,7 @@ struct GapStates::Region {
 GapStates::GapStates(const ExactMapView& surface, const OctahedralCells& cells, int most_halvings)
     : surface_(surface), cells_(cells),
       max_depth_(affordable_halvings(surface.border.size(), cells.count(), most_halvings)) {
-    if (max_depth_ < 0) return;
+    if (max_depth_ == kNone) return;
     for (const BorderEdge& edge : surface.border) {
         const Vec3d a(surface.vertices[edge.a]), b(surface.vertices[edge.b]);
         edges_.push_back({a, b, std::abs(edge.multiplicity) * length(b - a) / (4 * std::numbers::pi)});
@@ -152,7 +152,7 @@ std::int16_t GapStates::winding_in(const Region& region, const Gap& gap) const {
 
 void GapStates::append_pieces(std::uint32_t cell, const Gap& gap, std::vector<GapPiece>& pieces) const {
     if (gap.lower >= gap.upper) return;
-    if (max_depth_ < 0)
+    if (max_depth_ == kNone)
         pieces.push_back({static_cast<std::uint16_t>(gap.upper), ExactMapView::kUncertain});
     else
         append_halves(cell, gap, 0, pieces);
@@ -175,7 +175,7 @@ void GapStates::append_halves(std::uint32_t cell, const Gap& gap, int depth,
 }
 
 bool GapStates::certain_in_band(std::uint32_t cell, const Gap& below, std::int32_t upper) const {
-    if (max_depth_ < 0) return false;
+    if (max_depth_ == kNone) return false;
     const double norm =
         kUnit * below.upper - 0.5 - 1.5 * cells_.divisions(); // rounds to the last place before
     const Region region(cells_, cell, below.upper, upper, norm);

@@ -37,9 +37,11 @@ struct GapPiece {
 class GapStates {
   public:
     static constexpr int kMostHalvings = 5;
+    static constexpr int kNone = -1; ///< all gaps stay uncertain
 
     /// @param surface        open, with its winding tree
-    /// @param most_halvings  how often a gap may be halved: it makes 2^most_halvings pieces at most
+    /// @param most_halvings  how often a gap may be halved, which makes 2^most_halvings pieces at most; or
+    /// kNone
     GapStates(const ExactMapView& surface, const OctahedralCells& cells, int most_halvings = kMostHalvings);
 
     /// The pieces of a gap of a cell, from below; neighbours differ.

@@ -423,8 +423,8 @@ bool SurfaceCollision::lead_together(std::span<const std::array<std::uint32_t, 4
     return is_led;
 }
 
-/// On the way of one that is pinned and goes it anyway; otherwise on the mean way of the models, on that of one
-/// of those that models pull most, or on none.
+/// On the way of one that is pinned and goes it anyway; otherwise on the mean way of the models, on that of
+/// one of those that models pull most, or on none.
 bool SurfaceCollision::lead_group(std::span<const std::pair<std::uint32_t, std::uint32_t>> members,
                                   const Particles& particles, const Workers& workers) {
     constexpr std::size_t kMostTried = 8;
