@@ -2,7 +2,8 @@
 
 #include "simulation/collisions.hpp"
 #include "simulation/particles.hpp"
-#include "simulation/surfaces/model_surface.hpp"
+#include "simulation/surfaces/leading.hpp"
+#include "simulation/surfaces/near_models.hpp"
 #include "simulation/surfaces/self_surface.hpp"
 
 #include <echinus/simulation.hpp>
@@ -53,61 +54,31 @@ class SurfaceCollision {
 
   private:
     void keep_gaps(const std::vector<Collider>& colliders, const Particles& particles);
-    void find_pulls(const std::vector<Collider>& colliders, const Particles& particles);
-    void begin_pulls(std::size_t particle_count);
-    void find_pulls_of(std::size_t model, const Collider& collider, const Particles& particles);
     bool pass(Particles& particles, bool is_first, const Workers& workers);
     void find_leaving(const Workers& workers);
     void shorten_ways(bool is_first, const Particles& particles, const Workers& workers);
-    float most_pull(std::uint32_t vertex) const;
-    std::uint32_t body_of(std::uint32_t vertex) const;
-    bool lead_together(std::span<const std::array<std::uint32_t, 4>> pairs, const Particles& particles,
-                       const Workers& workers);
-    std::uint32_t group_of(std::uint32_t vertex);
-    bool lead_group(std::span<const std::pair<std::uint32_t, std::uint32_t>> members,
-                    const Particles& particles, const Workers& workers);
-    bool lead_on(std::span<const std::uint32_t> vertices, const Vec3f& way, std::uint32_t body,
-                 const Particles& particles, const Workers& workers);
     Vec3f find_place(std::uint32_t vertex, bool is_first, const Particles& particles, const Workers& workers);
     const ModelSurface* carrier() const;
-    Vec3f carried_between(std::uint32_t vertex, const Particles& particles, const Workers& workers);
-    Vec3f mean_way(std::span<const std::pair<std::uint32_t, std::uint32_t>> members,
-                   const Particles& particles) const;
-    bool is_permitted(std::uint32_t vertex, const Vec3f& place, bool is_carried) const;
-    bool may_end(std::uint32_t vertex, const Vec3f& place, bool is_carried, const Workers& workers);
     Vec3f base_of(std::uint32_t vertex, bool is_first, const Particles& particles, const Workers& workers);
-    template <typename Visit>
-    void for_each_near(const Visit& visit);
 
     SimulationOptions options_;
     std::shared_ptr<const Elements> elements_;
-    std::vector<ModelSurface> models_;
+    NearModels models_;
     std::vector<float> carry_reaches_; ///< by model
     std::vector<float> extents_; ///< by model, the deformable last: coordinates for which least gaps allow
     std::optional<SelfSurface> self_;
+    std::optional<Leading> leading_;    ///< always, once constructed
     std::vector<RigidTransform> poses_; ///< of the colliders, as of the last substep
     std::vector<float> inverse_masses_;
     /// Where one model is near, the deformable's own pairs are looked at in its frame, so that what it takes
     /// along rests.
     const RigidTransform* own_pose() const {
-        return own_frame_ < models_.size() ? &poses_[own_frame_] : nullptr;
+        return own_frame_ < models_.count() ? &poses_[own_frame_] : nullptr;
     }
-    std::size_t own_frame_ = 0;                 ///< a collider, or beyond the last: the world
-    std::vector<const SurfaceMotion*> motions_; ///< by collider, in this frame
-    std::vector<std::uint8_t> moves_;           ///< by collider
-    std::vector<std::uint8_t> is_near_;         ///< by collider: not away (BroadPhase)
-    std::vector<RigidTransform> start_poses_;   ///< of the colliders
+    std::size_t own_frame_ = 0;               ///< a collider, or beyond the last: the world
+    std::vector<RigidTransform> start_poses_; ///< of the colliders
     PointArrays expected_, goals_, ends_;
-    SelfSurface::Bases bases_;                   ///< where vertices are led by models
-    std::vector<std::uint32_t> attached_;        ///< by vertex: to a model, or to none
     std::vector<std::vector<float>> clearances_; ///< by model and vertex
-    bool has_pulls_ = false;                     ///< in this frame
-    float pull_reach_ = 0;                       ///< what is farther from a model is not taken along by it
-    std::vector<std::vector<float>> pulls_;      ///< by model and vertex: how much the model takes it along
-    std::vector<std::uint32_t> beside_;          ///< vertices that a model may take along,
-    std::vector<Vec3f> places_;                  ///< where they are,
-    std::vector<Contact> contacts_;              ///< and what is nearest to them
-    std::vector<std::uint32_t> groups_; ///< by vertex: another one that is led with it, up to one that leads
     std::vector<std::uint32_t> leaving_;
     std::vector<std::uint8_t> is_leaving_, is_truncated_;
     std::vector<std::uint32_t> stopped_by_; ///< by vertex: the model beside which its way ended last
