@@ -12,8 +12,7 @@ namespace {
 
 /// As the relaxation has it: an element that is pressed together from all sides is pushed apart.
 constexpr double kLeastSquare = 1.2, kPush = 0.5;
-/// Undamped bodies, in which waves cross more of an element in a substep in the mean, were seen to gain
-/// energy.
+/// Bodies in which waves cross more of an element in a substep, in the mean, were seen to gain energy.
 constexpr double kResolvedSquared = 0.25;
 /// A relaxation that adds more of a body's energy is followed by another: what it left undone is more than
 /// the motion should answer for. More of them no longer help bodies that fly apart in a single substep.
@@ -121,15 +120,12 @@ EnergyLimit::EnergyLimit(const TetrahedronArrays& tetrahedra, const Particles& p
 void EnergyLimit::weigh(Body& body, const TetrahedronArrays& all) const {
     for (const std::uint32_t i : body.particles) body.mass += masses_[i];
     double stiffness = 0, crossed_sq = 0;
-    bool is_damped = true;
     for (const std::uint32_t i : body.tetrahedra) {
         stiffness += stiffness_of(i, all);
         crossed_sq += crossed_squared(i, all);
-        is_damped = is_damped && all.viscosities[i] >= all.shape_stiffnesses[i];
     }
     body.wave_way_sq = stiffness / body.mass;
-    body.is_unresolved =
-        !is_damped && crossed_sq > kResolvedSquared * static_cast<double>(body.tetrahedra.size());
+    body.is_unresolved = crossed_sq > kResolvedSquared * static_cast<double>(body.tetrahedra.size());
 }
 
 bool EnergyLimit::is_violent(const Body& body, const Particles& particles) const {
@@ -146,8 +142,8 @@ bool EnergyLimit::is_violent(const Body& body, const Particles& particles) const
 void EnergyLimit::begin_frame(const Particles& particles) {
     measures_ = false;
     for (Body& body : bodies_) {
-        body.excess = 0;
         body.is_measured = body.is_unresolved || is_violent(body, particles);
+        body.excess = body.is_measured ? std::max(body.excess, 0.0) : 0;
         measures_ = measures_ || body.is_measured;
     }
 }
@@ -204,6 +200,10 @@ void EnergyLimit::end_substep(Particles& particles) {
         if (body.is_measured && body.excess > 0) take_off(body, particles);
 }
 
+void EnergyLimit::archive(StateArchive& state) {
+    for (Body& body : bodies_) state.value(body.excess);
+}
+
 EnergyLimit::RigidMotion EnergyLimit::rigid_motion(const Body& body, const Particles& particles) const {
     RigidMotion motion;
     for (const std::uint32_t i : body.particles) {
@@ -225,7 +225,7 @@ EnergyLimit::RigidMotion EnergyLimit::rigid_motion(const Body& body, const Parti
     return motion;
 }
 
-/// Never more than there is; the rest stays due in this frame.
+/// Never more than there is; the rest stays due.
 void EnergyLimit::take_off(Body& body, Particles& particles) const {
     const RigidMotion rigid = rigid_motion(body, particles);
     const auto own_way = [&](std::uint32_t i) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "simulation/particles.hpp"
+#include "simulation/state/state_archive.hpp"
 #include "simulation/tetrahedra.hpp"
 
 #include <cstddef>
@@ -14,12 +15,11 @@ namespace echinus {
 /// Where particles or waves move by a good part of an element in a substep, one relaxation of each
 /// tetrahedron does not resolve what happens, and may leave more energy than there was. So the energy of
 /// motion and of elasticity is measured, but only in bodies that are violent, or so stiff that substeps do
-/// not resolve their waves while nothing damps them. While a relaxation adds much to the sum of both, another
+/// not resolve their waves. While a relaxation adds much to the sum of both, another
 /// follows, and what is left of it is taken off the motion: not off that of the body as a whole, whose
 /// momentum and angular momentum stay. What contacts, loads and viscosity do is not counted.
 ///
-/// Energies are times the square of a substep, since ways in a substep stand for velocities. Nothing is kept
-/// from frame to frame.
+/// Energies are times the square of a substep, since ways in a substep stand for velocities.
 class EnergyLimit {
   public:
     /// Bodies are what tetrahedra with common particles make up.
@@ -40,6 +40,8 @@ class EnergyLimit {
     bool charge(const TetrahedronArrays& tetrahedra, const Particles& particles);
     void end_substep(Particles& particles);
 
+    void archive(StateArchive& state);
+
   private:
     struct Body {
         std::vector<std::uint32_t> particles; ///< that are free
@@ -51,7 +53,7 @@ class EnergyLimit {
         bool is_measured = false;
         double elastic = 0; ///< energy when the substep, or the relaxation, began
         double gain = 0;    ///< since it was noted
-        double excess = 0;  ///< in this frame, so far
+        double excess = 0;  ///< that was not taken off yet
     };
     /// Of the free particles about their centre of mass.
     struct RigidMotion {

@@ -31,6 +31,7 @@ void Simulation::Solver::archive(StateArchive& state) {
     if (stretched_part_) stretched_part_->archive(state, sticks_.count());
     if (gentle_sticks_) gentle_sticks_->archive(state);
     if (meter_) meter_->archive(state);
+    if (energy_limit_) energy_limit_->archive(state);
     archive_colliders(state);
     attachments_.archive(state, deforming_);
     collisions_.archive(state, colliders);
