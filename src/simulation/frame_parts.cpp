@@ -13,8 +13,9 @@ namespace {
 /// In mean edges.
 constexpr double kMostWay = 1;
 
-/// A model that moves takes along what goes farther than is listed beside it: half a mean edge.
-constexpr double kBesideWhatMoves = 2;
+/// A model that moves takes along what goes farther than is listed beside it, half a mean edge; and what it
+/// pushes against another model is caught between both from half as far on.
+constexpr double kBesideWhatMoves = 4;
 
 /// However fast they are.
 constexpr double kMostParts = 32;
@@ -39,8 +40,8 @@ std::uint32_t FrameParts::count(const std::vector<Collider>& colliders, const Co
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         if (collisions.is_away(c) || (!colliders[c].moves() && longest_of_all <= most)) continue;
         collisions.known_clearances(c, particles, clearances_);
-        const double beside = longest_beside(colliders[c], particles);
-        longest = std::max(longest, colliders[c].moves() ? beside * kBesideWhatMoves : beside);
+        const double weight = colliders[c].moves() ? kBesideWhatMoves : 1;
+        longest = std::max(longest, weight * longest_beside(colliders[c], most / weight, particles));
     }
     if (longest <= most) return 1;
     auto count = static_cast<std::uint32_t>(std::ceil(std::min(longest / most, kMostParts)));
@@ -75,9 +76,9 @@ double FrameParts::longest_less(const Vec3f& common, const Particles& particles)
     return std::sqrt(double{longest_sq}) * options_.substep_count;
 }
 
-/// The longest of the ways that reach the model, relative to it. What is known already tells of most vertices
-/// that they do not.
-double FrameParts::longest_beside(const Collider& collider, const Particles& particles) {
+/// The longest of the ways that reach the model, relative to it, or 0 if it is not longer than most. What is
+/// known already tells of most vertices that they do not.
+double FrameParts::longest_beside(const Collider& collider, double most, const Particles& particles) {
     places_.clear();
     ways_.clear();
     for (std::size_t i = 0; i < particles.count(); ++i) {
@@ -86,7 +87,7 @@ double FrameParts::longest_beside(const Collider& collider, const Particles& par
             collider.linear_velocity + cross(collider.angular_velocity, place - collider.pose.translation);
         const double way =
             length(Vec3d(particles.step(i)) * options_.substep_count - speed * options_.time_step);
-        if (!(way > std::max(kMostWay * edge_length_, double{clearances_[i]}))) continue;
+        if (!(way > std::max(most, double{clearances_[i]}))) continue;
         places_.push_back(particles.positions[i]);
         ways_.push_back(static_cast<float>(way));
     }

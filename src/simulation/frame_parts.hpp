@@ -31,7 +31,7 @@ class FrameParts {
   private:
     Vec3f mean_way(const Particles& particles) const;
     double longest_less(const Vec3f& common, const Particles& particles) const;
-    double longest_beside(const Collider& collider, const Particles& particles);
+    double longest_beside(const Collider& collider, double most, const Particles& particles);
 
     SimulationOptions options_;
     double edge_length_; ///< the mean

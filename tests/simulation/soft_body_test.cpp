@@ -239,6 +239,40 @@ TEST(SoftBody, UnderALightSheetIsPressedByAPlateThatMeetsNeither) {
     EXPECT_GT(truncated, 0u);
 }
 
+TEST(SoftBody, UnderALightSheetLosesNothingToAPlateThatComesDownFast) {
+    // The plate goes less than an edge in a frame, and more than what is listed beside it.
+    const std::vector<TriangleMesh> plates{make_box({4, 4, 0.1}, 4), make_box({0.9, 0.9, 0.04}, 2)};
+    std::vector<Collider> colliders = test::colliders_of(plates);
+    colliders[0].pose.translation = {};
+    colliders[1].linear_velocity = {0, 0, -3};
+    const ExactMap map = ExactMap::build(make_sphere(0.09, 32, 16));
+    const TetrahedralMesh ball = tetrahedralize(map, {.count = 250}).mesh;
+    for (const double gap : {0.004, 0.012, 0.05}) {
+        const Deformable sheet = make_cloth({.column_count = 18,
+                                             .row_count = 18,
+                                             .width = 0.35,
+                                             .height = 0.35,
+                                             .pose = {{}, {0, 0.01, 0.235 + gap}}});
+        const std::vector<Deformable> parts{
+            make_soft_body(
+                ball,
+                {.young_modulus = 5e3, .poisson_ratio = 0.3, .damping = 0.01, .pose = {{}, {0, 0, 0.145}}}),
+            with_masses_times(0.02 / static_cast<double>(sheet.particle_count()), sheet)};
+        colliders[1].pose.translation = {0, 0, 0.285 + gap};
+        Simulation simulation(combine(parts), colliders,
+                              {.solver = SolverKind::Xpbd,
+                               .iteration_count = 1,
+                               .substep_count = 10,
+                               .thickness = 0.003,
+                               .friction = 0.3,
+                               .surface_collision = true,
+                               .self_collision = true});
+        test::expect_nothing_meets(simulation, plates, static_cast<int>((0.12 + gap) * 80));
+        EXPECT_EQ(simulation.profile().lost_count, 0u) << gap;
+        EXPECT_EQ(simulation.profile().squeezed_count, 0u) << gap;
+    }
+}
+
 TEST(SoftBody, MeetsNoLightSheetOnItUnderAnotherWhileAPlateComesDown) {
     // The sheet lies at its least gap from both, far from the floor and from the plate, which take them
     // along.
