@@ -39,7 +39,6 @@ class Leading {
 
     /// Before pairs are looked at: all are led to bases, which the caller fills.
     SelfSurface::Bases& begin(const NearModels& models);
-    const SelfSurface::Bases& bases() const { return bases_; }
     /// All that hang together by pairs which could meet, in this round and before, are led on one way that
     /// all models permit. @return whether some are led anew
     bool lead_together(std::span<const std::array<std::uint32_t, 4>> pairs, NearModels& models,
