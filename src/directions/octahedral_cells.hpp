@@ -14,6 +14,11 @@ inline std::int64_t l1_norm(const LatticePoint& p) {
     return std::abs(p.x) + std::abs(p.y) + std::abs(p.z);
 }
 
+/// No place of a LatticeMesh has a larger one: in its sphere it is at most sqrt(3) kLatticeExtent, and
+/// snapping adds half a step on each axis.
+inline constexpr std::int64_t kMostL1Norm = 908'095;
+static_assert((2 * kMostL1Norm - 3) * (2 * kMostL1Norm - 3) >= 12 * kLatticeExtent * kLatticeExtent);
+
 /// Directions on the octahedron |x| + |y| + |z| = 1, each of its eight sides cut into n^2 triangles by the
 /// planes through the origin where n |x| / (|x| + |y| + |z|), and the same of y and z, is a whole number.
 ///

@@ -55,35 +55,80 @@ TEST(OctahedralCells, LocateDirectionsOnWallsAxesAndCornersWithinRange) {
                 }
 }
 
-// Exactness rests on this property: the cells and parts of every point of a face, even on their walls, are in
-// the face's cover, and the point's L1 norm lies in the cover's range.
+namespace {
+
+/// Corners that agree modulo 16, so that every mean of 16 of them lies on the lattice.
+using Face = std::array<LatticePoint, 3>;
+
+Face random_face(RandomLattice& random, int n) {
+    const std::int64_t extent = n % 2 == 0 ? 64 : kLatticeExtent / 256;
+    const std::int64_t scale = n % 2 == 0 ? 1024 : 16;
+    const LatticePoint middle = random.point(8 * extent);
+    Face face;
+    for (LatticePoint& corner : face) corner = (middle + random.point(extent)) * scale;
+    return face;
+}
+
+/// A face whose plane passes the centre within a few steps, as beside a centre that was moved off a face.
+Face nearly_edge_on_face(RandomLattice& random) {
+    const LatticePoint a = random.point(4), b = random.point(4), offset = random.point(2);
+    const auto in_plane = [&] { return a * random.coordinate(1000) + b * random.coordinate(1000); };
+    Face face;
+    for (LatticePoint& corner : face) corner = in_plane() * 16 + offset;
+    return face;
+}
+
+/// The cells and parts of every point of a face, even on their walls, are in the face's cover, and the
+/// point's L1 norm lies in the cover's range.
+void expect_every_point_held(const OctahedralCells& cells, const Face& face) {
+    std::vector<CellCover> covers;
+    cover_cells(cells, {}, face, covers);
+    for (int k = 0; k <= 16; ++k)
+        for (int l = 0; l + k <= 16; ++l) {
+            // Edges and corners included.
+            const LatticePoint sum = face[0] * k + face[1] * l + face[2] * (16 - k - l);
+            const LatticePoint p{sum.x / 16, sum.y / 16, sum.z / 16};
+            if (p == LatticePoint{}) continue;
+            const auto [cell, part] = cells.locate(p);
+            const auto t = static_cast<double>(l1_norm(p));
+            const bool held = std::any_of(covers.begin(), covers.end(), [&](const CellCover& cover) {
+                return cover.cell == cell && (cover.parts >> part & 1) != 0 && cover.nearest <= t + 1e-3 &&
+                       t <= cover.farthest + 1e-3;
+            });
+            ASSERT_TRUE(held) << "cell " << cell << ", t " << t;
+        }
+}
+
+void expect_ranges_within_reach(const OctahedralCells& cells, const Face& face) {
+    std::vector<CellCover> covers;
+    cover_cells(cells, {}, face, covers);
+    const auto farthest_corner =
+        static_cast<double>(std::max({l1_norm(face[0]), l1_norm(face[1]), l1_norm(face[2])}));
+    for (const CellCover& cover : covers) {
+        ASSERT_LE(0, cover.nearest);
+        ASSERT_LE(cover.nearest, cover.farthest) << "cell " << cover.cell;
+        ASSERT_LE(cover.farthest, std::max(farthest_corner, 8.0) + 1e-3) << "cell " << cover.cell;
+    }
+}
+
+} // namespace
+
+// Exactness rests on this property.
 TEST(CellCover, HoldsEveryPointOfTheFace) {
     RandomLattice random(7);
     for (int n = 0; n < 400; ++n) {
-        const std::int64_t extent = n % 2 == 0 ? 64 : kLatticeExtent / 16;
-        const std::int64_t scale = n % 2 == 0 ? 1024 : 1;
-        const LatticePoint middle = random.point(8 * extent);
-        std::array<LatticePoint, 3> face;
-        for (LatticePoint& corner : face) corner = (middle + random.point(extent)) * scale;
         const OctahedralCells cells(static_cast<std::uint32_t>(1 + n % 32));
-        std::vector<CellCover> covers;
-        cover_cells(cells, {}, face, covers);
-        for (int k = 0; k <= 16; ++k)
-            for (int l = 0; l + k <= 16; ++l) {
-                // Weights in sixteenths, so that the point lies on the lattice and on the face, its edges and
-                // corners included.
-                const LatticePoint sum = face[0] * k + face[1] * l + face[2] * (16 - k - l);
-                if (sum.x % 16 != 0 || sum.y % 16 != 0 || sum.z % 16 != 0) continue;
-                const LatticePoint p{sum.x / 16, sum.y / 16, sum.z / 16};
-                if (p == LatticePoint{}) continue;
-                const auto [cell, part] = cells.locate(p);
-                const auto t = static_cast<double>(l1_norm(p));
-                const bool held = std::any_of(covers.begin(), covers.end(), [&](const CellCover& cover) {
-                    return cover.cell == cell && (cover.parts >> part & 1) != 0 &&
-                           cover.nearest <= t + 1e-3 && t <= cover.farthest + 1e-3;
-                });
-                ASSERT_TRUE(held) << "face " << n << ", cell " << cell << ", t " << t;
-            }
+        ASSERT_NO_FATAL_FAILURE(expect_every_point_held(cells, random_face(random, n))) << n;
+        ASSERT_NO_FATAL_FAILURE(expect_every_point_held(cells, nearly_edge_on_face(random))) << n;
+    }
+}
+
+TEST(CellCover, HasRangesThatAscendAndThatTheFaceCanReach) {
+    RandomLattice random(11);
+    for (int n = 0; n < 2000; ++n) {
+        const OctahedralCells cells(static_cast<std::uint32_t>(1 + n % 32));
+        ASSERT_NO_FATAL_FAILURE(expect_ranges_within_reach(cells, random_face(random, n))) << n;
+        ASSERT_NO_FATAL_FAILURE(expect_ranges_within_reach(cells, nearly_edge_on_face(random))) << n;
     }
 }
 

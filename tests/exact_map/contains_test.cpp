@@ -1,4 +1,5 @@
 #include "support/mesh_assembly.hpp"
+#include "support/prisms.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -65,6 +66,9 @@ TEST(ExactMapContains, AgreesWithTheWindingNumber) {
         turned_inside_out(sphere),
         joined({box, box}),
         make_box({1, 1e-4, 1e-4}),
+        test::make_two_wedges(),
+        test::make_four_wedges(),
+        test::make_open_mouth(),
     };
     test::Random random(1);
     for (const TriangleMesh& mesh : meshes)

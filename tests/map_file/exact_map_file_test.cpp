@@ -1,6 +1,7 @@
 #include "support/crowded_meshes.hpp"
 #include "support/expect_error.hpp"
 #include "support/map_file_attack.hpp"
+#include "support/prisms.hpp"
 #include "support/sample_exact_map.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -98,6 +99,14 @@ TEST(ExactMapFile, IsReadBackAtEveryResolutionOfCrowdedMeshes) {
         }
     for (const TriangleMesh& mesh : {make_fins(600), make_comb(1500)})
         EXPECT_NO_THROW(load_bytes(serialise(ExactMap::build(mesh))));
+}
+
+TEST(ExactMapFile, IsReadBackOfShapesWithFacesInPlanesThroughTheirCentre) {
+    for (const TriangleMesh& mesh : {make_two_wedges(), make_four_wedges(), make_open_mouth()})
+        for (std::uint32_t divisions = 1; divisions <= 24; ++divisions) {
+            const ExactMap map = ExactMap::build(mesh, {.divisions = divisions});
+            EXPECT_NO_THROW(load_bytes(serialise(map))) << divisions << " divisions";
+        }
 }
 
 TEST(ExactMapFile, ReadsBackEveryBit) {

@@ -320,7 +320,15 @@ class OctantCover {
             {cells_.index(octant_, i, j, down), static_cast<std::uint16_t>(parts), middle, l1.low, l1.high});
     }
 
-    /// The range of the plane over the parts, where that is tighter than the range of the whole polygon.
+    /// Holds every place of the polygon over the parts, and lies within the polygon's own range:
+    /// l1_.low <= low <= high <= l1_.high.
+    ///
+    /// Places over the parts lie in two ranges: the polygon's, since the L1 norm is linear and has its
+    /// extremes at corners, and the plane's over the parts. Cutting the ends of the one to the other gives
+    /// what they share, and loses no place. They share nothing where the cover took in parts, within its
+    /// slack, that the polygon does not enter; a plane that is steep against the rays may be anywhere there,
+    /// at infinity, too. Then there is no place to lose, and cutting leaves the polygon's end that is next to
+    /// the plane, which is on the lattice. As cutting keeps the order of two numbers, low never exceeds high.
     template <bool down>
     Range l1_range(std::int32_t i, std::int32_t j, std::uint32_t parts) const {
         if (!std::isfinite(reciprocal_error_)) return l1_; // edge-on
@@ -330,10 +338,10 @@ class OctantCover {
         const double at_origin = reciprocal_(kPartsPerSide * (i + turn), kPartsPerSide * (j + turn));
         const double low = at_origin + (down ? -in_cell.high : in_cell.low) - reciprocal_error_;
         const double high = at_origin + (down ? -in_cell.low : in_cell.high) + reciprocal_error_;
-        // A plane that is steep against the rays goes through infinity; only where it is in front does it
-        // count.
-        return {high > 0 ? std::max(l1_.low, 1 / high) : l1_.low,
-                low > 0 ? std::min(l1_.high, 1 / low) : l1_.high};
+        // The plane is in front of the origin where the reciprocal is positive, and beyond all bounds next to
+        // where it is 0.
+        return {high > 0 ? std::clamp(1 / high, l1_.low, l1_.high) : l1_.low,
+                low > 0 ? std::clamp(1 / low, l1_.low, l1_.high) : l1_.high};
     }
 
     /// Extremes of the reciprocal over parts of a cell, less its value at the cell's origin. It ascends or
@@ -401,6 +409,7 @@ void cover_near_octant(const OctahedralCells& cells, std::uint32_t octant, const
         covers[i].parts = kAllParts;
         covers[i].middle = MiddleRay::Unsure;
         covers[i].nearest = 0;
+        covers[i].farthest = std::max(covers[i].farthest, kNear);
     }
     for (std::uint32_t cell = 0; cell < cells_per_octant; ++cell)
         if (!covered[cell])

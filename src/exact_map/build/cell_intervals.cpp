@@ -11,14 +11,15 @@ namespace echinus {
 
 namespace {
 
-/// In band units, widened to whole ones, and never empty: where the cover took in parts of the cell that the
-/// face does not enter, its nearest place can lie beyond its farthest, and any range will do.
+/// In band units, widened to whole ones. Never empty, as the cover's range ascends, and in 16 bits, as it
+/// ends within the lattice.
 std::uint64_t range_of(const CellCover& cover) {
     constexpr double kRounding = 0.01; // lattice steps, far above what the cover rounds
+    static_assert((kMostL1Norm + 1) / ExactMapView::kBandUnit + 1 <= 0xFFFF);
     const auto lower = static_cast<std::int32_t>(std::max(0.0, cover.nearest - kRounding));
     const auto upper = static_cast<std::int32_t>(cover.farthest + kRounding) + 1;
     const auto first = static_cast<std::uint64_t>(band_unit_of(lower));
-    const auto last = std::max(first, static_cast<std::uint64_t>(band_unit_of(upper))) + 1;
+    const auto last = static_cast<std::uint64_t>(band_unit_of(upper)) + 1;
     return first << 16 | last;
 }
 
