@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <utility>
 
 namespace echinus {
 
@@ -20,6 +21,21 @@ namespace {
 /// Where Linux shows the file of an open descriptor.
 std::string path_of_descriptor(int descriptor) {
     return "/proc/self/fd/" + std::to_string(descriptor);
+}
+
+/// Waits until the disk has what was written.
+/// @returns false with errno; true also where the file system cannot say when that is
+bool sync(int descriptor) {
+    return fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS;
+}
+
+/// So that a new name outlasts a power cut. The file is whole without it, so nothing fails here: there are
+/// folders that may be written to and not be opened.
+void sync_names(const fs::path& folder) {
+    const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) return;
+    fsync(descriptor);
+    close(descriptor);
 }
 
 } // namespace
@@ -36,37 +52,45 @@ AtomicFile::AtomicFile(const fs::path& target) : target_(target) {
         fail("open");
     }
     if (fs::exists(status) && !fs::is_regular_file(status)) {
-        file_ = std::fopen(target_.c_str(), "wb");
+        is_in_place_ = true;
+        file_ = std::fopen(target_.c_str(), "wbe");
         if (file_ == nullptr) fail("open");
         return;
     }
-    const fs::path folder = target_.parent_path().empty() ? "." : target_.parent_path();
-    int descriptor = open_unnamed(folder);
-    if (descriptor < 0) descriptor = open_part(folder);
+    int descriptor = open_unnamed();
+    if (descriptor < 0) descriptor = open_part();
     if (descriptor < 0) fail("open");
-    lock_ = dup(descriptor);
-    lock_part(lock_);
+    lock_part(descriptor);
     file_ = fdopen(descriptor, "wb");
+    if (file_ != nullptr) return;
+    const int reason = errno;
+    close(descriptor);
+    if (!part_.empty()) unlink(part_.c_str());
+    errno = reason;
+    fail("open");
 }
 
 AtomicFile::~AtomicFile() {
-    if (file_ != nullptr) std::fclose(file_);
     if (!part_.empty()) unlink(part_.c_str());
-    if (lock_ >= 0) close(lock_);
+    if (file_ != nullptr) std::fclose(file_);
+}
+
+fs::path AtomicFile::folder() const {
+    return target_.parent_path().empty() ? "." : target_.parent_path();
 }
 
 /// @returns a descriptor, or -1 where the system or the file system has no files without names
-int AtomicFile::open_unnamed([[maybe_unused]] const fs::path& folder) {
+int AtomicFile::open_unnamed() {
 #ifdef O_TMPFILE
-    const int descriptor = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    const int descriptor = open(folder().c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
     if (descriptor < 0 || access(path_of_descriptor(descriptor).c_str(), F_OK) == 0) return descriptor;
     close(descriptor); // it could not be given a name
 #endif
     return -1;
 }
 
-int AtomicFile::open_part(const fs::path& folder) {
-    const fs::path part = new_part(folder);
+int AtomicFile::open_part() {
+    const fs::path part = new_part(folder());
     const int descriptor = open(part.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
     if (descriptor >= 0) part_ = part;
     return descriptor;
@@ -75,9 +99,9 @@ int AtomicFile::open_part(const fs::path& folder) {
 /// A link cannot replace a file, but a rename can: first the name of a part, then the target's.
 void AtomicFile::give_name() {
     if (part_.empty()) {
-        const fs::path part = new_part(target_.parent_path());
-        if (linkat(AT_FDCWD, path_of_descriptor(lock_).c_str(), AT_FDCWD, part.c_str(), AT_SYMLINK_FOLLOW) !=
-            0)
+        const fs::path part = new_part(folder());
+        if (linkat(AT_FDCWD, path_of_descriptor(fileno(file_)).c_str(), AT_FDCWD, part.c_str(),
+                   AT_SYMLINK_FOLLOW) != 0)
             fail("name");
         part_ = part;
     }
@@ -96,14 +120,17 @@ void AtomicFile::overwrite(long offset, const void* data, std::size_t byte_count
 }
 
 void AtomicFile::commit() {
-    // Buffered bytes meet a full disk only now, so both results count.
-    const bool flushed = std::fflush(file_) == 0;
-    const int flush_error = errno;
-    const bool closed = std::fclose(file_) == 0;
-    file_ = nullptr;
-    if (!flushed) errno = flush_error;
-    if (!flushed || !closed) fail("write");
-    if (lock_ >= 0) give_name();
+    if (std::fflush(file_) != 0) fail("write"); // buffered bytes meet a full disk only now
+    if (!is_in_place_) {
+        // A name that reached the disk before the bytes did would be that of an empty file.
+        if (!sync(fileno(file_))) fail("write");
+        give_name();
+    }
+    const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
+    if (!is_in_place_)
+        sync_names(folder());
+    else if (!closed)
+        fail("write");
 }
 
 void AtomicFile::fail(const char* action) const {

@@ -13,9 +13,12 @@ namespace echinus {
 
 /// A file that appears whole or not at all: bytes go to a file in the target's folder that has no name
 /// (O_TMPFILE), or, where the file system has no such files, to a part (part.hpp); commit() gives it the
-/// target's name. Without commit() nothing is left and the old target stays, also where the process is
-/// killed, except for a part, which remove_abandoned_parts() then removes. A target that exists and is no
-/// regular file (/dev/stdout, a pipe) is written to directly, since a rename would replace the device.
+/// target's name, once the disk has the bytes, so that also a power cut leaves the old target or the new one.
+/// Without commit() nothing is left and the old target stays, also where the process is killed, except for a
+/// part, which remove_abandoned_parts() then removes. A target that exists and is no regular file
+/// (/dev/stdout, a pipe) is written to directly, since a rename would replace the device.
+///
+/// commit() waits for the disk twice, for the bytes and for the name: milliseconds.
 ///
 /// All members throw Error Unwritable with a sentence that names the target and the system's reason.
 class AtomicFile {
@@ -32,15 +35,16 @@ class AtomicFile {
     void commit();
 
   private:
-    int open_unnamed(const std::filesystem::path& folder);
-    int open_part(const std::filesystem::path& folder);
+    std::filesystem::path folder() const;
+    int open_unnamed();
+    int open_part();
     void give_name();
     [[noreturn]] void fail(const char* action) const;
 
     std::filesystem::path target_; // links resolved
     std::filesystem::path part_;   // empty: the file has no name, or target_ itself is written to
-    std::FILE* file_ = nullptr;
-    int lock_ = -1; // a second descriptor of the file, which holds its lock; -1: target_ itself is written to
+    bool is_in_place_ = false;     // target_ itself is written to
+    std::FILE* file_ = nullptr;    // holds the lock of a part
 };
 
 /// An AtomicFile with one write.
