@@ -358,7 +358,9 @@ class Simulation {
     /// about them: no face meets a collider, or another face with options.self_collision, in any frame;
     /// docs/surfaces.md has the limits, and squeezed_count counts where they were met. The arrays of pairs
     /// that are near grow as far as needed, geometrically; a step that does not need more allocates nothing.
-    /// @throws Error Diverged, naming the frame, and so does each further step
+    /// @throws Error Diverged, naming the frame, and so does each further step; as ExactMap::build() where a
+    /// vertex cache leads a collider to a surface of which no map can be built: then nothing has changed, and
+    /// the simulation can go on after set_collider_cache() with another cache
     void step();
 
     const Deformable& deformable() const;

@@ -112,33 +112,24 @@ bool DeformingCollider::has_arrived(double time) const {
     return !cache_ || time >= cache_->end_time();
 }
 
-void DeformingCollider::prepare(double end_time) noexcept {
-    prepared_map_.reset();
+void DeformingCollider::build_ahead(double end_time) {
     if (!cache_) return;
-    try {
-        prepared_vertices_ = vertices_at(*cache_, end_time);
-        if (prepared_vertices_ != vertices_) prepared_map_ = built_of(prepared_vertices_);
-    } catch (...) {
-        return; // the frame itself will say so
-    }
-}
-
-void DeformingCollider::follow_cache(double end_time) {
     std::vector<Vec3f> goal = vertices_at(*cache_, end_time);
-    std::optional<ExactMap> prepared = std::exchange(prepared_map_, std::nullopt);
+    if (prepared_map_ && goal == prepared_vertices_) return;
+    prepared_map_.reset();
     if (goal == vertices_) return;
-    if (prepared && goal == prepared_vertices_)
-        next_map_ = std::move(prepared);
-    else
-        next_map_ =
-            naming_it(", with the vertices of " + name_of(*cache_) + " at " + number_text(end_time) + " s",
-                      [&] { return built_of(goal); });
-    next_vertices_ = std::move(goal);
+    prepared_map_ =
+        naming_it(", with the vertices of " + name_of(*cache_) + " at " + number_text(end_time) + " s",
+                  [&] { return built_of(goal); });
+    prepared_vertices_ = std::move(goal);
 }
 
-void DeformingCollider::begin_frame(Collider& collider, double end_time, const Particles& particles,
+void DeformingCollider::begin_frame(Collider& collider, const Particles& particles,
                                     std::span<const float> clearances, float reach, const Workers& workers) {
-    if (cache_) follow_cache(end_time);
+    if (prepared_map_) {
+        next_map_ = std::exchange(prepared_map_, std::nullopt);
+        next_vertices_ = prepared_vertices_;
+    }
     deforms_ = next_map_.has_value() && next_vertices_ != vertices_;
     if (deforms_) {
         find_motion(collider);
@@ -174,9 +165,18 @@ void DeformingCollider::archive(StateArchive& state, Collider& collider) {
     prepared_map_.reset();
     for (const std::vector<Vec3f>* points : {&vertices_, &next_vertices_})
         for (const Vec3f& p : *points) state.require(is_finite(p));
-    collider.map = has_deformed_ ? built_of(vertices_) : first_map_;
+    collider.map = has_deformed_ ? archived_map(state, vertices_) : first_map_;
     next_map_.reset();
-    if (is_led) next_map_ = built_of(next_vertices_);
+    if (is_led) next_map_ = archived_map(state, next_vertices_);
+}
+
+ExactMap DeformingCollider::archived_map(const StateArchive& state, std::span<const Vec3f> vertices) {
+    try {
+        return built_of(vertices);
+    } catch (const Error&) {
+        state.require(false); // vertices that were saved had a map
+        throw;
+    }
 }
 
 void DeformingCollider::find_motion(const Collider& collider) {

@@ -36,17 +36,17 @@ class DeformingCollider {
     /// Along a cache, from the next frame on. @throws Error InvalidOptions
     void follow(VertexCache cache);
 
-    /// Builds the map of a later frame, if it follows a cache there. Another thread may do so while a frame
-    /// is computed, and begin_frame() need not then. What fails is left to that.
-    void prepare(double end_time) noexcept;
-    /// Gives the collider the map of the frame's end.
-    /// @throws Error as ExactMapBuilder::rebuild() of the cache's vertices
-    /// @param end_time    when the frame ends, seconds since the simulation began
+    /// Builds the map of the next frame's end if the collider follows a cache there and the map has not been
+    /// built yet. Another thread may do so while a frame is computed.
+    /// @param end_time  when the next frame ends, seconds since the simulation began
+    /// @throws Error as ExactMapBuilder::rebuild() of the cache's vertices; then nothing has changed
+    void build_ahead(double end_time);
+    /// Gives the collider the map of the frame's end, for which build_ahead() was called.
     /// @param clearances  lower bounds of the particles' distances from the surface
     /// @param reach       particles so near are beside it
-    /// @param workers     share what is asked about the particles
-    void begin_frame(Collider& collider, double end_time, const Particles& particles,
-                     std::span<const float> clearances, float reach, const Workers& workers);
+    /// @param workers     share the queries of the particles
+    void begin_frame(Collider& collider, const Particles& particles, std::span<const float> clearances,
+                     float reach, const Workers& workers);
     /// As it was before it deformed.
     const ExactMap& first_map() const { return first_map_; }
     /// Reading gives the collider the map of the surface as it is.
@@ -66,7 +66,7 @@ class DeformingCollider {
 
   private:
     ExactMap built_of(std::span<const Vec3f> vertices);
-    void follow_cache(double end_time);
+    ExactMap archived_map(const StateArchive& state, std::span<const Vec3f> vertices);
     template <typename Build>
     ExactMap naming_it(const std::string& vertices, const Build& build) const;
     void find_motion(const Collider& collider);

@@ -143,6 +143,7 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
 void Simulation::Solver::step() {
     const Workers::Session session(workers_);
     bounds_.require_sound();
+    build_maps();
     begin_frame();
     const std::uint32_t part_count = begin_collisions();
     prepare_next_frame();
@@ -226,29 +227,43 @@ void Simulation::Solver::begin_part(bool is_divided) {
         surfaces_->begin_frame(colliders, surface_motions_, collisions_, particles_, part_, workers_);
 }
 
+/// Builds all maps of the frame's end before anything moves: where a map cannot be built, nothing has
+/// changed.
+void Simulation::Solver::build_maps() {
+    const Stopwatch stopwatch(profile.collision_seconds);
+    try {
+        for (std::optional<DeformingCollider>& collider : deforming_)
+            if (collider) collider->build_ahead((frame + 1.0) * options.time_step);
+    } catch (const Error& error) {
+        throw Error(error.code(), "in frame " + std::to_string(frame + 1) + ": " + error.what());
+    }
+}
+
 /// Colliders that deform get the maps of the frame's end.
 void Simulation::Solver::deform() {
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         surface_motions_[c] = nullptr;
         if (!deforming_[c]) continue;
         collisions_.known_clearances(c, particles_, clearances_);
-        try {
-            deforming_[c]->begin_frame(colliders[c], (frame + 1.0) * options.time_step, particles_,
-                                       clearances_, surfaces_->carry_reach(c), workers_);
-        } catch (const Error& error) {
-            throw Error(error.code(), "in frame " + std::to_string(frame + 1) + ": " + error.what());
-        }
+        deforming_[c]->begin_frame(colliders[c], particles_, clearances_, surfaces_->carry_reach(c),
+                                   workers_);
         surface_motions_[c] = deforming_[c]->motion();
     }
 }
 
-/// A thread that has nothing to do builds the maps of the next frame meanwhile.
+/// A thread that has nothing to do builds the maps of the next frame meanwhile. An error is left to that
+/// frame, which builds the map again.
 void Simulation::Solver::prepare_next_frame() {
     if (std::none_of(deforming_.begin(), deforming_.end(), [](const auto& collider) { return !!collider; }))
         return;
     workers_.offer([this, end_time = (frame + 2.0) * options.time_step] {
-        for (std::optional<DeformingCollider>& collider : deforming_)
-            if (collider) collider->prepare(end_time);
+        for (std::optional<DeformingCollider>& collider : deforming_) {
+            try {
+                if (collider) collider->build_ahead(end_time);
+            } catch (...) {
+                continue;
+            }
+        }
     });
 }
 
@@ -387,9 +402,11 @@ void Simulation::Solver::judge_frame() {
     rest_.watch(deformable.positions, largest_speed);
 }
 
-/// From now on the collider's surface deforms, if only a little.
-DeformingCollider& Simulation::Solver::deforming(std::size_t collider) {
-    if (deforming_[collider]) return *deforming_[collider];
+/// From now on the collider's surface deforms, if only a little, unless lead() throws.
+template <typename Lead>
+void Simulation::Solver::lead_surface(std::size_t collider, const Lead& lead) {
+    std::optional<DeformingCollider>& surface = deforming_[collider];
+    if (surface) return lead(*surface);
     const std::string name = name_of_collider(collider);
     const auto* exact = std::get_if<ExactMap>(&colliders[collider].map.kind);
     if (exact == nullptr || !options.surface_collision)
@@ -398,17 +415,22 @@ DeformingCollider& Simulation::Solver::deforming(std::size_t collider) {
                                 ? " has no exact map, which a model that deforms needs"
                                 : " cannot deform without surface_collision, which keeps particles "
                                   "out of faces that move; set it"));
-    deforming_[collider].emplace(*exact, name);
-    attachments_.hold_on_to_surface(collider, colliders[collider], *deforming_[collider]);
-    return *deforming_[collider];
+    surface.emplace(*exact, name);
+    try {
+        lead(*surface);
+    } catch (...) {
+        surface.reset();
+        throw;
+    }
+    attachments_.hold_on_to_surface(collider, colliders[collider], *surface);
 }
 
 void Simulation::Solver::lead_vertices(std::size_t collider, std::span<const Vec3f> vertices_local) {
-    deforming(collider).lead_to(vertices_local);
+    lead_surface(collider, [&](DeformingCollider& surface) { surface.lead_to(vertices_local); });
 }
 
 void Simulation::Solver::follow_cache(std::size_t collider, VertexCache cache) {
-    deforming(collider).follow(std::move(cache));
+    lead_surface(collider, [&](DeformingCollider& surface) { surface.follow(std::move(cache)); });
 }
 
 bool Simulation::Solver::all_arrived() const {

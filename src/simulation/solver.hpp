@@ -62,7 +62,9 @@ class Simulation::Solver {
     SimulationProfile profile;
 
   private:
-    DeformingCollider& deforming(std::size_t collider);
+    template <typename Lead>
+    void lead_surface(std::size_t collider, const Lead& lead);
+    void build_maps();
     void deform();
     void prepare_next_frame();
     bool all_arrived() const;

@@ -4,6 +4,7 @@
 #include "support/draping.hpp"
 #include "support/expect_error.hpp"
 #include "support/instruction_sets.hpp"
+#include "support/kinds_of_simulations.hpp"
 #include "support/surface_judge.hpp"
 
 #include <echinus/simulation.hpp>
@@ -294,6 +295,51 @@ TEST(DeformingCollider, ThatDeformsToNothingIsNamedWithItsCacheAndTheFrame) {
             "in frame 2: the ball, with the vertices of its vertex cache walk.pc2 at 0.00833333 s: all",
             [&] { simulation.step(); });
     }
+}
+
+TEST(DeformingCollider, LeavesAllAsItWasWhereTheMapOfAnotherCannotBeBuilt) {
+    KindOfSimulation kind = sheet_on_deforming_balls();
+    kind.begin = [](Simulation& s) {
+        for (const std::size_t c : {0u, 1u}) s.set_collider_cache(c, breathing_cache());
+    };
+    for (std::vector<Vec3f>* places : {&kind.deformable.positions, &kind.deformable.previous_positions})
+        for (Vec3f& place : *places) place.z -= 0.03F;
+    VertexCache collapsed = breathing_cache();
+    collapsed.samples = std::make_shared<const std::vector<Vec3f>>(collapsed.samples->size());
+    for (const unsigned thread_count : {1u, 2u}) {
+        Simulation control = kind.make(thread_count), simulation = kind.make(thread_count);
+        for (int i = 1; i <= 40; ++i) {
+            if (i == 12) {
+                const std::vector<std::byte> before = simulation.save_state();
+                simulation.set_collider_cache(1, collapsed);
+                for (int attempt = 0; attempt < 2; ++attempt)
+                    expect_error(ErrorCode::InvalidMesh, "in frame 12: collider 1",
+                                 [&] { simulation.step(); });
+                simulation.set_collider_cache(1, breathing_cache());
+                EXPECT_EQ(simulation.save_state(), before);
+            }
+            control.step();
+            simulation.step();
+            ASSERT_EQ(simulation.state_hash(), control.state_hash()) << i;
+            const TriangleMesh ball{vertices_at(breathing_cache(), i / 240.0), breathing_ball(0).faces};
+            ASSERT_TRUE(meeting_faces(simulation, {ball, ball}).empty()) << i;
+        }
+        EXPECT_EQ(simulation.save_state(), control.save_state());
+        EXPECT_GT(simulation.profile().contact_count, 1000u);
+    }
+}
+
+TEST(DeformingCollider, DoesNotBeginToDeformByWhatIsRefused) {
+    const KindOfSimulation kind = sheet_on_deforming_balls();
+    Simulation simulation(kind.deformable, kind.colliders, kind.options);
+    const std::vector<std::byte> before = simulation.save_state();
+    const std::vector<Vec3f> one_point(breathing_cache().vertex_count);
+    expect_error(ErrorCode::InvalidMesh, "all vertices",
+                 [&] { simulation.set_collider_vertices(0, one_point); });
+    expect_error(ErrorCode::InvalidOptions, "no samples", [&] {
+        simulation.set_collider_cache(0, {.vertex_count = one_point.size(), .samples = {}});
+    });
+    EXPECT_EQ(simulation.save_state(), before);
 }
 
 TEST(DeformingCollider, RefusesOtherTopologiesAndKeepsWhatItHas) {
