@@ -1,13 +1,18 @@
-// step() allocates nothing.
+// step() allocates nothing, and what a saved state says takes no more memory than its bytes do.
 
 #include "support/allocations.hpp"
 #include "support/custom_maps.hpp"
+#include "support/saved_state_attack.hpp"
 
+#include <echinus/error.hpp>
 #include <echinus/simulation.hpp>
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <cstring>
 #include <memory>
+#include <vector>
 
 using namespace echinus;
 
@@ -48,4 +53,33 @@ TEST(Step, AllocatesNothingMoreForSurfacesOnceTheirListsHaveGrown) {
     // Capacities grow geometrically: few times while the cloth falls, and not again.
     EXPECT_LT(warm - at_start, 300u);
     EXPECT_EQ(test::allocation_count(), warm);
+}
+
+TEST(RestoreState, TakesMemoryForTheBytesThatAreThereWhateverCountsSay) {
+    const std::vector<Simulation> fresh = test::simulations_to_attack();
+    Simulation stepped = fresh[0];
+    for (int i = 0; i < 8; ++i) stepped.step();
+    const std::vector<std::byte> good = stepped.save_state();
+    int refused = 0;
+    const auto peak_of = [&](const std::vector<std::byte>& state) {
+        Simulation simulation = fresh[0];
+        const test::PeakOfHeldBytes peak;
+        try {
+            simulation.restore_state(state);
+        } catch (const Error&) {
+            ++refused;
+        }
+        return peak.get();
+    };
+    const std::size_t usual = peak_of(good);
+    ASSERT_EQ(refused, 0);
+    for (std::size_t i = test::kStateAt; i + 8 <= good.size(); i += 4) {
+        std::vector<std::byte> forged = good;
+        const std::uint64_t bytes_left = good.size() - i - 8;
+        std::memcpy(forged.data() + i, &bytes_left, 8);
+        test::mend_checksum(forged);
+        // Items take about as much memory as bytes, and an array that grows twice that.
+        ASSERT_LE(peak_of(forged), usual + 4 * good.size()) << i;
+    }
+    EXPECT_GT(refused, 100);
 }

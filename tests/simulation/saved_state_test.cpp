@@ -3,6 +3,7 @@
 #include "support/expect_error.hpp"
 #include "support/kinds_of_simulations.hpp"
 #include "support/random_points.hpp"
+#include "support/saved_state_attack.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <echinus/simulation.hpp>
@@ -10,11 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <functional>
-
-#define XXH_INLINE_ALL
-#include <xxhash.h>
 
 using namespace echinus;
 using namespace echinus::test;
@@ -44,12 +41,6 @@ void expect_same(const Simulation& a, const Simulation& b) {
         EXPECT_EQ(a.load_on(c).torque, b.load_on(c).torque);
     }
     EXPECT_EQ(a.save_state(), b.save_state());
-}
-
-/// So that only the checks of values are left to refuse what was changed.
-void mend_checksum(std::vector<std::byte>& bytes) {
-    const std::uint64_t checksum = XXH64(bytes.data() + 32, bytes.size() - 32, 0);
-    std::memcpy(bytes.data() + 24, &checksum, sizeof checksum);
 }
 
 } // namespace

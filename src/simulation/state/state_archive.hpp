@@ -97,11 +97,16 @@ class StateArchive {
     }
     /// Indices below a limit, at most so many.
     void indices(std::vector<std::uint32_t>& values, std::size_t limit, std::size_t most);
-    /// An array of any size. @param each  archives an item
+    /// An array of any size. It grows with the bytes that are read, since a count alone says nothing about
+    /// how many bytes an item takes. @param each  archives an item
     template <typename Item, typename Each>
     void items(std::vector<Item>& values, const Each& each) {
-        values.resize(count(values.size(), 1));
-        for (Item& item : values) each(item);
+        const std::size_t item_count = count(values.size(), 1);
+        if (reads_) values.clear();
+        for (std::size_t i = 0; i < item_count; ++i) {
+            if (reads_) values.emplace_back();
+            each(values[i]);
+        }
     }
     template <typename T, typename Each>
     void optional(std::optional<T>& v, const Each& each) {
