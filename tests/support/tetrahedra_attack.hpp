@@ -1,12 +1,11 @@
 #pragma once
 
 #include "mesh_io/tetrahedra_readers.hpp"
+#include "support/require_sentence.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/tetrahedra.hpp>
 
-#include <cstdio>
-#include <cstdlib>
 #include <string_view>
 
 namespace echinus::test {
@@ -29,10 +28,8 @@ inline bool attack_tetrahedra(std::string_view bytes) {
     try {
         file = read_any_tetrahedra(bytes);
     } catch (const Error& error) {
-        const std::string_view sentence = error.what();
-        if (sentence.starts_with("attack") && sentence.find('\n') == std::string_view::npos) return false;
-        std::fprintf(stderr, "not a sentence: %s\n", error.what());
-        std::abort();
+        require_sentence(error.what(), "attack");
+        return false;
     }
     require_valid_tetrahedra(file.mesh); // outside of the try: what it throws is a finding
     inspect_tetrahedra(file.mesh);

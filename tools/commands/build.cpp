@@ -2,7 +2,7 @@
 #include "commands/descriptions.hpp"
 #include "commands/repair_arguments.hpp"
 #include "directions/lattice.hpp"
-#include "input.hpp"
+#include "input_file.hpp"
 #include "output.hpp"
 
 #include <echinus/any_map.hpp>

@@ -3,7 +3,7 @@
 #include "commands/commands.hpp"
 #include "commands/comparison_report.hpp"
 #include "commands/descriptions.hpp"
-#include "input.hpp"
+#include "input_file.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 

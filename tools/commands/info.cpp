@@ -1,6 +1,6 @@
 #include "commands/commands.hpp"
 #include "commands/descriptions.hpp"
-#include "input.hpp"
+#include "input_file.hpp"
 #include "output.hpp"
 
 #include <echinus/map_file.hpp>

@@ -1,7 +1,7 @@
 #include "commands/commands.hpp"
 #include "commands/descriptions.hpp"
 #include "commands/repair_arguments.hpp"
-#include "input.hpp"
+#include "input_file.hpp"
 #include "mesh_io/encode.hpp"
 #include "output.hpp"
 

@@ -1,5 +1,5 @@
 #include "commands/commands.hpp"
-#include "input.hpp"
+#include "input_file.hpp"
 #include "json.hpp"
 #include "output.hpp"
 #include "points/answers.hpp"

@@ -1,5 +1,5 @@
 #include "commands/commands.hpp"
-#include "input.hpp"
+#include "input_file.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "recording/simulation_folder.hpp"

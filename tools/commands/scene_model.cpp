@@ -2,7 +2,7 @@
 
 #include "commands/descriptions.hpp"
 #include "files/mapped_file.hpp"
-#include "input.hpp"
+#include "input_file.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/mesh_io.hpp>

@@ -2,7 +2,7 @@
 #include "commands/loaded_colliders.hpp"
 #include "commands/scene_model.hpp"
 #include "commands/simulation_result.hpp"
-#include "input.hpp"
+#include "input_file.hpp"
 #include "mesh_io/point_cache.hpp"
 #include "output.hpp"
 #include "progress.hpp"

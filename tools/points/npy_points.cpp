@@ -100,10 +100,10 @@ std::unique_ptr<PointSource> open_npy_points(std::unique_ptr<Input> input) {
     if (header.descr == "<f4") return open_array<float>(std::move(input), header);
     if (header.descr == "<f8") return open_array<double>(std::move(input), header);
     if (header.descr.starts_with('>')) {
-        input->fail(ErrorCode::WrongFormat, "an array of big-endian numbers (" + header.descr +
+        input->fail(ErrorCode::WrongFormat, "an array of big-endian numbers (" + excerpt(header.descr) +
                                                 "); convert it with points.astype('<f4')");
     }
-    input->fail(ErrorCode::WrongFormat, "an array of type " + header.descr +
+    input->fail(ErrorCode::WrongFormat, "an array of type " + excerpt(header.descr) +
                                             ", but points are float32 or float64; convert it with "
                                             "points.astype('<f4')");
 }

@@ -30,15 +30,6 @@ std::optional<float> parse_number(std::string_view text) {
     return static_cast<float>(value);
 }
 
-/// What of a faulty line can be shown on one line of a terminal.
-std::string excerpt(std::string_view line) {
-    constexpr std::size_t kLength = 40;
-    std::string text(line.substr(0, kLength));
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-    return "'" + text + (line.size() > kLength ? "...'" : "'");
-}
-
 std::optional<Vec3f> parse_point(std::string_view line) {
     std::array<float, 3> numbers{};
     for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -98,6 +89,14 @@ TableFormat format_of_points(const std::filesystem::path& path, Input& input) {
     if (path.extension() == ".npy") return TableFormat::Npy;
     if (path.extension() == ".csv") return TableFormat::Csv;
     return input.next_is(kNpyFirstByte) ? TableFormat::Npy : TableFormat::Csv;
+}
+
+std::string excerpt(std::string_view text) {
+    constexpr std::size_t kLength = 40;
+    std::string shown(text.substr(0, kLength));
+    std::replace_if(
+        shown.begin(), shown.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+    return "'" + shown + (text.size() > kLength ? "...'" : "'");
 }
 
 void require_room_for(const Input& input, std::uint64_t count) {

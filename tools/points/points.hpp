@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 /// Points from a file, handed out in order, block by block.
@@ -42,6 +44,9 @@ std::unique_ptr<PointSource> open_npy_points(std::unique_ptr<Input> input);
 /// @throws echinus::Error Damaged with the number of the line; WrongFormat for a file without lines;
 /// Unreadable for more than kMaxPointsInMemory
 std::unique_ptr<PointSource> open_csv_points(std::unique_ptr<Input> input);
+
+/// Of a file's text, as much as can be shown within a line of a terminal, in quotes.
+std::string excerpt(std::string_view text);
 
 /// Refuses more points than kMaxPointsInMemory.
 void require_room_for(const Input& input, std::uint64_t count);

@@ -1,0 +1,71 @@
+#include "input_file.hpp"
+
+#include "files/mapped_file.hpp"
+
+#include <echinus/mesh_io.hpp>
+
+#include <vector>
+
+namespace fs = std::filesystem;
+using echinus::Error;
+using echinus::ErrorCode;
+
+namespace {
+
+void copy_standard_input(const fs::path& target) {
+    Input input{fs::path(kStandardStream)};
+    Output output(target);
+    std::vector<char> block(std::size_t{1} << 16);
+    std::size_t total = 0;
+    while (const std::size_t byte_count = input.read(block.data(), block.size())) {
+        total += byte_count;
+        if (total > echinus::MappedFile::kMostReadBytes)
+            input.fail(ErrorCode::Unreadable,
+                       "has more than " + std::to_string(echinus::MappedFile::kMostReadBytes) +
+                           " bytes, the most that are read from it; write them to a file first, if they have "
+                           "an end");
+        output.write(block.data(), byte_count);
+    }
+    output.commit();
+}
+
+} // namespace
+
+InputFile::InputFile(const fs::path& argument, const std::string& format)
+    : path_(argument), name_(name_of_input(argument)) {
+    if (argument != kStandardStream) return;
+    copy_.emplace(fs::temp_directory_path());
+    path_ = copy_->path() / ("input." + format);
+    copy_standard_input(path_);
+}
+
+std::string InputFile::renamed(std::string sentence) const {
+    const std::string copy = path_.string();
+    const std::size_t position = copy_ ? sentence.find(copy) : std::string::npos;
+    if (position != std::string::npos) sentence.replace(position, copy.size(), name_);
+    return sentence;
+}
+
+std::string MeshArgument::name() const {
+    return name_of_input(path);
+}
+
+void MeshArgument::add_format_option(Command command) {
+    std::vector<std::pair<std::string, std::string>> choices;
+    for (const char* ending : {"obj", "ply", "stl", "off", "gltf", "glb", "3ds"}) {
+        choices.emplace_back(ending, ending);
+    }
+    add_choice(command, "--format", format, choices, "Format of a mesh on standard input");
+}
+
+void MeshArgument::require_format() const {
+    if (path == kStandardStream && format.empty()) {
+        throw WrongUse("--format", "needed for a mesh on standard input, such as --format obj");
+    }
+}
+
+echinus::TriangleMesh read_mesh(const MeshArgument& argument) {
+    argument.require_format();
+    const InputFile file(argument.path, argument.format);
+    return file.read([](const fs::path& path) { return echinus::read_mesh(path); });
+}
