@@ -15,12 +15,17 @@ using nlohmann::json;
 
 namespace {
 
-/// The parser keeps the last of two values with one key; here the second is an error.
-class DuplicateKeys {
+/// Refuses two values with one key, of which the parser would keep the last, and values that nest deeper than
+/// the library's recursive functions can go.
+class ParsingRules {
   public:
-    explicit DuplicateKeys(const std::string& name) : name_(name) {}
+    explicit ParsingRules(const std::string& name) : name_(name) {}
 
-    bool operator()(int, json::parse_event_t event, json& parsed) {
+    bool operator()(int depth, json::parse_event_t event, json& parsed) {
+        constexpr int kMostDepth = 32; // a scene needs five
+        if (depth > kMostDepth)
+            throw Error(ErrorCode::InvalidScene,
+                        name_ + ": nests deeper than " + std::to_string(kMostDepth) + " levels");
         if (event == json::parse_event_t::object_start) keys_.emplace_back();
         if (event == json::parse_event_t::object_end) keys_.pop_back();
         if (event == json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second)
@@ -125,7 +130,7 @@ json parse_json(std::string_view text, const std::string& name) {
     try {
         constexpr bool kThrow = true;
         constexpr bool kIgnoreComments = true;
-        return json::parse(text, DuplicateKeys(name), kThrow, kIgnoreComments);
+        return json::parse(text, ParsingRules(name), kThrow, kIgnoreComments);
     } catch (const json::exception& error) {
         throw Error(ErrorCode::InvalidScene, name + ": not JSON: " + reason_of(error));
     }

@@ -41,10 +41,19 @@ TEST(Json, ThatIsNoneIsRefusedWithLineAndColumn) {
     EXPECT_NE(refusal_of_text("{\"a\": 1} {}"), "");
 }
 
-TEST(Json, DeepEnoughToOverflowAStackIsReadOrRefused) {
-    const std::string open(100'000, '[');
+TEST(Json, DeepEnoughToOverflowAStackIsRefused) {
+    constexpr std::size_t kLevels = 100'000;
+    const std::string open(kLevels, '[');
     EXPECT_NE(refusal_of_text(open), "");
-    EXPECT_TRUE(parse_json(open + std::string(open.size(), ']'), "a.json").is_array());
+    const auto show = [&](const std::string& text) { // the excerpt in a sentence is made by a recursion
+        return refusal([&] {
+            const nlohmann::json json = parse_json("{\"a\":" + text + "}", "a.json");
+            JsonObject(json, "a.json", "").object("a");
+        });
+    };
+    EXPECT_EQ(show(open + std::string(kLevels, ']')), "a.json: nests deeper than 32 levels");
+    EXPECT_EQ(show("[[[[[[[[[[[[[[[[[[[[[[[[[]]]]]]]]]]]]]]]]]]]]]]]]]"),
+              "a.json: a is [[[[[[[[[[[[[[[[[[[[[[[[[]]]]]]]]]]]]]]]]]]]]]]]]]; it must be an object");
 }
 
 TEST(Json, GivingAKeyTwiceIsRefused) {
