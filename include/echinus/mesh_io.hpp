@@ -22,7 +22,12 @@ namespace echinus {
 /// positions are welded and vertices that no face uses are dropped; points, lines (but see
 /// read_mesh_and_edges()), normals, colours and materials are ignored. Nothing is repaired: inspect() reports
 /// the faults of the result. Face numbers are those of the file, a polygon of k corners counted as its k - 2
-/// triangles. Coordinates in text are rounded to the nearest float. The same file gives the same mesh.
+/// triangles, and a strip of triangles in a PLY as those that have three different corners. Coordinates in
+/// text are rounded to the nearest float. The same file gives the same mesh.
+///
+/// Text is ASCII or UTF-8, with or without a byte order mark, with lines that end as on Unix, Windows or old
+/// Macs; Ctrl-Z or zeros may fill it up. Bytes after the faces of a binary STL are ignored unless they could
+/// be faces. Numbers of a text PLY or OFF may be wrapped over lines. OFF is read as text.
 ///
 /// @throws Error Unreadable, WrongFormat, Damaged (a file shorter or longer than it declares; the sentence
 /// names the line or byte) or InvalidMesh (no faces; an index out of range or a coordinate that is not finite

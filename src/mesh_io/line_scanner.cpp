@@ -1,17 +1,40 @@
 #include "mesh_io/line_scanner.hpp"
 
+#include "geometry/bit_cast.hpp"
+
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <string>
+#include <utility>
 
 namespace echinus {
 
 namespace {
 
-constexpr std::string_view kBlanks = " \t\v\f\r\n\\"; // the last three inside a continued line only
+constexpr std::string_view kBlanks = " \t\v\f";
+/// With these, programs of DOS and of tapes fill up the last block of a text.
+constexpr std::string_view kPadding{"\0\x1a \t\v\f\r\n", 8};
+
+constexpr bool is_control(char c) {
+    return static_cast<unsigned char>(c) < ' ' && kBlanks.find(c) == std::string_view::npos;
+}
+
+/// Is the # at this place a part of 1.#INF, 1.#IND, 1.#QNAN or 1.#SNAN, which Microsoft's libraries wrote for
+/// infinity and NaN, or of a shorter form, which came of rounding them (1.#J, 1.#R, 1.#QO)?
+bool is_in_number(std::string_view line, std::size_t hash) {
+    return hash >= 2 && line.substr(hash - 2, 2) == "1." && hash + 1 < line.size() &&
+           std::string_view("IQSJR").find(line[hash + 1]) != std::string_view::npos;
+}
+
+std::string_view without_comment(std::string_view line) {
+    std::size_t hash = line.find('#');
+    while (hash != std::string_view::npos && is_in_number(line, hash)) hash = line.find('#', hash + 1);
+    return line.substr(0, hash);
+}
 
 std::string_view without_plus(std::string_view word) {
     if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
@@ -58,50 +81,115 @@ std::from_chars_result read_number(std::string_view word, Number& value) {
 
 template <typename Number>
 std::errc parse_whole(std::string_view word, Number& value) {
-    word = without_plus(word);
     const auto [end, error] = read_number(word, value);
     return error == std::errc{} && end != word.data() + word.size() ? std::errc::invalid_argument : error;
 }
 
+/// Of a number that no double holds: 0 where the exponent says so. A word of very many digits could be
+/// anything, and counts as too large.
+double out_of_range(std::string_view word) {
+    constexpr std::size_t kMostDigits = 64;
+    const bool is_small = word.size() <= kMostDigits && word.find_first_of("eE") != std::string_view::npos &&
+                          word.find('-', word.find_first_of("eE")) != std::string_view::npos;
+    return is_small ? 0 : HUGE_VAL;
+}
+
+/// A number in text that lies next to the middle between two floats may become that middle as a double, and
+/// then the farther float. So a double that ends like a middle is compared with the float of the word.
+double rounding_to_nearest_float(std::string_view word, double value) {
+    constexpr std::uint64_t kZeroInMiddles = (std::uint64_t{1} << 28) - 1;
+    if ((echinus::bit_cast<std::uint64_t>(value) & kZeroInMiddles) != 0) return value;
+    float nearest = 0;
+    if (parse_whole(word, nearest) != std::errc{} || nearest == static_cast<float>(value)) return value;
+    return std::nextafter(value, double{nearest});
+}
+
+std::string expectation(const std::string& what, std::string_view word) {
+    return what + " was expected, not " + (word.empty() ? "the end of the line" : in_quotes(word));
+}
+
+/// Why a word that a person takes for a number is none.
+std::string remedy_for(std::string_view word) {
+    const bool has_digits = word.find_first_of("0123456789") != std::string_view::npos;
+    if (has_digits && word.find(',') != std::string_view::npos)
+        return "; numbers have a decimal point and blanks between them, no commas";
+    if (has_digits && word.find_first_of("dD") != std::string_view::npos)
+        return "; exponents are written with an e";
+    return {};
+}
+
 } // namespace
 
-bool parse_float(std::string_view word, float& value) {
-    const std::errc error = parse_whole(word, value);
-    if (error != std::errc::result_out_of_range) return error == std::errc{};
-    // Too large and too small look the same so far; as a double, 1e-50 is an ordinary number.
-    double wide = 0;
-    if (parse_whole(word, wide) != std::errc{}) wide = HUGE_VAL;
-    value = std::abs(wide) < 1 ? static_cast<float>(wide) : HUGE_VALF;
-    return true;
-}
-
-void LineScanner::take_line() {
-    const std::string_view text = source_.bytes;
-    line_number_ = next_number_;
-    const std::size_t begin = next_;
-    for (bool continued = true; continued;) {
-        const std::size_t end = std::min(text.find_first_of("\r\n", next_), text.size());
-        continued = end > begin && end < text.size() && text[end - 1] == '\\';
-        rest_ = text.substr(begin, end - begin);
-        const bool is_pair = text.substr(end, 2) == "\r\n";
-        next_ = std::min(end + (is_pair ? 2 : 1), text.size());
-        ++next_number_;
+bool parse_number(std::string_view word, double& value) {
+    word = without_plus(word);
+    if (const std::size_t hash = word.find('#'); hash != std::string_view::npos) {
+        value = std::numeric_limits<double>::quiet_NaN();
+        return is_in_number(word, hash) && word.find_first_not_of("-0123456789") == hash - 1;
     }
+    const std::errc error = parse_whole(word, value);
+    if (error == std::errc::result_out_of_range)
+        value = out_of_range(word);
+    else if (error == std::errc{})
+        value = rounding_to_nearest_float(word, value);
+    return error == std::errc{} || error == std::errc::result_out_of_range;
 }
 
-void LineScanner::require_text() const {
-    const auto is_control = [](char c) {
-        return static_cast<unsigned char>(c) < ' ' && kBlanks.find(c) == std::string_view::npos;
-    };
-    if (std::any_of(rest_.begin(), rest_.end(), is_control))
-        fail(ErrorCode::WrongFormat, "the line has control characters, so the file is no text");
+bool parse_integer(std::string_view word, std::int64_t& value) {
+    return parse_whole(without_plus(word), value) == std::errc{};
+}
+
+/// The text of the next line of the file, without its comment. Goes behind it.
+std::string_view LineScanner::take_line() {
+    const std::string_view text = source_.bytes;
+    const std::string_view rest = text.substr(next_);
+    const auto end =
+        static_cast<std::size_t>(std::find_if(rest.begin(), rest.end(), is_control) - rest.begin());
+    const std::string_view behind = rest.substr(end);
+    const std::size_t number = next_number_++;
+    if (behind.starts_with("\r\n")) {
+        next_ += end + 2;
+    } else if (behind.starts_with('\n') || behind.starts_with('\r')) {
+        next_ += end + 1;
+    } else if (next_ + end > 0 && behind.find_first_not_of(kPadding) == std::string_view::npos) {
+        next_ = text.size();
+    } else {
+        fail_at(number, ErrorCode::WrongFormat,
+                std::string("the line has control characters, so the file is no text") +
+                    (behind[0] == '\0' ? ", or it is UTF-16, which must be saved as UTF-8" : ""));
+    }
+    return without_comment(rest.substr(0, end));
+}
+
+/// The next line of the file, without the backslash at its end; false when it has none.
+bool LineScanner::take_continued_line() {
+    const std::size_t begin = next_;
+    rest_ = take_line();
+    // A comment is cut off, so that the backslash is not the last of the line's characters in the file.
+    const std::size_t end = begin + rest_.size();
+    const bool is_continued = rest_.ends_with('\\') && source_.bytes.substr(end, 1) != "#";
+    if (is_continued) rest_.remove_suffix(1);
+    return is_continued;
+}
+
+void LineScanner::take_joined_lines() {
+    if (!take_continued_line()) return;
+    bool is_continued = true;
+    while (is_continued && next_ < source_.bytes.size()) {
+        joined_.append(rest_).push_back(' ');
+        is_continued = take_continued_line();
+    }
+    joined_.append(rest_);
+    rest_ = joined_;
 }
 
 bool LineScanner::next_line() {
     while (next_ < source_.bytes.size()) {
-        take_line();
-        require_text();
-        rest_ = rest_.substr(0, rest_.find('#'));
+        line_number_ = next_number_;
+        joined_.clear();
+        if (continuation_ == Continuation::Backslash)
+            take_joined_lines();
+        else
+            rest_ = take_line();
         if (!at_end_of_line()) return true;
     }
     return false;
@@ -109,6 +197,13 @@ bool LineScanner::next_line() {
 
 void LineScanner::require_line(const std::string& what) {
     if (!next_line()) source_.fail(ErrorCode::Damaged, "the file ends where " + what + " was expected");
+}
+
+std::size_t LineScanner::count_lines_left() const {
+    LineScanner ahead(source_, next_, next_number_);
+    std::size_t count = 0;
+    while (ahead.next_line()) ++count;
+    return count;
 }
 
 bool LineScanner::at_end_of_line() {
@@ -123,19 +218,52 @@ std::string_view LineScanner::next_word() {
     return word;
 }
 
-float LineScanner::next_coordinate() {
-    const std::string_view word = next_word();
-    float value = 0;
-    if (!parse_float(word, value)) fail_expecting("a coordinate", word);
-    if (!std::isfinite(value))
+void LineScanner::give_back(std::string_view end) {
+    rest_ = {end.data(), end.size() + rest_.size()};
+}
+
+void LineScanner::read_across_lines(std::string reason) {
+    reads_across_lines_ = true;
+    reason_ = std::move(reason);
+}
+
+void LineScanner::read_within_lines() {
+    reads_across_lines_ = false;
+    reason_.clear();
+}
+
+std::string_view LineScanner::next_number(const std::string& what) {
+    if (reads_across_lines_ && at_end_of_line()) require_line(what);
+    return next_word();
+}
+
+double LineScanner::next_coordinate() {
+    const std::string_view word = next_number("a coordinate");
+    double value = 0;
+    if (!parse_number(word, value))
+        fail(ErrorCode::Damaged, expectation("a coordinate", word) + remedy_for(word));
+    if (!std::isfinite(static_cast<float>(value)))
         fail(ErrorCode::InvalidMesh, "the coordinate " + in_quotes(word) + " is not finite as a float");
     return value;
 }
 
+Vec3d LineScanner::next_position() {
+    const double x = next_coordinate();
+    const double y = next_coordinate();
+    return {x, y, next_coordinate()};
+}
+
+void LineScanner::skip_number() {
+    const std::string_view word = next_number("a number");
+    double ignored = 0;
+    if (!parse_number(word, ignored))
+        fail(ErrorCode::Damaged, expectation("a number", word) + remedy_for(word));
+}
+
 std::int64_t LineScanner::next_integer(const std::string& what) {
-    const std::string_view word = next_word();
+    const std::string_view word = next_number(what);
     std::int64_t value = 0;
-    if (parse_whole(word, value) != std::errc{}) fail_expecting(what, word);
+    if (!parse_integer(word, value)) fail_expecting(what, word);
     return value;
 }
 
@@ -149,7 +277,7 @@ std::uint32_t LineScanner::next_vertex_index(std::size_t vertex_count) {
 }
 
 void LineScanner::fail_expecting(const std::string& what, std::string_view word, ErrorCode code) const {
-    fail(code, what + " was expected, not " + (word.empty() ? "the end of the line" : in_quotes(word)));
+    fail(code, expectation(what, word));
 }
 
 void LineScanner::fail(ErrorCode code, const std::string& what) const {
@@ -157,7 +285,7 @@ void LineScanner::fail(ErrorCode code, const std::string& what) const {
 }
 
 void LineScanner::fail_at(std::size_t line_number, ErrorCode code, const std::string& what) const {
-    source_.fail(code, "line " + std::to_string(line_number) + ": " + what);
+    source_.fail(code, "line " + std::to_string(line_number) + ": " + what + reason_);
 }
 
 } // namespace echinus

@@ -2,6 +2,8 @@
 
 #include "mesh_io/mesh_source.hpp"
 
+#include <echinus/geometry.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -9,16 +11,24 @@
 
 namespace echinus {
 
-/// Walks over a text line by line and word by word. Lines end with \n, \r\n or \r; a # begins a comment; a
-/// backslash before the end of a line joins it with the next one. Empty lines are passed over.
+/// Walks over a text line by line and word by word. Lines end with \n, \r\n or \r; a # begins a comment, but
+/// not inside a number that is none, such as 1.#QNAN. Empty lines are passed over, as is a byte order mark of
+/// UTF-8. The text may end before the file does: zeros, and the Ctrl-Z of DOS, may fill up its last block.
 ///
-/// Every sentence of an error names the line.
+/// Every sentence of an error names the line. Not copied, since words may be views of its own memory.
 class LineScanner {
   public:
-    explicit LineScanner(const MeshSource& source) : source_(source) {}
+    /// Does a backslash before the end of a line join it with the next one? One in a comment never does.
+    enum class Continuation { None, Backslash };
+
+    /// @throws Error WrongFormat when the text is UTF-16
+    explicit LineScanner(const MeshSource& source, Continuation continuation = Continuation::None)
+        : source_(source), continuation_(continuation), next_(begin_of_text(source)) {}
     /// Begins at an offset, where the line of this number does.
     LineScanner(const MeshSource& source, std::size_t offset, std::size_t line_number)
         : source_(source), next_(offset), next_number_(line_number) {}
+    LineScanner(const LineScanner&) = delete;
+    LineScanner& operator=(const LineScanner&) = delete;
 
     /// Goes to the next line that has a word. False at the end of the text.
     /// @throws Error WrongFormat when the line has control characters and so is no text
@@ -28,14 +38,38 @@ class LineScanner {
     /// @throws Error Damaged when there is none; the sentence says that `what` was expected
     void require_line(const std::string& what);
 
-    /// The next word of the line; empty at its end.
+    /// How many lines with words follow this one.
+    /// @throws Error as next_line()
+    std::size_t count_lines_left() const;
+
+    /// From now on a number may also stand on a later line than the one before it.
+    /// @param reason  ends the sentence of every error that names a line; may be empty
+    void read_across_lines(std::string reason = {});
+    /// Again, a number that is not on the line is missing.
+    void read_within_lines();
+
+    /// The next word of the line, up to the next call of next_line(); empty at the line's end.
     std::string_view next_word();
 
-    bool at_end_of_line();
+    /// Makes the end of the word that was given last the next word again.
+    /// @pre word.ends_with(end) for the last word
+    void give_back(std::string_view end);
 
-    /// The next word as a number. Coordinates are rounded to the nearest float.
+    bool at_end_of_line();
+    void skip_rest_of_line() { rest_ = {}; }
+
+    /// Was the line put together of several?
+    bool is_joined() const { return !joined_.empty(); }
+
+    /// The next word as a number, which rounds to the float that is nearest to the text.
     /// @throws Error Damaged when there is none; InvalidMesh when it is not finite as a float
-    float next_coordinate();
+    double next_coordinate();
+    /// Three of them.
+    Vec3d next_position();
+
+    /// Passes over a number, which may be infinite or none.
+    /// @throws Error Damaged when the next word is no number
+    void skip_number();
 
     /// @throws Error Damaged when the next word is no integer of 64 bits
     std::int64_t next_integer(const std::string& what);
@@ -55,18 +89,29 @@ class LineScanner {
     [[noreturn]] void fail_at(std::size_t line_number, ErrorCode code, const std::string& what) const;
 
   private:
-    void take_line();
-    void require_text() const;
+    std::string_view take_line();
+    bool take_continued_line();
+    void take_joined_lines();
+    std::string_view next_number(const std::string& what);
 
     const MeshSource& source_;
+    Continuation continuation_ = Continuation::None;
+    bool reads_across_lines_ = false;
+    std::string reason_;
     std::string_view rest_;       // of the line
+    std::string joined_;          // lines that continue, with blanks between them; otherwise empty
     std::size_t next_ = 0;        // offset of the next line
     std::size_t line_number_ = 0; // of the line, from 1
     std::size_t next_number_ = 1; // of the next one: lines that continue count as several
 };
 
-/// Reads a whole word as a float, rounded to nearest; an infinite or overflowing one gives infinity.
-/// @returns whether it is a number
-bool parse_float(std::string_view word, float& value);
+/// Reads a whole word as a number: the double nearest to it, or a neighbour of that where only this one
+/// rounds to the float that is nearest to the word. Infinite and overflowing numbers give infinity.
+/// @returns whether it is a number, possibly NaN
+bool parse_number(std::string_view word, double& value);
+
+/// Reads a whole word as an integer.
+/// @returns whether it is one
+bool parse_integer(std::string_view word, std::int64_t& value);
 
 } // namespace echinus

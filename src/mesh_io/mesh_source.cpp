@@ -4,11 +4,26 @@
 
 namespace echinus {
 
-std::string lower_case_ending(const std::filesystem::path& path) {
-    std::string ending = path.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
+bool begins_as_utf16(std::string_view bytes) {
+    return bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
+}
+
+std::size_t begin_of_text(const MeshSource& source) {
+    constexpr std::string_view kMarkOfUtf8 = "\xef\xbb\xbf";
+    if (begins_as_utf16(source.bytes))
+        source.fail(ErrorCode::WrongFormat, "the text is UTF-16; save it as UTF-8 or ASCII");
+    return source.bytes.starts_with(kMarkOfUtf8) ? kMarkOfUtf8.size() : 0;
+}
+
+std::string lower_case(std::string_view text) {
+    std::string lower(text);
+    std::transform(lower.begin(), lower.end(), lower.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-    return ending;
+    return lower;
+}
+
+std::string lower_case_ending(const std::filesystem::path& path) {
+    return lower_case(path.extension().string());
 }
 
 std::string printable(std::string_view text) {

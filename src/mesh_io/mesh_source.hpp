@@ -18,6 +18,16 @@ struct MeshSource {
     }
 };
 
+/// Is this the beginning of a text in UTF-16, as its byte order mark says?
+bool begins_as_utf16(std::string_view bytes);
+
+/// Where the text of a file begins: behind the byte order mark of UTF-8, if there is one.
+/// @throws Error WrongFormat when the text is UTF-16
+std::size_t begin_of_text(const MeshSource& source);
+
+/// With ASCII capitals as small letters, whatever the locale.
+std::string lower_case(std::string_view text);
+
 /// What a path's name ends in, with the dot, in lower case: ".obj" for "A/Horse.OBJ".
 std::string lower_case_ending(const std::filesystem::path& path);
 

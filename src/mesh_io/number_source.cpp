@@ -1,6 +1,5 @@
 #include "mesh_io/number_source.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -22,9 +21,10 @@ std::vector<std::string_view> words_of(std::string_view line) {
 
 } // namespace
 
-bool parse_integer(std::string_view word, std::int64_t& value) {
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    return error == std::errc{} && end == word.data() + word.size();
+Vec3d NumberSource::position(NumberType type) {
+    const double x = coordinate(type);
+    const double y = coordinate(type);
+    return {x, y, coordinate(type)};
 }
 
 std::size_t NumberSource::count(NumberType type, const char* what) {
@@ -49,17 +49,11 @@ std::vector<std::string_view> TextNumbers::next_line() {
     return words;
 }
 
-void TextNumbers::go_to_word(const char* what) {
-    if (scanner_.at_end_of_line()) scanner_.require_line(what);
-}
-
 std::int64_t TextNumbers::integer(NumberType, const char* what) {
-    go_to_word(what);
     return scanner_.next_integer(what);
 }
 
-float TextNumbers::coordinate(NumberType) {
-    go_to_word("a coordinate");
+double TextNumbers::coordinate(NumberType) {
     return scanner_.next_coordinate();
 }
 
@@ -87,11 +81,11 @@ std::int64_t BinaryNumbers::integer(NumberType type, const char*) {
     return type == NumberType::Int32 ? bytes_.next<std::int32_t>() : bytes_.next<std::int64_t>();
 }
 
-float BinaryNumbers::coordinate(NumberType type) {
+double BinaryNumbers::coordinate(NumberType type) {
     const double value = type == NumberType::Float32 ? double{bytes_.next<float>()} : bytes_.next<double>();
-    const auto rounded = static_cast<float>(value);
-    if (!std::isfinite(rounded)) fail(ErrorCode::InvalidMesh, "a coordinate is not finite as a float");
-    return rounded;
+    if (!std::isfinite(static_cast<float>(value)))
+        fail(ErrorCode::InvalidMesh, "a coordinate is not finite as a float");
+    return value;
 }
 
 void BinaryNumbers::skip_to_line(const std::string& word) {

@@ -24,7 +24,9 @@ class NumberSource {
     /// @throws Error Damaged when there is none
     virtual std::int64_t integer(NumberType type, const char* what) = 0;
     /// @throws Error Damaged when there is none; InvalidMesh when it is not finite as a float
-    virtual float coordinate(NumberType type) = 0;
+    virtual double coordinate(NumberType type) = 0;
+    /// Three of them.
+    Vec3d position(NumberType type);
     /// Goes on behind a line that begins with this word.
     /// @throws Error Damaged when there is none
     virtual void skip_to_line(const std::string& word) = 0;
@@ -48,16 +50,17 @@ class NumberSource {
 /// Numbers in words. Errors name the line.
 class TextNumbers final : public NumberSource {
   public:
-    TextNumbers(const MeshSource& source, LineScanner& scanner) : NumberSource(source), scanner_(scanner) {}
+    TextNumbers(const MeshSource& source, LineScanner& scanner) : NumberSource(source), scanner_(scanner) {
+        scanner_.read_across_lines();
+    }
 
     std::vector<std::string_view> next_line() override;
     std::int64_t integer(NumberType type, const char* what) override;
-    float coordinate(NumberType type) override;
+    double coordinate(NumberType type) override;
     void skip_to_line(const std::string& word) override;
 
   private:
     std::string place() const override { return "line " + std::to_string(scanner_.line_number()); }
-    void go_to_word(const char* what);
 
     LineScanner& scanner_;
 };
@@ -70,7 +73,7 @@ class BinaryNumbers final : public NumberSource {
 
     std::vector<std::string_view> next_line() override;
     std::int64_t integer(NumberType type, const char* what) override;
-    float coordinate(NumberType type) override;
+    double coordinate(NumberType type) override;
     void skip_to_line(const std::string& word) override;
 
   private:
@@ -78,9 +81,5 @@ class BinaryNumbers final : public NumberSource {
 
     ByteReader bytes_;
 };
-
-/// A whole word as an integer.
-/// @returns whether it is one
-bool parse_integer(std::string_view word, std::int64_t& value);
 
 } // namespace echinus

@@ -9,7 +9,7 @@ namespace echinus {
 namespace {
 
 /// Both the names of the first description and those that came later.
-PlyType next_type(LineScanner& scanner) {
+PlyType type_named(std::string_view word, const LineScanner& scanner) {
     using enum PlyType;
     static constexpr std::array<std::pair<std::string_view, PlyType>, 16> kTypes{{{"char", Int8},
                                                                                   {"uchar", Uint8},
@@ -27,7 +27,6 @@ PlyType next_type(LineScanner& scanner) {
                                                                                   {"uint32", Uint32},
                                                                                   {"float32", Float32},
                                                                                   {"float64", Float64}}};
-    const std::string_view word = scanner.next_word();
     const auto* const found =
         std::find_if(kTypes.begin(), kTypes.end(), [&](const auto& type) { return type.first == word; });
     if (found == kTypes.end())
@@ -35,9 +34,17 @@ PlyType next_type(LineScanner& scanner) {
     return found->second;
 }
 
+/// The first word of the next line that is no comment.
+std::string_view next_keyword(LineScanner& scanner, const char* expected) {
+    for (;;) {
+        scanner.require_line(expected);
+        const std::string_view keyword = scanner.next_word();
+        if (keyword != "comment" && keyword != "obj_info") return keyword;
+    }
+}
+
 PlyFormat read_format(LineScanner& scanner) {
-    scanner.require_line("the line 'format'");
-    const std::string_view keyword = scanner.next_word();
+    const std::string_view keyword = next_keyword(scanner, "the line 'format'");
     const std::string_view word = scanner.next_word();
     const std::string_view version = scanner.next_word();
     if (keyword == "format" && version == "1.0") {
@@ -62,12 +69,12 @@ PlyElement read_element(LineScanner& scanner) {
 
 PlyProperty read_property(LineScanner& scanner) {
     PlyProperty property;
-    LineScanner ahead = scanner;
-    if (ahead.next_word() == "list") {
-        scanner.next_word();
-        property.count_type = next_type(scanner);
+    std::string_view word = scanner.next_word();
+    if (word == "list") {
+        property.count_type = type_named(scanner.next_word(), scanner);
+        word = scanner.next_word();
     }
-    property.type = next_type(scanner);
+    property.type = type_named(word, scanner);
     property.name = scanner.next_word();
     if (property.name.empty()) scanner.fail(ErrorCode::Damaged, "the property has no name");
     if (property.count_type && *property.count_type >= PlyType::Float32)
@@ -84,16 +91,20 @@ std::size_t PlyHeader::count_of(const std::string& name) const {
     return count;
 }
 
+std::size_t PlyHeader::element_count() const {
+    std::size_t count = 0;
+    for (const PlyElement& element : elements) count += element.count;
+    return count;
+}
+
 PlyHeader read_ply_header(LineScanner& scanner) {
     scanner.require_line("the word ply");
     if (scanner.next_word() != "ply") scanner.fail(ErrorCode::WrongFormat, "the word ply was expected");
     PlyHeader header;
     header.format = read_format(scanner);
     for (;;) {
-        scanner.require_line("'end_header'");
-        const std::string_view keyword = scanner.next_word();
+        const std::string_view keyword = next_keyword(scanner, "'end_header'");
         if (keyword == "end_header") return header;
-        if (keyword == "comment" || keyword == "obj_info") continue;
         if (keyword == "element")
             header.elements.push_back(read_element(scanner));
         else if (keyword == "property" && !header.elements.empty())

@@ -32,6 +32,7 @@ struct PlyHeader {
 
     /// How many elements of this name the file has.
     std::size_t count_of(const std::string& name) const;
+    std::size_t element_count() const; ///< of all names
 };
 
 /// Reads up to and with the line end_header.

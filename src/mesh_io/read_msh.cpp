@@ -92,7 +92,7 @@ class MshReader {
     void read_nodes_2() {
         for (std::size_t left = count_line("the number of nodes"); left > 0; --left) {
             add_node(int32("a node's number"));
-            read_position(mesh_.vertices.back());
+            mesh_.vertices.back() = next_position();
         }
     }
 
@@ -137,7 +137,7 @@ class MshReader {
             const std::size_t first = mesh_.vertices.size();
             for (std::size_t i = 0; i < in_block; ++i) add_node(int64("a node's number"));
             for (std::size_t i = 0; i < in_block; ++i) {
-                read_position(mesh_.vertices[first + i]);
+                mesh_.vertices[first + i] = next_position();
                 for (std::int64_t k = 0; is_parametric && k < dimension && k < 3; ++k)
                     numbers_.coordinate(NumberType::Float64);
             }
@@ -179,10 +179,7 @@ class MshReader {
         mesh_.vertices.emplace_back();
     }
 
-    void read_position(Vec3f& position) {
-        for (float* coordinate : {&position.x, &position.y, &position.z})
-            *coordinate = numbers_.coordinate(NumberType::Float64);
-    }
+    Vec3f next_position() { return Vec3f(numbers_.position(NumberType::Float64)); }
 
     void read_element(std::int64_t type, NumberType number_type) {
         if (type == kTetrahedron) {

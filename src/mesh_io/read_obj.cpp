@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <limits>
 
 // The format: Wavefront Technologies, "Advanced Visualizer", appendix B1, "Object Files". Reads vertices,
@@ -13,16 +12,15 @@ namespace echinus {
 
 namespace {
 
-constexpr std::array<std::string_view, 41> kOtherStatements{
-    "vt",     "vn",     "vp",       "p",        "fo",         "o",         "g",      "s",     "mg",
-    "mtllib", "usemtl", "maplib",   "usemap",   "bevel",      "lod",       "cstype", "deg",   "bmat",
-    "step",   "curv",   "curv2",    "surf",     "parm",       "trim",      "hole",   "scrv",  "sp",
-    "end",    "con",    "c_interp", "d_interp", "shadow_obj", "trace_obj", "ctech",  "stech", "call",
-    "csh",    "cdc",    "bzp",      "bsp",      "res"};
+constexpr std::array<std::string_view, 39> kOtherStatements{
+    "vt",         "vn",        "vp",    "p",     "o",      "g",   "s",    "mg",   "mtllib",   "usemtl",
+    "maplib",     "usemap",    "bevel", "lod",   "cstype", "deg", "bmat", "step", "curv",     "curv2",
+    "surf",       "parm",      "trim",  "hole",  "scrv",   "sp",  "end",  "con",  "c_interp", "d_interp",
+    "shadow_obj", "trace_obj", "ctech", "stech", "csh",    "cdc", "bzp",  "bsp",  "res"};
 
 class ObjReader {
   public:
-    explicit ObjReader(const MeshSource& source) : scanner_(source) {}
+    explicit ObjReader(const MeshSource& source) : scanner_(source, LineScanner::Continuation::Backslash) {}
 
     PolygonMesh read() {
         while (scanner_.next_line()) read_statement();
@@ -37,21 +35,39 @@ class ObjReader {
         const std::string_view keyword = scanner_.next_word();
         if (keyword == "v")
             read_vertex();
-        else if (keyword == "f")
+        else if (keyword == "f" || keyword == "fo") // fo: of versions before 3, which 3 reads as f
             read_face();
         else if (keyword == "l")
             read_line();
+        else if (keyword == "call")
+            scanner_.fail(
+                ErrorCode::WrongFormat,
+                "'call' takes statements from another file, which is not read; put them in its place");
         else if (std::find(kOtherStatements.begin(), kOtherStatements.end(), keyword) ==
                  kOtherStatements.end())
             scanner_.fail(ErrorCode::WrongFormat, in_quotes(keyword) + " is no statement of an OBJ file");
+        else
+            require_nothing_swallowed(keyword);
     }
 
     /// A weight or a colour may follow.
     void read_vertex() {
-        const float x = scanner_.next_coordinate();
-        const float y = scanner_.next_coordinate();
-        const float z = scanner_.next_coordinate();
-        mesh_.vertices.emplace_back(x, y, z);
+        mesh_.vertices.emplace_back(scanner_.next_position());
+        require_nothing_swallowed("v");
+    }
+
+    /// Of a name that ends with a backslash, as a Windows path may, the next statement would become a part.
+    void require_nothing_swallowed(std::string_view keyword) {
+        constexpr std::array<std::string_view, 4> kRead{"v", "f", "fo", "l"};
+        if (!scanner_.is_joined()) return;
+        while (!scanner_.at_end_of_line())
+            if (const auto word = scanner_.next_word();
+                std::find(kRead.begin(), kRead.end(), word) != kRead.end())
+                scanner_.fail(
+                    ErrorCode::Damaged,
+                    in_quotes(keyword) +
+                        " goes on in the next line, as the backslash at the end of its own says, but there " +
+                        in_quotes(word) + " follows; remove the backslash");
     }
 
     void read_face() {
@@ -78,13 +94,15 @@ class ObjReader {
     std::uint32_t vertex_index(std::string_view corner) {
         const std::string_view digits = corner.substr(0, corner.find('/'));
         std::int64_t number = 0;
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-        if (error != std::errc{} || end != digits.data() + digits.size())
-            scanner_.fail_expecting("a vertex number", corner);
+        if (!parse_integer(digits, number)) scanner_.fail_expecting("a vertex number", corner);
         const std::int64_t index =
             number < 0 ? static_cast<std::int64_t>(mesh_.vertices.size()) + number : number - 1;
         if (number == 0 || index < 0 || index > std::numeric_limits<std::uint32_t>::max())
-            scanner_.fail(ErrorCode::InvalidMesh, "there is no vertex " + std::to_string(number));
+            scanner_.fail(ErrorCode::InvalidMesh,
+                          "there is no vertex " + std::to_string(number) + "; " +
+                              (number < 0 ? "-1 is the latest of the " +
+                                                std::to_string(mesh_.vertices.size()) + " before"
+                                          : "they are numbered from 1"));
         if (index > largest_index_) {
             largest_index_ = index;
             line_of_largest_ = scanner_.line_number();

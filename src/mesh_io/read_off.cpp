@@ -3,24 +3,16 @@
 
 #include <limits>
 
-// The format: "Object File Format" of Geomview (https://www.geomview.org/docs/html/OFF.html). Colours,
-// normals and texture coordinates follow the position on a vertex's line, and colours the indices on a face's
-// line; they are ignored.
+// The format: "Object File Format" of Geomview (https://www.geomview.org/docs/html/OFF.html), as text. A
+// vertex has a line, and so has a face; normals, colours and texture coordinates follow on it and are
+// ignored. Where the lines are not as many as vertices and faces, the numbers of a vertex and the corners of
+// a face may go on in the next line.
 
 namespace echinus {
 
 namespace {
 
-/// OFF, or OFF with the letters for texture coordinates, colours and normals before it.
-void require_off_keyword(LineScanner& scanner) {
-    const std::string_view keyword = scanner.next_word();
-    std::string_view extras = keyword;
-    for (const std::string_view letters : {"ST", "C", "N"})
-        if (extras.starts_with(letters)) extras.remove_prefix(letters.size());
-    if (extras != "OFF")
-        scanner.fail_expecting("OFF, COFF, NOFF or the like", keyword, ErrorCode::WrongFormat);
-}
-
+/// The next count, which may be any up to 2^32 - 2.
 std::size_t next_count(LineScanner& scanner, const char* what) {
     const std::int64_t count = scanner.next_integer(what);
     if (count < 0 || count >= std::numeric_limits<std::uint32_t>::max())
@@ -28,44 +20,134 @@ std::size_t next_count(LineScanner& scanner, const char* what) {
     return static_cast<std::size_t>(count);
 }
 
-void read_face(LineScanner& scanner, PolygonMesh& mesh) {
-    const std::size_t corner_count = next_count(scanner, "the number of the face's corners");
-    for (std::size_t corner = 0; corner < corner_count; ++corner)
-        mesh.corners.push_back(scanner.next_vertex_index(mesh.vertices.size()));
-    mesh.corner_counts.push_back(static_cast<std::uint32_t>(corner_count));
-}
-
 std::string promised(const char* kind, std::size_t index, std::size_t count) {
     return std::string(kind) + " " + std::to_string(index + 1) + " of " + std::to_string(count);
 }
 
+class OffReader {
+  public:
+    explicit OffReader(const MeshSource& source) : source_(source), scanner_(source) {}
+
+    PolygonMesh read() {
+        scanner_.require_line("the word OFF");
+        scanner_.read_across_lines();
+        read_keyword();
+        const std::size_t vertex_count = next_count(scanner_, "the number of vertices");
+        const std::size_t face_count = next_count(scanner_, "the number of faces");
+        skip_edge_count();
+        begin_body(vertex_count + face_count);
+        // Nothing is reserved: the counts may be false, but the lines exist.
+        for (std::size_t i = 0; i < vertex_count; ++i) read_vertex(promised("vertex", i, vertex_count));
+        for (std::size_t i = 0; i < face_count; ++i) read_face(promised("face", i, face_count));
+        scanner_.read_within_lines();
+        if (scanner_.next_line())
+            scanner_.fail(ErrorCode::Damaged, "the file goes on after the " + std::to_string(face_count) +
+                                                  " faces that its head promises");
+        return std::move(mesh_);
+    }
+
+  private:
+    /// [ST][C][N][4][n]OFF, with which the number of vertices may be one word, as in the files of ModelNet.
+    /// Geomview lets files do without it.
+    void read_keyword() {
+        const std::string_view keyword = scanner_.next_word();
+        std::int64_t number = 0;
+        if (parse_integer(keyword, number)) return scanner_.give_back(keyword);
+        std::string_view rest = keyword;
+        const auto take = [&](std::string_view letters) {
+            const bool found = rest.starts_with(letters);
+            if (found) rest.remove_prefix(letters.size());
+            return found;
+        };
+        if (take("ST")) surplus_count_ += 2;
+        if (take("C")) surplus_count_ += 4;
+        if (take("N")) surplus_count_ += 3;
+        is_homogeneous_ = take("4");
+        const bool states_dimension = take("n");
+        if (lower_case(rest.substr(0, 3)) != "off" ||
+            (rest.size() > 3 && !parse_integer(rest.substr(3), number)))
+            scanner_.fail_expecting("OFF, COFF, NOFF or the like", keyword, ErrorCode::WrongFormat);
+        scanner_.give_back(rest.substr(3));
+        if (states_dimension) require_three_dimensions();
+        require_text();
+    }
+
+    void require_three_dimensions() {
+        const std::size_t dimension = next_count(scanner_, "the number of dimensions");
+        if (dimension != 3 || is_homogeneous_)
+            scanner_.fail(ErrorCode::WrongFormat, "vertices have " + std::to_string(dimension) +
+                                                      (is_homogeneous_ ? " + 1" : "") +
+                                                      " coordinates; only those of three are read");
+    }
+
+    void require_text() {
+        if (scanner_.at_end_of_line()) return;
+        const std::string_view word = scanner_.next_word();
+        if (lower_case(word) == "binary")
+            scanner_.fail(ErrorCode::WrongFormat, "binary OFF is not read; save the mesh as text");
+        scanner_.give_back(word);
+    }
+
+    /// It is often missing, and may have a line of its own, where no vertex has a single number.
+    void skip_edge_count() {
+        if (!scanner_.at_end_of_line()) {
+            next_count(scanner_, "the number of edges");
+            return;
+        }
+        LineScanner ahead(source_, scanner_.offset(), scanner_.line_number() + 1);
+        if (!ahead.next_line()) return;
+        ahead.next_word();
+        if (ahead.at_end_of_line()) next_count(scanner_, "the number of edges");
+    }
+
+    void begin_body(std::size_t element_count) {
+        const std::size_t line_count = scanner_.count_lines_left();
+        one_line_each_ = line_count == element_count;
+        if (one_line_each_)
+            scanner_.read_within_lines();
+        else
+            scanner_.read_across_lines(", where numbers are read across lines, as " +
+                                       std::to_string(line_count) +
+                                       " lines follow the head, but it promises " +
+                                       std::to_string(element_count) + " vertices and faces");
+    }
+
+    void begin_element(const std::string& what) {
+        if (one_line_each_ || scanner_.at_end_of_line()) scanner_.require_line(what);
+    }
+
+    void read_vertex(const std::string& what) {
+        begin_element(what);
+        const Vec3d p = scanner_.next_position();
+        const double divisor = is_homogeneous_ ? scanner_.next_coordinate() : 1;
+        mesh_.vertices.emplace_back(Vec3d{p.x / divisor, p.y / divisor, p.z / divisor});
+        if (!is_finite(mesh_.vertices.back()))
+            scanner_.fail(ErrorCode::InvalidMesh, "the vertex is not finite as floats");
+        for (std::size_t i = 0; !one_line_each_ && i < surplus_count_; ++i) scanner_.skip_number();
+    }
+
+    /// Whatever the lines, the rest of a face's line is its colour.
+    void read_face(const std::string& what) {
+        begin_element(what);
+        const std::size_t corner_count = next_count(scanner_, "the number of the face's corners");
+        for (std::size_t corner = 0; corner < corner_count; ++corner)
+            mesh_.corners.push_back(scanner_.next_vertex_index(mesh_.vertices.size()));
+        mesh_.corner_counts.push_back(static_cast<std::uint32_t>(corner_count));
+        scanner_.skip_rest_of_line();
+    }
+
+    const MeshSource& source_;
+    LineScanner scanner_;
+    PolygonMesh mesh_;
+    bool is_homogeneous_ = false;   // a fourth coordinate divides the others
+    std::size_t surplus_count_ = 0; // numbers of a vertex after its position
+    bool one_line_each_ = false;
+};
+
 } // namespace
 
 PolygonMesh read_off(const MeshSource& source) {
-    LineScanner scanner(source);
-    scanner.require_line("the word OFF");
-    require_off_keyword(scanner);
-    if (scanner.at_end_of_line()) scanner.require_line("the number of vertices");
-    const std::size_t vertex_count = next_count(scanner, "the number of vertices");
-    const std::size_t face_count = next_count(scanner, "the number of faces");
-
-    // Nothing is reserved: the counts may be false, but the lines exist.
-    PolygonMesh mesh;
-    for (std::size_t vertex = 0; vertex < vertex_count; ++vertex) {
-        scanner.require_line(promised("vertex", vertex, vertex_count));
-        const float x = scanner.next_coordinate();
-        const float y = scanner.next_coordinate();
-        const float z = scanner.next_coordinate();
-        mesh.vertices.emplace_back(x, y, z);
-    }
-    for (std::size_t face = 0; face < face_count; ++face) {
-        scanner.require_line(promised("face", face, face_count));
-        read_face(scanner, mesh);
-    }
-    if (scanner.next_line())
-        scanner.fail(ErrorCode::Damaged, "the file goes on after the " + std::to_string(face_count) +
-                                             " faces that its head promises");
-    return mesh;
+    return OffReader(source).read();
 }
 
 } // namespace echinus

@@ -3,38 +3,43 @@
 #include "mesh_io/ply_header.hpp"
 #include "mesh_io/readers.hpp"
 
+#include <algorithm>
 #include <array>
-#include <limits>
+#include <cmath>
 
-// The format: Greg Turk, "The PLY Polygon File Format" (1994). Reads the position of each `vertex` and the
-// list of corners of each `face`; ignores other properties and elements.
+// The format: Greg Turk, "The PLY Polygon File Format" (1994). Reads the position of each `vertex`, the list
+// of corners of each `face`, and the strips of triangles of `tristrips`; ignores other properties and
+// elements.
 
 namespace echinus {
 
 namespace {
 
-/// The elements as text: one line each.
+/// The elements as text. Each has a line, on which further numbers may follow, as some programs write them;
+/// where the lines are not as many as the elements, their numbers are read across lines.
 class TextBody {
   public:
-    explicit TextBody(LineScanner& scanner) : scanner_(scanner) {}
+    TextBody(LineScanner& scanner, std::size_t element_count) : scanner_(scanner) {
+        const std::size_t line_count = scanner.count_lines_left();
+        one_line_each_ = line_count == element_count;
+        if (!one_line_each_)
+            scanner.read_across_lines(
+                ", where numbers are read across lines, as " + std::to_string(line_count) +
+                " lines follow the head, but it promises " + std::to_string(element_count) + " elements");
+    }
 
-    void begin_element(const std::string& what) { scanner_.require_line(what); }
-    float coordinate(PlyType) { return scanner_.next_coordinate(); }
+    void begin_element(const std::string& what) {
+        if (one_line_each_ || scanner_.at_end_of_line()) scanner_.require_line(what);
+    }
+    double coordinate(PlyType) { return scanner_.next_coordinate(); }
     std::int64_t integer(PlyType) { return scanner_.next_integer("an integer"); }
-    void skip(PlyType) {
-        float ignored = 0;
-        const std::string_view word = scanner_.next_word();
-        if (!parse_float(word, ignored)) scanner_.fail_expecting("a number", word);
-    }
-    void end_element() {
-        if (!scanner_.at_end_of_line())
-            fail(ErrorCode::Damaged, "the line goes on with " + in_quotes(scanner_.next_word()));
-    }
-    bool at_end() { return !scanner_.next_line(); }
+    void skip(PlyType) { scanner_.skip_number(); }
+    bool at_end() { return (one_line_each_ || scanner_.at_end_of_line()) && !scanner_.next_line(); }
     [[noreturn]] void fail(ErrorCode code, const std::string& what) const { scanner_.fail(code, what); }
 
   private:
     LineScanner& scanner_;
+    bool one_line_each_ = false;
 };
 
 /// The elements as bytes without gaps.
@@ -43,11 +48,11 @@ class BinaryBody {
     BinaryBody(const MeshSource& source, ByteReader bytes) : source_(source), bytes_(bytes) {}
 
     void begin_element(const std::string&) {}
-    float coordinate(PlyType type) {
+    double coordinate(PlyType type) {
         const double value = number(type);
-        const bool finite = std::abs(value) <= std::numeric_limits<float>::max();
-        if (!finite) fail(ErrorCode::InvalidMesh, "a coordinate is not finite as a float");
-        return static_cast<float>(value);
+        if (!std::isfinite(static_cast<float>(value)))
+            fail(ErrorCode::InvalidMesh, "a coordinate is not finite as a float");
+        return value;
     }
     std::int64_t integer(PlyType type) {
         const double value = number(type);
@@ -56,10 +61,10 @@ class BinaryBody {
         return rounded;
     }
     void skip(PlyType type) { number(type); }
-    void end_element() {}
+    /// A line's end may follow, or what fills up a block.
     bool at_end() const {
-        const auto rest = source_.bytes.substr(bytes_.offset());
-        return rest.find_first_not_of(" \r\n") == std::string_view::npos;
+        constexpr std::string_view kPadding{" \r\n\0\x1a", 5};
+        return source_.bytes.substr(bytes_.offset()).find_first_not_of(kPadding) == std::string_view::npos;
     }
     [[noreturn]] void fail(ErrorCode code, const std::string& what) const {
         source_.fail(code, what + ", before byte " + std::to_string(bytes_.offset()));
@@ -108,60 +113,102 @@ void skip_property(Body& body, const PlyProperty& property) {
 
 template <typename Body>
 void read_vertex(Body& body, const PlyElement& element, PolygonMesh& mesh) {
-    Vec3f p;
+    Vec3d p;
     for (const PlyProperty& property : element.properties) {
-        float* const coordinate = property.name == "x"   ? &p.x
-                                  : property.name == "y" ? &p.y
-                                  : property.name == "z" ? &p.z
-                                                         : nullptr;
+        double* const coordinate = property.name == "x"   ? &p.x
+                                   : property.name == "y" ? &p.y
+                                   : property.name == "z" ? &p.z
+                                                          : nullptr;
         if (coordinate != nullptr && !property.count_type)
             *coordinate = body.coordinate(property.type);
         else
             skip_property(body, property);
     }
-    mesh.vertices.push_back(p);
+    mesh.vertices.emplace_back(p);
+}
+
+/// The corners of a face, or of strips of triangles.
+bool is_list_of_corners(const PlyProperty& property) {
+    return property.count_type && (property.name == "vertex_indices" || property.name == "vertex_index");
+}
+
+/// Of the next face.
+template <typename Body>
+std::uint32_t checked_corner(const Body& body, std::int64_t index, std::size_t vertex_count,
+                             const PolygonMesh& mesh) {
+    if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count)
+        body.fail(ErrorCode::InvalidMesh, "face " + std::to_string(mesh.corner_counts.size()) +
+                                              " refers to vertex " + std::to_string(index) +
+                                              ", but there are " + std::to_string(vertex_count) +
+                                              " vertices, numbered from 0");
+    return static_cast<std::uint32_t>(index);
 }
 
 template <typename Body>
-void read_face(Body& body, const PlyElement& element, std::size_t vertex_count, PolygonMesh& mesh) {
-    for (const PlyProperty& property : element.properties) {
-        if (!property.count_type || (property.name != "vertex_indices" && property.name != "vertex_index")) {
-            skip_property(body, property);
+void read_corners(Body& body, const PlyProperty& list, std::size_t vertex_count, PolygonMesh& mesh) {
+    const std::size_t corner_count = list_length(body, list);
+    for (std::size_t corner = 0; corner < corner_count; ++corner)
+        mesh.corners.push_back(checked_corner(body, body.integer(list.type), vertex_count, mesh));
+    mesh.corner_counts.push_back(static_cast<std::uint32_t>(corner_count));
+}
+
+/// Strips of triangles, with -1 between them: each corner after the second of a strip makes a triangle with
+/// the two before it, turned round in every second one. Triangles that have a corner twice only lead to
+/// where a strip goes on.
+template <typename Body>
+void read_strips(Body& body, const PlyProperty& list, std::size_t vertex_count, PolygonMesh& mesh) {
+    std::array<std::uint32_t, 2> last{};
+    std::size_t corner_count = 0; // of the strip so far
+    for (std::size_t left = list_length(body, list); left > 0; --left) {
+        const std::int64_t index = body.integer(list.type);
+        if (index == -1) {
+            corner_count = 0;
             continue;
         }
-        const std::size_t corner_count = list_length(body, property);
-        for (std::size_t corner = 0; corner < corner_count; ++corner) {
-            const std::int64_t index = body.integer(property.type);
-            if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count)
-                body.fail(ErrorCode::InvalidMesh, "face " + std::to_string(mesh.corner_counts.size()) +
-                                                      " refers to vertex " + std::to_string(index) +
-                                                      ", but there are " + std::to_string(vertex_count) +
-                                                      " vertices, numbered from 0");
-            mesh.corners.push_back(static_cast<std::uint32_t>(index));
+        const std::uint32_t corner = checked_corner(body, index, vertex_count, mesh);
+        if (++corner_count > 2 && last[0] != last[1] && last[0] != corner && last[1] != corner) {
+            const bool is_turned = corner_count % 2 == 0;
+            mesh.corners.insert(mesh.corners.end(),
+                                {last[is_turned ? 1 : 0], last[is_turned ? 0 : 1], corner});
+            mesh.corner_counts.push_back(3);
         }
-        mesh.corner_counts.push_back(static_cast<std::uint32_t>(corner_count));
+        last = {last[1], corner};
     }
 }
 
 template <typename Body>
-PolygonMesh read_body(Body&& body, const PlyHeader& header, const MeshSource& source) {
+void read_element(Body& body, const PlyElement& element, std::size_t vertex_count, PolygonMesh& mesh) {
+    if (element.name == "vertex") return read_vertex(body, element, mesh);
+    for (const PlyProperty& property : element.properties)
+        if (element.name == "face" && is_list_of_corners(property))
+            read_corners(body, property, vertex_count, mesh);
+        else if (element.name == "tristrips" && is_list_of_corners(property))
+            read_strips(body, property, vertex_count, mesh);
+        else
+            skip_property(body, property);
+}
+
+template <typename Body>
+PolygonMesh read_body(Body&& body, const PlyHeader& header) {
     PolygonMesh mesh;
     const std::size_t vertex_count = header.count_of("vertex");
     for (const PlyElement& element : header.elements)
         for (std::size_t i = 0; i < element.count; ++i) {
             body.begin_element(element.name + " " + std::to_string(i + 1) + " of " +
                                std::to_string(element.count));
-            if (element.name == "vertex")
-                read_vertex(body, element, mesh);
-            else if (element.name == "face")
-                read_face(body, element, vertex_count, mesh);
-            else
-                for (const PlyProperty& property : element.properties) skip_property(body, property);
-            body.end_element();
+            read_element(body, element, vertex_count, mesh);
         }
     if (!body.at_end())
-        source.fail(ErrorCode::Damaged, "the file goes on after the elements that its head promises");
+        body.fail(ErrorCode::Damaged, "the file goes on after the elements that its head promises");
     return mesh;
+}
+
+void require_coordinates(const PlyElement& vertices, const MeshSource& source) {
+    for (const char* axis : {"x", "y", "z"})
+        if (std::none_of(
+                vertices.properties.begin(), vertices.properties.end(),
+                [&](const PlyProperty& property) { return property.name == axis && !property.count_type; }))
+            source.fail(ErrorCode::Damaged, std::string("the vertices have no property ") + axis);
 }
 
 /// Elements without properties have no bytes, and their number could be any; positions need all three axes.
@@ -169,14 +216,21 @@ void require_sense(const PlyHeader& header, const MeshSource& source) {
     for (const PlyElement& element : header.elements) {
         if (element.properties.empty() && element.count > 0)
             source.fail(ErrorCode::Damaged, "the element " + in_quotes(element.name) + " has no properties");
-        if (element.name != "vertex") continue;
-        for (const char* axis : {"x", "y", "z"})
-            if (std::none_of(element.properties.begin(), element.properties.end(),
-                             [&](const PlyProperty& property) {
-                                 return property.name == axis && !property.count_type;
-                             }))
-                source.fail(ErrorCode::Damaged, std::string("the vertices have no property ") + axis);
+        if (element.name == "vertex") require_coordinates(element, source);
+        if ((element.name == "face" || element.name == "tristrips") && element.count > 0 &&
+            std::none_of(element.properties.begin(), element.properties.end(), is_list_of_corners))
+            source.fail(ErrorCode::Damaged, "the element " + in_quotes(element.name) +
+                                                " has no list vertex_indices or vertex_index");
     }
+}
+
+/// Where the bytes begin. One that follows the header may look like the second half of a line's end, but
+/// does not belong to it where the other lines end with \r alone.
+std::size_t end_of_header(const LineScanner& scanner, std::string_view bytes) {
+    const std::size_t first_end = bytes.find_first_of("\r\n");
+    const bool lines_end_with_cr = bytes[first_end] == '\r' && bytes[first_end + 1] != '\n';
+    const bool took_pair = bytes.substr(0, scanner.offset()).ends_with("\r\n");
+    return scanner.offset() - (lines_end_with_cr && took_pair ? 1 : 0);
 }
 
 } // namespace
@@ -185,10 +239,11 @@ PolygonMesh read_ply(const MeshSource& source) {
     LineScanner scanner(source);
     const PlyHeader header = read_ply_header(scanner);
     require_sense(header, source);
-    if (header.format == PlyFormat::Text) return read_body(TextBody(scanner), header, source);
+    if (header.format == PlyFormat::Text) return read_body(TextBody(scanner, header.element_count()), header);
     const ByteOrder order =
         header.format == PlyFormat::LittleEndian ? ByteOrder::LittleEndian : ByteOrder::BigEndian;
-    return read_body(BinaryBody(source, ByteReader(source, scanner.offset(), order)), header, source);
+    return read_body(BinaryBody(source, ByteReader(source, end_of_header(scanner, source.bytes), order)),
+                     header);
 }
 
 } // namespace echinus

@@ -43,9 +43,7 @@ std::int64_t read_nodes(const MeshSource& source, TetrahedralMesh& mesh) {
         } else {
             require_number(scanner, first + static_cast<std::int64_t>(i), "the point's number");
         }
-        const float x = scanner.next_coordinate();
-        const float y = scanner.next_coordinate();
-        mesh.vertices.emplace_back(x, y, scanner.next_coordinate());
+        mesh.vertices.emplace_back(scanner.next_position());
     }
     return first;
 }

@@ -70,11 +70,7 @@ class VtkReader {
         if (type != NumberType::Float32 && type != NumberType::Float64)
             numbers_.fail(ErrorCode::WrongFormat,
                           "points of float or double are read, not of " + in_quotes(words[2]));
-        for (std::size_t i = 0; i < point_count; ++i) {
-            const float x = numbers_.coordinate(*type);
-            const float y = numbers_.coordinate(*type);
-            mesh_.vertices.emplace_back(x, y, numbers_.coordinate(*type));
-        }
+        for (std::size_t i = 0; i < point_count; ++i) mesh_.vertices.emplace_back(numbers_.position(*type));
     }
 
     /// Each cell as the number of its corners and the corners; since version 5.1 in two arrays.
@@ -171,11 +167,12 @@ std::size_t end_of_title(const MeshSource& source) {
 
 TetrahedralMesh read_vtk(const MeshSource& source) {
     constexpr std::string_view kMark = "# vtk DataFile Version ";
-    if (!source.bytes.starts_with(kMark))
+    const std::string_view text = source.bytes.substr(begin_of_text(source));
+    if (!text.starts_with(kMark))
         source.fail(ErrorCode::WrongFormat,
                     "the file does not begin with '# vtk DataFile Version', as legacy VTK "
                     "files do; XML files are not read");
-    const bool is_version_5 = source.bytes.substr(kMark.size(), 1) == "5";
+    const bool is_version_5 = text.substr(kMark.size(), 1) == "5";
     LineScanner scanner(source, end_of_title(source), 3);
     scanner.require_line("ASCII or BINARY");
     const std::string_view format = scanner.next_word();

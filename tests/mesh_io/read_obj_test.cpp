@@ -25,7 +25,8 @@ void expect_obj_error(ErrorCode code, const std::string& words, const std::strin
 TEST(ReadObj, ReadsEverySpellingOfACorner) {
     for (const char* face :
          {"f 1 2 3 4", "f 1/7 2/8 3/9 4/9", "f 1//7 2//8 3//9 4//9", "f 1/1/7 2/2/8 3/3/9 4/4/9",
-          "f -4 -3 -2 -1", "f -4//-1 -3//-1 -2//-1 -1//-1", "f 1/ 2/ 3/ 4/"}) {
+          "f -4 -3 -2 -1", "f -4//-1 -3//-1 -2//-1 -1//-1", "f 1/ 2/ 3/ 4/", "f 1// 2// 3// 4//",
+          "fo 1 2 3 4", "f 1 2 \\\n3\\\r\n 4", "f\t+1\f2\v3 4 # 5", "f 1 2 3 4#5"}) {
         const PolygonMesh mesh = read(kSquare + face);
         EXPECT_EQ(mesh.corners, (Indices{0, 1, 2, 3})) << face;
         EXPECT_EQ(mesh.corner_counts, (Indices{4})) << face;
@@ -51,13 +52,59 @@ TEST(ReadObj, CountsNegativeNumbersFromTheVerticesSoFar) {
               (Indices{0, 1, 2, 3, 2, 1}));
 }
 
+TEST(ReadObj, ReadsTextsOfDosOfMacsAndWithAMark) {
+    const std::string text = kSquare + "f 1 2 3\n";
+    for (const std::string end : {"\r\n", "\r", "\n\n", "\f\n", " \t\r\n"}) {
+        std::string other = "\xef\xbb\xbf";
+        for (const char c : text) other += c == '\n' ? end : std::string(1, c);
+        EXPECT_EQ(read(other + "\x1a" + std::string(100, '\0')).corners, (Indices{0, 1, 2})) << end;
+    }
+}
+
+TEST(ReadObj, KeepsTheStatementAfterACommentThatEndsWithABackslash) {
+    const PolygonMesh mesh = read("# C:\\meshes\\\n" + kSquare + "f 1 2 3 # \\\nf 1 3 4\n");
+    EXPECT_EQ(mesh.vertices.size(), 4U);
+    EXPECT_EQ(mesh.corners, (Indices{0, 1, 2, 0, 2, 3}));
+}
+
+TEST(ReadObj, PassesOverPathsWithBackslashesButNotOverTheNextStatement) {
+    EXPECT_EQ(read("mtllib C:\\a\\b.mtl\nusemtl x\\y\ng a \\\n b\ncurv2 1 2 \\\n 3\n" + kSquare + "f 1 2 3\n")
+                  .corners,
+              (Indices{0, 1, 2}));
+    expect_obj_error(ErrorCode::Damaged,
+                     "line 1: 'usemtl' goes on in the next line, as the backslash at the end of its own "
+                     "says, but there 'v' follows; remove the backslash",
+                     "usemtl C:\\mats\\\n" + kSquare);
+    expect_obj_error(ErrorCode::Damaged, "line 5: 'g' goes on", kSquare + "g a\\\nf 1 2 3\n");
+    expect_obj_error(ErrorCode::Damaged, "line 1: 'v' goes on", "v 0 0 0\\\n" + kSquare);
+    expect_obj_error(ErrorCode::Damaged, "line 5: a vertex number was expected, not 'f'",
+                     kSquare + "f 1 2 3 \\\nf 1 3 4\n");
+}
+
+TEST(ReadObj, RefusesToLeaveOutWhatAnotherFileHas) {
+    expect_obj_error(ErrorCode::WrongFormat, "line 5: 'call' takes statements from another file",
+                     kSquare + "call b.obj\n");
+}
+
+TEST(ReadObj, ReadsAFaceOfVeryManyLines) {
+    std::string text, face = "f";
+    for (int i = 0; i < 3000; ++i) {
+        text += "v " + std::to_string(i) + " " + std::to_string(i * i) + " 0\n";
+        face += " " + std::to_string(i + 1) + (i % 2 ? "\\\n" : " ");
+    }
+    EXPECT_EQ(read(text + face + "\n").corner_counts, (Indices{3000}));
+}
+
 TEST(ReadObj, LetsAFacePrecedeItsVertices) {
     EXPECT_EQ(read("f 1 2 3\n" + kSquare).corners, (Indices{0, 1, 2}));
 }
 
 TEST(ReadObj, NamesTheLineOfAnIndexOutOfRange) {
-    expect_obj_error(ErrorCode::InvalidMesh, "line 5: there is no vertex 0", kSquare + "f 0 1 2\n");
-    expect_obj_error(ErrorCode::InvalidMesh, "line 5: there is no vertex -5", kSquare + "f -5 1 2\n");
+    expect_obj_error(ErrorCode::InvalidMesh, "line 5: there is no vertex 0; they are numbered from 1",
+                     kSquare + "f 0 1 2\n");
+    expect_obj_error(ErrorCode::InvalidMesh,
+                     "line 5: there is no vertex -5; -1 is the latest of the 4 before",
+                     kSquare + "f -5 1 2\n");
     expect_obj_error(ErrorCode::InvalidMesh,
                      "line 6: the statement refers to vertex 7, but the file has only 4",
                      kSquare + "f 1 2 3\nf 1 2 7\nf 1 2 3\n");
@@ -70,6 +117,11 @@ TEST(ReadObj, NamesTheLineOfANumberThatIsNone) {
     expect_obj_error(ErrorCode::Damaged, "line 1: a coordinate was expected, not the end of the line",
                      "v 0 0\n");
     expect_obj_error(ErrorCode::Damaged, "line 1: a coordinate was expected, not 'zero'", "v 0 0 zero\n");
+    expect_obj_error(ErrorCode::Damaged, "line 1: a coordinate was expected, not '0x10'", "v 0 0 0x10\n");
+    expect_obj_error(ErrorCode::InvalidMesh, "line 2: the coordinate '1.#QNAN' is not finite",
+                     "v 0 0 0\nv 0 0 1.#QNAN\n");
+    expect_obj_error(ErrorCode::InvalidMesh, "line 2: the coordinate '1e39' is not finite as a float",
+                     "v 0 0 0\nv 0 0 1e39\n");
     expect_obj_error(ErrorCode::InvalidMesh, "line 2: the coordinate 'nan' is not finite",
                      "v 0 0 0\nv nan 0 0\n");
     expect_obj_error(ErrorCode::InvalidMesh, "line 1: the coordinate '-inf' is not finite", "v 0 -inf 0\n");

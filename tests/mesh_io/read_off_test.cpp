@@ -34,6 +34,52 @@ TEST(ReadOff, ReadsTheNumbersOnTheLineOfTheKeywordAndWithoutTheLastOne) {
     EXPECT_EQ(read("OFF 4 1\n" + kVertices + "3 0 1 2").corners, (Indices{0, 1, 2}));
 }
 
+TEST(ReadOff, ReadsEverySpellingOfTheHead) {
+    for (const char* head :
+         {"OFF\n4 1 0\n", "OFF4 1 0\n", "OFF4 1\n", "4 1 0\n", "4 1\n", "4\n1\n0\n", "OFF\n4\n1\n0\n",
+          "OFF 4\n1 0\n", "OFF\n4 1\n0\n", "  OFF # a\n\n# b\n4 # c\n 1 0\n", "off\n4 1 0\n",
+          "\xef\xbb\xbfOFF\r\n4 1 0\r\n", "nOFF\n3\n4 1 0\n", "nOFF 3 4 1 0\n"}) {
+        EXPECT_EQ(read(head + kVertices + "3 0 1 2\n").corners, (Indices{0, 1, 2})) << head;
+        EXPECT_EQ(read(head + std::string("0 0 0 1 0 0\n1 1 0 0\n1 0 3 0\n1 2\n")).corners,
+                  (Indices{0, 1, 2}))
+            << head;
+    }
+}
+
+TEST(ReadOff, ReadsNumbersAcrossLinesWhereTheLinesAreNotAsManyAsVerticesAndFaces) {
+    const PolygonMesh mesh = read("OFF 4 2 0\n0 0\n0 1 0 0 1\n1 0\n0 1 0\n4 0 1\n2\n3 255 0 0\n3\n0 2 3\n");
+    EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+    EXPECT_EQ(mesh.corners, (Indices{0, 1, 2, 3, 0, 2, 3}));
+    EXPECT_EQ(mesh.corner_counts, (Indices{4, 3}));
+    expect_off_error(ErrorCode::Damaged,
+                     "line 3: a coordinate was expected, not 'x', where numbers are read across "
+                     "lines, as 3 lines follow the head, but it promises 5 vertices and faces",
+                     "OFF\n4 1 0\n0 0 0 1 0 x\n1 1 0 0 1 0\n3 0 1 2\n");
+}
+
+TEST(ReadOff, DividesByTheFourthCoordinate) {
+    for (const char* lines :
+         {"0 0 0 1\n2 0 0 2\n0 -3 0 -3\n3 0 1 2\n", "0 0 0\n1 2 0\n0 2 0\n-3 0\n-3 3 0\n1 2\n"})
+        EXPECT_EQ(read(std::string("4OFF\n3 1 0\n") + lines).vertices,
+                  (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    expect_off_error(ErrorCode::InvalidMesh, "line 2: the vertex is not finite", "4OFF 1 0 0\n1 0 0 0\n");
+    expect_off_error(ErrorCode::InvalidMesh, "line 2: the vertex is not finite", "4OFF 1 0 0\n0 0 0 0\n");
+}
+
+TEST(ReadOff, PassesOverWhatItsKeywordNamesAlsoAcrossLines) {
+    const std::string extras[] = {" 0 0 1", " 1 1 1 1", " 0.5 0.5", " 0 0 1 1 1 1 1 0.5 0.5"};
+    const std::string keywords[] = {"NOFF", "COFF", "STOFF", "STCNOFF"};
+    for (int i = 0; i < 4; ++i) {
+        const std::string &more = extras[i], first = "0 0 0" + more, second = "1 0 0" + more,
+                          third = "0 1 0" + more;
+        for (const std::string& lines :
+             {first + "\n" + second + "\n" + third, first + " " + second + "\n" + third})
+            EXPECT_EQ(read(keywords[i] + "\n3 1 0\n" + lines + "\n3 0 1 2 9\n").vertices,
+                      (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}))
+                << lines;
+    }
+}
+
 TEST(ReadOff, PassesOverColoursAndNormalsOfVertices) {
     const PolygonMesh mesh = read(
         "CNOFF\n3 1 0\n0 0 0 0 0 1 255 0 0 255\n1 0 0 0 0 1 255 0 0 255\n0 1 0 0 0 1 0 0 0 0\n3 0 1 2\n");
@@ -73,8 +119,16 @@ TEST(ReadOff, NamesTheLineOfAnIndexOutOfRange) {
 TEST(ReadOff, RefusesOtherFormats) {
     expect_off_error(ErrorCode::WrongFormat, "line 1: OFF, COFF, NOFF or the like was expected, not 'ply'",
                      "ply\n");
-    expect_off_error(ErrorCode::WrongFormat, "line 1: OFF, COFF, NOFF or the like was expected, not '4OFF'",
-                     "4OFF\n1 1 1\n");
-    expect_off_error(ErrorCode::Damaged, "line 1: the number of vertices was expected, not 'BINARY'",
-                     "OFF BINARY\n");
+    expect_off_error(ErrorCode::WrongFormat, "line 1: OFF, COFF, NOFF or the like was expected, not 'OFFx'",
+                     "OFFx\n1 1 1\n");
+    for (const std::string dimension : {"2", "4"})
+        expect_off_error(ErrorCode::WrongFormat,
+                         "line 2: vertices have " + dimension + " coordinates; only those of three",
+                         "nOFF\n" + dimension + "\n1 1 1\n");
+    expect_off_error(ErrorCode::WrongFormat, "line 1: vertices have 3 + 1 coordinates", "4nOFF 3\n1 1 1\n");
+    for (const char* keyword : {"OFF BINARY\n", "COFF binary\n"})
+        expect_off_error(ErrorCode::WrongFormat, "line 1: binary OFF is not read; save the mesh as text",
+                         keyword + std::string("\0\0\0\4\0\0\0\1", 8));
+    expect_off_error(ErrorCode::Damaged, "line 2: the number of edges was expected, not 'x'",
+                     "OFF\n4 1 x\n" + kVertices);
 }

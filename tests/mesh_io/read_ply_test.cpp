@@ -113,15 +113,99 @@ TEST(ReadPly, NoticesMissingAndSurplusData) {
                      kText + kThreeVertices);
     expect_ply_error(ErrorCode::Damaged, "a.ply: line 13: an integer was expected, not the end of the line",
                      kText + kThreeVertices + "3 0 1\n");
-    expect_ply_error(ErrorCode::Damaged, "a.ply: line 13: the line goes on with '5'",
-                     kText + kThreeVertices + "3 0 1 2 5\n");
-    expect_ply_error(ErrorCode::Damaged, "a.ply: the file goes on",
+    expect_ply_error(ErrorCode::Damaged,
+                     "a.ply: line 14: the file goes on after the elements that its head promises",
                      kText + kThreeVertices + "3 0 1 2\n3 0 1 2\n");
     const std::string binary = binary_triangle(false);
     expect_ply_error(ErrorCode::Damaged, "a.ply: the file ends at byte " + std::to_string(binary.size() - 1),
                      binary.substr(0, binary.size() - 1));
     expect_ply_error(ErrorCode::Damaged, "a.ply: the file goes on", binary + "x");
     EXPECT_NO_THROW(read(binary + "\n"));
+    EXPECT_NO_THROW(read(binary + "\r\n\x1a" + std::string(100, '\0')));
+}
+
+TEST(ReadPly, PassesOverFurtherNumbersOfALine) {
+    for (const std::string lines : {"0 0 0 7\n1 0 0\n0 1 0 1 1 1 # c\n3 0 1 2 6 0.5 0.5 0 0 0 0\n",
+                                    "0 0 0 x\n1 0 0\n0 1 0\n3 0 1 2 comment\n"}) {
+        const PolygonMesh mesh = read(kText + lines);
+        EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+        EXPECT_EQ(mesh.corners, (Indices{0, 1, 2}));
+    }
+}
+
+TEST(ReadPly, ReadsNumbersAcrossLinesWhereTheLinesAreNotAsManyAsTheElements) {
+    for (const std::string lines : {"0 0 0 1 0 0 0 1 0 3 0 1 2", "0\n0\n0\n1\n0\n0\n0\n1\n0\n3\n0\n1\n2\n",
+                                    "0 0 0 1\n0 0 0 1 0 3 0\n\n1 2\n\x1a"}) {
+        const PolygonMesh mesh = read(kText + lines);
+        EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << lines;
+        EXPECT_EQ(mesh.corners, (Indices{0, 1, 2})) << lines;
+    }
+    expect_ply_error(ErrorCode::Damaged,
+                     "a.ply: line 10: the file goes on after the elements that its head promises, where "
+                     "numbers are read across lines, as 1 lines follow the head, but it promises 4 elements",
+                     kText + "0 0 0 1 0 0 0 1 0 3 0 1 2 5\n");
+    expect_ply_error(ErrorCode::Damaged, "a.ply: the file ends where an integer was expected",
+                     kText + "0 0 0 1 0 0 0 1 0 3 0 1\n");
+}
+
+TEST(ReadPly, IgnoresNumbersThatAreNoneWhereTheyDoNotMatter) {
+    const std::string head =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float nx\nproperty float x\nproperty float y\n"
+        "property float z\nproperty float u\nelement face 1\nproperty list uchar int vertex_indices\n"
+        "property float quality\nend_header\n";
+    EXPECT_EQ(read(head + "-1.#IND 0 0 0 nan\n1.#QNAN0 1 0 0 -inf\n-nan(ind) 0 1 0 1e999\n3 0 1 2 1.#INF\n")
+                  .vertices,
+              (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    expect_ply_error(ErrorCode::InvalidMesh, "a.ply: line 13: the coordinate '-1.#IND' is not finite",
+                     head + "0 0 0 -1.#IND 0\n0 1 0 0 0\n0 0 1 0 0\n3 0 1 2 0\n");
+    expect_ply_error(ErrorCode::Damaged,
+                     "a.ply: line 13: a number was expected, not '0,5'; numbers have a decimal point",
+                     head + "0,5 0 0 0 0\n0 1 0 0 0\n0 0 1 0 0\n3 0 1 2 0\n");
+}
+
+TEST(ReadPly, CutsStripsIntoTrianglesThatAllTurnTheSameWay) {
+    const std::string elements = "element vertex 5\nproperty float x\nproperty float y\nproperty float z\n"
+                                 "element tristrips 1\nproperty list int int vertex_indices\nend_header\n";
+    const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n";
+    const auto read_strips = [&](const std::string& strips) {
+        return read("ply\nformat ascii 1.0\n" + elements + vertices + strips + "\n");
+    };
+    EXPECT_EQ(read_strips("5 0 1 2 3 4").corners, (Indices{0, 1, 2, 2, 1, 3, 2, 3, 4}));
+    EXPECT_EQ(read_strips("9 -1 0 1 2 -1 1 3 2 -1").corners, (Indices{0, 1, 2, 1, 3, 2}));
+    EXPECT_EQ(read_strips("5 0 1 -1 2 3").corners, (Indices{}));
+    EXPECT_EQ(read_strips("0").corners, (Indices{}));
+    // A corner twice turns the strip round without a triangle.
+    EXPECT_EQ(read_strips("6 0 1 2 2 1 3").corners, (Indices{0, 1, 2, 1, 2, 3}));
+    EXPECT_EQ(read_strips("6 0 1 2 1 1 3").corners, (Indices{0, 1, 2}));
+    EXPECT_EQ(read_strips("5 0 1 2 3 4").corner_counts, (Indices{3, 3, 3}));
+    for (const bool big_endian : {false, true}) {
+        Bytes bytes(big_endian);
+        for (const float c : {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0}) bytes.add(c);
+        for (const std::int32_t i : {6, 0, 1, 2, -1, 3, 4}) bytes.add(i);
+        EXPECT_EQ(read(std::string("ply\nformat binary_") + (big_endian ? "big" : "little") +
+                       "_endian 1.0\n" + elements + bytes.text())
+                      .corners,
+                  (Indices{0, 1, 2}));
+    }
+    expect_ply_error(ErrorCode::InvalidMesh, "a.ply: line 15: face 1 refers to vertex 5, but there are 5",
+                     "ply\nformat ascii 1.0\n" + elements + vertices + "4 0 1 2 5\n");
+    expect_ply_error(ErrorCode::InvalidMesh, "a.ply: line 15: face 0 refers to vertex -2",
+                     "ply\nformat ascii 1.0\n" + elements + vertices + "4 0 1 -2 3\n");
+}
+
+TEST(ReadPly, ReadsHeadsWithAMarkCommentsAnywhereAndEveryEndOfLine) {
+    std::string head = "ply\ncomment C:\\a\\\nobj_info \\\nformat ascii 1.0\ncomment\n" + kElements;
+    EXPECT_EQ(read("\xef\xbb\xbf" + head + kThreeVertices + "3 0 1 2\n").corners, (Indices{0, 1, 2}));
+    // A byte that looks like half of an end of line begins the data.
+    const std::string binary =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty uchar x\nproperty uchar y\n"
+        "property uchar z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n";
+    const std::string data("\n\0\0\1\0\0\0\1\0\3\0\1\2", 13);
+    for (const std::string end : {"\r", "\n", "\r\n"}) {
+        std::string bytes;
+        for (const char c : binary) bytes += c == '\n' ? end : std::string(1, c);
+        EXPECT_EQ(read(bytes + data).vertices[0], (Vec3f{10, 0, 0}));
+    }
 }
 
 TEST(ReadPly, RefusesIndicesOutOfRangeAndCoordinatesThatAreNotFinite) {
@@ -153,6 +237,9 @@ TEST(ReadPly, RefusesAHeadThatMakesNoSense) {
     expect_ply_error(ErrorCode::Damaged, "a.ply: the vertices have no property z",
                      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty "
                      "list uchar float z\nend_header\n");
+    expect_ply_error(
+        ErrorCode::Damaged, "a.ply: the element 'face' has no list vertex_indices or vertex_index",
+        "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int corners\nend_header\n3 0 1 2\n");
     expect_ply_error(ErrorCode::Damaged, "a.ply: the element 'ghost' has no properties",
                      "ply\nformat binary_little_endian 1.0\nelement ghost 4000000000\nend_header\n");
 }

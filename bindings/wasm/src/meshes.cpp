@@ -57,9 +57,7 @@ std::vector<Vec3f> vertices_at(const float* first, std::uint32_t count) {
 /// Assimp.
 PolygonMesh read_polygons(const MeshSource& source) {
     const std::size_t dot = source.name.rfind('.');
-    std::string ending = dot == std::string::npos ? "" : source.name.substr(dot);
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    const std::string ending = dot == std::string::npos ? "" : lower_case(source.name.substr(dot));
     if (ending == ".obj") return read_obj(source);
     if (ending == ".off") return read_off(source);
     if (ending == ".ply") return read_ply(source);
