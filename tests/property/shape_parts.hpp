@@ -1,0 +1,81 @@
+#pragma once
+
+#include "property/choices.hpp"
+
+#include <echinus/mesh.hpp>
+
+#include <array>
+#include <string>
+#include <vector>
+
+/// Closed, oriented parts as designers draw them, on a grid of small whole numbers, and what designers do
+/// with them.
+namespace echinus::test {
+
+/// A mesh and the words for how it was made.
+struct Part {
+    TriangleMesh mesh;
+    std::string recipe;
+};
+
+/// A point of the plane, with whole coordinates.
+struct GridPoint {
+    int x = 0, y = 0;
+};
+/// A simple polygon, counter-clockwise.
+using Polygon = std::vector<GridPoint>;
+
+// ---- Planar figures
+
+struct Profile {
+    Polygon polygon;
+    std::string name;
+};
+
+/// A rectangle, triangle, octagon, L, T, U, cross, star, or a disc with a mouth. All but some stars contain
+/// or touch the origin.
+Profile random_profile(Choices& choices);
+
+/// Triangles that fill a polygon, by cutting ears from a random corner on; two polygons with the same corners
+/// may get different diagonals. A polygon that touches itself, as one with a cut to its hole does, will do.
+std::vector<Triangle> triangulate(const Polygon& polygon, Choices& choices);
+
+// ---- Solids
+
+/// From z = 0 to `height`.
+TriangleMesh extruded(const Polygon& polygon, int height, Choices& choices);
+/// From the polygon in z = 0 to a point.
+TriangleMesh tapered_to(const Polygon& polygon, const Vec3f& apex, Choices& choices);
+/// A profile of (distance from the axis, z) around the z axis. Points on the axis become one vertex.
+TriangleMesh revolved(const Polygon& profile, std::uint32_t sides, Choices& choices);
+
+/// One part of a random kind and size, at most some 12 units wide.
+Part random_part(Choices& choices);
+
+// ---- Changes that keep a mesh closed
+
+void append(TriangleMesh& whole, const TriangleMesh& part);
+TriangleMesh inside_out(TriangleMesh mesh);
+/// @param axes  which old axis becomes x, y and z. An odd permutation mirrors, and the faces are turned
+TriangleMesh with_axes(TriangleMesh mesh, const std::array<std::size_t, 3>& axes);
+TriangleMesh mirrored(TriangleMesh mesh, std::size_t axis);
+TriangleMesh moved(TriangleMesh mesh, const Vec3f& offset);
+TriangleMesh stretched(TriangleMesh mesh, const Vec3f& factors);
+/// By 45 degrees about an axis, and larger by the root of two: whole numbers stay whole.
+TriangleMesh turned_by_eighth(TriangleMesh mesh, std::size_t axis);
+/// A tetrahedron over each face with its tip in `apex`, all counted with sign. Together they wind around
+/// every place as the mesh does.
+TriangleMesh cut_into_tetrahedra(const TriangleMesh& mesh, const Vec3f& apex);
+/// Cuts some faces in three at a point inside, and some pairs of faces in two at the middle of their edge.
+TriangleMesh subdivided(TriangleMesh mesh, Choices& choices);
+/// Faces in another order, beginning with another corner.
+TriangleMesh shuffled(TriangleMesh mesh, Choices& choices);
+
+struct Box {
+    Vec3f low, high;
+    Vec3f size() const { return high - low; }
+};
+/// @pre the mesh has vertices
+Box box_of(const TriangleMesh& mesh);
+
+} // namespace echinus::test
