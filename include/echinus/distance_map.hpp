@@ -77,9 +77,9 @@ struct DistanceMapStatistics {
 };
 
 /// A map as plain arrays, wherever they lie: in a DistanceMap, in a mapped file, in JavaScript's memory. Owns
-/// nothing, copies cheaply, and is what all queries take. Invariants (validate() in src/map_file checks them
-/// for untrusted bytes): entry_offsets ascends from 0 to the number of entries; the entries of a direction
-/// ascend within [0, largest_entry()].
+/// nothing, copies cheaply, and is what all queries take. Invariants (validate() in src/distance_map checks
+/// them, of untrusted bytes and of what a build made): entry_offsets ascends from 0 to the number of entries;
+/// the entries of a direction ascend within [0, largest_entry()].
 struct DistanceMapView {
     Vec3f centre;     ///< C, local
     float radius = 0; ///< R: every vertex of the mesh lies within R of C

@@ -88,7 +88,7 @@ struct BorderEdge {
 static_assert(sizeof(BorderEdge) == 12);
 
 /// A map as plain arrays, wherever they lie, the argument of all queries. Owns nothing, copies cheaply.
-/// validate() in src/map_file checks the invariants for untrusted bytes.
+/// validate() in src/exact_map checks the invariants, of untrusted bytes and of what a build made.
 struct ExactMapView {
     static constexpr int kBandUnit = 16;
     static constexpr int kBoxUnit = 32;

@@ -89,7 +89,7 @@ struct FaceLists {
 /// @param reach           not negative; 0: faces that touch. Beyond 10^12 R nothing is looked for
 /// @param lists           [n] out; keeps its memory from one call to the next
 /// @param thread_count    0: all cores
-/// @pre indices are in range
+/// @pre indices are in range; @throws Error InvalidOptions when the lists would hold 2^32 faces or more
 /// Allocates what the lists need. Cost: of a triangle that is far from the surface some 100 ns.
 void faces_within_batch(const ExactMapView& map, StridedSpan<const Vec3f> vertices_local,
                         std::span<const Triangle> triangles, float reach, FaceLists& lists,

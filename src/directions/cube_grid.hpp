@@ -5,6 +5,7 @@
 #include "directions/bilinear_grid.hpp"
 #include "directions/lattice.hpp"
 #include "geometry/circle.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <echinus/directions.hpp>
 
@@ -92,8 +93,8 @@ class CubeGrid : public BilinearGrid {
     };
 
     Cell cell_at(const Coordinates& at) const {
-        const std::int32_t i = std::clamp(static_cast<std::int32_t>(at.along_u), 0, n_ - 1);
-        const std::int32_t j = std::clamp(static_cast<std::int32_t>(at.along_v), 0, n_ - 1);
+        const std::int32_t i = std::clamp(truncated_to<std::int32_t>(at.along_u), 0, n_ - 1);
+        const std::int32_t j = std::clamp(truncated_to<std::int32_t>(at.along_v), 0, n_ - 1);
         const std::uint32_t first =
             index(at.side, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
         return {{{first, first + 1, first + width_, first + width_ + 1},

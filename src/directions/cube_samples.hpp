@@ -2,6 +2,7 @@
 
 #include "directions/clipped_face.hpp"
 #include "directions/cube_grid.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <array>
@@ -43,11 +44,11 @@ void for_each_sample_of_side_near(const CubeGrid& grid, std::uint32_t side,
     const auto n = static_cast<double>(grid.divisions());
     const auto first = [&](double angle) {
         const double place = std::ceil((angle - kMargin) * cells_per_radian + n / 2 - reach);
-        return static_cast<std::int64_t>(std::clamp(place, 0.0, n + 1));
+        return truncated_to<std::int64_t>(std::clamp(place, 0.0, n + 1));
     };
     const auto last = [&](double angle) {
         const double place = std::floor((angle + kMargin) * cells_per_radian + n / 2 + reach);
-        return static_cast<std::int64_t>(std::clamp(place, -1.0, n));
+        return truncated_to<std::int64_t>(std::clamp(place, -1.0, n));
     };
     for (std::int64_t j = first(v_min); j <= last(v_max); ++j)
         for (std::int64_t i = first(u_min); i <= last(u_max); ++i)

@@ -2,6 +2,7 @@
 
 #include "directions/face_cone.hpp"
 #include "geometry/number_text.hpp"
+#include "mesh/require_valid.hpp"
 
 #include <echinus/error.hpp>
 
@@ -82,6 +83,7 @@ std::vector<LatticePoint> lattice_directions(const std::vector<Vec3d>& units) {
 }
 
 void LatticeSnapper::require_valid(std::span<const Vec3f> vertices) {
+    require_numberable(faces_.size(), vertices.size());
     if (used_.vertex_count() != vertices.size()) used_ = UsedVertices(faces_, vertices.size());
     used_.require_valid(vertices, faces_);
 }
@@ -126,7 +128,7 @@ void LatticeSnapper::snap_around(std::span<const Vec3f> vertices, const Vec3f& c
     for (std::size_t i = 0; i < faces_.size(); ++i) {
         const Triangle face = faces_[i];
         result.faces[kept] = face;
-        result.face_numbers[kept] = static_cast<std::uint32_t>(i);
+        result.face_numbers[kept] = static_cast<std::uint32_t>(i); // at most kMostFaces
         kept += is_collapsed(result.corners(static_cast<std::uint32_t>(kept))) ? 0 : 1;
     }
     result.faces.resize(kept);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/whole_numbers.hpp"
 #include "mesh/used_vertices.hpp"
 
 #include <echinus/geometry.hpp>
@@ -37,9 +38,9 @@ struct LatticeFrame {
     Vec3d to_local(const Vec3d& place) const { return centre + place * step; }
 };
 
-/// The nearest lattice point. @pre components within 2^62
+/// The nearest lattice point. @pre components below 2^63
 inline LatticePoint rounded(const Vec3d& place) {
-    return {std::llrint(place.x), std::llrint(place.y), std::llrint(place.z)};
+    return {nearest_whole(place.x), nearest_whole(place.y), nearest_whole(place.z)};
 }
 
 /// A unit vector scaled to the lattice's extent and snapped: the direction of a ray.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "directions/lattice.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <array>
 #include <cmath>
@@ -65,7 +66,7 @@ class OctahedralCells {
         const std::uint32_t in_octant = cell % cells_per_octant;
         // The rows before row i hold i (2n - i) cells, so in_octant < n^2 - (n - i)^2 for all rows after it.
         const auto i =
-            n_ - static_cast<std::int32_t>(std::ceil(std::sqrt(double(cells_per_octant - in_octant))));
+            n_ - truncated_to<std::int32_t>(std::ceil(std::sqrt(double(cells_per_octant - in_octant))));
         const auto in_row = static_cast<std::int32_t>(in_octant) - i * (2 * n_ - i);
         return {cell / cells_per_octant, i, in_row / 2, in_row % 2 != 0};
     }
@@ -108,8 +109,8 @@ class OctahedralCells {
         const double along_x =
             sum > 0 ? static_cast<double>(std::abs(p.x)) * parts_per_step + kNudge : fine_n;
         const double along_y = sum > 0 ? static_cast<double>(std::abs(p.y)) * parts_per_step + kNudge : 0;
-        auto i = static_cast<std::int32_t>(along_x);
-        auto j = static_cast<std::int32_t>(along_y);
+        auto i = truncated_to<std::int32_t>(along_x);
+        auto j = truncated_to<std::int32_t>(along_y);
         std::int32_t down = along_x + along_y - (i + j) > 1 + 4 * kNudge ? 1 : 0;
         if (i + j == fine_n) { // a corner of the grid on the octant's edge; step back into a cell that
                                // touches it

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "directions/lattice.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <echinus/directions.hpp>
 
@@ -113,8 +114,8 @@ class OctahedralGrid {
 
     Cell cell_at(const Coordinates& at) const {
         Cell cell;
-        cell.i = std::min(static_cast<std::int32_t>(at.along_u), 2 * n_ - 1);
-        cell.j = std::min(static_cast<std::int32_t>(at.along_v), 2 * n_ - 1);
+        cell.i = std::min(truncated_to<std::int32_t>(at.along_u), 2 * n_ - 1);
+        cell.j = std::min(truncated_to<std::int32_t>(at.along_v), 2 * n_ - 1);
         cell.u = at.along_u - static_cast<float>(cell.i);
         cell.v = at.along_v - static_cast<float>(cell.j);
         cell.mirrored = (cell.i >= n_) != (cell.j >= n_);

@@ -2,6 +2,7 @@
 
 #include "directions/clipped_face.hpp"
 #include "directions/octahedral_grid.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <array>
@@ -31,7 +32,13 @@ class OctantSamples {
 
         double x_min = n_, x_max = 0, y_min = n_, y_max = 0, sum_min = n_, sum_max = 0;
         for (const Vec3d& p : part) {
-            const double per_length = n_ / (p.x + p.y + p.z);
+            const double sum = p.x + p.y + p.z;
+            if (sum < kNear) {
+                x_min = y_min = sum_min = 0;
+                x_max = y_max = sum_max = n_;
+                break;
+            }
+            const double per_length = n_ / sum;
             const double x = p.x * per_length, y = p.y * per_length;
             x_min = std::min(x_min, x), x_max = std::max(x_max, x);
             y_min = std::min(y_min, y), y_max = std::max(y_max, y);
@@ -50,11 +57,15 @@ class OctantSamples {
   private:
     static constexpr double kMargin = 1e-3; // cells; far above the rounding of these lines
 
+    /// Nearer to the origin than so many lattice steps, cuts are off by too much to tell directions apart: by
+    /// some 2^-31 steps, which at this distance is 2^-19 cells or less.
+    static constexpr double kNear = 1;
+
     std::int32_t at_least(double value) const {
-        return std::max(static_cast<std::int32_t>(std::ceil(value)), 0);
+        return truncated_to<std::int32_t>(std::clamp(std::ceil(value), 0.0, n_ + 1.0));
     }
     std::int32_t at_most(double value) const {
-        return std::min(static_cast<std::int32_t>(std::floor(value)), n_);
+        return truncated_to<std::int32_t>(std::clamp(std::floor(value), -1.0, double(n_)));
     }
 
     /// Maps into the octant of positive coordinates.

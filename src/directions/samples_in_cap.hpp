@@ -2,6 +2,7 @@
 
 #include "directions/direction_cap.hpp"
 #include "directions/ellipsoidal_grid.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,8 +22,8 @@ void for_each_sample_in(const SphericalGrid& grid, const DirectionCap& cap, doub
     const auto count_of_columns = static_cast<std::int64_t>(grid.longitude_count());
     const double rows_per_radian = static_cast<double>(count_of_rows) / std::numbers::pi;
     const double columns_per_radian = static_cast<double>(count_of_columns) / (2 * std::numbers::pi);
-    const auto at_or_above = [reach](double s) { return static_cast<std::int64_t>(std::ceil(s - reach)); };
-    const auto at_or_below = [reach](double s) { return static_cast<std::int64_t>(std::floor(s + reach)); };
+    const auto at_or_above = [reach](double s) { return truncated_to<std::int64_t>(std::ceil(s - reach)); };
+    const auto at_or_below = [reach](double s) { return truncated_to<std::int64_t>(std::floor(s + reach)); };
 
     const std::int64_t first_row =
         std::max<std::int64_t>(at_or_above(cap.theta_min * rows_per_radian - 0.5), 0);

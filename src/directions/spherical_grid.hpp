@@ -5,6 +5,7 @@
 #include "directions/bilinear_grid.hpp"
 #include "directions/lattice.hpp"
 #include "geometry/circle.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <echinus/directions.hpp>
 #include <echinus/geometry.hpp>
@@ -140,7 +141,7 @@ class SphericalGrid : public BilinearGrid {
   private:
     /// Avoids std::floor, which is a function call on processors older than SSE4.1.
     static std::int32_t floor_to_int(float value) {
-        const auto truncated = static_cast<std::int32_t>(value);
+        const auto truncated = truncated_to<std::int32_t>(value);
         return truncated - (static_cast<float>(truncated) > value ? 1 : 0);
     }
     CirclePoint colatitude_point(std::uint32_t j) const {

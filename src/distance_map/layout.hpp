@@ -1,6 +1,7 @@
 #pragma once
 
 #include "directions/grids.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <echinus/distance_map.hpp>
 
@@ -9,6 +10,13 @@
 #include <cstdint>
 
 namespace echinus {
+
+// Directions are numbered in 32 bits, with a sign in vectors, and so are the products that number them.
+static_assert(std::uint64_t{DistanceMapOptions::kMaxSampleCount} * DistanceMapOptions::kMaxSampleCount <
+              1U << 31);
+static_assert(6 * std::uint64_t{DistanceMapOptions::kMaxDivisions + 1} *
+                  (DistanceMapOptions::kMaxDivisions + 1) <
+              1U << 31);
 
 /// Calls `use(grid)` with the grid that a view describes, and returns its result.
 template <typename Use>
@@ -28,7 +36,7 @@ inline constexpr float kRayLengthening = 0x1p100F;
 inline constexpr float kUnormSteps = 65535;
 
 inline std::uint16_t to_unorm16(float entry, float largest) {
-    return static_cast<std::uint16_t>(std::lround(static_cast<double>(entry) / largest * kUnormSteps));
+    return truncated_to<std::uint16_t>(std::round(static_cast<double>(entry) / largest * kUnormSteps));
 }
 inline float from_unorm16(std::uint16_t stored, float largest) {
     return static_cast<float>(stored) * (largest / kUnormSteps);

@@ -3,7 +3,7 @@
 #include "directions/lattice.hpp"
 #include "directions/octahedral_cells.hpp"
 
-#include <echinus/exact_map_view.hpp>
+#include <echinus/exact_map.hpp>
 
 #include <array>
 #include <cstdint>
@@ -12,6 +12,9 @@
 
 /// What build and queries share about an exact map's arrays.
 namespace echinus {
+
+// Cells are numbered in 32 bits, with a sign in vectors, and so are the products that number them.
+static_assert(8 * std::uint64_t{ExactMapOptions::kMaxDivisions} * ExactMapOptions::kMaxDivisions < 1U << 31);
 
 /// Lattice steps of the L1 norm to the units of Band, rounded down.
 inline std::int64_t band_unit_of(std::int64_t l1) {

@@ -1,5 +1,6 @@
 #include "map_file/distance_map_table.hpp"
 
+#include "distance_map/validate.hpp"
 #include "map_file/table_arrays.hpp"
 
 #include <utility>
@@ -82,7 +83,7 @@ DistanceMap read_table(const schema::DistanceMap& stored, std::uint64_t source_h
                        std::shared_ptr<const void> storage, const std::string& name) {
     const DistanceMapView view = read_view(stored);
     const DistanceMapStatistics statistics = read_statistics(*stored.statistics());
-    validate(view, statistics, name);
+    validate(Checker(name), view, statistics);
     return {view, statistics, source_hash, std::move(storage)};
 }
 

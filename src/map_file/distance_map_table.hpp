@@ -18,9 +18,4 @@ flatbuffers::Offset<schema::DistanceMap> write_table(flatbuffers::FlatBufferBuil
 DistanceMap read_table(const schema::DistanceMap& stored, std::uint64_t source_hash,
                        std::shared_ptr<const void> storage, const std::string& name);
 
-/// Checks what a query relies on: the invariants of DistanceMapView, finite numbers, counts within the limits
-/// of DistanceMapOptions, existing enumerators. For arrays from untrusted bytes; one pass.
-/// @throws Error as read_table()
-void validate(const DistanceMapView& map, const DistanceMapStatistics& statistics, const std::string& name);
-
 } // namespace echinus

@@ -1,6 +1,7 @@
 #include "map_file/exact_map_table.hpp"
 
 #include "exact_map/layout.hpp"
+#include "exact_map/validate.hpp"
 #include "map_file/table_arrays.hpp"
 
 #include <cstdint>
@@ -104,7 +105,7 @@ ExactMap read_table(const schema::ExactMap& stored, std::uint64_t source_hash,
                     std::shared_ptr<const void> storage, const std::string& name) {
     ExactMapView view = read_view(stored);
     const ExactMapStatistics statistics = read_statistics(*stored.statistics());
-    validate(view, statistics, name);
+    validate(Checker(name), view, statistics);
     struct Kept {
         std::shared_ptr<const void> file;
         std::vector<std::uint16_t> outer_limits;

@@ -18,11 +18,4 @@ flatbuffers::Offset<schema::ExactMap> write_table(flatbuffers::FlatBufferBuilder
 ExactMap read_table(const schema::ExactMap& stored, std::uint64_t source_hash,
                     std::shared_ptr<const void> storage, const std::string& name);
 
-/// Checks everything that keeps queries harmless, and what else one pass can check: bands, faces and tree
-/// agree in their numbers, no integer of a query overflows, the tree is a tree and no deeper than a query's
-/// stack, its boxes contain their faces. It does not check that the bands match the faces; where they do not,
-/// answers are wrong. For arrays from untrusted bytes.
-/// @throws Error as read_table()
-void validate(const ExactMapView& map, const ExactMapStatistics& statistics, const std::string& name);
-
 } // namespace echinus

@@ -1,5 +1,7 @@
 #include "mesh/box_tree.hpp"
 
+#include "geometry/whole_numbers.hpp"
+
 #include <algorithm>
 
 namespace echinus {
@@ -39,11 +41,11 @@ BoxTree::BoxTree(const TriangleMesh& mesh) {
         leaves_.push_back({FaceBox::around(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]), face});
     }
     nodes_.reserve(leaves_.size());
-    build(0, static_cast<std::uint32_t>(leaves_.size()));
+    build(0, kept_as<std::uint32_t>(leaves_.size()));
 }
 
 void BoxTree::build(std::uint32_t begin, std::uint32_t end) {
-    const auto index = static_cast<std::uint32_t>(nodes_.size());
+    const auto index = kept_as<std::uint32_t>(nodes_.size());
     FaceBox box = leaves_[begin].box;
     for (std::uint32_t i = begin + 1; i < end; ++i) box = FaceBox::around(box, leaves_[i].box);
     nodes_.push_back({box, begin, end, 0});
@@ -54,7 +56,7 @@ void BoxTree::build(std::uint32_t begin, std::uint32_t end) {
     std::nth_element(leaves_.begin() + begin, leaves_.begin() + middle, leaves_.begin() + end,
                      [&](const Leaf& p, const Leaf& q) { return centre(p) < centre(q); });
     build(begin, middle);
-    nodes_[index].right = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[index].right = kept_as<std::uint32_t>(nodes_.size());
     build(middle, end);
 }
 

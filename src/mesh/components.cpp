@@ -1,5 +1,6 @@
 #include "mesh/components.hpp"
 
+#include "geometry/whole_numbers.hpp"
 #include "mesh/union_find.hpp"
 
 #include <limits>
@@ -18,7 +19,7 @@ Components find_components(const TriangleMesh& mesh) {
     components.of_face.reserve(mesh.faces.size());
     for (const Triangle& face : mesh.faces) {
         std::uint32_t& number = number_of_set[sets.find(face[0])];
-        if (number == kUnnumbered) number = static_cast<std::uint32_t>(components.count++);
+        if (number == kUnnumbered) number = kept_as<std::uint32_t>(components.count++);
         components.of_face.push_back(number);
     }
     return components;

@@ -1,5 +1,6 @@
 #include "mesh/edges.hpp"
 
+#include "geometry/whole_numbers.hpp"
 #include "mesh/faces.hpp"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh) {
         if (has_equal_corners(corners)) continue;
         for (std::uint8_t k = 0; k < 3; ++k) {
             const auto [low, high] = std::minmax(corners[k], corners[(k + 1) % 3]);
-            uses.push_back({low, high, static_cast<std::uint32_t>(face), k, corners[k] == low});
+            uses.push_back({low, high, kept_as<std::uint32_t>(face), k, corners[k] == low});
         }
     }
     std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {

@@ -1,5 +1,7 @@
 #include "mesh/faces.hpp"
 
+#include "geometry/whole_numbers.hpp"
+
 #include <algorithm>
 #include <numeric>
 
@@ -59,7 +61,7 @@ std::vector<std::uint32_t> find_duplicate_faces(const TriangleMesh& mesh) {
 std::vector<std::uint32_t> find_degenerate_faces(const TriangleMesh& mesh) {
     std::vector<std::uint32_t> degenerate;
     for (std::size_t face = 0; face < mesh.faces.size(); ++face)
-        if (is_degenerate(mesh, mesh.faces[face])) degenerate.push_back(static_cast<std::uint32_t>(face));
+        if (is_degenerate(mesh, mesh.faces[face])) degenerate.push_back(kept_as<std::uint32_t>(face));
     return degenerate;
 }
 

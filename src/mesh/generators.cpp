@@ -1,5 +1,6 @@
 #include "geometry/circle.hpp"
 #include "geometry/number_text.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/mesh.hpp>
@@ -72,7 +73,7 @@ void add_box_side(TriangleMesh& mesh, const std::array<double, 3>& size, std::ui
                   std::size_t normal_axis, bool largest) {
     const std::size_t u_axis = (normal_axis + 1) % 3;
     const std::size_t v_axis = (normal_axis + 2) % 3;
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    const auto first = kept_as<std::uint32_t>(mesh.vertices.size());
     // From -size / 2 to size / 2; the same bits for the same place on neighbouring sides.
     const auto coordinate = [&](std::size_t axis, std::uint32_t i) {
         return static_cast<float>(size[axis] * (2.0 * i - segments) / (2.0 * segments));

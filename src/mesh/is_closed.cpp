@@ -1,6 +1,7 @@
 #include "mesh/is_closed.hpp"
 
 #include "geometry/arena.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,7 +19,7 @@ using HalfEdge = std::uint64_t;
 template <typename Visit>
 void for_each_half_edge(std::span<const Triangle> faces, const Visit& visit) {
     const auto visit_edge = [&](std::uint32_t a, std::uint32_t b) {
-        if (a != b) visit(std::min(a, b), HalfEdge{std::max(a, b)} << 1 | HalfEdge{a < b});
+        if (a != b) visit(std::min(a, b), packed<1>(std::max(a, b), a < b ? 1 : 0));
     };
     for (const auto& [a, b, c] : faces) {
         visit_edge(a, b);

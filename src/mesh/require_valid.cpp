@@ -21,7 +21,19 @@ void require_vertices_exist(const TriangleMesh& mesh, std::size_t face) {
                               std::to_string(mesh.vertices.size()) + " vertices, numbered from 0");
 }
 
+void require_numberable(std::size_t face_count, std::size_t vertex_count) {
+    const auto require = [](std::size_t count, std::size_t most, const char* what) {
+        if (count > most)
+            throw Error(ErrorCode::InvalidMesh, "the mesh has " + std::to_string(count) + what +
+                                                    std::to_string(most) +
+                                                    " that can be numbered; take it apart");
+    };
+    require(face_count, kMostFaces, " faces, more than the ");
+    require(vertex_count, 3 * kMostFaces, " vertices, more than the ");
+}
+
 void require_valid(const TriangleMesh& mesh) {
+    require_numberable(mesh.faces.size(), mesh.vertices.size());
     if (mesh.faces.empty()) throw Error(ErrorCode::InvalidMesh, "the mesh has no faces");
     for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
         require_vertices_exist(mesh, face);

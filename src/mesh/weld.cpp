@@ -1,6 +1,7 @@
 #include "mesh/weld.hpp"
 
 #include "geometry/bit_cast.hpp"
+#include "geometry/whole_numbers.hpp"
 #include "mesh/require_valid.hpp"
 
 #include <algorithm>
@@ -51,8 +52,8 @@ WeldedMesh weld_with_sources(const TriangleMesh& mesh) {
     WeldedMesh welded;
     for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex)
         if (new_index[vertex] != kUnused) {
-            new_index[vertex] = static_cast<std::uint32_t>(welded.sources.size());
-            welded.sources.push_back(static_cast<std::uint32_t>(vertex));
+            new_index[vertex] = kept_as<std::uint32_t>(welded.sources.size());
+            welded.sources.push_back(kept_as<std::uint32_t>(vertex));
             welded.mesh.vertices.push_back(mesh.vertices[vertex]);
         }
     welded.mesh.faces.reserve(mesh.faces.size());

@@ -1,5 +1,7 @@
 #include "tetrahedra/body_lattice.hpp"
 
+#include "geometry/whole_numbers.hpp"
+
 #include <cmath>
 
 namespace echinus {
@@ -14,9 +16,9 @@ double cube_count(double low, double high, double size) {
 } // namespace
 
 BodyLattice::BodyLattice(const Vec3d& low, const Vec3d& high, double size)
-    : size_(size), counts_{static_cast<std::uint64_t>(cube_count(low.x, high.x, size)),
-                           static_cast<std::uint64_t>(cube_count(low.y, high.y, size)),
-                           static_cast<std::uint64_t>(cube_count(low.z, high.z, size))} {
+    : size_(size), counts_{truncated_to<std::uint64_t>(cube_count(low.x, high.x, size)),
+                           truncated_to<std::uint64_t>(cube_count(low.y, high.y, size)),
+                           truncated_to<std::uint64_t>(cube_count(low.z, high.z, size))} {
     // The box in the middle of the corners, of which each axis has as many as cubes.
     const auto half_extent = [&](std::uint64_t count) { return static_cast<double>(count - 1) * size / 2; };
     origin_ =

@@ -1,3 +1,5 @@
+#include "geometry/whole_numbers.hpp"
+
 #include <echinus/exact_map.hpp>
 #include <echinus/tetrahedra.hpp>
 
@@ -62,7 +64,7 @@ class Sampler {
 /// side.
 void sample_face(const std::array<Vec3d, 3>& p, double spacing, Sampler& sampler) {
     const double longest = std::max({length(p[1] - p[0]), length(p[2] - p[1]), length(p[0] - p[2])});
-    const int steps = static_cast<int>(std::clamp(std::ceil(longest / spacing), 1.0, 64.0));
+    const int steps = truncated_to<int>(std::clamp(std::ceil(longest / spacing), 1.0, 64.0));
     for (int i = 0; i <= steps; ++i)
         for (int j = 0; i + j <= steps; ++j)
             sampler.add(p[0] + (p[1] - p[0]) * (double{1} * i / steps) +

@@ -1,5 +1,6 @@
 #include "exact_map/layout.hpp"
 #include "geometry/parallel.hpp"
+#include "geometry/whole_numbers.hpp"
 #include "tetrahedra/cut_points.hpp"
 #include "tetrahedra/mend.hpp"
 #include "tetrahedra/ranked_set.hpp"
@@ -199,13 +200,13 @@ Tetrahedralization stuff_count(const ExactMapView& map, const Box& box,
 void number_along(float Vec3f::*axis, TetrahedralMesh& mesh) {
     std::vector<std::pair<float, std::uint32_t>> order;
     for (const Vec3f& vertex : mesh.vertices)
-        order.emplace_back(vertex.*axis, static_cast<std::uint32_t>(order.size()));
+        order.emplace_back(vertex.*axis, kept_as<std::uint32_t>(order.size()));
     std::sort(order.begin(), order.end());
     std::vector<std::uint32_t> number_of(order.size());
     std::vector<Vec3f> vertices;
     vertices.reserve(order.size());
     for (const auto& [along, vertex] : order) {
-        number_of[vertex] = static_cast<std::uint32_t>(vertices.size());
+        number_of[vertex] = kept_as<std::uint32_t>(vertices.size());
         vertices.push_back(mesh.vertices[vertex]);
     }
     mesh.vertices = std::move(vertices);

@@ -1,5 +1,6 @@
 #include "tetrahedra/tetrahedron_tree.hpp"
 
+#include "geometry/whole_numbers.hpp"
 #include "tetrahedra/tetrahedron_faces.hpp"
 
 #include <algorithm>
@@ -58,7 +59,7 @@ double distance_sq_to_tetrahedron(const TetrahedralMesh& mesh, const Tetrahedron
 TetrahedronTree::TetrahedronTree(const TetrahedralMesh& mesh) : mesh_(mesh), order_(mesh.tetrahedra.size()) {
     std::iota(order_.begin(), order_.end(), 0U);
     nodes_.reserve(order_.size());
-    build(0, static_cast<std::uint32_t>(order_.size()));
+    build(0, kept_as<std::uint32_t>(order_.size()));
 }
 
 FaceBox TetrahedronTree::box_of(std::uint32_t tetrahedron) const {
@@ -90,7 +91,7 @@ void TetrahedronTree::build(std::uint32_t begin, std::uint32_t end) {
     std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                      [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
     build(begin, middle);
-    nodes_[number].right = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[number].right = kept_as<std::uint32_t>(nodes_.size());
     build(middle, end);
 }
 

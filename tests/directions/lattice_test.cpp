@@ -1,11 +1,15 @@
 #include "directions/lattice.hpp"
+#include "mesh/require_valid.hpp"
+#include "support/expect_error.hpp"
 
 #include <echinus/error.hpp>
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 using namespace echinus;
 
@@ -103,4 +107,18 @@ TEST(Lattice, RefusesAMeshOnOnePointAndSizesBeyondFloat) {
     EXPECT_NO_THROW(snap_to_lattice(make_box({1e9, 1e9, 1e9})));
     EXPECT_NO_THROW(snap_to_lattice(make_box({1e-9, 1e-9, 1e-9})));
     EXPECT_NO_THROW(snap_to_lattice(make_box({1, 1e-6, 1e-6})));
+}
+
+TEST(Lattice, RefusesMoreFacesThanCanBeNumbered) {
+    // Address space that nothing may read.
+    const std::size_t count = kMostFaces + 1, bytes = count * sizeof(Triangle);
+    void* space = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (space == MAP_FAILED) GTEST_SKIP() << "no room for so many addresses";
+    LatticeSnapper snapper({static_cast<const Triangle*>(space), count});
+    LatticeMesh lattice;
+    test::expect_error(ErrorCode::InvalidMesh, "1073741825 faces",
+                       [&] { snapper.snap(std::vector<Vec3f>(3), lattice); });
+    munmap(space, bytes);
+    test::expect_error(ErrorCode::InvalidMesh, "3221225473 vertices",
+                       [] { require_numberable(1, 3 * kMostFaces + 1); });
 }

@@ -1,3 +1,4 @@
+#include "exact_map/validate.hpp"
 #include "support/crowded_meshes.hpp"
 #include "support/expect_error.hpp"
 #include "support/map_file_attack.hpp"
@@ -243,9 +244,14 @@ TEST(ExactMapFile, NamesWhatContradictsTheMeaning) {
     for (const Case& spoilt : cases) {
         ExactMapParts parts = torus_parts();
         spoilt.spoil(parts);
-        const auto bytes = serialise(parts.map());
+        const ExactMap map = parts.map();
+        const auto bytes = serialise(map);
         expect_error(ErrorCode::Damaged, spoilt.words, [&] { load_bytes(bytes); });
         expect_error(ErrorCode::Damaged, "echinus build", [&] { load_bytes(bytes); });
+        // A build that made it would not hand it out.
+        const auto prove = [&] { proven(map.view(), map.statistics(), 0, nullptr); };
+        expect_error(ErrorCode::Damaged, spoilt.words, prove);
+        expect_error(ErrorCode::Damaged, "fault of Echinus", prove);
     }
 }
 

@@ -1,3 +1,4 @@
+#include "distance_map/validate.hpp"
 #include "support/expect_error.hpp"
 #include "support/grid_options.hpp"
 #include "support/map_file_attack.hpp"
@@ -281,9 +282,14 @@ TEST(MapFile, NamesWhatContradictsTheMeaning) {
     for (const Case& spoilt : cases) {
         MapParts parts = random_map_parts(EntryFormat::Float32, 8, 6, 5);
         spoilt.spoil(parts);
-        const auto bytes = serialise(parts.map());
+        const DistanceMap map = parts.map();
+        const auto bytes = serialise(map);
         expect_error(ErrorCode::Damaged, spoilt.words, [&] { load_bytes(bytes); });
         expect_error(ErrorCode::Damaged, "echinus build", [&] { load_bytes(bytes); });
+        // A build that made it would not hand it out.
+        const auto prove = [&] { proven(map.view(), map.statistics(), 0, nullptr); };
+        expect_error(ErrorCode::Damaged, spoilt.words, prove);
+        expect_error(ErrorCode::Damaged, "fault of Echinus", prove);
     }
 }
 

@@ -1,5 +1,6 @@
 #include "support/expect_error.hpp"
 #include "support/mesh_assembly.hpp"
+#include "support/prisms.hpp"
 #include "support/random_points.hpp"
 #include "support/soups.hpp"
 
@@ -54,6 +55,16 @@ TEST(Tetrahedralize, FillsASphereATorusABoxAPlateAndSpheresThatOverlap) {
             SCOPED_TRACE(size);
             expect_good_body(tetrahedralize_mesh(model, {.size = size}).mesh);
         }
+}
+
+TEST(Tetrahedralize, FillsABoxAsMuchWhenPlanesThroughItsCentreCutItIntoParts) {
+    for (const std::size_t count : {500U, 4000U}) {
+        const TetrahedralizeOptions options{.count = count};
+        const double whole =
+            inspect_tetrahedra(tetrahedralize_mesh(make_box({2, 2, 2}), options).mesh).volume;
+        for (const TriangleMesh& model : {make_two_wedges(), make_four_wedges()})
+            EXPECT_NEAR(expect_good_body(tetrahedralize_mesh(model, options).mesh).volume, whole, 1e-3);
+    }
 }
 
 TEST(Tetrahedralize, MeetsTheAnglesWhateverTheSurface) {

@@ -6,7 +6,9 @@
 #include "distance_map/build/centre_side.hpp"
 #include "distance_map/build/vertex_correction.hpp"
 #include "distance_map/layout.hpp"
+#include "distance_map/validate.hpp"
 #include "distance_map/view_of.hpp"
+#include "geometry/whole_numbers.hpp"
 #include "mesh/mesh_hash.hpp"
 
 #include <echinus/error.hpp>
@@ -101,8 +103,8 @@ DistanceMap DistanceMap::build(const TriangleMesh& mesh, const DistanceMapOption
         correct_at_vertices(options.correction, lattice, grid, centre.inside, crossings);
 
     DistanceMapStatistics statistics;
-    statistics.face_count = static_cast<std::uint32_t>(mesh.faces.size());
-    statistics.dropped_faces = static_cast<std::uint32_t>(mesh.faces.size() - lattice.faces.size());
+    statistics.face_count = kept_as<std::uint32_t>(mesh.faces.size());
+    statistics.dropped_faces = kept_as<std::uint32_t>(mesh.faces.size() - lattice.faces.size());
     statistics.max_entries = largest_count(crossings);
     statistics.corrected_entries = counts.corrected_entries;
     statistics.clamped_entries = counts.clamped_entries;
@@ -112,7 +114,7 @@ DistanceMap DistanceMap::build(const TriangleMesh& mesh, const DistanceMapOption
     view.entry_offsets = arrays->offsets;
     view.entries_float32 = arrays->float32;
     view.entries_unorm16 = arrays->unorm16;
-    return {view, statistics, hash_of(mesh, options), arrays};
+    return proven(view, statistics, hash_of(mesh, options), arrays);
 }
 
 } // namespace echinus

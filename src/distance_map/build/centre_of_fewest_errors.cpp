@@ -5,6 +5,7 @@
 #include "distance_map/build/centre_side.hpp"
 #include "distance_map/layout.hpp"
 #include "distance_map/view_of.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +23,7 @@ class PlacesBesideSurface {
   public:
     PlacesBesideSurface(const TriangleMesh& mesh, float offset) {
         constexpr double kMinPlaces = 4000;
-        const auto cuts = static_cast<std::uint32_t>(
+        const auto cuts = truncated_to<std::uint32_t>(
             std::ceil(std::sqrt(kMinPlaces / static_cast<double>(mesh.faces.size()))));
         for (const Triangle& face : mesh.faces) {
             const Vec3d a(mesh.vertices[face[0]]);

@@ -17,6 +17,7 @@
 
 #include "distance_map/build/vertex_layers.hpp"
 #include "distance_map/interpolation.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -92,7 +93,7 @@ class Corrector {
 /// Finds the faces around the rays of vertices. Any resolution gives the same layers; about as many
 /// directions as the map has suit its mesh.
 SphericalGrid finder_like(std::size_t direction_count) {
-    const auto side = static_cast<std::uint32_t>(std::sqrt(static_cast<double>(direction_count)));
+    const auto side = truncated_to<std::uint32_t>(std::sqrt(static_cast<double>(direction_count)));
     return {side, side, PoleAxis::Z};
 }
 

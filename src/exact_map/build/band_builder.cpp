@@ -1,5 +1,7 @@
 #include "exact_map/build/band_builder.hpp"
 
+#include "geometry/whole_numbers.hpp"
+
 #include <echinus/error.hpp>
 
 #include <algorithm>
@@ -83,7 +85,7 @@ void BandBuilder::add_cell(std::uint32_t cell, std::span<Interval> intervals) {
         append_closed();
     else
         append_open(cell);
-    result_.band_counts.push_back(static_cast<std::uint32_t>(result_.bands.size() - band_count));
+    result_.band_counts.push_back(kept_as<std::uint32_t>(result_.bands.size() - band_count));
 }
 
 /// Merges intervals that overlap or touch, and counts what the middle ray crosses.
@@ -126,7 +128,7 @@ void BandBuilder::append_references(std::span<const Interval> intervals, const B
 }
 
 void BandBuilder::append_limit(std::uint16_t lower, std::uint16_t upper, std::int16_t winding_below) {
-    result_.bands.push_back({lower, upper, static_cast<std::uint32_t>(result_.references.size())});
+    result_.bands.push_back({lower, upper, kept_as<std::uint32_t>(result_.references.size())});
     result_.winding_below.push_back(winding_below);
 }
 
@@ -151,7 +153,7 @@ std::optional<std::uint16_t> BandBuilder::split_of(std::span<const Interval> int
     double best_cost = (1 - kLeastGain) * static_cast<double>(count * count);
 
     // At the highest cut that leaves few enough below: do too many reach beyond it?
-    const auto most_below = std::min(count - 1, static_cast<std::size_t>(std::sqrt(best_cost)));
+    const auto most_below = std::min(count - 1, truncated_to<std::size_t>(std::sqrt(best_cost)));
     const std::uint16_t highest = intervals[most_below].lower();
     std::size_t least_above = 0;
     for (const Interval& interval : intervals) least_above += interval.upper() > highest ? 1 : 0;
@@ -198,7 +200,7 @@ void BandBuilder::append_open(std::uint32_t cell) {
         lower = band.upper;
     }
     constexpr double kBeyondOtherRays = 1.05; // the middle's is not the longest way to the sphere
-    const auto end = static_cast<std::uint16_t>(kBeyondOtherRays * whole / ExactMapView::kBandUnit);
+    const auto end = truncated_to<std::uint16_t>(kBeyondOtherRays * whole / ExactMapView::kBandUnit);
     const std::uint16_t limit = std::max(end, lower);
     append_limit(limit, limit, append_gap(cell, lower, limit, 0)); // nothing was examined beyond it
     result_.volumes.push_back({uncertain_, whole * whole * whole});

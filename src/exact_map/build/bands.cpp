@@ -1,6 +1,7 @@
 #include "exact_map/build/bands.hpp"
 
 #include "geometry/parallel.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <mutex>
@@ -14,6 +15,10 @@ constexpr std::size_t kBytesPerBand = sizeof(Band) + sizeof(std::int16_t);
 constexpr std::size_t kBytesPerCell = sizeof(std::uint32_t) + sizeof(std::uint16_t);
 /// The last offset, and the sentinel that ends the bands.
 constexpr std::size_t kBytesOfEnds = sizeof(std::uint32_t) + sizeof(Band);
+
+/// So that bands can be numbered in 31 bits. References can, since an interval gives at most two.
+constexpr std::size_t kMostBytes = std::min<std::uint64_t>(std::uint64_t{kBytesPerBand} << 31, SIZE_MAX);
+static_assert(2 * BandFinder::kMostIntervals < std::size_t{1} << 31);
 
 /// With the parts that it touches.
 std::size_t bytes_per_reference(std::size_t face_count) {
@@ -35,6 +40,7 @@ std::uint32_t octants_at_a_time(std::size_t most_intervals, std::size_t face_cou
 bool BandFinder::find(const LatticeMesh& lattice, const ExactMapView& surface, const BandDetail& detail,
                       unsigned thread_count, std::size_t byte_limit, Bands& result) {
     const OctahedralCells& cells = detail.cells;
+    byte_limit = std::min(byte_limit, kMostBytes);
     const std::size_t bytes_of_cells = cells.count() * kBytesPerCell + kBytesOfEnds;
     if (bytes_of_cells > byte_limit) return false;
     const std::size_t reference_bytes = bytes_per_reference(lattice.faces.size());
@@ -87,7 +93,7 @@ void BandFinder::find_blocks(const GapStates* gap_states, const OctahedralCells&
             CountShare bytes(byte_count);
             BandBuilder builder(cells, gap_states, list);
             for (std::size_t i = 0; i < block.cell_count; ++i) {
-                const auto cell = static_cast<std::uint32_t>(block.first_cell + i);
+                const auto cell = kept_as<std::uint32_t>(block.first_cell + i);
                 const std::size_t bands = list.bands.size(), references = list.references.size();
                 builder.add_cell(cell, intervals_.of(cell));
                 if (!bytes.add((list.bands.size() - bands) * kBytesPerBand +
@@ -116,18 +122,18 @@ void BandFinder::make_room(std::size_t cell_count, std::size_t face_count, Bands
     result.references.reset(reference_count, face_count);
     result.reference_parts.reset(reference_count);
     result.volumes.reset(volume_count);
-    result.offsets[cell_count] = static_cast<std::uint32_t>(band_count);
-    result.bands[band_count] = {0, 0, static_cast<std::uint32_t>(reference_count)};
+    result.offsets[cell_count] = kept_as<std::uint32_t>(band_count);
+    result.bands[band_count] = {0, 0, kept_as<std::uint32_t>(reference_count)};
 }
 
 void BandFinder::copy(const Block& block, Bands& result) const {
     const BandList& list = lists_[block.worker];
-    auto offset = static_cast<std::uint32_t>(block.to_band);
+    auto offset = kept_as<std::uint32_t>(block.to_band);
     for (std::size_t i = 0; i < block.cell_count; ++i) {
         result.offsets[block.first_cell + i] = offset;
         offset += list.band_counts[block.first_count + i];
     }
-    const auto moved = static_cast<std::uint32_t>(block.to_reference - block.first_reference);
+    const auto moved = static_cast<std::uint32_t>(block.to_reference - block.first_reference); // modulo 2^32
     for (std::size_t i = 0; i < block.band_count; ++i) {
         const Band& band = list.bands[block.first_band + i];
         result.bands[block.to_band + i] = {band.lower, band.upper, band.first_reference + moved};

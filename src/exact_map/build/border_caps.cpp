@@ -1,6 +1,7 @@
 #include "exact_map/build/border_caps.hpp"
 
 #include "directions/lattice.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -34,7 +35,7 @@ template <typename Visit>
 void for_each_loop(std::span<const OpenEdge> edges, std::size_t vertex_count, const Visit& visit) {
     constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
     std::vector<std::uint32_t> next(vertex_count, kNone), place_on_path(vertex_count, kNone), path;
-    for (std::size_t e = edges.size(); e-- > 0;) next[edges[e].from] = static_cast<std::uint32_t>(e);
+    for (std::size_t e = edges.size(); e-- > 0;) next[edges[e].from] = kept_as<std::uint32_t>(e);
     const auto take_edge_from = [&](std::uint32_t vertex) -> const OpenEdge* {
         std::uint32_t& e = next[vertex];
         if (e == kNone || e == edges.size() || edges[e].from != vertex) return nullptr;
@@ -49,7 +50,7 @@ void for_each_loop(std::span<const OpenEdge> edges, std::size_t vertex_count, co
                 for (const std::uint32_t v : loop) place_on_path[v] = kNone;
                 path.resize(place);
             }
-            place_on_path[vertex] = static_cast<std::uint32_t>(path.size());
+            place_on_path[vertex] = kept_as<std::uint32_t>(path.size());
             path.push_back(vertex);
             const OpenEdge* edge = take_edge_from(vertex);
             if (edge == nullptr) break;

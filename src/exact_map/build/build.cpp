@@ -8,8 +8,10 @@
 #include "exact_map/build/make_winding_tree.hpp"
 #include "exact_map/build/resolution.hpp"
 #include "exact_map/layout.hpp"
+#include "exact_map/validate.hpp"
 #include "geometry/number_text.hpp"
 #include "geometry/parallel.hpp"
+#include "geometry/whole_numbers.hpp"
 #include "mesh/is_closed.hpp"
 #include "mesh/mesh_hash.hpp"
 
@@ -108,8 +110,8 @@ ExactMapView view_of(const OwnedArrays& arrays, const LatticeMesh& lattice, std:
 
 ExactMapStatistics statistics_of(std::size_t face_count, std::size_t dropped_faces, const Bands& bands) {
     ExactMapStatistics statistics;
-    statistics.face_count = static_cast<std::uint32_t>(face_count);
-    statistics.dropped_faces = static_cast<std::uint32_t>(dropped_faces);
+    statistics.face_count = kept_as<std::uint32_t>(face_count);
+    statistics.dropped_faces = kept_as<std::uint32_t>(dropped_faces);
     for (std::size_t band = 0; band + 1 < bands.bands.size(); ++band)
         statistics.longest_list = std::max(statistics.longest_list, bands.bands[band + 1].first_reference -
                                                                         bands.bands[band].first_reference);
@@ -127,6 +129,13 @@ ExactMapStatistics statistics_of(std::size_t face_count, std::size_t dropped_fac
         statistics.uncertain_directions = static_cast<float>(uncertain_cells / whole);
     }
     return statistics;
+}
+
+[[noreturn]] void fail_of_intervals() {
+    throw Error(ErrorCode::InvalidMesh,
+                "the faces pass through cells more than " + std::to_string(BandFinder::kMostIntervals) +
+                    " times, which is more than a map can hold; take fewer cells, or drop faces that lie "
+                    "on each other");
 }
 
 /// The steps from vertices to a map. Keeps what helps from one pose of a mesh to the next: the data that
@@ -251,10 +260,7 @@ std::uint32_t MapMaker::set_bands() {
                                 most_useful_divisions(faces_.size(), open));
     if (options_.divisions != 0) {
         if (find_bands(options_.divisions, kNoLimit)) return options_.divisions;
-        throw Error(ErrorCode::InvalidMesh,
-                    "the faces pass through cells more than " + std::to_string(BandFinder::kMostIntervals) +
-                        " times, which is more than a map can hold; take fewer cells, or drop faces that lie "
-                        "on each other");
+        fail_of_intervals();
     }
     const std::size_t limit = default_byte_limit(faces_.size(), lattice_.vertices.size());
     const std::uint32_t divisions = default_divisions(faces_.size(), open);
@@ -273,7 +279,7 @@ std::uint32_t MapMaker::set_bands_within(const ByteRange& bytes, std::uint32_t m
             return byte_count(arrays_->bands);
         });
     if (divisions) return *divisions;
-    find_bands(1, kNoLimit);
+    if (!find_bands(1, kNoLimit)) fail_of_intervals();
     const std::size_t needed = for_surface + byte_count(arrays_->bands);
     throw Error(ErrorCode::InvalidOptions, "the coarsest map takes " + size_text(needed) + " (" +
                                                std::to_string(needed) + " bytes), more than the budget");
@@ -285,8 +291,8 @@ ExactMap MapMaker::make(std::span<const Vec3f> vertices) {
     set_surface(vertices);
     const std::uint32_t divisions = set_bands();
     set_outer_limits(arrays_->bands.offsets, arrays_->bands.bands, arrays_->outer_limits);
-    return {view_of(*arrays_, lattice_, divisions, options_.rule),
-            statistics_of(faces_.size(), dropped_faces_, arrays_->bands), source_hash_, arrays_};
+    return proven(view_of(*arrays_, lattice_, divisions, options_.rule),
+                  statistics_of(faces_.size(), dropped_faces_, arrays_->bands), source_hash_, arrays_);
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "exact_map/build/cell_cover.hpp"
 
 #include "exact_map/build/part_tables.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -153,7 +154,7 @@ class OctantCover {
     }
 
     /// @pre -2 <= value < 2^30
-    static std::int32_t floor_of(double value) { return static_cast<std::int32_t>(value + 2) - 2; }
+    static std::int32_t floor_of(double value) { return truncated_to<std::int32_t>(value + 2) - 2; }
 
     /// Sides of cells and parts as separating lines.
     void set_ranges() {
@@ -262,8 +263,8 @@ class OctantCover {
             const auto r = static_cast<std::size_t>(row);
             const std::int32_t at = kPartsPerSide * i + row;
             const bool touched = (at >= rows_.first) & (at <= rows_.last);
-            runs[r] = {static_cast<std::int32_t>(std::min(first[r], end)),
-                       static_cast<std::int32_t>(std::max(last[r], -1.0))};
+            runs[r] = {truncated_to<std::int32_t>(std::min(first[r], end)),
+                       truncated_to<std::int32_t>(std::max(last[r], -1.0))};
             runs[r].last = touched ? runs[r].last : -1;
         }
         return runs;

@@ -3,6 +3,7 @@
 #include "directions/face_cone.hpp"
 #include "exact_map/layout.hpp"
 #include "geometry/parallel.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,11 +17,10 @@ namespace {
 std::uint64_t range_of(const CellCover& cover) {
     constexpr double kRounding = 0.01; // lattice steps, far above what the cover rounds
     static_assert((kMostL1Norm + 1) / ExactMapView::kBandUnit + 1 <= 0xFFFF);
-    const auto lower = static_cast<std::int32_t>(std::max(0.0, cover.nearest - kRounding));
-    const auto upper = static_cast<std::int32_t>(cover.farthest + kRounding) + 1;
-    const auto first = static_cast<std::uint64_t>(band_unit_of(lower));
-    const auto last = static_cast<std::uint64_t>(band_unit_of(upper)) + 1;
-    return first << 16 | last;
+    const auto lower = truncated_to<std::int32_t>(std::max(0.0, cover.nearest - kRounding));
+    const auto upper = truncated_to<std::int32_t>(cover.farthest + kRounding) + 1;
+    return packed<16>(static_cast<std::uint64_t>(band_unit_of(lower)),
+                      static_cast<std::uint64_t>(band_unit_of(upper)) + 1);
 }
 
 /// A face on its way into the lists of the cells.
@@ -37,7 +37,7 @@ struct CoveredFace {
     Interval interval(const CellCover& cover, const OctahedralCells& cells) const {
         const int outward = (determinant > 0) - (determinant < 0);
         const bool counts = determinant != 0 && meets(cover.middle, cells, cover.cell);
-        return {range_of(cover) << 32 | number, cover.cell, cover.parts,
+        return {packed<32>(range_of(cover), number), cover.cell, cover.parts,
                 static_cast<std::int8_t>(counts ? outward : 0), determinant == 0};
     }
 };

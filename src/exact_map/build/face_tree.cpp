@@ -2,6 +2,7 @@
 
 #include "exact_map/build/split_faces.hpp"
 #include "geometry/parallel.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -34,11 +35,11 @@ constexpr NodeBox empty_box() {
 
 std::int16_t divided_down(std::int64_t value) {
     constexpr std::int64_t kUnit = ExactMapView::kBoxUnit;
-    return static_cast<std::int16_t>((value >= 0 ? value : value - (kUnit - 1)) / kUnit);
+    return kept_as<std::int16_t>((value >= 0 ? value : value - (kUnit - 1)) / kUnit);
 }
 
 std::int16_t divided_up(std::int64_t value) {
-    return static_cast<std::int16_t>(-divided_down(-value));
+    return kept_as<std::int16_t>(-divided_down(-value));
 }
 
 NodeBox box_of_child(const TreeNode& node, std::size_t child) {
@@ -120,8 +121,7 @@ class TreeBuilder {
         constexpr std::int64_t kPositive = 3 * (kLatticeExtent + 1);
         LatticePoint sum{kPositive, kPositive, kPositive}; // thrice the centroid
         for (std::uint32_t vertex : lattice_.faces[face]) sum += lattice_.vertices[vertex];
-        return {{static_cast<std::uint32_t>(sum.x), static_cast<std::uint32_t>(sum.y),
-                 static_cast<std::uint32_t>(sum.z)},
+        return {{kept_as<std::uint32_t>(sum.x), kept_as<std::uint32_t>(sum.y), kept_as<std::uint32_t>(sum.z)},
                 face};
     }
 
@@ -206,7 +206,7 @@ class TreeBuilder {
     /// Nodes are numbered depth first, and all children before the last are full. @returns the number
     std::size_t add_child_node(const Branch& branch) {
         const std::size_t node = branch.node + 1 + branch.child * nodes_of_full_tree(branch.leaves_per_child);
-        tree_.nodes[branch.node].children[branch.child] = static_cast<std::uint32_t>(node);
+        tree_.nodes[branch.node].children[branch.child] = kept_as<std::uint32_t>(node);
         return node;
     }
 
@@ -220,7 +220,7 @@ class TreeBuilder {
         const std::span<TreeItem> items = items_of(branch);
         sort_by_face(items);
         TreeNode& node = tree_.nodes[branch.node];
-        node.children[branch.child] = TreeNode::kLeaf + static_cast<std::uint32_t>(branch.first_leaf);
+        node.children[branch.child] = TreeNode::kLeaf + kept_as<std::uint32_t>(branch.first_leaf);
         set_box_of_child(node, branch.child, box_of(items));
     }
 

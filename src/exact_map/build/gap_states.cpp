@@ -2,6 +2,7 @@
 
 #include "exact_map/query/cap_crossings.hpp"
 #include "exact_map/query/winding.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -63,7 +64,8 @@ struct GapStates::Region {
         const std::int64_t first_norm = 3 * cells.divisions();
         const std::int64_t multiple = kLatticeExtent / first_norm;
         const LatticePoint first{middle.x / multiple, middle.y / multiple, middle.z / multiple};
-        return first * std::max(std::llround(norm / static_cast<double>(first_norm)), 1LL);
+        const double multiples = std::round(norm / static_cast<double>(first_norm));
+        return first * std::max(truncated_to<std::int64_t>(multiples), std::int64_t{1});
     }
 };
 
@@ -147,13 +149,13 @@ std::int16_t GapStates::winding_in(const Region& region, const Gap& gap) const {
     const double whole = std::round(*winding);
     constexpr double kMostStored = 32'000;
     const bool certain = std::fabs(*winding - whole) + change < kMostChange && std::fabs(whole) < kMostStored;
-    return certain ? static_cast<std::int16_t>(whole) : ExactMapView::kUncertain;
+    return certain ? truncated_to<std::int16_t>(whole) : ExactMapView::kUncertain;
 }
 
 void GapStates::append_pieces(std::uint32_t cell, const Gap& gap, std::vector<GapPiece>& pieces) const {
     if (gap.lower >= gap.upper) return;
     if (max_depth_ == kNone)
-        pieces.push_back({static_cast<std::uint16_t>(gap.upper), ExactMapView::kUncertain});
+        pieces.push_back({kept_as<std::uint16_t>(gap.upper), ExactMapView::kUncertain});
     else
         append_halves(cell, gap, 0, pieces);
 }
@@ -169,9 +171,9 @@ void GapStates::append_halves(std::uint32_t cell, const Gap& gap, int depth,
         return;
     }
     if (!pieces.empty() && pieces.back().winding == winding)
-        pieces.back().upper = static_cast<std::uint16_t>(gap.upper);
+        pieces.back().upper = kept_as<std::uint16_t>(gap.upper);
     else
-        pieces.push_back({static_cast<std::uint16_t>(gap.upper), winding});
+        pieces.push_back({kept_as<std::uint16_t>(gap.upper), winding});
 }
 
 bool GapStates::certain_in_band(std::uint32_t cell, const Gap& below, std::int32_t upper) const {

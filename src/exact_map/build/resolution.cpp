@@ -1,5 +1,7 @@
 #include "exact_map/build/resolution.hpp"
 
+#include "geometry/whole_numbers.hpp"
+
 #include <echinus/exact_map.hpp>
 
 #include <algorithm>
@@ -24,7 +26,7 @@ class Growth {
         const double slope = (last_.bytes - before_.bytes) / (last_.cells - before_.cells);
         const double left = static_cast<double>(byte_count) - last_.bytes;
         if (left >= slope * (square(kMost) - last_.cells)) return ExactMapOptions::kMaxDivisions;
-        return static_cast<std::uint32_t>(std::sqrt(last_.cells + left / slope));
+        return truncated_to<std::uint32_t>(std::sqrt(last_.cells + left / slope));
     }
 
   private:
@@ -45,7 +47,7 @@ std::uint32_t default_divisions(std::size_t face_count, bool open) {
     const double divisions = std::sqrt(kCellsPerFace * static_cast<double>(face_count) / 8);
     // The smaller a cell, the less the winding number changes in it: what is certain depends on this.
     const std::uint32_t least = open ? 20 : 4;
-    return std::clamp(static_cast<std::uint32_t>(std::lround(divisions)), least,
+    return std::clamp(truncated_to<std::uint32_t>(std::round(divisions)), least,
                       ExactMapOptions::kMaxDivisions);
 }
 

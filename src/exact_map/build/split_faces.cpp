@@ -1,5 +1,7 @@
 #include "exact_map/build/split_faces.hpp"
 
+#include "geometry/whole_numbers.hpp"
+
 #include <algorithm>
 #include <utility>
 
@@ -27,9 +29,7 @@ Box box_of(std::span<const TreeItem> items) {
 class KeyAlong {
   public:
     explicit KeyAlong(std::size_t axis) : axis_(axis) {}
-    std::uint64_t operator()(const TreeItem& item) const {
-        return std::uint64_t{item.place[axis_]} << 32 | item.face;
-    }
+    std::uint64_t operator()(const TreeItem& item) const { return packed<32>(item.place[axis_], item.face); }
 
   private:
     std::size_t axis_;
@@ -124,8 +124,8 @@ void split_at_longest_side(std::span<TreeItem> items, std::size_t left_count) {
     const KeyAlong key(axis);
     if (overlap_high - overlap_low > side(axis) / 4) return select(items, left_count, key);
     // What lies to the left of all of the right stays there, and likewise on the other side.
-    const std::size_t left_sure = partition_below(left, std::uint64_t{overlap_low} << 32, key);
-    const std::size_t right_unsure = partition_below(right, std::uint64_t{overlap_high + 1} << 32, key);
+    const std::size_t left_sure = partition_below(left, packed<32>(overlap_low, 0), key);
+    const std::size_t right_unsure = partition_below(right, packed<32>(overlap_high + 1, 0), key);
     select(items.subspan(left_sure, left_count - left_sure + right_unsure), left_count - left_sure, key);
 }
 

@@ -175,7 +175,7 @@ class BandSearch {
             const auto cell = static_cast<std::size_t>(below_.bands[k]);
             const std::uint32_t band = map_.band_offsets[cell + 1] - 1;
             first_bands_[slot] = static_cast<std::int32_t>(map_.band_offsets[cell]);
-            bands_[k] = static_cast<std::int32_t>(band);
+            bands_[k] = static_cast<std::int32_t>(band); // below 2^31, as a build sees to
             limits_[k] = limits_of(band);
             inner_l1_[k] = l1_[slot];
         }

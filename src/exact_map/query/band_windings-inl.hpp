@@ -141,7 +141,7 @@ class BandWindings {
             const IntLanes touched = hn::And(load(&parts_of[from]), wanted);
             const IntLanes left = hn::Set(i, static_cast<std::int32_t>(end - from));
             const Compressor compress(hn::AndNot(hn::Eq(touched, hn::Zero(i)), hn::Lt(hn::Iota(i, 0), left)));
-            const IntLanes faces = load(&references[from]);
+            const IntLanes faces = load(&references[from]); // three times kMostFaces is below 2^32
             hn::StoreU(compress(hn::Add(hn::Add(faces, faces), faces)), i, &pair_corners_[pair_count]);
             pair_count += compress.count();
         };

@@ -20,7 +20,7 @@ namespace echinus::HWY_NAMESPACE {
 struct CellLanes {
     FloatLanes l1; ///< the L1 norm in lattice steps; that of the snapped particle is within kL1Error of it
     FloatLanes farthest; ///< the largest coordinate, in lattice steps
-    IntLanes cell;
+    IntLanes cell; ///< below 2^21 where it is sure; elsewhere any number: conversions saturate, products wrap
     FloatMask sure; ///< the snapped particle surely lies in that cell
 
     static constexpr float kL1Error = 2;
@@ -123,7 +123,8 @@ class PartLanes {
     explicit PartLanes(std::uint32_t divisions)
         : fine_n_(static_cast<float>(OctahedralCells::kPartsPerSide * divisions)) {}
 
-    /// All of them for a particle that is so close to a wall that rounding may decide.
+    /// All of them for a particle that is so close to a wall that rounding may decide, and for the origin,
+    /// whose quotients are NaN. Else row and column are below 2^11.
     IntLanes operator()(const PointLanes& p) const {
         constexpr Floats f;
         constexpr Ints i;

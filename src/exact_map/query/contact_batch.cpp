@@ -17,6 +17,7 @@
 #include <hwy/foreach_target.h>
 
 // After foreach_target.h, which includes this file once for each instruction set.
+#include "geometry/whole_numbers.hpp"
 #include "simd/dispatch.hpp"
 #include "simd/lanes-inl.hpp"
 
@@ -199,7 +200,7 @@ class ContactLanes {
         contact.point = points_[lane];
         contact.normal = normals_[lane];
         contact.depth = static_cast<float>(depths_[lane]);
-        contact.face = static_cast<std::int32_t>(map_.face_numbers[block.faces[i]]);
+        contact.face = kept_as<std::int32_t>(map_.face_numbers[block.faces[i]]);
         contact.inside = (block.sides[i] & kInsideBit) != 0;
         contact.certain = (block.sides[i] & kUncertainBit) == 0;
         contact.feature = static_cast<Feature>(static_cast<int>(features_[lane]));
@@ -334,7 +335,7 @@ void find_with(const ContactSearch& search, const StridedSpan<const Vec3f>& poin
         for (ContactBlock& block : blocks) answer(search, block, output);
         queued = 0;
     };
-    const auto count = static_cast<std::uint32_t>(output.size());
+    const auto count = kept_as<std::uint32_t>(output.size());
     for (std::uint32_t i = 0; i < count; ++i) {
         if (!search.is_wanted(points_local[i], sides[i])) {
             output.set_none(i, points_local[i], sides[i]);

@@ -4,6 +4,7 @@
 #include "exact_map/query/nearest.hpp"
 #include "exact_map/query/sides.hpp"
 #include "exact_map/query/winding.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -83,7 +84,7 @@ class ContactSearch {
         const double distance = nearest.distance * unit_ * frame_.step;
         result.depth = static_cast<float>(inside ? distance : -distance);
         result.normal = outward_normal(nearest, place_of(point_local), inside);
-        result.face = static_cast<std::int32_t>(map_.face_numbers[nearest.face]);
+        result.face = kept_as<std::int32_t>(map_.face_numbers[nearest.face]);
         result.feature = nearest.feature;
         return result;
     }

@@ -19,6 +19,7 @@
 #include "exact_map/query/face_candidates-inl.hpp"
 #include "exact_map/query/leaf_lanes-inl.hpp"
 #include "exact_map/query/one_place-inl.hpp"
+#include "geometry/whole_numbers.hpp"
 #include "simd/dispatch.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -84,7 +85,7 @@ class NearestFaceFinder {
 
     static Vec3<std::int32_t> rounded_origin(const Vec3d& place) {
         const auto within = [](double coordinate) {
-            return static_cast<std::int32_t>(std::clamp(coordinate, -kRange, kRange));
+            return truncated_to<std::int32_t>(std::clamp(coordinate, -kRange, kRange));
         };
         return {within(place.x), within(place.y), within(place.z)};
     }

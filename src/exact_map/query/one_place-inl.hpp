@@ -9,6 +9,7 @@
 #include "exact_map/layout.hpp"
 #include "exact_map/query/nearest.hpp"
 #include "exact_map/query/nearest_faces.hpp"
+#include "geometry/whole_numbers.hpp"
 #include "simd/compress-inl.hpp"
 #include "simd/rows-inl.hpp"
 
@@ -115,8 +116,8 @@ class NearMeasure {
         const auto set = [&](float above, float below, float unit, std::int32_t& low, std::int32_t& high) {
             constexpr float kLowest = -32767, kHighest = 32766; // between the limits of a missing child
             const float units = unit > 0 ? reach / unit : kHighest;
-            high = static_cast<std::int32_t>(std::min(above + units + 1, kHighest));
-            low = static_cast<std::int32_t>(std::max(below - units - 1, kLowest));
+            high = truncated_to<std::int32_t>(std::min(above + units + 1, kHighest));
+            low = truncated_to<std::int32_t>(std::max(below - units - 1, kLowest));
         };
         set(above_.x, below_.x, per_unit_.x, reach_low_.x, reach_high_.x);
         set(above_.y, below_.y, per_unit_.y, reach_low_.y, reach_high_.y);

@@ -1,5 +1,7 @@
 #include "exact_map/query/spatial_order.hpp"
 
+#include "geometry/whole_numbers.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,7 +28,7 @@ std::uint32_t MortonCurve::key(const Vec3f& point_local) const noexcept {
     const float scale = largest > radius_ ? radius_ / largest * cells_per_unit_ : cells_per_unit_;
     const auto cell = [&](float coordinate) {
         const float place = coordinate * scale + 0.5F * (kLast + 1);
-        return static_cast<std::uint32_t>(std::min(std::max(0.0F, place), static_cast<float>(kLast)));
+        return truncated_to<std::uint32_t>(std::min(std::max(0.0F, place), static_cast<float>(kLast)));
     };
     return spread(cell(offset.x)) | spread(cell(offset.y)) << 1 | spread(cell(offset.z)) << 2;
 }

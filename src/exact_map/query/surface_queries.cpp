@@ -5,9 +5,11 @@
 #include "exact_map/query/leaf_bounds.hpp"
 #include "exact_map/query/triangle_distance.hpp"
 #include "geometry/parallel.hpp"
+#include "geometry/whole_numbers.hpp"
 #include "mesh/simplices_meet.hpp"
 #include "simd/dispatch.hpp"
 
+#include <echinus/error.hpp>
 #include <echinus/surface_queries.hpp>
 
 #include <algorithm>
@@ -189,7 +191,7 @@ std::optional<NearestFace> nearest_face(const ExactMapView& map, const PlacedTri
 }
 
 std::int32_t number_of(const ExactMapView& map, std::uint32_t face) {
-    return static_cast<std::int32_t>(map.face_numbers[face]);
+    return kept_as<std::int32_t>(map.face_numbers[face]);
 }
 
 /// The lattice point nearest to a place, in floats.
@@ -304,7 +306,14 @@ void faces_within_batch(const ExactMapView& map, StridedSpan<const Vec3f> vertic
             }
         }
     });
-    for (std::size_t i = 0; i < triangles.size(); ++i) lists.offsets[i + 1] += lists.offsets[i];
+    std::uint64_t total = 0;
+    for (std::size_t i = 1; i <= triangles.size(); ++i) {
+        total += lists.offsets[i];
+        if (total > UINT32_MAX)
+            throw Error(ErrorCode::InvalidOptions,
+                        "more than 2^32 faces are within reach of the triangles; ask for fewer at a time");
+        lists.offsets[i] = static_cast<std::uint32_t>(total);
+    }
     lists.faces.clear();
     for (const Block& block : blocks)
         lists.faces.insert(lists.faces.end(), block.faces.begin(), block.faces.end());

@@ -5,6 +5,7 @@
 #include "exact_map/query/cap_crossings.hpp"
 #include "exact_map/query/place_in_bands.hpp"
 #include "exact_map/query/ray_crossing.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <echinus/exact_map.hpp>
 
@@ -97,7 +98,7 @@ double winding_beyond_lattice(const ExactMapView& map, const Vec3d& place, const
 }
 
 Winding winding_of(double generalised, WindingGoal::Turn turn) {
-    return {std::llrint(generalised), distance_from_turn(generalised, turn) >= kCertainMargin, true};
+    return {nearest_whole(generalised), distance_from_turn(generalised, turn) >= kCertainMargin, true};
 }
 
 } // namespace

@@ -1,8 +1,9 @@
+#include "distance_map/validate.hpp"
+
 #include "directions/ellipsoidal_grid.hpp"
-#include "map_file/checker.hpp"
-#include "map_file/distance_map_table.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace echinus {
 
@@ -94,12 +95,17 @@ void check_statistics(const Checker& checker, const DistanceMapView& map,
 
 } // namespace
 
-void validate(const DistanceMapView& map, const DistanceMapStatistics& statistics, const std::string& name) {
-    const Checker checker(name);
+void validate(const Checker& checker, const DistanceMapView& map, const DistanceMapStatistics& statistics) {
     check_scalars(checker, map);
     checker.check_offsets("entry_offsets", map.entry_offsets, map.direction_count());
     check_entries(checker, map);
     check_statistics(checker, map, statistics);
+}
+
+DistanceMap proven(const DistanceMapView& map, const DistanceMapStatistics& statistics,
+                   std::uint64_t source_hash, std::shared_ptr<const void> storage) {
+    validate(Checker::of_build(), map, statistics);
+    return {map, statistics, source_hash, std::move(storage)};
 }
 
 } // namespace echinus

@@ -1,10 +1,14 @@
-#include "directions/lattice.hpp"
-#include "map_file/checker.hpp"
-#include "map_file/exact_map_table.hpp"
+#include "exact_map/validate.hpp"
 
+#include "directions/lattice.hpp"
+
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace echinus {
@@ -23,17 +27,27 @@ void check_scalars(const Checker& checker, const ExactMapView& map) {
     checker.check_enumerator("inside_rule", map.rule, InsideRule::Parity);
 }
 
-/// @param name  name of the two arrays, without their width
 /// @param end  every index is smaller
+template <typename Index>
+void check_indices(const Checker& checker, const std::string& array, std::span<const Index> indices,
+                   std::size_t end) {
+    if (indices.empty() || end > std::numeric_limits<Index>::max()) return;
+    Index largest = 0; // without a branch, for the compiler to make vectors of it
+    for (const Index index : indices) largest = std::max(largest, index);
+    if (largest < end) return;
+    const auto beyond =
+        std::find_if(indices.begin(), indices.end(), [=](Index index) { return index >= end; });
+    checker.fail(array, static_cast<std::size_t>(beyond - indices.begin()),
+                 "is " + std::to_string(*beyond) + " and not below " + std::to_string(end));
+}
+
+/// @param name  name of the two arrays, without their width
 void check_indices(const Checker& checker, const std::string& name, const IndexArray& indices,
                    std::size_t end) {
     if (!indices.narrow.empty() && !indices.wide.empty())
         checker.fail(name + "16 and " + name + "32 both have elements");
-    const std::string array = name + (indices.wide.empty() ? "16" : "32");
-    for (std::size_t i = 0; i < indices.size(); ++i)
-        if (indices[i] >= end)
-            checker.fail(array, i,
-                         "is " + std::to_string(indices[i]) + " and not below " + std::to_string(end));
+    check_indices(checker, name + "16", indices.narrow, end);
+    check_indices(checker, name + "32", indices.wide, end);
 }
 
 bool is_within(std::int32_t value, std::int32_t extent) {
@@ -57,6 +71,19 @@ void check_mesh(const Checker& checker, const ExactMapView& map) {
     }
 }
 
+void check_first_references(const Checker& checker, std::span<const Band> bands) {
+    bool ascend = bands[0].first_reference == 0; // without a branch, as nearly all do
+    for (std::size_t i = 1; i < bands.size(); ++i)
+        ascend &= bands[i].first_reference >= bands[i - 1].first_reference;
+    if (ascend) return;
+    std::uint32_t least = 0;
+    for (std::size_t i = 0; i < bands.size(); ++i) {
+        if (bands[i].first_reference < least || (i == 0 && bands[i].first_reference != 0))
+            checker.fail("bands", i, "does not begin where the one before it ends");
+        least = bands[i].first_reference;
+    }
+}
+
 /// The bands of each cell ascend and do not overlap, and their faces are in the order of the bands.
 void check_bands(const Checker& checker, const ExactMapView& map) {
     if (map.bands.empty()) checker.fail("bands has no elements, not even its end");
@@ -66,13 +93,8 @@ void check_bands(const Checker& checker, const ExactMapView& map) {
     checker.check_size("winding_below", map.winding_below.size(), band_count);
     check_indices(checker, "references", map.references, map.face_count());
     checker.check_size("reference_parts", map.reference_parts.size(), map.references.size());
-    std::uint32_t first_reference = 0;
-    for (std::size_t i = 0; i <= band_count; ++i) {
-        if (map.bands[i].first_reference < first_reference || (i == 0 && map.bands[i].first_reference != 0))
-            checker.fail("bands", i, "does not begin where the one before it ends");
-        first_reference = map.bands[i].first_reference;
-    }
-    checker.check_size("references", map.references.size(), first_reference);
+    check_first_references(checker, map.bands);
+    checker.check_size("references", map.references.size(), map.bands.back().first_reference);
     for (std::size_t cell = 0; cell < map.cell_count(); ++cell) {
         std::uint16_t least = 0;
         bool may_be_upper_half = false; // a lower half comes before it, and meets it
@@ -87,19 +109,25 @@ void check_bands(const Checker& checker, const ExactMapView& map) {
         }
     }
     if (!map.border.empty()) return;
-    for (std::size_t i = 0; i < band_count; ++i)
-        if (map.winding_below[i] == ExactMapView::kUncertain)
-            checker.fail("winding_below", i, "is uncertain, though the surface has no border");
+    const auto uncertain =
+        std::find(map.winding_below.begin(), map.winding_below.end(), ExactMapView::kUncertain);
+    if (uncertain != map.winding_below.end())
+        checker.fail("winding_below", static_cast<std::size_t>(uncertain - map.winding_below.begin()),
+                     "is uncertain, though the surface has no border");
 }
 
 /// Walks the tree from the root: every node and every leaf is reached exactly once.
+/// @tparam Vertex  of which the corners of faces are
+template <typename Vertex>
 class TreeCheck {
   public:
-    TreeCheck(const Checker& checker, const ExactMapView& map)
-        : checker_(checker), map_(map), leaf_count_((map.face_count() + kWidth - 1) / kWidth),
-          depths_(map.nodes.size()), is_leaf_met_(leaf_count_) {}
+    TreeCheck(const Checker& checker, const ExactMapView& map, std::span<const Vertex> corners)
+        : checker_(checker), map_(map), corners_(corners),
+          leaf_count_((map.face_count() + kWidth - 1) / kWidth), depths_(map.nodes.size()),
+          is_leaf_met_(leaf_count_) {}
 
-    void run() {
+    /// @returns  how many faces have two corners on one place
+    std::uint32_t run() {
         if (map_.nodes.empty()) checker_.fail("nodes has no elements");
         depths_[0] = 1;
         // Children come after their parents, so one pass visits every node after its parent.
@@ -109,6 +137,7 @@ class TreeCheck {
         }
         for (std::size_t leaf = 0; leaf < leaf_count_; ++leaf)
             if (!is_leaf_met_[leaf]) checker_.fail("the tree misses leaf " + std::to_string(leaf));
+        return collapsed_count_;
     }
 
   private:
@@ -147,14 +176,55 @@ class TreeCheck {
     void check_leaf(std::uint32_t node, std::size_t k, std::uint32_t leaf) {
         if (leaf >= leaf_count_ || is_leaf_met_[leaf]) fail(node, k, "is not a leaf that has no parent yet");
         is_leaf_met_[leaf] = true;
-        const std::size_t end = std::min((std::size_t{leaf} + 1) * kWidth, map_.face_count());
-        for (std::size_t corner = 3 * kWidth * leaf; corner < 3 * end; ++corner) {
-            const Vec3<std::int32_t>& v = map_.vertices[map_.corners[corner]];
-            const std::array<std::int32_t, 3> place{v.x, v.y, v.z};
-            for (std::size_t axis = 0; axis < 3; ++axis)
-                if (place[axis] < map_.nodes[node].low[axis][k] * ExactMapView::kBoxUnit ||
-                    place[axis] > map_.nodes[node].high[axis][k] * ExactMapView::kBoxUnit)
-                    fail(node, k, "has a box that does not hold its faces");
+        const TreeNode& n = map_.nodes[node];
+        const std::size_t first = kWidth * std::size_t{leaf};
+        const std::size_t count = std::min(kWidth, map_.face_count() - first);
+        load(first, count);
+        const Range x = range(n, 0, k), y = range(n, 1, k), z = range(n, 2, k);
+        const auto& [a, b, c] = places_;
+        std::int32_t outside = 0; // negative where a corner lies below or above the box
+        std::int32_t equal = 0;   // not 0 where two corners agree along x
+        for (std::size_t lane = 0; lane < kWidth; ++lane) {
+            outside |= x.signs(a[0][lane]) | x.signs(b[0][lane]) | x.signs(c[0][lane]);
+            outside |= y.signs(a[1][lane]) | y.signs(b[1][lane]) | y.signs(c[1][lane]);
+            outside |= z.signs(a[2][lane]) | z.signs(b[2][lane]) | z.signs(c[2][lane]);
+            equal |= std::int32_t{a[0][lane] == b[0][lane]} | std::int32_t{b[0][lane] == c[0][lane]} |
+                     std::int32_t{c[0][lane] == a[0][lane]};
+        }
+        if (outside < 0) fail(node, k, "has a box that does not hold its faces");
+        if (equal != 0)
+            for (std::size_t lane = 0; lane < count; ++lane)
+                collapsed_count_ += meet(a, b, lane) || meet(b, c, lane) || meet(c, a, lane) ? 1 : 0;
+    }
+
+    struct Range {
+        std::int32_t low, high;
+
+        /// Negative where a number is not in the range.
+        std::int32_t signs(std::int32_t value) const { return (value - low) | (high - value); }
+    };
+    static Range range(const TreeNode& node, std::size_t axis, std::size_t k) {
+        return {node.low[axis][k] * ExactMapView::kBoxUnit, node.high[axis][k] * ExactMapView::kBoxUnit};
+    }
+
+    /// A number for each face of a leaf, which the compiler turns into vectors.
+    using Lanes = std::array<std::int32_t, kWidth>;
+    using Corners = std::array<Lanes, 3>; ///< one of each face, by axis
+
+    static bool meet(const Corners& a, const Corners& b, std::size_t lane) {
+        return a[0][lane] == b[0][lane] && a[1][lane] == b[1][lane] && a[2][lane] == b[2][lane];
+    }
+
+    /// The corners of a leaf's faces; the last face counts again for those that it lacks.
+    void load(std::size_t first, std::size_t count) {
+        for (std::size_t lane = 0; lane < kWidth; ++lane) {
+            const Vertex* corners = &corners_[3 * (first + std::min(lane, count - 1))];
+            for (std::size_t corner = 0; corner < 3; ++corner) {
+                const Vec3<std::int32_t>& v = map_.vertices[corners[corner]];
+                places_[corner][0][lane] = v.x;
+                places_[corner][1][lane] = v.y;
+                places_[corner][2][lane] = v.z;
+            }
         }
     }
 
@@ -164,23 +234,26 @@ class TreeCheck {
 
     const Checker& checker_;
     const ExactMapView& map_;
+    std::span<const Vertex> corners_; ///< of all faces
     std::size_t leaf_count_;
+    std::uint32_t collapsed_count_ = 0;
+    std::array<Corners, 3> places_;    ///< of the leaf at hand
     std::vector<std::uint8_t> depths_; ///< [node_count] 1 for the root; 0: not visited yet
     std::vector<bool> is_leaf_met_;
 };
 
-void check_statistics(const Checker& checker, const ExactMapView& map, const ExactMapStatistics& statistics) {
+/// @returns  how many faces have two corners on one place
+std::uint32_t check_tree(const Checker& checker, const ExactMapView& map) {
+    return map.corners.wide.empty() ? TreeCheck(checker, map, map.corners.narrow).run()
+                                    : TreeCheck(checker, map, map.corners.wide).run();
+}
+
+void check_statistics(const Checker& checker, const ExactMapView& map, const ExactMapStatistics& statistics,
+                      std::uint32_t collapsed_count) {
     constexpr std::size_t kMostFaces = std::size_t{1} << 31; // answers name a face by an int32
     check_indices(checker, "face_numbers", map.face_numbers,
                   std::min<std::size_t>(statistics.face_count, kMostFaces));
     checker.check_equal("face_count", statistics.face_count, map.face_count());
-    std::uint32_t collapsed_count = 0;
-    for (std::size_t face = 0; face < map.face_count(); ++face) {
-        const auto corner = [&](std::size_t k) {
-            return LatticePoint(map.vertices[map.corners[3 * face + k]]);
-        };
-        collapsed_count += is_collapsed({corner(0), corner(1), corner(2)}) ? 1 : 0;
-    }
     checker.check_equal("dropped_faces", statistics.dropped_faces, collapsed_count);
     std::uint32_t longest_list = 0;
     for (std::size_t i = 0; i + 1 < map.bands.size(); ++i)
@@ -196,13 +269,17 @@ void check_statistics(const Checker& checker, const ExactMapView& map, const Exa
 
 } // namespace
 
-void validate(const ExactMapView& map, const ExactMapStatistics& statistics, const std::string& name) {
-    const Checker checker(name);
+void validate(const Checker& checker, const ExactMapView& map, const ExactMapStatistics& statistics) {
     check_scalars(checker, map);
     check_mesh(checker, map);
     check_bands(checker, map);
-    TreeCheck(checker, map).run();
-    check_statistics(checker, map, statistics);
+    check_statistics(checker, map, statistics, check_tree(checker, map));
+}
+
+ExactMap proven(const ExactMapView& map, const ExactMapStatistics& statistics, std::uint64_t source_hash,
+                std::shared_ptr<const void> storage) {
+    validate(Checker::of_build(), map, statistics);
+    return {map, statistics, source_hash, std::move(storage)};
 }
 
 } // namespace echinus

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <echinus/error.hpp>
+#include <echinus/version.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -15,14 +16,24 @@ namespace echinus {
 /// The remedy that ends every sentence about a bad map file.
 inline constexpr const char* kBuildAgain = "; build the map again with echinus build";
 
-/// Checks of numbers from untrusted bytes that every kind of map needs. A failure throws an Error Damaged
-/// whose sentence begins with the file's name and names the field, or the array and the index.
+/// Checks of a map's numbers that every kind of map needs, by the reader of files and at the end of a build
+/// alike: a map that could not be read back is not handed out. A failure throws an Error Damaged whose
+/// sentence names the field, or the array and the index.
 class Checker {
   public:
-    explicit Checker(const std::string& name) : name_(name) {}
+    /// Of a map from untrusted bytes. @param name  of the file, with which the sentence begins
+    explicit Checker(const std::string& name) : name_(&name) {}
+    explicit Checker(std::string&&) = delete;
+    /// Of a map that was built just now, in which a fault is the library's own.
+    static Checker of_build() { return {}; }
 
     [[noreturn]] void fail(const std::string& finding) const {
-        throw Error(ErrorCode::Damaged, name_ + ": the map is damaged: " + finding + kBuildAgain);
+        if (name_ == nullptr)
+            throw Error(ErrorCode::Damaged,
+                        "a map was built that contradicts itself: " + finding +
+                            "; this is a fault of Echinus " + version() +
+                            " and not of the mesh: please report it with the mesh and the options");
+        throw Error(ErrorCode::Damaged, *name_ + ": the map is damaged: " + finding + kBuildAgain);
     }
 
     [[noreturn]] void fail(std::string_view array, std::size_t index, const std::string& finding) const {
@@ -65,7 +76,9 @@ class Checker {
     }
 
   private:
-    const std::string& name_;
+    Checker() = default;
+
+    const std::string* name_ = nullptr;
 };
 
 } // namespace echinus

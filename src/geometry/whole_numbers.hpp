@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cassert>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+/// Conversions to whole numbers that keep the value. A number that is out of range would be undefined, or
+/// other bits without a word: with assertions it stops the program, and without them these are casts.
+namespace echinus {
+
+namespace detail {
+
+/// False for NaN. Both bounds are powers of two or 0, hence exact.
+template <std::integral To, std::floating_point From>
+constexpr bool holds_truncated(From value) {
+    constexpr int kDigits = std::numeric_limits<To>::digits;
+    constexpr From kBeyond = From{2} * (std::uint64_t{1} << (kDigits - 1));
+    if constexpr (std::unsigned_integral<To>)
+        return value > -1 && value < kBeyond;
+    else
+        return value >= -kBeyond && value < kBeyond;
+}
+
+} // namespace detail
+
+/// A number rounded towards 0. @pre the result can be held; not NaN
+template <std::integral To, std::floating_point From>
+constexpr To truncated_to(From value) {
+    assert(detail::holds_truncated<To>(value));
+    return static_cast<To>(value);
+}
+
+/// The nearest whole number, the even one of two. @pre |value| < 2^63; not NaN
+inline std::int64_t nearest_whole(double value) {
+    assert(detail::holds_truncated<std::int64_t>(value));
+    return std::llrint(value);
+}
+
+/// The same number in another type. @pre it can be held
+template <std::integral To, std::integral From>
+constexpr To kept_as(From value) {
+    assert(std::in_range<To>(value));
+    return static_cast<To>(value);
+}
+
+/// Two numbers in one, in the order of the pairs. @pre low has kLowBits bits, high has the others
+template <int kLowBits>
+constexpr std::uint64_t packed(std::uint64_t high, std::uint64_t low) {
+    assert(low >> kLowBits == 0 && high >> (64 - kLowBits) == 0);
+    return high << kLowBits | low;
+}
+
+} // namespace echinus
