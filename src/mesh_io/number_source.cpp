@@ -57,6 +57,10 @@ double TextNumbers::coordinate(NumberType) {
     return scanner_.next_coordinate();
 }
 
+void TextNumbers::skip(std::size_t count, std::size_t) {
+    for (; count > 0; --count) scanner_.skip_number();
+}
+
 void TextNumbers::skip_to_line(const std::string& word) {
     do scanner_.require_line(word);
     while (scanner_.next_word() != word);
@@ -86,6 +90,10 @@ double BinaryNumbers::coordinate(NumberType type) {
     if (!std::isfinite(static_cast<float>(value)))
         fail(ErrorCode::InvalidMesh, "a coordinate is not finite as a float");
     return value;
+}
+
+void BinaryNumbers::skip(std::size_t count, std::size_t size) {
+    bytes_.skip(count * size); // below 2^35
 }
 
 void BinaryNumbers::skip_to_line(const std::string& word) {

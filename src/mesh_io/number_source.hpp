@@ -27,6 +27,9 @@ class NumberSource {
     virtual double coordinate(NumberType type) = 0;
     /// Three of them.
     Vec3d position(NumberType type);
+    /// Passes over so many numbers, which may be infinite or none. @param size  of each where they are bytes
+    /// @throws Error Damaged when there are fewer
+    virtual void skip(std::size_t count, std::size_t size) = 0;
     /// Goes on behind a line that begins with this word.
     /// @throws Error Damaged when there is none
     virtual void skip_to_line(const std::string& word) = 0;
@@ -57,6 +60,7 @@ class TextNumbers final : public NumberSource {
     std::vector<std::string_view> next_line() override;
     std::int64_t integer(NumberType type, const char* what) override;
     double coordinate(NumberType type) override;
+    void skip(std::size_t count, std::size_t size) override;
     void skip_to_line(const std::string& word) override;
 
   private:
@@ -74,6 +78,7 @@ class BinaryNumbers final : public NumberSource {
     std::vector<std::string_view> next_line() override;
     std::int64_t integer(NumberType type, const char* what) override;
     double coordinate(NumberType type) override;
+    void skip(std::size_t count, std::size_t size) override;
     void skip_to_line(const std::string& word) override;
 
   private:

@@ -1,5 +1,7 @@
 #include "mesh_io/tetrahedra_readers.hpp"
 
+#include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -7,7 +9,7 @@
 // The format: "VTK File Formats for VTK Version 4.2", the simple legacy format, an unstructured grid, as text
 // or as bytes, big endian (https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html); and cells in
 // arrays of offsets and corners, as version 5.1 has them. Data of points and cells, which follow, are
-// ignored.
+// ignored, and so are fields and metadata between the parts, as ParaView and VisIt write them.
 
 namespace echinus {
 
@@ -28,6 +30,27 @@ std::optional<NumberType> type_named(std::string_view name) {
     return {};
 }
 
+/// Bytes of a value in a field; 0 for a type that is not passed over.
+std::size_t size_of_type(std::string_view name) {
+    constexpr std::array<std::pair<std::string_view, std::size_t>, 14> kSizes{{{"char", 1},
+                                                                               {"unsigned_char", 1},
+                                                                               {"short", 2},
+                                                                               {"unsigned_short", 2},
+                                                                               {"int", 4},
+                                                                               {"unsigned_int", 4},
+                                                                               {"vtkIdType", 4},
+                                                                               {"vtktypeint32", 4},
+                                                                               {"float", 4},
+                                                                               {"long", 8},
+                                                                               {"unsigned_long", 8},
+                                                                               {"vtktypeint64", 8},
+                                                                               {"vtktypeuint64", 8},
+                                                                               {"double", 8}}};
+    const auto* const found =
+        std::find_if(kSizes.begin(), kSizes.end(), [&](const auto& type) { return type.first == name; });
+    return found == kSizes.end() ? 0 : found->second;
+}
+
 class VtkReader {
   public:
     VtkReader(NumberSource& numbers, bool is_version_5) : numbers_(numbers), is_version_5_(is_version_5) {}
@@ -44,10 +67,11 @@ class VtkReader {
                 read_cells(words);
             else if (words[0] == "CELL_TYPES" && words.size() == 2 && !corner_counts_.empty())
                 read_types(words);
-            else if (words[0] == "METADATA" || words[0] == "FIELD")
-                numbers_.fail(ErrorCode::WrongFormat,
-                              "data between the parts of the grid are not read; save the grid without them");
-            else
+            else if (words[0] == "FIELD" && words.size() == 3)
+                skip_field(words);
+            else if (words[0] == "METADATA")
+                is_in_metadata_ = true;
+            else if (!is_in_metadata_)
                 numbers_.fail(ErrorCode::Damaged,
                               "POINTS, CELLS or CELL_TYPES with a count was expected, not " +
                                   in_quotes(words[0]));
@@ -64,7 +88,24 @@ class VtkReader {
         return static_cast<std::size_t>(value);
     }
 
+    /// Arrays, each with a line of its name, the number of components, that of tuples and their type.
+    void skip_field(const std::vector<std::string_view>& words) {
+        is_in_metadata_ = false;
+        for (std::size_t left = count(words[2]); left > 0; --left) {
+            const auto array = numbers_.require_line("an array of a field");
+            const std::size_t size = array.size() == 4 ? size_of_type(array[3]) : 0;
+            if (size == 0)
+                numbers_.fail(ErrorCode::WrongFormat, "the array " + in_quotes(array[0]) +
+                                                          " of a field is none of numbers; save the grid "
+                                                          "without it");
+            const std::size_t component_count = count(array[1]);
+            const std::size_t tuple_count = component_count == 0 ? 0 : count(array[2]);
+            for (std::size_t i = 0; i < tuple_count; ++i) numbers_.skip(component_count, size);
+        }
+    }
+
     void read_points(const std::vector<std::string_view>& words) {
+        is_in_metadata_ = false;
         const std::size_t point_count = count(words[1]);
         const std::optional<NumberType> type = type_named(words[2]);
         if (type != NumberType::Float32 && type != NumberType::Float64)
@@ -75,6 +116,7 @@ class VtkReader {
 
     /// Each cell as the number of its corners and the corners; since version 5.1 in two arrays.
     void read_cells(const std::vector<std::string_view>& words) {
+        is_in_metadata_ = false;
         const std::size_t first = count(words[1]), second = count(words[2]);
         if (is_version_5_) return read_cell_arrays(first, second);
         for (std::size_t cell = 0; cell < first; ++cell) {
@@ -146,6 +188,7 @@ class VtkReader {
 
     NumberSource& numbers_;
     bool is_version_5_;
+    bool is_in_metadata_ = false; ///< lines of which only those are known that end it
     TetrahedralMesh mesh_;
     std::vector<std::uint32_t> corners_;
     std::vector<std::size_t> corner_counts_;

@@ -179,6 +179,33 @@ TEST_F(ReadTetrahedra, NamesTheLineOfTetGensFiles) {
     expect_of_nodes(replaced(node, "4 3 0", "4294967295 3 0"), "cannot be 4294967295");
 }
 
+TEST_F(ReadTetrahedra, PassesOverFieldsAndMetadataBetweenTheParts) {
+    const std::string metadata = "METADATA\nINFORMATION 1\nNAME L2 LOCATION POINTS\nDATA 2 0 1.7\n\n";
+    const std::string name = "FIELD FieldData 2\nTIME 1 1 double\n", cycle = "\nCYCLE 2 1 int\n";
+    for (const char* file : {"text.vtk", "binary.vtk", "binary_5.vtk"}) {
+        SCOPED_TRACE(file);
+        const std::string content = sample(file);
+        const bool is_text = content.find("ASCII") != std::string::npos;
+        const std::string time = is_text ? "nan" : "\nPOINTS1";
+        const std::string cycles = is_text ? "7\n-8" : std::string("\0\0\0\nPOIN", 8);
+        std::string with = replaced(content, "POINTS", name + time + cycle + cycles + "\nPOINTS");
+        with = replaced(with, "CELLS", metadata + "CELLS");
+        EXPECT_EQ(read_tetrahedra(write("with.vtk", with)).mesh.tetrahedra,
+                  read_tetrahedra(write("without.vtk", content)).mesh.tetrahedra);
+    }
+    const std::string text = sample("text.vtk");
+    const auto with_field = [&](const std::string& field) {
+        return replaced(text, "POINTS", field + "POINTS");
+    };
+    expect_refused("a.vtk", with_field("FIELD f 1\nnames 1 1 string\nx\n"), ErrorCode::WrongFormat,
+                   "the array 'names' of a field is none of numbers");
+    expect_refused("a.vtk", with_field("FIELD f 2\na 1 1 int\n3\n"), ErrorCode::WrongFormat, "'POINTS'");
+    expect_refused("a.vtk", with_field("FIELD f 1\na 4294967295 4294967295 int\n"), ErrorCode::Damaged,
+                   "a number was expected");
+    EXPECT_EQ(read_tetrahedra(write("a.vtk", with_field("FIELD f 1\na 0 4294967295 int\n"))).mesh.tetrahedra,
+              read_tetrahedra(write("b.vtk", text)).mesh.tetrahedra);
+}
+
 TEST_F(ReadTetrahedra, NamesTheByteInBinaryFiles) {
     expect_refused("b.msh", replaced(sample("binary_2.msh"), "$Nodes\n5", "$Nodes\n4"), ErrorCode::Damaged,
                    "byte ");

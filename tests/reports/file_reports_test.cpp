@@ -372,6 +372,8 @@ std::vector<FileReport> off_reports() {
         {"a byte order mark", "a.off", kMark + kOff},
         {"assimp/assimp#2228, alextsui05/blender-off-addon#10: numbers wrapped at will", "a.off",
          replaced(kOff, " ", "\n")},
+        {"nschloe/meshio#998: a comment between keyword and counts", "a.off",
+         replaced(kOff, "OFF\n", "OFF\n# Created by meshio\n\n")},
         {"fougue/mayo#258, mikedh/trimesh#542: counts beside the keyword, comments and empty lines", "a.off",
          "OFF 8 12 0 # counts\n\n# corners\n" + kOffBody},
     };
@@ -423,6 +425,50 @@ std::vector<FileReport> gltf_reports() {
          Solid{24, 0}},
         {"assimp/assimp#6765, mrdoob/three.js#12551: positions that are quantised", "a.glb",
          Glb{.more = quantised}.bytes(), Refused{"KHR_mesh_quantization"}},
+    };
+}
+
+/// Files of two tetrahedra that share a face, of a volume of 1/2; a .node file has its .ele file behind a
+/// '|'.
+std::vector<FileReport> tetrahedra_reports() {
+    const std::string head_4 = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
+    const std::string points = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 1 1\n";
+    const std::string head_vtk = "# vtk DataFile Version 5.1\nvtk output\nASCII\nDATASET UNSTRUCTURED_GRID\n";
+    const std::string cells_5 = "CELLS 3 8\nOFFSETS vtktypeint64\n0 4 8\nCONNECTIVITY vtktypeint64\n"
+                                "0 1 2 3\n1 2 3 4\nCELL_TYPES 2\n10\n10\n";
+    const std::string nodes = "5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 1 1 1\n";
+    return {
+        {"nschloe/meshio#388: MSH 4.1 whose nodes are not in the order of their numbers", "a.msh",
+         head_4 + "$Nodes\n1 5 1 9\n3 1 0 5\n1\n9\n4\n2\n7\n" + points +
+             "$EndNodes\n$Elements\n1 2 1 2\n3 1 4 2\n1 1 9 4 2\n2 9 4 2 7\n$EndElements\n"},
+        {"nschloe/meshio#956, #644: names, entities and elements of other kinds", "a.msh",
+         head_4 + "$PhysicalNames\n1\n3 1 \"o\"\n$EndPhysicalNames\n$Entities\n1 0 0 1\n1 0 0 0 1 1 \n" +
+             "1 0 0 0 1 1 1 0 0\n$EndEntities\n$Nodes\n1 5 1 5\n3 1 0 5\n1\n2\n3\n4\n5\n" + points +
+             "$EndNodes\n$Elements\n2 3 1 3\n0 1 15 1\n1 1 \n3 1 4 2\n2 1 2 3 4 \n3 2 3 4 5 "
+             "\n$EndElements\n"},
+        {"neperfepx/neper#781: entities of several lines", "a.msh",
+         head_4 +
+             "$Entities\n1 0 0 0\n1 0.1 0.0 0.0\n 0 \n$EndEntities\n$Nodes\n1 5 1 5\n3 1 0 "
+             "5\n1\n2\n3\n4\n5\n" +
+             points + "$EndNodes\n$Elements\n1 2 1 2\n3 1 4 2\n1 1 2 3 4\n2 2 3 4 5\n$EndElements\n"},
+        {"mfem/mfem#1061, nschloe/meshio#907: MSH 2.2 with tags of 0, and without tags", "a.msh",
+         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 "
+         "1\n$EndNodes\n"
+         "$Elements\n3\n1 2 2 0 0 1 2 3\n2 4 2 0 0 1 2 3 4\n3 4 0 2 3 4 5\n$EndElements\n"},
+        {"nschloe/meshio#877, #885, visit-dav/visit#5389: VTK 5.1 with offsets", "a.vtk",
+         head_vtk + "POINTS 5 float\n" + points + cells_5},
+        {"elrnv/vtkio#21: its metadata, fields and \\r\\n", "a.vtk",
+         replaced(
+             head_vtk + "FIELD FieldData 1\nTIME 1 1 double\n0\nPOINTS 5 double\n" + points +
+                 "\nMETADATA\nINFORMATION 1\nNAME L2_NORM_RANGE LOCATION vtkDataArray\nDATA 2 0 1.73\n\n" +
+                 cells_5 + "\nPOINT_DATA 5\nFIELD FieldData 1\nindex 1 5 vtktypeint64\n0 1 2 3 4\n",
+             "\n", "\r\n")},
+        {"nschloe/meshio#1318, #900: attributes that are not whole, markers and comments", "a.node",
+         "# of a trial\n" + replaced(nodes, "5 3 0 0", "5 3 0 0 # counts") +
+             "# end\n|2 4 1\n0 0 1 2 3 0.5\n1 1 2 3 4 -1.25e-3\n# end\n"},
+        {"libMesh/libmesh#1412: attributes and markers of nodes, from 1", "a.node",
+         "5 3 2 1\n1 0 0 0 0.5 1 -1\n2 1 0 0 0 0 1\n3 0 1 0 1 1 1\n4 0 0 1 2 2 0\n5 1 1 1 3 3 0\n|2 4 0\n1 1 "
+         "2 3 4\n2 2 3 4 5\n"},
     };
 }
 
@@ -481,4 +527,19 @@ TEST_F(FileReports, OfOffAreAnswered) {
 }
 TEST_F(FileReports, OfGltfAreAnswered) {
     expect_right(gltf_reports());
+}
+TEST_F(FileReports, OfTetrahedraAreAnswered) {
+    for (const FileReport& report : tetrahedra_reports()) {
+        SCOPED_TRACE(report.thread);
+        const std::size_t middle = report.content.find('|');
+        if (middle != std::string::npos) write("a.ele", report.content.substr(middle + 1));
+        const auto file = write(report.name, report.content.substr(0, middle));
+        try {
+            const TetrahedralMesh mesh = read_tetrahedra(file).mesh;
+            EXPECT_EQ(mesh.tetrahedra.size(), 2u);
+            EXPECT_NEAR(inspect_tetrahedra(mesh).volume, 0.5, 1e-6);
+        } catch (const Error& error) {
+            ADD_FAILURE() << error.what();
+        }
+    }
 }
