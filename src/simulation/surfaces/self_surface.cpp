@@ -307,7 +307,8 @@ std::uint32_t SelfSurface::frames_to_list() const {
     for (const std::uint32_t v : surface_)
         way += static_cast<double>(length(goals_[v] - drifting_ - starts_[v]));
     const double most = static_cast<double>(kMostWay * reach_.near) * static_cast<double>(surface_.size());
-    return way * kMostFrames < most ? kMostFrames : std::max(1U, static_cast<std::uint32_t>(most / way));
+    const double frames = way * kMostFrames < most ? kMostFrames : most / way;
+    return frames >= 1 ? static_cast<std::uint32_t>(frames) : 1; // 1 also where places are no longer finite
 }
 
 bool SelfSurface::has_moved(const Element& element) const {
