@@ -1,6 +1,6 @@
 #include "input_file.hpp"
 
-#include "files/mapped_file.hpp"
+#include "files/read_file.hpp"
 
 #include <echinus/mesh_io.hpp>
 
@@ -19,9 +19,9 @@ void copy_standard_input(const fs::path& target) {
     std::size_t total = 0;
     while (const std::size_t byte_count = input.read(block.data(), block.size())) {
         total += byte_count;
-        if (total > echinus::MappedFile::kMostReadBytes)
+        if (total > echinus::kMostStreamBytes)
             input.fail(ErrorCode::Unreadable,
-                       "has more than " + std::to_string(echinus::MappedFile::kMostReadBytes) +
+                       "has more than " + std::to_string(echinus::kMostStreamBytes) +
                            " bytes, the most that are read from it; write them to a file first, if they have "
                            "an end");
         output.write(block.data(), byte_count);

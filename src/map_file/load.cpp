@@ -61,7 +61,7 @@ const schema::MapFile& verified_root(std::span<const std::byte> bytes, const std
     return *schema::GetMapFile(bytes.data());
 }
 
-MappedFile::CheckBeginning check_beginning_of(const std::filesystem::path& path) {
+CheckBeginning check_beginning_of(const std::filesystem::path& path) {
     return
         [name = path.string()](std::span<const std::byte> beginning) { require_map_file(beginning, name); };
 }

@@ -1,6 +1,6 @@
 #include "mesh_io/gltf_indices.hpp"
 
-#include "files/mapped_file.hpp"
+#include "files/read_file.hpp"
 #include "mesh_io/byte_reader.hpp"
 #include "mesh_io/json_view.hpp"
 
@@ -44,7 +44,7 @@ class GltfBuffer {
         else if (uri->starts_with("data:"))
             bytes_ = decoded_ = decode_base64(uri->substr(std::min(uri->find(','), uri->size())));
         else
-            map(fs::path(source.name).parent_path() / *uri);
+            read(fs::path(source.name).parent_path() / *uri);
     }
     GltfBuffer(const GltfBuffer&) = delete; // the bytes may be its own
     GltfBuffer& operator=(const GltfBuffer&) = delete;
@@ -52,19 +52,19 @@ class GltfBuffer {
     std::string_view bytes() const { return bytes_; }
 
   private:
-    void map(const fs::path& file) {
+    void read(const fs::path& file) {
         std::error_code ignored;
         if (!fs::is_regular_file(file, ignored)) return; // Assimp says so
         try {
-            file_ = std::make_unique<MappedFile>(file);
+            file_ = read_file(file);
         } catch (const Error&) {
             return; // it fails in Assimp, too
         }
-        bytes_ = {reinterpret_cast<const char*>(file_->bytes().data()), file_->bytes().size()};
+        bytes_ = {reinterpret_cast<const char*>(file_.data()), file_.size()};
     }
 
     std::string decoded_;
-    std::unique_ptr<MappedFile> file_;
+    std::vector<std::byte> file_;
     std::string_view bytes_;
 };
 

@@ -1,6 +1,6 @@
 #include "mesh_io/import_scene.hpp"
 
-#include "files/mapped_file.hpp"
+#include "files/read_file.hpp"
 #include "mesh_io/scene_guards.hpp"
 
 #include <assimp/IOSystem.hpp>
@@ -33,8 +33,8 @@ class SceneFiles : public Assimp::IOSystem {
     Assimp::IOStream* Open(const char* path, const char*) override {
         if (!Exists(path)) return nullptr;
         if (path == source_.name) return stream_over(std::as_bytes(std::span(source_.bytes)));
-        neighbours_.push_back(std::make_unique<MappedFile>(path));
-        return stream_over(neighbours_.back()->bytes());
+        neighbours_.push_back(read_file(path));
+        return stream_over(neighbours_.back());
     }
     void Close(Assimp::IOStream* stream) override { delete stream; }
 
@@ -46,7 +46,7 @@ class SceneFiles : public Assimp::IOSystem {
     }
 
     const MeshSource& source_;
-    std::vector<std::unique_ptr<MappedFile>> neighbours_;
+    std::vector<std::vector<std::byte>> neighbours_;
 };
 
 void require_sound(const aiMesh& mesh, const aiFace& face, const MeshSource& source) {

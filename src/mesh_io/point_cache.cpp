@@ -2,6 +2,7 @@
 
 #include <echinus/error.hpp>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -81,7 +82,8 @@ void PointCacheWriter::commit() {
 }
 
 PointCacheReader::PointCacheReader(const std::filesystem::path& path) : name_(path.string()), file_(path) {
-    const std::span<const std::byte> bytes = file_.bytes();
+    std::array<std::byte, kHeaderSize> header{};
+    const std::span<const std::byte> bytes(header.data(), file_.read(0, header));
     require_header(bytes, name_);
     point_count_ = count_at(bytes, 16, name_, "points");
     start_frame_ = number_at<float>(bytes, 20);
@@ -91,17 +93,20 @@ PointCacheReader::PointCacheReader(const std::filesystem::path& path) : name_(pa
         fail(ErrorCode::Damaged, name_, "the header's start frame and frames per sample make no sense");
     // At most 32 + 12 * 2^31 * 2^31, which a 64-bit size holds.
     const std::uint64_t expected = kHeaderSize + std::uint64_t{12} * point_count_ * sample_count_;
-    if (bytes.size() != expected)
+    if (file_.size() != expected)
         fail(ErrorCode::Damaged, name_,
-             "has " + std::to_string(bytes.size()) + " bytes, but " + std::to_string(sample_count_) +
+             "has " + std::to_string(file_.size()) + " bytes, but " + std::to_string(sample_count_) +
                  " samples of " + std::to_string(point_count_) + " points take " + std::to_string(expected) +
                  "; write it again");
 }
 
 std::vector<Vec3f> PointCacheReader::positions(std::size_t sample) const {
     std::vector<Vec3f> points(point_count_);
-    std::memcpy(points.data(), file_.bytes().data() + kHeaderSize + sizeof(Vec3f) * point_count_ * sample,
-                sizeof(Vec3f) * point_count_);
+    const std::size_t byte_count = sizeof(Vec3f) * point_count_;
+    if (file_.read(kHeaderSize + byte_count * sample, std::as_writable_bytes(std::span(points))) !=
+        byte_count)
+        fail(ErrorCode::Damaged, name_,
+             "was shortened while it was read: sample " + std::to_string(sample) + " is not there any more");
     for (std::size_t i = 0; i < points.size(); ++i)
         if (!is_finite(points[i]))
             fail(ErrorCode::Damaged, name_,

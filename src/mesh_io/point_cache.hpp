@@ -1,7 +1,7 @@
 #pragma once
 
 #include "files/atomic_file.hpp"
-#include "files/mapped_file.hpp"
+#include "files/random_access_file.hpp"
 
 #include <echinus/geometry.hpp>
 
@@ -32,7 +32,8 @@ class PointCacheWriter {
     std::int32_t sample_count_ = 0;
 };
 
-/// Reads a PC2 point cache, as PointCacheWriter writes it. Positions are read when they are asked for.
+/// Reads a PC2 point cache, as PointCacheWriter writes it. Positions are read when they are asked for, since
+/// a cache may be larger than memory; from several threads at once, too.
 class PointCacheReader {
   public:
     /// @throws Error Unreadable, WrongFormat, UnsupportedVersion or Damaged (also when the file is
@@ -46,12 +47,12 @@ class PointCacheReader {
         return start_frame_ + frames_per_sample_ * static_cast<double>(sample);
     }
     /// @pre sample < sample_count()
-    /// @throws Error Damaged when a position is not finite
+    /// @throws Error Damaged when a position is not finite, or the file was shortened; Unreadable
     std::vector<Vec3f> positions(std::size_t sample) const;
 
   private:
     std::string name_;
-    MappedFile file_;
+    RandomAccessFile file_;
     std::size_t point_count_ = 0;
     std::size_t sample_count_ = 0;
     double start_frame_ = 0;

@@ -1,6 +1,6 @@
 #include "mesh_io/read_animation.hpp"
 
-#include "files/mapped_file.hpp"
+#include "files/read_file.hpp"
 #include "mesh/weld.hpp"
 #include "mesh_io/gltf_animation.hpp"
 #include "mesh_io/import_scene.hpp"
@@ -85,8 +85,9 @@ VertexCache read_animation(const std::filesystem::path& path, const TriangleMesh
     const auto source_of = [&](std::span<const std::byte> bytes) {
         return MeshSource{path.string(), {reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
     };
-    const MappedFile bytes(path, [&](auto beginning) { require_beginning(source_of(beginning)); });
-    const MeshSource source = source_of(bytes.bytes());
+    const std::vector<std::byte> bytes =
+        read_file(path, [&](auto beginning) { require_beginning(source_of(beginning)); });
+    const MeshSource source = source_of(bytes);
     if (lower_case_ending(path) != ".3ds") require_plain_gltf_animations(source, json_of(source));
     const SceneFile file(source);
     const WeldedMesh welded = mesh_of(file, source);

@@ -1,4 +1,4 @@
-#include "files/mapped_file.hpp"
+#include "files/read_file.hpp"
 #include "mesh_io/line_scanner.hpp"
 #include "mesh_io/mesh_source.hpp"
 #include "mesh_io/readers.hpp"
@@ -60,12 +60,13 @@ std::vector<std::array<std::uint32_t, 2>> edges_of(const PolygonMesh& polygons) 
 
 /// What `read` makes of the file's bytes.
 template <typename Read>
-auto read_file(const std::filesystem::path& path, const Read& read) {
+auto read_from(const std::filesystem::path& path, const Read& read) {
     const auto source = [&](std::span<const std::byte> bytes) {
         return MeshSource{path.string(), {reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
     };
-    const MappedFile file(path, [&](auto beginning) { require_beginning(source(beginning)); });
-    return read(source(file.bytes()));
+    const std::vector<std::byte> bytes =
+        read_file(path, [&](auto beginning) { require_beginning(source(beginning)); });
+    return read(source(bytes));
 }
 
 } // namespace
@@ -96,11 +97,11 @@ MeshAndEdges read_mesh_and_edges(const MeshSource& source) {
 }
 
 TriangleMesh read_mesh(const std::filesystem::path& path) {
-    return read_file(path, [](const MeshSource& source) { return read_mesh(source); });
+    return read_from(path, [](const MeshSource& source) { return read_mesh(source); });
 }
 
 MeshAndEdges read_mesh_and_edges(const std::filesystem::path& path) {
-    return read_file(path, [](const MeshSource& source) { return read_mesh_and_edges(source); });
+    return read_from(path, [](const MeshSource& source) { return read_mesh_and_edges(source); });
 }
 
 } // namespace echinus

@@ -1,4 +1,4 @@
-#include "files/mapped_file.hpp"
+#include "files/read_file.hpp"
 #include "mesh_io/tetrahedra_readers.hpp"
 #include "tetrahedra/mend.hpp"
 
@@ -20,9 +20,9 @@ void require_content(const MeshSource& source) {
 TetrahedraFile read_pair(std::filesystem::path path) {
     const std::filesystem::path nodes_path = path.replace_extension(".node");
     const std::filesystem::path elements_path = path.replace_extension(".ele");
-    const MappedFile nodes_file(nodes_path), elements_file(elements_path);
-    const MeshSource nodes = source_of(nodes_path, nodes_file.bytes());
-    const MeshSource elements = source_of(elements_path, elements_file.bytes());
+    const std::vector<std::byte> node_bytes = read_file(nodes_path), element_bytes = read_file(elements_path);
+    const MeshSource nodes = source_of(nodes_path, node_bytes);
+    const MeshSource elements = source_of(elements_path, element_bytes);
     require_content(nodes);
     require_content(elements);
     return finish_tetrahedra(read_tetgen(nodes, elements), elements);
@@ -58,11 +58,11 @@ TetrahedraFile read_tetrahedra(const std::filesystem::path& path) {
                     path.string() +
                         ": tetrahedra are read from files that end in .msh, .vtk, .node or .ele, not in " +
                         in_quotes(ending));
-    const MappedFile file(path, [&](std::span<const std::byte> beginning) {
+    const std::vector<std::byte> bytes = read_file(path, [&](std::span<const std::byte> beginning) {
         // Both kinds begin with a line of text.
         LineScanner(source_of(path, beginning)).next_line();
     });
-    return read_tetrahedra(source_of(path, file.bytes()));
+    return read_tetrahedra(source_of(path, bytes));
 }
 
 } // namespace echinus

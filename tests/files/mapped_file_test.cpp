@@ -43,24 +43,6 @@ TEST_F(MappedFileTest, ReadsWhatCannotBeMapped) {
     EXPECT_TRUE(MappedFile("/dev/null").bytes().empty());
 }
 
-TEST_F(MappedFileTest, ReadsNoMoreOfAnEndlessDeviceThanTheLimit) {
-    if (!fs::exists("/dev/zero")) GTEST_SKIP() << "this system has no /dev/zero";
-    test::expect_error(ErrorCode::Unreadable, "/dev/zero: has more than 1000000 bytes",
-                       [] { MappedFile file("/dev/zero", nullptr, 1'000'000); });
-}
-
-TEST_F(MappedFileTest, ReadsNoMoreOfAnEndlessDeviceThanTheCheckNeedsToRefuseIt) {
-    if (!fs::exists("/dev/zero")) GTEST_SKIP() << "this system has no /dev/zero";
-    std::size_t seen = 0;
-    test::expect_error(ErrorCode::WrongFormat, "zeros", [&] {
-        MappedFile file("/dev/zero", [&](std::span<const std::byte> beginning) {
-            seen = beginning.size();
-            throw Error(ErrorCode::WrongFormat, "zeros");
-        });
-    });
-    EXPECT_EQ(seen, 65'536U);
-}
-
 TEST_F(MappedFileTest, RefusesAMissingFileAndADirectoryByName) {
     for (const fs::path& refused : {path("missing"), path("")}) {
         test::expect_error(ErrorCode::Unreadable, refused.string(), [&] { MappedFile file(refused); });

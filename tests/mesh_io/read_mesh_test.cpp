@@ -61,6 +61,23 @@ TEST_F(ReadMesh, ReadsTheSameFromAPipe) {
     }
 }
 
+TEST_F(ReadMesh, RefusesOrReadsAFileThatIsShortenedMeanwhile) {
+    std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    for (int i = 0; i < 100'000; ++i) obj += "f 1 2 3\n";
+    const fs::path file = write("a.obj", obj);
+    const std::jthread writer([&](const std::stop_token& done) {
+        while (!done.stop_requested())
+            for (const std::size_t size : {obj.size() / 2, obj.size()}) fs::resize_file(file, size);
+    });
+    for (int i = 0; i < 20; ++i) {
+        try {
+            EXPECT_FALSE(read_mesh(file).faces.empty());
+        } catch (const Error& error) {
+            EXPECT_TRUE(std::string(error.what()).starts_with(file.string()));
+        }
+    }
+}
+
 TEST_F(ReadMesh, GivesTheSameMeshOnEachReading) {
     for (const ExportedKind& kind : kExportedKinds) {
         const fs::path file = path(std::string("box") + kind.ending);

@@ -52,6 +52,15 @@ TEST_F(VertexCacheFiles, APointCacheHasItsSamplesAtItsFrames) {
         EXPECT_NEAR(length(between[i] - mesh_.vertices[i] * 2.25F), 0, 1e-5);
 }
 
+TEST_F(VertexCacheFiles, APointCacheThatIsShortenedIsRefusedWhereItEnds) {
+    const std::filesystem::path file = write_pc2(mesh_.vertices.size(), 1);
+    const PointCacheReader reader(file);
+    std::filesystem::resize_file(file, 32 + 2 * sizeof(Vec3f) * mesh_.vertices.size());
+    EXPECT_EQ(reader.positions(1), ball(1.5F).vertices);
+    expect_error(ErrorCode::Damaged, "grow.pc2: was shortened while it was read: sample 2",
+                 [&] { reader.positions(2); });
+}
+
 TEST_F(VertexCacheFiles, AFolderHasOneMeshForEachFrameByName) {
     const std::filesystem::path folder = path("frames");
     std::filesystem::create_directory(folder);

@@ -1,7 +1,7 @@
 #include "commands/scene_model.hpp"
 
 #include "commands/descriptions.hpp"
-#include "files/mapped_file.hpp"
+#include "files/read_file.hpp"
 #include "input_file.hpp"
 
 #include <echinus/error.hpp>
@@ -58,8 +58,8 @@ std::string notice_beside(const fs::path& model_file) {
     const fs::path path = model_file.parent_path() / "NOTICE";
     std::error_code ignored;
     if (!fs::is_regular_file(path, ignored)) return {};
-    const MappedFile notice(path);
-    return {reinterpret_cast<const char*>(notice.bytes().data()), notice.bytes().size()};
+    const std::vector<std::byte> notice = read_file(path);
+    return {reinterpret_cast<const char*>(notice.data()), notice.size()};
 }
 
 namespace {

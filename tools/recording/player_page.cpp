@@ -1,7 +1,7 @@
 #include "recording/player_page.hpp"
 
 #include "encoding.hpp"
-#include "files/mapped_file.hpp"
+#include "files/read_file.hpp"
 #include "recording/recording_code.hpp"
 #include "recording/threads.hpp"
 #include "rivals/compare/machine.hpp"
@@ -29,8 +29,8 @@ fs::path installed_player() {
 }
 
 std::string read_text(const fs::path& path) {
-    const MappedFile file(path);
-    return {reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()};
+    const std::vector<std::byte> bytes = read_file(path);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 std::string read_player(const fs::path& path) {

@@ -2,7 +2,7 @@
 // Solver::archive() writes.
 
 #include "files/atomic_file.hpp"
-#include "files/mapped_file.hpp"
+#include "files/read_file.hpp"
 #include "simulation/solver.hpp"
 
 #define XXH_INLINE_ALL
@@ -105,8 +105,7 @@ void Simulation::save_state(const std::filesystem::path& path) const {
 }
 
 void Simulation::restore_state(const std::filesystem::path& path) {
-    const MappedFile file(path);
-    restore_state(file.bytes(), path.string());
+    restore_state(read_file(path), path.string());
 }
 
 } // namespace echinus
