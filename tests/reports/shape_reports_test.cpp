@@ -5,6 +5,7 @@
 #include "support/random_points.hpp"
 
 #include <echinus/exact_map.hpp>
+#include <echinus/intersections.hpp>
 #include <echinus/mesh.hpp>
 
 #include <gtest/gtest.h>
@@ -309,4 +310,58 @@ TEST(Reports, OfDistancesAreAnswered) {
                     4e-6 * double{sphere.radius});
         EXPECT_TRUE(is_finite(gradient));
     }
+}
+
+TEST(Reports, OfFacesThatMeetThemselvesAreAnswered) {
+    struct IntersectionReport {
+        const char* thread;
+        TriangleMesh mesh;
+        std::size_t pair_count;
+    };
+    const std::vector<IntersectionReport> reports{
+        {"libigl/libigl#2381: a triangle that is divided twice, rounded",
+         {{{0.280039F, 0.827663F, 0.463775F},
+           {0.338901F, 0.788042F, 0.488127F},
+           {0.318053F, 0.768364F, 0.493088F},
+           {0.30947F, 0.8078525F, 0.475951F},
+           {0.299046F, 0.7980135F, 0.4784315F},
+           {0.328477F, 0.778203F, 0.4906075F},
+           {0.2947545F, 0.8177578F, 0.469863F},
+           {0.2895425F, 0.8128383F, 0.4711033F},
+           {0.3241855F, 0.7979473F, 0.482039F},
+           {0.333689F, 0.7831225F, 0.4893672F},
+           {0.3085495F, 0.7831888F, 0.4857598F},
+           {0.323265F, 0.7732835F, 0.4918478F},
+           {0.304258F, 0.802933F, 0.4771913F},
+           {0.3189735F, 0.7930278F, 0.4832793F},
+           {0.3137615F, 0.7881083F, 0.4845195F}},
+          {{2, 11, 10},
+           {1, 8, 9},
+           {0, 7, 6},
+           {3, 12, 13},
+           {5, 14, 11},
+           {3, 13, 8},
+           {4, 12, 7},
+           {4, 14, 12},
+           {4, 10, 14},
+           {5, 9, 13},
+           {3, 6, 12},
+           {5, 13, 14},
+           {14, 10, 11},
+           {13, 9, 8},
+           {12, 6, 7},
+           {14, 13, 12}}},
+         0},
+        {"cnr-isti-vclab/meshlab#50: faces around a vertex, and two of a square beside them",
+         make_sphere(1, 24, 12), 0},
+        {"isl-org/Open3D#5117: faces that share a vertex and cross",
+         {{{0, 0, 0}, {2, -1, 0}, {2, 1, 0}, {2, 0, -1}, {2, 0, 1}}, {{0, 1, 2}, {0, 3, 4}}},
+         1},
+        {"isl-org/Open3D#1171, #1185: a solid whose faces touch at their edges only", unit_cube(), 0},
+        {"MeshInspector/MeshLib#5578: faces in a plane that share an edge and lie on each other",
+         {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.25F, 0.25F, 0}}, {{0, 1, 2}, {0, 1, 3}}},
+         1},
+    };
+    for (const IntersectionReport& report : reports)
+        EXPECT_EQ(self_intersecting_pairs(report.mesh).size(), report.pair_count) << report.thread;
 }
