@@ -83,7 +83,7 @@ bool are_balanced(std::span<HalfEdge> edges) {
 } // namespace
 
 bool is_closed(std::span<const Triangle> faces, std::size_t vertex_count) {
-    std::vector<std::uint32_t> ends(vertex_count + 1);
+    std::vector<std::uint32_t> ends(vertex_count + 1); // 32 bits number three half edges of kMostFaces faces
     for_each_half_edge(faces, [&](std::uint32_t lower, HalfEdge) { ++ends[lower]; });
     std::uint32_t end = 0;
     for (std::uint32_t& offset : ends) {

@@ -56,7 +56,9 @@ class BodyLattice {
   private:
     Vec3d origin_;
     double size_;
-    std::array<std::uint64_t, 3> counts_; ///< of cubes along each axis
+    /// Of cubes along each axis. Twice their product is at most TetrahedralizeOptions::kMaxLatticeVertices,
+    /// as whoever makes a lattice sees to.
+    std::array<std::uint64_t, 3> counts_;
 };
 
 /// Eleven edges belong to each vertex, so that every edge belongs to one: the long ones to the next vertex

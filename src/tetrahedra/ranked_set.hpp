@@ -16,7 +16,7 @@ class RankedSet {
     void insert(std::uint64_t number) { words_[number / 64] |= bit(number); }
 
     /// To be called after the last insert().
-    /// @returns how many members there are
+    /// @returns how many members there are. @pre fewer than 2^32
     std::uint32_t count_ranks() {
         std::uint32_t count = 0;
         for (std::size_t i = 0; i < words_.size(); ++i) {

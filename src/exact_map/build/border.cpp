@@ -13,7 +13,7 @@ namespace {
 /// An edge seen from its lower vertex: how many more faces run away from it than towards it.
 struct HalfEdge {
     std::uint32_t higher;
-    std::int32_t count;
+    std::int32_t count; ///< a face has an edge but once, so that sums are at most kMostFaces
 };
 
 /// Adds up the half edges of one vertex by their other end, and appends what does not cancel.

@@ -105,7 +105,7 @@ void CellIntervals::cover_all_faces(const LatticeMesh& lattice, const Octahedral
 }
 
 void CellIntervals::set_offsets() {
-    std::uint32_t offset = 0;
+    std::uint32_t offset = 0; // up to BandFinder::kMostIntervals, 2^28
     for (std::size_t cell = 0; cell < cell_count(); ++cell) {
         offsets_[cell] = offset;
         for (Worker& worker : workers_) {
