@@ -14,25 +14,31 @@
 
 ECHINUS_EXPORT_BEGIN
 
-/// Mesh files. Library echinus::io (needs Assimp); echinus::core does not depend on it.
+/// Mesh files. Library echinus::io; echinus::core does not depend on it.
 namespace echinus {
 
-/// Reads OBJ, PLY (text and binary), STL (text and binary), OFF, glTF, GLB and 3DS, by the file name's
-/// extension. All meshes of the file are joined (node transforms applied), polygons are triangulated, equal
-/// positions are welded and vertices that no face uses are dropped; points, lines (but see
-/// read_mesh_and_edges()), normals, colours and materials are ignored. Nothing is repaired: inspect() reports
-/// the faults of the result. Face numbers are those of the file, a polygon of k corners counted as its k - 2
-/// triangles, and a strip of triangles in a PLY as those that have three different corners. Coordinates in
-/// text are rounded to the nearest float. The same file gives the same mesh.
+/// Reads OBJ, PLY (text and binary), STL (text and binary), OFF, glTF 2.0, GLB and 3DS, by the file name's
+/// extension. All meshes of the file are joined, polygons are triangulated, equal positions are welded and
+/// vertices that no face uses are dropped; points, lines (but see read_mesh_and_edges()), normals, colours
+/// and materials are ignored. Nothing is repaired: inspect() reports the faults of the result. Face numbers
+/// are those of the file, a polygon of k corners counted as its k - 2 triangles, and a strip of triangles in
+/// a PLY as those that have three different corners. Coordinates in text are rounded to the nearest float.
+/// The same file gives the same mesh.
 ///
 /// Text is ASCII or UTF-8, with or without a byte order mark, with lines that end as on Unix, Windows or old
 /// Macs; Ctrl-Z or zeros may fill it up. Bytes after the faces of a binary STL are ignored unless they could
 /// be faces. Numbers of a text PLY or OFF may be wrapped over lines. OFF is read as text.
 ///
+/// Of a glTF file the meshes of one scene are read, the one that it names or its first, as they stand at
+/// rest: placed by their nodes, or led by the bones of their skins, morphed by their default weights, and
+/// copied for each instance of EXT_mesh_gpu_instancing. Positions may be quantised (KHR_mesh_quantization). A
+/// required extension that is not read, such as one that compresses, is refused as WrongFormat, by its name.
+/// Buffers are looked for beside the file. Of a 3DS file the positions are those in its lists; keyframes only
+/// place copies of objects that have several nodes.
+///
 /// @throws Error Unreadable, WrongFormat, Damaged (a file shorter or longer than it declares; the sentence
 /// names the line or byte) or InvalidMesh (no faces; an index out of range or a coordinate that is not finite
-/// as a float, even of an unused vertex); the sentence begins with the path. glTF with compressed or
-/// quantised positions is refused as WrongFormat.
+/// as a float, even of an unused vertex); the sentence begins with the path.
 TriangleMesh read_mesh(const std::filesystem::path& path);
 
 /// A mesh, and edges that are drawn apart from its faces: threads, needles, wires.
@@ -96,18 +102,17 @@ void write_tetrahedra(const std::filesystem::path& path, const TetrahedralMesh& 
 /// Meshes with bones are skinned (linear blend skinning; the weights of a vertex are made to sum to 1),
 /// others move with their nodes; morph targets are applied before. Between two keys, positions, scales and
 /// weights of morph targets go evenly and rotations about one axis, the shorter way round: handles of splines
-/// and steps are not kept. Takes 12 bytes for a vertex in a
-/// sample.
+/// and steps are not kept. A 3DS file has 25 frames in a second, and its objects move from where they stand
+/// in it. Takes 12 bytes for a vertex in a sample.
 ///
 /// @param mesh               the model, as read_mesh() gives it
 /// @param frames_per_second  positive
 /// @param animation          the name of the animation; may be empty where the file has only one
 /// @throws Error as read_mesh() does; InvalidMesh when the number of vertices, or a face of a folder's mesh
 /// or of a file with an animation, is not the model's; when there is no animation or several to choose from,
-/// it moves no vertex, has keys out of order or numbers that are not finite, or a vertex of a mesh with bones
-/// has none; or when there are more than 2^28 positions. WrongFormat when a glTF file has more than four
-/// bones for a vertex, or weights or values of an animation in whole numbers. The sentence begins with the
-/// path
+/// it moves no vertex or a node with a matrix, has keys out of order or numbers that are not finite, or a
+/// vertex of a mesh with bones has none; or when there are more than 2^28 positions. The sentence begins with
+/// the path
 VertexCache read_vertex_cache(const std::filesystem::path& path, const TriangleMesh& mesh,
                               double frames_per_second, std::string_view animation = {});
 

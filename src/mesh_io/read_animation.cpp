@@ -2,12 +2,9 @@
 
 #include "files/read_file.hpp"
 #include "mesh/weld.hpp"
-#include "mesh_io/gltf_animation.hpp"
-#include "mesh_io/import_scene.hpp"
 #include "mesh_io/node_animation.hpp"
 #include "mesh_io/readers.hpp"
-#include "mesh_io/scene_guards.hpp"
-#include "mesh_io/skinned_meshes.hpp"
+#include "mesh_io/scene_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -27,7 +24,7 @@ constexpr std::array<std::string_view, 3> kEndings{".gltf", ".glb", ".3ds"};
 
 /// The mesh of the file as read_mesh() gives it, and where its vertices come from.
 WeldedMesh mesh_of(const SceneFile& file, const MeshSource& source) {
-    return weld_with_sources(triangulate(file.join(), source));
+    return weld_with_sources(triangulate(join(file, source), source));
 }
 
 void require_same(const TriangleMesh& found, const TriangleMesh& mesh, const MeshSource& source) {
@@ -54,17 +51,6 @@ std::size_t count_samples(double seconds, double frames_per_second, std::size_t 
     return static_cast<std::size_t>(count);
 }
 
-void add_sample(const std::vector<Vec3f>& vertices, const std::vector<std::uint32_t>& sources,
-                std::size_t sample, const MeshSource& source, std::vector<Vec3f>& samples) {
-    for (const std::uint32_t vertex : sources) {
-        if (!is_finite(vertices[vertex]))
-            source.fail(ErrorCode::InvalidMesh,
-                        "in frame " + std::to_string(sample) +
-                            " of the animation a vertex is not finite; export it again");
-        samples.push_back(vertices[vertex]);
-    }
-}
-
 void require_motion(const std::vector<Vec3f>& samples, std::size_t vertex_count, const MeshSource& source) {
     for (std::size_t i = vertex_count; i < samples.size(); ++i)
         if (samples[i] != samples[i % vertex_count]) return;
@@ -88,20 +74,20 @@ VertexCache read_animation(const std::filesystem::path& path, const TriangleMesh
     const std::vector<std::byte> bytes =
         read_file(path, [&](auto beginning) { require_beginning(source_of(beginning)); });
     const MeshSource source = source_of(bytes);
-    if (lower_case_ending(path) != ".3ds") require_plain_gltf_animations(source, json_of(source));
-    const SceneFile file(source);
+    const SceneFile file = read_scene_file(source, Wanted::Animation);
     const WeldedMesh welded = mesh_of(file, source);
     require_same(welded.mesh, mesh, source);
     const NodeAnimation nodes(file, choose_animation(file, animation, source), source);
-    const SkinnedMeshes meshes(file, nodes, source);
 
     const std::size_t vertex_count = welded.sources.size();
     const std::size_t sample_count = count_samples(nodes.seconds(), frames_per_second, vertex_count, source);
     auto samples = std::make_shared<std::vector<Vec3f>>();
     samples->reserve(sample_count * vertex_count);
-    for (std::size_t i = 0; i < sample_count; ++i)
-        add_sample(meshes.vertices_at(static_cast<double>(i) / frames_per_second), welded.sources, i, source,
-                   *samples);
+    for (std::size_t i = 0; i < sample_count; ++i) {
+        const Pose pose = nodes.pose_at(static_cast<double>(i) / frames_per_second);
+        const std::vector<Vec3d> vertices = vertices_in(file, pose, source);
+        for (const std::uint32_t vertex : welded.sources) samples->emplace_back(vertices[vertex]);
+    }
     require_motion(*samples, vertex_count, source);
     return {.start_time = 0,
             .sample_seconds = 1 / frames_per_second,

@@ -2,7 +2,6 @@
 #include "mesh_io/line_scanner.hpp"
 #include "mesh_io/mesh_source.hpp"
 #include "mesh_io/readers.hpp"
-#include "mesh_io/scene_guards.hpp"
 
 #include <echinus/mesh_io.hpp>
 

@@ -5,9 +5,7 @@
 
 #include <echinus/mesh_io.hpp>
 
-/// One reader per kind of file. OBJ, OFF, PLY and STL are read here and not by Assimp, whose readers (5.2.5)
-/// round a tenth of all written coordinates to another float than the nearest, miss most truncations, and
-/// abort (OFF) or hang (PLY) on some damaged files.
+/// One reader per kind of file.
 ///
 /// All of them throw Error WrongFormat, Damaged or InvalidMesh; vertices are finite and indices in range.
 namespace echinus {
@@ -17,11 +15,14 @@ PolygonMesh read_off(const MeshSource& source);
 PolygonMesh read_ply(const MeshSource& source);
 PolygonMesh read_stl(const MeshSource& source);
 
-/// A part of require_beginning(), below. The head of a binary STL file states its size.
-void require_beginning_of_stl(const MeshSource& beginning);
-
-/// glTF, GLB and 3DS, through Assimp. A glTF file's buffers are looked for beside it.
+/// glTF, GLB and 3DS. A glTF file's buffers are looked for beside it.
 PolygonMesh read_scene(const MeshSource& source);
+
+/// Parts of require_beginning(), below. The head of a binary STL file states its size.
+void require_beginning_of_stl(const MeshSource& beginning);
+void require_beginning_of_gltf(const MeshSource& beginning);
+void require_beginning_of_glb(const MeshSource& beginning);
+void require_beginning_of_3ds(const MeshSource& beginning);
 
 /// read_mesh() for the bytes of a file; the extension of the source's name determines the format.
 TriangleMesh read_mesh(const MeshSource& source);

@@ -1,3 +1,4 @@
+#include "mesh_io/gltf_text.hpp"
 #include "support/expect_error.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -24,19 +26,6 @@ namespace {
 
 const fs::path kModels = "/usr/share/assimp/models"; // of Debian's assimp-testmodels
 
-std::string base64(const std::string& bytes) {
-    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        std::uint32_t group = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-        for (unsigned k = 0; k < 4; ++k)
-            text += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63U];
-    }
-    return text;
-}
-
 /// A bar of two boxes' height along y whose upper half a second bone, at (0, 1, 0), leads. The middle ring
 /// has half of its weight on either bone.
 struct Bar {
@@ -50,6 +39,7 @@ struct Bar {
     std::string path = "rotation";
     std::string animations; ///< in place of the one above
     std::map<std::string, std::string> replacements;
+    std::function<void(GltfText&)> add; ///< accessors from number 7 on
 
     Bar() {
         for (int vertex = 0; vertex < 9; ++vertex) {
@@ -62,20 +52,7 @@ struct Bar {
     }
 
     std::string text() const {
-        std::string binary, views, accessors;
-        const auto add = [&](const auto& values, int type, const char* kind, std::size_t width) {
-            const std::string bytes(reinterpret_cast<const char*>(values.data()),
-                                    values.size() * sizeof(values[0]));
-            const std::string comma = views.empty() ? "" : ",";
-            views += comma + R"({"buffer":0,"byteOffset":)" + std::to_string(binary.size()) +
-                     R"(,"byteLength":)" + std::to_string(bytes.size()) + "}";
-            const std::size_t number =
-                static_cast<std::size_t>(std::count(accessors.begin(), accessors.end(), '{'));
-            accessors += comma + R"({"bufferView":)" + std::to_string(number) + R"(,"componentType":)" +
-                         std::to_string(type) + R"(,"count":)" + std::to_string(values.size() / width) +
-                         R"(,"type":")" + kind + "\"}";
-            binary += bytes;
-        };
+        GltfText file;
         std::vector<std::uint16_t> joints, indices;
         for (int vertex = 0; vertex < 9; ++vertex)
             for (const std::uint16_t joint : {0, 1, 0, 0}) joints.push_back(joint);
@@ -86,28 +63,30 @@ struct Bar {
         std::vector<float> inverse_binds(32);
         for (const std::size_t i : {0, 5, 10, 15, 16, 21, 26, 31}) inverse_binds[i] = 1;
         inverse_binds[29] = -1; // the second bone is at y = 1
-        add(positions, 5126, "VEC3", 3);
-        add(joints, 5123, "VEC4", 4);
-        add(weights, 5126, "VEC4", 4);
-        add(inverse_binds, 5126, "MAT4", 16);
-        add(times, 5126, "SCALAR", 1);
-        add(rotations, 5126, path == "rotation" ? "VEC4" : "VEC3", path == "rotation" ? 4 : 3);
-        add(indices, 5123, "SCALAR", 1);
+        file.add(positions, 3);
+        file.add(joints, 4);
+        file.add(weights, 4);
+        file.add(inverse_binds, 16);
+        file.add(times);
+        file.add(rotations, path == "rotation" ? 4 : path == "weights" ? 1 : 3);
+        file.add(indices);
+        if (add) add(file);
         const std::string one =
             R"({"name":"bend","samplers":[{"input":4,"output":5}],"channels":[{"sampler":0,)"
             R"("target":{"node":2,"path":")" +
             path + R"("}}]})";
-        std::string json =
-            R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],"nodes":[)" + mesh_node +
-            R"(,{"name":"lower","children":[2]},{"name":"upper","translation":[0,1,0]}],)" + skins +
-            R"("meshes":[{"name":"bar","primitives":[{"attributes":{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2},)"
-            R"("indices":6}]}],"animations":[)" +
-            (animations.empty()    ? one
-             : animations == "two" ? one + "," + one
-                                   : "") +
-            R"(],"accessors":[)" + accessors + R"(],"bufferViews":[)" + views +
-            R"(],"buffers":[{"byteLength":)" + std::to_string(binary.size()) +
-            R"(,"uri":"data:application/octet-stream;base64,)" + base64(binary) + "\"}]}";
+        file.scenes = R"([{"nodes":[0,1]}])";
+        file.nodes =
+            "[" + mesh_node + R"(,{"name":"lower","children":[2]},{"name":"upper","translation":[0,1,0]}])";
+        file.meshes =
+            R"([{"name":"bar","primitives":[{"attributes":{"POSITION":0,"JOINTS_0":1,"WEIGHTS_0":2},)"
+            R"("indices":6}]}])";
+        file.more = R"(,"scene":0,)" + skins + R"("animations":[)" +
+                    (animations.empty()    ? one
+                     : animations == "two" ? one + "," + one
+                                           : "") +
+                    "]";
+        std::string json = file.text();
         for (const auto& [from, to] : replacements) json.replace(json.find(from), from.size(), to);
         return json;
     }
@@ -206,22 +185,81 @@ TEST_F(ReadAnimation, WhatCannotBeFollowedIsRefusedWithItsReason) {
                    }));
     expect_refused(ErrorCode::InvalidMesh, "the file has no animation; export it with one",
                    with([](Bar& bar) { bar.animations = "none"; }));
-    expect_refused(ErrorCode::InvalidMesh, "vertex 4 of the mesh 'bar' has no bone",
+    expect_refused(ErrorCode::InvalidMesh, "vertex 4 of meshes[0] ('bar') has no bone",
                    with([](Bar& bar) { bar.weights[16] = bar.weights[17] = 0; }));
     expect_refused(ErrorCode::InvalidMesh, "has a channel with 3 values for 2 keys", with([](Bar& bar) {
                        bar.times = {0, 1};
                    }));
-    expect_refused(ErrorCode::InvalidMesh, "WEIGHTS_0 of mesh 0 has 8 entries, but needs 9",
+    expect_refused(ErrorCode::InvalidMesh, "WEIGHTS_0 has 8 entries, but needs 9",
                    with([](Bar& bar) { bar.weights.resize(32); }));
-    expect_refused(ErrorCode::InvalidMesh, "inverseBindMatrices of skin 0 has 2 entries, but needs 3",
+    expect_refused(ErrorCode::InvalidMesh, "skins[0].inverseBindMatrices has 2 entries, but needs 3",
                    with([](Bar& bar) { bar.replacements["[1,2]"] = "[1,2,0]"; }));
-    expect_refused(ErrorCode::WrongFormat, "the weights of mesh 0 are not of the type that is read",
-                   with([](Bar& bar) {
-                       bar.replacements[R"({"bufferView":2,"componentType":5126)"] =
-                           R"({"bufferView":2,"componentType":5123)";
+    expect_refused(ErrorCode::InvalidMesh, "nodes[2] is animated and has a matrix", with([](Bar& bar) {
+                       bar.replacements[R"("translation":[0,1,0])"] =
+                           R"("matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,1,0,1])";
                    }));
-    expect_refused(ErrorCode::WrongFormat, "is written with \\u in place of letters",
-                   with([](Bar& bar) { bar.replacements["JOINTS_0"] = "JOINTS\\u005f0"; }));
+    expect_refused(ErrorCode::InvalidMesh, "animations[0] has two channels for the same thing",
+                   with([](Bar& bar) {
+                       bar.replacements[R"("channels":[)"] =
+                           R"("channels":[{"sampler":0,"target":{"node":2,"path":"rotation"}},)";
+                   }));
+}
+
+TEST_F(ReadAnimation, WeightsMayBeWholeNumbersInSeveralSetsAndBindMatricesMayBeMissing) {
+    const VertexCache expected = read({});
+    // The same bar: its upper bone in a second set, weights in bytes, and bones bound at the origin to a mesh
+    // that stands there, too.
+    Bar bar;
+    bar.skins = R"("skins":[{"joints":[1,2]}],)";
+    bar.replacements[R"("JOINTS_0":1,"WEIGHTS_0":2)"] =
+        R"("JOINTS_0":7,"WEIGHTS_0":8,"JOINTS_1":9,"WEIGHTS_1":10)";
+    bar.replacements[R"("translation":[0,1,0])"] = R"("translation":[0,0,0])";
+    bar.add = [](GltfText& file) {
+        std::vector<std::uint8_t> first, first_weights, second, second_weights;
+        for (int vertex = 0; vertex < 9; ++vertex) {
+            const int upper = vertex < 3 ? 0 : vertex < 6 ? 100 : 200; // of 200: sums are made to be 1
+            for (int k = 0; k < 4; ++k) {
+                first.push_back(0);
+                first_weights.push_back(static_cast<std::uint8_t>(k == 2 ? 200 - upper : 0));
+                second.push_back(static_cast<std::uint8_t>(k == 1 ? 1 : 0));
+                second_weights.push_back(static_cast<std::uint8_t>(k == 1 ? upper : 0));
+            }
+        }
+        file.add(first, 4);
+        file.add(first_weights, 4, R"(,"normalized":true)");
+        file.add(second, 4);
+        file.add(second_weights, 4, R"(,"normalized":true)");
+    };
+    const VertexCache cache = read(bar);
+    const std::vector<Vec3f> rest = vertices_at(cache, 0), end = vertices_at(cache, 2);
+    EXPECT_EQ(rest, vertices_at(expected, 0));
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+        const Vec3d p(rest[i]), turned = Rotation::about({0, 0, 1}, 2).apply(p);
+        const double upper = i < 3 ? 0 : i < 6 ? 0.5 : 1;
+        EXPECT_NEAR(length(Vec3d(end[i]) - p * (1 - upper) - turned * upper), 0, 1e-6);
+    }
+}
+
+TEST_F(ReadAnimation, MorphsGoFromWeightToWeightAndRestAtThoseOfTheMesh) {
+    Bar bar;
+    bar.skins = "";
+    bar.path = "weights";
+    bar.rotations = {0, 1, 0.5F}; // the weights at 0, 1 and 2 s
+    bar.mesh_node = R"({"name":"other"})";
+    bar.replacements[R"("name":"upper",)"] = R"("name":"upper","mesh":0,)";
+    bar.replacements[R"("indices":6)"] = R"("targets":[{"POSITION":7}],"indices":6)";
+    bar.replacements[R"({"name":"bar")"] = R"({"weights":[0.25],"name":"bar")";
+    bar.add = [](GltfText& file) {
+        std::vector<float> up;
+        for (int vertex = 0; vertex < 9; ++vertex) up.insert(up.end(), {0, 0, 4});
+        file.add(up, 3);
+    };
+    const VertexCache cache = read(bar);
+    const std::vector<Vec3f> rest = read_mesh(path("bar.gltf")).vertices; // raised by 1
+    for (const auto& [time, weight] :
+         {std::pair{0.0, 0.0F}, {0.5, 0.5F}, {1.0, 1.0F}, {1.5, 0.75F}, {2.0, 0.5F}})
+        for (std::size_t i = 0; i < rest.size(); ++i)
+            EXPECT_EQ(vertices_at(cache, time)[i], rest[i] + Vec3f(0, 0, 4 * weight - 1)) << time;
 }
 
 TEST_F(ReadAnimation, OfAnotherModelOrOfTooManyPositionsIsRefused) {

@@ -53,8 +53,8 @@ std::vector<Vec3f> vertices_at(const float* first, std::uint32_t count) {
     return {points, points + count};
 }
 
-/// The name's extension determines the format, as in mesh_io/read_mesh.cpp, but without the formats that need
-/// Assimp.
+/// The name's extension determines the format, as in mesh_io/read_mesh.cpp, but without glTF and
+/// 3DS, which pages read with libraries of their own.
 PolygonMesh read_polygons(const MeshSource& source) {
     const std::size_t dot = source.name.rfind('.');
     const std::string ending = dot == std::string::npos ? "" : lower_case(source.name.substr(dot));

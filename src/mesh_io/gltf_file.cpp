@@ -1,0 +1,340 @@
+#include "mesh_io/gltf_file.hpp"
+
+#include "files/read_file.hpp"
+#include "mesh_io/byte_reader.hpp"
+#include "mesh_io/readers.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+namespace echinus {
+
+using nlohmann::json;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::size_t kChunkHeadSize = 8; // length and type
+
+/// Refuses what the parser would take: two values with one key, of which it keeps the last (section 2.7 of
+/// the specification forbids them), and brackets in brackets without end.
+class StrictEvents {
+  public:
+    explicit StrictEvents(const MeshSource& source) : source_(source) {}
+
+    bool operator()(int depth, json::parse_event_t event, json& parsed) {
+        constexpr int kMostBrackets = 256;
+        if (depth > kMostBrackets)
+            source_.fail(ErrorCode::Damaged, "the JSON has too many brackets in brackets, of which at most " +
+                                                 std::to_string(kMostBrackets) + " are read");
+        if (event == json::parse_event_t::object_start) keys_.emplace_back();
+        if (event == json::parse_event_t::object_end) keys_.pop_back();
+        if (event == json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second)
+            source_.fail(ErrorCode::Damaged,
+                         "the key " + in_quotes(parsed.get<std::string>()) + " is given twice in one object");
+        return true;
+    }
+
+  private:
+    const MeshSource& source_;
+    std::vector<std::set<std::string>> keys_; // of the objects that are open
+};
+
+/// The chunks of a GLB file (section 4.4). Chunks that are not padded to four bytes are taken as they are.
+struct GlbChunks {
+    std::string_view text;
+    std::optional<std::string_view> binary;
+};
+
+std::optional<std::string_view> binary_chunk(const MeshSource& source, std::size_t begin) {
+    ByteReader head(source, begin, ByteOrder::LittleEndian);
+    if (head.bytes_left() < kChunkHeadSize) return std::nullopt;
+    const std::size_t length = head.next<std::uint32_t>();
+    if (source.bytes.substr(head.offset(), 4) != std::string_view("BIN\0", 4)) return std::nullopt;
+    head.skip(4);
+    const std::size_t content = head.offset();
+    head.skip(length);
+    return source.bytes.substr(content, length);
+}
+
+GlbChunks chunks_of(const MeshSource& source) {
+    constexpr std::size_t kMagicSize = 4;
+    ByteReader head(source, kMagicSize, ByteOrder::LittleEndian);
+    const auto version = head.next<std::uint32_t>();
+    if (version != 2)
+        source.fail(ErrorCode::WrongFormat, "the file is of version " + std::to_string(version) +
+                                                " of GLB, but only version 2 is read; export it as glTF 2.0");
+    const std::size_t length = head.next<std::uint32_t>();
+    if (length != source.bytes.size())
+        source.fail(ErrorCode::Damaged, "the file says that it has " + std::to_string(length) +
+                                            " bytes, but it has " + std::to_string(source.bytes.size()));
+    const std::size_t text_length = head.next<std::uint32_t>();
+    if (source.bytes.substr(head.offset(), 4) != "JSON")
+        source.fail(ErrorCode::Damaged, "the first chunk of the file is no JSON");
+    head.skip(4);
+    const std::size_t begin = head.offset();
+    head.skip(text_length);
+    GlbChunks chunks{source.bytes.substr(begin, text_length), binary_chunk(source, head.offset())};
+    if (!chunks.binary) chunks.binary = binary_chunk(source, (head.offset() + 3) / 4 * 4);
+    return chunks;
+}
+
+std::optional<unsigned> hexadecimal_digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    return std::nullopt;
+}
+
+/// Replaces %20 and the like by the byte that is meant (RFC 3986, section 2.1).
+std::string percent_decoded(std::string_view uri) {
+    std::string text;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        const auto high = i + 2 < uri.size() ? hexadecimal_digit(uri[i + 1]) : std::nullopt;
+        const auto low = high ? hexadecimal_digit(uri[i + 2]) : std::nullopt;
+        const bool is_code = uri[i] == '%' && low;
+        text += is_code ? static_cast<char>(*high << 4U | *low) : uri[i];
+        if (is_code) i += 2;
+    }
+    return text;
+}
+
+/// White space and the padding at the end are passed over (RFC 4648).
+std::string base64_decoded(std::string_view text, const GltfValue& buffer) {
+    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::array<int, 256> value_of{};
+    value_of.fill(-1);
+    for (std::size_t i = 0; i < kDigits.size(); ++i)
+        value_of[static_cast<unsigned char>(kDigits[i])] = static_cast<int>(i);
+    std::string bytes;
+    std::uint32_t bits = 0;
+    unsigned bit_count = 0;
+    for (const char c : text.substr(0, text.find('='))) {
+        const int value = value_of[static_cast<unsigned char>(c)];
+        if (value < 0 && std::string_view(" \t\r\n").find(c) != std::string_view::npos) continue;
+        if (value < 0)
+            buffer.fail("has the character " + in_quotes({&c, 1}) + ", which is no base64",
+                        ErrorCode::Damaged);
+        bits = bits << 6U | static_cast<std::uint32_t>(value);
+        bit_count += 6;
+        if (bit_count < 8) continue;
+        bit_count -= 8;
+        bytes.push_back(static_cast<char>(bits >> bit_count & 0xFFU));
+    }
+    return bytes;
+}
+
+std::string data_of(std::string_view uri, const GltfValue& buffer) {
+    const std::size_t comma = uri.find(',');
+    if (comma == std::string_view::npos) buffer.fail("has data without a comma", ErrorCode::Damaged);
+    const std::string_view content = uri.substr(comma + 1);
+    return uri.substr(0, comma).ends_with(";base64") ? base64_decoded(content, buffer)
+                                                     : percent_decoded(content);
+}
+
+/// A name for use in a sentence.
+std::string shown(std::string_view name) {
+    constexpr std::size_t kMostLetters = 100;
+    return printable(name.substr(0, kMostLetters));
+}
+
+/// Extensions under which positions and faces mean what they do without it, or that are read.
+bool is_readable_extension(std::string_view name) {
+    constexpr std::string_view kRead[] = {"KHR_mesh_quantization", "EXT_mesh_gpu_instancing"};
+    constexpr std::string_view kOfAppearance[] = {"KHR_materials_", "KHR_texture_", "EXT_texture_",
+                                                  "MSFT_texture_",  "KHR_lights_",  "EXT_lights_",
+                                                  "KHR_technique",  "KHR_xmp"};
+    return std::find(std::begin(kRead), std::end(kRead), name) != std::end(kRead) ||
+           std::any_of(std::begin(kOfAppearance), std::end(kOfAppearance),
+                       [&](std::string_view beginning) { return name.starts_with(beginning); });
+}
+
+} // namespace
+
+void require_beginning_of_gltf(const MeshSource& beginning) {
+    std::string_view text = beginning.bytes;
+    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    // After nothing but white space the brace may still follow.
+    if (first != std::string_view::npos && text[first] != '{')
+        beginning.fail(ErrorCode::WrongFormat, "the brace with which a glTF file begins was not found");
+}
+
+void require_beginning_of_glb(const MeshSource& beginning) {
+    if (!beginning.bytes.starts_with("glTF"))
+        beginning.fail(ErrorCode::WrongFormat, "the word glTF with which a GLB file begins was not found");
+}
+
+// ---- Values ----
+
+void GltfValue::fail(const std::string& what, ErrorCode code) const {
+    source_->fail(code, (path_.empty() ? "the JSON" : printable(path_)) + " " + what);
+}
+
+GltfValue GltfValue::member(const char* key) const {
+    const std::string path = path_.empty() ? key : path_ + "." + key;
+    if (!exists()) return {*source_, nullptr, path};
+    if (!value_->is_object()) fail("is no object in braces");
+    const auto found = value_->find(key);
+    return {*source_, found == value_->end() ? nullptr : &*found, path};
+}
+
+std::vector<GltfValue> GltfValue::elements() const {
+    std::vector<GltfValue> values;
+    if (!exists()) return values;
+    if (!value_->is_array()) fail("is no array");
+    for (std::size_t i = 0; i < value_->size(); ++i)
+        values.emplace_back(*source_, &(*value_)[i], path_ + "[" + std::to_string(i) + "]");
+    return values;
+}
+
+double GltfValue::number() const {
+    if (!exists()) fail("is missing");
+    if (!value_->is_number()) fail("is no number");
+    return value_->get<double>();
+}
+
+std::size_t GltfValue::natural_number() const {
+    const double value = number();
+    if (!(value >= 0 && value <= 0x1p53) || value != std::floor(value))
+        fail("is no whole number from 0 to 2^53");
+    return static_cast<std::size_t>(value);
+}
+
+std::optional<std::size_t> GltfValue::optional_number() const {
+    return exists() ? std::optional(natural_number()) : std::nullopt;
+}
+
+std::vector<double> GltfValue::numbers() const {
+    std::vector<double> values;
+    for (const GltfValue& element : elements()) values.push_back(element.number());
+    return values;
+}
+
+std::optional<std::vector<double>> GltfValue::numbers(std::size_t count) const {
+    if (!exists()) return std::nullopt;
+    std::vector<double> values = numbers();
+    if (values.size() != count)
+        fail("has " + std::to_string(values.size()) + " numbers in place of " + std::to_string(count));
+    return values;
+}
+
+std::string GltfValue::string() const {
+    if (!exists()) return "";
+    if (!value_->is_string()) fail("is no string");
+    return value_->get<std::string>();
+}
+
+bool GltfValue::boolean() const {
+    if (!exists()) return false;
+    if (!value_->is_boolean()) fail("is neither true nor false");
+    return value_->get<bool>();
+}
+
+// ---- The file ----
+
+GltfFile::GltfFile(const MeshSource& source) : source_(source), budget_(source) {
+    if (lower_case_ending(source.name) == ".glb") {
+        require_beginning_of_glb(source);
+        const GlbChunks chunks = chunks_of(source);
+        binary_ = chunks.binary;
+        parse(chunks.text);
+    } else {
+        require_beginning_of_gltf(source);
+        parse(source.bytes);
+    }
+    require_readable();
+}
+
+void GltfFile::parse(std::string_view text) {
+    try {
+        document_ = json::parse(text, StrictEvents(source_));
+    } catch (const json::parse_error& error) {
+        source_.fail(ErrorCode::Damaged, "the JSON is not well formed at its byte " +
+                                             std::to_string(error.byte) +
+                                             "; export the file again, as UTF-8");
+    } catch (const json::exception&) {
+        source_.fail(ErrorCode::Damaged, "the JSON has a number that is too large to be read");
+    }
+}
+
+void GltfFile::require_readable() const {
+    const GltfValue version = root().member("asset").member("version");
+    if (!version.string().starts_with("2."))
+        source_.fail(
+            ErrorCode::WrongFormat,
+            version.exists()
+                ? "the file is of version " + in_quotes(version.string()) +
+                      " of glTF, but only version 2 is read; export it as glTF 2.0"
+                : std::string("the file does not say of which version of glTF it is (asset.version)"));
+    for (const GltfValue& extension : root().member("extensionsRequired").elements())
+        if (!is_readable_extension(extension.string()))
+            source_.fail(ErrorCode::WrongFormat, "the file requires the extension " +
+                                                     shown(extension.string()) +
+                                                     ", which is not read; export it without");
+}
+
+const GltfValue& GltfFile::element(const char* key, const GltfValue& user) {
+    auto found = arrays_.find(key);
+    if (found == arrays_.end()) found = arrays_.emplace(key, root().member(key).elements()).first;
+    const std::size_t index = user.natural_number();
+    if (index >= found->second.size())
+        user.fail("is " + std::to_string(index) + ", but there are " + std::to_string(found->second.size()) +
+                  " " + key + ", numbered from 0");
+    return found->second[index];
+}
+
+std::string_view GltfFile::read_beside(const GltfValue& buffer, const std::string& uri) {
+    if (uri.find("://") != std::string::npos)
+        buffer.fail("lies at " + shown(uri) + "; only files beside this one are read", ErrorCode::Unreadable);
+    const auto [entry, is_new] = files_.try_emplace(uri);
+    std::vector<std::byte>& bytes = entry->second;
+    if (is_new) {
+        const fs::path folder = fs::path(source_.name).parent_path();
+        std::error_code ignored;
+        fs::path path = folder / percent_decoded(uri);
+        if (!fs::exists(path, ignored)) path = folder / uri; // a name with a percent sign in it
+        // A pipe or a device named here could have no end.
+        if (!fs::is_regular_file(path, ignored))
+            buffer.fail("is in the file " + shown(uri) + ", which is not there or is no ordinary file",
+                        ErrorCode::Unreadable);
+        try {
+            bytes = read_file(path);
+        } catch (const Error& error) {
+            buffer.fail("cannot be read: " + std::string(error.what()), error.code());
+        }
+        budget_.add_bytes(bytes.size());
+    }
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::string_view GltfFile::open_buffer(const GltfValue& buffer, std::size_t number) {
+    const std::string uri = buffer.member("uri").string();
+    if (uri.starts_with("data:")) return decoded_[number] = data_of(uri, buffer);
+    if (!uri.empty()) return read_beside(buffer, uri);
+    if (number != 0 || !binary_)
+        buffer.fail("has no bytes: neither a uri nor the binary part of a GLB file", ErrorCode::Damaged);
+    return *binary_;
+}
+
+std::string_view GltfFile::buffer(const GltfValue& user) {
+    const GltfValue& value = element("buffers", user);
+    const std::size_t number = user.natural_number();
+    const auto [entry, is_new] = buffers_.try_emplace(number);
+    if (is_new) {
+        const std::string_view bytes = open_buffer(value, number);
+        const std::size_t length = value.member("byteLength").natural_number();
+        if (bytes.size() < length)
+            value.fail("has " + std::to_string(bytes.size()) + " bytes, but promises " +
+                           std::to_string(length),
+                       ErrorCode::Damaged);
+        entry->second = bytes.substr(0, length);
+    }
+    return entry->second;
+}
+
+} // namespace echinus

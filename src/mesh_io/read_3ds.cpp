@@ -1,0 +1,197 @@
+#include "mesh_io/budget.hpp"
+#include "mesh_io/byte_reader.hpp"
+#include "mesh_io/chunks_3ds.hpp"
+#include "mesh_io/keyframes_3ds.hpp"
+#include "mesh_io/readers.hpp"
+#include "mesh_io/scene_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace echinus {
+
+namespace {
+
+// Chunks of 3DS (Autodesk, "3D Studio File Toolkit", chunk list).
+constexpr std::uint16_t kMain = 0x4D4D;
+constexpr std::uint16_t kEditor = 0x3D3D;
+constexpr std::uint16_t kObject = 0x4000; // a name, then chunks
+constexpr std::uint16_t kMesh = 0x4100;
+constexpr std::uint16_t kVertexList = 0x4110;
+constexpr std::uint16_t kFaceList = 0x4120;
+constexpr std::uint16_t kKeyframes = 0xB000;
+
+/// A list's length, of which its chunk must have all elements.
+std::size_t next_count(ChunkReader3ds& reader, const char* of_what, std::size_t element_size,
+                       const MeshSource& source) {
+    const std::size_t count = reader.next_word();
+    if (count * element_size > reader.bytes_left())
+        source.fail(ErrorCode::Damaged, "a list of " + std::to_string(count) + " " + of_what + " has only " +
+                                            std::to_string(reader.bytes_left()) + " bytes");
+    return count;
+}
+
+void read_vertices(const MeshSource& source, const Chunk3ds& chunk, const std::string& mesh,
+                   std::vector<Vec3d>& vertices) {
+    ChunkReader3ds reader(source, chunk);
+    for (std::size_t left = next_count(reader, "vertices", 3 * sizeof(float), source); left > 0; --left) {
+        vertices.push_back(reader.next_vector());
+        if (!is_finite(vertices.back()))
+            source.fail(ErrorCode::InvalidMesh,
+                        "vertex " + std::to_string(vertices.size() - 1) + " of " + mesh + " is not finite");
+    }
+}
+
+void read_faces(const MeshSource& source, const Chunk3ds& chunk, std::vector<std::uint32_t>& corners) {
+    ChunkReader3ds reader(source, chunk);
+    for (std::size_t left = next_count(reader, "faces", 4 * sizeof(std::uint16_t), source); left > 0;
+         --left) {
+        for (int corner = 0; corner < 3; ++corner) corners.push_back(reader.next_word());
+        reader.skip(sizeof(std::uint16_t)); // flags
+    }
+}
+
+/// Positions are those in the world, wherever keyframes move the object. Lists of one kind are joined, in
+/// whatever order they come. Each face gets vertices of its own, so that the welded mesh has them in the
+/// order of the faces.
+SceneShape read_shape(const MeshSource& source, const Chunk3ds& mesh, const std::string& name) {
+    SceneShape shape;
+    shape.name = "the mesh " + in_quotes(name);
+    std::vector<Vec3d> vertices;
+    std::vector<std::uint32_t> corners;
+    for_each_chunk_3ds(source, mesh.begin, mesh.end, [&](const Chunk3ds& chunk) {
+        if (chunk.id == kVertexList) read_vertices(source, chunk, shape.name, vertices);
+        if (chunk.id == kFaceList) read_faces(source, chunk, corners);
+    });
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        if (corners[i] >= vertices.size())
+            source.fail(ErrorCode::InvalidMesh, "face " + std::to_string(i / 3) + " of " + shape.name +
+                                                    " refers to vertex " + std::to_string(corners[i]) +
+                                                    ", but there are " + std::to_string(vertices.size()) +
+                                                    " vertices, numbered from 0");
+        shape.vertices.push_back(vertices[corners[i]]);
+        shape.corners.push_back(static_cast<std::uint32_t>(i));
+    }
+    shape.corner_counts.assign(corners.size() / 3, 3);
+    return shape;
+}
+
+class Reader3ds {
+  public:
+    explicit Reader3ds(const MeshSource& source) : source_(source) {}
+
+    SceneFile read(Wanted wanted) {
+        read_main_chunk();
+        scene_.nodes.push_back({"", 0, {}, {}}); // leads what no keyframes lead
+        places_ = place_nodes_3ds(nodes_, scene_);
+        for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_of_objects_[nodes_[i].object].push_back(i);
+        to_world_ = rest_pose(scene_).to_world;
+        std::map<std::string, std::size_t> object_counts, placed_counts;
+        for (const std::string& name : object_names_) ++object_counts[name];
+        for (std::size_t object = 0; object < object_names_.size(); ++object) {
+            const std::string& name = object_names_[object];
+            std::vector<std::size_t> nodes = nodes_of_objects_[name];
+            const std::size_t number = placed_counts[name]++;
+            // Objects of one name have a node each, in their order; of a single object, all nodes but the
+            // first place copies.
+            if (object_counts[name] > 1)
+                nodes = number < nodes.size() ? std::vector{nodes[number]} : std::vector<std::size_t>{};
+            add_instances(object, nodes, wanted);
+        }
+        if (wanted == Wanted::Animation) add_animation();
+        return std::move(scene_);
+    }
+
+  private:
+    void read_main_chunk() {
+        ByteReader head(source_, sizeof(kMain), ByteOrder::LittleEndian);
+        const std::size_t length = head.next<std::uint32_t>();
+        if (length > source_.bytes.size())
+            source_.fail(ErrorCode::Damaged, "the file says that it has " + std::to_string(length) +
+                                                 " bytes, but it has " +
+                                                 std::to_string(source_.bytes.size()));
+        for_each_chunk_3ds(source_, head.offset(), length, [&](const Chunk3ds& chunk) {
+            if (chunk.id == kKeyframes) nodes_ = read_nodes_3ds(source_, chunk);
+            if (chunk.id == kEditor)
+                for_each_chunk_3ds(source_, chunk.begin, chunk.end, [&](const Chunk3ds& object) {
+                    if (object.id == kObject) read_object(object);
+                });
+        });
+    }
+
+    void read_object(const Chunk3ds& object) {
+        ChunkReader3ds reader(source_, object);
+        const std::string name = reader.next_name();
+        for_each_chunk_3ds(source_, reader.offset(), object.end, [&](const Chunk3ds& chunk) {
+            if (chunk.id != kMesh) return;
+            object_names_.push_back(name);
+            scene_.shapes.push_back(read_shape(source_, chunk, name));
+        });
+    }
+
+    /// The positions of an object are those in the world as its first node stands at rest.
+    void add_instances(std::size_t object, const std::vector<std::size_t>& nodes, Wanted wanted) {
+        if (nodes.size() > 1 || wanted == Wanted::Animation)
+            for (const std::size_t node : nodes) require_placed(node);
+        if (nodes.empty() || !is_followable(nodes.front()))
+            return scene_.instances.push_back({object, 0, {}, {}, {}});
+        const Affine from_world = to_world_[places_[nodes.front()]].inverse();
+        for (const std::size_t node : nodes) {
+            budget_.spend(scene_.shapes[object].corners.size() + 1);
+            scene_.instances.push_back({object, places_[node], from_world, {}, {}});
+        }
+    }
+
+    bool is_followable(std::size_t node) const {
+        if (places_[node] == kNotPlaced) return false;
+        const double determinant = to_world_[places_[node]].determinant();
+        return std::isnormal(determinant);
+    }
+
+    void require_placed(std::size_t node) const {
+        if (!is_followable(node))
+            source_.fail(ErrorCode::InvalidMesh,
+                         "the keyframes of the object " + in_quotes(nodes_[node].object) +
+                             " hang on a light, on a camera or on themselves, or scale it to nothing at "
+                             "first; export it without a parent");
+    }
+
+    void add_animation() {
+        SceneAnimation animation{"keyframes", {}};
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            const NodeMotion& motion = nodes_[i].motion;
+            const std::size_t key_count = std::max(
+                {motion.positions.times.size(), motion.rotations.times.size(), motion.scales.times.size()});
+            if (key_count > 1 && places_[i] != kNotPlaced) animation.nodes[places_[i]] = motion;
+        }
+        if (!animation.nodes.empty()) scene_.animations.push_back(std::move(animation));
+    }
+
+    const MeshSource& source_;
+    Budget budget_{source_};
+    SceneFile scene_;
+    std::vector<std::string> object_names_; ///< of the shapes
+    std::vector<Node3ds> nodes_;
+    std::vector<std::size_t> places_; ///< of the nodes, in scene_.nodes
+    std::vector<Affine> to_world_;    ///< of scene_.nodes, at rest
+    std::map<std::string, std::vector<std::size_t>> nodes_of_objects_;
+};
+
+} // namespace
+
+void require_beginning_of_3ds(const MeshSource& beginning) {
+    if (beginning.bytes.size() < sizeof(kMain) + sizeof(std::uint32_t) ||
+        ByteReader(beginning, 0, ByteOrder::LittleEndian).next<std::uint16_t>() != kMain)
+        beginning.fail(ErrorCode::WrongFormat, "the bytes 4D 4D with which a 3DS file begins were not found");
+}
+
+SceneFile read_3ds(const MeshSource& source, Wanted wanted) {
+    require_beginning_of_3ds(source);
+    return Reader3ds(source).read(wanted);
+}
+
+} // namespace echinus
