@@ -40,7 +40,8 @@ struct ColliderMap {
 /// A rigid model in the world: its map, pose, scale and motion. A plain value; copies of a map share its
 /// arrays, so copies are cheap.
 ///
-/// point_world = pose.to_world(scale * point_local), component by component
+/// point_world = pose.to_world(scale * (origin + point_local)), component by component. The origin is that of
+/// the map (ExactMapView::origin), mostly 0; a simulation takes no other.
 struct Collider {
     ColliderMap map;       ///< not a null pointer
     RigidTransform pose{}; ///< its rotation of unit length

@@ -103,6 +103,7 @@ struct DistanceMapView {
     std::span<const float> entries_float32;
     std::span<const std::uint16_t>
         entries_unorm16; ///< [entry_count] the same * 65535 / largest_entry(), or empty
+    Vec3d origin{};      ///< TriangleMesh::origin: where the local frame begins. Queries do not look at it
 
     std::size_t direction_count() const;
     /// R; octahedral: a little more than sqrt(3) R, the largest L1 radius in the bounding sphere;

@@ -129,6 +129,7 @@ struct ExactMapView {
     /// from the faces.
     WindingTree winding_tree;
     bool winding_tree_has_caps = false;
+    Vec3d origin{}; ///< TriangleMesh::origin: where the local frame begins. Queries do not look at it
 
     std::size_t cell_count() const { return std::size_t{8} * divisions * divisions; }
     std::size_t face_count() const { return face_numbers.size(); }

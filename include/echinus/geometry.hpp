@@ -61,6 +61,12 @@ bool is_finite(const Vec3<T>& a) {
     return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
+/// A point in the frame of a file, relative to the origin of a mesh or map (TriangleMesh::origin). Rounded to
+/// float last, so that nothing is lost far from where the file's frame begins.
+inline Vec3f to_local(const Vec3d& point, const Vec3d& origin) {
+    return Vec3f(point - origin);
+}
+
 /// A ball: all points within `radius` of `centre`.
 struct Sphere {
     Vec3d centre;

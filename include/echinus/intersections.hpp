@@ -30,7 +30,7 @@ struct FacePair {
 // boxes). A face { v, w, w } is an edge without area, such as a piece of thread, and counts as that segment.
 
 /// The pairs of a face of `a` and a face of `b` that intersect, ascending, both meshes in one frame.
-/// @throws Error InvalidMesh as require_valid() does, for either mesh
+/// @throws Error InvalidMesh as require_valid() does, for either mesh, or when their origins differ
 std::vector<FacePair> intersecting_pairs(const TriangleMesh& a, const TriangleMesh& b);
 
 /// The pairs a < b of faces of one mesh that intersect beyond what they share, ascending: a part of one

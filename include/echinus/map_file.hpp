@@ -18,7 +18,9 @@ ECHINUS_EXPORT_BEGIN
 /// in place.
 namespace echinus {
 
-inline constexpr std::uint32_t kMapFileVersion = 1;
+/// The versions that are read. Files are written in the older one wherever it will do: only maps with an
+/// origin (ExactMapView::origin) need the newer one, since an older reader would misplace them.
+inline constexpr std::uint32_t kMapFileVersion = 2, kMapFileVersionWithoutOrigin = 1;
 
 /// Optional notes beside a map. They are not part of the map: without notes, the same map gives the same
 /// bytes.

@@ -20,9 +20,19 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// A triangle soup with shared vertices, the input of every map. It has no invariants; inspect() reports its
 /// properties.
 struct TriangleMesh {
-    std::vector<Vec3f> vertices; ///< [vertex_count] positions in the caller's unit
+    std::vector<Vec3f> vertices; ///< [vertex_count] positions in the caller's unit, relative to `origin`
     std::vector<Triangle> faces; ///< [face_count]
+    /// Where the vertices' frame begins in that of the file. 0, unless the mesh is so far from the file's
+    /// origin that floats could not hold its shape (docs/conventions.md, "Large coordinates"). All functions
+    /// that take or return positions of this mesh, or of a map of it, mean positions relative to it:
+    /// to_local() makes them.
+    Vec3d origin{};
 };
+
+/// A mesh of positions in double, rounded to float. Where float is too coarse for them, relative to an
+/// origin.
+/// @param positions  [vertex_count]
+TriangleMesh local_mesh(std::span<const Vec3d> positions, std::vector<Triangle> faces);
 
 /// How often a fault occurs, and the first few faces at which it does.
 struct Fault {
@@ -47,6 +57,11 @@ struct MeshReport {
     Fault degenerate_faces;   ///< faces with two equal corners or with area zero
     double signed_volume = 0; ///< positive where faces turn outwards; of limited meaning when not closed
     Sphere bounding_sphere;   ///< the smallest that encloses all vertices used by faces
+    /// The step of float at the largest coordinate, in the file's frame, where all coordinates are floats and
+    /// half of this step exceeds a step of a map's lattice, R / 2^19; otherwise 0. If the coordinates were
+    /// rounded before they came here, the shape is off by up to half the step, and so are points that come as
+    /// floats in that frame.
+    double rounding_step = 0;
 };
 
 /// Examines a mesh. Time O(n log n).

@@ -22,8 +22,9 @@ namespace echinus {
 /// vertices that no face uses are dropped; points, lines (but see read_mesh_and_edges()), normals, colours
 /// and materials are ignored. Nothing is repaired: inspect() reports the faults of the result. Face numbers
 /// are those of the file, a polygon of k corners counted as its k - 2 triangles, and a strip of triangles in
-/// a PLY as those that have three different corners. Coordinates in text are rounded to the nearest float.
-/// The same file gives the same mesh.
+/// a PLY as those that have three different corners. Coordinates are read in double; where floats could not
+/// hold the shape, as in maps of a country, the mesh has an origin (TriangleMesh::origin), and otherwise they
+/// are rounded to the nearest float. The same file gives the same mesh.
 ///
 /// Text is ASCII or UTF-8, with or without a byte order mark, with lines that end as on Unix, Windows or old
 /// Macs; Ctrl-Z or zeros may fill it up. Bytes after the faces of a binary STL are ignored unless they could
@@ -53,7 +54,8 @@ struct MeshAndEdges {
 MeshAndEdges read_mesh_and_edges(const std::filesystem::path& path);
 
 /// Writes OBJ, PLY (binary), STL (binary) or OFF, by the file name's extension. Floats read back with the
-/// same bits. Writes to a temporary name beside the target and renames it, so a failure leaves no partial
+/// same bits. A mesh with an origin is written in the file's frame, in decimals (STL, too) or as doubles
+/// (PLY). Writes to a temporary name beside the target and renames it, so a failure leaves no partial
 /// file and keeps the old one.
 ///
 /// @throws Error Unwritable, WrongFormat for an extension that is not in the list, or InvalidMesh as
@@ -79,8 +81,8 @@ struct TetrahedraFile {
 /// Reads .msh (Gmsh 2.2 and 4.1, text and binary), .vtk (legacy, an unstructured grid, text and binary) and
 /// TetGen's .node with .ele: either path names the pair, whose names differ in the extension only, and
 /// numbers count from 0 or 1. Points, lines and plane cells are ignored, as are data; other cells than
-/// tetrahedra of four corners are refused. Tetrahedra keep their order. Coordinates are rounded to the
-/// nearest float. Positions are not welded.
+/// tetrahedra of four corners are refused. Tetrahedra keep their order. Coordinates are read
+/// as by read_mesh(). Positions are not welded.
 ///
 /// @throws Error Unreadable, WrongFormat, Damaged or InvalidMesh as read_mesh() does. InvalidMesh also for a
 /// tetrahedron that is flat, and for two on the same side of a face of theirs, as where an inverted one lies
@@ -88,7 +90,8 @@ struct TetrahedraFile {
 TetrahedraFile read_tetrahedra(const std::filesystem::path& path);
 
 /// Writes .msh (Gmsh 2.2, text) or .vtk (legacy, text), by the file name's extension. Floats read back with
-/// the same bits. Writes as write_mesh() does.
+/// the same bits; of a mesh with an origin, doubles in the file's frame are written. Writes as write_mesh()
+/// does.
 ///
 /// @throws Error Unwritable, WrongFormat for another extension, or InvalidMesh as
 /// require_valid_tetrahedra() does

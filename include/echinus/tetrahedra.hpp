@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 ECHINUS_EXPORT_BEGIN
@@ -23,9 +24,15 @@ using Tetrahedron = std::array<std::uint32_t, 4>;
 /// A body cut into tetrahedra that share vertices. It has no invariants; require_valid_tetrahedra() tells
 /// whether every other function takes it.
 struct TetrahedralMesh {
-    std::vector<Vec3f> vertices;         ///< [vertex_count] positions in the caller's unit
+    std::vector<Vec3f> vertices; ///< [vertex_count] positions in the caller's unit, relative to `origin`
     std::vector<Tetrahedron> tetrahedra; ///< [tetrahedron_count]
+    Vec3d origin{};                      ///< as TriangleMesh::origin
 };
+
+/// A body of positions in double, rounded to float. Where float is too coarse for them, relative to an
+/// origin.
+/// @param positions  [vertex_count]
+TetrahedralMesh local_body(std::span<const Vec3d> positions, std::vector<Tetrahedron> tetrahedra);
 
 /// Each tetrahedron is positive, and two that share a face lie on either side of it. Vertices that no
 /// tetrahedron uses may be anything. Signs are exact. Time O(n log n).

@@ -140,7 +140,7 @@ SweepHit sweep(const Collider& collider, const RigidTransform& previous_pose, Ve
     const auto* exact = std::get_if<ExactMap>(&collider.map.kind);
     if (exact == nullptr) return hit;
     const FrameChange frame(collider);
-    const Vec3f from_local = FrameChange(previous_pose, collider.scale).point_to_local(from_world);
+    const Vec3f from_local = FrameChange(collider, previous_pose).point_to_local(from_world);
     const SweepHit met = sweep(exact->view(), from_local, frame.point_to_local(to_world));
     if (!met.found()) return hit;
     hit = met;

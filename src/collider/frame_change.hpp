@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <variant>
 
 namespace echinus {
 
@@ -26,6 +28,17 @@ inline Vec3d times(const Vec3d& a, const Vec3d& b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};
 }
 
+/// Where the local frame of a collider's map begins; 0 for a map of the user's own.
+inline Vec3d origin_of(const std::shared_ptr<const CustomMap>&) {
+    return {};
+}
+inline Vec3d origin_of(const auto& map) {
+    return map.view().origin;
+}
+inline Vec3d origin_of(const ColliderMap& map) {
+    return std::visit([](const auto& kind) { return origin_of(kind); }, map.kind);
+}
+
 /// A pose and a scale, ready to be applied to many points: nine products instead of a quaternion.
 class FrameChange {
   public:
@@ -39,7 +52,12 @@ class FrameChange {
         least_scale_ = std::min({sizes.x, sizes.y, sizes.z});
         uniform_ = scale.x > 0 && scale.x == scale.y && scale.x == scale.z;
     }
-    explicit FrameChange(const Collider& collider) : FrameChange(collider.pose, collider.scale) {}
+    explicit FrameChange(const Collider& collider) : FrameChange(collider, collider.pose) {}
+    /// The collider's, in another pose.
+    FrameChange(const Collider& collider, const RigidTransform& pose) : FrameChange(pose, collider.scale) {
+        const Vec3d origin = origin_of(collider.map);
+        if (origin != Vec3d{}) translation_ = pose.to_world(times(origin, scale_));
+    }
 
     template <typename T>
     Vec3f point_to_local(const Vec3<T>& point_world) const {

@@ -55,12 +55,12 @@ inline bool may_touch(const Collider& collider, const PointBox& points, float ma
     if (!local) return true;
     // Points are rounded to floats around the map's origin, its centre to doubles around the world's.
     constexpr double kFloats = 1e-6, kDoubles = 1e-14;
-    const Vec3d& s = collider.scale;
+    const Vec3d &s = collider.scale, origin = origin_of(collider.map);
     const double size = std::max({std::fabs(s.x), std::fabs(s.y), std::fabs(s.z)});
     const double rounding = kFloats * size * (length(local->centre) + local->radius) +
-                            kDoubles * length(collider.pose.translation);
+                            kDoubles * (length(collider.pose.translation) + size * length(origin));
     const double reach = size * local->radius + std::max(0.0F, margin_world) * (1 + kFloats) + rounding;
-    return !(points.distance(collider.pose.to_world(times(local->centre, s))) > reach);
+    return !(points.distance(collider.pose.to_world(times(local->centre + origin, s))) > reach);
 }
 
 } // namespace echinus

@@ -37,6 +37,7 @@ DistanceMapView read_view(const schema::DistanceMap& stored) {
     read_array(stored.entry_offsets(), view.entry_offsets);
     read_array(stored.entries_float32(), view.entries_float32);
     read_array(stored.entries_unorm16(), view.entries_unorm16);
+    view.origin = from_stored(stored.origin());
     return view;
 }
 
@@ -71,12 +72,13 @@ flatbuffers::Offset<schema::DistanceMap> write_table(flatbuffers::FlatBufferBuil
     const auto statistics = write_statistics(builder, map.statistics());
     const schema::Point centre = to_stored(view.centre);
     const schema::Point scale = to_stored(view.scale);
+    const schema::Origin origin = to_stored(view.origin);
     return schema::CreateDistanceMap(
         builder, &centre, view.radius, view.longitude_count, view.colatitude_count,
         schema::PoleAxis(view.pole_axis), schema::EntryFormat(view.entry_format),
         schema::VertexCorrection(view.correction), view.centre_inside, entry_offsets, entries_float32,
         entries_unorm16, statistics, schema::DirectionGrid(view.grid), view.divisions,
-        view.grid == DirectionGrid::Ellipsoidal ? &scale : nullptr);
+        view.grid == DirectionGrid::Ellipsoidal ? &scale : nullptr, has_origin(map) ? &origin : nullptr);
 }
 
 DistanceMap read_table(const schema::DistanceMap& stored, std::uint64_t source_hash,

@@ -51,6 +51,7 @@ ExactMapView read_view(const schema::ExactMap& stored) {
     read_array(stored.face_numbers32(), view.face_numbers.wide);
     read_array(stored.nodes(), view.nodes);
     read_array(stored.border(), view.border);
+    view.origin = from_stored(stored.origin());
     return view;
 }
 
@@ -95,10 +96,11 @@ flatbuffers::Offset<schema::ExactMap> write_table(flatbuffers::FlatBufferBuilder
     const auto border = write_if_any(builder, view.border);
     const auto statistics = write_statistics(builder, map.statistics());
     const schema::Point centre = to_stored(view.centre);
-    return schema::CreateExactMap(builder, &centre, view.radius, view.divisions,
-                                  schema::InsideRule(view.rule), band_offsets, bands, winding_below,
-                                  references16, references32, reference_parts, vertices, corners16, corners32,
-                                  face_numbers16, face_numbers32, nodes, border, statistics);
+    const schema::Origin origin = to_stored(view.origin);
+    return schema::CreateExactMap(
+        builder, &centre, view.radius, view.divisions, schema::InsideRule(view.rule), band_offsets, bands,
+        winding_below, references16, references32, reference_parts, vertices, corners16, corners32,
+        face_numbers16, face_numbers32, nodes, border, statistics, has_origin(map) ? &origin : nullptr);
 }
 
 ExactMap read_table(const schema::ExactMap& stored, std::uint64_t source_hash,

@@ -2,6 +2,7 @@
 #include "files/mapped_file.hpp"
 #include "map_file/distance_map_table.hpp"
 #include "map_file/exact_map_table.hpp"
+#include "map_file/table_arrays.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/map_file.hpp>
@@ -44,10 +45,19 @@ void require_map_file(std::span<const std::byte> bytes, const std::string& name)
 }
 
 void require_known_version(const schema::AnyVersion& file, const std::string& name) {
-    if (file.version() == kMapFileVersion) return;
+    if (file.version() == kMapFileVersion || file.version() == kMapFileVersionWithoutOrigin) return;
     throw Error(ErrorCode::UnsupportedVersion,
                 name + ": a map file of version " + std::to_string(file.version()) +
-                    ", but this library reads version " + std::to_string(kMapFileVersion) + kBuildAgain);
+                    ", but this library reads versions " + std::to_string(kMapFileVersionWithoutOrigin) +
+                    " and " + std::to_string(kMapFileVersion) + kBuildAgain);
+}
+
+/// A map has an origin where its version says so, and only there.
+void require_origin(const schema::Origin* origin, bool wanted, const std::string& name) {
+    const Vec3d place = from_stored(origin);
+    if (!wanted && origin != nullptr) Checker(name).fail("it has an origin, which its version does not have");
+    if (wanted && (place == Vec3d{} || !is_finite(place)))
+        Checker(name).fail("its origin is missing, 0 or not finite");
 }
 
 /// The root table, after checking structure and version.
@@ -89,10 +99,15 @@ Kind require_kind(const AnyMap& map, const std::string& name) {
 AnyMap load_map(std::span<const std::byte> bytes, std::shared_ptr<const void> storage,
                 const std::string& name) {
     const schema::MapFile& file = verified_root(bytes, name);
-    if (const auto* map = file.map_as_DistanceMap())
+    const bool has_origin = file.version() == kMapFileVersion;
+    if (const auto* map = file.map_as_DistanceMap()) {
+        require_origin(map->origin(), has_origin, name);
         return read_table(*map, file.source_hash(), std::move(storage), name);
-    if (const auto* map = file.map_as_ExactMap())
+    }
+    if (const auto* map = file.map_as_ExactMap()) {
+        require_origin(map->origin(), has_origin, name);
         return read_table(*map, file.source_hash(), std::move(storage), name);
+    }
     if (file.map_type() > schema::Map::MAX)
         throw Error(ErrorCode::UnsupportedVersion, name + ": a map of the unknown kind " +
                                                        std::to_string(int(file.map_type())) +

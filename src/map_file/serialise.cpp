@@ -1,6 +1,7 @@
 #include "files/atomic_file.hpp"
 #include "map_file/distance_map_table.hpp"
 #include "map_file/exact_map_table.hpp"
+#include "map_file/table_arrays.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/map_file.hpp>
@@ -39,8 +40,9 @@ std::vector<std::byte> serialise_kind(const Kind& map, const MapFileNotes& notes
     require_file_size(map.view().byte_count());
     Builder builder;
     const auto body = write_table(builder, map);
-    const auto file = schema::CreateMapFile(builder, kMapFileVersion, map.source_hash(), type_of(map),
-                                            body.Union(), write_notes(builder, notes));
+    const std::uint32_t version = has_origin(map) ? kMapFileVersion : kMapFileVersionWithoutOrigin;
+    const auto file = schema::CreateMapFile(builder, version, map.source_hash(), type_of(map), body.Union(),
+                                            write_notes(builder, notes));
     schema::FinishMapFileBuffer(builder, file);
     const auto* first = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
     return {first, first + builder.GetSize()};

@@ -13,6 +13,12 @@ namespace echinus {
 
 static_assert(std::endian::native == std::endian::little, "map files are little-endian and used in place");
 
+/// Is the map's frame another one than that of its mesh's file?
+template <typename Map>
+bool has_origin(const Map& map) {
+    return map.view().origin != Vec3d{};
+}
+
 /// The schema's enumerators equal those of the public headers, so values need no translation.
 template <typename Stored, typename Ours>
 constexpr bool same_value(Stored stored, Ours ours) {
@@ -53,6 +59,14 @@ flatbuffers::Offset<StoredArray<T>> write_if_any(flatbuffers::FlatBufferBuilder&
 template <typename T>
 void read_array(const StoredArray<T>* stored, std::span<const T>& array) {
     if (stored != nullptr) array = {reinterpret_cast<const T*>(stored->Data()), stored->size()};
+}
+
+inline schema::Origin to_stored(const Vec3d& origin) {
+    return {origin.x, origin.y, origin.z};
+}
+/// Of a map that has none, 0.
+inline Vec3d from_stored(const schema::Origin* origin) {
+    return origin == nullptr ? Vec3d{} : Vec3d{origin->x(), origin->y(), origin->z()};
 }
 
 inline schema::Point to_stored(const Vec3f& point) {

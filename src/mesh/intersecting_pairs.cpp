@@ -1,6 +1,7 @@
 #include "mesh/box_tree.hpp"
 #include "mesh/simplices_meet.hpp"
 
+#include <echinus/error.hpp>
 #include <echinus/intersections.hpp>
 
 #include <algorithm>
@@ -116,6 +117,9 @@ bool triangles_intersect(const std::array<Vec3f, 3>& a, const std::array<Vec3f, 
 std::vector<FacePair> intersecting_pairs(const TriangleMesh& a, const TriangleMesh& b) {
     require_valid(a);
     require_valid(b);
+    if (a.origin != b.origin)
+        throw Error(ErrorCode::InvalidMesh, "the meshes have different origins; move the vertices of one to "
+                                            "the other's frame first");
     std::vector<FacePair> pairs;
     for_each_overlap(BoxTree(a), 0, BoxTree(b), 0, [&](std::uint32_t p, std::uint32_t q) {
         if (simplices_meet(simplex_of(a, p), simplex_of(b, q))) pairs.push_back({p, q});

@@ -1,12 +1,14 @@
 #include "mesh/components.hpp"
 #include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
+#include "mesh/local_frame.hpp"
 #include "mesh/union_find.hpp"
 #include "mesh/used_vertices.hpp"
 
 #include <echinus/mesh.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace echinus {
 
@@ -81,6 +83,20 @@ double signed_volume(const TriangleMesh& mesh, const Vec3d& reference) {
     return sum / 6;
 }
 
+/// MeshReport::rounding_step
+double rounding_step(const TriangleMesh& mesh, double radius) {
+    constexpr double kLatticeStep = 0x1p-19; // of the radius: directions/lattice.hpp
+    double largest = 0;
+    for (const Triangle& face : mesh.faces)
+        for (const std::uint32_t vertex : face) {
+            const Vec3d p = Vec3d(mesh.vertices[vertex]) + mesh.origin;
+            if (Vec3d(Vec3f(p)) != p) return 0;
+            largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        }
+    const double rounding = float_rounding(largest);
+    return rounding > radius * kLatticeStep ? 2 * rounding : 0;
+}
+
 } // namespace
 
 MeshReport inspect(const TriangleMesh& mesh) {
@@ -96,6 +112,7 @@ MeshReport inspect(const TriangleMesh& mesh) {
     report.degenerate_faces = make_fault(find_degenerate_faces(mesh));
     report.bounding_sphere = smallest_enclosing_sphere(used_positions(mesh));
     report.signed_volume = signed_volume(mesh, report.bounding_sphere.centre);
+    report.rounding_step = rounding_step(mesh, report.bounding_sphere.radius);
     return report;
 }
 

@@ -50,6 +50,7 @@ WeldedMesh weld_with_sources(const TriangleMesh& mesh) {
     }
 
     WeldedMesh welded;
+    welded.mesh.origin = mesh.origin;
     for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex)
         if (new_index[vertex] != kUnused) {
             new_index[vertex] = kept_as<std::uint32_t>(welded.sources.size());

@@ -1,9 +1,13 @@
 #include "mesh_io/encode.hpp"
 
+#include "mesh_io/line_scanner.hpp"
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
+#include <limits>
+#include <string_view>
 
 namespace echinus {
 
@@ -34,8 +38,43 @@ void append_little_endian(std::string& bytes, Number value) {
     bytes.append(raw.data(), raw.size());
 }
 
-void append_little_endian(std::string& bytes, const Vec3f& v) {
-    for (const float coordinate : {v.x, v.y, v.z}) append_little_endian(bytes, coordinate);
+template <typename Number>
+void append_little_endian(std::string& bytes, const Vec3<Number>& v) {
+    for (const Number coordinate : {v.x, v.y, v.z}) append_little_endian(bytes, coordinate);
+}
+
+template <typename Mesh>
+bool has_origin(const Mesh& mesh) {
+    return mesh.origin != Vec3d{};
+}
+
+/// The coordinate in the frame of files: of the numbers that lead back to the same float, the one with the
+/// fewest decimals.
+double in_file(float local, double origin) {
+    const double exact = local + origin;
+    for (int decimals = 0; decimals < std::numeric_limits<double>::max_digits10; ++decimals) {
+        std::array<char, 32> digits;
+        const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), exact,
+                                       std::chars_format::scientific, decimals);
+        double shorter = 0;
+        parse_number(std::string_view(digits.data(), end.ptr - digits.data()), shorter);
+        if (static_cast<float>(shorter - origin) == local) return shorter;
+    }
+    return exact;
+}
+
+Vec3d in_file(const Vec3f& local, const Vec3d& origin) {
+    return {in_file(local.x, origin.x), in_file(local.y, origin.y), in_file(local.z, origin.z)};
+}
+
+/// In the frame of files: as floats, or as doubles where the mesh has an origin.
+template <typename Mesh, typename Write>
+void for_each_position(const Mesh& mesh, const Write& write) {
+    for (const Vec3f& vertex : mesh.vertices)
+        if (has_origin(mesh))
+            write(in_file(vertex, mesh.origin));
+        else
+            write(vertex);
 }
 
 Vec3f unit_normal(const TriangleMesh& mesh, const Triangle& face) {
@@ -49,10 +88,10 @@ Vec3f unit_normal(const TriangleMesh& mesh, const Triangle& face) {
 
 std::string encode_obj(const TriangleMesh& mesh) {
     std::string text;
-    for (const Vec3f& p : mesh.vertices) {
+    for_each_position(mesh, [&](const auto& p) {
         text += "v ";
         append_line(text, p.x, p.y, p.z);
-    }
+    });
     for (const Triangle& f : mesh.faces) {
         text += "f ";
         append_line(text, f[0] + 1ULL, f[1] + 1ULL, f[2] + 1ULL);
@@ -75,7 +114,7 @@ std::string encode_obj_lines(std::span<const std::array<std::uint32_t, 2>> edges
 std::string encode_off(const TriangleMesh& mesh) {
     std::string text =
         "OFF\n" + std::to_string(mesh.vertices.size()) + " " + std::to_string(mesh.faces.size()) + " 0\n";
-    for (const Vec3f& p : mesh.vertices) append_line(text, p.x, p.y, p.z);
+    for_each_position(mesh, [&](const auto& p) { append_line(text, p.x, p.y, p.z); });
     for (const Triangle& f : mesh.faces) {
         text += "3 ";
         append_line(text, f[0], f[1], f[2]);
@@ -84,11 +123,12 @@ std::string encode_off(const TriangleMesh& mesh) {
 }
 
 std::string encode_ply(const TriangleMesh& mesh) {
-    std::string bytes =
-        "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.vertices.size()) +
-        "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-        std::to_string(mesh.faces.size()) + "\nproperty list uchar uint vertex_indices\nend_header\n";
-    for (const Vec3f& p : mesh.vertices) append_little_endian(bytes, p);
+    const std::string property = std::string("\nproperty ") + (has_origin(mesh) ? "double " : "float ");
+    std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                        std::to_string(mesh.vertices.size()) + property + "x" + property + "y" + property +
+                        "z\nelement face " + std::to_string(mesh.faces.size()) +
+                        "\nproperty list uchar uint vertex_indices\nend_header\n";
+    for_each_position(mesh, [&](const auto& p) { append_little_endian(bytes, p); });
     for (const Triangle& f : mesh.faces) {
         append_little_endian(bytes, std::uint8_t{3});
         for (const std::uint32_t vertex : f) append_little_endian(bytes, vertex);
@@ -96,7 +136,29 @@ std::string encode_ply(const TriangleMesh& mesh) {
     return bytes;
 }
 
+namespace {
+
+std::string encode_text_stl(const TriangleMesh& mesh) {
+    std::string text = "solid\n";
+    for (const Triangle& f : mesh.faces) {
+        const Vec3f normal = unit_normal(mesh, f);
+        text += "facet normal ";
+        append_line(text, normal.x, normal.y, normal.z);
+        text += "outer loop\n";
+        for (const std::uint32_t vertex : f) {
+            const Vec3d p = in_file(mesh.vertices[vertex], mesh.origin);
+            text += "vertex ";
+            append_line(text, p.x, p.y, p.z);
+        }
+        text += "endloop\nendfacet\n";
+    }
+    return text + "endsolid\n";
+}
+
+} // namespace
+
 std::string encode_stl(const TriangleMesh& mesh) {
+    if (has_origin(mesh)) return encode_text_stl(mesh); // the binary kind has floats only
     std::string bytes = "binary STL";
     bytes.resize(80, ' ');
     append_little_endian(bytes, static_cast<std::uint32_t>(mesh.faces.size()));
@@ -111,12 +173,12 @@ std::string encode_stl(const TriangleMesh& mesh) {
 std::string encode_msh(const TetrahedralMesh& mesh) {
     std::string text =
         "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(mesh.vertices.size()) + "\n";
-    for (std::size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
-        const Vec3f& p = mesh.vertices[vertex];
-        append_text(text, vertex + 1);
+    std::size_t node = 0;
+    for_each_position(mesh, [&](const auto& p) {
+        append_text(text, ++node);
         text += ' ';
         append_line(text, p.x, p.y, p.z);
-    }
+    });
     text += "$EndNodes\n$Elements\n" + std::to_string(mesh.tetrahedra.size()) + "\n";
     for (std::size_t number = 0; number < mesh.tetrahedra.size(); ++number) {
         append_text(text, number + 1);
@@ -133,8 +195,8 @@ std::string encode_msh(const TetrahedralMesh& mesh) {
 std::string encode_vtk(const TetrahedralMesh& mesh) {
     const std::string count = std::to_string(mesh.tetrahedra.size());
     std::string text = "# vtk DataFile Version 3.0\ntetrahedra\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " +
-                       std::to_string(mesh.vertices.size()) + " float\n";
-    for (const Vec3f& p : mesh.vertices) append_line(text, p.x, p.y, p.z);
+                       std::to_string(mesh.vertices.size()) + (has_origin(mesh) ? " double\n" : " float\n");
+    for_each_position(mesh, [&](const auto& p) { append_line(text, p.x, p.y, p.z); });
     text += "CELLS " + count + " " + std::to_string(5 * mesh.tetrahedra.size()) + "\n";
     for (const Tetrahedron& corners : mesh.tetrahedra) {
         text += "4 ";

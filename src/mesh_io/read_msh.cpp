@@ -46,7 +46,7 @@ class MshReader {
     MshReader(NumberSource& numbers, bool is_binary, bool is_version_4)
         : numbers_(numbers), is_binary_(is_binary), is_version_4_(is_version_4) {}
 
-    TetrahedralMesh read() {
+    TetrahedraInFile read() {
         bool has_nodes = false, has_elements = false;
         while (!has_nodes || !has_elements) {
             const std::string section(
@@ -179,7 +179,7 @@ class MshReader {
         mesh_.vertices.emplace_back();
     }
 
-    Vec3f next_position() { return Vec3f(numbers_.position(NumberType::Float64)); }
+    Vec3d next_position() { return numbers_.position(NumberType::Float64); }
 
     void read_element(std::int64_t type, NumberType number_type) {
         if (type == kTetrahedron) {
@@ -205,13 +205,13 @@ class MshReader {
 
     NumberSource& numbers_;
     bool is_binary_, is_version_4_;
-    TetrahedralMesh mesh_;
+    TetrahedraInFile mesh_;
     std::unordered_map<std::int64_t, std::uint32_t> index_of_; ///< of a node, by its number
 };
 
 } // namespace
 
-TetrahedralMesh read_msh(const MeshSource& source) {
+TetrahedraInFile read_msh(const MeshSource& source) {
     LineScanner scanner(source);
     scanner.require_line("$MeshFormat");
     if (const std::string_view word = scanner.next_word(); word != "$MeshFormat")

@@ -52,7 +52,7 @@ class ObjReader {
 
     /// A weight or a colour may follow.
     void read_vertex() {
-        mesh_.vertices.emplace_back(scanner_.next_position());
+        mesh_.vertices.push_back(scanner_.next_position());
         require_nothing_swallowed("v");
     }
 

@@ -120,8 +120,8 @@ class OffReader {
         begin_element(what);
         const Vec3d p = scanner_.next_position();
         const double divisor = is_homogeneous_ ? scanner_.next_coordinate() : 1;
-        mesh_.vertices.emplace_back(Vec3d{p.x / divisor, p.y / divisor, p.z / divisor});
-        if (!is_finite(mesh_.vertices.back()))
+        mesh_.vertices.emplace_back(p.x / divisor, p.y / divisor, p.z / divisor);
+        if (!is_finite(Vec3f(mesh_.vertices.back())))
             scanner_.fail(ErrorCode::InvalidMesh, "the vertex is not finite as floats");
         for (std::size_t i = 0; !one_line_each_ && i < surplus_count_; ++i) scanner_.skip_number();
     }

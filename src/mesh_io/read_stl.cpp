@@ -15,8 +15,8 @@ constexpr std::size_t kHeadSize = 80;
 constexpr std::size_t kBytesBeforeFaces = kHeadSize + sizeof(std::uint32_t);
 constexpr std::size_t kBytesPerFace = 50; // normal and three corners of three floats, and two bytes
 
-void add_face(PolygonMesh& mesh, const std::array<Vec3f, 3>& corners) {
-    for (const Vec3f& corner : corners) {
+void add_face(PolygonMesh& mesh, const std::array<Vec3d, 3>& corners) {
+    for (const Vec3d& corner : corners) {
         mesh.corners.push_back(static_cast<std::uint32_t>(mesh.vertices.size()));
         mesh.vertices.push_back(corner);
     }
@@ -65,12 +65,12 @@ PolygonMesh read_binary(const MeshSource& source) {
     ByteReader bytes(source, kBytesBeforeFaces, ByteOrder::LittleEndian);
     PolygonMesh mesh;
     for (std::uint64_t left = promised_face_count(source); left > 0; --left) {
-        std::array<Vec3f, 3> corners;
+        std::array<Vec3d, 3> corners;
         bytes.skip(3 * sizeof(float)); // the normal
-        for (Vec3f& corner : corners)
-            for (float* coordinate : {&corner.x, &corner.y, &corner.z}) *coordinate = bytes.next<float>();
+        for (Vec3d& corner : corners)
+            for (double* coordinate : {&corner.x, &corner.y, &corner.z}) *coordinate = bytes.next<float>();
         bytes.skip(2);
-        if (!std::all_of(corners.begin(), corners.end(), is_finite<float>))
+        if (!std::all_of(corners.begin(), corners.end(), is_finite<double>))
             source.fail(ErrorCode::InvalidMesh, "face " + std::to_string(mesh.corner_counts.size()) +
                                                     " has a coordinate that is not finite");
         add_face(mesh, corners);
@@ -106,10 +106,10 @@ class TextReader {
         }
         if (keyword != "facet") scanner_.fail_expecting("'facet' or 'endsolid'", keyword);
         require_keyword("outerloop");
-        std::array<Vec3f, 3> corners;
-        for (Vec3f& corner : corners) {
+        std::array<Vec3d, 3> corners;
+        for (Vec3d& corner : corners) {
             require_keyword("vertex");
-            corner = Vec3f(scanner_.next_position());
+            corner = scanner_.next_position();
         }
         require_keyword("endloop");
         require_keyword("endfacet");

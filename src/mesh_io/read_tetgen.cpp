@@ -27,7 +27,7 @@ void require_number(LineScanner& scanner, std::int64_t expected, const char* wha
 }
 
 /// @returns the number of the first point
-std::int64_t read_nodes(const MeshSource& source, TetrahedralMesh& mesh) {
+std::int64_t read_nodes(const MeshSource& source, TetrahedraInFile& mesh) {
     LineScanner scanner(source);
     scanner.require_line("the number of points");
     const std::size_t point_count = next_count(scanner, "the number of points");
@@ -43,7 +43,7 @@ std::int64_t read_nodes(const MeshSource& source, TetrahedralMesh& mesh) {
         } else {
             require_number(scanner, first + static_cast<std::int64_t>(i), "the point's number");
         }
-        mesh.vertices.emplace_back(scanner.next_position());
+        mesh.vertices.push_back(scanner.next_position());
     }
     return first;
 }
@@ -60,8 +60,8 @@ std::uint32_t next_corner(LineScanner& scanner, std::int64_t first, std::size_t 
 
 } // namespace
 
-TetrahedralMesh read_tetgen(const MeshSource& nodes, const MeshSource& elements) {
-    TetrahedralMesh mesh;
+TetrahedraInFile read_tetgen(const MeshSource& nodes, const MeshSource& elements) {
+    TetrahedraInFile mesh;
     const std::int64_t first = read_nodes(nodes, mesh);
     LineScanner scanner(elements);
     scanner.require_line("the number of tetrahedra");

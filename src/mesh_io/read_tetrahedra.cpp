@@ -30,8 +30,9 @@ TetrahedraFile read_pair(std::filesystem::path path) {
 
 } // namespace
 
-TetrahedraFile finish_tetrahedra(TetrahedralMesh mesh, const MeshSource& source) {
-    if (mesh.tetrahedra.empty()) source.fail(ErrorCode::InvalidMesh, "the file has no tetrahedra");
+TetrahedraFile finish_tetrahedra(TetrahedraInFile read, const MeshSource& source) {
+    if (read.tetrahedra.empty()) source.fail(ErrorCode::InvalidMesh, "the file has no tetrahedra");
+    TetrahedralMesh mesh = local_body(read.vertices, std::move(read.tetrahedra));
     TetrahedraFile file;
     file.turned_tetrahedra = turn_negative(mesh);
     try {

@@ -1,3 +1,4 @@
+#include "mesh/local_frame.hpp"
 #include "mesh_io/mesh_source.hpp"
 #include "mesh_io/point_cache.hpp"
 #include "mesh_io/read_animation.hpp"
@@ -59,6 +60,7 @@ VertexCache from_folder(const fs::path& folder, const TriangleMesh& mesh, double
                              std::to_string(sample.vertices.size()) + " vertices, the model has " +
                              std::to_string(mesh.faces.size()) + " of " +
                              std::to_string(mesh.vertices.size()));
+        require_no_origin(sample.origin, file.string() + ": the model");
         samples->insert(samples->end(), sample.vertices.begin(), sample.vertices.end());
     }
     return {.start_time = 0,
@@ -71,6 +73,7 @@ VertexCache from_folder(const fs::path& folder, const TriangleMesh& mesh, double
 
 VertexCache read_vertex_cache(const fs::path& path, const TriangleMesh& mesh, double frames_per_second,
                               std::string_view animation) {
+    require_no_origin(mesh.origin, path.string() + ": the model");
     const bool is_folder = fs::is_directory(path), is_animated = !is_folder && has_animations(path);
     if (!is_animated && !animation.empty())
         refuse(path,

@@ -55,7 +55,7 @@ class VtkReader {
   public:
     VtkReader(NumberSource& numbers, bool is_version_5) : numbers_(numbers), is_version_5_(is_version_5) {}
 
-    TetrahedralMesh read() {
+    TetrahedraInFile read() {
         if (const auto words = numbers_.require_line("DATASET");
             words.size() != 2 || words[0] != "DATASET" || words[1] != "UNSTRUCTURED_GRID")
             numbers_.fail(ErrorCode::WrongFormat, "only data sets of the kind UNSTRUCTURED_GRID are read");
@@ -111,7 +111,7 @@ class VtkReader {
         if (type != NumberType::Float32 && type != NumberType::Float64)
             numbers_.fail(ErrorCode::WrongFormat,
                           "points of float or double are read, not of " + in_quotes(words[2]));
-        for (std::size_t i = 0; i < point_count; ++i) mesh_.vertices.emplace_back(numbers_.position(*type));
+        for (std::size_t i = 0; i < point_count; ++i) mesh_.vertices.push_back(numbers_.position(*type));
     }
 
     /// Each cell as the number of its corners and the corners; since version 5.1 in two arrays.
@@ -189,7 +189,7 @@ class VtkReader {
     NumberSource& numbers_;
     bool is_version_5_;
     bool is_in_metadata_ = false; ///< lines of which only those are known that end it
-    TetrahedralMesh mesh_;
+    TetrahedraInFile mesh_;
     std::vector<std::uint32_t> corners_;
     std::vector<std::size_t> corner_counts_;
     std::vector<std::int64_t> types_;
@@ -208,7 +208,7 @@ std::size_t end_of_title(const MeshSource& source) {
 
 } // namespace
 
-TetrahedralMesh read_vtk(const MeshSource& source) {
+TetrahedraInFile read_vtk(const MeshSource& source) {
     constexpr std::string_view kMark = "# vtk DataFile Version ";
     const std::string_view text = source.bytes.substr(begin_of_text(source));
     if (!text.starts_with(kMark))

@@ -145,7 +145,7 @@ std::vector<Vec3d> vertices_in(const SceneFile& file, const Pose& pose, const Me
 PolygonMesh join(const SceneFile& file, const MeshSource& source) {
     const Pose pose = rest_pose(file);
     PolygonMesh polygons;
-    for (const Vec3d& vertex : vertices_in(file, pose, source)) polygons.vertices.emplace_back(vertex);
+    polygons.vertices = vertices_in(file, pose, source);
     std::uint32_t first_vertex = 0;
     for (const SceneInstance& instance : file.instances) {
         const SceneShape& shape = file.shapes[instance.shape];

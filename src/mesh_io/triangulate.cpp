@@ -1,3 +1,4 @@
+#include "mesh/local_frame.hpp"
 #include "mesh_io/polygon_mesh.hpp"
 
 #include <algorithm>
@@ -132,7 +133,8 @@ void cut_polygon(std::span<const std::uint32_t> corners, std::size_t polygon, co
 } // namespace
 
 TriangleMesh triangulate(const PolygonMesh& polygons, const MeshSource& source) {
-    TriangleMesh mesh{polygons.vertices, {}};
+    LocalPositions local = to_local_frame(polygons.vertices, polygons.corners);
+    TriangleMesh mesh{std::move(local.positions), {}, local.origin};
     std::size_t begin = 0;
     for (std::size_t polygon = 0; polygon < polygons.corner_counts.size(); ++polygon) {
         const std::size_t count = polygons.corner_counts[polygon];

@@ -1,3 +1,4 @@
+#include "mesh/local_frame.hpp"
 #include "scene/vertex_choice.hpp"
 
 #include <echinus/error.hpp>
@@ -44,6 +45,7 @@ void require_same_faces(const NamedMesh& cloth, const NamedMesh& rest) {
 }
 
 Deformable make_cloth(const MeshCloth& cloth, const NamedMesh& start, const ClothMeshes& meshes) {
+    require_no_origin(start.mesh.origin, "the cloth"); // before boxes choose vertices
     MeshClothOptions options{.pose = cloth.pose, .scale = cloth.scale, .bending = cloth.bending};
     if (cloth.rest_mesh) {
         NamedMesh rest(*cloth.rest_mesh, meshes.rest_mesh, "cloth.rest_mesh");

@@ -1,3 +1,4 @@
+#include "mesh/local_frame.hpp"
 #include "scene/vertex_choice.hpp"
 
 #include <echinus/error.hpp>
@@ -65,6 +66,7 @@ Deformable make_body(const SceneBody& body, const TetrahedralMesh* read,
                      const SimulationOptions& simulation) {
     const TetrahedralMesh mesh =
         read != nullptr && !read->tetrahedra.empty() ? *read : make_solid(body.mesh, body.element);
+    require_no_origin(mesh.origin, "the soft body"); // before boxes choose vertices
     SoftBodyOptions options = body.options;
     options.pins = chosen(body.pins, mesh.vertices, "pins");
     for (const std::uint32_t vertex : chosen(body.attachments, mesh.vertices, "attachments"))

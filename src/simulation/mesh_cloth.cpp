@@ -1,3 +1,4 @@
+#include "mesh/local_frame.hpp"
 #include "simulation/cloth_surface.hpp"
 #include "simulation/constraint_order.hpp"
 #include "simulation/folds.hpp"
@@ -25,6 +26,7 @@ std::string missing_vertex(const std::string& what, std::uint32_t vertex, std::s
 }
 
 void require_possible(const TriangleMesh& mesh, const MeshClothOptions& options) {
+    require_no_origin(mesh.origin, "the cloth");
     const std::size_t count = mesh.vertices.size();
     if (mesh.faces.empty() && options.threads.empty()) refuse_mesh("the cloth has neither faces nor threads");
     if (!mesh.faces.empty()) require_valid(mesh);

@@ -1,4 +1,5 @@
 #include "geometry/number_text.hpp"
+#include "mesh/local_frame.hpp"
 #include "simulation/constraint_order.hpp"
 #include "simulation/tetrahedra.hpp"
 #include "simulation/validation.hpp"
@@ -26,6 +27,7 @@ void require_within(const char* name, double value, double least, double most) {
 }
 
 void require_possible(const TetrahedralMesh& mesh, const SoftBodyOptions& options) {
+    require_no_origin(mesh.origin, "the soft body");
     constexpr double kLeast = 1e-9, kMost = 1e15;
     require_within("density", options.density, kLeast, kMost);
     require_within("young_modulus", options.young_modulus, kLeast, kMost);

@@ -1,6 +1,8 @@
 #include "simulation/validation.hpp"
 
+#include "collider/frame_change.hpp"
 #include "geometry/number_text.hpp"
+#include "mesh/local_frame.hpp"
 
 #include <echinus/error.hpp>
 
@@ -218,6 +220,7 @@ void require_valid(const Collider& collider, const SimulationOptions& options, c
         fail(name + " has a velocity that is not finite");
     const auto* custom = std::get_if<std::shared_ptr<const CustomMap>>(&collider.map.kind);
     if (custom != nullptr && *custom == nullptr) fail(name + " has a custom map that is a null pointer");
+    require_no_origin(origin_of(collider.map), name);
     const auto* exact = std::get_if<ExactMap>(&collider.map.kind);
     if (options.surface_collision) {
         if (exact == nullptr && !collider.map.surface)

@@ -17,7 +17,7 @@ TriangleMesh boundary(const TetrahedralMesh& mesh) {
         return std::tie(a.tetrahedron, a.corner) < std::tie(b.tetrahedron, b.corner);
     });
 
-    TriangleMesh result{mesh.vertices, {}};
+    TriangleMesh result{mesh.vertices, {}, mesh.origin};
     result.faces.reserve(outer.size());
     for (const FaceUse& use : outer)
         result.faces.push_back(face_opposite(mesh.tetrahedra[use.tetrahedron], use.corner));

@@ -1,4 +1,5 @@
 #include "geometry/whole_numbers.hpp"
+#include "mesh/local_frame.hpp"
 
 #include <echinus/exact_map.hpp>
 #include <echinus/tetrahedra.hpp>
@@ -86,7 +87,8 @@ std::pair<double, double> distances(const TriangleMesh& from, const ExactMapView
 BoundaryDistance measure_distance(const TetrahedralMesh& mesh, const ExactMapView& model,
                                   unsigned thread_count) {
     require_valid_tetrahedra(mesh);
-    const TriangleMesh surface = boundary(mesh);
+    TriangleMesh surface = boundary(mesh);
+    move_to_origin(model.origin, surface);
     const double spacing = mean_edge(surface);
     const ExactMap map = ExactMap::build(surface, {.thread_count = thread_count});
     BoundaryDistance result;

@@ -1,6 +1,7 @@
 #include "tetrahedra/mend.hpp"
 
 #include "geometry/orientation.hpp"
+#include "mesh/local_frame.hpp"
 
 #include <cstdint>
 #include <utility>
@@ -35,6 +36,13 @@ std::size_t drop_unused_vertices(TetrahedralMesh& mesh) {
     for (Tetrahedron& corners : mesh.tetrahedra)
         for (std::uint32_t& vertex : corners) vertex = numbers[vertex];
     return dropped;
+}
+
+TetrahedralMesh local_body(std::span<const Vec3d> positions, std::vector<Tetrahedron> tetrahedra) {
+    const std::span<const std::uint32_t> corners(tetrahedra.empty() ? nullptr : tetrahedra[0].data(),
+                                                 4 * tetrahedra.size());
+    LocalPositions local = to_local_frame(positions, corners);
+    return {std::move(local.positions), std::move(tetrahedra), local.origin};
 }
 
 } // namespace echinus

@@ -223,6 +223,7 @@ Tetrahedralization tetrahedralize(const ExactMapView& model, const Tetrahedraliz
         options.count > 0 ? stuff_count(model, box, options) : stuff(model, box, options.size, options);
     if (!body.mesh.tetrahedra.empty()) {
         number_along(box.longest_axis(), body.mesh);
+        body.mesh.origin = model.origin;
         return body;
     }
     if (options.count > 0)

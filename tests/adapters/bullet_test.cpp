@@ -507,7 +507,10 @@ TEST(BulletAdapter, NothingIsLostAMillionAwayWhereBulletHasDoubles) {
     EXPECT_GT(away.invXform({1e6, -1e6, highest(cloth)}).z(), btScalar(0.3));
 }
 
-TEST(BulletAdapter, NamesAnOpenSurfaceAndAScaleOfZero) {
+TEST(BulletAdapter, NamesAMeshFarAwayAnOpenSurfaceAndAScaleOfZero) {
+    TriangleMesh far = torus();
+    far.origin = {448262, 5411932, 112};
+    expect_error(ErrorCode::InvalidMesh, "too far from 0", [&] { bullet::MapShape(ExactMap::build(far)); });
     TriangleMesh open = torus();
     open.faces.pop_back();
     expect_error(ErrorCode::InvalidMesh, "the surface is open",

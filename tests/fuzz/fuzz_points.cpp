@@ -25,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     file.hold(std::as_bytes(std::span(data, size)));
     try {
         const std::unique_ptr<PointSource> points = open_points(file.path());
-        std::array<echinus::Vec3f, 64> block;
+        std::array<echinus::Vec3d, 64> block;
         std::uint64_t total = 0;
         while (const std::size_t count = points->read(block)) total += count;
         if (total != points->count()) std::abort();

@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 //
 // Distance maps are of a box of 2 x 3 x 4 around the origin with 8 x 6 directions on a sphere or an
 // ellipsoid, 9 x 9 on an octahedron or 6 x 5 x 5 on a cube, exact maps of the same box, of that box without
-// its last face, and of a torus, with 8 cells each; that of the torus has all indices in 32 bits.
+// its last face, and of a torus, with 8 cells each; that of the torus has all indices in 32 bits. Those of
+// version 2 are of the box moved far away.
 
 namespace {
 
@@ -63,6 +64,16 @@ const char* const kGoldenExact = "v1_box_exact.ech";
 const char* const kGoldenExactOpen = "v1_open_box_exact.ech"; ///< its gaps reach to the half
 const char* const kGoldenExactOpenMargin = "v1_open_box_exact_margin.ech";
 const char* const kGoldenExactWide = "v1_torus_exact_wide.ech";
+
+const char* const kGoldenFarExact = "v2_far_box_exact.ech";
+const char* const kGoldenFarFloat32 = "v2_far_box_float32.ech";
+const Vec3d kFarAway{448262, 5411932, 112};
+
+TriangleMesh far_box() {
+    TriangleMesh box = make_box(kBoxSize);
+    box.origin = kFarAway;
+    return box;
+}
 
 fs::path path_of(const char* file) {
     return fs::path(ECHINUS_GOLDEN_FOLDER) / file;
@@ -230,10 +241,20 @@ TEST(GoldenMapFile, OfVersion1WithAnExactMapInWideIndicesHoldsTheTorus) {
     EXPECT_FALSE(contains(map, {0, 0, 0}));
 }
 
+TEST(GoldenMapFile, OfVersion2HoldsABoxFarAway) {
+    const ExactMap exact = load_exact_map(path_of(kGoldenFarExact));
+    EXPECT_EQ(exact.view().origin, kFarAway);
+    EXPECT_TRUE(contains(exact, to_local(kFarAway + Vec3d{0.99, 1.49, -1.99}, exact.view().origin)));
+    EXPECT_FALSE(contains(exact, to_local(kFarAway + Vec3d{1.01, 0, 0}, exact.view().origin)));
+    const DistanceMap distance = load_distance_map(path_of(kGoldenFarFloat32));
+    EXPECT_EQ(distance.view().origin, kFarAway);
+    expect_box(distance);
+}
+
 TEST(GoldenMapFile, IsWrittenBackByteForByte) {
     for (const char* file : {kGoldenFloat32.file, kGoldenUnorm16.file, kGoldenOctahedral.file,
                              kGoldenCube.file, kGoldenEllipsoidal.file, kGoldenExact, kGoldenExactOpen,
-                             kGoldenExactOpenMargin, kGoldenExactWide}) {
+                             kGoldenExactOpenMargin, kGoldenExactWide, kGoldenFarExact, kGoldenFarFloat32}) {
         expect_same_bytes(serialise(load_map(path_of(file))), file);
     }
 }
@@ -247,6 +268,9 @@ TEST(GoldenMapFile, IsWhatTodaysBuildWritesOnAnyNumberOfThreads) {
         }
         ExactMapOptions options{.divisions = 1, .thread_count = thread_count};
         expect_same_bytes(serialise(ExactMap::build(make_box(kBoxSize), options)), kGoldenExact);
+        expect_same_bytes(serialise(ExactMap::build(far_box(), options)), kGoldenFarExact);
+        expect_same_bytes(serialise(DistanceMap::build(far_box(), kGoldenFloat32.options)),
+                          kGoldenFarFloat32);
         options.rule = InsideRule::Parity;
         expect_same_bytes(serialise(ExactMap::build(open_box(), options)), kGoldenExactOpenMargin);
     }

@@ -38,8 +38,15 @@ ExactMapParts open_box_parts() {
     return ExactMapParts(ExactMap::build(box, {.divisions = 1, .rule = InsideRule::Parity}));
 }
 
+/// With an origin, and so in version 2.
+ExactMapParts far_box_parts() {
+    TriangleMesh box = make_box({2, 3, 4});
+    box.origin = {448262, 5411932, 112};
+    return ExactMapParts(ExactMap::build(box, {.divisions = 1}));
+}
+
 std::vector<ExactMapParts> samples() {
-    return {torus_parts(), wide_box_parts(), open_box_parts()};
+    return {torus_parts(), wide_box_parts(), open_box_parts(), far_box_parts()};
 }
 
 ExactMap load_bytes(const std::vector<std::byte>& bytes) {
@@ -57,6 +64,7 @@ bool same_bits(const IndexArray& a, const IndexArray& b) {
 
 void expect_same_map(const ExactMap& a, const ExactMap& b) {
     EXPECT_EQ(a.view().centre, b.view().centre);
+    EXPECT_EQ(a.view().origin, b.view().origin);
     EXPECT_EQ(a.view().radius, b.view().radius);
     EXPECT_EQ(a.view().divisions, b.view().divisions);
     EXPECT_EQ(a.view().rule, b.view().rule);

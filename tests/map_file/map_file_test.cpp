@@ -37,6 +37,7 @@ bool same_bits(std::span<const T> a, std::span<const T> b) {
 
 void expect_same_map(const DistanceMap& a, const DistanceMap& b) {
     EXPECT_EQ(a.view().centre, b.view().centre);
+    EXPECT_EQ(a.view().origin, b.view().origin);
     EXPECT_EQ(a.view().radius, b.view().radius);
     EXPECT_EQ(a.view().grid, b.view().grid);
     EXPECT_EQ(a.view().divisions, b.view().divisions);
@@ -320,6 +321,32 @@ TEST(MapFile, RefusesAnotherVersionBeforeItLooksFurther) {
     constexpr std::size_t kMapField = 3;
     bytes[root_field_position(bytes, kMapField) + 3] = std::byte{0xff};
     expect_error(ErrorCode::UnsupportedVersion, "version 9", [&] { load_bytes(bytes); });
+}
+
+TEST(MapFile, HasVersion2WhereAReaderThatKnowsNoOriginsWouldMisplaceTheMap) {
+    constexpr std::size_t kVersionField = 0;
+    TriangleMesh mesh = make_box({2, 3, 4});
+    const auto check = [&]<typename Map>(const Map*, const auto& options) {
+        mesh.origin = {};
+        auto without = serialise(Map::build(mesh, options));
+        mesh.origin = {448262, 5411932, 112};
+        auto with = serialise(Map::build(mesh, options));
+        std::byte& version_without = without[root_field_position(without, kVersionField)];
+        std::byte& version_with = with[root_field_position(with, kVersionField)];
+        EXPECT_EQ(version_without, std::byte{1});
+        EXPECT_EQ(version_with, std::byte{2});
+        const AnyMap near = load_map(without, nullptr, "m"), far = load_map(with, nullptr, "m");
+        EXPECT_EQ(std::get<Map>(near).view().origin, Vec3d{});
+        EXPECT_EQ(std::get<Map>(far).view().origin, mesh.origin);
+
+        std::swap(version_without, version_with);
+        expect_error(ErrorCode::Damaged, "its version does not have", [&] { load_map(with, nullptr, "m"); });
+        expect_error(ErrorCode::Damaged, "its origin is missing, 0 or not finite",
+                     [&] { load_map(without, nullptr, "m"); });
+    };
+    check(static_cast<const ExactMap*>(nullptr), ExactMapOptions{.divisions = 1});
+    check(static_cast<const DistanceMap*>(nullptr),
+          DistanceMapOptions{.longitude_count = 8, .colatitude_count = 6});
 }
 
 TEST(MapFile, RefusesAnUnknownKindOfMap) {

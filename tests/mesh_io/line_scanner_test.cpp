@@ -30,11 +30,15 @@ Lines words_of(std::string_view text, LineScanner::Continuation continuation = {
     return lines;
 }
 
-float coordinate(const std::string& word) {
+double exact_coordinate(const std::string& word) {
     const MeshSource source{"text", word};
     LineScanner scanner(source);
     scanner.next_line();
-    return static_cast<float>(scanner.next_coordinate());
+    return scanner.next_coordinate();
+}
+
+float coordinate(const std::string& word) {
+    return static_cast<float>(exact_coordinate(word));
 }
 
 /// The zeros that a C string cannot hold.
@@ -148,6 +152,11 @@ TEST(LineScanner, RoundsCoordinatesToTheNearestFloatAsTheLibraryDoes) {
             EXPECT_EQ(coordinate(longer), expected) << longer;
         }
     }
+}
+
+TEST(LineScanner, ReadsCoordinatesAsTheNearestDouble) {
+    for (const double number : {0.1, 5411932.40, -1e-300, 448262.25, 1e30 / 3})
+        EXPECT_EQ(exact_coordinate(std::to_string(number)), std::stod(std::to_string(number)));
 }
 
 TEST(LineScanner, TakesTheUsualSpellingsOfNumbers) {

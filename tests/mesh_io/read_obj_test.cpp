@@ -37,7 +37,7 @@ TEST(ReadObj, PassesOverEverythingButVerticesFacesAndLines) {
     const PolygonMesh mesh =
         read("# made by hand\nmtllib a.mtl\no thing\ng part\nv 0 0 0 1\nv 1 0 0 0.5 0.5 0.5\nvt 0 0\n"
              "vn 0 0 1\nv 1 1 0\nusemtl red\ns off\np 1\nf 1 2 3\n");
-    EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}));
+    EXPECT_EQ(mesh.vertices, (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}));
     EXPECT_EQ(mesh.corners, (Indices{0, 1, 2}));
 }
 

@@ -48,7 +48,7 @@ TEST(ReadOff, ReadsEverySpellingOfTheHead) {
 
 TEST(ReadOff, ReadsNumbersAcrossLinesWhereTheLinesAreNotAsManyAsVerticesAndFaces) {
     const PolygonMesh mesh = read("OFF 4 2 0\n0 0\n0 1 0 0 1\n1 0\n0 1 0\n4 0 1\n2\n3 255 0 0\n3\n0 2 3\n");
-    EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+    EXPECT_EQ(mesh.vertices, (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
     EXPECT_EQ(mesh.corners, (Indices{0, 1, 2, 3, 0, 2, 3}));
     EXPECT_EQ(mesh.corner_counts, (Indices{4, 3}));
     expect_off_error(ErrorCode::Damaged,
@@ -61,7 +61,7 @@ TEST(ReadOff, DividesByTheFourthCoordinate) {
     for (const char* lines :
          {"0 0 0 1\n2 0 0 2\n0 -3 0 -3\n3 0 1 2\n", "0 0 0\n1 2 0\n0 2 0\n-3 0\n-3 3 0\n1 2\n"})
         EXPECT_EQ(read(std::string("4OFF\n3 1 0\n") + lines).vertices,
-                  (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+                  (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
     expect_off_error(ErrorCode::InvalidMesh, "line 2: the vertex is not finite", "4OFF 1 0 0\n1 0 0 0\n");
     expect_off_error(ErrorCode::InvalidMesh, "line 2: the vertex is not finite", "4OFF 1 0 0\n0 0 0 0\n");
 }
@@ -75,7 +75,7 @@ TEST(ReadOff, PassesOverWhatItsKeywordNamesAlsoAcrossLines) {
         for (const std::string& lines :
              {first + "\n" + second + "\n" + third, first + " " + second + "\n" + third})
             EXPECT_EQ(read(keywords[i] + "\n3 1 0\n" + lines + "\n3 0 1 2 9\n").vertices,
-                      (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}))
+                      (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}))
                 << lines;
     }
 }
@@ -83,7 +83,7 @@ TEST(ReadOff, PassesOverWhatItsKeywordNamesAlsoAcrossLines) {
 TEST(ReadOff, PassesOverColoursAndNormalsOfVertices) {
     const PolygonMesh mesh = read(
         "CNOFF\n3 1 0\n0 0 0 0 0 1 255 0 0 255\n1 0 0 0 0 1 255 0 0 255\n0 1 0 0 0 1 0 0 0 0\n3 0 1 2\n");
-    EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    EXPECT_EQ(mesh.vertices, (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
 }
 
 TEST(ReadOff, NoticesMissingAndSurplusLines) {

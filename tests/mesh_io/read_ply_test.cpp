@@ -60,7 +60,7 @@ TEST(ReadPly, ReadsTextAndBothByteOrders) {
     for (const std::string& bytes :
          {kText + kThreeVertices + "3 0 1 2\n", binary_triangle(false), binary_triangle(true)}) {
         const PolygonMesh mesh = read(bytes);
-        EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+        EXPECT_EQ(mesh.vertices, (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
         EXPECT_EQ(mesh.corners, (Indices{0, 1, 2}));
         EXPECT_EQ(mesh.corner_counts, (Indices{3}));
     }
@@ -92,7 +92,7 @@ TEST(ReadPly, PassesOverOtherPropertiesAndElementsOfEveryType) {
     for (const std::string& bytes : {"ply\nformat ascii 1.0\ncomment # hello\nobj_info x\n" + header + text,
                                      "ply\r\nformat binary_little_endian 1.0\r\n" + header + binary.text()}) {
         const PolygonMesh mesh = read(bytes);
-        EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{1.5F, 2.5F, -7}}));
+        EXPECT_EQ(mesh.vertices, (std::vector<Vec3d>{{1.5, 2.5, -7}}));
         EXPECT_EQ(mesh.corners, (Indices{0, 0, 0}));
     }
 }
@@ -128,7 +128,7 @@ TEST(ReadPly, PassesOverFurtherNumbersOfALine) {
     for (const std::string lines : {"0 0 0 7\n1 0 0\n0 1 0 1 1 1 # c\n3 0 1 2 6 0.5 0.5 0 0 0 0\n",
                                     "0 0 0 x\n1 0 0\n0 1 0\n3 0 1 2 comment\n"}) {
         const PolygonMesh mesh = read(kText + lines);
-        EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+        EXPECT_EQ(mesh.vertices, (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
         EXPECT_EQ(mesh.corners, (Indices{0, 1, 2}));
     }
 }
@@ -137,7 +137,7 @@ TEST(ReadPly, ReadsNumbersAcrossLinesWhereTheLinesAreNotAsManyAsTheElements) {
     for (const std::string lines : {"0 0 0 1 0 0 0 1 0 3 0 1 2", "0\n0\n0\n1\n0\n0\n0\n1\n0\n3\n0\n1\n2\n",
                                     "0 0 0 1\n0 0 0 1 0 3 0\n\n1 2\n\x1a"}) {
         const PolygonMesh mesh = read(kText + lines);
-        EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << lines;
+        EXPECT_EQ(mesh.vertices, (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << lines;
         EXPECT_EQ(mesh.corners, (Indices{0, 1, 2})) << lines;
     }
     expect_ply_error(ErrorCode::Damaged,
@@ -155,7 +155,7 @@ TEST(ReadPly, IgnoresNumbersThatAreNoneWhereTheyDoNotMatter) {
         "property float quality\nend_header\n";
     EXPECT_EQ(read(head + "-1.#IND 0 0 0 nan\n1.#QNAN0 1 0 0 -inf\n-nan(ind) 0 1 0 1e999\n3 0 1 2 1.#INF\n")
                   .vertices,
-              (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+              (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
     expect_ply_error(ErrorCode::InvalidMesh, "a.ply: line 13: the coordinate '-1.#IND' is not finite",
                      head + "0 0 0 -1.#IND 0\n0 1 0 0 0\n0 0 1 0 0\n3 0 1 2 0\n");
     expect_ply_error(ErrorCode::Damaged,
@@ -204,7 +204,7 @@ TEST(ReadPly, ReadsHeadsWithAMarkCommentsAnywhereAndEveryEndOfLine) {
     for (const std::string end : {"\r", "\n", "\r\n"}) {
         std::string bytes;
         for (const char c : binary) bytes += c == '\n' ? end : std::string(1, c);
-        EXPECT_EQ(read(bytes + data).vertices[0], (Vec3f{10, 0, 0}));
+        EXPECT_EQ(read(bytes + data).vertices[0], (Vec3d{10, 0, 0}));
     }
 }
 

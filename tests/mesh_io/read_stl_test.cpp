@@ -36,7 +36,7 @@ TEST(ReadStl, ReadsTextWithSeveralSolids) {
         read("solid a b c\n" + kFacet + kFacet + "endsolid a b c\nsolid\n" + kFacet + "endsolid\n");
     EXPECT_EQ(mesh.corner_counts, (std::vector<std::uint32_t>{3, 3, 3}));
     EXPECT_EQ(mesh.vertices.size(), 9U);
-    EXPECT_EQ(mesh.vertices[4], (Vec3f{1, 0, 0}));
+    EXPECT_EQ(mesh.vertices[4], (Vec3d{1, 0, 0}));
 }
 
 TEST(ReadStl, ReadsBinaryAlsoWhenItBeginsLikeText) {
@@ -65,7 +65,7 @@ TEST(ReadStl, ReadsTextInAnyCaseAndWithWordsApartOrTogether) {
               "endsolid endfacet\n",
           "\xef\xbb\xbf solid \\\r\n" + plain + "endsolid\x1a" + std::string(99, '\0')}) {
         const PolygonMesh mesh = read(text);
-        EXPECT_EQ(mesh.vertices, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << text;
+        EXPECT_EQ(mesh.vertices, (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << text;
     }
 }
 

@@ -16,8 +16,8 @@ namespace {
 
 const MeshSource kSource{"polygons", ""};
 
-PolygonMesh one_polygon(std::vector<Vec3f> vertices) {
-    PolygonMesh mesh{std::move(vertices), {}, {}};
+PolygonMesh one_polygon(const std::vector<Vec3f>& vertices) {
+    PolygonMesh mesh{std::vector<Vec3d>(vertices.begin(), vertices.end()), {}, {}};
     mesh.corners.resize(mesh.vertices.size());
     std::iota(mesh.corners.begin(), mesh.corners.end(), 0U);
     mesh.corner_counts = {static_cast<std::uint32_t>(mesh.corners.size())};

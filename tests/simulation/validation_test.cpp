@@ -5,6 +5,7 @@
 #include <echinus/error.hpp>
 #include <echinus/intersections.hpp>
 #include <echinus/simulation.hpp>
+#include <echinus/soft_body.hpp>
 
 #include <gtest/gtest.h>
 
@@ -14,7 +15,7 @@
 #include <string>
 
 using namespace echinus;
-using test::sheet_at;
+using test::expect_error, test::sheet_at;
 
 namespace {
 
@@ -78,6 +79,22 @@ TEST(SimulationSetUp, RefusesAColliderWhoseScaleIsZeroOrNoNumber) {
     EXPECT_TRUE(is_refused({1, 1, kNaN}));
     EXPECT_TRUE(is_refused({1 / 0.0, 1, 1}));
     EXPECT_FALSE(is_refused({1, -2, 0.5}));
+}
+
+TEST(SimulationSetUp, RefusesWhatStandsTooFarAwayForFloats) {
+    TriangleMesh box = make_box({1, 1, 1});
+    box.origin = {448262, 5411932, 112};
+    const std::string words = " stands around (448262, 5.41193e+06, 112), too far from 0";
+    for (const ColliderMap& map : {ColliderMap(ExactMap::build(box)), ColliderMap(DistanceMap::build(box))}) {
+        const Collider collider{.map = map, .name = "the house"};
+        expect_error(ErrorCode::InvalidMesh, "the house" + words, [&] {
+            const Simulation simulation(make_cloth({.column_count = 3, .row_count = 3}), {collider}, {});
+        });
+    }
+    expect_error(ErrorCode::InvalidMesh, "the cloth" + words, [&] { make_cloth(box, {}); });
+    TetrahedralMesh body = make_solid_box({1, 1, 1}, {1, 1, 1});
+    body.origin = box.origin;
+    expect_error(ErrorCode::InvalidMesh, "the soft body" + words, [&] { make_soft_body(body, {}); });
 }
 
 TEST(SimulationSetUp, RefusesARotationThatIsNotOfUnitLength) {

@@ -56,17 +56,16 @@ std::string shape_of(const std::vector<Vec3f>& points) {
 
 class Points : public test::TemporaryFolderTest {
   protected:
-    /// All points of a file, asked for in blocks of an odd size.
+    /// All points of a file as floats, asked for in blocks of an odd size.
     static std::vector<Vec3f> read(const fs::path& path) {
         auto input = std::make_unique<Input>(path);
         const auto source = format_of_points(path, *input) == TableFormat::Npy
                                 ? open_npy_points(std::move(input))
                                 : open_csv_points(std::move(input));
         std::vector<Vec3f> points;
-        std::vector<Vec3f> block(7);
-        while (const std::size_t count = source->read(block)) {
-            points.insert(points.end(), block.begin(), block.begin() + static_cast<std::ptrdiff_t>(count));
-        }
+        std::vector<Vec3d> block(7);
+        while (const std::size_t count = source->read(block))
+            for (std::size_t i = 0; i < count; ++i) points.emplace_back(block[i]);
         EXPECT_EQ(points.size(), source->count());
         return points;
     }
@@ -109,11 +108,11 @@ TEST_F(Points, AreRefusedByNameWhenTheArrayIsOfAnotherKind) {
                        words);
     };
     refuse("'>f4'", "(2, 3)", "big-endian");
-    refuse("'<i4'", "(2, 3)", "type <i4");
-    refuse("'<f2'", "(2, 3)", "type <f2");
-    refuse("'<c8'", "(1, 3)", "type <c8");
-    refuse("'|O'", "(1, 3)", "type |O");
-    refuse("[('x', '<f4'), ('y', '<f4')]", "(1, 3)", "type [('x'");
+    refuse("'<i4'", "(2, 3)", "type '<i4'");
+    refuse("'<f2'", "(2, 3)", "type '<f2'");
+    refuse("'<c8'", "(1, 3)", "type '<c8'");
+    refuse("'|O'", "(1, 3)", "type '|O'");
+    refuse("[('x', '<f4'), ('y', '<f4')]", "(1, 3)", "type '[('x'");
     refuse("'<f4'", "(6,)", "shape [6]");
     refuse("'<f4'", "(3, 2)", "shape [3, 2]");
     refuse("'<f4'", "(1, 2, 3)", "shape [1, 2, 3]");

@@ -30,6 +30,20 @@ describe('A mesh', () => {
         assert.deepEqual(again.faces, torus.faces);
         assert.equal(again.report().closed, true);
     });
+    test('far from 0 has an origin, and its map takes points relative to it', () => {
+        const at = (i) => [448262.25 + (i & 1), 5411932.4 + 0.9 * ((i >> 1) & 1), 112.3 + 0.8 * (i >> 2)];
+        const lines = Array.from({ length: 8 }, (_, i) => `v ${at(i).join(' ')}`);
+        const sides = [...openCubeSides, [4, 5, 7, 6]].map((side) => `f ${side.map((corner) => corner + 1).join(' ')}`);
+        const mesh = echinus.readMesh(new TextEncoder().encode([...lines, ...sides, ''].join('\n')), 'cube.obj');
+        assert.ok(Math.abs(mesh.report().signedVolume - 0.72) < 1e-6);
+        assert.equal(mesh.report().roundingStep, 0);
+        const map = echinus.buildMap(mesh);
+        assert.deepEqual(map.origin, mesh.origin);
+        const inFile = (...point) => point.map((coordinate, axis) => coordinate - map.origin[axis]);
+        assert.equal(map.contains(inFile(448262.75, 5411932.45, 112.7)), true);
+        assert.equal(map.contains(inFile(448262.75, 5411932.35, 112.7)), false);
+        assert.deepEqual(echinus.makeTorus(1, 0.4, 8, 6).origin, [0, 0, 0]);
+    });
     test('whose faces share no vertices is closed after welding', () => {
         const torus = echinus.makeTorus(1, 0.4, 8, 6);
         const { vertices, faces } = torus;

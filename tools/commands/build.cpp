@@ -134,6 +134,7 @@ struct BuiltMap {
     MapFileNotes notes;
     RepairReport repairs;
     bool inside_out = false; ///< the mesh, as the map has it
+    double rounding_step = 0;
 };
 
 BuiltMap build_map(TriangleMesh mesh, const BuildArguments& arguments) {
@@ -151,7 +152,8 @@ BuiltMap build_map(TriangleMesh mesh, const BuildArguments& arguments) {
     return {std::move(map),
             {.build_milliseconds = duration.count()},
             std::move(repairs),
-            report.closed && report.signed_volume < 0};
+            report.closed && report.signed_volume < 0,
+            report.rounding_step};
 }
 
 void print_result(const MapDescription& description, const BuiltMap& built, const BuildArguments& arguments) {
@@ -159,11 +161,13 @@ void print_result(const MapDescription& description, const BuiltMap& built, cons
         Json object = to_json(description);
         if (arguments.repair.given()) object.add("repairs", to_json(built.repairs));
         if (built.inside_out) object.add("inside_out", true);
+        if (built.rounding_step > 0) object.add("rounding_step", built.rounding_step);
         print(object.indented());
     } else if (arguments.target != kStandardStream) {
         print(to_text(description, arguments.target.string()));
         if (arguments.repair.given()) print("\nRepair: " + to_text(built.repairs) + ".\n");
         if (built.inside_out) print("\nThe mesh is inside out. What it encloses is inside all the same.\n");
+        if (built.rounding_step > 0) print("\nRounding: " + rounding_text(built.rounding_step) + ".\n");
     }
 }
 

@@ -10,10 +10,18 @@
 #include <string>
 
 /// The description of a mesh by `info`, as the object of --json.
-Json to_json(const echinus::MeshReport& report);
+/// @param origin  the mesh's
+Json to_json(const echinus::MeshReport& report, const echinus::Vec3d& origin);
 
 /// The same as a table for people, with the first faces at fault.
-std::string to_text(const echinus::MeshReport& report, const std::string& title);
+std::string to_text(const echinus::MeshReport& report, const echinus::Vec3d& origin,
+                    const std::string& title);
+
+/// "(1, 2, 3)"
+std::string text_of(const echinus::Vec3d& point);
+
+/// Warns of a MeshReport::rounding_step.
+std::string rounding_text(double step);
 
 /// Why a mesh that is not closed cannot be used, and what helps: "the mesh is not closed: 24 edges with more
 /// than two faces (first at faces 382, 383); mend it with --repair", or "...; mend it elsewhere" where

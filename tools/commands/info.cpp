@@ -42,13 +42,13 @@ void show_mesh(const TriangleMesh& mesh, const std::string& name, bool json) {
     const MeshReport report = inspect(mesh);
     const RepairOutlook outlook = foresee_repair(mesh);
     if (json) {
-        Json object = to_json(report);
+        Json object = to_json(report, mesh.origin);
         Json repair = to_json(outlook.report);
         repair.add("closed_then", outlook.closed_then);
         object.add("repair", repair);
         print(object.indented());
     } else {
-        print(to_text(report, name) + advice(outlook, report.closed));
+        print(to_text(report, mesh.origin, name) + advice(outlook, report.closed));
     }
 }
 

@@ -5,7 +5,8 @@
 
 #include <cmath>
 
-using echinus::DistanceMap, echinus::DistanceMapView, echinus::ExactMap, echinus::ExactMapView;
+using echinus::DistanceMap, echinus::DistanceMapView, echinus::ExactMap, echinus::ExactMapView,
+    echinus::Vec3d;
 
 namespace {
 
@@ -201,7 +202,9 @@ Json to_json(const MapDescription& description, const Map& map) {
     object.add("file_bytes", description.file_bytes);
     object.add("build_ms", nullptr);
     if (description.notes.build_milliseconds) object.add("build_ms", *description.notes.build_milliseconds);
-    object.add("centre", {view.centre.x, view.centre.y, view.centre.z});
+    const Vec3d centre = Vec3d(view.centre) + view.origin;
+    object.add("centre", {centre.x, centre.y, centre.z});
+    if (view.origin != Vec3d{}) object.add("origin", {view.origin.x, view.origin.y, view.origin.z});
     object.add("radius", view.radius);
     object.add("centre_inside", is_centre_inside(map));
     object.add("source_hash", fmt::format("{:016x}", map.source_hash()));
@@ -216,8 +219,13 @@ std::string to_text(const MapDescription& description, const std::string& title,
     table.add("kind", fmt::format("{} map", name_of(map)));
     table.add("faces of the mesh", fmt::format("{} ({} too small to count)", map.statistics().face_count,
                                                map.statistics().dropped_faces));
-    table.add("bounding sphere", fmt::format("centre ({}, {}, {}), radius {}", view.centre.x, view.centre.y,
-                                             view.centre.z, view.radius));
+    const bool has_origin = view.origin != Vec3d{};
+    table.add("bounding sphere", has_origin
+                                     ? fmt::format("centre {}, radius {}",
+                                                   text_of(Vec3d(view.centre) + view.origin), view.radius)
+                                     : fmt::format("centre ({}, {}, {}), radius {}", view.centre.x,
+                                                   view.centre.y, view.centre.z, view.radius));
+    if (has_origin) table.add("origin", text_of(view.origin));
     table.add("centre inside", yes_or_no(is_centre_inside(map)));
     add_own_rows(table, map);
     table.add("bytes of the file", std::to_string(description.file_bytes));

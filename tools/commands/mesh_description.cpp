@@ -9,6 +9,7 @@
 using echinus::Fault;
 using echinus::MeshReport;
 using echinus::RepairReport;
+using echinus::Vec3d;
 
 namespace {
 
@@ -47,7 +48,7 @@ std::string faults_of_edges(const MeshReport& report) {
 
 } // namespace
 
-Json to_json(const MeshReport& report) {
+Json to_json(const MeshReport& report, const Vec3d& origin) {
     Json object;
     object.add("faces", report.face_count);
     object.add("vertices", report.vertex_count);
@@ -56,16 +57,18 @@ Json to_json(const MeshReport& report) {
     for (const NamedFault& named : faults_of(report)) object.add(named.key, named.fault.count);
     object.add("components", report.component_count);
     object.add("volume", report.signed_volume);
-    const echinus::Sphere& sphere = report.bounding_sphere;
-    object.add("radius", sphere.radius);
-    object.add("centre", {sphere.centre.x, sphere.centre.y, sphere.centre.z});
+    const Vec3d centre = report.bounding_sphere.centre + origin;
+    object.add("radius", report.bounding_sphere.radius);
+    object.add("centre", {centre.x, centre.y, centre.z});
+    if (origin != Vec3d{}) object.add("origin", {origin.x, origin.y, origin.z});
+    if (report.rounding_step > 0) object.add("rounding_step", report.rounding_step);
     Json first_faces;
     for (const NamedFault& named : faults_of(report)) first_faces.add(named.key, named.fault.first_faces);
     object.add("first_faces", first_faces);
     return object;
 }
 
-std::string to_text(const MeshReport& report, const std::string& title) {
+std::string to_text(const MeshReport& report, const Vec3d& origin, const std::string& title) {
     const echinus::Sphere& sphere = report.bounding_sphere;
     Table table(title);
     table.add("faces", std::to_string(report.face_count));
@@ -79,9 +82,22 @@ std::string to_text(const MeshReport& report, const std::string& title) {
     }
     table.add("signed volume", fmt::format("{:.6g}", report.signed_volume));
     table.add("bounding sphere",
-              fmt::format("centre ({:.6g}, {:.6g}, {:.6g}), radius {:.6g}", sphere.centre.x, sphere.centre.y,
-                          sphere.centre.z, sphere.radius));
+              origin == Vec3d{}
+                  ? fmt::format("centre ({:.6g}, {:.6g}, {:.6g}), radius {:.6g}", sphere.centre.x,
+                                sphere.centre.y, sphere.centre.z, sphere.radius)
+                  : fmt::format("centre {}, radius {:.6g}", text_of(sphere.centre + origin), sphere.radius));
+    if (origin != Vec3d{}) table.add("origin", text_of(origin));
+    if (report.rounding_step > 0) table.add("rounding", rounding_text(report.rounding_step));
     return table.text();
+}
+
+std::string text_of(const Vec3d& point) {
+    return fmt::format("({:.15g}, {:.15g}, {:.15g})", point.x, point.y, point.z);
+}
+
+std::string rounding_text(double step) {
+    return fmt::format(
+        "all coordinates are floats, which step by {:.6g} here; what was rounded to them is lost", step);
 }
 
 std::string refusal_of_open_mesh(const echinus::TriangleMesh& mesh, const MeshReport& report,

@@ -1,12 +1,15 @@
 #include "commands/commands.hpp"
+#include "geometry/number_text.hpp"
 #include "input_file.hpp"
 #include "json.hpp"
+#include "mesh/local_frame.hpp"
 #include "output.hpp"
 #include "points/answers.hpp"
 #include "points/points.hpp"
 
 #include <echinus/map_file.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -30,6 +33,7 @@ struct QuerySummary {
     std::uint64_t point_count = 0;
     std::uint64_t inside_count = 0;
     std::uint64_t contact_count = 0;
+    double points_step = 0; ///< of the points' floats, where they are too coarse for the map; else 0
 };
 
 void require_sound(const QueryArguments& arguments) {
@@ -68,6 +72,18 @@ void require_exact(const AnyMap& map, const QueryArguments& arguments) {
         if (wanted) throw WrongUse(name, "needs an exact map; this one is a distance map");
 }
 
+Vec3d origin_of(const AnyMap& map) {
+    return std::visit([](const auto& kind) { return kind.view().origin; }, map);
+}
+
+/// A map with an origin is of a mesh that floats could not hold where it is, and so they hold no points
+/// there.
+double points_step(const AnyMap& map, const PointSource& source) {
+    if (!source.holds_floats()) return 0;
+    const Vec3d origin = origin_of(map);
+    return 2 * float_rounding(std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)}));
+}
+
 /// What only an exact map has, a block at a time.
 struct ExactAnswers {
     const AnyMap& map;
@@ -91,14 +107,17 @@ struct ExactAnswers {
 QuerySummary answer(const AnyMap& map, const QueryArguments& arguments, PointSource& source,
                     AnswerWriter& answers) {
     constexpr std::size_t kBlock = std::size_t{1} << 16;
-    std::vector<Vec3f> points(kBlock);
+    const Vec3d origin = origin_of(map);
+    std::vector<Vec3d> points(kBlock);
+    std::vector<Vec3f> points_local(kBlock);
     std::vector<Contact> contacts(kBlock);
     ExactAnswers exact{map, std::vector<float>(arguments.signed_distance ? kBlock : 0),
                        std::vector<float>(arguments.winding_number ? kBlock : 0)};
-    QuerySummary summary;
+    QuerySummary summary{.points_step = points_step(map, source)};
     while (const std::size_t point_count = source.read(points)) {
         const std::span<Contact> block(contacts.data(), point_count);
-        const StridedSpan<const Vec3f> asked(points.data(), point_count);
+        for (std::size_t i = 0; i < point_count; ++i) points_local[i] = to_local(points[i], origin);
+        const StridedSpan<const Vec3f> asked(points_local.data(), point_count);
         contacts_batch(map, asked, arguments.margin, block);
         Answers result{.contacts = block};
         exact.complete(result, asked);
@@ -111,13 +130,17 @@ QuerySummary answer(const AnyMap& map, const QueryArguments& arguments, PointSou
 
 void print_summary(const QuerySummary& summary, const QueryArguments& arguments) {
     if (arguments.json) {
-        print(Json{{"points", summary.point_count},
-                   {"inside", summary.inside_count},
-                   {"contacts", summary.contact_count}}
-                  .indented());
+        Json object{{"points", summary.point_count},
+                    {"inside", summary.inside_count},
+                    {"contacts", summary.contact_count}};
+        if (summary.points_step > 0) object.add("points_step", summary.points_step);
+        print(object.indented());
     } else if (arguments.target != kStandardStream) {
         print(std::to_string(summary.point_count) + " points, " + std::to_string(summary.inside_count) +
               " inside, " + std::to_string(summary.contact_count) + " with a contact\n");
+        if (summary.points_step > 0)
+            print("The points are floats, which step by " + number_text(summary.points_step) +
+                  " there; give them as float64 or as text.\n");
     }
 }
 
@@ -131,9 +154,10 @@ void query(const QueryArguments& arguments) {
     const TableFormat answer_format = format_of_answers(arguments.target, format);
     const auto source =
         format == TableFormat::Npy ? open_npy_points(std::move(input)) : open_csv_points(std::move(input));
-    const auto answers = open_answers(
-        arguments.target, answer_format, source->count(),
-        {.signed_distance = arguments.signed_distance, .winding_number = arguments.winding_number});
+    const auto answers = open_answers(arguments.target, answer_format, source->count(),
+                                      {.signed_distance = arguments.signed_distance,
+                                       .winding_number = arguments.winding_number,
+                                       .origin = origin_of(map)});
     print_summary(answer(map, arguments, *source, *answers), arguments);
 }
 

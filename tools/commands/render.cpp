@@ -1,5 +1,6 @@
 #include "commands/commands.hpp"
 #include "input_file.hpp"
+#include "mesh/local_frame.hpp"
 #include "output.hpp"
 #include "progress.hpp"
 #include "recording/simulation_folder.hpp"
@@ -142,7 +143,8 @@ void require_same_model(const TriangleMesh& mesh, const AnyMap& map, const std::
 void render_map(const MapPicture& arguments) {
     const InputFile map_file(arguments.map, "ech");
     const AnyMap map = map_file.read([](const fs::path& path) { return load_map(path); });
-    const TriangleMesh mesh = read_mesh(arguments.mesh);
+    TriangleMesh mesh = read_mesh(arguments.mesh);
+    move_to_origin(std::visit([](const auto& kind) { return kind.view().origin; }, map), mesh);
     ProgressBar bar("drawing");
     const Image image = naming_mesh(arguments.mesh.name(), [&] {
         require_same_model(mesh, map, map_file.name());

@@ -10,18 +10,28 @@
 #include <string>
 
 using echinus::Contact;
+using echinus::Vec3d;
 using echinus::Vec3f;
 
 namespace {
 
+/// Calls use() with the point in the frame of the mesh's file.
+template <typename Use>
+void in_file(const Vec3f& point, const Vec3d& origin, const Use& use) {
+    if (origin == Vec3d{})
+        use(point);
+    else
+        use(Vec3d(point) + origin);
+}
+
 class NpyAnswers final : public AnswerWriter {
   public:
     NpyAnswers(const std::filesystem::path& target, std::uint64_t count, AnswerFields fields)
-        : output_(target) {
+        : output_(target), origin_(fields.origin) {
         output_.write(
-            format_npy_header("[('inside', '|u1'), ('depth', '<f4'), ('normal', '<f4', (3,)), "
-                              "('point', '<f4', (3,)), ('face', '<i4'), "
-                              "('certain', '|u1')" +
+            format_npy_header("[('inside', '|u1'), ('depth', '<f4'), ('normal', '<f4', (3,)), ('point', '" +
+                                  std::string(origin_ == Vec3d{} ? "<f4" : "<f8") +
+                                  "', (3,)), ('face', '<i4'), ('certain', '|u1')" +
                                   std::string(fields.signed_distance ? ", ('signed_distance', '<f4')" : "") +
                                   (fields.winding_number ? ", ('winding_number', '<f4')" : "") + "]",
                               count));
@@ -34,7 +44,7 @@ class NpyAnswers final : public AnswerWriter {
             append(static_cast<std::uint8_t>(contact.inside));
             append(contact.depth);
             append(contact.normal);
-            append(contact.point);
+            in_file(contact.point, origin_, [&](const auto& point) { append(point); });
             append(contact.face);
             append(static_cast<std::uint8_t>(contact.certain));
             if (!answers.signed_distances.empty()) append(answers.signed_distances[i]);
@@ -55,12 +65,14 @@ class NpyAnswers final : public AnswerWriter {
     }
 
     Output output_;
+    Vec3d origin_;
     std::string records_;
 };
 
 class CsvAnswers final : public AnswerWriter {
   public:
-    CsvAnswers(const std::filesystem::path& target, AnswerFields fields) : output_(target) {
+    CsvAnswers(const std::filesystem::path& target, AnswerFields fields)
+        : output_(target), origin_(fields.origin) {
         output_.write(
             std::string("inside,depth,normal_x,normal_y,normal_z,point_x,point_y,point_z,face,certain") +
             (fields.signed_distance ? ",signed_distance" : "") +
@@ -71,10 +83,13 @@ class CsvAnswers final : public AnswerWriter {
         lines_.clear();
         for (std::size_t i = 0; i < answers.contacts.size(); ++i) {
             const Contact& contact = answers.contacts[i];
-            const Vec3f &normal = contact.normal, &point = contact.point;
-            fmt::format_to(std::back_inserter(lines_), "{},{},{},{},{},{},{},{},{},{}",
-                           contact.inside ? 1 : 0, contact.depth, normal.x, normal.y, normal.z, point.x,
-                           point.y, point.z, contact.face, contact.certain ? 1 : 0);
+            const Vec3f& normal = contact.normal;
+            fmt::format_to(std::back_inserter(lines_), "{},{},{},{},{}", contact.inside ? 1 : 0,
+                           contact.depth, normal.x, normal.y, normal.z);
+            in_file(contact.point, origin_, [&](const auto& point) {
+                fmt::format_to(std::back_inserter(lines_), ",{},{},{}", point.x, point.y, point.z);
+            });
+            fmt::format_to(std::back_inserter(lines_), ",{},{}", contact.face, contact.certain ? 1 : 0);
             for (const std::span<const float> more : {answers.signed_distances, answers.winding_numbers})
                 if (!more.empty()) fmt::format_to(std::back_inserter(lines_), ",{}", more[i]);
             lines_ += '\n';
@@ -86,6 +101,7 @@ class CsvAnswers final : public AnswerWriter {
 
   private:
     Output output_;
+    Vec3d origin_;
     std::string lines_;
 };
 

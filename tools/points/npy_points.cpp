@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <type_traits>
 #include <vector>
 
 using echinus::ErrorCode;
-using echinus::Vec3f;
+using echinus::Vec3d;
 
 static_assert(std::endian::native == std::endian::little, "arrays are little-endian and used as they are");
 
@@ -28,14 +29,15 @@ class RowSource final : public PointSource {
     RowSource(std::unique_ptr<Input> input, std::uint64_t count) : input_(std::move(input)), count_(count) {}
 
     std::uint64_t count() const override { return count_; }
+    bool holds_floats() const override { return std::is_same_v<T, float>; }
 
-    std::size_t read(std::span<Vec3f> block) override {
+    std::size_t read(std::span<Vec3d> block) override {
         const auto wanted =
             static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), count_ - read_count_));
         rows_.resize(wanted);
         const std::size_t byte_count = wanted * sizeof(echinus::Vec3<T>);
         if (input_->read(rows_.data(), byte_count) != byte_count) fail_count(*input_, count_, "ends before");
-        std::transform(rows_.begin(), rows_.end(), block.begin(), [](const auto& row) { return Vec3f(row); });
+        std::transform(rows_.begin(), rows_.end(), block.begin(), [](const auto& row) { return Vec3d(row); });
         read_count_ += wanted;
         if (read_count_ == count_) require_end(*input_, count_);
         return wanted;
@@ -71,9 +73,9 @@ std::unique_ptr<PointSource> read_columns(Input& input, std::uint64_t count) {
     const std::vector<T> y = read_column<T>(input, count);
     const std::vector<T> z = read_column<T>(input, count);
     require_end(input, count);
-    std::vector<Vec3f> points(x.size());
-    for (std::size_t i = 0; i < points.size(); ++i) points[i] = Vec3f(echinus::Vec3<T>{x[i], y[i], z[i]});
-    return std::make_unique<PointList>(std::move(points));
+    std::vector<Vec3d> points(x.size());
+    for (std::size_t i = 0; i < points.size(); ++i) points[i] = Vec3d{x[i], y[i], z[i]};
+    return std::make_unique<PointList>(std::move(points), std::is_same_v<T, float>);
 }
 
 template <typename T>

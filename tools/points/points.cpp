@@ -10,7 +10,7 @@
 #include <string_view>
 
 using echinus::ErrorCode;
-using echinus::Vec3f;
+using echinus::Vec3d;
 
 namespace {
 
@@ -21,27 +21,26 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
 }
 
-std::optional<float> parse_number(std::string_view text) {
-    // Read as double: what float cannot hold becomes 0 or infinity, as in a float64 array.
+std::optional<double> parse_number(std::string_view text) {
     double value = 0;
     if (text.starts_with('+')) text.remove_prefix(1);
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || end != text.data() + text.size()) return {};
-    return static_cast<float>(value);
+    return value;
 }
 
-std::optional<Vec3f> parse_point(std::string_view line) {
-    std::array<float, 3> numbers{};
+std::optional<Vec3d> parse_point(std::string_view line) {
+    std::array<double, 3> numbers{};
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         const std::size_t comma = line.find(',');
         const bool last = i + 1 == numbers.size();
         if ((comma == std::string_view::npos) != last) return {};
-        const std::optional<float> number = parse_number(trimmed(line.substr(0, comma)));
+        const std::optional<double> number = parse_number(trimmed(line.substr(0, comma)));
         if (!number) return {};
         numbers[i] = *number;
         if (!last) line.remove_prefix(comma + 1);
     }
-    return Vec3f{numbers[0], numbers[1], numbers[2]};
+    return Vec3d{numbers[0], numbers[1], numbers[2]};
 }
 
 /// Three columns that each begin like a name: "x,y,z".
@@ -63,7 +62,7 @@ bool holds_names(std::string_view line) {
 
 std::unique_ptr<PointSource> open_csv_points(std::unique_ptr<Input> input) {
     constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf"; // spreadsheets put it before the first line
-    std::vector<Vec3f> points;
+    std::vector<Vec3d> points;
     std::string line;
     bool names_may_follow = true;
     for (std::size_t line_number = 1; input->read_line(line); ++line_number) {
@@ -71,7 +70,7 @@ std::unique_ptr<PointSource> open_csv_points(std::unique_ptr<Input> input) {
         if (line_number == 1 && text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
         text = trimmed(text);
         if (text.empty() || text.starts_with('#')) continue;
-        if (const std::optional<Vec3f> point = parse_point(text)) {
+        if (const std::optional<Vec3d> point = parse_point(text)) {
             points.push_back(*point);
             require_room_for(*input, points.size());
         } else if (!(names_may_follow && holds_names(text))) {
@@ -105,7 +104,7 @@ void require_room_for(const Input& input, std::uint64_t count) {
                                               " points; so many are read only from a .npy file in C order");
 }
 
-std::size_t PointList::read(std::span<Vec3f> block) {
+std::size_t PointList::read(std::span<Vec3d> block) {
     const std::size_t count = std::min(block.size(), points_.size() - read_count_);
     std::copy_n(points_.begin() + static_cast<std::ptrdiff_t>(read_count_), count, block.begin());
     read_count_ += count;

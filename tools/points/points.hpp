@@ -22,7 +22,9 @@ class PointSource {
     virtual std::uint64_t count() const = 0;
     /// Fills the block as far as points are left; gives how many that were, 0 at the end.
     /// @throws echinus::Error when the file turns out to hold fewer or more than it promised
-    virtual std::size_t read(std::span<echinus::Vec3f> block) = 0;
+    virtual std::size_t read(std::span<echinus::Vec3d> block) = 0;
+    /// Do they come as floats, and so in steps where they are large?
+    virtual bool holds_floats() const { return false; }
 };
 
 enum class TableFormat { Npy, Csv };
@@ -33,8 +35,8 @@ inline constexpr std::uint64_t kMaxPointsInMemory = 100'000'000;
 /// By the ending of a file's name (.npy, .csv), otherwise by the first byte.
 TableFormat format_of_points(const std::filesystem::path& path, Input& input);
 
-/// Points from an array [n, 3] in a .npy file: float32, or float64 that is rounded to float32; C or Fortran
-/// order. The latter is read into memory whole.
+/// Points from an array [n, 3] in a .npy file: float32 or float64; C or Fortran order. The latter is read
+/// into memory whole.
 /// @throws echinus::Error WrongFormat or Damaged; Unreadable when more than kMaxPointsInMemory would have to
 /// be in memory
 std::unique_ptr<PointSource> open_npy_points(std::unique_ptr<Input> input);
@@ -54,12 +56,15 @@ void require_room_for(const Input& input, std::uint64_t count);
 /// Points that lie in memory.
 class PointList final : public PointSource {
   public:
-    explicit PointList(std::vector<echinus::Vec3f> points) : points_(std::move(points)) {}
+    explicit PointList(std::vector<echinus::Vec3d> points, bool holds_floats = false)
+        : points_(std::move(points)), holds_floats_(holds_floats) {}
 
     std::uint64_t count() const override { return points_.size(); }
-    std::size_t read(std::span<echinus::Vec3f> block) override;
+    std::size_t read(std::span<echinus::Vec3d> block) override;
+    bool holds_floats() const override { return holds_floats_; }
 
   private:
-    std::vector<echinus::Vec3f> points_;
+    std::vector<echinus::Vec3d> points_;
+    bool holds_floats_;
     std::size_t read_count_ = 0;
 };

@@ -1,5 +1,7 @@
 #include "recording/simulation_folder.hpp"
 
+#include "mesh/local_frame.hpp"
+
 #include <echinus/error.hpp>
 #include <echinus/mesh_io.hpp>
 #include <echinus/simulation.hpp>
@@ -93,6 +95,7 @@ SavedCollider read_collider(const ReportReader& reader, const json& collider, co
     const json& mesh_name = reader.member(collider, "mesh");
     if (!mesh_name.is_string()) reader.fail("the collider's \"mesh\" is not a file name");
     saved.mesh = read_mesh(folder / mesh_name.get<std::string>());
+    move_to_origin({}, saved.mesh);
     if (collider.contains("faces") && collider["faces"] != saved.mesh.faces.size())
         reader.fail("the collider's mesh has " + std::to_string(saved.mesh.faces.size()) +
                     " faces, not as many as \"faces\" says");

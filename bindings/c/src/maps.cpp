@@ -10,7 +10,9 @@ template <>
 inline constexpr std::size_t kFirstSize<echinus_exact_map_options> = offsetof(echinus_exact_map_options,
                                                                               find_certain_gaps);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_distance_map_options, reserved);
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_map_info, source_hash);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_map_info, origin);
+template <>
+inline constexpr std::size_t kFirstSize<echinus_map_info> = offsetof(echinus_map_info, origin);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_exact_map_statistics, reserved);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_distance_map_statistics, wrong_parity_share);
 
@@ -104,6 +106,7 @@ echinus_map_info describe(const Map& map, echinus_map_kind kind) {
     info.face_count = map.statistics().face_count;
     info.byte_count = map.view().byte_count();
     info.source_hash = map.source_hash();
+    put_vector(map.view().origin, info.origin);
     return info;
 }
 

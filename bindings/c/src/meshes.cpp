@@ -8,9 +8,11 @@
 
 namespace echinus::c {
 
-static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Triangle) == 3 * sizeof(std::uint32_t) &&
-              sizeof(FacePair) == 2 * sizeof(std::uint32_t));
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_mesh_report, radius);
+static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Vec3d) == 3 * sizeof(double) &&
+              sizeof(Triangle) == 3 * sizeof(std::uint32_t) && sizeof(FacePair) == 2 * sizeof(std::uint32_t));
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_mesh_report, rounding_step);
+template <>
+inline constexpr std::size_t kFirstSize<echinus_mesh_report> = offsetof(echinus_mesh_report, rounding_step);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_options, sheet_thickness);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_report, faces_added);
 template <>
@@ -37,6 +39,10 @@ std::vector<Triangle> faces_from(const std::uint32_t* faces, std::size_t count, 
 }
 
 namespace {
+
+std::span<const Vec3d> doubles_at(const double* points, std::size_t count, const char* name) {
+    return values_at(reinterpret_cast<const Vec3d*>(points), count, name);
+}
 
 const TriangleMesh& mesh_at(const echinus_mesh* mesh) {
     return at(mesh, "mesh").value;
@@ -65,6 +71,7 @@ echinus_mesh_report describe(const MeshReport& report) {
     result.signed_volume = report.signed_volume;
     put_vector(report.bounding_sphere.centre, result.centre);
     result.radius = report.bounding_sphere.radius;
+    result.rounding_step = report.rounding_step;
     return result;
 }
 
@@ -117,6 +124,16 @@ echinus_status echinus_mesh_create(const float* vertices, size_t vertex_count, s
     });
 }
 
+echinus_status echinus_mesh_create_double(const double* vertices, size_t vertex_count, const uint32_t* faces,
+                                          size_t face_count, echinus_mesh** mesh) {
+    return make(__func__, mesh, [&] {
+        TriangleMesh result = local_mesh(doubles_at(vertices, vertex_count, "vertices"),
+                                         faces_from(faces, face_count, "faces"));
+        require_valid(result);
+        return result;
+    });
+}
+
 echinus_status echinus_mesh_read(const char* path, echinus_mesh** mesh) {
     return make(__func__, mesh, [&] { return read_mesh(&at(path, "path")); });
 }
@@ -150,6 +167,17 @@ size_t echinus_mesh_vertex_count(const echinus_mesh* mesh) {
 }
 const float* echinus_mesh_vertices(const echinus_mesh* mesh) {
     return mesh == nullptr ? nullptr : reinterpret_cast<const float*>(mesh->value.vertices.data());
+}
+const double* echinus_mesh_origin(const echinus_mesh* mesh) {
+    return mesh == nullptr ? nullptr : &mesh->value.origin.x;
+}
+echinus_status echinus_to_local(const double* points, size_t count, const double* origin, float* local) {
+    return guarded(__func__, [&] {
+        const Vec3d& at_origin = reinterpret_cast<const Vec3d&>(at(origin, "origin"));
+        const std::span<const Vec3d> from = doubles_at(points, count, "points");
+        const std::span<Vec3f> to = values_at(reinterpret_cast<Vec3f*>(local), count, "local");
+        for (std::size_t i = 0; i < count; ++i) to[i] = to_local(from[i], at_origin);
+    });
 }
 size_t echinus_mesh_face_count(const echinus_mesh* mesh) {
     return mesh == nullptr ? 0 : mesh->value.faces.size();

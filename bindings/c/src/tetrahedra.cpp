@@ -139,6 +139,9 @@ size_t echinus_tetrahedra_vertex_count(const echinus_tetrahedra* body) {
 const float* echinus_tetrahedra_vertices(const echinus_tetrahedra* body) {
     return body == nullptr ? nullptr : reinterpret_cast<const float*>(body->value.vertices.data());
 }
+const double* echinus_tetrahedra_origin(const echinus_tetrahedra* body) {
+    return body == nullptr ? nullptr : &body->value.origin.x;
+}
 size_t echinus_tetrahedra_count(const echinus_tetrahedra* body) {
     return body == nullptr ? 0 : body->value.tetrahedra.size();
 }

@@ -158,7 +158,7 @@ def make_cloth_of_mesh(
     return Deformable._of(
         _core.make_cloth_of_mesh(
             *arrays_of(mesh),
-            None if rest_vertices is None else _core.vertex_array(rest_vertices),
+            None if rest_vertices is None else _core.float_array(rest_vertices),
             threads,
             bending == "sticks",
             vector("position", position),

@@ -20,8 +20,9 @@ Centre = Literal["sphere", "search"]
 class _Answers:
     """One answer to each point, in a structured array. The properties are views of its fields."""
 
-    def __init__(self, array: NDArray[np.void]) -> None:
+    def __init__(self, array: NDArray[np.void], origin: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> None:
         self.array = array
+        self._origin = origin
 
     def __len__(self) -> int:
         return len(self.array)
@@ -33,6 +34,10 @@ class _Answers:
         field: NDArray[Scalar] = self.array[name]
         return field
 
+    def _place(self) -> NDArray[np.float32] | NDArray[np.float64]:
+        place: NDArray[np.float32] = self.array["point"]
+        return place + np.array(self._origin) if any(self._origin) else place
+
 
 class Contacts(_Answers):
     """One contact for each point.
@@ -43,7 +48,7 @@ class Contacts(_Answers):
     Attributes
     ----------
     array : ndarray (...)
-        All of them, as a structured array.
+        All of them, as a structured array; its field ``point`` is relative to the map's origin.
     """
 
     @property
@@ -62,10 +67,10 @@ class Contacts(_Answers):
         return self._field("normal", np.float32)
 
     @property
-    def point(self) -> NDArray[np.float32]:
+    def point(self) -> NDArray[np.float32] | NDArray[np.float64]:
         """(..., 3) Where the way out leads: the nearest point of the surface, or on a distance map the point
-        on the ray from its centre."""
-        return self._field("point", np.float32)
+        on the ray from its centre. In float64 for a map with an origin."""
+        return self._place()
 
     @property
     def face(self) -> NDArray[np.int32]:
@@ -97,7 +102,7 @@ class SweepHits(_Answers):
     Attributes
     ----------
     array : ndarray (...)
-        All of them, as a structured array.
+        All of them, as a structured array; its field ``point`` is relative to the map's origin.
     """
 
     @property
@@ -106,9 +111,9 @@ class SweepHits(_Answers):
         return self._field("fraction", np.float32)
 
     @property
-    def point(self) -> NDArray[np.float32]:
-        """(..., 3) start + fraction (end - start)"""
-        return self._field("point", np.float32)
+    def point(self) -> NDArray[np.float32] | NDArray[np.float64]:
+        """(..., 3) start + fraction (end - start). In float64 for a map with an origin."""
+        return self._place()
 
     @property
     def normal(self) -> NDArray[np.float32]:
@@ -224,7 +229,7 @@ class _Map(Generic[CoreMap]):
             Takes the answers, in the place of earlier ones to as many points.
         """
         taken = None if out is None else of_kind("out", out, Contacts).array
-        return Contacts(self._built.contacts(points, number("margin", margin), taken, threads_of(threads)))
+        return Contacts(self._built.contacts(points, number("margin", margin), taken, threads_of(threads)), self._built.origin)
 
     def save(self, path: Path) -> None:
         """Writes a map file, whole or not at all; :func:`load` reads it in place.
@@ -235,6 +240,13 @@ class _Map(Generic[CoreMap]):
             ``unwritable``.
         """
         self._built.save(path_of(path))
+
+    @property
+    def origin(self) -> tuple[float, float, float]:
+        """Where the float32 frame of the map begins: (0, 0, 0), unless its mesh is so far from there that float32
+        could not hold it. Points that are asked, and places in answers, are in the frame of the mesh all the same:
+        give them as float64."""
+        return self._built.origin
 
     @property
     def centre(self) -> tuple[float, float, float]:
@@ -405,7 +417,7 @@ class ExactMap(_Map[_core.ExactMap]):
                 start, end = np.broadcast_arrays(start, end)
             except ValueError:
                 raise ValueError(f"start and end must have shapes that fit each other, not {start.shape} and {end.shape}") from None
-        return SweepHits(self._built.sweep(start, end, threads_of(threads)))
+        return SweepHits(self._built.sweep(start, end, threads_of(threads)), self._built.origin)
 
     @property
     def statistics(self) -> ExactMapStatistics:

@@ -34,13 +34,14 @@ class Mesh:
     Parameters
     ----------
     vertices : array_like (n, 3)
-        Positions, rounded to float32.
+        Positions, rounded to float32 where that can hold the shape. Of a mesh far from 0, such as a building in
+        the coordinates of a country, it cannot, and float64 is kept.
     faces : array_like (m, 3)
         Whole numbers: the vertices of each triangle, counter-clockwise seen from outside.
 
     Attributes
     ----------
-    vertices : ndarray (n, 3) of float32, read-only
+    vertices : ndarray (n, 3) of float32 or float64, read-only
     faces : ndarray (m, 3) of uint32, read-only
 
     Notes
@@ -49,12 +50,12 @@ class Mesh:
     mesh may have any fault; :func:`inspect` reports them.
     """
 
-    vertices: NDArray[np.float32]
+    vertices: NDArray[np.float32] | NDArray[np.float64]
     faces: NDArray[np.uint32]
 
     def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None:
-        self.vertices = read_only(_core.vertex_array(vertices))
         self.faces = read_only(_core.face_array(faces))
+        self.vertices = read_only(_core.vertex_array(vertices, self.faces))
 
     def __repr__(self) -> str:
         return f"<echinus.Mesh: {len(self.vertices)} vertices, {len(self.faces)} faces>"
@@ -84,7 +85,7 @@ def as_mesh(mesh: MeshLike) -> Mesh:
     return Mesh(mesh.vertices, mesh.faces)
 
 
-def arrays_of(mesh: MeshLike) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
+def arrays_of(mesh: MeshLike) -> tuple[NDArray[np.float32] | NDArray[np.float64], NDArray[np.uint32]]:
     mesh = as_mesh(mesh)
     return mesh.vertices, mesh.faces
 
@@ -136,6 +137,10 @@ class MeshReport:
         Positive where faces look outwards.
     centre, radius
         The smallest sphere that encloses all vertices used by faces.
+    rounding_step
+        The step of float32 at the largest coordinate, where all coordinates are float32 numbers and half of this
+        step exceeds a step of a map's lattice; otherwise 0. If they were rounded before they came here, the shape
+        is off by up to half the step.
     """
 
     face_count: int
@@ -151,6 +156,7 @@ class MeshReport:
     signed_volume: float
     centre: tuple[float, float, float]
     radius: float
+    rounding_step: float
 
 
 def inspect(mesh: MeshLike) -> MeshReport:

@@ -446,7 +446,7 @@ class Simulation:
         Error
             ``invalid_options``; then nothing has changed.
         """
-        self._simulation.set_collider_vertices(index("collider", collider), _core.vertex_array(vertices))
+        self._simulation.set_collider_vertices(index("collider", collider), _core.float_array(vertices))
 
     def set_collider_cache(self, collider: int, cache: VertexCache) -> None:
         """Each frame leads the vertices of a model to where the cache has them at the frame's end.

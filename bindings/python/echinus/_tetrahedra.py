@@ -22,13 +22,13 @@ class TetrahedralMesh:
     Parameters
     ----------
     vertices : array_like (n, 3)
-        Positions, rounded to float32.
+        Positions, rounded to float32 where that can hold the shape, as those of :class:`Mesh`.
     tetrahedra : array_like (m, 4)
         Whole numbers: the vertices a, b, c, d of each, such that a, b, c turn counter-clockwise seen from d.
 
     Attributes
     ----------
-    vertices : ndarray (n, 3) of float32, read-only
+    vertices : ndarray (n, 3) of float32 or float64, read-only
     tetrahedra : ndarray (m, 4) of uint32, read-only
 
     Notes
@@ -37,12 +37,12 @@ class TetrahedralMesh:
     mesh may have any fault; :func:`require_valid_tetrahedra` tells.
     """
 
-    vertices: NDArray[np.float32]
+    vertices: NDArray[np.float32] | NDArray[np.float64]
     tetrahedra: NDArray[np.uint32]
 
     def __init__(self, vertices: ArrayLike, tetrahedra: ArrayLike) -> None:
-        self.vertices = read_only(_core.vertex_array(vertices))
         self.tetrahedra = read_only(_core.tetrahedron_array(tetrahedra))
+        self.vertices = read_only(_core.vertex_array(vertices, self.tetrahedra))
 
     def __repr__(self) -> str:
         return f"<echinus.TetrahedralMesh: {len(self.vertices)} vertices, {len(self.tetrahedra)} tetrahedra>"
@@ -310,13 +310,14 @@ def embed(mesh: TetrahedralMesh, points: ArrayLike, *, threads: int = 0) -> Embe
     Raises
     ------
     Error
-        ``invalid_mesh`` as :func:`require_valid_tetrahedra`, and for a point that is not finite.
+        ``invalid_mesh`` as :func:`require_valid_tetrahedra`, for a point that is not finite, and for a body so far
+        from 0 that its vertices are float64.
     """
     embedding = Embedding.__new__(Embedding)
     embedding._embedding = _core.embed(*_arrays_of(mesh), points, threads_of(threads))
     return embedding
 
 
-def _arrays_of(mesh: TetrahedralMesh) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
+def _arrays_of(mesh: TetrahedralMesh) -> tuple[NDArray[np.float32] | NDArray[np.float64], NDArray[np.uint32]]:
     of_kind("mesh", mesh, TetrahedralMesh, "; of a surface, tetrahedralize() makes one")
     return mesh.vertices, mesh.tetrahedra

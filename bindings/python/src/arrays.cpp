@@ -1,5 +1,7 @@
 #include "arrays.hpp"
 
+#include "mesh/local_frame.hpp"
+
 #include <functional>
 #include <limits>
 #include <memory>
@@ -74,13 +76,35 @@ py::array_t<std::uint32_t> index_array(const py::object& indices, py::ssize_t wi
     return result;
 }
 
+py::array in_file(const std::vector<Vec3f>& vertices, const Vec3d& origin) {
+    py::array_t<double> array({static_cast<py::ssize_t>(vertices.size()), py::ssize_t{3}});
+    auto* to = reinterpret_cast<Vec3d*>(array.mutable_data());
+    for (const Vec3f& vertex : vertices) *to++ = Vec3d(vertex) + origin;
+    return array;
+}
+
 template <typename Mesh, typename Cells>
 py::tuple shared_arrays(Mesh mesh, Cells Mesh::*cells) {
     auto kept = std::make_unique<Mesh>(std::move(mesh));
     const Mesh& m = *kept;
     const py::capsule owner(kept.get(), [](void* p) { delete static_cast<Mesh*>(p); });
     kept.release();
-    return py::make_tuple(view_of(m.vertices, owner), view_of(m.*cells, owner));
+    return py::make_tuple(m.origin == Vec3d{} ? view_of(m.vertices, owner) : in_file(m.vertices, m.origin),
+                          view_of(m.*cells, owner));
+}
+
+std::span<const Vec3d> doubles_of(const py::array& vertices) {
+    return {static_cast<const Vec3d*>(vertices.data()), static_cast<std::size_t>(vertices.shape(0))};
+}
+
+bool holds_doubles(const py::array& vertices) {
+    return py::array_t<double>::check_(vertices);
+}
+
+template <typename Cell>
+std::vector<Cell> cells_of(const py::array_t<std::uint32_t>& cells) {
+    const auto* first = reinterpret_cast<const Cell*>(cells.data());
+    return {first, first + cells.shape(0)};
 }
 
 // ---- Memory of large answers
@@ -126,12 +150,12 @@ py::array number_array(const py::object& object, const char* name) {
     return array_of(object, name, "fiu", "real numbers");
 }
 
-Points::Points(const py::object& points, const char* name) {
+Points::Points(const py::object& points, const char* name, const Vec3d& origin) {
     const py::array array = number_array(points, name);
     if (array.ndim() == 0 || array.shape(array.ndim() - 1) != 3)
         throw py::value_error(std::string(name) + " must have the shape (..., 3), not " + shape_text(array));
     shape_.assign(array.shape(), array.shape() + array.ndim() - 1);
-    if (!read_in_place(array)) convert(array);
+    if (origin != Vec3d{} || !read_in_place(array)) convert(array, origin);
 }
 
 bool Points::read_in_place(const py::array& points) {
@@ -154,15 +178,16 @@ bool Points::read_in_place(const py::array& points) {
     return true;
 }
 
-void Points::convert(const py::array& points) {
+void Points::convert(const py::array& points, const Vec3d& origin) {
     // By our own loop from double: NumPy would warn of numbers beyond the range of float, which become
     // infinite and are outside.
     const py::array_t<double, py::array::c_style | py::array::forcecast> numbers(points);
     py::array_t<float> floats(numbers.size());
-    const double* from = numbers.data();
-    float* to = floats.mutable_data();
-    for (py::ssize_t i = 0; i < numbers.size(); ++i) to[i] = static_cast<float>(from[i]);
-    span_ = {reinterpret_cast<const Vec3f*>(to), static_cast<std::size_t>(numbers.size()) / 3};
+    const auto count = static_cast<std::size_t>(numbers.size()) / 3;
+    const auto* from = reinterpret_cast<const Vec3d*>(numbers.data());
+    auto* to = reinterpret_cast<Vec3f*>(floats.mutable_data());
+    for (std::size_t i = 0; i < count; ++i) to[i] = to_local(from[i], origin);
+    span_ = {to, count};
     owner_ = std::move(floats);
 }
 
@@ -173,7 +198,7 @@ void Points::keep_apart_from(const py::array& answers) {
     const auto* first_answer = static_cast<const std::byte*>(answers.data());
     const std::less<> before; // also of places in different arrays
     if (before(first, first_answer + answers.nbytes()) && before(first_answer, end))
-        convert(py::array(owner_));
+        convert(py::array(owner_), {}); // read in place, so without an origin
 }
 
 py::array new_array(const py::dtype& type, const std::vector<py::ssize_t>& shape) {
@@ -221,7 +246,18 @@ py::array view_of(std::span<const float> numbers, const py::object& owner) {
     return array;
 }
 
-py::array_t<float> vertex_array(const py::object& vertices) {
+py::array vertex_array(const py::object& vertices, const py::array_t<std::uint32_t>& cells) {
+    const py::array array = number_array(vertices, "vertices");
+    require_rows_of(3, array, "vertices", "");
+    const bool holds_floats = array.dtype().kind() == 'f' && array.itemsize() <= py::ssize_t{sizeof(float)};
+    if (holds_floats) return float_array(array);
+    const py::array_t<double, py::array::c_style | py::array::forcecast> numbers(array);
+    const std::span<const std::uint32_t> used(cells.data(), static_cast<std::size_t>(cells.size()));
+    if (to_local_frame(doubles_of(numbers), used).origin == Vec3d{}) return float_array(array);
+    return numbers.attr("copy")();
+}
+
+py::array_t<float> float_array(const py::object& vertices) {
     const py::array array = number_array(vertices, "vertices");
     require_rows_of(3, array, "vertices", "");
     if (py::array_t<float, py::array::c_style>::check_(array) && is_aligned(array)) return array;
@@ -260,14 +296,16 @@ std::vector<Vec3f> points_of(const py::array_t<float>& vertices) {
     return {first, first + vertices.shape(0)};
 }
 
-TriangleMesh mesh_of(const py::array_t<float>& vertices, const py::array_t<std::uint32_t>& faces) {
-    const auto* first = reinterpret_cast<const Triangle*>(faces.data());
-    return {points_of(vertices), {first, first + faces.shape(0)}};
+TriangleMesh mesh_of(const py::array& vertices, const py::array_t<std::uint32_t>& faces) {
+    std::vector<Triangle> triangles = cells_of<Triangle>(faces);
+    if (holds_doubles(vertices)) return local_mesh(doubles_of(vertices), std::move(triangles));
+    return {points_of(vertices), std::move(triangles)};
 }
 
-TetrahedralMesh body_of(const py::array_t<float>& vertices, const py::array_t<std::uint32_t>& tetrahedra) {
-    const auto* first = reinterpret_cast<const Tetrahedron*>(tetrahedra.data());
-    return {points_of(vertices), {first, first + tetrahedra.shape(0)}};
+TetrahedralMesh body_of(const py::array& vertices, const py::array_t<std::uint32_t>& tetrahedra) {
+    std::vector<Tetrahedron> cells = cells_of<Tetrahedron>(tetrahedra);
+    if (holds_doubles(vertices)) return local_body(doubles_of(vertices), std::move(cells));
+    return {points_of(vertices), std::move(cells)};
 }
 
 py::tuple arrays_of(TriangleMesh mesh) {

@@ -25,10 +25,11 @@ namespace py = pybind11;
 py::array number_array(const py::object& object, const char* name);
 
 /// Points [..., 3], read in place where they are float32, aligned, and the three coordinates of each lie side
-/// by side, with any distance from one point to the next. All else is converted to float32 once.
+/// by side, with any distance from one point to the next. All else is converted to float32 once, and so is
+/// everything that is asked of a map with an origin: relative to it, after a subtraction in double.
 class Points {
   public:
-    Points(const py::object& points, const char* name);
+    Points(const py::object& points, const char* name, const Vec3d& origin = {});
 
     StridedSpan<const Vec3f> span() const { return span_; }
     std::size_t size() const { return span_.size(); }
@@ -39,7 +40,7 @@ class Points {
 
   private:
     bool read_in_place(const py::array& points);
-    void convert(const py::array& points);
+    void convert(const py::array& points, const Vec3d& origin);
 
     py::object owner_;
     std::vector<py::ssize_t> shape_;
@@ -61,8 +62,12 @@ py::array view_of(std::span<const Tetrahedron> tetrahedra, const py::object& own
 py::array view_of(std::span<const ElasticTetrahedron> tetrahedra, const py::object& owner);
 py::array view_of(std::span<const float> numbers, const py::object& owner);
 
+/// [n, 3] float32, contiguous; the same array where it is one already. Of numbers that float32 could not hold
+/// (mesh/local_frame.hpp) a copy in float64.
+/// @param cells  [m, 3] faces, or [m, 4] tetrahedra, which tell the vertices that count
+py::array vertex_array(const py::object& vertices, const py::array_t<std::uint32_t>& cells);
 /// [n, 3] float32, contiguous; the same array where it is one already.
-py::array_t<float> vertex_array(const py::object& vertices);
+py::array_t<float> float_array(const py::object& vertices);
 /// [n, 3] uint32, contiguous; the same array where it is one already.
 py::array_t<std::uint32_t> face_array(const py::object& faces);
 /// [n, 4] uint32, contiguous; the same array where it is one already.
@@ -73,9 +78,10 @@ std::vector<std::uint32_t> whole_numbers(const py::object& numbers, const char* 
 
 /// Of arrays from the functions above.
 std::vector<Vec3f> points_of(const py::array_t<float>& vertices);
-TriangleMesh mesh_of(const py::array_t<float>& vertices, const py::array_t<std::uint32_t>& faces);
-TetrahedralMesh body_of(const py::array_t<float>& vertices, const py::array_t<std::uint32_t>& tetrahedra);
-/// (vertices, faces) or (vertices, tetrahedra), which share the mesh's memory.
+TriangleMesh mesh_of(const py::array& vertices, const py::array_t<std::uint32_t>& faces);
+TetrahedralMesh body_of(const py::array& vertices, const py::array_t<std::uint32_t>& tetrahedra);
+/// (vertices, faces) or (vertices, tetrahedra), which share the mesh's memory. The vertices of a mesh with an
+/// origin are a new array of float64, in the frame of its file.
 py::tuple arrays_of(TriangleMesh mesh);
 py::tuple arrays_of(TetrahedralMesh mesh);
 

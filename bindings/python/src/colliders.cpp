@@ -110,7 +110,7 @@ void bind_colliders(py::module_& module) {
     py::class_<VertexCache>(module, "VertexCache")
         .def(py::init(&cache_of))
         .def_static("read",
-                    [](const std::filesystem::path& path, const py::array_t<float>& vertices,
+                    [](const std::filesystem::path& path, const py::array& vertices,
                        const py::array_t<std::uint32_t>& faces, double frames_per_second,
                        const std::string& animation) {
                         if (!std::isfinite(frames_per_second) || !(frames_per_second > 0))

@@ -47,7 +47,7 @@ Deformable sheet(std::uint32_t column_count, std::uint32_t row_count, double wid
                        .pins = whole_numbers(pins, "pins")});
 }
 
-Deformable cloth_of_mesh(const py::array_t<float>& vertices, const py::array_t<std::uint32_t>& faces,
+Deformable cloth_of_mesh(const py::array& vertices, const py::array_t<std::uint32_t>& faces,
                          const std::optional<py::array_t<float>>& rest_vertices, const py::object& threads,
                          bool bends_by_sticks, const Vector& position, const Quaternion& rotation,
                          double scale, const py::object& pins, const py::object& attachments) {
@@ -63,9 +63,9 @@ Deformable cloth_of_mesh(const py::array_t<float>& vertices, const py::array_t<s
     return unlocked([&] { return make_cloth(mesh, options); });
 }
 
-Deformable soft_body(const py::array_t<float>& vertices, const py::array_t<std::uint32_t>& tetrahedra,
-                     double density, double young_modulus, double poisson_ratio, double damping,
-                     const Vector& position, const Quaternion& rotation, double scale, const py::object& pins,
+Deformable soft_body(const py::array& vertices, const py::array_t<std::uint32_t>& tetrahedra, double density,
+                     double young_modulus, double poisson_ratio, double damping, const Vector& position,
+                     const Quaternion& rotation, double scale, const py::object& pins,
                      const py::object& attachments) {
     const TetrahedralMesh mesh = body_of(vertices, tetrahedra);
     const SoftBodyOptions options{.density = density,

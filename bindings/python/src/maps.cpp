@@ -68,7 +68,7 @@ std::span<T> elements_of(py::array& array) {
 template <typename Map>
 py::array contains_points(const Map& map, const py::object& points, const py::object& out, int threads) {
     const unsigned workers = thread_count(threads);
-    Points taken(points, "points");
+    Points taken(points, "points", map.view().origin);
     py::array inside = answers(py::dtype::of<bool>(), taken.shape(), out, taken);
     const std::span<std::uint8_t> flags = elements_of<std::uint8_t>(inside);
     in_pieces(taken.size(), [&](std::size_t first, std::size_t count) {
@@ -82,7 +82,7 @@ py::array contacts_of_points(const Map& map, const py::object& points, float mar
                              int threads) {
     const unsigned workers = thread_count(threads);
     if (!(margin >= 0)) throw py::value_error("margin must be 0 or more, not " + std::to_string(margin));
-    Points taken(points, "points");
+    Points taken(points, "points", map.view().origin);
     py::array result = answers(contact_type(), taken.shape(), out, taken);
     const std::span<Contact> contacts = elements_of<Contact>(result);
     in_pieces(taken.size(), [&](std::size_t first, std::size_t count) {
@@ -96,7 +96,7 @@ py::array contacts_of_points(const Map& map, const py::object& points, float mar
 py::object signed_distances(const ExactMap& map, const py::object& points, bool gradient,
                             const py::object& out, int threads) {
     const unsigned workers = thread_count(threads);
-    Points taken(points, "points");
+    Points taken(points, "points", map.view().origin);
     py::array distances = answers(py::dtype::of<float>(), taken.shape(), out, taken), gradients;
     const std::span<float> lengths = elements_of<float>(distances);
     std::span<Vec3f> directions;
@@ -119,7 +119,7 @@ py::array winding_numbers(const ExactMap& map, const py::object& points, float t
     const unsigned workers = thread_count(threads);
     if (!(tolerance >= 0))
         throw py::value_error("tolerance must be 0 or more, not " + std::to_string(tolerance));
-    Points taken(points, "points");
+    Points taken(points, "points", map.view().origin);
     py::array result = answers(py::dtype::of<float>(), taken.shape(), out, taken);
     const std::span<float> numbers = elements_of<float>(result);
     in_pieces(taken.size(), [&](std::size_t first, std::size_t count) {
@@ -131,7 +131,8 @@ py::array winding_numbers(const ExactMap& map, const py::object& points, float t
 
 py::array sweep_points(const ExactMap& map, const py::object& start, const py::object& end, int threads) {
     const unsigned workers = thread_count(threads);
-    const Points from(start, "start"), to(end, "end");
+    const Vec3d& origin = map.view().origin;
+    const Points from(start, "start", origin), to(end, "end", origin);
     if (from.shape() != to.shape()) throw py::value_error("start and end must have the same shape");
     py::array result = new_array(hit_type(), from.shape());
     const std::span<SweepHit> hits = elements_of<SweepHit>(result);
@@ -200,8 +201,13 @@ py::class_<Map> bind_map(py::module_& module, const char* name) {
         .def_property_readonly("source_hash", &Map::source_hash)
         .def_property_readonly("byte_count", [](const Map& map) { return map.view().byte_count(); })
         .def_property_readonly("radius", [](const Map& map) { return map.view().radius; })
+        .def_property_readonly("origin",
+                               [](const Map& map) {
+                                   const Vec3d& o = map.view().origin;
+                                   return py::make_tuple(o.x, o.y, o.z);
+                               })
         .def_property_readonly("centre", [](const Map& map) {
-            const Vec3f& c = map.view().centre;
+            const Vec3d c = Vec3d(map.view().centre) + map.view().origin;
             return py::make_tuple(c.x, c.y, c.z);
         });
 }
@@ -214,7 +220,7 @@ void bind_maps(py::module_& module) {
         .def("signed_distance", signed_distances)
         .def("winding_number", winding_numbers)
         .def("sweep", sweep_points);
-    module.def("build_map", [](const py::array_t<float>& vertices, const py::array_t<std::uint32_t>& faces,
+    module.def("build_map", [](const py::array& vertices, const py::array_t<std::uint32_t>& faces,
                                const std::string& options_json, int threads) {
         const unsigned workers = thread_count(threads);
         const MapOptions options = parse_map_options(options_json, "options");

@@ -15,7 +15,7 @@ namespace echinus::python {
 
 namespace {
 
-using Vertices = py::array_t<float>;
+using Vertices = py::array; // float32, or float64 for a mesh with an origin
 using Faces = py::array_t<std::uint32_t>;
 
 py::dict to_python(const Fault& fault) {
@@ -27,7 +27,7 @@ py::dict to_python(const Fault& fault) {
 
 py::dict inspect_mesh(const Vertices& vertices, const Faces& faces) {
     const TriangleMesh mesh = mesh_of(vertices, faces);
-    return describe(unlocked([&] { return inspect(mesh); }));
+    return describe(unlocked([&] { return inspect(mesh); }), mesh.origin);
 }
 
 /// ((vertices, faces), report)
@@ -57,10 +57,10 @@ py::tuple repair_mesh(const Vertices& vertices, const Faces& faces, bool drop_du
     return py::make_tuple(arrays_of(std::move(repaired.mesh)), report);
 }
 
-/// Calls measure(point) for each point, in double. An array of points costs time in proportion to the mesh,
-/// so the pieces between which Ctrl-C is heard are small.
+/// Calls measure(point) for each point, in double and relative to the origin. An array of points costs time
+/// in proportion to the mesh, so the pieces between which Ctrl-C is heard are small.
 template <typename Measure>
-py::array measured(const py::object& points, int threads, const Measure& measure) {
+py::array measured(const py::object& points, const Vec3d& origin, int threads, const Measure& measure) {
     constexpr std::size_t kPiece = 1024;
     const unsigned workers = thread_count(threads);
     const py::array_t<double, py::array::c_style | py::array::forcecast> numbers(
@@ -77,7 +77,7 @@ py::array measured(const py::object& points, int threads, const Measure& measure
         const py::gil_scoped_release released;
         parallel_for(std::min(kPiece, count - first), workers, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = first + begin; i < first + end; ++i)
-                to[i] = measure(Vec3d(from[3 * i], from[3 * i + 1], from[3 * i + 2]));
+                to[i] = measure(Vec3d(from[3 * i], from[3 * i + 1], from[3 * i + 2]) - origin);
         });
     }
     return results;
@@ -95,8 +95,8 @@ py::array pair_array(const std::vector<FacePair>& pairs) {
 
 } // namespace
 
-py::dict describe(const MeshReport& report) {
-    const Vec3d& centre = report.bounding_sphere.centre;
+py::dict describe(const MeshReport& report, const Vec3d& origin) {
+    const Vec3d centre = report.bounding_sphere.centre + origin;
     py::dict result;
     result["face_count"] = report.face_count;
     result["vertex_count"] = report.vertex_count;
@@ -111,11 +111,13 @@ py::dict describe(const MeshReport& report) {
     result["signed_volume"] = report.signed_volume;
     result["centre"] = py::make_tuple(centre.x, centre.y, centre.z);
     result["radius"] = report.bounding_sphere.radius;
+    result["rounding_step"] = report.rounding_step;
     return result;
 }
 
 void bind_meshes(py::module_& module) {
     module.def("vertex_array", vertex_array);
+    module.def("float_array", float_array);
     module.def("face_array", face_array);
     module.def("read_mesh", [](const std::filesystem::path& path) {
         return arrays_of(unlocked([&] { return read_mesh(path); }));
@@ -139,14 +141,16 @@ void bind_meshes(py::module_& module) {
                [](const Vertices& vertices, const Faces& faces, const py::object& points, int threads) {
                    const TriangleMesh mesh = mesh_of(vertices, faces);
                    require_valid(mesh);
-                   return measured(points, threads, [&](const Vec3d& p) { return winding_number(mesh, p); });
+                   return measured(points, mesh.origin, threads,
+                                   [&](const Vec3d& p) { return winding_number(mesh, p); });
                });
-    module.def("unsigned_distance", [](const Vertices& vertices, const Faces& faces, const py::object& points,
-                                       int threads) {
-        const TriangleMesh mesh = mesh_of(vertices, faces);
-        require_valid(mesh);
-        return measured(points, threads, [&](const Vec3d& p) { return unsigned_distance(mesh, p); });
-    });
+    module.def("unsigned_distance",
+               [](const Vertices& vertices, const Faces& faces, const py::object& points, int threads) {
+                   const TriangleMesh mesh = mesh_of(vertices, faces);
+                   require_valid(mesh);
+                   return measured(points, mesh.origin, threads,
+                                   [&](const Vec3d& p) { return unsigned_distance(mesh, p); });
+               });
     module.def("intersecting_pairs", [](const Vertices& vertices_a, const Faces& faces_a,
                                         const Vertices& vertices_b, const Faces& faces_b) {
         const TriangleMesh a = mesh_of(vertices_a, faces_a), b = mesh_of(vertices_b, faces_b);

@@ -6,7 +6,8 @@
 
 namespace echinus::python {
 
-/// The members of a report, by their names.
-pybind11::dict describe(const MeshReport& report);
+/// The members of a report, by their names, places in the frame of the file.
+/// @param origin  the mesh's
+pybind11::dict describe(const MeshReport& report, const Vec3d& origin);
 
 } // namespace echinus::python

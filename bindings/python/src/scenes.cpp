@@ -22,7 +22,7 @@ namespace echinus::python {
 
 namespace {
 
-using Vertices = py::array_t<float>;
+using Vertices = py::array; // float32, or float64 for a mesh with an origin
 using Faces = py::array_t<std::uint32_t>;
 using Arrays = std::pair<Vertices, Faces>;
 

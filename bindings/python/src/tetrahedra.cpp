@@ -1,4 +1,5 @@
 #include "interface.hpp"
+#include "mesh/local_frame.hpp"
 #include "reports.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -16,7 +17,7 @@ namespace echinus::python {
 
 namespace {
 
-using Vertices = py::array_t<float>;
+using Vertices = py::array; // float32, or float64 for a mesh with an origin
 using Tetrahedra = py::array_t<std::uint32_t>;
 
 /// ((vertices, tetrahedra), turned tetrahedra, dropped vertices)
@@ -45,7 +46,7 @@ py::dict inspect_body(const Vertices& vertices, const Tetrahedra& tetrahedra) {
     result["longest_edge"] = report.longest_edge;
     result["least_angle_deg"] = report.least_angle_deg;
     result["greatest_angle_deg"] = report.greatest_angle_deg;
-    result["boundary"] = describe(report.boundary);
+    result["boundary"] = describe(report.boundary, mesh.origin);
     return result;
 }
 
@@ -67,8 +68,9 @@ struct BodyEmbedding {
 BodyEmbedding embed_points(const Vertices& vertices, const Tetrahedra& tetrahedra, const py::object& points,
                            int threads) {
     const unsigned workers = thread_count(threads);
-    const Points taken(points, "points");
     const TetrahedralMesh mesh = body_of(vertices, tetrahedra);
+    require_no_origin(mesh.origin, "the body");
+    const Points taken(points, "points");
     return {unlocked([&] { return embed(mesh, taken.span(), workers); }), mesh.vertices.size()};
 }
 

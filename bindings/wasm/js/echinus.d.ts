@@ -184,8 +184,10 @@ export interface Contact {
 export class Mesh extends Deletable {
     readonly vertexCount: number;
     readonly faceCount: number;
-    /** [3 vertexCount] a copy. */
+    /** [3 vertexCount] a copy, relative to the origin. */
     readonly vertices: Float32Array;
+    /** Where the frame of the vertices begins in that of the file: [0, 0, 0], unless floats could not hold the mesh there. */
+    readonly origin: [number, number, number];
     /** [3 faceCount] a copy. */
     readonly faces: Uint32Array;
 
@@ -232,6 +234,8 @@ export interface MeshReport {
     /** Positive where faces turn outwards. */
     signedVolume: number;
     boundingSphere: { centre: [number, number, number]; radius: number };
+    /** The step of floats, where all coordinates are floats and these are too coarse there; else 0. */
+    roundingStep: number;
 }
 export interface MeshFaults {
     /** Two vertices for each edge. */
@@ -280,11 +284,13 @@ export interface DistanceMapOptions {
 export type MapOptions = ExactMapOptions | DistanceMapOptions;
 export type AnyMap = ExactMap | DistanceMap;
 
-/** Points are in the frame of the mesh. NaN or infinity in a point: outside, no contact. */
+/** Points are in the frame of the mesh, relative to its origin. NaN or infinity in a point: outside, no contact. */
 declare abstract class MapOfEitherKind extends Deletable {
     /** All that a query reads. */
     readonly byteCount: number;
     readonly centre: [number, number, number];
+    /** Of the mesh: subtract it from points of the file's frame, as numbers, before they become floats. */
+    readonly origin: [number, number, number];
     /** Every vertex lies within it of the centre. */
     readonly radius: number;
 

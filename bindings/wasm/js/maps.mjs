@@ -22,6 +22,9 @@ class Map extends Handle {
     get byteCount() {
         return this.description.byteCount;
     }
+    get origin() {
+        return this.description.origin;
+    }
     get centre() {
         return this.description.centre;
     }

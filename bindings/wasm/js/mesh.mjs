@@ -52,6 +52,10 @@ export class Mesh extends Handle {
     get vertices() {
         return this.core.copyFloats(this.core.call('mesh_vertices', this.address), 3 * this.vertexCount);
     }
+    get origin() {
+        const address = this.core.call('mesh_origin', this.address) >>> 0;
+        return Array.from(new Float64Array(this.core.views.bytes.buffer, address, 3));
+    }
     get faces() {
         return this.core.copyWords(this.core.call('mesh_faces', this.address), 3 * this.faceCount);
     }

@@ -81,6 +81,7 @@ json describe_with_frame(const Kind& map) {
     json description = describe(map);
     const auto& view = map.view();
     description["centre"] = {view.centre.x, view.centre.y, view.centre.z};
+    description["origin"] = {view.origin.x, view.origin.y, view.origin.z};
     description["radius"] = view.radius;
     description["byteCount"] = view.byte_count();
     description["sourceHash"] = as_hex(map.source_hash());

@@ -34,7 +34,8 @@ json to_json(const MeshReport& report) {
             {"degenerateFaces", to_json(report.degenerate_faces)},
             {"signedVolume", report.signed_volume},
             {"boundingSphere",
-             {{"centre", {centre.x, centre.y, centre.z}}, {"radius", report.bounding_sphere.radius}}}};
+             {{"centre", {centre.x, centre.y, centre.z}}, {"radius", report.bounding_sphere.radius}}},
+            {"roundingStep", report.rounding_step}};
 }
 
 json to_json(const RepairReport& report) {
@@ -137,11 +138,13 @@ TriangleMesh* mesh_make_from_polygons(const float* vertices, std::uint32_t verte
                                       const std::uint32_t* corners, std::uint32_t corner_count,
                                       const std::uint32_t* corner_counts, std::uint32_t polygon_count) {
     return make_handle([&] {
-        const PolygonMesh polygons{vertices_at(vertices, vertex_count),
+        const std::vector<Vec3f> points = vertices_at(vertices, vertex_count);
+        const PolygonMesh polygons{std::vector<Vec3d>(points.begin(), points.end()),
                                    {corners, corners + corner_count},
                                    {corner_counts, corner_counts + polygon_count}};
         require_corners(polygons);
         TriangleMesh mesh = triangulate(polygons, {"the polygons", {}});
+        move_to_origin({}, mesh); // floats are what they are
         require_valid(mesh);
         return mesh;
     });
@@ -175,6 +178,9 @@ ECHINUS_EXPORT(mesh_delete) void mesh_delete(TriangleMesh* mesh) {
 
 ECHINUS_EXPORT(mesh_vertices) const Vec3f* mesh_vertices(const TriangleMesh* mesh) {
     return mesh->vertices.data();
+}
+ECHINUS_EXPORT(mesh_origin) const Vec3d* mesh_origin(const TriangleMesh* mesh) {
+    return &mesh->origin;
 }
 ECHINUS_EXPORT(mesh_vertex_count) std::uint32_t mesh_vertex_count(const TriangleMesh* mesh) {
     return static_cast<std::uint32_t>(mesh->vertices.size());

@@ -94,6 +94,7 @@ DistanceMap DistanceMap::build(const TriangleMesh& mesh, const DistanceMapOption
     require_usable(options);
     const LatticeMesh lattice = snap(mesh, options);
     DistanceMapView view = view_of(options, lattice);
+    view.origin = mesh.origin;
     const AnyGrid grid = with_grid(view, [](const auto& one) { return AnyGrid(one); });
 
     Crossings crossings = cast_rays(lattice, grid, options.thread_count);

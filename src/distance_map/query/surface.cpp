@@ -49,6 +49,7 @@ MapSurface reconstruct_surface(const DistanceMapView& map) {
     return with_grid(map, [&](const auto& grid) {
         MapSurface surface;
         surface.mesh.vertices = entry_points(map, grid);
+        surface.mesh.origin = map.origin;
         grid.for_each_facet([&](const auto& facet) { add_layers(map, facet, surface); });
         return surface;
     });

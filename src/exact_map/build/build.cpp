@@ -59,14 +59,14 @@ std::string size_text(std::size_t byte_count) {
     return text;
 }
 
-std::uint64_t hash_of(std::span<const Vec3f> vertices, std::span<const Triangle> faces,
+std::uint64_t hash_of(std::span<const Vec3f> vertices, std::span<const Triangle> faces, const Vec3d& origin,
                       const ExactMapOptions& options, bool is_closed) {
     constexpr std::uint64_t kWithoutCertainGaps = std::uint64_t{1} << 32;
     const bool finds_gaps = options.find_certain_gaps || is_closed; // where all are certain
     const std::array<std::uint64_t, 4> fields{options.divisions | (finds_gaps ? 0 : kWithoutCertainGaps),
                                               options.byte_budget, static_cast<std::uint64_t>(options.rule),
                                               static_cast<std::uint64_t>(options.centre)};
-    return mesh_hash(vertices, faces, XXH64(fields.data(), sizeof fields, 0));
+    return mesh_hash(vertices, faces, origin, XXH64(fields.data(), sizeof fields, 0));
 }
 
 struct OwnedArrays {
@@ -143,8 +143,9 @@ ExactMapStatistics statistics_of(std::size_t face_count, std::size_t dropped_fac
 class MapMaker {
   public:
     /// @param faces  are to stay in place
-    MapMaker(std::span<const Triangle> faces, const ExactMapOptions& options)
-        : faces_(faces), options_(options), snapper_(faces) {}
+    /// @param origin  of the frame of all vertices
+    MapMaker(std::span<const Triangle> faces, const ExactMapOptions& options, const Vec3d& origin = {})
+        : faces_(faces), origin_(origin), options_(options), snapper_(faces) {}
 
     ExactMap make(std::span<const Vec3f> vertices);
 
@@ -158,6 +159,7 @@ class MapMaker {
     std::uint32_t set_bands_within(const ByteRange& bytes, std::uint32_t most);
 
     std::span<const Triangle> faces_;
+    Vec3d origin_;
     ExactMapOptions options_;
     LatticeSnapper snapper_;
     std::optional<bool> closed_; ///< with vertices apart; not known before the first map
@@ -227,7 +229,7 @@ void MapMaker::set_surface(std::span<const Vec3f> vertices) {
         options_.thread_count,
         [&] {
             if (!closed_) closed_ = is_closed(faces_, vertices.size());
-            source_hash_ = hash_of(vertices, faces_, options_, *closed_);
+            source_hash_ = hash_of(vertices, faces_, origin_, options_, *closed_);
         },
         [&] { build_face_tree(lattice_, options_.thread_count, tree_); });
     order_faces();
@@ -291,8 +293,9 @@ ExactMap MapMaker::make(std::span<const Vec3f> vertices) {
     set_surface(vertices);
     const std::uint32_t divisions = set_bands();
     set_outer_limits(arrays_->bands.offsets, arrays_->bands.bands, arrays_->outer_limits);
-    return proven(view_of(*arrays_, lattice_, divisions, options_.rule),
-                  statistics_of(faces_.size(), dropped_faces_, arrays_->bands), source_hash_, arrays_);
+    ExactMapView view = view_of(*arrays_, lattice_, divisions, options_.rule);
+    view.origin = origin_;
+    return proven(view, statistics_of(faces_.size(), dropped_faces_, arrays_->bands), source_hash_, arrays_);
 }
 
 } // namespace
@@ -330,7 +333,7 @@ ExactMap::ExactMap(const ExactMapView& view, const ExactMapStatistics& statistic
 
 ExactMap ExactMap::build(const TriangleMesh& mesh, const ExactMapOptions& options) {
     require_sound(options);
-    return MapMaker(mesh.faces, options).make(mesh.vertices);
+    return MapMaker(mesh.faces, options, mesh.origin).make(mesh.vertices);
 }
 
 } // namespace echinus

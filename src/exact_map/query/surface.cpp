@@ -25,6 +25,7 @@ std::vector<std::uint32_t> longest_lists(const ExactMapView& map) {
 
 ExactMapSurface reconstruct_surface(const ExactMapView& map) {
     ExactMapSurface surface;
+    surface.mesh.origin = map.origin;
     const LatticeFrame frame = frame_of(map);
     for (const Vec3<std::int32_t>& vertex : map.vertices)
         surface.mesh.vertices.push_back(Vec3f(frame.to_local(Vec3d(vertex))));

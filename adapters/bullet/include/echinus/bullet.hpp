@@ -102,12 +102,16 @@ class MapShape : public btConcaveShape {
   public:
     /// @param for_rigid_bodies  what rigid bodies and rays meet instead, such as a btBvhTriangleMeshShape of
     ///                          the same mesh; has to outlive this shape. Null: they meet nothing
-    /// @throws Error InvalidMesh for the map of an open surface
+    /// @throws Error InvalidMesh for the map of an open surface, and for one with an origin
     explicit MapShape(ExactMap map, const btConcaveShape* for_rigid_bodies = nullptr)
         : collider_{.map = std::move(map)}, for_rigid_bodies_(for_rigid_bodies) {
         if (!this->map().view().border.empty())
             throw Error(ErrorCode::InvalidMesh,
                         "the surface is open, so what is inside is not certain; close it with repair()");
+        if (this->map().view().origin != Vec3d{})
+            throw Error(ErrorCode::InvalidMesh,
+                        "the mesh stands too far from 0 for a shape; move its vertices "
+                        "to 0, and the object to where they were");
         // A type for foreign meshes that Bullet itself gives to no shape. CUSTOM_CONCAVE_SHAPE_TYPE is also
         // that of btSdfCollisionShape, to which Bullet casts without a question.
         m_shapeType = FAST_CONCAVE_MESH_PROXYTYPE;

@@ -37,6 +37,11 @@
 /// Frames, units and words are those of docs/conventions.md: right-handed, lengths in the caller's unit,
 /// angles in radians, faces counter-clockwise seen from outside, rotations as unit quaternions w, x, y, z.
 /// "Local" is the frame of the mesh that a map was built from, "world" is where a collider stands.
+///
+/// Origins. A mesh whose file has it so far from 0 that floats could not hold its shape has an origin, and so
+/// have its map and its tetrahedra: everything local is then relative to it. It is 0 for all others.
+/// echinus_to_local() makes local points of doubles. A collider's pose and scale place the file's frame:
+/// world = pose (scale (origin + local)). Simulations refuse an origin that is not 0.
 
 #ifdef __cplusplus
 extern "C" {
@@ -115,6 +120,12 @@ ECHINUS_API echinus_status echinus_mesh_create(const float* vertices, size_t ver
                                                size_t vertex_stride, const uint32_t* faces, size_t face_count,
                                                echinus_mesh** mesh);
 
+/// The same of vertices in double. Where floats could not hold the shape, the mesh has an origin.
+/// @param vertices  [3 vertex_count]
+ECHINUS_API echinus_status echinus_mesh_create_double(const double* vertices, size_t vertex_count,
+                                                      const uint32_t* faces, size_t face_count,
+                                                      echinus_mesh** mesh);
+
 /// Reads OBJ, PLY, STL, OFF, glTF, GLB or 3DS, by the extension of the name. All meshes of the file are
 /// joined, polygons are triangulated and equal positions are welded.
 /// @return ECHINUS_UNREADABLE, ECHINUS_WRONG_FORMAT, ECHINUS_DAMAGED or ECHINUS_INVALID_MESH
@@ -144,8 +155,10 @@ ECHINUS_API echinus_status echinus_mesh_box(const double* size, uint32_t segment
 ECHINUS_API void echinus_mesh_destroy(echinus_mesh* mesh);
 
 ECHINUS_API size_t echinus_mesh_vertex_count(const echinus_mesh* mesh);
-/// [3 vertex_count] x, y, z
+/// [3 vertex_count] x, y, z, relative to the origin
 ECHINUS_API const float* echinus_mesh_vertices(const echinus_mesh* mesh);
+/// [3] where the frame of the vertices begins in that of the file; 0 for most meshes
+ECHINUS_API const double* echinus_mesh_origin(const echinus_mesh* mesh);
 ECHINUS_API size_t echinus_mesh_face_count(const echinus_mesh* mesh);
 /// [3 face_count]
 ECHINUS_API const uint32_t* echinus_mesh_faces(const echinus_mesh* mesh);
@@ -176,7 +189,17 @@ typedef struct echinus_mesh_report {
     double signed_volume; ///< positive where faces turn outwards; of limited meaning when not closed
     double centre[3];     ///< of the smallest sphere that encloses all vertices used by faces
     double radius;
+    /// The step of float at the largest coordinate, where all coordinates are floats and half of this step
+    /// exceeds a step of a map's lattice; otherwise 0. What was rounded to it before is lost.
+    double rounding_step;
 } echinus_mesh_report;
+
+/// Points in double as floats relative to an origin. Without a handle; any thread.
+/// @param points  [3 count]
+/// @param origin  [3] of a mesh, a map or tetrahedra
+/// @param local   [3 count] out
+ECHINUS_API echinus_status echinus_to_local(const double* points, size_t count, const double* origin,
+                                            float* local);
 
 /// @param report  out; its size is set
 ECHINUS_API echinus_status echinus_mesh_inspect(const echinus_mesh* mesh, echinus_mesh_report* report);
@@ -346,6 +369,7 @@ typedef struct echinus_map_info {
     uint32_t face_count;  ///< of the mesh
     uint64_t byte_count;  ///< of all that queries read
     uint64_t source_hash; ///< identifies the mesh and the options that the map was built from
+    double origin[3];     ///< of the local frame, in the frame of the mesh's file
 } echinus_map_info;
 
 /// @param info  out; its size is set
@@ -752,6 +776,8 @@ ECHINUS_API void echinus_tetrahedra_destroy(echinus_tetrahedra* body);
 ECHINUS_API size_t echinus_tetrahedra_vertex_count(const echinus_tetrahedra* body);
 /// [3 vertex_count] x, y, z
 ECHINUS_API const float* echinus_tetrahedra_vertices(const echinus_tetrahedra* body);
+/// [3] as of a mesh
+ECHINUS_API const double* echinus_tetrahedra_origin(const echinus_tetrahedra* body);
 ECHINUS_API size_t echinus_tetrahedra_count(const echinus_tetrahedra* body);
 /// [4 count]
 ECHINUS_API const uint32_t* echinus_tetrahedra_indices(const echinus_tetrahedra* body);
