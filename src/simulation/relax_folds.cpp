@@ -13,6 +13,7 @@
 #include "simulation/places-inl.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #ifndef ECHINUS_SIMULATION_RELAX_FOLDS_RULES
@@ -27,6 +28,13 @@ constexpr float kLargestTurn = 1;
 /// Outside of these limits of the turn per step a face has no area, or next to none.
 constexpr float kLeastRate = std::numeric_limits<float>::min();
 constexpr float kMostRate = std::numeric_limits<float>::max();
+
+/// The gradient at an end of the edge is the sum of what both faces give it. Where these cancel, as at a free
+/// end whose other three particles are pinned on one line, rounding is all that is left, and a step divided
+/// by its square goes anywhere. So the turn per step counts as no less than this share of that without
+/// cancellation; of a fold whose four particles are free, and whose corners lie beside the edge, it is more
+/// than a third.
+constexpr float kLeastRateShare = 1.0F / 64;
 
 } // namespace
 } // namespace echinus
@@ -63,11 +71,17 @@ HWY_INLINE void relax_lanes(FoldArrays& folds, std::size_t i, const Places& plac
     const FloatLanes rate = dot(gradient_a, gradient_a) * mass_a + dot(gradient_b, gradient_b) * mass_b +
                             dot(gradient_c, gradient_c) * mass_c + dot(gradient_d, gradient_d) * mass_d;
     const FloatMask has_angle = hn::And(rate >= splat(kLeastRate), rate <= splat(kMostRate));
+    const FloatLanes most_a = rate_c * hn::Abs(one - foot_c) + rate_d * hn::Abs(one - foot_d);
+    const FloatLanes most_b = rate_c * hn::Abs(foot_c) + rate_d * hn::Abs(foot_d);
+    const FloatLanes without_cancellation = most_a * most_a * mass_a + most_b * most_b * mass_b +
+                                            rate_c * rate_c * mass_c + rate_d * rate_d * mass_d;
+    const FloatLanes least_rate = without_cancellation * splat(kLeastRateShare);
+    const FloatLanes sound_rate = choose(rate < least_rate, least_rate, rate);
     const FloatLanes goal = hn::LoadU(kFloat, &folds.goal_angles[i]);
     const FloatLanes compliance = hn::LoadU(kFloat, &folds.compliances[i]);
     const FloatLanes angle = angle_of(dot(normal_c, to_d) * rate_d, dot(normal_c, normal_d));
-    const FloatLanes wanted = (goal - angle) * splat(folds.stiffness) / (rate + compliance);
-    const FloatLanes most = splat(kLargestTurn) / rate, least = zero - most;
+    const FloatLanes wanted = (goal - angle) * splat(folds.stiffness) / (sound_rate + compliance);
+    const FloatLanes most = splat(kLargestTurn) / sound_rate, least = zero - most;
     const FloatLanes bounded = choose(wanted < least, least, choose(most < wanted, most, wanted));
     const auto put = [&](const auto& before, const PointLanes& gradient, const FloatLanes& mass,
                          const GatheredParticles& at) HWY_ATTR {
@@ -146,9 +160,16 @@ void relax_one(FoldArrays& folds, std::size_t i, const Places& places) {
     const float rate = dot(gradient_a, gradient_a) * mass_a + dot(gradient_b, gradient_b) * mass_b +
                        dot(gradient_c, gradient_c) * mass_c + dot(gradient_d, gradient_d) * mass_d;
     if (!(rate >= kLeastRate && rate <= kMostRate)) return;
+    const float most_a = fold.rate_c * std::fabs(1 - foot_c) + fold.rate_d * std::fabs(1 - foot_d);
+    const float most_b = fold.rate_c * std::fabs(foot_c) + fold.rate_d * std::fabs(foot_d);
+    const float without_cancellation = most_a * most_a * mass_a + most_b * most_b * mass_b +
+                                       fold.rate_c * fold.rate_c * mass_c +
+                                       fold.rate_d * fold.rate_d * mass_d;
+    const float least_rate = without_cancellation * kLeastRateShare;
+    const float sound_rate = rate < least_rate ? least_rate : rate;
     float& goal = folds.goal_angles[i];
-    const float wanted = (goal - fold.angle()) * folds.stiffness / (rate + folds.compliances[i]);
-    const float most = kLargestTurn / rate;
+    const float wanted = (goal - fold.angle()) * folds.stiffness / (sound_rate + folds.compliances[i]);
+    const float most = kLargestTurn / sound_rate;
     const float step = std::clamp(wanted, -most, most);
     const auto put = [&](auto& place, const Vec3f& gradient, float mass, const OneParticle& at) {
         place.move(gradient * (step * mass));

@@ -156,6 +156,54 @@ TEST(Fold, MovesNoParticleFarHoweverThinItsFacesAre) {
     }
 }
 
+TEST(Fold, LeavesAnEndWhoseOtherParticlesArePinnedOnOneLineWhereItIs) {
+    // Whatever the end of the edge does, both faces lie in one plane: the angle tells it nothing.
+    test::Random random(7);
+    for (const bool is_spring : {false, true})
+        for (int trial = 0; trial < 200; ++trial) {
+            const Vec3f along = test::in_cube(random, 0.1F),
+                        at = test::in_cube(random, trial % 2 == 0 ? 0 : 50);
+            const Vec3f across = test::in_cube(random, 0.1F);
+            Deformable fan;
+            fan.positions = {at + across, at, at - along, at + along};
+            fan.previous_positions = fan.positions;
+            fan.inverse_masses = {1, 0, 0, 0};
+            fan.faces = {{0, 1, 2}, {1, 0, 3}};
+            const float height = length(cross(across, along)) / length(across);
+            if (!(height > 0.01F)) continue;
+            fan.folds = {{0, 1, 2, 3, 0, height}};
+            const SimulationOptions options{.solver = is_spring ? SolverKind::Xpbd : SolverKind::Verlet};
+            const Vec3f end = relaxed(fan, options, 20)[0];
+            EXPECT_LT(length(end - fan.positions[0]), 0.001F) << trial;
+        }
+}
+
+TEST(Folds, OfACurtainThatHangsByItsEdgeLeaveItAtRest) {
+    // Every second pinned vertex has a free one below it that is joined to three pinned ones in a line.
+    constexpr std::uint32_t kCount = 11;
+    TriangleMesh mesh = test::sheet_mesh(kCount, kCount);
+    mesh.faces.clear();
+    for (std::uint32_t row = 0; row + 1 < kCount; ++row)
+        for (std::uint32_t column = 0; column + 1 < kCount; ++column) {
+            const std::uint32_t a = row * kCount + column, b = a + 1, c = b + kCount, d = a + kCount;
+            if ((row + column) % 2 == 0)
+                mesh.faces.insert(mesh.faces.end(), {{a, b, c}, {a, c, d}});
+            else
+                mesh.faces.insert(mesh.faces.end(), {{a, b, d}, {b, c, d}});
+        }
+    for (Vec3f& v : mesh.vertices) v = {v.x, 0, -v.y};
+    for (const bool is_spring : {false, true}) {
+        Deformable curtain = make_cloth(mesh, {});
+        for (std::uint32_t column = 0; column < kCount; ++column) curtain.inverse_masses[column] = 0;
+        SimulationOptions options;
+        if (is_spring) options = {.solver = SolverKind::Xpbd, .iteration_count = 1, .substep_count = 10};
+        Simulation simulation(curtain, {}, options);
+        for (int frame = 0; frame < 120; ++frame) simulation.step();
+        for (std::size_t i = 0; i < curtain.positions.size(); ++i)
+            EXPECT_LT(length(simulation.positions()[i] - curtain.positions[i]), 0.05F) << i;
+    }
+}
+
 TEST(Folds, ConserveLinearAndAngularMomentum) {
     Deformable cloth = rumpled_cloth(12, 9);
     for (std::size_t i = 0; i < cloth.particle_count(); ++i)
