@@ -31,13 +31,13 @@ bool came_through_a_side(const Collider& collider, const Contact& contact, const
     return contact.inside && contact.depth > length(motion) && !contains(collider, start);
 }
 
-/// Where a contact leaves a particle. One that came through a side goes back to where it came from.
-/// @param start  where the particle would be, had it moved with the collider since the last frame
-Vec3f answer(const Collider& collider, const Contact& contact, const Vec3f& position, const Vec3f& start,
+/// What a contact leaves of a particle's motion. One that came through a side goes back to where it came
+/// from.
+/// @param motion  since the last frame, relative to the collider's material
+Vec3f answer(const Collider& collider, const Contact& contact, const Vec3f& position, const Vec3f& motion,
              const ResponseRules& rules) {
-    const Vec3f motion = position - start;
-    if (came_through_a_side(collider, contact, start, motion)) return start;
-    return start + respond(position, motion, contact, rules);
+    if (came_through_a_side(collider, contact, position - motion, motion)) return {};
+    return respond(position, motion, contact, rules);
 }
 
 } // namespace
@@ -72,8 +72,9 @@ std::size_t ContactCollision::relax_piece(std::size_t begin, Particles& particle
         const std::size_t i = begin + k;
         if (!needs_response(places_[k], contacts_[k], rules_.thickness) || particles.pinned(i)) continue;
         if (!passes_.empty() && passes_[i] != 0) continue;
-        const Vec3f start = particles.previous[i] + material_.at(places_[k]);
-        particles.positions.set(i, answer(collider_, contacts_[k], places_[k], start, rules_));
+        const Vec3f material = material_.at(places_[k]);
+        const Vec3f motion = particles.step(i) - material;
+        particles.set_step(i, material + answer(collider_, contacts_[k], places_[k], motion, rules_));
         ++pushed_count;
     }
     return pushed_count;

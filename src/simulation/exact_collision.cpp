@@ -124,7 +124,7 @@ void ExactCollision::ask(Particles& particles, Piece& piece) {
 /// How far from the particle the map looks for surface: as far as the particle may get in the next
 /// relaxations, or twice as far as there was none before.
 float ExactCollision::reach_of(std::size_t i, const Particles& particles) const {
-    const float speed = length(particles.positions[i] - particles.previous[i]);
+    const float speed = length(particles.step(i));
     const float needed = 2 * (now_.thickness + speed);
     const bool was_far = known_.height[i] == KnownContacts::kNoPlane && known_.clearance[i] > 0;
     return was_far ? std::max(needed, 2 * known_.clearance[i]) : needed;

@@ -38,9 +38,9 @@ struct PointArrays {
     }
 };
 
-/// Where a particle is put, and where it was one substep before: its velocity.
+/// Where a particle is put, and what it has moved in the last substep: its velocity.
 struct Placement {
-    Vec3f position, previous;
+    Vec3f position, step;
 };
 
 /// The particles of a deformable while a frame is computed.
@@ -65,35 +65,52 @@ struct Particles {
         for (PointArrays* points : {&remainders, &previous_remainders}) points->resize(count());
     }
     std::size_t count() const { return mobility.size(); }
+    /// Or null: they are 0.
+    PointArrays* kept_remainders() { return keeps_remainders ? &remainders : nullptr; }
+    void keep_remainders(bool keeps) {
+        if (!keeps && keeps_remainders)
+            for (PointArrays* points : {&remainders, &previous_remainders}) points->fill(0);
+        keeps_remainders = keeps;
+    }
     bool pinned(std::size_t i) const { return mobility[i] == 0; }
     /// What the particle has moved in this substep.
     Vec3f step(std::size_t i) const {
         return (positions[i] - previous[i]) + (remainders[i] - previous_remainders[i]);
     }
+    /// Gives a particle, where it is, another velocity: what it has moved in this substep.
+    void set_velocity(std::size_t i, const Vec3d& step) {
+        const Vec3d before = Vec3d(positions[i]) + Vec3d(remainders[i]) - step;
+        previous.set(i, Vec3f(before));
+        if (keeps_remainders) previous_remainders.set(i, Vec3f(before - Vec3d(previous[i])));
+    }
     /// For substeps that are so many times as long as they were.
     void scale_velocities(double factor) {
         if (factor == 1) return;
-        for (std::size_t i = 0; i < count(); ++i) {
-            const Vec3d place = Vec3d(positions[i]) + Vec3d(remainders[i]);
-            const Vec3d before = place - Vec3d(step(i)) * factor;
-            previous.set(i, Vec3f(before));
-            if (keeps_remainders) previous_remainders.set(i, Vec3f(before - Vec3d(previous[i])));
-        }
+        for (std::size_t i = 0; i < count(); ++i) set_velocity(i, Vec3d(step(i)) * factor);
     }
     void put(std::size_t i, const Placement& place) {
         positions.set(i, place.position);
-        previous.set(i, place.previous);
         remainders.set(i, {});
-        previous_remainders.set(i, {});
+        set_velocity(i, Vec3d(place.step));
     }
-    void move(std::size_t i, const Vec3f& way) { move(positions, remainders, i, way); }
-    void move_previous(std::size_t i, const Vec3f& way) { move(previous, previous_remainders, i, way); }
+    void move(std::size_t i, const Vec3f& way) {
+        put(positions, remainders, i, positions[i], way + remainders[i]);
+    }
+    void move_previous(std::size_t i, const Vec3f& way) {
+        put(previous, previous_remainders, i, previous[i], way + previous_remainders[i]);
+    }
+    /// Puts a particle where it has moved by so much in this substep.
+    void set_step(std::size_t i, const Vec3f& step) {
+        put(positions, remainders, i, previous[i], step + previous_remainders[i]);
+    }
 
   private:
-    void move(PointArrays& places, PointArrays& lost, std::size_t i, const Vec3f& way) const {
-        const Vec3f place = places[i], whole = way + lost[i], next = place + whole;
+    /// At so far from a place, and notes what rounding takes off that (Kahan 1965).
+    void put(PointArrays& places, PointArrays& lost, std::size_t i, const Vec3f& from,
+             const Vec3f& way) const {
+        const Vec3f next = from + way;
         places.set(i, next);
-        if (keeps_remainders) lost.set(i, whole - (next - place));
+        if (keeps_remainders) lost.set(i, way - (next - from));
     }
 };
 

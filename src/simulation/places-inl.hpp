@@ -25,6 +25,7 @@ struct RoundedPlace {
     PointType position;
 
     HWY_INLINE PointType from(const RoundedPlace& other) const { return position - other.position; }
+    HWY_INLINE PointType from(const PointType& point) const { return position - point; }
     HWY_INLINE void move(const PointType& way) { position = position + way; }
 };
 
@@ -37,6 +38,7 @@ struct CompensatedPlace {
     HWY_INLINE PointType from(const CompensatedPlace& other) const {
         return (position - other.position) + (remainder - other.remainder);
     }
+    HWY_INLINE PointType from(const PointType& point) const { return (position - point) + remainder; }
     HWY_INLINE void move(const PointType& way) {
         const PointType whole = way + remainder;
         const PointType next = position + whole;

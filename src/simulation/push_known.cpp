@@ -11,6 +11,7 @@
 #include "simd/lanes-inl.hpp"
 #include "simulation/contact_response.hpp"
 #include "simulation/known_contacts.hpp"
+#include "simulation/places-inl.hpp"
 
 #include <cmath>
 
@@ -37,11 +38,20 @@ HWY_INLINE FloatLanes load(const float* from) {
 HWY_INLINE PointLanes load(const PointArrays& points, std::size_t i) {
     return {load(&points.x[i]), load(&points.y[i]), load(&points.z[i])};
 }
-HWY_INLINE void store(const PointLanes& points, const FloatMask& mask, PointArrays& to, std::size_t i) {
-    hn::BlendedStore(points.x, mask, kFloat, &to.x[i]);
-    hn::BlendedStore(points.y, mask, kFloat, &to.y[i]);
-    hn::BlendedStore(points.z, mask, kFloat, &to.z[i]);
-}
+
+/// The particles i, i + 1 ..., of which only some are stored.
+struct ChosenParticles {
+    using Point = PointLanes;
+    std::size_t i;
+    FloatMask chosen;
+
+    HWY_INLINE PointLanes load(const PointArrays& from) const { return HWY_NAMESPACE::load(from, i); }
+    HWY_INLINE void store(const PointLanes& points, PointArrays& to) const {
+        hn::BlendedStore(points.x, chosen, kFloat, &to.x[i]);
+        hn::BlendedStore(points.y, chosen, kFloat, &to.y[i]);
+        hn::BlendedStore(points.z, chosen, kFloat, &to.z[i]);
+    }
+};
 
 /// Adds the chosen ones of the particles i, i + 1 ... to a list.
 HWY_INLINE void add(const FloatMask& chosen, std::size_t i, ParticleList& list) {
@@ -62,14 +72,15 @@ HWY_INLINE PointLanes motion_at(const MaterialMotion& material, const PointLanes
 }
 
 /// push_out(), and what comes of it.
-HWY_INLINE void push(const FloatMask& below, const FloatLanes& missing, const PointLanes& normal,
-                     const ColliderNow& collider, std::size_t i, Particles& particles) {
+template <typename Places>
+HWY_INLINE void push(const ChosenParticles& below, const FloatLanes& missing, const PointLanes& normal,
+                     const ColliderNow& collider, const Places& now, const Places& before) {
     const FloatLanes zero = splat(0);
-    const PointLanes position = load(particles.positions, i), previous = load(particles.previous, i);
-    PointLanes surface_motion = motion_at(collider.material, position);
-    if (collider.drift != nullptr) surface_motion = surface_motion + load(*collider.drift, i);
-    const PointLanes start = previous + surface_motion;
-    const PointLanes motion = position - start;
+    const auto place = now.load(below);
+    auto previous = before.load(below);
+    PointLanes surface_motion = motion_at(collider.material, place.position);
+    if (collider.drift != nullptr) surface_motion = surface_motion + load(*collider.drift, below.i);
+    const PointLanes motion = place.from(previous) - surface_motion;
     const FloatLanes toward = zero - dot(motion, normal);
     const FloatLanes approach = hn::IfThenElse(zero < toward, toward, zero);
     const FloatLanes back = hn::IfThenElse(approach < missing, approach, missing);
@@ -78,17 +89,23 @@ HWY_INLINE void push(const FloatMask& below, const FloatLanes& missing, const Po
     const FloatLanes slip = length(tangential);
     const FloatLanes grip = splat(collider.friction) * back;
     const FloatLanes share = hn::IfThenElse(slip <= grip, splat(1), grip / slip);
-    store(start + (pushed - tangential * share), below, particles.positions, i);
-    store(previous + normal * (missing - back), below, particles.previous, i);
+    auto next = previous;
+    next.move(surface_motion + (pushed - tangential * share));
+    now.store(next, below);
+    previous.move(normal * (missing - back));
+    before.store(previous, below);
 }
 
+template <typename Places>
 std::size_t push_lanes(const KnownContacts& known, const ColliderNow& collider, std::size_t first,
-                       std::size_t end, Particles& particles, ParticleList& to_ask) {
+                       std::size_t end, const Places& now, const Places& before, ParticleList& to_ask) {
     const FloatLanes thickness = splat(collider.thickness);
     const FloatLanes reuse = splat(kPlaneReuse * collider.thickness);
     std::size_t pushed_count = 0;
     for (std::size_t i = first; i < end; i += hn::Lanes(Floats())) {
-        const PointLanes moved = load(particles.positions, i) - load(known.asked_at, i);
+        const auto place = now.load(ChosenParticles{i, {}});
+        const PointLanes asked_at = load(known.asked_at, i);
+        const PointLanes moved = place.position - asked_at;
         const FloatLanes moved_sq = dot(moved, moved);
         const FloatLanes quiet = load(&known.clearance[i]) - thickness;
         const FloatMask far = moved_sq < quiet * hn::Abs(quiet);
@@ -98,13 +115,23 @@ std::size_t push_lanes(const KnownContacts& known, const ColliderNow& collider, 
         const FloatMask unknown = hn::Not(hn::Or(far, usable));
         if (!hn::AllFalse(Floats(), unknown)) add(unknown, i, to_ask);
         const PointLanes normal = load(known.normal, i);
-        const FloatLanes missing = thickness - (height + dot(moved, normal));
+        const FloatLanes missing = thickness - (height + dot(place.from(asked_at), normal));
         const FloatMask below = hn::And(hn::AndNot(far, usable), missing > splat(0));
         if (hn::AllFalse(Floats(), below)) continue;
-        push(below, missing, normal, collider, i, particles);
+        push(ChosenParticles{i, below}, missing, normal, collider, now, before);
         pushed_count += hn::CountTrue(Floats(), below);
     }
     return pushed_count;
+}
+
+std::size_t push_known_lanes(const KnownContacts& known, const ColliderNow& collider, std::size_t first,
+                             std::size_t end, Particles& particles, ParticleList& to_ask) {
+    if (particles.keeps_remainders)
+        return push_lanes(known, collider, first, end,
+                          CompensatedPlaces{particles.positions, particles.remainders},
+                          CompensatedPlaces{particles.previous, particles.previous_remainders}, to_ask);
+    return push_lanes(known, collider, first, end, RoundedPlaces{particles.positions},
+                      RoundedPlaces{particles.previous}, to_ask);
 }
 
 void list_unproven_lanes(const KnownContacts& known, const ColliderNow& collider,
@@ -133,7 +160,7 @@ namespace echinus {
 
 namespace {
 
-HWY_EXPORT(push_lanes);
+HWY_EXPORT(push_known_lanes);
 HWY_EXPORT(list_unproven_lanes);
 
 std::size_t push_one_by_one(const KnownContacts& known, const ColliderNow& collider, std::size_t first,
@@ -158,21 +185,23 @@ std::size_t push_one_by_one(const KnownContacts& known, const ColliderNow& colli
 
 bool push_one(const KnownContacts& known, const ColliderNow& collider, std::size_t i,
               Particles& particles) noexcept {
-    const Vec3f position = particles.positions[i], previous = particles.previous[i];
+    const Vec3f position = particles.positions[i];
     const Vec3f normal = known.normal[i];
-    const float missing = collider.thickness - (known.height[i] + dot(position - known.asked_at[i], normal));
+    const Vec3f moved = (position - known.asked_at[i]) + particles.remainders[i];
+    const float missing = collider.thickness - (known.height[i] + dot(moved, normal));
     if (!(missing > 0)) return false;
-    const Vec3f start = previous + collider.motion_at(i, position);
-    const auto [motion, excess] = push_out(position - start, normal, missing, collider.friction);
-    particles.positions.set(i, start + motion);
-    particles.previous.set(i, previous + normal * excess);
+    const Vec3f surface_motion = collider.motion_at(i, position);
+    const auto [motion, excess] =
+        push_out(particles.step(i) - surface_motion, normal, missing, collider.friction);
+    particles.set_step(i, surface_motion + motion);
+    particles.move_previous(i, normal * excess);
     return true;
 }
 
 std::size_t push_known(const KnownContacts& known, const ColliderNow& collider, std::size_t first,
                        std::size_t end, Particles& particles, ParticleList& to_ask) noexcept {
     if (!use_kernels()) return push_one_by_one(known, collider, first, end, particles, to_ask);
-    return ECHINUS_DISPATCH(push_lanes)(known, collider, first, end, particles, to_ask);
+    return ECHINUS_DISPATCH(push_known_lanes)(known, collider, first, end, particles, to_ask);
 }
 
 bool is_known_free(const KnownContacts& known, const ColliderNow& collider, std::size_t i,

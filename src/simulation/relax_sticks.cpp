@@ -294,9 +294,13 @@ void relax_run(const StickRun& run, StickArrays& sticks, PointArrays& positions,
 
 } // namespace
 
-void relax(StickArrays& sticks, std::span<const std::uint32_t> chosen, PointArrays& positions) noexcept {
+void relax(StickArrays& sticks, std::span<const std::uint32_t> chosen, PointArrays& positions,
+           PointArrays* remainders) noexcept {
     for (const std::uint32_t i : chosen)
-        HWY_NAMESPACE::relax_one(sticks, i, HWY_NAMESPACE::RoundedPlaces{positions});
+        if (remainders != nullptr)
+            HWY_NAMESPACE::relax_one(sticks, i, HWY_NAMESPACE::CompensatedPlaces{positions, *remainders});
+        else
+            HWY_NAMESPACE::relax_one(sticks, i, HWY_NAMESPACE::RoundedPlaces{positions});
 }
 
 void relax(StickArrays& sticks, PointArrays& positions, PointArrays* remainders,

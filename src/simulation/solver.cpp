@@ -67,11 +67,11 @@ Deformable valid_start(Deformable deformable, const std::vector<Collider>& colli
 
 /// XPBD's steps are small. Elsewhere gravity decides: is what it moves a particle by in a frame not many
 /// times the last digit of a coordinate?
-bool needs_remainders(const Deformable& deformable, const SimulationOptions& options) {
+bool needs_remainders(std::span<const Vec3f> positions, const SimulationOptions& options) {
     constexpr double kManyDigits = 50; // gravity is right to 1 %
     if (options.solver == SolverKind::Xpbd) return true;
     float largest = 0;
-    for (const Vec3f& p : deformable.positions)
+    for (const Vec3f& p : positions)
         largest = std::max({largest, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
     const double digit = double{largest} * std::numeric_limits<float>::epsilon();
     const double fall = length(options.gravity) * options.time_step * options.time_step;
@@ -117,7 +117,7 @@ Simulation::Solver::Solver(Deformable deformable_in, std::vector<Collider> colli
     : deformable(valid_start(std::move(deformable_in), colliders_in, options_in)),
       colliders(with_unit_rotations(std::move(colliders_in))), motions(colliders.size()),
       options(with_thickness(options_in, deformable)), largest_speed(std::numeric_limits<double>::infinity()),
-      workers_(options.thread_count), particles_(deformable, needs_remainders(deformable, options)),
+      workers_(options.thread_count), particles_(deformable, needs_remainders(deformable.positions, options)),
       sticks_(weighted_sticks(deformable, options)), folds_(weighted_folds(deformable, options)),
       tetrahedra_(weighted_tetrahedra(deformable, options)), attachments_(deformable, colliders),
       deforming_(colliders.size()), surface_motions_(colliders.size()), clearances_(particles_.count()),
@@ -342,9 +342,8 @@ void Simulation::Solver::relax_coarse_sheets() {
 void Simulation::Solver::relax_constraints() {
     const Stopwatch stopwatch(profile.constraint_seconds);
     if (meter_) meter_->note(particles_);
-    PointArrays* const remainders = particles_.keeps_remainders ? &particles_.remainders : nullptr;
-    relax(folds_, particles_.positions, remainders, workers_);
-    relax(sticks_, particles_.positions, remainders, workers_);
+    relax(folds_, particles_.positions, particles_.kept_remainders(), workers_);
+    relax(sticks_, particles_.positions, particles_.kept_remainders(), workers_);
     relax_tetrahedra();
     if (meter_) meter_->charge_holder(particles_);
 }
@@ -368,7 +367,7 @@ void Simulation::Solver::relax_stretched_part() {
     LoadMeter* const meter = meter_ ? &*meter_ : nullptr;
     surfaces_->relax_part(stretched_part_->particles(), particles_, profile, meter);
     if (meter != nullptr) meter->note(particles_);
-    relax(sticks_, stretched_part_->sticks(), particles_.positions);
+    relax(sticks_, stretched_part_->sticks(), particles_.positions, particles_.kept_remainders());
     if (meter != nullptr) meter->charge_holder(particles_);
 }
 
@@ -389,6 +388,7 @@ void Simulation::Solver::publish() {
     const Stopwatch stopwatch(profile.integration_seconds);
     particles_.positions.store(deformable.positions);
     particles_.previous.store(deformable.previous_positions);
+    particles_.keep_remainders(needs_remainders(deformable.positions, options));
 }
 
 void Simulation::Solver::judge_frame() {
@@ -465,13 +465,8 @@ Residual Simulation::Solver::residual() const {
 /// The velocity is what the particle moved in the last substep.
 void Simulation::Solver::set_particle_velocity(std::size_t particle, const Vec3d& velocity) {
     if (particles_.pinned(particle)) return;
-    const Vec3d exact = Vec3d(particles_.positions[particle]) - velocity * substep_seconds_;
-    const Vec3f before(exact);
-    particles_.previous.set(particle, before);
-    if (particles_.keeps_remainders)
-        particles_.previous_remainders.set(
-            particle, Vec3f(exact - Vec3d(before) + Vec3d(particles_.remainders[particle])));
-    deformable.previous_positions[particle] = before;
+    particles_.set_velocity(particle, velocity * substep_seconds_);
+    deformable.previous_positions[particle] = particles_.previous[particle];
 }
 
 void Simulation::Solver::blow(const Vec3d& wind, double rate) {

@@ -69,7 +69,8 @@ StickArrays weighted_sticks(const Deformable& deformable, const SimulationOption
 void relax(StickArrays& sticks, PointArrays& positions, PointArrays* remainders = nullptr,
            const Workers& workers = Workers()) noexcept;
 
-/// The same of some sticks, by their numbers, without remainders.
-void relax(StickArrays& sticks, std::span<const std::uint32_t> chosen, PointArrays& positions) noexcept;
+/// The same of some sticks, by their numbers.
+void relax(StickArrays& sticks, std::span<const std::uint32_t> chosen, PointArrays& positions,
+           PointArrays* remainders) noexcept;
 
 } // namespace echinus

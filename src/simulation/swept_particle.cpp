@@ -9,7 +9,7 @@ namespace echinus {
 
 SweptParticle::SweptParticle(const ColliderNow& collider, const FreePlaces& free_places, std::size_t i,
                              const Particles& particles)
-    : now_(collider), particle_(i), position_(particles.positions[i]), previous_(particles.previous[i]),
+    : now_(collider), particle_(i), position_(particles.positions[i]), step_(particles.step(i)),
       position_local_(collider.local.point_to_local(position_)), was_free_(free_places.has(i)),
       free_local_(was_free_ ? free_places.local(i, particles) : Vec3f{}) {}
 
@@ -50,7 +50,7 @@ std::optional<Placement> SweptParticle::rescued_from_guard() const {
         if (const auto found = first_free({4 * now_.guard, 2 * now_.guard}, nearest.point, nearest.normal))
             return found;
     // There may be no more room than this.
-    if (is_free_at(position_local_)) return Placement{position_, previous_};
+    if (is_free_at(position_local_)) return Placement{position_, step_};
     return std::nullopt;
 }
 
@@ -77,10 +77,10 @@ std::optional<Placement> SweptParticle::put(const Vec3f& target_body, const Vec3
     const Vec3f target_local = now_.local.point_to_local(target);
     if (was_free_ ? !is_free_at(target_local) : contains(now_.map, target_local)) return std::nullopt;
     const Vec3f normal = now_.body.normal_to_world(normal_body);
-    const Vec3f motion = position_ - previous_ - now_.motion_at(particle_, position_);
+    const Vec3f motion = step_ - now_.motion_at(particle_, position_);
     const float impact = dot(motion, normal);
     const Vec3f slide = apply_friction(motion - normal * impact, normal, now_.friction * std::fabs(impact));
-    return Placement{target, target - now_.motion_at(particle_, target) - slide};
+    return Placement{target, now_.motion_at(particle_, target) + slide};
 }
 
 std::optional<Placement> SweptParticle::taken_back() const {
@@ -93,7 +93,7 @@ std::optional<Placement> SweptParticle::taken_back() const {
     for (int attempt = 0; attempt < 16; ++attempt) {
         const Vec3f target = moved_along + out * gap;
         if (is_free_at(now_.local.point_to_local(target)))
-            return Placement{target, target - now_.motion_at(particle_, target)};
+            return Placement{target, now_.motion_at(particle_, target)};
         gap = gap == 0 ? now_.step / 2 : 2 * gap;
     }
     return std::nullopt;

@@ -48,7 +48,7 @@ class SweptParticle {
 
     const ColliderNow& now_;
     std::size_t particle_;
-    Vec3f position_, previous_, position_local_;
+    Vec3f position_, step_, position_local_;
     bool was_free_;
     Vec3f free_local_;
 };

@@ -4,7 +4,7 @@ namespace echinus {
 
 void Wind::blow(std::span<const Triangle> faces, const Vec3f& wind_step, float share, Particles& particles) {
     gusts_.assign(particles.count(), Gust{});
-    const auto step_of = [&](std::uint32_t i) { return particles.positions[i] - particles.previous[i]; };
+    const auto step_of = [&](std::uint32_t i) { return particles.step(i); };
     for (const auto& [a, b, c] : faces) {
         const Vec3f pa = particles.positions[a], pb = particles.positions[b], pc = particles.positions[c];
         const Vec3f normal = cross(pb - pa, pc - pa);
@@ -16,7 +16,7 @@ void Wind::blow(std::span<const Triangle> faces, const Vec3f& wind_step, float s
     }
     for (std::size_t i = 0; i < gusts_.size(); ++i)
         if (gusts_[i].face_count != 0 && !particles.pinned(i))
-            particles.previous.set(i, particles.previous[i] - gusts_[i].mean() * share);
+            particles.move_previous(i, -(gusts_[i].mean() * share));
 }
 
 } // namespace echinus

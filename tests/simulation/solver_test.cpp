@@ -63,6 +63,17 @@ TEST(Solver, LetsAParticleFallAsVerletDoes) {
     EXPECT_EQ(simulation.frame(), 100u);
 }
 
+TEST(Solver, LosesNothingOfGravityWhereverAParticleHasComeTo) {
+    // What gravity takes in a frame is little more than the last digit of a coordinate of 2000.
+    const SimulationOptions options{.gravity = {-9.81, 0, 0}, .drag = 0, .bound = 1e5};
+    Simulation simulation(single_particle({}, {}), {}, options);
+    simulation.set_particle_velocity(0, {1000, 0, 0});
+    for (int i = 0; i < 480; ++i) simulation.step();
+    const float before = simulation.positions()[0].x;
+    for (int i = 0; i < 240; ++i) simulation.step();
+    EXPECT_NEAR(double{simulation.positions()[0].x - before}, 1000 - 9.81 * 2.5, 0.1);
+}
+
 TEST(Solver, TakesTheDragFromTheVelocityInEveryFrame) {
     const SimulationOptions options{.time_step = 0.01, .gravity = {}, .drag = 0.1};
     Simulation simulation(single_particle({}, {1, 0, 0}), {}, options);

@@ -288,3 +288,49 @@ TEST(Xpbd, RefusesSubstepsOfTheVerletSolverAndNegativeCompliance) {
         Simulation(particle, {}, {.solver = SolverKind::Xpbd, .compliance = {0, -1, 0}});
     });
 }
+
+namespace {
+
+/// How far a sheet that begins with such a speed goes along x on a box that goes along x, with a friction of
+/// 0.3.
+/// @param x  of the box's middle
+double slid_on_box(const ColliderMap& box, double x, double speed, double box_speed, double seconds,
+                   SimulationOptions options) {
+    options.thickness = kThickness;
+    options.friction = 0.3;
+    options.drag = 0;
+    Deformable sheet = test::sheet_at(0.5 + kThickness, 0.3, 5);
+    for (Vec3f& p : sheet.positions) p = Vec3f(Vec3d(p) + Vec3d{x, 0, 0});
+    sheet.previous_positions = sheet.positions;
+    const Collider collider{.map = box, .pose = {{}, {x, 0, 0}}, .linear_velocity = {box_speed, 0, 0}};
+    Simulation simulation(sheet, {collider}, options);
+    for (std::size_t i = 0; i < sheet.particle_count(); ++i)
+        simulation.set_particle_velocity(i, {speed, 0, 0});
+    const auto before = simulation.positions();
+    const float from = before[12].x;
+    for (int frame = 0; frame < seconds / options.time_step; ++frame) simulation.step();
+    return double{simulation.positions()[12].x - from};
+}
+
+} // namespace
+
+TEST(Xpbd, FrictionTakesAsMuchFarFromTheOriginAsAtIt) {
+    const TriangleMesh mesh = make_box({12, 2, 1});
+    const ExactMap exact = ExactMap::build(mesh);
+    const DistanceMap rays = DistanceMap::build(mesh);
+    const double grip = 0.3 * 9.81;
+    for (const std::uint32_t substeps : {10u, 40u})
+        for (const double x : {0.0, 2.0, 20.0, 100.0}) {
+            const auto expect_as_coulomb_says = [&](const ColliderMap& box, bool surfaces) {
+                SimulationOptions options = small_steps(substeps);
+                options.surface_collision = options.self_collision = surfaces;
+                const double stop = 2.0 * 2.0 / (2 * grip), start = 1 - 1 / (2 * grip);
+                EXPECT_NEAR(slid_on_box(box, x, 2, 0, 1, options), stop, 0.05 * stop) << x << ' ' << substeps;
+                EXPECT_NEAR(slid_on_box(box, x, 0, 1, 1, options), start, 0.05 * start)
+                    << x << ' ' << substeps;
+            };
+            expect_as_coulomb_says(exact, false);
+            expect_as_coulomb_says(exact, true);
+            expect_as_coulomb_says(rays, false);
+        }
+}

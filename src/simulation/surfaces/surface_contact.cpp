@@ -22,7 +22,7 @@ bool relax(const SurfaceContact& contact, std::span<const float> inverse_masses,
     float mobility = 0;
     for (std::size_t k = 0; k < 4; ++k) {
         const std::uint32_t i = contact.particles[k];
-        motion += (particles.positions[i] - particles.previous[i]) * contact.weights[k];
+        motion += particles.step(i) * contact.weights[k];
         mobility += contact.weights[k] * contact.weights[k] * inverse_masses[i];
     }
     if (!(mobility > 0)) return false;
