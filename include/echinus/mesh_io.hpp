@@ -105,8 +105,7 @@ void write_tetrahedra(const std::filesystem::path& path, const TetrahedralMesh& 
 /// Meshes with bones are skinned (linear blend skinning; the weights of a vertex are made to sum to 1),
 /// others move with their nodes; morph targets are applied before. Between two keys, positions, scales and
 /// weights of morph targets go evenly and rotations about one axis, the shorter way round: handles of splines
-/// and steps are not kept. A 3DS file has 25 frames in a second, and its objects move from where they stand
-/// in it. Takes 12 bytes for a vertex in a sample.
+/// and steps are not kept. A 3DS file has 25 frames in a second. Takes 12 bytes for a vertex in a sample.
 ///
 /// @param mesh               the model, as read_mesh() gives it
 /// @param frames_per_second  positive

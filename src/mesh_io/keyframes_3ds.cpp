@@ -10,8 +10,8 @@ namespace echinus {
 namespace {
 
 constexpr std::uint16_t kFirstNode = 0xB001, kObjectNode = 0xB002, kLastNode = 0xB007;
-constexpr std::uint16_t kHead = 0xB010, kPositions = 0xB020, kRotations = 0xB021, kScales = 0xB022,
-                        kNumber = 0xB030;
+constexpr std::uint16_t kHead = 0xB010, kPivot = 0xB013, kPositions = 0xB020, kRotations = 0xB021,
+                        kScales = 0xB022, kNumber = 0xB030;
 
 /// The format has no measure of time; Assimp plays 25 frames per second, too.
 constexpr double kFramesPerSecond = 25;
@@ -51,7 +51,7 @@ void read_rotations(const MeshSource& source, const Chunk3ds& chunk, Track<Rotat
 }
 
 Node3ds read_node(const MeshSource& source, const Chunk3ds& node, std::size_t number) {
-    Node3ds result{{}, number, kNoNode3ds, {}};
+    Node3ds result{{}, number, kNoNode3ds, {}, {}};
     const auto vector = [](ChunkReader3ds& reader) { return reader.next_vector(); };
     for_each_chunk_3ds(source, node.begin, node.end, [&](const Chunk3ds& chunk) {
         ChunkReader3ds reader(source, chunk);
@@ -61,6 +61,7 @@ Node3ds read_node(const MeshSource& source, const Chunk3ds& node, std::size_t nu
             reader.skip(2 * sizeof(std::uint16_t)); // flags
             result.parent = reader.next_word();
         }
+        if (chunk.id == kPivot) result.pivot = reader.next_vector();
         if (chunk.id == kPositions) read_track(source, chunk, result.motion.positions, vector);
         if (chunk.id == kScales) read_track(source, chunk, result.motion.scales, vector);
         if (chunk.id == kRotations) read_rotations(source, chunk, result.motion.rotations);

@@ -14,6 +14,7 @@ struct Node3ds {
     std::string object;
     std::size_t number; ///< by which others refer to it
     std::size_t parent; ///< the number of another one; kNoNode3ds for none
+    Vec3d pivot;        ///< of the object, at the origin of the node
     NodeMotion motion;
 };
 

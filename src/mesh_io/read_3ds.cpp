@@ -23,6 +23,7 @@ constexpr std::uint16_t kObject = 0x4000; // a name, then chunks
 constexpr std::uint16_t kMesh = 0x4100;
 constexpr std::uint16_t kVertexList = 0x4110;
 constexpr std::uint16_t kFaceList = 0x4120;
+constexpr std::uint16_t kMatrix = 0x4160;
 constexpr std::uint16_t kKeyframes = 0xB000;
 
 /// A list's length, of which its chunk must have all elements.
@@ -55,10 +56,20 @@ void read_faces(const MeshSource& source, const Chunk3ds& chunk, std::vector<std
     }
 }
 
+/// Three axes and the origin.
+Affine read_matrix(const MeshSource& source, const Chunk3ds& chunk) {
+    ChunkReader3ds reader(source, chunk);
+    Affine matrix;
+    for (Vec3d* column : {&matrix.x, &matrix.y, &matrix.z, &matrix.origin}) *column = reader.next_vector();
+    return matrix;
+}
+
 /// Positions are those in the world, wherever keyframes move the object. Lists of one kind are joined, in
 /// whatever order they come. Each face gets vertices of its own, so that the welded mesh has them in the
 /// order of the faces.
-SceneShape read_shape(const MeshSource& source, const Chunk3ds& mesh, const std::string& name) {
+/// @param matrix  becomes that from the object's own frame to the world, if there is one
+SceneShape read_shape(const MeshSource& source, const Chunk3ds& mesh, const std::string& name,
+                      Affine& matrix) {
     SceneShape shape;
     shape.name = "the mesh " + in_quotes(name);
     std::vector<Vec3d> vertices;
@@ -66,6 +77,7 @@ SceneShape read_shape(const MeshSource& source, const Chunk3ds& mesh, const std:
     for_each_chunk_3ds(source, mesh.begin, mesh.end, [&](const Chunk3ds& chunk) {
         if (chunk.id == kVertexList) read_vertices(source, chunk, shape.name, vertices);
         if (chunk.id == kFaceList) read_faces(source, chunk, corners);
+        if (chunk.id == kMatrix) matrix = read_matrix(source, chunk);
     });
     for (std::size_t i = 0; i < corners.size(); ++i) {
         if (corners[i] >= vertices.size())
@@ -89,7 +101,6 @@ class Reader3ds {
         scene_.nodes.push_back({"", 0, {}, {}}); // leads what no keyframes lead
         places_ = place_nodes_3ds(nodes_, scene_);
         for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_of_objects_[nodes_[i].object].push_back(i);
-        to_world_ = rest_pose(scene_).to_world;
         std::map<std::string, std::size_t> object_counts, placed_counts;
         for (const std::string& name : object_names_) ++object_counts[name];
         for (std::size_t object = 0; object < object_names_.size(); ++object) {
@@ -129,35 +140,37 @@ class Reader3ds {
         for_each_chunk_3ds(source_, reader.offset(), object.end, [&](const Chunk3ds& chunk) {
             if (chunk.id != kMesh) return;
             object_names_.push_back(name);
-            scene_.shapes.push_back(read_shape(source_, chunk, name));
+            scene_.shapes.push_back(read_shape(source_, chunk, name, matrices_.emplace_back()));
         });
     }
 
-    /// The positions of an object are those in the world as its first node stands at rest.
+    /// At rest an object stands where the file has it, and its further nodes place copies; in an animation
+    /// all of its nodes move it.
     void add_instances(std::size_t object, const std::vector<std::size_t>& nodes, Wanted wanted) {
-        if (nodes.size() > 1 || wanted == Wanted::Animation)
-            for (const std::size_t node : nodes) require_placed(node);
-        if (nodes.empty() || !is_followable(nodes.front()))
-            return scene_.instances.push_back({object, 0, {}, {}, {}});
-        const Affine from_world = to_world_[places_[nodes.front()]].inverse();
-        for (const std::size_t node : nodes) {
+        const bool stays = nodes.empty() || wanted == Wanted::Mesh;
+        if (stays) scene_.instances.push_back({object, 0, {}, {}, {}});
+        for (std::size_t i = stays ? 1 : 0; i < nodes.size(); ++i) {
             budget_.spend(scene_.shapes[object].corners.size() + 1);
-            scene_.instances.push_back({object, places_[node], from_world, {}, {}});
+            if (places_[nodes[i]] == kNotPlaced)
+                fail(object, "hang on a light, on a camera or on themselves; export it without a parent");
+            scene_.instances.push_back({object, places_[nodes[i]], from_world(object, nodes[i]), {}, {}});
         }
     }
 
-    bool is_followable(std::size_t node) const {
-        if (places_[node] == kNotPlaced) return false;
-        const double determinant = to_world_[places_[node]].determinant();
-        return std::isnormal(determinant);
+    /// From the positions in the file to the frame of a node.
+    Affine from_world(std::size_t object, std::size_t node) const {
+        Affine frame = matrices_[object];
+        // Only the place of such an object is mirrored, not what moves it.
+        if (frame.determinant() < 0) frame.x = -frame.x;
+        frame.origin = frame.apply(nodes_[node].pivot);
+        if (!std::isnormal(frame.determinant()))
+            fail(object, "move a frame without extent; export it with a matrix that can be inverted");
+        return frame.inverse();
     }
 
-    void require_placed(std::size_t node) const {
-        if (!is_followable(node))
-            source_.fail(ErrorCode::InvalidMesh,
-                         "the keyframes of the object " + in_quotes(nodes_[node].object) +
-                             " hang on a light, on a camera or on themselves, or scale it to nothing at "
-                             "first; export it without a parent");
+    [[noreturn]] void fail(std::size_t object, const std::string& what) const {
+        source_.fail(ErrorCode::InvalidMesh,
+                     "the keyframes of the object " + in_quotes(object_names_[object]) + " " + what);
     }
 
     void add_animation() {
@@ -175,9 +188,9 @@ class Reader3ds {
     Budget budget_{source_};
     SceneFile scene_;
     std::vector<std::string> object_names_; ///< of the shapes
+    std::vector<Affine> matrices_;          ///< likewise
     std::vector<Node3ds> nodes_;
     std::vector<std::size_t> places_; ///< of the nodes, in scene_.nodes
-    std::vector<Affine> to_world_;    ///< of scene_.nodes, at rest
     std::map<std::string, std::vector<std::size_t>> nodes_of_objects_;
 };
 

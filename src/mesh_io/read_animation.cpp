@@ -75,7 +75,7 @@ VertexCache read_animation(const std::filesystem::path& path, const TriangleMesh
         read_file(path, [&](auto beginning) { require_beginning(source_of(beginning)); });
     const MeshSource source = source_of(bytes);
     const SceneFile file = read_scene_file(source, Wanted::Animation);
-    const WeldedMesh welded = mesh_of(file, source);
+    const WeldedMesh welded = mesh_of(read_scene_file(source, Wanted::Mesh), source);
     require_same(welded.mesh, mesh, source);
     const NodeAnimation nodes(file, choose_animation(file, animation, source), source);
 
