@@ -4,6 +4,7 @@
 #include "interface.hpp"
 #include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
+#include "mesh/local_frame.hpp"
 #include "mesh_io/readers.hpp"
 
 #include <echinus/error.hpp>
