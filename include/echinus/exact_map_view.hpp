@@ -129,6 +129,9 @@ struct ExactMapView {
     /// from the faces.
     WindingTree winding_tree;
     bool winding_tree_has_caps = false;
+    /// There is a border, and at each of its edges two more faces run one way than the other, as where
+    /// neighbours disagree about the outside: the surface has no hole. Not in map files either.
+    bool neighbours_disagree = false;
     Vec3d origin{}; ///< TriangleMesh::origin: where the local frame begins. Queries do not look at it
 
     std::size_t cell_count() const { return std::size_t{8} * divisions * divisions; }

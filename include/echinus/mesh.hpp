@@ -43,18 +43,22 @@ struct Fault {
 };
 
 /// The properties of a mesh. An *edge* is an unordered pair of vertices; a face with two equal corners has
-/// none. Vertices are distinguished by index: weld() first where equal positions mean the same vertex.
+/// none. Vertices are distinguished by index, except on seams: vertices of edges that are not balanced count
+/// as one where they are no farther apart than 2^-21 R (R: radius of the bounding sphere), a quarter of a
+/// lattice step. So they do for all maps, whose queries therefore agree with `closed`.
 struct MeshReport {
     std::size_t face_count = 0;
     std::size_t vertex_count = 0;
     std::size_t component_count = 0; ///< sets of faces joined by shared vertices
-    bool closed = false;      ///< every edge is balanced: equally many faces run along it in each direction
-    bool manifold = false;    ///< every edge has at most two faces and the faces at each vertex form one fan
-    Fault border_edges;       ///< edges with one face
-    Fault nonmanifold_edges;  ///< edges with more than two faces
-    Fault misoriented_edges;  ///< edges with two faces that run along them the same way
-    Fault duplicate_faces;    ///< faces with the same three vertices, in any order, as an earlier face
-    Fault degenerate_faces;   ///< faces with two equal corners or with area zero
+    bool closed = false;     ///< every edge is balanced: equally many faces run along it in each direction
+    bool manifold = false;   ///< every edge has at most two faces and the faces at each vertex form one fan
+    bool orientable = false; ///< faces can be turned so that all edges with two faces are balanced; a Moebius
+                             ///< strip's cannot
+    Fault border_edges;      ///< edges with one face
+    Fault nonmanifold_edges; ///< edges with more than two faces
+    Fault misoriented_edges; ///< edges with two faces that run along them the same way
+    Fault duplicate_faces;   ///< faces with the same three vertices, in any order, as an earlier face
+    Fault degenerate_faces;  ///< faces with two equal corners or with area zero
     double signed_volume = 0; ///< positive where faces turn outwards; of limited meaning when not closed
     Sphere bounding_sphere;   ///< the smallest that encloses all vertices used by faces
     /// The step of float at the largest coordinate, in the file's frame, where all coordinates are floats and
@@ -77,22 +81,40 @@ void require_valid(const TriangleMesh& mesh);
 /// @pre points are finite. No points give a sphere of radius 0 at the origin.
 Sphere smallest_enclosing_sphere(std::span<const Vec3f> points);
 
-/// What repair() may do. All off by default: a mesh is never changed without request. The first three need no
+/// What repair() may do. All off by default: a mesh is never changed without request. Those of all() need no
 /// guess. The others make open surfaces and assemblies solid, in ways that are right for some meshes and not
 /// for others.
+///
+/// None opens a closed mesh.
 struct RepairOptions {
     /// Drops duplicate faces. Faces with the same three vertices and opposite orientations cancel in pairs;
-    /// the first of the remaining ones, which turn the same way, stays. Where that leaves the mesh open, and
-    /// keeping all remaining ones or just the first face of all closes it, repair() does that instead. So a
-    /// closed mesh stays closed. Nothing is dropped where no face would be left.
+    /// the first of the remaining ones, which turn the same way, stays. Where that would leave an edge less
+    /// balanced, all remaining ones stay; where just the first face of all closes a hole, that one does.
+    /// Nothing is dropped where no face would be left.
     bool drop_duplicate_faces = false;
-    /// Where two pairs of faces fill the same quadrilateral of four edges, each along its own diagonal, drops
-    /// the pair that agrees less with the orientation of the surrounding faces, or the later one. The caps of
-    /// glmark2's horse are of this kind.
+    /// Where two pairs of faces fill the same quadrilateral of four edges, each along its own diagonal, and
+    /// edges are balanced better without one of them, drops that pair; the later one where both are as good.
+    /// The caps of glmark2's horse are of this kind. Two solids that touch there keep both.
     bool drop_doubled_patches = false;
     /// Reverses every closed component with a negative signed volume that does not lie in another closed one,
-    /// together with the closed components in it: cavities stay cavities.
+    /// together with the closed components in it: cavities stay cavities. Here parts that touch in vertices
+    /// only are components of their own.
     bool flip_inside_out = false;
+    /// Closes seams: joins vertices of edges that are not balanced where they are no farther apart than
+    /// weld_distance, drops faces that have two equal corners then, and fills holes that are no wider, such
+    /// as those along an edge that only the faces on its other side divide. Nothing is joined where no face
+    /// would be left.
+    bool close_seams = false;
+    /// In the mesh's unit, at most R, the radius of the bounding sphere; at least 2^-21 R counts, within
+    /// which maps do the same: 4.8e-7 R, a quarter of their lattice's step.
+    double weld_distance = 0;
+    /// Drops faces without area at edges that are not balanced, unless they fill a seam: three corners on one
+    /// line, as far as float tells.
+    bool drop_loose_slivers = false;
+    /// Turns faces so that neighbours agree, as most of them do, in every component in which they can: one
+    /// that is joined by edges with exactly two faces, and has no other edges. The outcome may be inside out
+    /// without flip_inside_out.
+    bool orient_faces = false;
 
     /// Fills holes whose border has at most so many edges, up to kMaxHoleEdges; 0 leaves them. A hole is a
     /// loop of edges along which more faces run one way than the other. It gets the triangles of least area
@@ -118,7 +140,12 @@ struct RepairOptions {
     static constexpr std::uint32_t kMaxHoleEdges = 256;
 
     /// All that need no guess.
-    static constexpr RepairOptions all() { return {true, true, true}; }
+    static constexpr RepairOptions all() {
+        RepairOptions options;
+        options.drop_duplicate_faces = options.drop_doubled_patches = options.flip_inside_out = true;
+        options.close_seams = options.drop_loose_slivers = options.orient_faces = true;
+        return options;
+    }
 };
 
 /// What repair() did; face numbers of the input mesh, ascending. Faces that close holes have the numbers
@@ -130,13 +157,18 @@ struct RepairReport {
     std::size_t holes_closed = 0;
     std::size_t holes_left = 0; ///< with more edges, or rims of sheets; 0 unless holes were to be closed
     std::vector<std::uint32_t> inner_faces_dropped;
-    std::size_t sheets_thickened = 0; ///< pieces of surface between rims
-    std::size_t faces_added = 0;      ///< to close holes and to thicken sheets
+    std::size_t sheets_thickened = 0;           ///< pieces of surface between rims
+    std::size_t faces_added = 0;                ///< to fill seams, to close holes and to thicken sheets
+    std::size_t vertices_welded = 0;            ///< in whose place faces refer to others now
+    std::vector<std::uint32_t> slivers_dropped; ///< loose ones, and faces that lost their area by welding
+    std::size_t faces_turned = 0;               ///< so that neighbours agree
+    std::size_t seams_filled = 0;               ///< holes without width
 
     bool changed_anything() const {
         return !duplicate_faces_dropped.empty() || !doubled_patch_faces_dropped.empty() ||
                components_flipped != 0 || holes_closed != 0 || !inner_faces_dropped.empty() ||
-               sheets_thickened != 0;
+               sheets_thickened != 0 || vertices_welded != 0 || !slivers_dropped.empty() ||
+               faces_turned != 0 || seams_filled != 0;
     }
 };
 
@@ -145,11 +177,12 @@ struct RepairedMesh {
     RepairReport report;
 };
 
-/// A repaired copy. Does only what the options name, and reports every change, in this order: duplicate
-/// faces, doubled patches, holes, what is inside out, inner faces, sheets. Faces keep their order, new ones
-/// come after them. Vertices stay unchanged but for those of sheets that are thickened. Vertices are
-/// distinguished by index: weld() first where equal positions mean the same vertex. The same mesh and options
-/// give the same bytes on every machine.
+/// A repaired copy. Does only what the options name, and reports every change, in this order: seams that are
+/// welded, duplicate faces, doubled patches, slivers, orientation, seams that are filled, these five again as
+/// long as there are any, holes, what is inside out, inner faces, sheets. Faces keep their order, new ones
+/// come after them. Vertices stay unchanged but for those of sheets that are thickened; faces may no longer
+/// use some. Vertices are distinguished by index: weld() first, or close seams, where equal positions mean
+/// the same vertex. The same mesh and options give the same bytes on every machine.
 ///
 /// Time O(n log n). flip_inside_out adds O(components^2) comparisons of boxes and, where boxes contain each
 /// other, winding numbers; max_hole_edges O(border edges * max_hole_edges^2), at most 0.2 ms a border edge;

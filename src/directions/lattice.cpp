@@ -3,6 +3,7 @@
 #include "directions/face_cone.hpp"
 #include "geometry/number_text.hpp"
 #include "mesh/require_valid.hpp"
+#include "mesh/seams.hpp"
 
 #include <echinus/error.hpp>
 
@@ -86,16 +87,25 @@ void LatticeSnapper::require_valid(std::span<const Vec3f> vertices) {
     require_numberable(faces_.size(), vertices.size());
     if (used_.vertex_count() != vertices.size()) used_ = UsedVertices(faces_, vertices.size());
     used_.require_valid(vertices, faces_);
+    if (!open_vertices_) open_vertices_ = find_open_vertices(faces_, vertices.size());
+}
+
+/// Open surfaces only.
+void LatticeSnapper::find_seams(std::span<const Vec3f> vertices, double bounding_radius) {
+    joined_vertices_ = join_near_vertices(vertices, *open_vertices_, seam_width(bounding_radius));
 }
 
 void LatticeSnapper::snap(std::span<const Vec3f> vertices, LatticeMesh& result) {
     require_valid(vertices);
-    snap_valid(vertices, Vec3f(smallest_enclosing_sphere(used_.positions(vertices, positions_)).centre),
-               result);
+    const Sphere sphere = smallest_enclosing_sphere(used_.positions(vertices, positions_));
+    if (!faces_are_closed()) find_seams(vertices, sphere.radius);
+    snap_valid(vertices, Vec3f(sphere.centre), result);
 }
 
 void LatticeSnapper::snap(std::span<const Vec3f> vertices, const Vec3f& centre, LatticeMesh& result) {
     require_valid(vertices);
+    if (!faces_are_closed())
+        find_seams(vertices, smallest_enclosing_sphere(used_.positions(vertices, positions_)).radius);
     snap_valid(vertices, centre, result);
 }
 
@@ -122,6 +132,8 @@ void LatticeSnapper::snap_around(std::span<const Vec3f> vertices, const Vec3f& c
     result.vertices.resize(vertices.size());
     for (std::size_t i = 0; i < vertices.size(); ++i)
         result.vertices[i] = used_[i] ? result.snap(vertices[i]) : LatticePoint{};
+    for (std::size_t i = 0; i < joined_vertices_.size(); ++i)
+        result.vertices[(*open_vertices_)[i]] = result.vertices[joined_vertices_[i]];
     result.faces.resize(faces_.size());
     result.face_numbers.resize(faces_.size());
     std::size_t kept = 0;

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -72,11 +73,16 @@ inline bool is_collapsed(const std::array<LatticePoint, 3>& corners) {
 }
 
 /// Snaps successive poses of a deforming mesh with fixed faces to lattices. Keeps memory and the data that
-/// depend on the faces alone from one call to the next.
+/// depend on the faces alone from one call to the next. Corners on both sides of a seam (mesh/seams.hpp) get
+/// one lattice point, so that none of its rounding makes a hole.
 class LatticeSnapper {
   public:
     /// @param faces  must outlive the snapper
     explicit LatticeSnapper(std::span<const Triangle> faces) : faces_(faces) {}
+
+    /// Is every edge balanced, with vertices distinguished by index?
+    /// @pre snap() was called
+    bool faces_are_closed() const { return open_vertices_->empty(); }
 
     /// Snaps the mesh around the centre of its bounding sphere. Where that centre lies on a face or on the
     /// line of an edge, so that no small turn could make its rays miss them, it moves by whole lattice steps
@@ -90,6 +96,7 @@ class LatticeSnapper {
 
   private:
     void require_valid(std::span<const Vec3f> vertices);
+    void find_seams(std::span<const Vec3f> vertices, double bounding_radius);
     void snap_valid(std::span<const Vec3f> vertices, const Vec3f& wanted_centre, LatticeMesh& result);
     void snap_around(std::span<const Vec3f> vertices, const Vec3f& centre, float radius,
                      LatticeMesh& result) const;
@@ -97,6 +104,8 @@ class LatticeSnapper {
     std::span<const Triangle> faces_;
     UsedVertices used_;
     std::vector<Vec3f> positions_;
+    std::optional<std::vector<std::uint32_t>> open_vertices_; ///< not known before the first pose
+    std::vector<std::uint32_t> joined_vertices_;              ///< [open_vertices_.size()] of the pose
 };
 
 /// LatticeSnapper::snap() of a single mesh.

@@ -19,11 +19,11 @@ Edge edge_of(const EdgeUse& use) {
 
 } // namespace
 
-std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh) {
+std::vector<EdgeUse> sorted_edge_uses(std::span<const Triangle> faces) {
     std::vector<EdgeUse> uses;
-    uses.reserve(3 * mesh.faces.size());
-    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-        const Triangle& corners = mesh.faces[face];
+    uses.reserve(3 * faces.size());
+    for (std::size_t face = 0; face < faces.size(); ++face) {
+        const Triangle& corners = faces[face];
         if (has_equal_corners(corners)) continue;
         for (std::uint8_t k = 0; k < 3; ++k) {
             const auto [low, high] = std::minmax(corners[k], corners[(k + 1) % 3]);

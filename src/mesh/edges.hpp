@@ -20,7 +20,10 @@ struct EdgeUse {
 /// All uses of all edges, sorted by edge and then by face, so that nothing depends on the order of a hash.
 /// Faces with two equal corners have no boundary and contribute nothing.
 /// @pre indices are in range
-std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh);
+std::vector<EdgeUse> sorted_edge_uses(std::span<const Triangle> faces);
+inline std::vector<EdgeUse> sorted_edge_uses(const TriangleMesh& mesh) {
+    return sorted_edge_uses(mesh.faces);
+}
 
 /// The uses of the edge between two vertices in the result of sorted_edge_uses().
 std::span<const EdgeUse> uses_of_edge(std::span<const EdgeUse> all, std::uint32_t a, std::uint32_t b);

@@ -2,6 +2,8 @@
 #include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
 #include "mesh/local_frame.hpp"
+#include "mesh/orientation.hpp"
+#include "mesh/seams.hpp"
 #include "mesh/union_find.hpp"
 #include "mesh/used_vertices.hpp"
 
@@ -97,20 +99,27 @@ double rounding_step(const TriangleMesh& mesh, double radius) {
     return rounding > radius * kLatticeStep ? 2 * rounding : 0;
 }
 
+bool is_orientable(std::span<const EdgeUse> edge_uses, std::size_t face_count) {
+    const std::vector<bool> patches = find_orientation(edge_uses, face_count).is_orientable;
+    return std::find(patches.begin(), patches.end(), false) == patches.end();
+}
+
 } // namespace
 
-MeshReport inspect(const TriangleMesh& mesh) {
-    require_valid(mesh);
+MeshReport inspect(const TriangleMesh& mesh_as_it_is) {
+    require_valid(mesh_as_it_is);
     MeshReport report;
-    report.face_count = mesh.faces.size();
-    report.vertex_count = mesh.vertices.size();
+    report.face_count = mesh_as_it_is.faces.size();
+    report.vertex_count = mesh_as_it_is.vertices.size();
+    report.bounding_sphere = smallest_enclosing_sphere(used_positions(mesh_as_it_is));
+    const TriangleMesh mesh = with_common_corners(mesh_as_it_is, seam_width(report.bounding_sphere.radius));
     report.component_count = find_components(mesh).count;
     const std::vector<EdgeUse> edge_uses = sorted_edge_uses(mesh);
     report_edges(edge_uses, report);
     report.manifold = report.nonmanifold_edges.count == 0 && every_vertex_has_one_fan(mesh, edge_uses);
+    report.orientable = is_orientable(edge_uses, mesh.faces.size());
     report.duplicate_faces = make_fault(find_duplicate_faces(mesh));
     report.degenerate_faces = make_fault(find_degenerate_faces(mesh));
-    report.bounding_sphere = smallest_enclosing_sphere(used_positions(mesh));
     report.signed_volume = signed_volume(mesh, report.bounding_sphere.centre);
     report.rounding_step = rounding_step(mesh, report.bounding_sphere.radius);
     return report;

@@ -94,28 +94,36 @@ class LeastFilling {
 
 static_assert(RepairOptions::kMaxHoleEdges <= std::numeric_limits<std::uint16_t>::max());
 
-} // namespace
+/// For each vertex the area of the component that it belongs to.
+std::vector<double> component_areas(const TriangleMesh& mesh) {
+    const Components components = find_components(mesh);
+    std::vector<double> of_component(components.count), of_vertex(mesh.vertices.size());
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face)
+        of_component[components.of_face[face]] += area_of(mesh, mesh.faces[face]);
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face)
+        for (const std::uint32_t vertex : mesh.faces[face])
+            of_vertex[vertex] = of_component[components.of_face[face]];
+    return of_vertex;
+}
 
-ClosedHoles close_small_holes(TriangleMesh& mesh, std::uint32_t max_edges) {
+/// Fills the loops that are wanted, unless they are the rim of a sheet.
+/// @param is_wanted   of a loop, before the way to fill it is looked for
+/// @param is_in_order of the faces that would fill it
+template <typename IsWanted, typename IsInOrder>
+ClosedHoles fill_loops(TriangleMesh& mesh, const IsWanted& is_wanted, const IsInOrder& is_in_order) {
     // A larger share is no hole in a surface, but the other side of a sheet.
     constexpr double kLargestShare = 1.0 / 3;
-    const Components components = find_components(mesh);
-    std::vector<double> component_area(components.count);
-    std::vector<std::uint32_t> component_of_vertex(mesh.vertices.size());
-    for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
-        component_area[components.of_face[face]] += area_of(mesh, mesh.faces[face]);
-        for (const std::uint32_t vertex : mesh.faces[face])
-            component_of_vertex[vertex] = components.of_face[face];
-    }
-
+    const std::vector<HoleLoop> loops = find_hole_loops(mesh);
+    if (loops.empty()) return {};
+    const std::vector<double> areas = component_areas(mesh);
     const std::vector<EdgeUse> edge_uses = sorted_edge_uses(mesh);
     ClosedHoles result;
-    for (const HoleLoop& loop : find_hole_loops(mesh)) {
+    for (const HoleLoop& loop : loops) {
         std::vector<Triangle> filling;
-        if (loop.size() <= max_edges) filling = LeastFilling(mesh, edge_uses, loop).faces();
+        if (is_wanted(loop)) filling = LeastFilling(mesh, edge_uses, loop).faces();
         double area = 0;
         for (const Triangle& face : filling) area += area_of(mesh, face);
-        if (!filling.empty() && area <= kLargestShare * component_area[component_of_vertex[loop[0]]]) {
+        if (!filling.empty() && area <= kLargestShare * areas[loop[0]] && is_in_order(filling)) {
             mesh.faces.insert(mesh.faces.end(), filling.begin(), filling.end());
             ++result.closed;
         } else {
@@ -123,6 +131,47 @@ ClosedHoles close_small_holes(TriangleMesh& mesh, std::uint32_t max_edges) {
         }
     }
     return result;
+}
+
+/// Can faces no higher than that fill the loop? If so, they have no more area than this in total, and the
+/// loop encloses no more.
+bool may_be_seam(const TriangleMesh& mesh, const HoleLoop& loop, double width) {
+    const Vec3d first(mesh.vertices[loop[0]]);
+    Vec3d twice_area;
+    double perimeter = 0;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+        const Vec3d a(mesh.vertices[loop[i]]), b(mesh.vertices[loop[(i + 1) % loop.size()]]);
+        twice_area += cross(a - first, b - first);
+        perimeter += length(b - a);
+    }
+    return length(twice_area) <= static_cast<double>(loop.size() - 2) * width * (perimeter / 2);
+}
+
+bool is_no_higher(const TriangleMesh& mesh, const Triangle& face, double height) {
+    double longest = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+        longest = std::max(longest,
+                           length(Vec3d(mesh.vertices[face[(k + 1) % 3]]) - Vec3d(mesh.vertices[face[k]])));
+    return 2 * area_of(mesh, face) <= height * longest;
+}
+
+} // namespace
+
+ClosedHoles close_small_holes(TriangleMesh& mesh, std::uint32_t max_edges) {
+    return fill_loops(
+        mesh, [&](const HoleLoop& loop) { return loop.size() <= max_edges; },
+        [](const std::vector<Triangle>&) { return true; });
+}
+
+std::size_t fill_seams(TriangleMesh& mesh, double width) {
+    const auto may_be_filled = [&](const HoleLoop& loop) {
+        return loop.size() <= RepairOptions::kMaxHoleEdges && may_be_seam(mesh, loop, width);
+    };
+    const auto has_no_width = [&](const std::vector<Triangle>& filling) {
+        return std::all_of(filling.begin(), filling.end(),
+                           [&](const Triangle& face) { return is_no_higher(mesh, face, width); });
+    };
+    return fill_loops(mesh, may_be_filled, has_no_width).closed;
 }
 
 } // namespace echinus

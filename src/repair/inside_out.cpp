@@ -1,10 +1,14 @@
+#include "geometry/whole_numbers.hpp"
 #include "mesh/components.hpp"
 #include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
+#include "mesh/union_find.hpp"
 #include "mesh/winding_number.hpp"
 #include "repair/repairs.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <span>
 #include <utility>
 
 namespace echinus {
@@ -16,7 +20,7 @@ struct Component {
     std::vector<Triangle> faces;
     Vec3f low;  // corners of its bounding box
     Vec3f high; //
-    bool closed = true;
+    bool closed = false;
     bool inside_out = false;
     bool flip = false;
 };
@@ -33,21 +37,46 @@ void find_bounding_box(const TriangleMesh& mesh, Component& component) {
         }
 }
 
+/// By more than rounding makes of one that encloses nothing.
 bool has_negative_volume(const TriangleMesh& mesh, const Component& component) {
-    double sum = 0;
-    for (const Triangle& face : component.faces) sum += six_volumes(mesh, face, Vec3d(component.low));
-    return sum < 0;
+    constexpr double kRounding = 1e-12;
+    double sum = 0, magnitude = 0;
+    for (const Triangle& face : component.faces) {
+        const double part = six_volumes(mesh, face, Vec3d(component.low));
+        sum += part;
+        magnitude += std::fabs(part);
+    }
+    return sum < -kRounding * magnitude;
+}
+
+/// Sets of faces joined by edges, numbered in the order of their first faces. Solids that touch in vertices
+/// are apart.
+Components find_solids(std::span<const EdgeUse> edge_uses, std::size_t face_count) {
+    UnionFind sets(face_count);
+    for_each_edge(edge_uses, [&](std::span<const EdgeUse> uses) {
+        for (const EdgeUse& use : uses) sets.join(uses[0].face, use.face);
+    });
+    Components components;
+    components.of_face.resize(face_count);
+    for (std::uint32_t face = 0; face < face_count; ++face) {
+        const std::uint32_t first = sets.find(face);
+        components.of_face[face] =
+            first == face ? kept_as<std::uint32_t>(components.count++) : components.of_face[first];
+    }
+    return components;
 }
 
 std::vector<Component> examine_components(const TriangleMesh& mesh) {
-    const Components numbers = find_components(mesh);
+    const std::vector<EdgeUse> edge_uses = sorted_edge_uses(mesh);
+    const Components numbers = find_solids(edge_uses, mesh.faces.size());
     std::vector<Component> components(numbers.count);
     for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
         Component& component = components[numbers.of_face[face]];
-        component.face_numbers.push_back(static_cast<std::uint32_t>(face));
+        component.face_numbers.push_back(kept_as<std::uint32_t>(face));
         component.faces.push_back(mesh.faces[face]);
     }
-    for_each_edge(sorted_edge_uses(mesh), [&](std::span<const EdgeUse> uses) {
+    for (const EdgeUse& use : edge_uses) components[numbers.of_face[use.face]].closed = true;
+    for_each_edge(edge_uses, [&](std::span<const EdgeUse> uses) {
         if (!is_balanced(uses)) components[numbers.of_face[uses[0].face]].closed = false;
     });
     for (Component& component : components) {
@@ -63,11 +92,18 @@ bool box_contains(const Component& outer, const Component& inner) {
 }
 
 /// Does the inner component lie in the outer one? One vertex decides for the whole component: components
-/// whose surfaces cross have no meaningful nesting.
+/// whose surfaces cross have no meaningful nesting. It is the first of a few that is not on the outer one.
 bool contains(const TriangleMesh& mesh, const Component& outer, const Component& inner) {
-    return &outer != &inner && outer.closed && box_contains(outer, inner) &&
-           std::abs(winding_number(mesh.vertices, outer.faces, Vec3d(mesh.vertices[inner.faces[0][0]]))) >
-               0.5;
+    if (&outer == &inner || !outer.closed || !box_contains(outer, inner)) return false;
+    constexpr std::size_t kMostVertices = 16;
+    constexpr double kOnSurface = 1e-3; // from the next whole number
+    const std::size_t count = std::min(kMostVertices, inner.faces.size());
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t vertex = inner.faces[i * inner.faces.size() / count][0];
+        const double winding = winding_number(mesh.vertices, outer.faces, Vec3d(mesh.vertices[vertex]));
+        if (std::fabs(winding - std::round(winding)) <= kOnSurface) return std::round(winding) != 0;
+    }
+    return false;
 }
 
 } // namespace

@@ -1,8 +1,13 @@
+#include "geometry/number_text.hpp"
+#include "mesh/faces.hpp"
+#include "mesh/seams.hpp"
+#include "mesh/used_vertices.hpp"
 #include "repair/repairs.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/mesh.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
@@ -58,6 +63,82 @@ void require_in_range(const RepairOptions& options) {
         throw Error(ErrorCode::InvalidOptions,
                     "the thickness of sheets is negative or not finite; it must be a "
                     "finite length, or 0 to leave sheets as they are");
+    if (!(options.weld_distance >= 0 && std::isfinite(options.weld_distance)))
+        throw Error(ErrorCode::InvalidOptions,
+                    "the distance within which vertices are welded is negative or not finite; it must be a "
+                    "finite length, or 0 for what maps do not resolve");
+}
+
+/// How wide a seam may be. @pre require_valid(mesh)
+double width_of_seams(const TriangleMesh& mesh, double weld_distance) {
+    const double radius = smallest_enclosing_sphere(used_positions(mesh)).radius;
+    if (weld_distance > radius)
+        throw Error(ErrorCode::InvalidOptions,
+                    "vertices cannot be welded within " + number_text(weld_distance) +
+                        ", more than the radius of the mesh's bounding sphere, " + number_text(radius));
+    return std::max(weld_distance, seam_width(radius));
+}
+
+/// The faces with two equal corners that had three before.
+std::vector<std::uint32_t> find_collapsed_faces(const TriangleMesh& before, const TriangleMesh& after) {
+    std::vector<std::uint32_t> collapsed;
+    for (std::uint32_t face = 0; face < after.faces.size(); ++face)
+        if (has_equal_corners(after.faces[face]) && !has_equal_corners(before.faces[face]))
+            collapsed.push_back(face);
+    return collapsed;
+}
+
+/// How many vertices faces used before and do not any more.
+std::size_t count_given_up(const TriangleMesh& before, const TriangleMesh& after) {
+    const UsedVertices used_before(before.faces, before.vertices.size());
+    const UsedVertices used_after(after.faces, after.vertices.size());
+    std::size_t count = 0;
+    for (std::size_t vertex = 0; vertex < before.vertices.size(); ++vertex)
+        count += used_before[vertex] && !used_after[vertex] ? 1 : 0;
+    return count;
+}
+
+/// Welds seams, and drops what loses its area by that, unless that is all.
+void weld(ChangingMesh& mesh, double width, RepairReport& report) {
+    TriangleMesh welded = with_common_corners(mesh.mesh(), width);
+    const std::vector<std::uint32_t> collapsed = find_collapsed_faces(mesh.mesh(), welded);
+    if (collapsed.size() == welded.faces.size()) return;
+    report.vertices_welded = count_given_up(mesh.mesh(), welded);
+    mesh.mesh() = std::move(welded);
+    report.slivers_dropped = mesh.drop(collapsed);
+}
+
+/// Drops faces and adds their numbers to a list. Returns whether there were any.
+bool drop(ChangingMesh& mesh, const std::vector<std::uint32_t>& faces, std::vector<std::uint32_t>& list) {
+    const std::vector<std::uint32_t> dropped = mesh.drop(faces);
+    list.insert(list.end(), dropped.begin(), dropped.end());
+    std::sort(list.begin(), list.end());
+    return !dropped.empty();
+}
+
+/// Does once what may have to be done again after the rest of it: a face can be turned, say, once the seam
+/// beside it is filled. Returns whether anything changed: then the edges are balanced better, or as well with
+/// fewer faces, so that there is an end of it.
+bool mend_once(ChangingMesh& mesh, const RepairOptions& options, double width, RepairReport& report) {
+    bool changed = false;
+    if (options.drop_duplicate_faces)
+        changed |= drop(mesh, find_surplus_faces(mesh.mesh()), report.duplicate_faces_dropped);
+    if (options.drop_doubled_patches)
+        changed |= drop(mesh, find_doubled_patch_faces(mesh.mesh()), report.doubled_patch_faces_dropped);
+    if (options.drop_loose_slivers)
+        changed |= drop(mesh, find_loose_slivers(mesh.mesh()), report.slivers_dropped);
+    if (options.orient_faces) {
+        const std::size_t count = orient_faces(mesh.mesh());
+        report.faces_turned += count;
+        changed |= count != 0;
+    }
+    if (options.close_seams) {
+        const std::size_t count_before = mesh.mesh().faces.size();
+        report.seams_filled += fill_seams(mesh.mesh(), width);
+        report.faces_added += mesh.mesh().faces.size() - count_before;
+        changed |= mesh.mesh().faces.size() != count_before;
+    }
+    return changed;
 }
 
 } // namespace
@@ -70,10 +151,10 @@ RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options) {
     const auto count_added = [&](std::size_t count_before) {
         report.faces_added += result.mesh().faces.size() - count_before;
     };
-    if (options.drop_duplicate_faces)
-        report.duplicate_faces_dropped = result.drop(find_surplus_faces(result.mesh()));
-    if (options.drop_doubled_patches)
-        report.doubled_patch_faces_dropped = result.drop(find_doubled_patch_faces(result.mesh()));
+    const double width = options.close_seams ? width_of_seams(mesh, options.weld_distance) : 0;
+    if (options.close_seams) weld(result, width, report);
+    while (mend_once(result, options, width, report)) {
+    }
     if (options.max_hole_edges != 0) {
         const std::size_t count_before = result.mesh().faces.size();
         const ClosedHoles holes = close_small_holes(result.mesh(), options.max_hole_edges);

@@ -18,6 +18,20 @@ std::vector<std::uint32_t> find_surplus_faces(const TriangleMesh& mesh);
 /// @pre indices are in range
 std::vector<std::uint32_t> find_doubled_patch_faces(const TriangleMesh& mesh);
 
+/// The faces to drop as loose (see RepairOptions::drop_loose_slivers); ascending.
+/// @pre require_valid(mesh)
+std::vector<std::uint32_t> find_loose_slivers(const TriangleMesh& mesh);
+
+/// Turns faces so that neighbours agree (see RepairOptions::orient_faces).
+/// @returns how many faces were turned
+/// @pre require_valid(mesh)
+std::size_t orient_faces(TriangleMesh& mesh);
+
+/// Fills holes no wider than that with faces, which come after the others (see RepairOptions::close_seams).
+/// @returns how many were filled
+/// @pre require_valid(mesh)
+std::size_t fill_seams(TriangleMesh& mesh, double width);
+
 struct ClosedHoles {
     std::size_t closed = 0, left = 0;
 };

@@ -1,9 +1,14 @@
-#include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
+#include "mesh/union_find.hpp"
+#include "repair/edge_balance.hpp"
 #include "repair/repairs.hpp"
 
 #include <algorithm>
 #include <array>
+#include <utility>
+
+// Faces on the same three vertices are a group. Which of them are surplus depends on the faces around them,
+// so groups that share an edge are decided together, and those that do not, apart.
 
 namespace echinus {
 
@@ -17,29 +22,48 @@ bool is_ascending(const Triangle& face) {
     return int{face[0] < face[1]} + int{face[1] < face[2]} + int{face[2] < face[0]} == 2;
 }
 
-/// Opposite faces cancel in pairs; the first of the remaining ones, which run the same way, stay.
-Faces without_opposites(const TriangleMesh& mesh, const std::vector<Faces>& groups,
-                        std::size_t most_left_of_a_group) {
+/// Groups that are connected by common edges.
+std::vector<std::vector<Faces>> patches_of(const std::vector<Faces>& groups, const EdgeBalance& balance) {
+    UnionFind sets(groups.size());
+    std::vector<std::uint32_t> group_at(balance.edge_count(), EdgeBalance::kNoEdge);
+    for (std::uint32_t group = 0; group < groups.size(); ++group)
+        for (const std::uint32_t edge : balance.edges_of(groups[group][0])) {
+            if (edge == EdgeBalance::kNoEdge) continue;
+            if (group_at[edge] == EdgeBalance::kNoEdge) group_at[edge] = group;
+            sets.join(group, group_at[edge]);
+        }
+    std::vector<std::vector<Faces>> patches(groups.size());
+    for (std::uint32_t group = 0; group < groups.size(); ++group)
+        patches[sets.find(group)].push_back(groups[group]);
+    std::erase_if(patches, [](const auto& patch) { return patch.empty(); });
+    return patches;
+}
+
+/// Drops opposite faces in pairs, which changes no balance, and of the remaining ones, which run the same
+/// way, all but the first, where that leaves no edge less balanced.
+Faces without_opposites(const TriangleMesh& mesh, const std::vector<Faces>& patch, EdgeBalance& balance) {
     Faces surplus;
-    for (const Faces& group : groups) {
+    std::vector<Faces> repeated;
+    for (const Faces& group : patch) {
         std::array<Faces, 2> ways;
         for (const std::uint32_t face : group) ways[is_ascending(mesh.faces[face])].push_back(face);
         if (ways[0].size() > ways[1].size()) std::swap(ways[0], ways[1]);
         const auto& [fewer, more] = ways;
-        const std::size_t left = std::min(more.size() - fewer.size(), most_left_of_a_group);
+        const auto pair_count = static_cast<std::ptrdiff_t>(fewer.size());
         surplus.insert(surplus.end(), fewer.begin(), fewer.end());
-        surplus.insert(surplus.end(), more.begin() + static_cast<std::ptrdiff_t>(left), more.end());
+        surplus.insert(surplus.end(), more.end() - pair_count, more.end());
+        if (more.size() > fewer.size() + 1) repeated.emplace_back(more.begin() + 1, more.end() - pair_count);
     }
-    std::sort(surplus.begin(), surplus.end());
+    const Faces dropped = balance.droppable(std::move(repeated));
+    surplus.insert(surplus.end(), dropped.begin(), dropped.end());
     return surplus;
 }
 
-/// Is every edge balanced without these faces?
-bool is_closed_without(TriangleMesh mesh, const Faces& surplus) {
-    for (const std::uint32_t face : surplus) mesh.faces[face] = {0, 0, 0}; // bounds nothing
-    bool closed = true;
-    for_each_edge(sorted_edge_uses(mesh), [&](auto uses) { closed = closed && is_balanced(uses); });
-    return closed;
+/// Drops all but the first face of each group, where that leaves no edge less balanced.
+Faces without_later_ones(const std::vector<Faces>& patch, EdgeBalance& balance) {
+    std::vector<Faces> later;
+    for (const Faces& group : patch) later.emplace_back(group.begin() + 1, group.end());
+    return balance.droppable(std::move(later));
 }
 
 } // namespace
@@ -47,12 +71,16 @@ bool is_closed_without(TriangleMesh mesh, const Faces& surplus) {
 std::vector<std::uint32_t> find_surplus_faces(const TriangleMesh& mesh) {
     const std::vector<Faces> groups = find_equal_faces(mesh);
     if (groups.empty()) return {};
-    const Faces usual = without_opposites(mesh, groups, 1);
-    // The second never opens a closed mesh, since the faces it drops are closed themselves.
-    for (const Faces& surplus :
-         {usual, without_opposites(mesh, groups, mesh.faces.size()), find_duplicate_faces(mesh)})
-        if (surplus.size() < mesh.faces.size() && is_closed_without(mesh, surplus)) return surplus;
-    return usual.size() < mesh.faces.size() ? usual : Faces{};
+    EdgeBalance balance(mesh);
+    Faces all;
+    for (const std::vector<Faces>& patch : patches_of(groups, balance)) {
+        Faces surplus = without_opposites(mesh, patch, balance);
+        Faces other = without_later_ones(patch, balance);
+        if (balance.gain_without(other) > balance.gain_without(surplus)) surplus = std::move(other);
+        all.insert(all.end(), surplus.begin(), surplus.end());
+    }
+    std::sort(all.begin(), all.end());
+    return all.size() < mesh.faces.size() ? all : Faces{};
 }
 
 } // namespace echinus

@@ -88,14 +88,21 @@ RepairOptions read_repair(JsonObject& scene) {
     bool small_holes = false, sheets = false;
     for (const std::size_t word :
          scene.read_words("repair", {"duplicate_faces", "doubled_patches", "small_holes", "inside_out",
-                                     "inner_faces", "sheets"})) {
+                                     "inner_faces", "sheets", "seams", "slivers", "orientation"})) {
         if (word == 0) options.drop_duplicate_faces = true;
         if (word == 1) options.drop_doubled_patches = true;
         if (word == 2) small_holes = true;
         if (word == 3) options.flip_inside_out = true;
         if (word == 4) options.drop_inner_faces = true;
         if (word == 5) sheets = true;
+        if (word == 6) options.close_seams = true;
+        if (word == 7) options.drop_loose_slivers = true;
+        if (word == 8) options.orient_faces = true;
     }
+    if (options.close_seams)
+        scene.read("weld_distance", options.weld_distance, kLength);
+    else if (scene.has("weld_distance"))
+        scene.refuse("weld_distance", "left out, or \"repair\" must have the word \"seams\"");
     if (small_holes) {
         options.max_hole_edges = kUsualHoleEdges;
         scene.read("hole_edges", options.max_hole_edges, {3, RepairOptions::kMaxHoleEdges});

@@ -127,6 +127,35 @@ TEST(CMeshes, AreReportedAndRepairedAsInCpp) {
     expect_ok(echinus_mesh_repair(mesh.get(), &options, out(repaired), nullptr, nullptr));
 }
 
+TEST(CMeshes, HaveTheirSeamsClosedAndFacesTurnedAsInCpp) {
+    TriangleMesh torn = make_box({1, 2, 3}, 2);
+    torn.vertices.push_back(torn.vertices[torn.faces[0][0]] + Vec3f{0, 0, 1e-3F});
+    torn.faces[0][0] = static_cast<std::uint32_t>(torn.vertices.size() - 1);
+    std::swap(torn.faces[5][0], torn.faces[5][1]);
+    echinus_repair_options options;
+    echinus_repair_options_init(&options, sizeof options);
+    options.close_seams = options.drop_loose_slivers = options.orient_faces = 1;
+    options.weld_distance = 2e-3;
+    CMesh mended;
+    echinus_repair_report changes{};
+    changes.size = sizeof changes;
+    expect_ok(echinus_mesh_repair(c_mesh_of(torn).get(), &options, out(mended), &changes, nullptr));
+    const RepairedMesh by_cpp = repair(
+        torn, {.close_seams = true, .weld_distance = 2e-3, .drop_loose_slivers = true, .orient_faces = true});
+    expect_same_mesh(mended, by_cpp.mesh);
+    EXPECT_EQ(changes.vertices_welded, 1U);
+    EXPECT_EQ(changes.faces_turned, 1U);
+    EXPECT_EQ(changes.slivers_dropped, 0U);
+    EXPECT_EQ(changes.seams_filled, 0U);
+    echinus_mesh_report report{};
+    report.size = sizeof report;
+    expect_ok(echinus_mesh_inspect(mended.get(), &report));
+    EXPECT_TRUE(report.closed != 0 && report.orientable != 0);
+    options.weld_distance = -1;
+    EXPECT_EQ(echinus_mesh_repair(c_mesh_of(torn).get(), &options, out(mended), nullptr, nullptr),
+              ECHINUS_INVALID_OPTIONS);
+}
+
 TEST(CMeshes, AreMadeSolidAsInCpp) {
     TriangleMesh open = make_box({1, 2, 3}, 2);
     open.faces.pop_back();
@@ -153,6 +182,14 @@ TEST(CMeshes, AreMadeSolidAsInCpp) {
     options.max_hole_edges = 257;
     EXPECT_EQ(echinus_mesh_repair(c_mesh_of(open).get(), &options, out(solid), nullptr, nullptr),
               ECHINUS_INVALID_OPTIONS);
+
+    // A program of before seams, slivers and orientation.
+    options.max_hole_edges = 3;
+    options.size = offsetof(echinus_repair_options, close_seams);
+    options.close_seams = 7; // beyond the size
+    changes.size = offsetof(echinus_repair_report, vertices_welded);
+    expect_ok(echinus_mesh_repair(c_mesh_of(open).get(), &options, out(solid), &changes, nullptr));
+    expect_same_mesh(solid, by_cpp.mesh);
 
     // A program of before there were any of these.
     options.size = offsetof(echinus_repair_options, max_hole_edges);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 using namespace echinus;
 
@@ -53,6 +54,54 @@ TEST(ExactMapOfAnOpenSurface, AnswersByTheGeneralisedWindingNumber) {
                 ASSERT_EQ(contact(map, p, 10).certain, found.certain);
             }
         }
+}
+
+TEST(ExactMapOfAnOpenSurface, IsNeverWrongAndCertainWhereFacesAreTurned) {
+    test::Random random(5);
+    for (const TriangleMesh& mesh :
+         {make_box({1, 1, 1}), make_box({3, 1, 2}, 3), make_torus(1, 0.4, 20, 12), make_sphere(1, 16, 8)})
+        for (const std::size_t every : {2U, 3U, 17U}) {
+            TriangleMesh turned = mesh;
+            for (std::size_t face = 0; face < mesh.faces.size(); face += every)
+                std::swap(turned.faces[face][1], turned.faces[face][2]);
+            const ExactMap map = ExactMap::build(turned);
+            ASSERT_FALSE(map.view().border.empty());
+            int certain_count = 0, uncertain_count = 0;
+            for (int n = 0; n < 2000; ++n) {
+                const Vec3f p = test::in_sphere(random, 1.2F * map.view().radius) + map.view().centre;
+                if (unsigned_distance(mesh, Vec3d(p)) < 1e-5 * map.view().radius) continue;
+                const Containment found = classify(map, p);
+                ASSERT_EQ(contact(map, p, 10).certain, found.certain);
+                (found.certain ? certain_count : uncertain_count)++;
+                if (found.certain) {
+                    ASSERT_EQ(found.inside, winding_number(mesh, Vec3d(p)) > 0.5);
+                }
+            }
+            EXPECT_GT(certain_count, 500);
+            EXPECT_TRUE(uncertain_count > 20 || every == 17);
+        }
+}
+
+TEST(ExactMapOfAnOpenSurface, AgreesWithTheReportOnWhatIsClosed) {
+    test::Random random(7);
+    const TriangleMesh torus = make_torus(1, 0.4, 20, 12);
+    const double radius = inspect(torus).bounding_sphere.radius;
+    for (const double share : {0.0, 1e-12, 0x1p-22, 0x1p-17, 1e-3}) {
+        TriangleMesh mesh = torus; // each face with corners of its own
+        mesh.vertices.clear();
+        for (Triangle& face : mesh.faces)
+            for (std::uint32_t& corner : face) {
+                const Vec3f apart = test::in_sphere(random, static_cast<float>(share * radius / 2));
+                mesh.vertices.push_back(torus.vertices[corner] + apart);
+                corner = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+            }
+        const bool closed = share < 0x1p-21;
+        EXPECT_EQ(inspect(mesh).closed, closed) << share;
+        for (const CentreChoice centre : {CentreChoice::BoundingSphere, CentreChoice::Search}) {
+            const ExactMap map = ExactMap::build(mesh, {.centre = centre});
+            EXPECT_EQ(map.view().border.empty(), closed) << share;
+        }
+    }
 }
 
 TEST(ExactMapOfAnOpenSurface, ReportsTheShareThatNeedNotBeComputed) {

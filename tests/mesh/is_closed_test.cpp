@@ -56,7 +56,7 @@ TEST(IsClosed, AgreesWithTheReportOnRandomFaces) {
     int closed_count = 0;
     for (int n = 0; n < 2000; ++n) {
         TriangleMesh mesh;
-        mesh.vertices.assign(4, {1, 2, 3});
+        mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
         for (std::size_t face = 0; face < 2 + random() % 4; ++face)
             mesh.faces.push_back({static_cast<std::uint32_t>(random() % 4),
                                   static_cast<std::uint32_t>(random() % 4),

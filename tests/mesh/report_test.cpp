@@ -11,6 +11,7 @@
 #include <numbers>
 #include <numeric>
 #include <random>
+#include <utility>
 
 using namespace echinus;
 using namespace echinus::test;
@@ -117,6 +118,63 @@ TEST(MeshReport, CountsASingleFaceAsThreeBorderEdges) {
     EXPECT_TRUE(report.manifold);
     EXPECT_EQ(report.border_edges.count, 3U);
     EXPECT_EQ(report.border_edges.first_faces, (Faces{0}));
+}
+
+TEST(MeshReport, CallsAMeshClosedWhoseCornersDifferByLessThanMapsResolve) {
+    const TriangleMesh box = make_box({1, 1, 1}, 3);
+    const double radius = inspect(box).bounding_sphere.radius;
+    for (const auto& [share, closed] : {std::pair(0.0, true), {0x1p-22, true}, {0x1p-20, false}}) {
+        TriangleMesh mesh = box; // each face with corners of its own
+        mesh.vertices.clear();
+        for (std::size_t face = 0; face < mesh.faces.size(); ++face)
+            for (std::uint32_t& corner : mesh.faces[face]) {
+                const float apart = face % 2 == 0 ? 0 : static_cast<float>(share * radius);
+                mesh.vertices.push_back(box.vertices[corner] + Vec3f{0, apart, 0});
+                corner = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+            }
+        const MeshReport report = inspect(mesh);
+        EXPECT_EQ(report.closed, closed) << share;
+        EXPECT_EQ(report.border_edges.count == 0, closed) << share;
+        EXPECT_EQ(report.component_count == 1, closed) << share;
+    }
+}
+
+TEST(MeshReport, DoesNotTakeAChainOfNearCornersForOne) {
+    // A strip so fine that each of its corners is near to the next, but not to those after that.
+    const float step = 0x1.8p-22F;
+    TriangleMesh mesh{{{-1, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+    for (int i = 0; i < 50; ++i) {
+        mesh.vertices.push_back({static_cast<float>(i) * step, 0, 0.5F});
+        mesh.vertices.push_back({static_cast<float>(i) * step, 0x1p-10F, 0.5F});
+        const auto last = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+        if (i > 0)
+            mesh.faces.insert(mesh.faces.end(), {{last - 3, last - 1, last - 2}, {last - 2, last - 1, last}});
+    }
+    EXPECT_GE(inspect(mesh).border_edges.count, 3U + 20U);
+}
+
+TEST(MeshReport, SaysOfAMoebiusStripThatItIsNotOrientable) {
+    // A band of triangles; its ends are joined straight or with half a turn.
+    for (const bool with_half_a_turn : {false, true}) {
+        TriangleMesh band;
+        constexpr std::uint32_t kCount = 24;
+        for (std::uint32_t i = 0; i < kCount; ++i) {
+            const double around = 2 * std::numbers::pi * i / kCount;
+            const double tilt = with_half_a_turn ? around / 2 : 0;
+            for (const double side : {-0.3, 0.3})
+                band.vertices.push_back(
+                    Vec3f(Vec3d{(1 + side * std::cos(tilt)) * std::cos(around),
+                                (1 + side * std::cos(tilt)) * std::sin(around), side * std::sin(tilt)}));
+            std::uint32_t c = 2 * (i + 1) % (2 * kCount), d = c + 1;
+            if (i + 1 == kCount && with_half_a_turn) std::swap(c, d);
+            band.faces.push_back({2 * i, 2 * i + 1, c});
+            band.faces.push_back({2 * i + 1, d, c});
+        }
+        EXPECT_EQ(inspect(band).orientable, !with_half_a_turn);
+        std::swap(band.faces[7][0], band.faces[7][1]); // turned faces do not matter
+        EXPECT_EQ(inspect(band).orientable, !with_half_a_turn);
+        EXPECT_EQ(inspect(band).misoriented_edges.count, with_half_a_turn ? 3U : 2U);
+    }
 }
 
 TEST(MeshReport, CountsAFinAsANonmanifoldEdge) {

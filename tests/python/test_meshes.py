@@ -131,6 +131,26 @@ def test_repairs_are_done_and_reported():
     assert not nothing.changed_anything and np.array_equal(same.faces, faulty.faces)
 
 
+def test_a_repair_closes_seams_and_turns_faces():
+    mesh = torus()
+    corners = mesh.vertices[mesh.faces].reshape(-1, 3)  # each face with corners of its own
+    faces = np.arange(len(corners), dtype=np.uint32).reshape(-1, 3)
+    faces[::3] = faces[::3, ::-1]
+    torn = ech.Mesh(corners + np.float32([1e-7, 0, 0]) * (np.arange(len(corners)) % 2)[:, None], faces)
+    mended, report = ech.repair(torn)
+    assert report.vertices_welded == len(corners) - len(mesh.vertices) and report.faces_turned == len(faces[::3])
+    assert report.changed_anything and ech.inspect(mended).closed and ech.inspect(mended).orientable
+    assert not ech.inspect(ech.repair(torn, orient_faces=False)[0]).closed
+
+    box = ech.make_box((1, 1, 1))
+    vertices = np.concatenate([box.vertices, box.vertices[box.faces[0, :1]] + np.float32([0, 0, 1e-3])])
+    cracked = ech.Mesh(vertices, np.concatenate([[[8, *box.faces[0, 1:]]], box.faces[1:]]))
+    assert not ech.inspect(ech.repair(cracked)[0]).closed
+    assert ech.inspect(ech.repair(cracked, weld_distance=2e-3)[0]).closed
+    with pytest.raises(ech.Error, match="welded within 9"):
+        ech.repair(cracked, weld_distance=9)
+
+
 def test_a_mesh_is_made_solid_on_request():
     mesh = torus()
     holed = ech.Mesh(mesh.vertices, mesh.faces[5:])

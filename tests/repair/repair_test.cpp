@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 using namespace echinus;
 using namespace echinus::test;
 
@@ -118,6 +120,133 @@ TEST(Repair, LeavesASeparateTetrahedronAlone) {
     const TriangleMesh tetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                                    {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
     expect_unchanged(tetrahedron, RepairOptions::all());
+}
+
+TEST(Repair, KeepsTheCommonSquareOfTouchingSolidsThatDivideItAlongEitherDiagonal) {
+    const TriangleMesh cube = make_box({1, 1, 1});
+    TriangleMesh mirrored = moved(cube, {1, 0, 0});
+    for (Vec3f& p : mirrored.vertices) p.y = -p.y;
+    const TriangleMesh mesh = weld(together(cube, inside_out(mirrored)));
+    ASSERT_TRUE(inspect(mesh).closed);
+    ASSERT_EQ(inspect(mesh).nonmanifold_edges.count, 4U);
+    ASSERT_EQ(inspect(mesh).duplicate_faces.count, 0U); // the diagonals do differ
+    expect_unchanged(mesh, RepairOptions::all());
+}
+
+TEST(Repair, TurnsFacesSoThatNeighboursAgree) {
+    const TriangleMesh torus = make_torus(1, 0.4, 12, 8);
+    TriangleMesh mesh = torus;
+    for (std::size_t face = 0; face < mesh.faces.size(); face += 3)
+        std::swap(mesh.faces[face][1], mesh.faces[face][2]);
+    const RepairedMesh repaired = repair(mesh, {.orient_faces = true});
+    EXPECT_EQ(repaired.report.faces_turned, (torus.faces.size() + 2) / 3);
+    EXPECT_EQ(repaired.mesh.faces, torus.faces);
+}
+
+TEST(Repair, TurnsFacesOutwardsOfWhichHalfAreTurned) {
+    TriangleMesh mesh = make_box({1, 1, 1});
+    for (std::size_t face = 0; face < mesh.faces.size(); face += 2)
+        std::swap(mesh.faces[face][1], mesh.faces[face][2]);
+    const MeshReport report = inspect(repair(mesh, RepairOptions::all()).mesh);
+    EXPECT_TRUE(report.closed);
+    EXPECT_NEAR(report.signed_volume, 1, 1e-15);
+}
+
+TEST(Repair, TurnsNoFaceWhereThatNeedsAGuess) {
+    TriangleMesh open = make_box({1, 1, 1}, 2);
+    std::swap(open.faces[7][0], open.faces[7][1]);
+    open.faces.pop_back();
+    expect_unchanged(open, {.orient_faces = true});
+    TriangleMesh joined = weld(together(make_box({1, 1, 1}), moved(make_box({1, 1, 1}), {1, 1, 0})));
+    std::swap(joined.faces[0][0], joined.faces[0][1]); // along an edge with four faces
+    expect_unchanged(joined, {.orient_faces = true});
+}
+
+TEST(Repair, WeldsCornersThatDifferByLessThanMapsResolve) {
+    TriangleMesh mesh = make_box({1, 1, 1});
+    mesh.vertices.push_back(mesh.vertices[mesh.faces[0][0]] + Vec3f{0, 0, 1e-7F});
+    const std::uint32_t before = mesh.faces[0][0];
+    mesh.faces[0][0] = 8;
+    const RepairedMesh repaired = repair(mesh, RepairOptions::all());
+    EXPECT_EQ(repaired.report.vertices_welded, 1U);
+    EXPECT_EQ(repaired.mesh.faces[0][0], before);
+    EXPECT_EQ(repaired.mesh.vertices, mesh.vertices);
+}
+
+TEST(Repair, WeldsWithinTheDistanceThatItIsGiven) {
+    TriangleMesh mesh = make_box({1, 1, 1});
+    mesh.vertices.push_back(mesh.vertices[mesh.faces[0][0]] + Vec3f{0, 0, 1e-3F});
+    mesh.faces[0][0] = 8;
+    EXPECT_FALSE(inspect(repair(mesh, RepairOptions::all()).mesh).closed);
+    RepairOptions options = RepairOptions::all();
+    options.weld_distance = 2e-3;
+    EXPECT_TRUE(inspect(repair(mesh, options).mesh).closed);
+    for (const double wrong : {-1.0, 2.0, std::numeric_limits<double>::quiet_NaN()})
+        expect_error(ErrorCode::InvalidOptions, "weld",
+                     [&] { repair(mesh, {.close_seams = true, .weld_distance = wrong}); });
+}
+
+TEST(Repair, DropsFacesThatLoseTheirAreaByWelding) {
+    TriangleMesh mesh = make_box({1, 1, 1});
+    mesh.faces.push_back({0, 8, 9}); // a speck at a corner
+    mesh.vertices.push_back(mesh.vertices[0] + Vec3f{1e-7F, 0, 0});
+    mesh.vertices.push_back(mesh.vertices[0] + Vec3f{0, 1e-7F, 0});
+    const RepairedMesh repaired = repair(mesh, {.close_seams = true});
+    EXPECT_EQ(repaired.report.slivers_dropped, (Faces{12}));
+    EXPECT_TRUE(inspect(repaired.mesh).closed);
+}
+
+TEST(Repair, FillsASeamWhereOnlyOneSideOfAnEdgeIsDivided) {
+    TriangleMesh mesh = make_box({1, 1, 1});
+    const auto [a, b, c] = mesh.faces[0];
+    mesh.vertices.push_back((mesh.vertices[a] + mesh.vertices[b]) * 0.5F);
+    mesh.faces[0] = {a, 8, c};
+    mesh.faces.push_back({8, b, c});
+    ASSERT_EQ(inspect(mesh).border_edges.count, 3U);
+    const RepairedMesh repaired = repair(mesh, RepairOptions::all());
+    EXPECT_EQ(repaired.report.seams_filled, 1U);
+    EXPECT_EQ(repaired.report.faces_added, 1U);
+    EXPECT_TRUE(inspect(repaired.mesh).closed);
+    EXPECT_TRUE(inspect(repaired.mesh).manifold);
+    EXPECT_NEAR(inspect(repaired.mesh).signed_volume, 1, 1e-15);
+}
+
+TEST(Repair, FillsNoHoleThatIsWiderThanASeam) {
+    TriangleMesh mesh = make_box({1, 1, 1});
+    const auto [a, b, c] = mesh.faces[0];
+    mesh.vertices.push_back((mesh.vertices[a] + mesh.vertices[b]) * 0.5F + Vec3f{1e-4F, 1e-4F, 1e-4F});
+    mesh.faces[0] = {a, 8, c};
+    mesh.faces.push_back({8, b, c});
+    expect_unchanged(mesh, RepairOptions::all());
+}
+
+TEST(Repair, DropsALooseSliverAndKeepsOneThatFillsASeam) {
+    TriangleMesh loose = make_box({1, 1, 1});
+    loose.vertices.insert(loose.vertices.end(), {{0.1F, 0.2F, 5}, {0.2F, 0.4F, 5}, {0.3F, 0.6F, 5}});
+    loose.faces.insert(loose.faces.begin(), Triangle{8, 9, 10});
+    const RepairedMesh repaired = repair(loose, RepairOptions::all());
+    EXPECT_EQ(repaired.report.slivers_dropped, (Faces{0}));
+    EXPECT_TRUE(inspect(repaired.mesh).closed);
+
+    const TriangleMesh filled{{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}},
+                              {{0, 2, 1}, {0, 4, 3}, {4, 1, 3}, {0, 1, 4}, {0, 3, 2}, {1, 2, 3}}};
+    expect_unchanged(filled, RepairOptions::all());
+}
+
+TEST(Repair, FlipsASolidThatTouchesAnotherInAVertex) {
+    const TriangleMesh box = make_box({1, 1, 1});
+    const TriangleMesh mesh = weld(together(make_box({2, 2, 2}), inside_out(moved(box, {1.5F, 1.5F, 1.5F}))));
+    ASSERT_EQ(inspect(mesh).component_count, 1U);
+    const RepairedMesh repaired = repair(mesh, {.flip_inside_out = true});
+    EXPECT_EQ(repaired.report.components_flipped, 1U);
+    EXPECT_NEAR(inspect(repaired.mesh).signed_volume, 9, 1e-14);
+}
+
+TEST(Repair, LeavesACavityThatTouchesTheSurfaceInAVertex) {
+    const TriangleMesh box = make_box({1, 1, 1});
+    const TriangleMesh mesh = weld(together(make_box({2, 2, 2}), inside_out(moved(box, {0.5F, 0.5F, 0.5F}))));
+    ASSERT_EQ(inspect(mesh).component_count, 1U);
+    expect_unchanged(mesh, RepairOptions::all());
 }
 
 TEST(Repair, NumbersFacesAsInTheInputMesh) {

@@ -93,6 +93,12 @@ TEST(Scene, SaysHowItsModelBecomesSolid) {
     refuse(R"("sheet_thickness": 1)", R"("repair" must have the word "sheets")");
     refuse(R"("repair": ["sheets"])", "sheet_thickness");
     refuse(R"("repair": ["sheets"], "sheet_thickness": 0)", "sheet_thickness");
+    const RepairOptions mended =
+        with(R"("repair": ["seams", "slivers", "orientation"], "weld_distance": 0.001)");
+    EXPECT_TRUE(mended.close_seams && mended.drop_loose_slivers && mended.orient_faces);
+    EXPECT_EQ(mended.weld_distance, 0.001);
+    EXPECT_EQ(with(R"("repair": ["seams"])").weld_distance, 0);
+    refuse(R"("weld_distance": 1)", R"("repair" must have the word "seams")");
 }
 
 TEST(Scene, IsReadKeyByKey) {

@@ -297,6 +297,41 @@ TEST_F(BuildCommand, MendsTheMeshOnlyWhenTold) {
     EXPECT_NE(text.find("Repair: 1 duplicate face dropped."), std::string::npos) << text;
 }
 
+TEST_F(BuildCommand, TakesCornersForOneThatDifferByRoundings) {
+    const auto write_with_gap = [&](float gap) {
+        TriangleMesh mesh = make_box({2, 3, 4});
+        mesh.vertices.push_back(mesh.vertices[mesh.faces[0][0]] + Vec3f{0, 0, gap});
+        mesh.faces[0][0] = 8;
+        write("cracked.obj", obj_text(mesh));
+    };
+    write_with_gap(2e-7F);
+    const json built = json::parse(expect_success({"build", "cracked.obj", "-o", "cracked.ech", "--json"}));
+    EXPECT_EQ(built["border_edges"], 0);
+    write_with_gap(1e-3F);
+    expect_failure(1, "not closed", {"build", "cracked.obj", "--repair", "-o", "cracked.ech"});
+    const json welded = json::parse(
+        expect_success({"build", "cracked.obj", "--weld", "0.002", "-o", "cracked.ech", "--json"}));
+    EXPECT_EQ(welded["repairs"]["vertices_welded"], 1);
+    expect_failure(2, "--weld", {"build", "cracked.obj", "--weld", "-1", "-o", "cracked.ech"});
+    expect_failure(1, "welded within 5", {"build", "cracked.obj", "--weld", "5", "-o", "cracked.ech"});
+}
+
+TEST_F(BuildCommand, NoticesThatSheetsWithTwoSidesEncloseNothing) {
+    for (const std::uint32_t count : {1U, 6U, 7U, 40U}) {
+        TriangleMesh slats;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const float x = 0.1F * static_cast<float>(i);
+            slats.vertices.insert(slats.vertices.end(), {{x, -1, -1}, {x, 1, -1}, {x, 1, 1}, {x, -1, 1}});
+            const std::uint32_t a = 4 * i, b = a + 1, c = a + 2, d = a + 3;
+            slats.faces.insert(slats.faces.end(), {{a, b, c}, {a, c, d}, {c, b, a}, {d, c, a}});
+        }
+        write("slats.obj", obj_text(slats));
+        expect_failure(1, "encloses nothing", {"build", "slats.obj", "-o", "slats.ech"});
+        expect_failure(1, "encloses no volume",
+                       {"build", "slats.obj", "--kind", "distance", "-o", "slats.ech"});
+    }
+}
+
 TEST_F(BuildCommand, RefusesOptionsThatMakeNoSense) {
     const auto refuse = [&](const std::string& words, std::vector<std::string> options) {
         options.insert(options.begin(), {"build", "box.obj", "-o", "box.ech"});

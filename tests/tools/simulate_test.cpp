@@ -318,7 +318,8 @@ TEST_F(SimulateCommand, NamesAnOpenModelAndTheRepairThatWouldCloseIt) {
                    {"simulate", "open.json", "-o", "run"});
     expect_failure(1, R"(; mend it elsewhere, or with "small_holes" or "sheets" in the scene's "repair")",
                    {"simulate", "open.json", "-o", "run"});
-    const std::string remedy = R"("repair": ["duplicate_faces", "doubled_patches"])";
+    const std::string remedy =
+        R"("repair": ["seams", "duplicate_faces", "doubled_patches", "slivers", "orientation"])";
     expect_failure(1, "; mend it with " + remedy, {"simulate", "doubled.json", "-o", "run"});
     write("doubled.json", scene_on("doubled.obj", ", " + remedy));
     simulate("doubled.json");

@@ -71,7 +71,9 @@ DistanceMapOptions distance_options_of(const BuildArguments& arguments) {
 void require_solid(const MeshReport& report, const TriangleMesh& mesh, const BuildArguments& arguments) {
     const bool exact = arguments.kind == MapKind::Exact;
     const std::string name = arguments.mesh.name();
-    if (report.closed && report.signed_volume == 0 && !exact)
+    const double radius = report.bounding_sphere.radius;
+    constexpr double kRounding = 1e-13; // of a sum over faces that cancel
+    if (report.closed && std::fabs(report.signed_volume) <= kRounding * radius * radius * radius && !exact)
         throw Error(ErrorCode::InvalidMesh,
                     name + ": the mesh encloses no volume; it is flat, or so far from the origin that its "
                            "vertices round to one place: move it to the origin");
@@ -97,15 +99,36 @@ double signed_volume(const ExactMapView& map) {
     return sum / 6;
 }
 
-/// Is the winding number 0 in every gap, and the volume no more than rounding makes? Either alone is possible
-/// of a solid: a coarse map can hold all of its inside within bands, and parts that are turned oppositely
-/// cancel.
+/// Places a few lattice steps off the middle of each face, before and behind it.
+std::vector<Vec3f> places_beside_faces(const ExactMapView& map) {
+    const LatticeFrame frame(map.centre, map.radius);
+    std::vector<Vec3f> places;
+    for (std::size_t i = 0; i < map.corners.size(); i += 3) {
+        const auto corner = [&](std::size_t k) { return Vec3d(map.vertices[map.corners[i + k]]); };
+        const Vec3d normal = cross(corner(1) - corner(0), corner(2) - corner(0));
+        const double twice_area = length(normal);
+        if (twice_area == 0) continue;
+        const Vec3d middle = (corner(0) + corner(1) + corner(2)) * (1.0 / 3);
+        for (const double steps : {-8, -4, -2, 2, 4, 8})
+            places.emplace_back(frame.to_local(middle + normal * (steps / twice_area)));
+    }
+    return places;
+}
+
+/// Is the volume no more than rounding makes, the winding number 0 in every gap, and no place beside a face
+/// inside? The first is possible of a solid, too, with parts that are turned oppositely and cancel; the
+/// second if a coarse map holds all of the inside within bands.
 bool encloses_nothing(const ExactMapView& map) {
     constexpr double kRounding =
         4.0 * kLatticeExtent * kLatticeExtent; // the largest section, a few steps thick
-    return map.border.empty() &&
-           std::ranges::all_of(map.winding_below, [](std::int16_t w) { return w == 0; }) &&
-           std::fabs(signed_volume(map)) <= kRounding;
+    if (!map.border.empty() || std::fabs(signed_volume(map)) > kRounding) return false;
+    if (!std::ranges::all_of(map.winding_below,
+                             [](std::int16_t w) { return w == 0 || w == ExactMapView::kSplit; }))
+        return false;
+    const std::vector<Vec3f> places = places_beside_faces(map);
+    std::vector<std::uint8_t> inside(places.size());
+    contains_batch(map, places, inside);
+    return std::ranges::all_of(inside, [](std::uint8_t flag) { return flag == 0; });
 }
 
 AnyMap build_kind(const TriangleMesh& mesh, const BuildArguments& arguments) {
@@ -266,7 +289,8 @@ void add_options(Command command, BuildArguments& arguments) {
         .type_name("COUNT")
         .show_default();
     command.add_flag("--repair", arguments.repair.repair,
-                     "Mend the mesh first: drop duplicate faces and doubled patches, turn inside-out parts");
+                     "Mend the mesh first, as far as that needs no guess: close seams, drop duplicate faces, "
+                     "doubled patches and loose slivers, turn faces and inside-out parts");
     add_solid_options(command, arguments.repair);
     command.add_flag("--allow-open", arguments.allow_open,
                      "Build also from a mesh that is not closed: near its holes answers of an exact map are "

@@ -97,7 +97,7 @@ void add_box(Command mesh) {
 struct Mending {
     MeshArgument mesh;
     std::filesystem::path target;
-    RepairArguments repair{.repair = true, .solid = {}};
+    RepairArguments repair{.repair = true};
     bool keep_faults = false;
     bool json = false;
 };
@@ -133,7 +133,7 @@ void add_repair(Command mesh) {
         .required();
     add_solid_options(command, arguments->repair);
     command.add_flag("--keep-faults", arguments->keep_faults,
-                     "Leave duplicate faces, doubled patches and inside-out parts as they are");
+                     "Leave as it is what `echinus build --repair` mends");
     arguments->mesh.add_format_option(command);
     command.add_flag("--json", arguments->json, "Print one JSON object");
     command.footer("Example: echinus mesh repair truck.obj --close-holes 32 --drop-inner-faces -o solid.obj");

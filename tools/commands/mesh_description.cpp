@@ -54,6 +54,7 @@ Json to_json(const MeshReport& report, const Vec3d& origin) {
     object.add("vertices", report.vertex_count);
     object.add("closed", report.closed);
     object.add("manifold", report.manifold);
+    object.add("orientable", report.orientable);
     for (const NamedFault& named : faults_of(report)) object.add(named.key, named.fault.count);
     object.add("components", report.component_count);
     object.add("volume", report.signed_volume);
@@ -76,6 +77,7 @@ std::string to_text(const MeshReport& report, const Vec3d& origin, const std::st
     table.add("components", std::to_string(report.component_count));
     table.add("closed", yes_or_no(report.closed));
     table.add("manifold", yes_or_no(report.manifold));
+    if (!report.orientable) table.add("orientable", "no, as a Moebius strip is not");
     for (const auto& [key, label, fault] : faults_of(report)) {
         const std::string count = std::to_string(fault.count);
         table.add(label, fault.count == 0 ? count : count + ", " + first_faces(fault));
@@ -102,7 +104,8 @@ std::string rounding_text(double step) {
 
 std::string refusal_of_open_mesh(const echinus::TriangleMesh& mesh, const MeshReport& report,
                                  const std::string& with, const std::string& otherwise) {
-    return "the mesh is not closed: " + faults_of_edges(report) + "; " +
+    return "the mesh is not closed: " + faults_of_edges(report) +
+           (report.orientable ? "" : ", and it has parts with one side only, as a Moebius strip has") + "; " +
            (foresee_repair(mesh).closed_then ? "mend it with " + with : "mend it elsewhere" + otherwise);
 }
 
@@ -114,7 +117,11 @@ Json to_json(const RepairReport& report) {
             {"holes_left", report.holes_left},
             {"inner_faces_dropped", report.inner_faces_dropped.size()},
             {"sheets_thickened", report.sheets_thickened},
-            {"faces_added", report.faces_added}};
+            {"faces_added", report.faces_added},
+            {"vertices_welded", report.vertices_welded},
+            {"slivers_dropped", report.slivers_dropped.size()},
+            {"faces_turned", report.faces_turned},
+            {"seams_filled", report.seams_filled}};
 }
 
 std::string to_text(const RepairReport& report) {
@@ -123,8 +130,12 @@ std::string to_text(const RepairReport& report) {
         if (count != 0)
             phrases.push_back(fmt::format("{} {}{} {}", count, noun, count == 1 ? "" : "s", deed));
     };
+    add(report.vertices_welded, "corner", "welded");
     add(report.duplicate_faces_dropped.size(), "duplicate face", "dropped");
     add(report.doubled_patch_faces_dropped.size(), "face", "of doubled patches dropped");
+    add(report.slivers_dropped.size(), "sliver", "dropped");
+    add(report.faces_turned, "face", "turned");
+    add(report.seams_filled, "seam", "filled");
     add(report.holes_closed, "hole", "closed");
     add(report.holes_left, "hole", "left");
     add(report.components_flipped, "inside-out component", "turned");

@@ -7,33 +7,46 @@
 using echinus::RepairOptions;
 
 RepairOptions RepairArguments::options() const {
-    RepairOptions options = solid;
-    options.drop_duplicate_faces = options.drop_doubled_patches = options.flip_inside_out = repair;
+    RepairOptions options = repair ? RepairOptions::all() : RepairOptions{};
+    options.close_seams = repair || weld_distance != 0;
+    options.weld_distance = weld_distance;
+    options.max_hole_edges = max_hole_edges;
+    options.drop_inner_faces = drop_inner_faces;
+    options.sheet_thickness = sheet_thickness;
     return options;
 }
 
 bool RepairArguments::given() const {
-    return repair || solid.max_hole_edges != 0 || solid.drop_inner_faces || solid.sheet_thickness != 0;
+    return repair || weld_distance != 0 || max_hole_edges != 0 || drop_inner_faces || sheet_thickness != 0;
 }
 
-void add_solid_options(Command command, RepairArguments& arguments) {
-    command
-        .add("--close-holes", &arguments.solid.max_hole_edges,
-             "Fill holes whose border has at most so many edges")
-        .range(3, RepairOptions::kMaxHoleEdges)
-        .type_name("EDGES");
-    command.add_flag("--drop-inner-faces", arguments.solid.drop_inner_faces,
-                     "Drop faces that have the solid on both sides, such as an engine in a body");
-    const auto read_thickness = [&arguments](const std::string& text) {
+namespace {
+
+void add_length(Command command, const std::string& name, double& length, const std::string& description) {
+    const auto read_length = [name, &length](const std::string& text) {
         char* end = nullptr;
-        arguments.solid.sheet_thickness = std::strtod(text.c_str(), &end);
+        length = std::strtod(text.c_str(), &end);
         if (end == text.c_str() || *end != '\0') return false;
-        if (!(arguments.solid.sheet_thickness > 0 && std::isfinite(arguments.solid.sheet_thickness)))
-            throw WrongUse("--thicken", "must be a finite length and positive");
+        if (!(length > 0 && std::isfinite(length)))
+            throw WrongUse(name, "must be a finite length and positive");
         return true;
     };
+    command.add(name, read_length, description).type_name("LENGTH");
+}
+
+} // namespace
+
+void add_solid_options(Command command, RepairArguments& arguments) {
+    add_length(
+        command, "--weld", arguments.weld_distance,
+        "Join corners at the edges of holes that are no farther apart, in the unit of the mesh, and fill "
+        "holes that are no wider; within 4.8e-7 of the radius --repair does so anyway");
     command
-        .add("--thicken", read_thickness,
-             "Make solids so thick of the parts that are not closed, in the unit of the mesh")
-        .type_name("LENGTH");
+        .add("--close-holes", &arguments.max_hole_edges, "Fill holes whose border has at most so many edges")
+        .range(3, RepairOptions::kMaxHoleEdges)
+        .type_name("EDGES");
+    command.add_flag("--drop-inner-faces", arguments.drop_inner_faces,
+                     "Drop faces that have the solid on both sides, such as an engine in a body");
+    add_length(command, "--thicken", arguments.sheet_thickness,
+               "Make solids so thick of the parts that are not closed, in the unit of the mesh");
 }

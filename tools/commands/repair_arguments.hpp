@@ -4,14 +4,20 @@
 
 #include <echinus/mesh.hpp>
 
+#include <cstdint>
+
 /// What `build` and `mesh repair` may do to a mesh.
 struct RepairArguments {
-    bool repair = false;          ///< what needs no guess
-    echinus::RepairOptions solid; ///< the rest
+    bool repair = false; ///< what needs no guess
+    /// The rest, as RepairOptions has it.
+    double weld_distance = 0;
+    std::uint32_t max_hole_edges = 0;
+    bool drop_inner_faces = false;
+    double sheet_thickness = 0;
 
     echinus::RepairOptions options() const;
     bool given() const;
 };
 
-/// Adds --close-holes, --drop-inner-faces and --thicken.
+/// Adds --weld, --close-holes, --drop-inner-faces and --thicken.
 void add_solid_options(Command command, RepairArguments& arguments);

@@ -41,11 +41,13 @@ struct NameOfModel {
 void require_closed(const TriangleMesh& mesh, const TriangleMesh& as_read, const std::string& name) {
     const MeshReport report = inspect(mesh);
     if (report.closed) return;
-    throw Error(ErrorCode::InvalidMesh,
-                name + ": " +
-                    refusal_of_open_mesh(as_read, report,
-                                         R"("repair": ["duplicate_faces", "doubled_patches"] in the scene)",
-                                         R"(, or with "small_holes" or "sheets" in the scene's "repair")"));
+    throw Error(
+        ErrorCode::InvalidMesh,
+        name + ": " +
+            refusal_of_open_mesh(
+                as_read, report,
+                R"("repair": ["seams", "duplicate_faces", "doubled_patches", "slivers", "orientation"] in the scene)",
+                R"(, or with "small_holes" or "sheets" in the scene's "repair")"));
 }
 
 } // namespace

@@ -10,11 +10,11 @@ namespace echinus::c {
 
 static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Vec3d) == 3 * sizeof(double) &&
               sizeof(Triangle) == 3 * sizeof(std::uint32_t) && sizeof(FacePair) == 2 * sizeof(std::uint32_t));
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_mesh_report, rounding_step);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_mesh_report, reserved);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_options, weld_distance);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_report, seams_filled);
 template <>
 inline constexpr std::size_t kFirstSize<echinus_mesh_report> = offsetof(echinus_mesh_report, rounding_step);
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_options, sheet_thickness);
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_report, faces_added);
 template <>
 inline constexpr std::size_t kFirstSize<echinus_repair_options> = offsetof(echinus_repair_options,
                                                                            max_hole_edges);
@@ -72,15 +72,21 @@ echinus_mesh_report describe(const MeshReport& report) {
     put_vector(report.bounding_sphere.centre, result.centre);
     result.radius = report.bounding_sphere.radius;
     result.rounding_step = report.rounding_step;
+    result.orientable = report.orientable ? 1 : 0;
     return result;
 }
 
 RepairOptions repair_options_from(const echinus_repair_options* options) {
     const auto given = read_struct(options, echinus_repair_options{}, "options");
     require_unused(given.reserved);
+    require_unused(given.reserved_2);
     return {.drop_duplicate_faces = flag(given.drop_duplicate_faces, "options.drop_duplicate_faces"),
             .drop_doubled_patches = flag(given.drop_doubled_patches, "options.drop_doubled_patches"),
             .flip_inside_out = flag(given.flip_inside_out, "options.flip_inside_out"),
+            .close_seams = flag(given.close_seams, "options.close_seams"),
+            .weld_distance = given.weld_distance,
+            .drop_loose_slivers = flag(given.drop_loose_slivers, "options.drop_loose_slivers"),
+            .orient_faces = flag(given.orient_faces, "options.orient_faces"),
             .max_hole_edges = given.max_hole_edges,
             .drop_inner_faces = flag(given.drop_inner_faces, "options.drop_inner_faces"),
             .sheet_thickness = given.sheet_thickness};
@@ -95,13 +101,17 @@ echinus_repair_report describe(const RepairReport& report) {
             .holes_left = report.holes_left,
             .inner_faces_dropped = report.inner_faces_dropped.size(),
             .sheets_thickened = report.sheets_thickened,
-            .faces_added = report.faces_added};
+            .faces_added = report.faces_added,
+            .vertices_welded = report.vertices_welded,
+            .slivers_dropped = report.slivers_dropped.size(),
+            .faces_turned = report.faces_turned,
+            .seams_filled = report.seams_filled};
 }
 
 std::vector<std::uint32_t> dropped_faces(const RepairReport& report) {
     std::vector<std::uint32_t> result;
-    for (const auto& faces :
-         {report.duplicate_faces_dropped, report.doubled_patch_faces_dropped, report.inner_faces_dropped})
+    for (const auto& faces : {report.duplicate_faces_dropped, report.doubled_patch_faces_dropped,
+                              report.slivers_dropped, report.inner_faces_dropped})
         result.insert(result.end(), faces.begin(), faces.end());
     std::ranges::sort(result);
     return result;

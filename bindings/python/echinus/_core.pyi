@@ -43,6 +43,10 @@ def repair(
     hole_edges: int,
     inner_faces: bool,
     thickness: float,
+    seams: bool,
+    weld_distance: float,
+    slivers: bool,
+    orientation: bool,
     /,
 ) -> tuple[Arrays, dict[str, Any]]: ...
 def weld(vertices: Vertices, faces: Faces) -> Arrays: ...

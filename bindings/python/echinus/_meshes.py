@@ -130,9 +130,12 @@ class MeshReport:
     Attributes
     ----------
     closed
-        Along every edge as many faces run one way as the other.
+        Along every edge as many faces run one way as the other. Corners of edges where they do not count as one
+        within 2^-21 of the radius, as they do for maps.
     manifold
         Every edge has at most two faces, and the faces at each vertex form one fan.
+    orientable
+        Faces can be turned so that neighbours agree about the outside; those of a Moebius strip cannot.
     signed_volume
         Positive where faces look outwards.
     centre, radius
@@ -148,6 +151,7 @@ class MeshReport:
     component_count: int
     closed: bool
     manifold: bool
+    orientable: bool
     border_edges: Fault
     nonmanifold_edges: Fault
     misoriented_edges: Fault
@@ -190,7 +194,15 @@ class RepairReport:
     sheets_thickened
         Pieces of surface between rims.
     faces_added
-        To close holes and to thicken sheets.
+        To fill seams, to close holes and to thicken sheets.
+    vertices_welded
+        In whose place faces refer to others now.
+    slivers_dropped
+        Loose ones, and faces that lost their area by welding.
+    faces_turned
+        So that neighbours agree.
+    seams_filled
+        Holes without width.
     """
 
     duplicate_faces_dropped: tuple[int, ...]
@@ -201,12 +213,23 @@ class RepairReport:
     inner_faces_dropped: tuple[int, ...]
     sheets_thickened: int
     faces_added: int
+    vertices_welded: int
+    slivers_dropped: tuple[int, ...]
+    faces_turned: int
+    seams_filled: int
 
     @property
     def changed_anything(self) -> bool:
         """Is the copy another mesh than the one that was given?"""
-        dropped = self.duplicate_faces_dropped + self.doubled_patch_faces_dropped + self.inner_faces_dropped
-        return bool(dropped or self.components_flipped or self.faces_added)
+        dropped = (
+            self.duplicate_faces_dropped
+            + self.doubled_patch_faces_dropped
+            + self.inner_faces_dropped
+            + self.slivers_dropped
+        )
+        return bool(
+            dropped or self.components_flipped or self.faces_added or self.vertices_welded or self.faces_turned
+        )
 
 
 def repair(
@@ -215,25 +238,41 @@ def repair(
     drop_duplicate_faces: bool = True,
     drop_doubled_patches: bool = True,
     flip_inside_out: bool = True,
+    close_seams: bool = True,
+    weld_distance: float = 0.0,
+    drop_loose_slivers: bool = True,
+    orient_faces: bool = True,
     close_holes: int = 0,
     drop_inner_faces: bool = False,
     sheet_thickness: float = 0.0,
 ) -> tuple[Mesh, RepairReport]:
-    """A copy without the faults that can be mended without a guess, and what was done.
+    """A copy without the faults that can be mended without a guess, and what was done. A closed mesh stays closed.
 
     The last three arguments make open surfaces and assemblies solid, on request: they guess what was meant. The
-    order is: duplicate faces, doubled patches, holes, what is inside out, inner faces, sheets.
+    order is: seams that are welded, duplicate faces, doubled patches, slivers, orientation, seams that are filled,
+    holes, what is inside out, inner faces, sheets.
 
     Parameters
     ----------
     mesh
-        Vertices are distinguished by index: :func:`weld` first where equal positions mean the same vertex.
+        Vertices are distinguished by index: :func:`weld` first, or close seams, where equal positions mean the
+        same vertex.
     drop_duplicate_faces
         Of faces with the same three vertices, opposite ones cancel and one of the others stays.
     drop_doubled_patches
         Where two pairs of faces fill the same quadrilateral, each along its own diagonal, one pair is dropped.
     flip_inside_out
         Closed parts whose faces look inwards are turned round; cavities stay cavities.
+    close_seams
+        Corners at the edges of holes that are no farther apart than ``weld_distance`` become one, and holes that are
+        no wider are filled.
+    weld_distance
+        In the unit of the mesh, at most the radius of its bounding sphere. At least 2^-21 of that radius counts,
+        within which maps take such corners for one.
+    drop_loose_slivers
+        Faces without area at the edges of holes are dropped unless they fill a seam.
+    orient_faces
+        In parts in which every edge has just two faces, those that disagree with most about the outside are turned.
     close_holes
         Fills holes whose border has at most so many edges, up to 256, with the triangles of least area. The rim
         of a sheet, whose filling would have more than a third of the sheet's area, is no hole.
@@ -246,7 +285,8 @@ def repair(
     Raises
     ------
     Error
-        ``invalid_mesh`` as :func:`inspect`; ``invalid_options`` for a thickness that does not suit the mesh.
+        ``invalid_mesh`` as :func:`inspect`; ``invalid_options`` for a thickness or a weld distance that does not
+        suit the mesh.
     ValueError
         More edges than 256, or fewer than 0.
     """
@@ -258,6 +298,10 @@ def repair(
         whole("close_holes", close_holes, 0, 256),
         flag("drop_inner_faces", drop_inner_faces),
         number("sheet_thickness", sheet_thickness),
+        flag("close_seams", close_seams),
+        number("weld_distance", weld_distance),
+        flag("drop_loose_slivers", drop_loose_slivers),
+        flag("orient_faces", orient_faces),
     )
     return Mesh(*arrays), RepairReport(**report)
 

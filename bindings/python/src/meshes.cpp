@@ -33,13 +33,18 @@ py::dict inspect_mesh(const Vertices& vertices, const Faces& faces) {
 /// ((vertices, faces), report)
 py::tuple repair_mesh(const Vertices& vertices, const Faces& faces, bool drop_duplicate_faces,
                       bool drop_doubled_patches, bool flip_inside_out, std::int64_t max_hole_edges,
-                      bool drop_inner_faces, double sheet_thickness) {
+                      bool drop_inner_faces, double sheet_thickness, bool close_seams, double weld_distance,
+                      bool drop_loose_slivers, bool orient_faces) {
     if (max_hole_edges < 0 || max_hole_edges > std::int64_t{RepairOptions::kMaxHoleEdges})
         throw py::value_error("close_holes must be from 0 to " +
                               std::to_string(RepairOptions::kMaxHoleEdges));
     const RepairOptions options{.drop_duplicate_faces = drop_duplicate_faces,
                                 .drop_doubled_patches = drop_doubled_patches,
                                 .flip_inside_out = flip_inside_out,
+                                .close_seams = close_seams,
+                                .weld_distance = weld_distance,
+                                .drop_loose_slivers = drop_loose_slivers,
+                                .orient_faces = orient_faces,
                                 .max_hole_edges = static_cast<std::uint32_t>(max_hole_edges),
                                 .drop_inner_faces = drop_inner_faces,
                                 .sheet_thickness = sheet_thickness};
@@ -54,6 +59,10 @@ py::tuple repair_mesh(const Vertices& vertices, const Faces& faces, bool drop_du
     report["inner_faces_dropped"] = py::tuple(py::cast(repaired.report.inner_faces_dropped));
     report["sheets_thickened"] = repaired.report.sheets_thickened;
     report["faces_added"] = repaired.report.faces_added;
+    report["vertices_welded"] = repaired.report.vertices_welded;
+    report["slivers_dropped"] = py::tuple(py::cast(repaired.report.slivers_dropped));
+    report["faces_turned"] = repaired.report.faces_turned;
+    report["seams_filled"] = repaired.report.seams_filled;
     return py::make_tuple(arrays_of(std::move(repaired.mesh)), report);
 }
 
@@ -103,6 +112,7 @@ py::dict describe(const MeshReport& report, const Vec3d& origin) {
     result["component_count"] = report.component_count;
     result["closed"] = report.closed;
     result["manifold"] = report.manifold;
+    result["orientable"] = report.orientable;
     result["border_edges"] = to_python(report.border_edges);
     result["nonmanifold_edges"] = to_python(report.nonmanifold_edges);
     result["misoriented_edges"] = to_python(report.misoriented_edges);

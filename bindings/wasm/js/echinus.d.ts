@@ -210,7 +210,7 @@ export class Mesh extends Deletable {
     unsignedDistance(point: Vec3): number;
 }
 
-export type Repair = 'duplicate_faces' | 'doubled_patches' | 'inside_out';
+export type Repair = 'duplicate_faces' | 'doubled_patches' | 'inside_out' | 'seams' | 'slivers' | 'orientation';
 /** What a scene may do besides. */
 export type MakeSolid = 'small_holes' | 'inner_faces' | 'sheets';
 
@@ -226,6 +226,8 @@ export interface MeshReport {
     /** Every edge is balanced: equally many faces run along it in each direction. */
     closed: boolean;
     manifold: boolean;
+    /** Faces can be turned so that neighbours agree about the outside; a Moebius strip's cannot. */
+    orientable: boolean;
     borderEdges: Fault;
     nonmanifoldEdges: Fault;
     misorientedEdges: Fault;
@@ -256,6 +258,12 @@ export interface RepairReport {
     innerFacesDropped: number[];
     sheetsThickened: number;
     facesAdded: number;
+    verticesWelded: number;
+    sliversDropped: number[];
+    /** So that neighbours agree. */
+    facesTurned: number;
+    /** Holes without width. */
+    seamsFilled: number;
 }
 
 // ---- Maps
@@ -492,6 +500,8 @@ export interface SceneDescription {
     hole_edges?: number;
     /** With 'sheets'. */
     sheet_thickness?: number;
+    /** With 'seams'. */
+    weld_distance?: number;
     map?: MapOptions;
     collider?: Placement;
     colliders?: readonly (Placement & { model: string | Shape; repair?: readonly (Repair | MakeSolid)[] })[];

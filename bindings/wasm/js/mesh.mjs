@@ -2,7 +2,7 @@ import { Handle, requireOwn } from './core.mjs';
 import { refuse, requireCount, requirePoint } from './errors.mjs';
 
 const FAULTS = ['borderEdges', 'nonmanifoldEdges', 'misorientedEdges', 'duplicateFaces', 'degenerateFaces'];
-const REPAIRS = ['duplicate_faces', 'doubled_patches', 'inside_out'];
+const REPAIRS = ['duplicate_faces', 'doubled_patches', 'inside_out', 'seams', 'slivers', 'orientation'];
 
 export class Mesh extends Handle {
     constructor(core, address) {

@@ -28,6 +28,7 @@ json to_json(const MeshReport& report) {
             {"componentCount", report.component_count},
             {"closed", report.closed},
             {"manifold", report.manifold},
+            {"orientable", report.orientable},
             {"borderEdges", to_json(report.border_edges)},
             {"nonmanifoldEdges", to_json(report.nonmanifold_edges)},
             {"misorientedEdges", to_json(report.misoriented_edges)},
@@ -47,7 +48,11 @@ json to_json(const RepairReport& report) {
             {"holesLeft", report.holes_left},
             {"innerFacesDropped", report.inner_faces_dropped},
             {"sheetsThickened", report.sheets_thickened},
-            {"facesAdded", report.faces_added}};
+            {"facesAdded", report.faces_added},
+            {"verticesWelded", report.vertices_welded},
+            {"sliversDropped", report.slivers_dropped},
+            {"facesTurned", report.faces_turned},
+            {"seamsFilled", report.seams_filled}};
 }
 
 std::vector<Vec3f> vertices_at(const float* first, std::uint32_t count) {
@@ -207,8 +212,14 @@ ECHINUS_EXPORT(mesh_weld) TriangleMesh* mesh_weld(const TriangleMesh* mesh) {
 
 ECHINUS_EXPORT(mesh_repair)
 RepairedMesh* mesh_repair(const TriangleMesh* mesh, bool duplicate_faces, bool doubled_patches,
-                          bool inside_out) {
-    return make_handle([&] { return repair(*mesh, {duplicate_faces, doubled_patches, inside_out}); });
+                          bool inside_out, bool seams, bool slivers, bool orientation) {
+    const RepairOptions options{.drop_duplicate_faces = duplicate_faces,
+                                .drop_doubled_patches = doubled_patches,
+                                .flip_inside_out = inside_out,
+                                .close_seams = seams,
+                                .drop_loose_slivers = slivers,
+                                .orient_faces = orientation};
+    return make_handle([&] { return repair(*mesh, options); });
 }
 /// Moves the mesh out.
 ECHINUS_EXPORT(repaired_mesh) TriangleMesh* repaired_mesh(RepairedMesh* repaired) {

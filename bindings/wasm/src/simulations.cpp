@@ -43,6 +43,9 @@ json describe(const Scene& scene) {
     if (scene.colliders.front().repair.flip_inside_out) repairs.push_back("inside_out");
     if (scene.colliders.front().repair.drop_inner_faces) repairs.push_back("inner_faces");
     if (scene.colliders.front().repair.sheet_thickness != 0) repairs.push_back("sheets");
+    if (scene.colliders.front().repair.close_seams) repairs.push_back("seams");
+    if (scene.colliders.front().repair.drop_loose_slivers) repairs.push_back("slivers");
+    if (scene.colliders.front().repair.orient_faces) repairs.push_back("orientation");
     json description = cloth_files(scene);
     description.update({{"modelFile", to_json(scene.colliders.front().model)},
                         {"repair", repairs},

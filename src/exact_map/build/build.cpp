@@ -12,7 +12,6 @@
 #include "geometry/number_text.hpp"
 #include "geometry/parallel.hpp"
 #include "geometry/whole_numbers.hpp"
-#include "mesh/is_closed.hpp"
 #include "mesh/mesh_hash.hpp"
 
 #include <echinus/error.hpp>
@@ -162,8 +161,7 @@ class MapMaker {
     Vec3d origin_;
     ExactMapOptions options_;
     LatticeSnapper snapper_;
-    std::optional<bool> closed_; ///< with vertices apart; not known before the first map
-    LatticeMesh lattice_;        ///< faces in the order of the tree, once that is known
+    LatticeMesh lattice_; ///< faces in the order of the tree, once that is known
     std::size_t dropped_faces_ = 0;
     std::vector<Triangle> faces_before_; ///< to swap with the lattice's
     std::vector<std::uint32_t> numbers_before_;
@@ -227,15 +225,12 @@ void MapMaker::order_faces() {
 void MapMaker::set_surface(std::span<const Vec3f> vertices) {
     parallel_invoke(
         options_.thread_count,
-        [&] {
-            if (!closed_) closed_ = is_closed(faces_, vertices.size());
-            source_hash_ = hash_of(vertices, faces_, origin_, options_, *closed_);
-        },
+        [&] { source_hash_ = hash_of(vertices, faces_, origin_, options_, snapper_.faces_are_closed()); },
         [&] { build_face_tree(lattice_, options_.thread_count, tree_); });
     order_faces();
     arrays_->nodes = tree_.nodes;
     arrays_->border.clear();
-    if (!*closed_) arrays_->border = find_border(lattice_);
+    if (!snapper_.faces_are_closed()) arrays_->border = find_border(lattice_);
     arrays_->vertices.clear();
     arrays_->vertices.reserve(1 + lattice_.vertices.size());
     arrays_->vertices.emplace_back(); // so that vectors can read a number before the first

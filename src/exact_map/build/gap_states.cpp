@@ -71,7 +71,9 @@ struct GapStates::Region {
 
 GapStates::GapStates(const ExactMapView& surface, const OctahedralCells& cells, int most_halvings)
     : surface_(surface), cells_(cells),
-      max_depth_(affordable_halvings(surface.border.size(), cells.count(), most_halvings)) {
+      max_depth_(surface.neighbours_disagree
+                     ? kNone // what is certain depends on more than the winding number
+                     : affordable_halvings(surface.border.size(), cells.count(), most_halvings)) {
     if (max_depth_ == kNone) return;
     for (const BorderEdge& edge : surface.border) {
         const Vec3d a(surface.vertices[edge.a]), b(surface.vertices[edge.b]);

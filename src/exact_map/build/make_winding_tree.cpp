@@ -81,10 +81,13 @@ void OwnedWindingTree::show_in(ExactMapView& map) const {
     map.winding_tree.nodes = map.winding_tree_has_caps ? std::span(cap_nodes) : map.nodes;
     map.winding_tree.corners = map.winding_tree_has_caps ? IndexArray{{}, cap_corners} : map.corners;
     map.winding_tree.moments = moments;
+    map.neighbours_disagree = neighbours_disagree;
 }
 
 OwnedWindingTree make_winding_tree(const ExactMapView& map) {
     OwnedWindingTree result;
+    result.neighbours_disagree = std::ranges::all_of(
+        map.border, [](const BorderEdge& edge) { return edge.multiplicity == 2 || edge.multiplicity == -2; });
     set_caps(map, result);
     ExactMapView with_tree = map;
     result.show_in(with_tree);

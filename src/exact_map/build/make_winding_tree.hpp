@@ -7,11 +7,12 @@
 
 namespace echinus {
 
-/// The memory of ExactMapView::winding_tree.
+/// The memory of ExactMapView::winding_tree, and what else queries of an open surface need.
 struct OwnedWindingTree {
     std::vector<WindingNode> moments;
     std::vector<TreeNode> cap_nodes;        ///< none where the tree is that of the faces
     std::vector<std::uint32_t> cap_corners; ///< [3 cap_count]
+    bool neighbours_disagree = false;       ///< as in ExactMapView
 
     void show_in(ExactMapView& map) const;
 };

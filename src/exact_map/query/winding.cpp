@@ -101,18 +101,28 @@ Winding winding_of(double generalised, WindingGoal::Turn turn) {
     return {nearest_whole(generalised), distance_from_turn(generalised, turn) >= kCertainMargin, true};
 }
 
+/// Where neighbours disagree about the outside, the winding number is that of a surface which nobody meant.
+/// But rays leave a solid as often as they enter it, whichever way its faces run: an answer is certain only
+/// if that does not contradict it.
+Winding computed_winding_at(const ExactMapView& map, const LatticePoint& p, WindingGoal::Turn turn) {
+    Winding winding = winding_of(generalised_winding(map, p, {turn}), turn);
+    if (map.neighbours_disagree && winding.certain)
+        winding.certain = is_inside(map.rule, winding.number) == (crossings_beyond(map, p) % 2 != 0);
+    return winding;
+}
+
 } // namespace
 
 Winding winding_at(const ExactMapView& map, const LatticePoint& p, WindingGoal::Turn turn) noexcept {
     const OctahedralCells::Place place = OctahedralCells(map.divisions).locate(p);
     const std::int64_t t = band_unit_of(l1_norm(p));
     if (t >= map.outer_limits[place.cell])
-        return map.border.empty() ? Winding{} : winding_of(generalised_winding(map, p, {turn}), turn);
+        return map.border.empty() ? Winding{} : computed_winding_at(map, p, turn);
     const PlaceInBands at = place_in_bands(map, place, t);
     const int winding = winding_in_bands(map, at, [&](RaySide side, const PlaceInBands& in) {
         return crossings_in_band(map, side, in.band, in.part, p);
     });
-    if (winding == ExactMapView::kUncertain) return winding_of(generalised_winding(map, p, {turn}), turn);
+    if (winding == ExactMapView::kUncertain) return computed_winding_at(map, p, turn);
     return {winding};
 }
 

@@ -173,7 +173,8 @@ typedef struct echinus_fault {
     uint32_t reserved; ///< 0
 } echinus_fault;
 
-/// Vertices are distinguished by index: echinus_mesh_weld() first where equal positions mean the same vertex.
+/// Vertices are distinguished by index, but those of edges that are not balanced count as one where they are
+/// no farther apart than 2^-21 of the radius, as they do for maps.
 typedef struct echinus_mesh_report {
     size_t size;
     uint64_t face_count;
@@ -192,6 +193,8 @@ typedef struct echinus_mesh_report {
     /// The step of float at the largest coordinate, where all coordinates are floats and half of this step
     /// exceeds a step of a map's lattice; otherwise 0. What was rounded to it before is lost.
     double rounding_step;
+    int32_t orientable; ///< faces can be turned so that all edges with two faces are balanced
+    int32_t reserved;   ///< 0
 } echinus_mesh_report;
 
 /// Points in double as floats relative to an origin. Without a handle; any thread.
@@ -204,7 +207,7 @@ ECHINUS_API echinus_status echinus_to_local(const double* points, size_t count, 
 /// @param report  out; its size is set
 ECHINUS_API echinus_status echinus_mesh_inspect(const echinus_mesh* mesh, echinus_mesh_report* report);
 
-/// What a repair may do, in the order of echinus_repair_report. All off by default.
+/// What a repair may do. All off by default. None opens a closed mesh.
 typedef struct echinus_repair_options {
     size_t size;
     int32_t drop_duplicate_faces;
@@ -214,6 +217,12 @@ typedef struct echinus_repair_options {
     uint32_t max_hole_edges;      ///< fills holes with at most so many edges; up to 256, 0: none
     int32_t drop_inner_faces;     ///< drops faces with the solid on both sides
     double sheet_thickness;       ///< makes solids so thick of components that are not closed; 0: none
+    int32_t close_seams; ///< joins vertices of edges that are not balanced, and fills holes without width
+    int32_t drop_loose_slivers; ///< drops faces without area at such edges, unless they fill a seam
+    int32_t orient_faces;       ///< turns faces so that neighbours agree, where every edge has two
+    int32_t reserved_2;         ///< 0
+    double weld_distance; ///< how wide seams may be; at most the radius of the bounding sphere, and at least
+                          ///< 2^-21 of it counts
 } echinus_repair_options;
 
 ECHINUS_API void echinus_repair_options_init(echinus_repair_options* options, size_t size);
@@ -227,7 +236,11 @@ typedef struct echinus_repair_report {
     uint64_t holes_left;   ///< with more edges, or rims of sheets; 0 unless holes were to be closed
     uint64_t inner_faces_dropped;
     uint64_t sheets_thickened;
-    uint64_t faces_added; ///< to close holes and to thicken sheets
+    uint64_t faces_added;     ///< to fill seams, to close holes and to thicken sheets
+    uint64_t vertices_welded; ///< in whose place faces refer to others now
+    uint64_t slivers_dropped; ///< loose ones, and faces that lost their area by welding
+    uint64_t faces_turned;    ///< so that neighbours agree
+    uint64_t seams_filled;    ///< holes without width
 } echinus_repair_report;
 
 /// A repaired copy of a mesh. Faces keep their order, new ones come after them. Vertices stay as they are but
@@ -235,8 +248,8 @@ typedef struct echinus_repair_report {
 /// @param report         out, its size is set; or NULL
 /// @param dropped_faces  out, uint32_t: numbers of the dropped faces in the given mesh, ascending; those that
 ///                       closed a hole have the numbers after the mesh's; or NULL
-/// @return ECHINUS_INVALID_MESH; ECHINUS_INVALID_OPTIONS for more edges than 256 or a thickness that does not
-/// suit the mesh
+/// @return ECHINUS_INVALID_MESH; ECHINUS_INVALID_OPTIONS for more edges than 256, or a thickness or a weld
+/// distance that does not suit the mesh
 ECHINUS_API echinus_status echinus_mesh_repair(const echinus_mesh* mesh,
                                                const echinus_repair_options* options, echinus_mesh** repaired,
                                                echinus_repair_report* report, echinus_array** dropped_faces);

@@ -219,6 +219,9 @@ def _mended(mesh: Mesh, sampling: Sampling) -> tuple[Mesh, dict[str, Any]]:
             drop_duplicate_faces=sampling.repair,
             drop_doubled_patches=sampling.repair,
             flip_inside_out=sampling.repair,
+            close_seams=sampling.repair,
+            drop_loose_slivers=sampling.repair,
+            orient_faces=sampling.repair,
             close_holes=sampling.close_holes,
             drop_inner_faces=sampling.drop_inner_faces,
             sheet_thickness=sampling.thicken * _longest_edge(mesh) if sampling.thicken else 0.0,
@@ -227,6 +230,10 @@ def _mended(mesh: Mesh, sampling: Sampling) -> tuple[Mesh, dict[str, Any]]:
             "duplicate_faces_dropped": len(done.duplicate_faces_dropped),
             "doubled_patch_faces_dropped": len(done.doubled_patch_faces_dropped),
             "components_flipped": done.components_flipped,
+            "vertices_welded": done.vertices_welded,
+            "slivers_dropped": len(done.slivers_dropped),
+            "faces_turned": done.faces_turned,
+            "seams_filled": done.seams_filled,
         }
         if sampling.makes_solid:
             report["made_solid"] = {
