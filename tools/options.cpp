@@ -64,6 +64,23 @@ ArgumentTarget parser_of(char separator, std::initializer_list<T*> numbers) {
     };
 }
 
+/// Of a command that does not exist, says which do; nothing when all commands that were given exist. CLI11
+/// only says that words were left over.
+std::optional<std::string> sentence_about_command(const CLI::App& app) {
+    const std::vector<CLI::App*> given = app.get_subcommands();
+    if (!given.empty()) return sentence_about_command(*given.front());
+    const std::vector<std::string> words = app.remaining();
+    const auto is_command = [](const CLI::App* sub) {
+        return !sub->get_name().empty();
+    }; // not a group of options
+    const std::vector<const CLI::App*> commands = app.get_subcommands(is_command);
+    const bool has_name = !words.empty() && !words.front().starts_with('-');
+    if (commands.empty() || !has_name) return {};
+    std::string names;
+    for (const CLI::App* command : commands) names += (names.empty() ? "" : ", ") + command->get_name();
+    return "'" + words.front() + "' is no command; there are " + names;
+}
+
 } // namespace
 
 Option Option::required() const {
@@ -182,6 +199,8 @@ std::optional<std::string> Program::run(int argument_count, const char* const* a
         std::ostringstream text;
         app_->exit(help_or_version, text, text);
         return text.str().ends_with('\n') ? text.str() : text.str() + "\n"; // forgotten in nested commands
+    } catch (const CLI::ExtrasError& error) {
+        throw WrongUse(sentence_about_command(*app_).value_or(error.what()));
     } catch (const CLI::ParseError& error) {
         throw WrongUse(error.what());
     }

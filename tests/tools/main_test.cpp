@@ -15,7 +15,10 @@ TEST_F(MainCommand, TellsTheExitStatusesInItsHelp) {
 
 TEST_F(MainCommand, RefusesAMissingOrUnknownCommandAsWrongUse) {
     expect_failure(2, "subcommand", {});
-    expect_failure(2, "frobnicate", {"frobnicate"});
+    expect_failure(2, "'frobnicate' is no command; there are mesh, info, build, query",
+                   {"frobnicate", "x.obj"});
+    expect_failure(2, "'frobnicate' is no command; there are mesh, map, moment, sheet",
+                   {"render", "frobnicate"});
     expect_failure(2, "--frobnicate", {"--frobnicate"});
 }
 

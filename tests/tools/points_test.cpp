@@ -217,8 +217,17 @@ TEST_F(Points, AreRefusedWithTheNumberOfTheLine) {
     refuse("x,y\n", "line 1");
     refuse("1,2,3abc\n", "line 1");
     refuse("1,2,\n", "line 1");
-    refuse("1;2;3\n", "line 1");
-    refuse("1 2 3\n", "line 1");
+    refuse("1;2;3\n",
+           "line 1 is '1;2;3' and not three numbers x,y,z; separate them by commas, not by semicolons");
+    refuse("1,5;2,5;3,5\n", "separate them by commas, not by semicolons, and write a decimal point");
+    refuse("1 2 3\n", "separate them by commas, not by blanks");
+    refuse("1\t2 \t3\n", "separate them by commas, not by tabs");
+    refuse("1,2,3,4\n", "and not three numbers x,y,z; it has 4 columns");
+    expect_refusal("p.csv",
+                   std::string("\xff\xfe"
+                               "1\0,\0",
+                               6),
+                   ErrorCode::WrongFormat, "the text is UTF-16; save it as UTF-8");
     refuse("1e999,0,0\n", "line 1");
     refuse(std::string("1,2,3\n\0\x01\xff,2,3\n", 15), "line 2 is '???,2,3'");
     refuse(std::string(100'000, '9'), "...'");

@@ -58,16 +58,35 @@ bool holds_names(std::string_view line) {
     return column_count == 3 && begins_like_name(line);
 }
 
+/// What to do with a line that is no point; empty where it does not show.
+std::string remedy_for(std::string_view line) {
+    const bool has_commas = line.find(',') != std::string_view::npos;
+    if (line.find(';') != std::string_view::npos)
+        return std::string("; separate them by commas, not by semicolons") +
+               (has_commas ? ", and write a decimal point" : "");
+    if (has_commas) {
+        const auto column_count = 1 + std::count(line.begin(), line.end(), ',');
+        return column_count == 3 ? "" : "; it has " + std::to_string(column_count) + " columns";
+    }
+    if (line.find('\t') != std::string_view::npos) return "; separate them by commas, not by tabs";
+    if (line.find(' ') != std::string_view::npos) return "; separate them by commas, not by blanks";
+    return "";
+}
+
 } // namespace
 
 std::unique_ptr<PointSource> open_csv_points(std::unique_ptr<Input> input) {
     constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf"; // spreadsheets put it before the first line
+    constexpr std::string_view kMarksOfUtf16[] = {"\xff\xfe", "\xfe\xff"};
     std::vector<Vec3d> points;
     std::string line;
     bool names_may_follow = true;
     for (std::size_t line_number = 1; input->read_line(line); ++line_number) {
         std::string_view text = line;
         if (line_number == 1 && text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+        for (const std::string_view mark : kMarksOfUtf16)
+            if (line_number == 1 && text.starts_with(mark))
+                input->fail(ErrorCode::WrongFormat, "the text is UTF-16; save it as UTF-8 or ASCII");
         text = trimmed(text);
         if (text.empty() || text.starts_with('#')) continue;
         if (const std::optional<Vec3d> point = parse_point(text)) {
@@ -75,7 +94,7 @@ std::unique_ptr<PointSource> open_csv_points(std::unique_ptr<Input> input) {
             require_room_for(*input, points.size());
         } else if (!(names_may_follow && holds_names(text))) {
             input->fail(ErrorCode::Damaged, "line " + std::to_string(line_number) + " is " + excerpt(text) +
-                                                " and not three numbers x,y,z");
+                                                " and not three numbers x,y,z" + remedy_for(text));
         }
         names_may_follow = false;
     }
