@@ -30,8 +30,8 @@ void KnownContacts::weaken(float most) {
 
 void KnownContacts::archive(StateArchive& state) {
     for (PointArrays* points : {&asked_at_body, &asked_at, &normal_body, &normal}) state.points(*points);
-    state.array(clearance);
-    state.array(height);
+    state.padded(clearance);
+    state.padded(height);
 }
 
 void KnownContacts::remember(std::size_t i, const ColliderNow& collider, const Vec3f& position,

@@ -16,6 +16,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <set>
 #include <utility>
 #include <vector>
@@ -26,6 +27,7 @@ using namespace echinus::test;
 namespace {
 
 const Workers kOneThread;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 std::size_t edge_count_of(const Element& element) {
     return element.vertex_count == 3 ? 3 : element.vertex_count - 1u;
@@ -151,6 +153,11 @@ TEST(ElementTree, VisitsWhatABoxTouchesOnceAlsoAfterItsElementsMoved) {
             std::sort(found.begin(), found.end());
             ASSERT_EQ(found, expected);
         }
+        Box everything = box_of({}, scattered.positions);
+        everything.grow(kInfinity);
+        std::size_t visited = 0;
+        tree.visit_touching(everything, [&](std::uint32_t e) { visited += e < count ? 1 : count + 1; });
+        EXPECT_EQ(visited, count);
     }
 }
 
@@ -218,9 +225,8 @@ TEST(NearElements, AreThoseThatMayComeNearOnTheirWaysUnderEveryInstructionSet) {
     for (const std::size_t count : {1, 8, 20, 300}) {
         Moving a(count, 5);
         const Moving b(2 * count, 6);
-        const float reach = 0.07F;
-        for (const std::uint32_t every : {1, 3}) {
-            const auto is_wanted = [&](std::uint32_t i) { return i % every == 0; };
+        for (const auto& [every, reach] : {std::pair{1U, 0.07F}, {3U, 0.07F}, {2U, kInfinity}}) {
+            const auto is_wanted = [every = every](std::uint32_t i) { return i % every == 0; };
             a.tree.want(is_wanted, kOneThread);
             Found expected, expected_own;
             for (std::uint32_t i = 0; i < count; ++i) {

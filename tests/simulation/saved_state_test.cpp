@@ -1,5 +1,6 @@
 // Saved states: what follows has the same bits.
 
+#include "simulation/state/state_archive.hpp"
 #include "support/expect_error.hpp"
 #include "support/kinds_of_simulations.hpp"
 #include "support/random_points.hpp"
@@ -188,6 +189,26 @@ TEST(SavedState, OfHostileBytesIsRefusedOrHarmless) {
             }
         }
         EXPECT_GT(refused, 0);
+    }
+}
+
+TEST(SavedState, DoesNotChangeWhatKernelsReadBehindTheParticles) {
+    PointArrays forged;
+    forged.resize(3);
+    forged.fill(1e30F);
+    StateArchive writer;
+    writer.points(forged);
+    writer.padded(forged.x);
+    StateArchive reader(writer.written(), "forged");
+    PointArrays points;
+    points.resize(3);
+    std::vector<float> clearances(3 + PointArrays::kPadding, 7);
+    reader.points(points);
+    reader.padded(clearances);
+    reader.finish();
+    for (std::size_t i = 0; i < clearances.size(); ++i) {
+        EXPECT_EQ(points.y[i], i < 3 ? 1e30F : 0) << i;
+        EXPECT_EQ(clearances[i], i < 3 ? 1e30F : 7) << i;
     }
 }
 

@@ -80,6 +80,12 @@ class ElementTree {
     /// Of the boxes.
     void archive(StateArchive& state);
 
+    /// Which of the eight boxes from `first` on are those of something, one bit each. Boxes that were read
+    /// from a saved state, and infinite ones, may touch the others, too.
+    unsigned present(std::size_t level, std::size_t first) const {
+        const std::size_t count = level == 0 ? order_.size() : levels_[level - 1].group_count();
+        return first + kWidth <= count ? (1U << kWidth) - 1 : (1U << (count - std::min(first, count))) - 1;
+    }
     std::span<const std::uint32_t> order() const { return order_; }
     std::span<const Level> levels() const { return levels_; }
 
@@ -87,7 +93,8 @@ class ElementTree {
     template <typename Visit>
     void visit_group(std::size_t level, std::size_t group, const Box& box, const Visit& visit) const {
         const std::size_t first = group * kWidth;
-        for (unsigned mask = levels_[level].touching(first, box), k = 0; mask != 0; mask >>= 1U, ++k) {
+        unsigned mask = levels_[level].touching(first, box) & present(level, first);
+        for (unsigned k = 0; mask != 0; mask >>= 1U, ++k) {
             if ((mask & 1U) == 0) continue;
             if (level == 0)
                 visit(order_[first + k]);

@@ -53,7 +53,7 @@ HWY_INLINE unsigned touching(const MovingTree& tree, std::size_t level, std::siz
         const unsigned lanes_mask = (1U << hn::Lanes(d)) - 1;
         mask |= (bits[0] & lanes_mask) << lane;
     }
-    return mask;
+    return mask & tree.from.present(level, first);
 }
 
 HWY_INLINE Box box_of(const ElementTree::Level& boxes, std::size_t i) {
