@@ -30,7 +30,9 @@ target_compile_options(echinus_options INTERFACE
   -fno-math-errno
   # No code traps on floating-point exceptions either; without this, GCC vectorises no loop with a division.
   # Neither flag changes a bit of a result.
-  -fno-trapping-math)
+  -fno-trapping-math
+  # GCC 12 leaves out the rounding where neighbouring doubles are made floats and doubles again.
+  $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
 if(ECHINUS_SANITIZE)
   target_compile_options(echinus_options INTERFACE
     -fsanitize=${ECHINUS_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
