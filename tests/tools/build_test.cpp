@@ -313,7 +313,7 @@ TEST_F(BuildCommand, TakesCornersForOneThatDifferByRoundings) {
         expect_success({"build", "cracked.obj", "--weld", "0.002", "-o", "cracked.ech", "--json"}));
     EXPECT_EQ(welded["repairs"]["vertices_welded"], 1);
     expect_failure(2, "--weld", {"build", "cracked.obj", "--weld", "-1", "-o", "cracked.ech"});
-    expect_failure(1, "welded within 5", {"build", "cracked.obj", "--weld", "5", "-o", "cracked.ech"});
+    expect_failure(2, "welded within 5", {"build", "cracked.obj", "--weld", "5", "-o", "cracked.ech"});
 }
 
 TEST_F(BuildCommand, NoticesThatSheetsWithTwoSidesEncloseNothing) {
