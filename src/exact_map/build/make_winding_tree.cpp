@@ -86,8 +86,9 @@ void OwnedWindingTree::show_in(ExactMapView& map) const {
 
 OwnedWindingTree make_winding_tree(const ExactMapView& map) {
     OwnedWindingTree result;
-    result.neighbours_disagree = std::ranges::all_of(
-        map.border, [](const BorderEdge& edge) { return edge.multiplicity == 2 || edge.multiplicity == -2; });
+    result.neighbours_disagree =
+        std::all_of(map.border.begin(), map.border.end(),
+                    [](const BorderEdge& edge) { return edge.multiplicity == 2 || edge.multiplicity == -2; });
     set_caps(map, result);
     ExactMapView with_tree = map;
     result.show_in(with_tree);
