@@ -406,6 +406,10 @@ std::vector<FileReport> gltf_reports() {
          Solid{12, 6}},
         {"jkuhlmann/cgltf#38: the bytes end before the buffer does", "a.glb",
          Glb{.missing_bytes = 40}.bytes(), Refused{"a.glb"}},
+        {"godotengine/godot#109666: indices that are no multiple of three", "a.glb",
+         Glb{.index_accessors = R"({"bufferView":1,"componentType":5123,"count":35,"type":"SCALAR"})"}
+             .bytes(),
+         Refused{"a.glb"}},
         {"assimp/assimp#6746, #6856: a strip of one index", "a.glb", strips(5, {{0}}), Refused{"a.glb"}},
         {"assimp/assimp#6746, #6856: a strip of two indices", "a.glb", strips(5, {{0, 1}}), Refused{"a.glb"}},
         {"assimp/assimp#6746, #6856: a fan of one index", "a.glb", strips(6, {{0}}), Refused{"a.glb"}},

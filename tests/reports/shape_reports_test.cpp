@@ -214,6 +214,16 @@ std::vector<SideReport> side_reports() {
          {{0.5F, 0.5F, 0.5F}, {3.5F, 0.5F, 0.5F}},
          {{2, 0.5F, 0.5F}},
          true},
+        {"GavinBarill/fast-winding-number-soups#2, nmwsharp/geometry-central#142: every second face turned",
+         [] {
+             TriangleMesh cube = unit_cube();
+             for (std::size_t f = 0; f < cube.faces.size(); f += 2)
+                 std::swap(cube.faces[f][1], cube.faces[f][2]);
+             return cube;
+         }(),
+         {{0.5F, 0.5F, 0.5F}, {0.1F, 0.9F, 0.2F}},
+         {{1.5F, 0.5F, 0.5F}, {-0.1F, 0.1F, 0.1F}},
+         true},
         {"fwilliams/point-cloud-utils#94, #73: faces whose corners became one",
          [] {
              TriangleMesh cube = unit_cube();
