@@ -28,7 +28,7 @@ inline Affine operator*(const Affine& a, const Affine& b) {
 }
 
 /// Scales, then turns, then moves.
-struct Placement {
+struct NodePlacement {
     Vec3d position;
     Rotation rotation;
     Vec3d scale{1, 1, 1};

@@ -122,10 +122,10 @@ Pose NodeAnimation::pose_at(double seconds) const {
     for (const auto& [node, motion] : animation_.nodes) {
         if (motion.positions.times.empty() && motion.rotations.times.empty() && motion.scales.times.empty())
             continue;
-        const Placement& rest = file_.nodes[node].placement;
-        local[node] = Placement{vector_at(motion.positions, seconds, rest.position),
-                                rotation_at(motion.rotations, seconds, rest.rotation),
-                                vector_at(motion.scales, seconds, rest.scale)}
+        const NodePlacement& rest = file_.nodes[node].placement;
+        local[node] = NodePlacement{vector_at(motion.positions, seconds, rest.position),
+                                    rotation_at(motion.rotations, seconds, rest.rotation),
+                                    vector_at(motion.scales, seconds, rest.scale)}
                           .affine();
     }
     Pose pose{to_world(file_, local), {}};

@@ -43,7 +43,7 @@ SceneNode make_node(const GltfValue& node, std::size_t parent) {
         result.local = affine_of(matrix);
         return result;
     }
-    Placement& placement = result.placement;
+    NodePlacement& placement = result.placement;
     if (const auto position = node.member("translation").numbers(3))
         placement.position = vector_of(*position);
     if (const auto scale = node.member("scale").numbers(3)) placement.scale = vector_of(*scale);
@@ -73,7 +73,7 @@ std::vector<Affine> placements_of(GltfFile& file, const GltfValue& node) {
     file.spend(count.value_or(0));
     std::vector<Affine> placements;
     for (std::size_t i = 0; i < count.value_or(0); ++i) {
-        Placement placement;
+        NodePlacement placement;
         if (positions) placement.position = positions->vector(i);
         if (scales) placement.scale = scales->vector(i);
         if (rotations)

@@ -14,10 +14,10 @@
 namespace echinus {
 
 struct SceneNode {
-    std::string name;    ///< for sentences
-    std::size_t parent;  ///< before the node in SceneFile::nodes; the node's own number for a root
-    Placement placement; ///< at rest, in the parent; not that of a node with a matrix
-    Affine local;        ///< at rest, in the parent
+    std::string name;        ///< for sentences
+    std::size_t parent;      ///< before the node in SceneFile::nodes; the node's own number for a root
+    NodePlacement placement; ///< at rest, in the parent; not that of a node with a matrix
+    Affine local;            ///< at rest, in the parent
 };
 
 /// A bone's part in moving a vertex.
