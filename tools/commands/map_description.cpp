@@ -172,7 +172,7 @@ void add_own_rows(Table& table, const ExactMap& map) {
               fmt::format("{:.1f} faces for a particle on the surface", statistics.expected_tests));
     table.add("certain",
               view.border.empty()
-                  ? "everywhere, as the mesh is closed"
+                  ? "everywhere, as the surface is closed on the lattice"
                   : fmt::format("{:.3f} % of the bounding sphere; places that are not lie in {:.3f} % of the "
                                 "directions; {} border edges",
                                 statistics.certain_share * 100, statistics.uncertain_directions * 100,
