@@ -85,7 +85,7 @@ void require_solid(const MeshReport& report, const TriangleMesh& mesh, const Bui
         ErrorCode::InvalidMesh,
         name + ": " +
             refusal_of_open_mesh(mesh, report, "--repair",
-                                 std::string(", or with --close-holes or --thicken, or accept ") +
+                                 std::string(", or with --weld, --close-holes or --thicken, or accept ") +
                                      (exact ? "answers that are not certain near its holes with --allow-open"
                                             : "wrong answers behind its holes with --allow-open")));
 }
