@@ -13,7 +13,6 @@
 #include "simulation/places-inl.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #ifndef ECHINUS_SIMULATION_RELAX_FOLDS_RULES
@@ -29,11 +28,11 @@ constexpr float kLargestTurn = 1;
 constexpr float kLeastRate = std::numeric_limits<float>::min();
 constexpr float kMostRate = std::numeric_limits<float>::max();
 
-/// The gradient at an end of the edge is the sum of what both faces give it. Where these cancel, as at a free
-/// end whose other three particles are pinned on one line, rounding is all that is left, and a step divided
-/// by its square goes anywhere. So the turn per step counts as no less than this share of that without
-/// cancellation; of a fold whose four particles are free, and whose corners lie beside the edge, it is more
-/// than a third.
+/// An end of the edge whose other three particles are pinned on one line has no gradient: what both faces
+/// give it cancels, or the feet of both corners lie at the other end. Rounding is all that is left then, and
+/// a step divided by its square goes anywhere. So the turn per step counts as no less than this share of what
+/// it would be if each end turned both faces as the corners do. It is more than a sixth of a fold of four
+/// free particles of one mass.
 constexpr float kLeastRateShare = 1.0F / 64;
 
 } // namespace
@@ -71,11 +70,10 @@ HWY_INLINE void relax_lanes(FoldArrays& folds, std::size_t i, const Places& plac
     const FloatLanes rate = dot(gradient_a, gradient_a) * mass_a + dot(gradient_b, gradient_b) * mass_b +
                             dot(gradient_c, gradient_c) * mass_c + dot(gradient_d, gradient_d) * mass_d;
     const FloatMask has_angle = hn::And(rate >= splat(kLeastRate), rate <= splat(kMostRate));
-    const FloatLanes most_a = rate_c * hn::Abs(one - foot_c) + rate_d * hn::Abs(one - foot_d);
-    const FloatLanes most_b = rate_c * hn::Abs(foot_c) + rate_d * hn::Abs(foot_d);
-    const FloatLanes without_cancellation = most_a * most_a * mass_a + most_b * most_b * mass_b +
-                                            rate_c * rate_c * mass_c + rate_d * rate_d * mass_d;
-    const FloatLanes least_rate = without_cancellation * splat(kLeastRateShare);
+    const FloatLanes rate_of_ends = rate_c + rate_d;
+    const FloatLanes largest_rate =
+        rate_of_ends * rate_of_ends * (mass_a + mass_b) + rate_c * rate_c * mass_c + rate_d * rate_d * mass_d;
+    const FloatLanes least_rate = largest_rate * splat(kLeastRateShare);
     const FloatLanes sound_rate = choose(rate < least_rate, least_rate, rate);
     const FloatLanes goal = hn::LoadU(kFloat, &folds.goal_angles[i]);
     const FloatLanes compliance = hn::LoadU(kFloat, &folds.compliances[i]);
@@ -160,12 +158,10 @@ void relax_one(FoldArrays& folds, std::size_t i, const Places& places) {
     const float rate = dot(gradient_a, gradient_a) * mass_a + dot(gradient_b, gradient_b) * mass_b +
                        dot(gradient_c, gradient_c) * mass_c + dot(gradient_d, gradient_d) * mass_d;
     if (!(rate >= kLeastRate && rate <= kMostRate)) return;
-    const float most_a = fold.rate_c * std::fabs(1 - foot_c) + fold.rate_d * std::fabs(1 - foot_d);
-    const float most_b = fold.rate_c * std::fabs(foot_c) + fold.rate_d * std::fabs(foot_d);
-    const float without_cancellation = most_a * most_a * mass_a + most_b * most_b * mass_b +
-                                       fold.rate_c * fold.rate_c * mass_c +
-                                       fold.rate_d * fold.rate_d * mass_d;
-    const float least_rate = without_cancellation * kLeastRateShare;
+    const float rate_of_ends = fold.rate_c + fold.rate_d;
+    const float largest_rate = rate_of_ends * rate_of_ends * (mass_a + mass_b) +
+                               fold.rate_c * fold.rate_c * mass_c + fold.rate_d * fold.rate_d * mass_d;
+    const float least_rate = largest_rate * kLeastRateShare;
     const float sound_rate = rate < least_rate ? least_rate : rate;
     float& goal = folds.goal_angles[i];
     const float wanted = (goal - fold.angle()) * folds.stiffness / (sound_rate + folds.compliances[i]);
