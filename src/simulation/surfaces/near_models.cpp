@@ -17,15 +17,11 @@ std::size_t NearModels::near_count() const {
 }
 
 bool NearModels::any_moves() const {
-    for (std::size_t c = 0; c < count(); ++c)
-        if (is_near[c] != 0 && moves[c] != 0) return true;
-    return false;
+    return std::any_of(moves.begin(), moves.end(), [](std::uint8_t does) { return does != 0; });
 }
 
 bool NearModels::any_deforms() const {
-    for (std::size_t c = 0; c < count(); ++c)
-        if (is_near[c] != 0 && motions[c] != nullptr) return true;
-    return false;
+    return std::any_of(motions.begin(), motions.end(), [](const SurfaceMotion* m) { return m != nullptr; });
 }
 
 bool NearModels::permit(std::uint32_t vertex, const Vec3f& place, bool is_carried) const {
