@@ -439,8 +439,7 @@ void check_triangle_sweep(const Subject& subject, const TrianglePoints& from, co
                                hit.fraction, " of its way from ", from[0], from[1], from[2], " to ", to[0],
                                to[1], to[2]);
     }
-    // Past what it nearly touches all the way it may stop after 100 moves: then some were a hundredth of its
-    // way.
+    // It moves 100 times at most, as it says, and so may stop short of what it leaves slowly.
     double longest_way = 0;
     for (std::size_t k = 0; k < 3; ++k)
         longest_way = std::max(longest_way, length(Vec3d(to[k]) - Vec3d(from[k])) * double{hit.fraction});

@@ -47,6 +47,12 @@ Superquadric point_at(const Vec3f& place, double radius) {
     return shape;
 }
 
+Vec3d mean_of(const std::vector<Vec3d>& points) {
+    Vec3d sum;
+    for (const Vec3d& p : points) sum += p;
+    return sum * (1 / static_cast<double>(points.size()));
+}
+
 FittedSegment fit_segment(const Segment& segment, double mesh_radius) {
     const SurfaceSamples surface = sample_surface(segment.mesh.vertices, segment.hull_faces(), kFitSamples);
     FittedSegment fitted;
@@ -57,6 +63,9 @@ FittedSegment fit_segment(const Segment& segment, double mesh_radius) {
         return fitted;
     }
     fitted.shape = fit_superquadric(surface.points).shape;
+    // All that lies between the centre and the hull counts as solid, but the best fit to a sharp or flat hull
+    // may have its centre beside it.
+    if (!segment.holds(fitted.shape.centre)) fitted.shape.centre = mean_of(surface.points);
     // The lattice's origin misses all faces, so it may lie a step beside the centre that was fitted.
     fitted.lattice = snap_to_lattice(segment.mesh, Vec3f(fitted.shape.centre));
     fitted.shape.centre = Vec3d(fitted.lattice->centre);

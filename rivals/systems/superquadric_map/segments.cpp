@@ -133,6 +133,10 @@ Vec3d barycentric(std::size_t i) {
 
 } // namespace
 
+bool Segment::holds(const Vec3d& place) const {
+    return HalfSpaces(mesh.vertices, hull_faces()).hold(place);
+}
+
 std::vector<Segment> make_segments(const TriangleMesh& mesh, const Decomposition& decomposition) {
     std::vector<Segment> segments(decomposition.segment_count);
     if (segments.empty()) return segments;

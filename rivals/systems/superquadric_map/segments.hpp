@@ -26,6 +26,8 @@ struct Segment {
     std::span<const Triangle> hull_faces() const {
         return std::span(mesh.faces).subspan(face_numbers.size());
     }
+    /// Is a place in the hull? Time O(faces).
+    bool holds(const Vec3d& place) const;
 };
 
 /// Time O(segments x faces) with a factor of a hundred chords.
