@@ -43,6 +43,7 @@ export async function startBrowser() {
     });
     const tab = async (options) => {
         const page = await (await browser.newContext({ viewport: LARGE, acceptDownloads: true, ...options })).newPage();
+        page.setDefaultNavigationTimeout(180_000); // a machine that is busy with other work breaks no limit
         page.on('console', (message) => ['error', 'warning'].includes(message.type()) && !isOfTheDriver(message.text()) && page.complaints.push(message.text()));
         page.on('pageerror', (error) => page.complaints.push(String(error)));
         return page;
