@@ -76,8 +76,8 @@ double FrameParts::longest_less(const Vec3f& common, const Particles& particles)
     return std::sqrt(double{longest_sq}) * options_.substep_count;
 }
 
-/// The longest of the ways that reach the model, relative to it, or 0 if it is not longer than most. What is
-/// known already tells of most vertices that they do not.
+/// The longest of the ways that reach the model, or bring an element between vertices there, relative to it,
+/// or 0 if it is not longer than most. What is known already tells of most vertices that they do not.
 double FrameParts::longest_beside(const Collider& collider, double most, const Particles& particles) {
     places_.clear();
     ways_.clear();
@@ -87,16 +87,17 @@ double FrameParts::longest_beside(const Collider& collider, double most, const P
             collider.linear_velocity + cross(collider.angular_velocity, place - collider.pose.translation);
         const double way =
             length(Vec3d(particles.step(i)) * options_.substep_count - speed * options_.time_step);
-        if (!(way > std::max(most, double{clearances_[i]}))) continue;
+        if (!(way > std::max(most, double{clearances_[i]} - edge_length_))) continue;
         places_.push_back(particles.positions[i]);
         ways_.push_back(static_cast<float>(way));
     }
     if (places_.empty()) return 0;
     contacts_.resize(places_.size());
-    contacts_batch(collider, places_, *std::max_element(ways_.begin(), ways_.end()), contacts_);
+    const auto edge = static_cast<float>(edge_length_);
+    contacts_batch(collider, places_, *std::max_element(ways_.begin(), ways_.end()) + edge, contacts_);
     float longest = 0;
     for (std::size_t n = 0; n < places_.size(); ++n)
-        if (contacts_[n].found() && std::fabs(contacts_[n].depth) < ways_[n])
+        if (contacts_[n].found() && std::fabs(contacts_[n].depth) < ways_[n] + edge)
             longest = std::max(longest, ways_[n]);
     return double{longest};
 }

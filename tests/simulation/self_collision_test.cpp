@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <span>
 #include <vector>
 
 using namespace echinus;
@@ -51,6 +52,37 @@ Deformable folded_in_four(std::uint32_t count, float height) {
         v = {twice.x, twice.y, twice.z + height};
     }
     return make_cloth(mesh, {.rest_vertices = flat});
+}
+
+/// A sheet that begins with folds sharper than it can keep, half circles of two and three edges: stretched by
+/// a half.
+Deformable knotted(const Vec3d& step) {
+    Deformable sheet = make_cloth({.column_count = 40, .row_count = 40, .width = 1.6, .height = 1.6});
+    const float gap = 1.25F * 1.6F / 39;
+    for (Vec3f& p : sheet.positions) {
+        p = folded(p.x, p.y, p.z, 0.5F * gap, 0, 0.5F * gap);
+        p = folded(p.y, p.x, p.z, 0.5F * gap, gap, gap);
+    }
+    for (std::size_t i = 0; i < sheet.particle_count(); ++i)
+        sheet.previous_positions[i] = Vec3f(Vec3d(sheet.positions[i]) - step);
+    return sheet;
+}
+
+Vec3d mean_of(std::span<const Vec3f> points) {
+    Vec3d sum;
+    for (const Vec3f& p : points) sum += Vec3d(p);
+    return sum * (1 / static_cast<double>(points.size()));
+}
+
+/// A net whose border is pinned, 13 x 13 vertices and a metre wide.
+Deformable pinned_net() {
+    constexpr std::uint32_t kSide = 13;
+    Deformable net = sheet_at(0, 1, kSide);
+    for (std::uint32_t row = 0; row < kSide; ++row)
+        for (std::uint32_t column = 0; column < kSide; ++column)
+            if (row % (kSide - 1) == 0 || column % (kSide - 1) == 0)
+                net.inverse_masses[row * kSide + column] = 0;
+    return net;
 }
 
 constexpr double kThin = 0.003;
@@ -224,15 +256,8 @@ TEST(SelfCollision, LeavesNoKnotInASheetThatHitsABallFast) {
 }
 
 TEST(SelfCollision, OpensTheKnotOfASheetThatWasFoldedInFourTooSharply) {
-    // Half circles of two and three edges, which the sheet cannot keep: it begins stretched by a half.
-    Deformable sheet = make_cloth({.column_count = 40, .row_count = 40, .width = 1.6, .height = 1.6});
-    const float gap = 1.25F * 1.6F / 39;
-    for (Vec3f& p : sheet.positions) {
-        p = folded(p.x, p.y, p.z, 0.5F * gap, 0, 0.5F * gap);
-        p = folded(p.y, p.x, p.z, 0.5F * gap, gap, gap);
-    }
-    sheet.previous_positions = sheet.positions;
-    Simulation simulation(sheet, {}, {.gravity = {}, .surface_collision = true, .self_collision = true});
+    Simulation simulation(knotted({}), {},
+                          {.gravity = {}, .surface_collision = true, .self_collision = true});
     expect_nothing_meets(simulation, {}, 12);
     const std::uint64_t in_the_beginning = simulation.profile().truncated_count;
     expect_nothing_meets(simulation, {}, 40);
@@ -280,4 +305,63 @@ TEST(SelfCollision, LeavesTheFreeFallOfASheetAsItIs) {
         particles.step();
         ASSERT_EQ(surfaces.state_hash(), particles.state_hash());
     }
+}
+
+TEST(SelfCollision, LetsASheetFallOnBesideABallThatItHasLeft) {
+    // Its vertices were near the ball lately: little is known of what is around them.
+    const std::vector<Collider> ball = colliders_of({make_sphere(0.1, 24, 12)});
+    for (const double speed : {3.0, 8.0, 20.0}) {
+        SimulationOptions options = kSelf;
+        options.gravity = {};
+        options.drag = 0;
+        options.thickness = 0.004;
+        Simulation simulation(sheet_at(-0.11, 0.5, 31, {0, 0, -speed / 240}), ball, options);
+        for (int i = 0; i < 60; ++i) simulation.step();
+        EXPECT_EQ(simulation.profile().truncated_count, 0u) << speed;
+        for (const Vec3f& p : simulation.positions()) ASSERT_NEAR(p.z, -0.11 - speed / 4, 1e-4) << speed;
+    }
+}
+
+TEST(SelfCollision, HoldsLayersOfWhatFliesBackFromEachOtherAndNotInTheAir) {
+    const SimulationOptions options{
+        .gravity = {}, .drag = 0, .surface_collision = true, .self_collision = true};
+    for (const bool has_model : {false, true}) {
+        // One that goes by far away, or none.
+        std::vector<Collider> colliders;
+        if (has_model) {
+            colliders = colliders_of({make_sphere(0.2, 16, 8)});
+            colliders[0].pose.translation = {0, 0, 40};
+            colliders[0].linear_velocity = {0, 3, 0};
+        }
+        const Vec3d step{10.0 / 240, 0, -20.0 / 240};
+        const Deformable sheet = knotted(step);
+        Simulation simulation(sheet, colliders, options);
+        for (int i = 0; i < 24; ++i) simulation.step();
+        EXPECT_GT(simulation.profile().truncated_count, 0u);
+        EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+        const Vec3d way = mean_of(simulation.positions()) - mean_of(sheet.positions);
+        EXPECT_NEAR(length(way - step * 24), 0, 0.02) << way.x << ' ' << way.y << ' ' << way.z;
+        EXPECT_TRUE(meeting_faces(simulation, {}).empty());
+    }
+}
+
+TEST(SelfCollision, LeavesANetAloneThatABallOnlyPasses) {
+    const TriangleMesh ball = make_sphere(0.1, 24, 12);
+    for (const std::size_t count : {1u, 2u})
+        for (const double speed : {10.0, 40.0, 90.0})
+            for (const double height : {0.15, 0.3, 0.45}) {
+                std::vector<Collider> colliders = colliders_of(std::vector<TriangleMesh>(count, ball));
+                colliders[0].pose.translation = {-0.9, 0.01, height};
+                colliders[0].linear_velocity = {speed, 0, 0};
+                colliders.back().pose.translation.z += count == 2 ? -0.5 - height : 0;
+                const Deformable net = pinned_net();
+                SimulationOptions options = kSelf;
+                options.gravity = {};
+                Simulation simulation(net, colliders, options);
+                while (simulation.colliders()[0].pose.translation.x < 0.9) simulation.step();
+                EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+                for (std::size_t i = 0; i < net.positions.size(); ++i)
+                    ASSERT_LT(length(simulation.positions()[i] - net.positions[i]), 1e-6F)
+                        << i << ' ' << speed << ' ' << height << ' ' << count;
+            }
 }

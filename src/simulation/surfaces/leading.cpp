@@ -33,6 +33,7 @@ Leading::Leading(const Deformable& deformable, std::span<const float> carry_reac
                       : kPullReach * *std::max_element(carry_reaches.begin(), carry_reaches.end())) {
     bases_.places.resize(deformable.particle_count());
     bases_.bodies.assign(deformable.particle_count(), kAlone);
+    bases_.stays.assign(deformable.particle_count(), 0);
     for (const auto& [particle, collider] : deformable.attachments) attached_[particle] = collider;
 }
 
@@ -124,6 +125,7 @@ Vec3f Leading::carried_between(std::uint32_t vertex, NearModels& models, const P
 
 SelfSurface::Bases& Leading::begin(const NearModels& models) {
     has_groups_ = false;
+    std::fill(bases_.stays.begin(), bases_.stays.end(), std::uint8_t{0});
     for (std::uint32_t v = 0; v < attached_.size(); ++v) bases_.bodies[v] = body_of(v, models);
     return bases_;
 }

@@ -17,11 +17,15 @@ std::size_t NearModels::near_count() const {
 }
 
 bool NearModels::any_moves() const {
-    return std::any_of(moves.begin(), moves.end(), [](std::uint8_t does) { return does != 0; });
+    for (std::size_t c = 0; c < count(); ++c)
+        if (is_near[c] != 0 && moves[c] != 0) return true;
+    return false;
 }
 
 bool NearModels::any_deforms() const {
-    return std::any_of(motions.begin(), motions.end(), [](const SurfaceMotion* m) { return m != nullptr; });
+    for (std::size_t c = 0; c < count(); ++c)
+        if (is_near[c] != 0 && motions[c] != nullptr) return true;
+    return false;
 }
 
 bool NearModels::permit(std::uint32_t vertex, const Vec3f& place, bool is_carried) const {

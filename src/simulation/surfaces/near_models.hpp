@@ -19,8 +19,8 @@ struct NearModels {
     std::size_t count() const { return all.size(); }
     void add(ModelSurface model);
     std::size_t near_count() const;
-    bool any_moves() const;
-    bool any_deforms() const;
+    bool any_moves() const;   ///< of those that are near
+    bool any_deforms() const; ///< the same
 
     /// Calls visit(number, model) for the models that are near.
     template <typename Visit>

@@ -522,23 +522,33 @@ void SelfSurface::relax(Particles& particles, std::span<const float> inverse_mas
 
 /// A vertex that ends early does not drift on with the others: it leaves the way for which its pairs were
 /// listed, and the next round finds what is near its new one.
-std::span<const float> SelfSurface::allowed_shares(const RigidTransform* frame, const PointArrays& goals,
-                                                   const Bases* bases, const Workers& workers) {
+bool SelfSurface::may_meet(const RigidTransform* frame, const PointArrays& goals, const Workers& workers) {
     set_goals(frame, goals);
     stuck_.clear();
-    if (all_within(rooms_)) return {};
-    if (bases != nullptr)
-        to_frame(frame, bases->places, bases_);
-    else
-        bases_ = starts_;
-    bodies_ =
-        bases != nullptr ? std::span<const std::uint32_t>(bases->bodies) : std::span<const std::uint32_t>();
-    for (const std::uint32_t v : surface_)
-        if (mobility_[v] == 0) bases_.set(v, goals_[v]);
+    if (all_within(rooms_)) return false;
     list_pairs(workers);
     measure(workers);
     shares_.assign(own_->vertex_count(), 1);
-    whole_goals_ = goals_;
+    whole_goals_ = bases_ = goals_;
+    bodies_ = {};
+    find_meeting(workers);
+    return std::find(meets_.begin(), meets_.end(), std::uint8_t{1}) != meets_.end();
+}
+
+std::span<const float> SelfSurface::allowed_shares(const RigidTransform* frame, const Bases& bases,
+                                                   const Workers& workers) {
+    goals_ = whole_goals_;
+    to_frame(frame, bases.places, bases_);
+    bodies_ = bases.bodies;
+    for (const std::uint32_t v : surface_) {
+        if (mobility_[v] == 0)
+            bases_.set(v, goals_[v]);
+        else if (bases.stays[v] != 0)
+            bases_.set(v, starts_[v]);
+    }
+    list_pairs(workers);
+    measure(workers);
+    shares_.assign(own_->vertex_count(), 1);
     for (int round = 0; shorten_ways(round, workers); ++round) {
         for (std::uint32_t v = 0; v < own_->vertex_count(); ++v)
             if (shares_[v] != 1) goals_.set(v, place_at_share(v));
@@ -549,7 +559,7 @@ std::span<const float> SelfSurface::allowed_shares(const RigidTransform* frame, 
 }
 
 Vec3f SelfSurface::place_at_share(std::uint32_t v) const {
-    return bases_[v] + (whole_goals_[v] - bases_[v]) * shares_[v];
+    return shares_[v] == 1 ? whole_goals_[v] : bases_[v] + (whole_goals_[v] - bases_[v]) * shares_[v];
 }
 
 /// Parts of one rigid body that do not meet do not meet on straight ways to another place of it either, if it

@@ -59,12 +59,14 @@ class SelfSurface {
 
         PointArrays places;
         std::vector<std::uint32_t> bodies; ///< by vertex: what has one number goes there as one rigid body
+        std::vector<std::uint8_t> stays;   ///< by vertex: 1 for one that is left where it is in the frame
     };
 
-    /// The shares of the ways to the goals that vertices may go, or none where all may go the whole way.
-    /// @param bases  or null: what is not pinned stays
-    std::span<const float> allowed_shares(const RigidTransform* frame, const PointArrays& goals,
-                                          const Bases* bases, const Workers& workers);
+    /// Could pairs meet on the way to the goals? If not, all may go the whole way.
+    bool may_meet(const RigidTransform* frame, const PointArrays& goals, const Workers& workers);
+    /// The shares of the ways to the goals that vertices may go. @pre may_meet()
+    std::span<const float> allowed_shares(const RigidTransform* frame, const Bases& bases,
+                                          const Workers& workers);
     /// Pairs that could meet nevertheless, since a vertex is led on, or pinned, while others stay behind.
     std::span<const std::array<std::uint32_t, 4>> stuck() const { return stuck_; }
 
@@ -168,7 +170,7 @@ class SelfSurface {
     std::vector<std::uint8_t> meets_;         ///< by pair, as the ways are when a round begins
     std::vector<std::uint8_t> was_shortened_; ///< by vertex, in this round
     PointArrays bases_;                       ///< at a share of 0
-    std::span<const std::uint32_t> bodies_;   ///< by vertex, as Bases has them, or none
+    std::span<const std::uint32_t> bodies_;   ///< by vertex, as Bases has them
     PointArrays whole_goals_;                 ///< before any way was shortened
     std::vector<std::array<std::uint32_t, 4>> stuck_;
     // Contacts

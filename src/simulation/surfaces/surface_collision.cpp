@@ -36,6 +36,9 @@ constexpr int kMostPasses = 8;
 /// Pairs that are led on one way may be stuck with others.
 constexpr int kMostLeads = 16;
 
+/// So often more of a piece is left behind where a part of it has to be; then all of it is.
+constexpr int kMostLeft = 4;
+
 /// No model.
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
@@ -82,8 +85,9 @@ PairReach reach_of(float thickness, float edge_length, float least_gap) {
 SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vector<Collider>& colliders,
                                    const Particles& particles, const SimulationOptions& options)
     : options_(options), elements_(std::make_shared<Elements>(elements_of(deformable))),
-      inverse_masses_(deformable.inverse_masses), expected_(particles.positions), goals_(particles.positions),
-      is_leaving_(particles.count()), is_truncated_(particles.count()) {
+      common_motion_(deformable), inverse_masses_(deformable.inverse_masses), expected_(particles.positions),
+      goals_(particles.positions), common_ways_(particles.positions), is_leaving_(particles.count()),
+      is_truncated_(particles.count()) {
     const float edge_length = mean_edge_length(*elements_, particles.positions);
     for (const Collider& collider : colliders) {
         const std::vector<std::uint8_t> passes = let_through(deformable, models_.count());
@@ -225,6 +229,7 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
                                  const Workers& workers) {
     if (meter != nullptr) std::fill(stopped_by_.begin(), stopped_by_.end(), kNone);
     goals_ = particles.positions;
+    common_ways_.fill(0);
     for (int number = 0; number < kMostPasses; ++number) {
         if (number > 0) {
             models_.for_each_near(
@@ -238,13 +243,16 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
         if (std::exchange(is_truncated_[v], 0) == 0) continue;
         ++profile.truncated_count;
-        // The velocity is shortened as the way was.
-        const Vec3f way = goals_[v] - particles.frame_start[v];
-        const Vec3f left = particles.positions[v] - particles.frame_start[v];
+        // The velocity is shortened as the way was, both relative to what it was taken along with.
+        const Vec3f from = particles.frame_start[v] + common_ways_[v];
+        const Vec3f way = goals_[v] - from;
+        const Vec3f left = particles.positions[v] - from;
         const float way_sq = dot(way, way);
         const float share = way_sq > 0 ? std::clamp(dot(left, way) / way_sq, 0.0F, 1.0F) : 0;
-        const Vec3f velocity = goals_[v] - particles.previous[v];
-        particles.previous.set(v, particles.positions[v] - velocity * share);
+        const Vec3f common = common_ways_[v] * (1 / static_cast<float>(options_.substep_count));
+        const Vec3f velocity = (goals_[v] - particles.previous[v]) +
+                               (particles.remainders[v] - particles.previous_remainders[v]);
+        particles.put(v, {particles.positions[v], common + (velocity - common) * share});
         if (meter != nullptr && stopped_by_[v] != kNone) meter->charge(stopped_by_[v], v, particles);
     }
     profile.searched_face_count = profile.measured_pair_count = 0;
@@ -280,28 +288,75 @@ bool SurfaceCollision::pass(Particles& particles, bool is_first, const Workers& 
 /// So that the deformable does not meet itself. What models allow of a way, they allow of a part of it: the
 /// places that they allow are convex.
 void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles, const Workers& workers) {
-    const bool is_one_frame =
-        !is_first || !models_.any_moves() || (own_pose() != nullptr && !models_.any_deforms());
-    SelfSurface::Bases* const bases = is_one_frame ? nullptr : &leading_->begin(models_);
-    if (bases != nullptr)
-        for (std::uint32_t v = 0; v < particles.count(); ++v)
-            bases->places.set(v, base_of(v, is_first, particles, workers));
+    if (!self_->may_meet(own_pose(), ends_, workers)) return;
+    SelfSurface::Bases& bases = leading_->begin(models_);
+    find_bases(bases, is_first, particles, workers);
+    const bool is_one_frame = !is_first || has_one_frame();
     std::span<const float> shares;
     for (int round = 0; round < kMostLeads; ++round) {
-        shares = self_->allowed_shares(own_pose(), ends_, bases, workers);
-        if (bases == nullptr || self_->stuck().empty()) break;
-        if (!leading_->lead_together(self_->stuck(), models_, particles, workers)) break;
+        shares = self_->allowed_shares(own_pose(), bases, workers);
+        if (self_->stuck().empty()) break;
+        const bool is_led = is_one_frame
+                                ? leave_behind(bases, round < kMostLeft, particles)
+                                : leading_->lead_together(self_->stuck(), models_, particles, workers);
+        if (!is_led) break;
     }
     squeezed_now_ += self_->stuck().size();
-    if (shares.empty()) return;
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
         if (shares[v] == 1) continue;
-        const Vec3f end = ends_[v];
-        const Vec3f from = bases != nullptr ? bases->places[v] : base_of(v, is_first, particles, workers);
+        const Vec3f from = bases.places[v], end = ends_[v];
         ends_.set(v, from + (end - from) * shares[v]);
+        if (bases.bodies[v] >= models_.count() && bases.bodies[v] != SelfSurface::Bases::kAlone)
+            common_ways_.set(v, from - particles.frame_start[v]);
         // Where one of the models takes a vertex may be none that another allows.
-        if (bases != nullptr && !models_.permit(v, ends_[v], true)) ++squeezed_now_;
+        if (!is_one_frame && !models_.permit(v, ends_[v], true)) ++squeezed_now_;
     }
+}
+
+/// Is there a frame in which all models that are near rest?
+bool SurfaceCollision::has_one_frame() const {
+    return !models_.any_moves() || (own_pose() != nullptr && !models_.any_deforms());
+}
+
+/// Where vertices end that go none of their way. In one frame of all models they go along with their piece,
+/// as far as the models permit.
+void SurfaceCollision::find_bases(SelfSurface::Bases& bases, bool is_first, const Particles& particles,
+                                  const Workers& workers) {
+    const bool has_common_motion = is_first && has_one_frame();
+    if (has_common_motion) common_motion_.measure(particles, goals_);
+    for (std::uint32_t v = 0; v < particles.count(); ++v) {
+        bases.places.set(v, base_of(v, is_first, particles, workers));
+        if (is_first && !has_common_motion) continue;
+        bases.stays[v] = 1;
+        bases.bodies[v] = SelfSurface::Bases::kAlone;
+        if (!has_common_motion || particles.pinned(v)) continue;
+        const std::optional<Vec3f> way = common_motion_.way_of(v);
+        if (!way || (*way == Vec3f{} && carrier() == nullptr)) continue;
+        const Vec3f place = particles.frame_start[v] + *way;
+        if (!models_.permit_after_a_look(v, place, false, workers)) continue;
+        bases.places.set(v, place);
+        bases.stays[v] = 0;
+        bases.bodies[v] = static_cast<std::uint32_t>(models_.count()) + common_motion_.piece_of(v);
+    }
+}
+
+/// Where one part of a piece goes along with it and another cannot, pairs between them may be stuck: what is
+/// stuck stays, or, after some attempts, all does. In one frame of all models that is always possible.
+/// @return whether any is left behind that was not before
+bool SurfaceCollision::leave_behind(SelfSurface::Bases& bases, bool only_stuck, const Particles& particles) {
+    bool is_any_left = false;
+    const auto leave = [&](std::uint32_t v) {
+        if (bases.stays[v] != 0) return;
+        bases.places.set(v, carrier() != nullptr ? carrier()->carried(v) : particles.frame_start[v]);
+        bases.stays[v] = 1;
+        bases.bodies[v] = SelfSurface::Bases::kAlone;
+        is_any_left = true;
+    };
+    if (only_stuck)
+        for (const auto& points : self_->stuck()) std::for_each(points.begin(), points.end(), leave);
+    else
+        for (std::uint32_t v = 0; v < particles.count(); ++v) leave(v);
+    return is_any_left;
 }
 
 /// A vertex that leaves its room beside one model is looked at beside all of them.
@@ -340,19 +395,17 @@ Vec3f SurfaceCollision::base_of(std::uint32_t vertex, bool is_first, const Parti
 Vec3f SurfaceCollision::find_place(std::uint32_t vertex, bool is_first, const Particles& particles,
                                    const Workers& workers) {
     const Vec3f goal = goals_[vertex];
-    if (particles.pinned(vertex)) {
-        ++squeezed_now_;
-        return goal;
-    }
     const ModelSurface* only = is_first ? carrier() : nullptr;
+    const bool is_pinned = particles.pinned(vertex); // goes all of its way, beside each model as that sees it
     const Vec3f from = base_of(vertex, is_first, particles, workers);
     Shares shares;
     models_.for_each_near([&](std::size_t c, ModelSurface& model) {
         const float most = shares.most;
-        shares.keep(model.allowed(vertex, &model == only ? nullptr : &from));
+        shares.keep(model.allowed(vertex, is_pinned || &model == only ? nullptr : &from));
         if (shares.most < most || shares.none()) stopped_by_[vertex] = static_cast<std::uint32_t>(c);
     });
-    if (shares.none()) ++squeezed_now_;
+    if (shares.none() || (is_pinned && shares.most < 1)) ++squeezed_now_;
+    if (is_pinned) return goal;
     const float share = shares.none() ? 0 : std::max(shares.most, 0.0F);
     if (share == 1) return goal;
     return only != nullptr ? only->place_at(share, vertex) : from + (goal - from) * share;

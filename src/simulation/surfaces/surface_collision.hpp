@@ -2,6 +2,7 @@
 
 #include "simulation/collisions.hpp"
 #include "simulation/particles.hpp"
+#include "simulation/surfaces/common_motion.hpp"
 #include "simulation/surfaces/leading.hpp"
 #include "simulation/surfaces/near_models.hpp"
 #include "simulation/surfaces/self_surface.hpp"
@@ -58,6 +59,10 @@ class SurfaceCollision {
     void find_leaving(const Workers& workers);
     void shorten_ways(bool is_first, const Particles& particles, const Workers& workers);
     Vec3f find_place(std::uint32_t vertex, bool is_first, const Particles& particles, const Workers& workers);
+    bool has_one_frame() const;
+    void find_bases(SelfSurface::Bases& bases, bool is_first, const Particles& particles,
+                    const Workers& workers);
+    bool leave_behind(SelfSurface::Bases& bases, bool only_stuck, const Particles& particles);
     const ModelSurface* carrier() const;
     Vec3f base_of(std::uint32_t vertex, bool is_first, const Particles& particles, const Workers& workers);
 
@@ -67,7 +72,8 @@ class SurfaceCollision {
     std::vector<float> carry_reaches_; ///< by model
     std::vector<float> extents_; ///< by model, the deformable last: coordinates for which least gaps allow
     std::optional<SelfSurface> self_;
-    std::optional<Leading> leading_;    ///< always, once constructed
+    std::optional<Leading> leading_; ///< always, once constructed
+    CommonMotion common_motion_;
     std::vector<RigidTransform> poses_; ///< of the colliders, as of the last substep
     std::vector<float> inverse_masses_;
     /// Where one model is near, the deformable's own pairs are looked at in its frame, so that what it takes
@@ -78,6 +84,7 @@ class SurfaceCollision {
     std::size_t own_frame_ = 0;               ///< a collider, or beyond the last: the world
     std::vector<RigidTransform> start_poses_; ///< of the colliders
     PointArrays expected_, goals_, ends_;
+    PointArrays common_ways_; ///< of this frame, by vertex: with which its piece has taken it along, or 0
     std::vector<std::vector<float>> clearances_; ///< by model and vertex
     std::vector<std::uint32_t> leaving_;
     std::vector<std::uint8_t> is_leaving_, is_truncated_;

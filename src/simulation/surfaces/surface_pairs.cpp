@@ -11,7 +11,8 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Where nothing is near, the tree is asked for a clearance up to so many times the reach of the lists.
+/// Where nothing is near, the tree is asked for a clearance up to so many times the reach of the lists, or
+/// the way of a vertex that goes farther than that.
 constexpr float kFarReach = 4;
 
 constexpr float kRounding = 1.0F / (1 << 20);
@@ -135,10 +136,14 @@ float SurfacePairs::clearance_of(const Element& element) const {
     return best * (1 - kRounding);
 }
 
-/// Notes where an element is whose list is made. @return whether what is known of its distance is enough
-bool SurfacePairs::is_far(std::uint32_t element) {
+void SurfacePairs::note_place(std::uint32_t element) {
     for (std::size_t k = 0; k < 3; ++k)
         element_listed_at_[element][k] = (*starts_)[own_->all[element].vertices[k]];
+}
+
+/// Notes where an element is whose list is made. @return whether what is known of its distance is enough
+bool SurfacePairs::is_far(std::uint32_t element) {
+    note_place(element);
     const float clearance = clearance_of(own_->all[element]) - 2 * opponent_.most;
     list_reaches_[element] = std::max(clearance, reach_.listed);
     return clearance > reach_.listed;
@@ -156,7 +161,8 @@ void SurfacePairs::list(std::uint32_t element, std::size_t worker) {
         list_pairs(own, other, listing.near);
     });
     keep_near(element, listing);
-    if (!touches) list_reaches_[element] = far_reach(element);
+    if (!touches)
+        list_reaches_[element] = std::max(reach_.listed, distance_to(element, kFarReach * reach_.listed));
 }
 
 /// Beside an opponent that deforms all lists are made in each frame: group by group, and what two elements
@@ -207,21 +213,25 @@ void SurfacePairs::list_piece(std::size_t piece, Listing& listing, std::size_t w
     }
 }
 
-/// A lower bound of how far it is from an element's way to the opponent's, up to some reaches.
-float SurfacePairs::far_reach(std::uint32_t element) const {
+/// A lower bound of how far it is from an element's way to the opponent's.
+float SurfacePairs::distance_to(std::uint32_t element, float most) const {
     Box box = ways_of(element).reached;
     box.grow(-reach_.listed);
-    return std::max(reach_.listed, opponent_.tree->distance(box, kFarReach * reach_.listed));
+    return opponent_.tree->distance(box, most);
 }
 
-/// Looks farther around a vertex that leaves its room where nothing is listed. @return whether that helps
-bool SurfacePairs::look_farther(std::uint32_t vertex) {
-    if (opponent_.ways == nullptr) return false;
+/// Looks as far as its way is long, and farther, around a vertex that leaves its room where nothing is
+/// listed: that little is known is no reason to hold it. @return whether that helps
+bool SurfacePairs::look_farther(std::uint32_t vertex, const Vec3f& goal) {
+    const float way = length(goal - (*bases_)[vertex]);
     bool helps = false;
     for (const std::uint32_t element : own_->at(vertex)) {
-        if (list_reaches_[element] != reach_.listed || !lists_.of(element).empty()) continue;
-        list_reaches_[element] = far_reach(element);
-        helps = helps || list_reaches_[element] > reach_.listed;
+        if (!lists_.of(element).empty() || bound_of(element) > way) continue;
+        const float distance = distance_to(element, kFarReach * std::max(way, reach_.listed));
+        if (!(distance > list_reaches_[element] - moved_since_listed(element))) continue;
+        note_place(element);
+        list_reaches_[element] = distance;
+        helps = true;
     }
     return helps;
 }
@@ -403,7 +413,7 @@ std::span<const std::uint32_t> SurfacePairs::find_leaving(const PointArrays& goa
             // In a later pass, after the opponent has deformed, most vertices have arrived: they rest, and so
             // need no room.
             if (rooms_[v] == -1 && opponent_.ends == nullptr && goals[v] == (*starts_)[v]) continue;
-            if (renewed_in_[v] == frame_ && !look_farther(v))
+            if (renewed_in_[v] == frame_ && !look_farther(v, goals[v]))
                 leaving_.push_back(v);
             else
                 wake(v);

@@ -147,12 +147,13 @@ class SurfacePairs {
     bool is_list_outdated(std::uint32_t element) const;
     float moved_since_listed(std::uint32_t element) const;
     void keep_lists(const Workers& workers);
+    void note_place(std::uint32_t element);
     bool is_far(std::uint32_t element);
     void list(std::uint32_t element, std::size_t worker);
     void list_on_their_ways(const Workers& workers);
     void list_piece(std::size_t piece, Listing& listing, std::size_t worker);
-    float far_reach(std::uint32_t element) const;
-    bool look_farther(std::uint32_t vertex);
+    float distance_to(std::uint32_t element, float most) const;
+    bool look_farther(std::uint32_t vertex, const Vec3f& goal);
     float clearance_of(const Element& element) const;
     Ways ways_of(std::uint32_t element) const;
     void list_pairs(const Ways& own, std::uint32_t other, std::vector<Pair>& near) const;
