@@ -1,39 +1,46 @@
 #pragma once
 
+#include "mesh/union_find.hpp"
 #include "simulation/particles.hpp"
 
 #include <echinus/simulation.hpp>
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace echinus {
 
-/// How each piece of a deformable moves as a whole in a frame. What cannot go its way relative to its piece
-/// still goes along with it: a crumple that stopped in the world would hang in the air.
+/// How each connected piece of a deformable moves as a whole in a frame. Layers that hold each other back still
+/// go along with their piece: if they stopped in the world, a crumpled cloth would hang in the air.
 class CommonMotion {
   public:
     explicit CommonMotion(const Deformable& deformable);
 
-    /// @param goals  where the frame leads the particles, from where it began
+    /// @param goals  where the frame leads the particles from where they began
     void measure(const Particles& particles, const PointArrays& goals);
-    /// The mean way of the vertex' piece: 0 of one that is pinned somewhere, and none of one that is attached
-    /// to a model, which goes along with that.
-    std::optional<Vec3f> way_of(std::uint32_t vertex) const;
-    /// The pieces have numbers, below the number of vertices.
-    std::uint32_t piece_of(std::uint32_t vertex) const { return piece_of_[vertex]; }
+    /// From now on in this frame, the pieces of these vertices count as one. @return whether they did not before
+    bool join(std::span<const std::uint32_t> vertices);
+
+    /// The least vertex of the piece that a vertex belongs to.
+    std::uint32_t piece_of(std::uint32_t vertex) { return joined_.find(vertex); }
+    /// The displacement of a piece: that of its centre of mass, or the one of all of its pinned vertices, which
+    /// hold it; none if these differ.
+    std::optional<Vec3f> displacement_of(std::uint32_t piece) const;
 
   private:
-    enum class Held : std::uint8_t { No, Pinned, Attached };
-
     struct Piece {
-        Held held = Held::No;
-        double count = 0;
-        Vec3d sum{};
+        double mass = 0;
+        Vec3d momentum{};
+        bool is_held = false, is_pulled_apart = false;
+        Vec3f held{}; ///< the displacement of its pinned vertices
+        void add(const Piece& other);
     };
-    std::vector<std::uint32_t> piece_of_; ///< by vertex
-    std::vector<Piece> pieces_;
+
+    UnionFind connected_, joined_;
+    std::vector<Piece> pieces_;  ///< by their least vertices
+    std::vector<double> masses_; ///< by vertex, 0 of one that is pinned
 };
 
 } // namespace echinus

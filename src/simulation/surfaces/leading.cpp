@@ -33,7 +33,6 @@ Leading::Leading(const Deformable& deformable, std::span<const float> carry_reac
                       : kPullReach * *std::max_element(carry_reaches.begin(), carry_reaches.end())) {
     bases_.places.resize(deformable.particle_count());
     bases_.bodies.assign(deformable.particle_count(), kAlone);
-    bases_.stays.assign(deformable.particle_count(), 0);
     for (const auto& [particle, collider] : deformable.attachments) attached_[particle] = collider;
 }
 
@@ -125,7 +124,6 @@ Vec3f Leading::carried_between(std::uint32_t vertex, NearModels& models, const P
 
 SelfSurface::Bases& Leading::begin(const NearModels& models) {
     has_groups_ = false;
-    std::fill(bases_.stays.begin(), bases_.stays.end(), std::uint8_t{0});
     for (std::uint32_t v = 0; v < attached_.size(); ++v) bases_.bodies[v] = body_of(v, models);
     return bases_;
 }
@@ -191,7 +189,8 @@ bool Leading::lead_group(std::span<const Member> members, NearModels& models, co
     for (std::size_t i = 0; i < std::min(by_pull.size(), kMostTried); ++i) {
         const std::uint32_t v = by_pull[i].second;
         const Vec3f way = bases_.places[v] - particles.frame_start[v];
-        if (lead_on(led, way, bases_.bodies[v], models, particles, workers)) return true;
+        const std::uint32_t body = bases_.bodies[v] < models.count() ? bases_.bodies[v] : kAlone;
+        if (lead_on(led, way, body, models, particles, workers)) return true;
     }
     return lead_on(led, {}, kAlone, models, particles, workers);
 }

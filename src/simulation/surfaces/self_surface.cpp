@@ -543,7 +543,7 @@ std::span<const float> SelfSurface::allowed_shares(const RigidTransform* frame, 
     for (const std::uint32_t v : surface_) {
         if (mobility_[v] == 0)
             bases_.set(v, goals_[v]);
-        else if (bases.stays[v] != 0)
+        else if (bodies_[v] == Bases::kStaying)
             bases_.set(v, starts_[v]);
     }
     list_pairs(workers);

@@ -56,10 +56,10 @@ class SelfSurface {
     /// Where vertices end that go none of their ways. What is pinned goes all of its way.
     struct Bases {
         static constexpr std::uint32_t kAlone = std::numeric_limits<std::uint32_t>::max();
+        static constexpr std::uint32_t kStaying = kAlone - 1; ///< left where it is in the frame
 
         PointArrays places;
         std::vector<std::uint32_t> bodies; ///< by vertex: what has one number goes there as one rigid body
-        std::vector<std::uint8_t> stays;   ///< by vertex: 1 for one that is left where it is in the frame
     };
 
     /// Could pairs meet on the way to the goals? If not, all may go the whole way.

@@ -36,9 +36,6 @@ constexpr int kMostPasses = 8;
 /// Pairs that are led on one way may be stuck with others.
 constexpr int kMostLeads = 16;
 
-/// So often more of a piece is left behind where a part of it has to be; then all of it is.
-constexpr int kMostLeft = 4;
-
 /// No model.
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
@@ -86,7 +83,7 @@ SurfaceCollision::SurfaceCollision(const Deformable& deformable, const std::vect
                                    const Particles& particles, const SimulationOptions& options)
     : options_(options), elements_(std::make_shared<Elements>(elements_of(deformable))),
       common_motion_(deformable), inverse_masses_(deformable.inverse_masses), expected_(particles.positions),
-      goals_(particles.positions), common_ways_(particles.positions), is_leaving_(particles.count()),
+      goals_(particles.positions), common_displacements_(particles.positions), is_leaving_(particles.count()),
       is_truncated_(particles.count()) {
     const float edge_length = mean_edge_length(*elements_, particles.positions);
     for (const Collider& collider : colliders) {
@@ -229,7 +226,7 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
                                  const Workers& workers) {
     if (meter != nullptr) std::fill(stopped_by_.begin(), stopped_by_.end(), kNone);
     goals_ = particles.positions;
-    common_ways_.fill(0);
+    common_displacements_.fill(0);
     for (int number = 0; number < kMostPasses; ++number) {
         if (number > 0) {
             models_.for_each_near(
@@ -244,12 +241,12 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
         if (std::exchange(is_truncated_[v], 0) == 0) continue;
         ++profile.truncated_count;
         // The velocity is shortened as the way was, both relative to what it was taken along with.
-        const Vec3f from = particles.frame_start[v] + common_ways_[v];
+        const Vec3f from = particles.frame_start[v] + common_displacements_[v];
         const Vec3f way = goals_[v] - from;
         const Vec3f left = particles.positions[v] - from;
         const float way_sq = dot(way, way);
         const float share = way_sq > 0 ? std::clamp(dot(left, way) / way_sq, 0.0F, 1.0F) : 0;
-        const Vec3f common = common_ways_[v] * (1 / static_cast<float>(options_.substep_count));
+        const Vec3f common = common_displacements_[v] * (1 / static_cast<float>(options_.substep_count));
         const Vec3f velocity = (goals_[v] - particles.previous[v]) +
                                (particles.remainders[v] - particles.previous_remainders[v]);
         particles.put(v, {particles.positions[v], common + (velocity - common) * share});
@@ -268,14 +265,12 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
 
 /// @return whether another pass may take a vertex farther
 bool SurfaceCollision::pass(Particles& particles, bool is_first, const Workers& workers) {
-    models_.for_each_near([&](std::size_t, ModelSurface& model) { model.set_goals(goals_); });
-    find_leaving(workers);
+    leaving_.clear();
+    find_leaving(goals_, workers);
     ends_ = goals_;
-    for (const std::uint32_t v : leaving_) {
-        ends_.set(v, find_place(v, is_first, particles, workers));
-        is_leaving_[v] = 0;
-    }
+    for (const std::uint32_t v : leaving_) ends_.set(v, find_place(v, is_first, particles, workers));
     if (self_) shorten_ways(is_first, particles, workers);
+    for (const std::uint32_t v : leaving_) is_leaving_[v] = 0;
     bool may_go_on = false;
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
         is_truncated_[v] = ends_[v] == goals_[v] ? 0 : 1;
@@ -290,24 +285,24 @@ bool SurfaceCollision::pass(Particles& particles, bool is_first, const Workers& 
 void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles, const Workers& workers) {
     if (!self_->may_meet(own_pose(), ends_, workers)) return;
     SelfSurface::Bases& bases = leading_->begin(models_);
-    find_bases(bases, is_first, particles, workers);
-    const bool is_one_frame = !is_first || has_one_frame();
+    common_motion_.measure(particles, goals_);
     std::span<const float> shares;
-    for (int round = 0; round < kMostLeads; ++round) {
+    do {
+        find_bases(bases, is_first, particles, workers);
         shares = self_->allowed_shares(own_pose(), bases, workers);
-        if (self_->stuck().empty()) break;
-        const bool is_led = is_one_frame
-                                ? leave_behind(bases, round < kMostLeft, particles)
-                                : leading_->lead_together(self_->stuck(), models_, particles, workers);
-        if (!is_led) break;
+    } while (join_stuck_pieces());
+    const bool is_one_frame = !is_first || has_one_frame();
+    for (int round = 1; round < kMostLeads && !is_one_frame && !self_->stuck().empty(); ++round) {
+        if (!leading_->lead_together(self_->stuck(), models_, particles, workers)) break;
+        shares = self_->allowed_shares(own_pose(), bases, workers);
     }
     squeezed_now_ += self_->stuck().size();
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
         if (shares[v] == 1) continue;
         const Vec3f from = bases.places[v], end = ends_[v];
         ends_.set(v, from + (end - from) * shares[v]);
-        if (bases.bodies[v] >= models_.count() && bases.bodies[v] != SelfSurface::Bases::kAlone)
-            common_ways_.set(v, from - particles.frame_start[v]);
+        if (goes_along_[common_motion_.piece_of(v)] != 0)
+            common_displacements_.set(v, from - particles.frame_start[v]);
         // Where one of the models takes a vertex may be none that another allows.
         if (!is_one_frame && !models_.permit(v, ends_[v], true)) ++squeezed_now_;
     }
@@ -318,50 +313,61 @@ bool SurfaceCollision::has_one_frame() const {
     return !models_.any_moves() || (own_pose() != nullptr && !models_.any_deforms());
 }
 
-/// Where vertices end that go none of their way. In one frame of all models they go along with their piece,
-/// as far as the models permit.
+/// Where vertices end that go none of their way: along with their piece if the models permit that to all of
+/// it, otherwise where models take each of them along, which is nowhere in one frame of all models.
 void SurfaceCollision::find_bases(SelfSurface::Bases& bases, bool is_first, const Particles& particles,
                                   const Workers& workers) {
-    const bool has_common_motion = is_first && has_one_frame();
-    if (has_common_motion) common_motion_.measure(particles, goals_);
+    goes_along_.assign(particles.count(), 0);
+    if (is_first) find_common_motion(bases.places, particles, workers);
+    const bool is_one_frame = !is_first || has_one_frame();
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
-        bases.places.set(v, base_of(v, is_first, particles, workers));
-        if (is_first && !has_common_motion) continue;
-        bases.stays[v] = 1;
-        bases.bodies[v] = SelfSurface::Bases::kAlone;
-        if (!has_common_motion || particles.pinned(v)) continue;
-        const std::optional<Vec3f> way = common_motion_.way_of(v);
-        if (!way || (*way == Vec3f{} && carrier() == nullptr)) continue;
-        const Vec3f place = particles.frame_start[v] + *way;
-        if (!models_.permit_after_a_look(v, place, false, workers)) continue;
-        bases.places.set(v, place);
-        bases.stays[v] = 0;
-        bases.bodies[v] = static_cast<std::uint32_t>(models_.count()) + common_motion_.piece_of(v);
+        const std::uint32_t piece = common_motion_.piece_of(v);
+        if (goes_along_[piece] != 0) {
+            bases.bodies[v] = static_cast<std::uint32_t>(models_.count()) + piece;
+        } else {
+            bases.places.set(v, base_of(v, is_first, particles, workers));
+            if (is_one_frame && !particles.pinned(v)) bases.bodies[v] = SelfSurface::Bases::kStaying;
+        }
     }
 }
 
-/// Where one part of a piece goes along with it and another cannot, pairs between them may be stuck: what is
-/// stuck stays, or, after some attempts, all does. In one frame of all models that is always possible.
-/// @return whether any is left behind that was not before
-bool SurfaceCollision::leave_behind(SelfSurface::Bases& bases, bool only_stuck, const Particles& particles) {
-    bool is_any_left = false;
-    const auto leave = [&](std::uint32_t v) {
-        if (bases.stays[v] != 0) return;
-        bases.places.set(v, carrier() != nullptr ? carrier()->carried(v) : particles.frame_start[v]);
-        bases.stays[v] = 1;
-        bases.bodies[v] = SelfSurface::Bases::kAlone;
-        is_any_left = true;
-    };
-    if (only_stuck)
-        for (const auto& points : self_->stuck()) std::for_each(points.begin(), points.end(), leave);
-    else
-        for (std::uint32_t v = 0; v < particles.count(); ++v) leave(v);
-    return is_any_left;
+/// Which pieces may go along with their common motion, and where that leads their vertices. A vertex that
+/// leaves its room on the way there is looked at beside all models as if its goal were there.
+void SurfaceCollision::find_common_motion(PointArrays& places, const Particles& particles,
+                                          const Workers& workers) {
+    for (std::uint32_t v = 0; v < particles.count(); ++v) {
+        const std::uint32_t piece = common_motion_.piece_of(v);
+        const std::optional<Vec3f> displacement = common_motion_.displacement_of(piece);
+        goes_along_[piece] = displacement ? 1 : 0;
+        places.set(v, particles.frame_start[v] + displacement.value_or(Vec3f{}));
+    }
+    const std::size_t known_count = leaving_.size();
+    std::size_t count = 0;
+    do {
+        count = leaving_.size();
+        find_leaving(places, workers);
+        find_leaving(goals_, workers);
+    } while (leaving_.size() > count);
+    for (std::size_t i = known_count; i < leaving_.size(); ++i)
+        ends_.set(leaving_[i], find_place(leaving_[i], true, particles, workers));
+    for (std::uint32_t v = 0; v < particles.count(); ++v)
+        if (!particles.pinned(v) && !models_.permit(v, places[v], false))
+            goes_along_[common_motion_.piece_of(v)] = 0;
+}
+
+/// Pieces that would meet on their common motions go on as one. @return whether there were any
+bool SurfaceCollision::join_stuck_pieces() {
+    bool is_any_joined = false;
+    for (const std::array<std::uint32_t, 4>& points : self_->stuck())
+        if (std::any_of(points.begin(), points.end(),
+                        [&](std::uint32_t v) { return goes_along_[common_motion_.piece_of(v)] != 0; }))
+            is_any_joined = common_motion_.join(points) || is_any_joined;
+    return is_any_joined;
 }
 
 /// A vertex that leaves its room beside one model is looked at beside all of them.
-void SurfaceCollision::find_leaving(const Workers& workers) {
-    leaving_.clear();
+void SurfaceCollision::find_leaving(const PointArrays& places, const Workers& workers) {
+    models_.for_each_near([&](std::size_t, ModelSurface& model) { model.set_goals(places); });
     const auto add = [&](std::span<const std::uint32_t> vertices) {
         const std::size_t before = leaving_.size();
         for (const std::uint32_t v : vertices)

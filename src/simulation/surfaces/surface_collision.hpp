@@ -56,13 +56,14 @@ class SurfaceCollision {
   private:
     void keep_gaps(const std::vector<Collider>& colliders, const Particles& particles);
     bool pass(Particles& particles, bool is_first, const Workers& workers);
-    void find_leaving(const Workers& workers);
+    void find_leaving(const PointArrays& places, const Workers& workers);
     void shorten_ways(bool is_first, const Particles& particles, const Workers& workers);
     Vec3f find_place(std::uint32_t vertex, bool is_first, const Particles& particles, const Workers& workers);
     bool has_one_frame() const;
     void find_bases(SelfSurface::Bases& bases, bool is_first, const Particles& particles,
                     const Workers& workers);
-    bool leave_behind(SelfSurface::Bases& bases, bool only_stuck, const Particles& particles);
+    void find_common_motion(PointArrays& places, const Particles& particles, const Workers& workers);
+    bool join_stuck_pieces();
     const ModelSurface* carrier() const;
     Vec3f base_of(std::uint32_t vertex, bool is_first, const Particles& particles, const Workers& workers);
 
@@ -84,7 +85,8 @@ class SurfaceCollision {
     std::size_t own_frame_ = 0;               ///< a collider, or beyond the last: the world
     std::vector<RigidTransform> start_poses_; ///< of the colliders
     PointArrays expected_, goals_, ends_;
-    PointArrays common_ways_; ///< of this frame, by vertex: with which its piece has taken it along, or 0
+    PointArrays common_displacements_; ///< by vertex: with which its piece took it along in this frame, or 0
+    std::vector<std::uint8_t> goes_along_; ///< by piece: models permit its common motion to all of it
     std::vector<std::vector<float>> clearances_; ///< by model and vertex
     std::vector<std::uint32_t> leaving_;
     std::vector<std::uint8_t> is_leaving_, is_truncated_;
