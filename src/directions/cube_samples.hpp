@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 
 namespace echinus {
 
@@ -36,6 +37,7 @@ void for_each_sample_of_side_near(const CubeGrid& grid, std::uint32_t side,
     if (part.empty()) return;
 
     double u_min = std::numbers::pi, u_max = -u_min, v_min = u_min, v_max = -u_min;
+    if (part.is_all_around()) std::swap(u_min, u_max), std::swap(v_min, v_max);
     for (const Vec3d& p : part) {
         const double u = std::atan2(p.x, p.z), v = std::atan2(p.y, p.z);
         u_min = std::min(u_min, u), u_max = std::max(u_max, u);

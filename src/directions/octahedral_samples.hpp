@@ -29,16 +29,11 @@ class OctantSamples {
         part.cut(Vec3d{0, 1, 0} + beside);
         part.cut(Vec3d{0, 0, 1} + beside);
         if (part.empty()) return;
+        if (part.is_all_around()) return visit_all();
 
         double x_min = n_, x_max = 0, y_min = n_, y_max = 0, sum_min = n_, sum_max = 0;
         for (const Vec3d& p : part) {
-            const double sum = p.x + p.y + p.z;
-            if (sum < kNear) {
-                x_min = y_min = sum_min = 0;
-                x_max = y_max = sum_max = n_;
-                break;
-            }
-            const double per_length = n_ / sum;
+            const double per_length = n_ / (p.x + p.y + p.z);
             const double x = p.x * per_length, y = p.y * per_length;
             x_min = std::min(x_min, x), x_max = std::max(x_max, x);
             y_min = std::min(y_min, y), y_max = std::max(y_max, y);
@@ -57,10 +52,6 @@ class OctantSamples {
   private:
     static constexpr double kMargin = 1e-3; // cells; far above the rounding of these lines
 
-    /// Nearer to the origin than so many lattice steps, cuts are off by too much to tell directions apart: by
-    /// some 2^-31 steps, which at this distance is 2^-19 cells or less.
-    static constexpr double kNear = 1;
-
     std::int32_t at_least(double value) const {
         return truncated_to<std::int32_t>(std::clamp(std::ceil(value), 0.0, n_ + 1.0));
     }
@@ -74,6 +65,10 @@ class OctantSamples {
                 static_cast<double>(negative_z_ ? -p.z : p.z)};
     }
 
+    void visit_all() const {
+        for (std::int32_t x = 0; x <= n_; ++x)
+            for (std::int32_t y = 0; y <= n_ - x; ++y) visit_if_owned(x, y);
+    }
     /// The sample n (|x|, |y|) of this octant's side.
     void visit_if_owned(std::int32_t x, std::int32_t y) const {
         if (negative_z_) { // folded outwards

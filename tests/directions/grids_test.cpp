@@ -163,6 +163,33 @@ TYPED_TEST(EveryGrid, VisitsAllSamplesInTheConeOfAFaceEachOnce) {
     }
 }
 
+TYPED_TEST(EveryGrid, VisitsAllSamplesInTheConeOfAFaceThatAllButTouchesTheOrigin) {
+    // A millionth of a lattice step away: as its corners are seen there, it fills half of all directions.
+    constexpr std::array<std::int64_t, 5> kPlaces{-370'725, -1, 0, 1, 370'726};
+    test::Random random(4);
+    const auto corner = [&] {
+        const auto place = [&] { return kPlaces[random() % kPlaces.size()]; };
+        return LatticePoint{place(), place(), place()};
+    };
+    const TypeParam grid = make<TypeParam>(4);
+    const std::vector<LatticePoint> directions = grid.lattice_directions();
+    int met = 0;
+    for (int n = 0; n < 20'000; ++n) {
+        const std::array<LatticePoint, 3> face{corner(), corner(), corner()};
+        const FaceCone cone(face[0], face[1], face[2]);
+        if (cone.edge_on()) continue;
+        std::vector<int> visits(directions.size());
+        for_each_sample_near(grid, face, 0, [&](std::uint32_t sample) { ++visits[sample]; });
+        for (std::size_t d = 0; d < directions.size(); ++d) {
+            ASSERT_LE(visits[d], 1);
+            if (!cone.meets(directions[d])) continue;
+            ASSERT_EQ(visits[d], 1) << n << ' ' << d;
+            ++met;
+        }
+    }
+    EXPECT_GT(met, 1000);
+}
+
 TYPED_TEST(EveryGrid, CrossesABoxOnItsSides) {
     const TypeParam grid = make<TypeParam>(16);
     const Crossings crossings = cast_rays(snap_to_lattice(make_box(kBoxSize)), grid, 0);

@@ -12,21 +12,22 @@
 
 namespace echinus {
 
-/// How each connected piece of a deformable moves as a whole in a frame. Layers that hold each other back still
-/// go along with their piece: if they stopped in the world, a crumpled cloth would hang in the air.
+/// How each connected piece of a deformable moves as a whole in a frame. Layers that hold each other back
+/// still go along with their piece: if they stopped in the world, a crumpled cloth would hang in the air.
 class CommonMotion {
   public:
     explicit CommonMotion(const Deformable& deformable);
 
     /// @param goals  where the frame leads the particles from where they began
     void measure(const Particles& particles, const PointArrays& goals);
-    /// From now on in this frame, the pieces of these vertices count as one. @return whether they did not before
+    /// From now on in this frame, the pieces of these vertices count as one. @return whether they did not
+    /// before
     bool join(std::span<const std::uint32_t> vertices);
 
     /// The least vertex of the piece that a vertex belongs to.
     std::uint32_t piece_of(std::uint32_t vertex) { return joined_.find(vertex); }
-    /// The displacement of a piece: that of its centre of mass, or the one of all of its pinned vertices, which
-    /// hold it; none if these differ.
+    /// The displacement of a piece: that of its centre of mass, or the one of all of its pinned vertices,
+    /// which hold it; none if these differ.
     std::optional<Vec3f> displacement_of(std::uint32_t piece) const;
 
   private:

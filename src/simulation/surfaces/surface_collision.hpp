@@ -86,7 +86,7 @@ class SurfaceCollision {
     std::vector<RigidTransform> start_poses_; ///< of the colliders
     PointArrays expected_, goals_, ends_;
     PointArrays common_displacements_; ///< by vertex: with which its piece took it along in this frame, or 0
-    std::vector<std::uint8_t> goes_along_; ///< by piece: models permit its common motion to all of it
+    std::vector<std::uint8_t> goes_along_;       ///< by piece: models permit its common motion to all of it
     std::vector<std::vector<float>> clearances_; ///< by model and vertex
     std::vector<std::uint32_t> leaving_;
     std::vector<std::uint8_t> is_leaving_, is_truncated_;
