@@ -64,11 +64,16 @@ struct TriangleSweepHit {
 /// The way of a triangle whose corners each move along a straight line, at the same time. An edge is a
 /// triangle with two equal corners.
 ///
-/// Conservative advancement: the triangle moves on by its clearance, until that is within R / 2^17, or within
-/// 10^-14 of how far from the centre the way begins and ends, if that is more. So where `fraction` is less
-/// than 1, it is that near to the surface; or it has moved 100 times, past something that it nearly touched
-/// all the way. A way that begins or ends farther than 10^11 R from the centre is not followed: nothing is
-/// met. Does not allocate. Cost: so many clearances as it moves.
+/// Conservative advancement, until the triangle is within R / 2^17 of the surface, or within 10^-13 of how
+/// far from the centre the way begins and ends, if that is more. So where `fraction` is less than 1, it is
+/// that near to the surface, but for the rounding of `fraction` itself. A way that begins or ends farther
+/// than 10^11 R from the centre is not followed: nothing is met. Does not allocate.
+///
+/// Cost: up to 16 clearances. A triangle that has not arrived by then, because it slides along the surface or
+/// leaves it slowly, is moved on beside each face for itself that comes within its box, until the first is
+/// met: by a few distances of two triangles, and by no more than 36 + 2 log2(L / R) where its corners move
+/// alike; L is the length of the way. One that turns closely around an edge all the way is taken in parts:
+/// that may take some ten thousand distances, and more the farther its corners are.
 TriangleSweepHit sweep(const ExactMapView& map, const TrianglePoints& from_local,
                        const TrianglePoints& to_local) noexcept;
 

@@ -3,6 +3,7 @@
 #include "exact_map/layout.hpp"
 #include "exact_map/query/face_tree_walk.hpp"
 #include "exact_map/query/leaf_bounds.hpp"
+#include "exact_map/query/triangle_arrival.hpp"
 #include "exact_map/query/triangle_distance.hpp"
 #include "geometry/parallel.hpp"
 #include "geometry/whole_numbers.hpp"
@@ -48,27 +49,22 @@ Vec3f rounded_up(const Vec3d& v) {
 /// A triangle in lattice steps, and the box around it.
 struct PlacedTriangle {
     TriangleCorners corners;
-    Vec3f low, high; ///< rounded outwards
-    /// More than the coordinates of the triangle and of faces are off, with all that distance_from_below()
-    /// makes of them: 2^-46 of their sum.
-    double rounding;
+    Vec3f low, high;                  ///< rounded outwards
+    double rounding;                  ///< see rounding_of()
     std::optional<NearTriangle> near; ///< for kernels; absent when they are off, it is far away or large
 
     PlacedTriangle(const LatticeFrame& frame, const TrianglePoints& points)
         : PlacedTriangle(TriangleCorners{frame.to_lattice(points[0]), frame.to_lattice(points[1]),
                                          frame.to_lattice(points[2])},
-                         length_of(frame.centre) * frame.inverse_step) {}
+                         extent_of(frame.centre) * frame.inverse_step) {}
 
-    /// @param rounded_extent  of what was rounded to get the corners, such as the frame's centre
     PlacedTriangle(const TriangleCorners& places, double rounded_extent) : corners(places) {
         const auto& [a, b, c] = places;
         const Vec3d least{std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::min({a.z, b.z, c.z})};
         const Vec3d most{std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y}), std::max({a.z, b.z, c.z})};
         low = rounded_down(least);
         high = rounded_up(most);
-        rounding = (length_of(a) + length_of(b) + length_of(c) + rounded_extent +
-                    3.0 * static_cast<double>(kLatticeExtent)) *
-                   0x1p-46;
+        rounding = rounding_of(places, rounded_extent);
         const auto within_range = [](const Vec3d& v) {
             return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}) < NearTriangle::kRange;
         };
@@ -80,8 +76,6 @@ struct PlacedTriangle {
                 .low = rounded_down(least - from),
                 .high = rounded_up(most - from)};
     }
-
-    static double length_of(const Vec3d& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
 };
 
 /// Lower bounds of the squared distances between the box of a triangle and those of a node's children, in
@@ -129,6 +123,64 @@ float box_gap_sq(const std::array<LatticePoint, 3>& face, const Vec3f& low, cons
     const float z = gap(a.z, b.z, c.z, low.z, high.z);
     return (x * x + y * y + z * z) * (1 - 0x1p-20F);
 }
+
+/// Fractions of the way, from below, at which the box around a moving triangle comes within `reach` of those
+/// of a node's children; more than 1 for those to which it does not come. The box's sides each move as the
+/// fastest corner does.
+class BoxArrivals {
+  public:
+    BoxArrivals(const MovingTriangle& moving, double start, double reach) : start_(start), reach_(reach) {
+        const TriangleCorners now = moving.at(start);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto [low, high] = range_of(now, kAxes[axis]);
+            const auto [slowest, fastest] = range_of(moving.way, kAxes[axis]);
+            sides_[axis] = {low, high, slowest, fastest};
+        }
+    }
+
+    ChildDistances operator()(const TreeNode& node) const {
+        ChildDistances result;
+        for (std::size_t k = 0; k < TreeNode::kWidth; ++k) {
+            double after = 0, until = 1 - start_;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const Sides& sides = sides_[axis];
+                const double low = node.low[axis][k] * kUnit - reach_;
+                const double high = node.high[axis][k] * kUnit + reach_;
+                clip(low - sides.high, sides.high_way, after, until);
+                clip(sides.low - high, -sides.low_way, after, until);
+            }
+            const bool comes = after <= until && node.low[0][k] <= node.high[0][k];
+            result[k] = comes ? static_cast<float>(start_ + after) * (1 - 0x1p-20F) : kNever;
+        }
+        return result;
+    }
+
+  private:
+    static constexpr float kNever = 2;
+    static constexpr double kUnit = ExactMapView::kBoxUnit;
+    static constexpr std::array kAxes{&Vec3d::x, &Vec3d::y, &Vec3d::z};
+
+    struct Sides {
+        double low, high, low_way, high_way;
+    };
+
+    static std::pair<double, double> range_of(const TriangleCorners& t, double Vec3d::*axis) {
+        return std::minmax({t[0].*axis, t[1].*axis, t[2].*axis});
+    }
+
+    /// Keeps the times at which a gap that closes at a speed is closed.
+    static void clip(double gap, double speed, double& after, double& until) {
+        if (speed > 0)
+            after = std::max(after, gap / speed);
+        else if (speed < 0)
+            until = std::min(until, gap / speed);
+        else if (gap > 0)
+            until = -1;
+    }
+
+    double start_, reach_;
+    std::array<Sides, 3> sides_;
+};
 
 /// Lattice steps: farther away nothing is looked for. Its square is a float.
 constexpr double kFarthest = 1e18;
@@ -188,6 +240,32 @@ std::optional<NearestFace> nearest_face(const ExactMapView& map, const PlacedTri
         bound = bound_of(limit);
     });
     return nearest;
+}
+
+/// The face to which a moving triangle comes first, and when.
+struct FirstFace {
+    std::uint32_t face;
+    double fraction;
+};
+
+/// Face by face. @param start  up to there no face is met
+std::optional<FirstFace> first_face(const ExactMapView& map, const MovingTriangle& moving, double start,
+                                    const ArrivalTolerance& tolerance) {
+    std::optional<FirstFace> first;
+    float bound = 1;
+    // Boxes lie within a step of their faces; the rest is more than rounding.
+    const BoxArrivals arrivals(moving, start, 1 + 8 * tolerance.reach);
+    walk_near_leaves(map, bound, arrivals, [&](const LeafFaces& faces) {
+        for (std::uint32_t face = faces.first; face < faces.last; ++face) {
+            const auto [a, b, c] = face_corners(map, face);
+            const auto fraction = arrival(moving, {Vec3d(a), Vec3d(b), Vec3d(c)}, start,
+                                          first ? first->fraction : 1, tolerance);
+            if (!fraction || (first && *fraction == first->fraction && face > first->face)) continue;
+            first = FirstFace{face, *fraction};
+            bound = static_cast<float>(*fraction) * (1 + 0x1p-20F);
+        }
+    });
+    return first;
 }
 
 std::int32_t number_of(const ExactMapView& map, std::uint32_t face) {
@@ -250,34 +328,37 @@ Clearance clearance(const ExactMapView& map, const TrianglePoints& triangle_loca
 TriangleSweepHit sweep(const ExactMapView& map, const TrianglePoints& from_local,
                        const TrianglePoints& to_local) noexcept {
     constexpr double kArrived = 4; // lattice steps: R / 2^17
-    constexpr int kMostMoves = 100;
+    constexpr int kMovesOfAll = 16;
     if (!all_finite(from_local) || !all_finite(to_local)) return {};
     const LatticeFrame frame = frame_of(map);
-    TriangleCorners from, way;
+    MovingTriangle moving;
     double longest = 0, extent = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-        from[k] = frame.to_lattice(from_local[k]);
+        moving.from[k] = frame.to_lattice(from_local[k]);
         const Vec3d to = frame.to_lattice(to_local[k]);
-        way[k] = to - from[k];
-        longest = std::max(longest, length(way[k]));
-        extent = std::max(extent, PlacedTriangle::length_of(from[k]) + PlacedTriangle::length_of(to));
+        moving.way[k] = to - moving.from[k];
+        longest = std::max(longest, length(moving.way[k]));
+        extent = std::max(extent, extent_of(moving.from[k]) + extent_of(to));
     }
     if (extent > kFarthest / 2) return {};
-    // A place on the way is off by less than 2^-49 of the extent, however near it is.
-    const double rounded_extent =
-        PlacedTriangle::length_of(frame.centre) * frame.inverse_step + extent * 0x1p-3;
+    // A place on the way is off by less than 2^-47 of the extent, however near it is.
+    const ArrivalTolerance tolerance{.reach = std::max(kArrived, extent * 0x1p-46),
+                                     .rounded_extent =
+                                         extent_of(frame.centre) * frame.inverse_step + extent * 0x1p-1};
     double fraction = 0;
-    for (int move = 0;; ++move) {
-        const TriangleCorners now{from[0] + way[0] * fraction, from[1] + way[1] * fraction,
-                                  from[2] + way[2] * fraction};
+    for (int move = 0; move < kMovesOfAll; ++move) {
         const double rest = longest * (1 - fraction);
-        const auto nearest = nearest_face(map, PlacedTriangle(now, rounded_extent), std::max(rest, kArrived));
+        const PlacedTriangle now(moving.at(fraction), tolerance.rounded_extent);
+        const auto nearest = nearest_face(map, now, std::max(rest, tolerance.reach));
         if (!nearest) return {};
-        if (nearest->distance <= kArrived || move == kMostMoves)
+        if (nearest->distance <= tolerance.reach)
             return {.fraction = rounded_down(fraction), .face = number_of(map, nearest->face)};
         if (nearest->distance >= rest) return {};
         fraction += nearest->distance / longest * (1 - 0x1p-40);
     }
+    const auto first = first_face(map, moving, fraction, tolerance);
+    if (!first) return {};
+    return {.fraction = rounded_down(first->fraction), .face = number_of(map, first->face)};
 }
 
 void faces_within_batch(const ExactMapView& map, StridedSpan<const Vec3f> vertices_local,

@@ -73,10 +73,15 @@ double gap_along(const Vec3d& direction, const TriangleCorners& a, const Triangl
 
 /// Along every direction that can be the right one where nearest points are ill-determined, because edges are
 /// nearly parallel or triangles are slivers.
-double careful_gap(const TriangleCorners& a, const TriangleCorners& b) {
-    double gap = 0;
+TriangleGap careful_gap(const TriangleCorners& a, const TriangleCorners& b) {
+    TriangleGap widest;
+    const auto try_one = [&](const Vec3d& direction) {
+        const double width = gap_along(direction, a, b);
+        if (width > widest.width) widest = {direction, width};
+    };
     const auto try_both = [&](const Vec3d& direction) {
-        gap = std::max({gap, gap_along(direction, a, b), gap_along(-direction, a, b)});
+        try_one(direction);
+        try_one(-direction);
     };
     try_both(normal_of(a));
     try_both(normal_of(b));
@@ -88,20 +93,25 @@ double careful_gap(const TriangleCorners& a, const TriangleCorners& b) {
             try_both(cross(cross(v, a[i] - b[j]), v));
             try_both(b[j] - a[i]);
         }
-    return gap;
+    return widest;
 }
 
 } // namespace
 
-double distance_from_below(const TriangleCorners& a, const TriangleCorners& b, double rounding) noexcept {
+TriangleGap gap_between(const TriangleCorners& a, const TriangleCorners& b) noexcept {
     const Vec3d& origin = b[0];
     const TriangleCorners near_a{a[0] - origin, a[1] - origin, a[2] - origin};
     const TriangleCorners near_b{Vec3d{}, b[1] - origin, b[2] - origin};
     const Vec3d shortest = shortest_between(near_a, near_b);
     constexpr double kGood = 1 - 0x1p-20;
-    double gap = gap_along(shortest, near_a, near_b);
-    if (!(gap >= length(shortest) * kGood)) gap = std::max(gap, careful_gap(near_a, near_b));
-    return std::max(gap - rounding, 0.0);
+    const TriangleGap gap{shortest, gap_along(shortest, near_a, near_b)};
+    if (gap.width >= length(shortest) * kGood) return gap;
+    const TriangleGap careful = careful_gap(near_a, near_b);
+    return careful.width > gap.width ? careful : gap;
+}
+
+double distance_from_below(const TriangleCorners& a, const TriangleCorners& b, double rounding) noexcept {
+    return std::max(gap_between(a, b).width - rounding, 0.0);
 }
 
 } // namespace echinus
