@@ -1,11 +1,11 @@
 #include "property/shape_judge.hpp"
 
-#include "property/choices.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
+#include <vector>
 
 namespace echinus::test {
 
@@ -68,6 +68,73 @@ double distance_of_triangles(const Corners& a, const Corners& b) {
             least = std::min(least, distance_of_segments(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]));
     }
     return least;
+}
+
+/// Calls visit(low, high) for strips from the least to the greatest of some ends, so many at least that they
+/// are narrow. All ends are also ends of strips, except for those that differ by mere rounding.
+template <typename Visit>
+void for_each_strip(std::vector<double>& ends, Visit&& visit) {
+    constexpr int kLeastCount = 128;
+    constexpr double kRounding = 1e-7; // of the whole
+    if (ends.empty()) return;
+    std::ranges::sort(ends);
+    const double whole = ends.back() - ends.front();
+    double low = ends.front();
+    for (const double high : ends) {
+        if (!(high - low > kRounding * whole) && high != ends.back()) continue;
+        const double count = std::floor((high - low) / whole * kLeastCount) + 1;
+        for (double i = 0; i < count && high > low; ++i)
+            visit(low + (high - low) * (i / count), low + (high - low) * ((i + 1) / count));
+        low = high;
+    }
+}
+
+/// Where a plane x = constant cuts a face. The chords of a closed mesh go around what it encloses.
+struct Chord {
+    double from_y, from_z, to_y, to_z;
+};
+
+std::optional<Chord> cut_face(const Corners& face, double x) {
+    Chord chord{};
+    bool is_cut = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3d &a = face[k], &b = face[(k + 1) % 3];
+        if ((a.x > x) == (b.x > x)) continue;
+        is_cut = true;
+        const Vec3d p = a + (b - a) * ((x - a.x) / (b.x - a.x));
+        (b.x > x ? chord.to_y : chord.from_y) = p.y;
+        (b.x > x ? chord.to_z : chord.from_z) = p.z;
+    }
+    return is_cut ? std::optional(chord) : std::nullopt;
+}
+
+/// How much of a line along z has another winding number than 0.
+double enclosed_length(const std::vector<Chord>& section, double y,
+                       std::vector<std::pair<double, int>>& crossed) {
+    crossed.clear(); // z, and by how much the winding number grows there
+    for (const Chord& c : section)
+        if ((c.from_y > y) != (c.to_y > y))
+            crossed.emplace_back(c.from_z + (c.to_z - c.from_z) * ((y - c.from_y) / (c.to_y - c.from_y)),
+                                 c.to_y > y ? 1 : -1);
+    std::ranges::sort(crossed);
+    int winding = 0;
+    double sum = 0;
+    for (std::size_t k = 0; k + 1 < crossed.size(); ++k) {
+        winding += crossed[k].second;
+        if (winding != 0) sum += crossed[k + 1].first - crossed[k].first;
+    }
+    return sum;
+}
+
+double enclosed_area(const std::vector<Chord>& section) {
+    std::vector<double> ends;
+    for (const Chord& c : section) ends.insert(ends.end(), {c.from_y, c.to_y});
+    std::vector<std::pair<double, int>> crossed;
+    double sum = 0;
+    for_each_strip(ends, [&](double low, double high) {
+        sum += enclosed_length(section, (low + high) / 2, crossed) * (high - low);
+    });
+    return sum;
 }
 
 } // namespace
@@ -138,39 +205,23 @@ double ShapeJudge::distance(const Corners& triangle) const {
     return least;
 }
 
-double ShapeJudge::enclosed_volume(int lines) const {
-    Vec3d low(mesh_.vertices.front()), high = low;
-    for (const Vec3f& v : mesh_.vertices) {
-        low = {std::min<double>(low.x, v.x), std::min<double>(low.y, v.y), std::min<double>(low.z, v.z)};
-        high = {std::max<double>(high.x, v.x), std::max<double>(high.y, v.y), std::max<double>(high.z, v.z)};
-    }
-    Choices choices(1);
-    std::vector<std::pair<double, int>> crossed; // z, and by how much the winding number grows there
+double ShapeJudge::enclosed_volume() const {
+    std::vector<double> ends;
+    for (const FaceBall& face : faces_)
+        for (const Vec3d& corner : face.corners) ends.push_back(corner.x);
     double sum = 0;
-    for (int i = 0; i < lines; ++i)
-        for (int j = 0; j < lines; ++j) {
-            // One line somewhere in each field of the grid.
-            const double u = (i + choices.within(0, 1)) / lines, v = (j + choices.within(0, 1)) / lines;
-            const double x = low.x + (high.x - low.x) * u, y = low.y + (high.y - low.y) * v;
-            crossed.clear();
-            for (std::size_t face = 0; face < face_count(); ++face) {
-                const auto& [a, b, c] = corners(face);
-                const auto side = [&](const Vec3d& p, const Vec3d& q) {
-                    return (q.x - p.x) * (y - p.y) - (q.y - p.y) * (x - p.x);
-                };
-                const double wa = side(b, c), wb = side(c, a), wc = side(a, b);
-                const bool is_front = wa > 0 && wb > 0 && wc > 0, is_back = wa < 0 && wb < 0 && wc < 0;
-                if (!is_front && !is_back) continue;
-                crossed.emplace_back((wa * a.z + wb * b.z + wc * c.z) / (wa + wb + wc), is_front ? -1 : 1);
-            }
-            std::ranges::sort(crossed);
-            int winding = 0;
-            for (std::size_t k = 0; k + 1 < crossed.size(); ++k) {
-                winding += crossed[k].second;
-                if (winding != 0) sum += crossed[k + 1].first - crossed[k].first;
-            }
+    std::vector<Chord> section;
+    for_each_strip(ends, [&](double low, double high) {
+        // The two points of Gauss.
+        for (const double share : {0.5 - std::sqrt(1.0 / 12), 0.5 + std::sqrt(1.0 / 12)}) {
+            const double x = low + (high - low) * share;
+            section.clear();
+            for (const FaceBall& face : faces_)
+                if (const std::optional<Chord> chord = cut_face(face.corners, x)) section.push_back(*chord);
+            sum += enclosed_area(section) * (high - low) / 2;
         }
-    return sum * (high.x - low.x) * (high.y - low.y) / (lines * lines);
+    });
+    return sum;
 }
 
 } // namespace echinus::test

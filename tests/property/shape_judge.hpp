@@ -40,9 +40,10 @@ class ShapeJudge {
     double distance(const Corners& triangle, std::size_t face) const;
     double distance(const Corners& triangle) const;
 
-    /// The volume of all places where the winding number is not 0, by intervals on `lines` x `lines` rays
-    /// along an axis.
-    double enclosed_volume(int lines) const;
+    /// The volume of all places where the winding number is not 0. It is exact up to rounding where no faces
+    /// pass through each other: between its corners a section is as wide as a linear function says, and
+    /// between vertices its area is quadratic. Elsewhere it is off by less than a thousandth.
+    double enclosed_volume() const;
 
     std::size_t face_count() const { return mesh_.faces.size(); }
 
