@@ -90,7 +90,9 @@ struct Tetrahedralization {
 /// 161.7 degrees (docs/tetrahedra.md). The boundary is closed, manifold and does not intersect itself. Its
 /// vertices lie on the model's surface, up to rounding and two lattice steps of the map, except for those
 /// where tetrahedra were removed. Between them it may be off by about half a size, where the model has edges
-/// or features finer than the lattice; parts that are nearer than a size to each other may join.
+/// or features finer than the lattice; parts that are nearer than a size to each other may join. The volume
+/// therefore differs from the model's, mostly downwards, by a share that falls with the square of the size
+/// once all parts are thicker than that (docs/tetrahedra.md): compare TetrahedralReport::volume.
 ///
 /// For an open model, inside is where the generalised winding number says so (exact_map.hpp).
 /// The vertices are numbered along its longest axis.
