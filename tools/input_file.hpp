@@ -19,7 +19,7 @@ class InputFile {
     /// @throws echinus::Error Unreadable
     InputFile(const std::filesystem::path& argument, const std::string& format);
 
-    /// What the user calls it.
+    /// The user's name for it.
     const std::string& name() const { return name_; }
 
     /// Calls `read(path)`; in the sentence of an Error the copy is called "standard input".
@@ -64,7 +64,7 @@ struct MeshArgument {
     std::filesystem::path path;
     std::string format;
 
-    /// What sentences call it: the path, or "standard input".
+    /// The name in sentences: the path, or "standard input".
     std::string name() const;
 
     /// The option --format, which names the format of a mesh on standard input.

@@ -81,9 +81,9 @@ void require_valid(const TriangleMesh& mesh);
 /// @pre points are finite. No points give a sphere of radius 0 at the origin.
 Sphere smallest_enclosing_sphere(std::span<const Vec3f> points);
 
-/// What repair() may do. All off by default: a mesh is never changed without request. Those of all() need no
-/// guess. The others make open surfaces and assemblies solid, in ways that are right for some meshes and not
-/// for others.
+/// The steps that repair() may take. All off by default: a mesh is never changed without request. Those of
+/// all() need no guess. The others make open surfaces and assemblies solid, in ways that are right for some
+/// meshes and not for others.
 ///
 /// None opens a closed mesh.
 struct RepairOptions {

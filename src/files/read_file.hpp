@@ -23,7 +23,7 @@ using CheckBeginning = std::function<void(std::span<const std::byte> beginning)>
 /// is opened, or fewer when it is shortened meanwhile; of a pipe or a device all.
 ///
 /// @throws Error Unreadable, also when a pipe or a device has more than `most_stream_bytes`; the sentence
-/// begins with the path. What the check throws passes through.
+/// begins with the path. Exceptions of the check pass through.
 std::vector<std::byte> read_file(const std::filesystem::path& path,
                                  const CheckBeginning& check_beginning = nullptr,
                                  std::size_t most_stream_bytes = kMostStreamBytes);

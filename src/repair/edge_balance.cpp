@@ -65,7 +65,7 @@ EdgeBalance::Faces EdgeBalance::droppable(std::vector<Faces> sets) {
                      [](const EdgeOfSet& a, const EdgeOfSet& b) { return a.edge < b.edge; });
     for (const Faces& set : sets) add(set, -1);
 
-    // What is put back changes the balance of its edges, which may spoil other sets there.
+    // A face that is put back changes the balance of its edges, which may spoil other sets there.
     std::vector<std::uint32_t> changed;
     for (const EdgeOfSet& use : uses) changed.push_back(use.edge);
     while (!changed.empty()) {

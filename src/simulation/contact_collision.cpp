@@ -31,8 +31,8 @@ bool came_through_a_side(const Collider& collider, const Contact& contact, const
     return contact.inside && contact.depth > length(motion) && !contains(collider, start);
 }
 
-/// What a contact leaves of a particle's motion. One that came through a side goes back to where it came
-/// from.
+/// The part of a particle's motion that a contact leaves. One that came through a side goes back to where it
+/// came from.
 /// @param motion  since the last frame, relative to the collider's material
 Vec3f answer(const Collider& collider, const Contact& contact, const Vec3f& position, const Vec3f& motion,
              const ResponseRules& rules) {

@@ -77,7 +77,7 @@ double FrameParts::longest_less(const Vec3f& common, const Particles& particles)
 }
 
 /// The longest of the ways that reach the model, or bring an element between vertices there, relative to it,
-/// or 0 if it is not longer than most. What is known already tells of most vertices that they do not.
+/// or 0 if it is not longer than most. The known clearances tell of most vertices that they do not.
 double FrameParts::longest_beside(const Collider& collider, double most, const Particles& particles) {
     places_.clear();
     ways_.clear();

@@ -82,7 +82,7 @@ std::uint64_t first_seed(const Records::Record& record) {
     return std::stoull(record.at("first seed"));
 }
 
-/// What was found by an earlier run with the same commit; of another one, it would not be true of this one.
+/// The findings of an earlier run with the same commit; those of another one would not be true of this one.
 Records earlier_report(const Arguments& arguments, const std::vector<std::string>& comments) {
     if (!fs::exists(arguments.report)) return empty_report();
     Records report = Records::read(arguments.report);

@@ -9,7 +9,7 @@
 
 namespace echinus::test {
 
-/// What checks of shapes have found so far.
+/// The findings of checks of shapes so far.
 struct ShapeFindings {
     std::size_t shapes = 0, faces = 0;
     std::size_t left_out = 0;   ///< shapes that enclose nothing or, for tetrahedra, are too thin

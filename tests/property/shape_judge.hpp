@@ -10,7 +10,7 @@
 
 namespace echinus::test {
 
-/// What is right about a closed mesh: by brute force over all its faces, in double, without any map.
+/// The right answers about a closed mesh: by brute force over all its faces, in double, without any map.
 class ShapeJudge {
   public:
     using Corners = std::array<Vec3d, 3>;

@@ -46,7 +46,7 @@ void set_coordinate(Vec3f& v, std::size_t axis, float value) {
     (axis == 0 ? v.x : axis == 1 ? v.y : v.z) = value;
 }
 
-// ---- What is made of parts
+// ---- Compositions of parts
 
 /// A polygon's edges, each with one point a prism: the wedges of a cake, or beyond its rim.
 Part wedges(Choices& choices) {
@@ -189,7 +189,7 @@ Part assembly(Choices& choices) {
     return part;
 }
 
-// ---- What is done to the whole
+// ---- Changes of the whole
 
 void turn(Part& part, Choices& choices) {
     const double kind = choices.within(0, 1);

@@ -64,7 +64,7 @@ TEST(Solver, LetsAParticleFallAsVerletDoes) {
 }
 
 TEST(Solver, LosesNothingOfGravityWhereverAParticleHasComeTo) {
-    // What gravity takes in a frame is little more than the last digit of a coordinate of 2000.
+    // Gravity moves a particle in a frame by little more than the last digit of a coordinate of 2000.
     const SimulationOptions options{.gravity = {-9.81, 0, 0}, .drag = 0, .bound = 1e5};
     Simulation simulation(single_particle({}, {}), {}, options);
     simulation.set_particle_velocity(0, {1000, 0, 0});

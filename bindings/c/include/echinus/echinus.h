@@ -191,7 +191,7 @@ typedef struct echinus_mesh_report {
     double centre[3];     ///< of the smallest sphere that encloses all vertices used by faces
     double radius;
     /// The step of float at the largest coordinate, where all coordinates are floats and half of this step
-    /// exceeds a step of a map's lattice; otherwise 0. What was rounded to it before is lost.
+    /// exceeds a step of a map's lattice; otherwise 0. Finer detail is lost.
     double rounding_step;
     int32_t orientable; ///< faces can be turned so that all edges with two faces are balanced
     int32_t reserved;   ///< 0
@@ -207,7 +207,7 @@ ECHINUS_API echinus_status echinus_to_local(const double* points, size_t count, 
 /// @param report  out; its size is set
 ECHINUS_API echinus_status echinus_mesh_inspect(const echinus_mesh* mesh, echinus_mesh_report* report);
 
-/// What a repair may do. All off by default. None opens a closed mesh.
+/// The steps that a repair may take. All off by default. None opens a closed mesh.
 typedef struct echinus_repair_options {
     size_t size;
     int32_t drop_duplicate_faces;
