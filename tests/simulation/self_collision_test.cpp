@@ -2,6 +2,7 @@
 
 #include "support/cloth_meshes.hpp"
 #include "support/draping.hpp"
+#include "support/random_points.hpp"
 #include "support/surface_judge.hpp"
 
 #include <echinus/simulation.hpp>
@@ -343,6 +344,30 @@ TEST(SelfCollision, HoldsLayersOfWhatFliesBackFromEachOtherAndNotInTheAir) {
         EXPECT_EQ(simulation.profile().squeezed_count, 0u);
         const Vec3d way = mean_of(simulation.positions()) - mean_of(sheet.positions);
         EXPECT_NEAR(length(way - step * 24), 0, 0.02) << way.x << ' ' << way.y << ' ' << way.z;
+        EXPECT_TRUE(meeting_faces(simulation, {}).empty());
+    }
+}
+
+TEST(SelfCollision, KeepsTheMomentumOfASheetThatUnfoldsInTheAir) {
+    // It begins at 60 % of its size with some noise, and bursts open against itself.
+    for (const bool has_model : {false, true}) {
+        std::vector<Collider> colliders;
+        if (has_model) {
+            colliders = colliders_of({make_sphere(0.2, 16, 8)});
+            colliders[0].pose.translation = {0, 0, 30};
+        }
+        Deformable sheet = make_cloth({.column_count = 21, .row_count = 21, .width = 1, .height = 1});
+        Random random(1);
+        for (Vec3f& p : sheet.positions) p = p * 0.6F + in_cube(random, 0.003F);
+        sheet.previous_positions = sheet.positions;
+        Simulation simulation(sheet, colliders,
+                              {.gravity = {}, .drag = 0, .surface_collision = true, .self_collision = true});
+        for (int i = 0; i < 160; ++i) simulation.step();
+        EXPECT_GT(simulation.profile().truncated_count, 0u);
+        EXPECT_EQ(simulation.profile().squeezed_count, 0u);
+        const Vec3d before = mean_of(simulation.positions());
+        for (int i = 0; i < 24; ++i) simulation.step();
+        EXPECT_LT(length(mean_of(simulation.positions()) - before) * 10, 0.05); // metres per second
         EXPECT_TRUE(meeting_faces(simulation, {}).empty());
     }
 }

@@ -63,4 +63,18 @@ std::optional<Vec3f> CommonMotion::displacement_of(std::uint32_t piece) const {
     return whole.is_held ? whole.held : Vec3f(whole.momentum * (1 / whole.mass));
 }
 
+void CommonMotion::begin_losses() {
+    for (Piece& piece : pieces_) piece.lost_momentum = {};
+}
+
+void CommonMotion::lose(std::uint32_t vertex, const Vec3f& velocity) {
+    pieces_[piece_of(vertex)].lost_momentum += Vec3d(velocity) * masses_[vertex];
+}
+
+Vec3f CommonMotion::loss_of(std::uint32_t vertex) {
+    const Piece& piece = pieces_[piece_of(vertex)];
+    if (piece.is_held || piece.lost_momentum == Vec3d{}) return {};
+    return Vec3f(piece.lost_momentum * (1 / piece.mass));
+}
+
 } // namespace echinus

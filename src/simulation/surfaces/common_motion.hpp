@@ -30,10 +30,16 @@ class CommonMotion {
     /// which hold it; none if these differ.
     std::optional<Vec3f> displacement_of(std::uint32_t piece) const;
 
+    /// The velocity that truncation takes from vertices is lost to their piece, unless it is held.
+    void begin_losses();
+    void lose(std::uint32_t vertex, const Vec3f& velocity);
+    /// By how much the vertex' piece has become slower: 0 for one that is held.
+    Vec3f loss_of(std::uint32_t vertex);
+
   private:
     struct Piece {
         double mass = 0;
-        Vec3d momentum{};
+        Vec3d momentum{}, lost_momentum{};
         bool is_held = false, is_pulled_apart = false;
         Vec3f held{}; ///< the displacement of its pinned vertices
         void add(const Piece& other);

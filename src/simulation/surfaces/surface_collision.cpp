@@ -227,6 +227,7 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
     if (meter != nullptr) std::fill(stopped_by_.begin(), stopped_by_.end(), kNone);
     goals_ = particles.positions;
     common_displacements_.fill(0);
+    goes_along_.assign(particles.count(), 0);
     for (int number = 0; number < kMostPasses; ++number) {
         if (number > 0) {
             models_.for_each_near(
@@ -237,21 +238,7 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
         profile.squeezed_count += std::exchange(squeezed_now_, 0);
         if (!may_go_on) break;
     }
-    for (std::uint32_t v = 0; v < particles.count(); ++v) {
-        if (std::exchange(is_truncated_[v], 0) == 0) continue;
-        ++profile.truncated_count;
-        // The velocity is shortened as the way was, both relative to what it was taken along with.
-        const Vec3f from = particles.frame_start[v] + common_displacements_[v];
-        const Vec3f way = goals_[v] - from;
-        const Vec3f left = particles.positions[v] - from;
-        const float way_sq = dot(way, way);
-        const float share = way_sq > 0 ? std::clamp(dot(left, way) / way_sq, 0.0F, 1.0F) : 0;
-        const Vec3f common = common_displacements_[v] * (1 / static_cast<float>(options_.substep_count));
-        const Vec3f velocity = (goals_[v] - particles.previous[v]) +
-                               (particles.remainders[v] - particles.previous_remainders[v]);
-        particles.put(v, {particles.positions[v], common + (velocity - common) * share});
-        if (meter != nullptr && stopped_by_[v] != kNone) meter->charge(stopped_by_[v], v, particles);
-    }
+    shorten_velocities(particles, profile, meter);
     profile.searched_face_count = profile.measured_pair_count = 0;
     if (self_) {
         profile.searched_face_count = self_->searched_count;
@@ -260,6 +247,39 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
     for (const ModelSurface& model : models_.all) {
         profile.searched_face_count += model.pairs().listed_count;
         profile.measured_pair_count += model.pairs().measured_count;
+    }
+}
+
+/// Each is shortened as the path was, both relative to the common motion of the piece. Layers of a piece that
+/// no model reaches hold only each other back: all of it shares the momentum that they lose, which otherwise
+/// the model bears.
+void SurfaceCollision::shorten_velocities(Particles& particles, SimulationProfile& profile,
+                                          LoadMeter* meter) {
+    common_motion_.begin_losses();
+    models_.for_each_near([&](std::size_t, ModelSurface& model) {
+        for (std::uint32_t v = 0; v < particles.count(); ++v)
+            if (model.pairs().lists_any(v)) goes_along_[common_motion_.piece_of(v)] = 0;
+    });
+    for (std::uint32_t v = 0; v < particles.count(); ++v) {
+        if (std::exchange(is_truncated_[v], 0) == 0) continue;
+        ++profile.truncated_count;
+        const Vec3f from = particles.frame_start[v] + common_displacements_[v];
+        const Vec3f way = goals_[v] - from;
+        const Vec3f left = particles.positions[v] - from;
+        const float way_sq = dot(way, way);
+        const float share = way_sq > 0 ? std::clamp(dot(left, way) / way_sq, 0.0F, 1.0F) : 0;
+        const Vec3f common = common_displacements_[v] * (1 / static_cast<float>(options_.substep_count));
+        const Vec3f velocity = (goals_[v] - particles.previous[v]) +
+                               (particles.remainders[v] - particles.previous_remainders[v]);
+        const Vec3f left_velocity = common + (velocity - common) * share;
+        particles.put(v, {particles.positions[v], left_velocity});
+        if (goes_along(v)) common_motion_.lose(v, velocity - left_velocity);
+        if (meter != nullptr && stopped_by_[v] != kNone) meter->charge(stopped_by_[v], v, particles);
+    }
+    for (std::uint32_t v = 0; v < particles.count(); ++v) {
+        const Vec3f given_back = common_motion_.loss_of(v);
+        if (given_back == Vec3f{} || particles.pinned(v)) continue;
+        particles.put(v, {particles.positions[v], particles.step(v) + given_back});
     }
 }
 
@@ -301,8 +321,7 @@ void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles, c
         if (shares[v] == 1) continue;
         const Vec3f from = bases.places[v], end = ends_[v];
         ends_.set(v, from + (end - from) * shares[v]);
-        if (goes_along_[common_motion_.piece_of(v)] != 0)
-            common_displacements_.set(v, from - particles.frame_start[v]);
+        if (is_first && goes_along(v)) common_displacements_.set(v, from - particles.frame_start[v]);
         // Where one of the models takes a vertex may be none that another allows.
         if (!is_one_frame && !models_.permit(v, ends_[v], true)) ++squeezed_now_;
     }
@@ -317,13 +336,11 @@ bool SurfaceCollision::has_one_frame() const {
 /// it, otherwise where models take each of them along, which is nowhere in one frame of all models.
 void SurfaceCollision::find_bases(SelfSurface::Bases& bases, bool is_first, const Particles& particles,
                                   const Workers& workers) {
-    goes_along_.assign(particles.count(), 0);
     if (is_first) find_common_motion(bases.places, particles, workers);
     const bool is_one_frame = !is_first || has_one_frame();
     for (std::uint32_t v = 0; v < particles.count(); ++v) {
-        const std::uint32_t piece = common_motion_.piece_of(v);
-        if (goes_along_[piece] != 0) {
-            bases.bodies[v] = static_cast<std::uint32_t>(models_.count()) + piece;
+        if (is_first && goes_along(v)) {
+            bases.bodies[v] = static_cast<std::uint32_t>(models_.count()) + common_motion_.piece_of(v);
         } else {
             bases.places.set(v, base_of(v, is_first, particles, workers));
             if (is_one_frame && !particles.pinned(v)) bases.bodies[v] = SelfSurface::Bases::kStaying;
@@ -355,12 +372,15 @@ void SurfaceCollision::find_common_motion(PointArrays& places, const Particles& 
             goes_along_[common_motion_.piece_of(v)] = 0;
 }
 
+bool SurfaceCollision::goes_along(std::uint32_t vertex) {
+    return goes_along_[common_motion_.piece_of(vertex)] != 0;
+}
+
 /// Pieces that would meet on their common motions go on as one. @return whether there were any
 bool SurfaceCollision::join_stuck_pieces() {
     bool is_any_joined = false;
     for (const std::array<std::uint32_t, 4>& points : self_->stuck())
-        if (std::any_of(points.begin(), points.end(),
-                        [&](std::uint32_t v) { return goes_along_[common_motion_.piece_of(v)] != 0; }))
+        if (std::any_of(points.begin(), points.end(), [&](std::uint32_t v) { return goes_along(v); }))
             is_any_joined = common_motion_.join(points) || is_any_joined;
     return is_any_joined;
 }

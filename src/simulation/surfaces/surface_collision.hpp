@@ -63,7 +63,9 @@ class SurfaceCollision {
     void find_bases(SelfSurface::Bases& bases, bool is_first, const Particles& particles,
                     const Workers& workers);
     void find_common_motion(PointArrays& places, const Particles& particles, const Workers& workers);
+    bool goes_along(std::uint32_t vertex);
     bool join_stuck_pieces();
+    void shorten_velocities(Particles& particles, SimulationProfile& profile, LoadMeter* meter);
     const ModelSurface* carrier() const;
     Vec3f base_of(std::uint32_t vertex, bool is_first, const Particles& particles, const Workers& workers);
 

@@ -9,6 +9,7 @@
 #include "simulation/surfaces/pair_lists.hpp"
 #include "simulation/surfaces/shares.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -98,6 +99,12 @@ class SurfacePairs {
     /// Is one of the shares of a vertex's way that ends here?
     bool permits(std::uint32_t vertex, const Vec3f& place, float rounding) const {
         return !is_beyond(vertex, place, rooms_[vertex]) || !allowed(vertex, place, place, rounding).none();
+    }
+    /// Is anything of the opponent in reach of the lists of a vertex' elements?
+    bool lists_any(std::uint32_t vertex) const {
+        const auto elements = own_->at(vertex);
+        return std::any_of(elements.begin(), elements.end(),
+                           [&](std::uint32_t element) { return !lists_.of(element).empty(); });
     }
     /// By which the place of a vertex that is carried along, and so keeps its gap, may seem too near.
     float rounding() const { return reach_.least_gap / 4; }
