@@ -20,27 +20,56 @@ namespace fs = std::filesystem;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::size_t kChunkHeadSize = 8; // length and type
 
-/// Refuses what the parser would take: two values with one key, of which it keeps the last (section 2.7 of
-/// the specification forbids them), and brackets in brackets without end.
-class StrictEvents {
+/// Refuses two texts that the parser would take: two values with one key, of which it keeps the last (section
+/// 2.7 of the specification forbids them), and brackets in brackets without end. A pass of its own: the
+/// parser's callback takes time quadratic in the elements of an array.
+class StrictPass : public nlohmann::json_sax<json> {
   public:
-    explicit StrictEvents(const MeshSource& source) : source_(source) {}
+    explicit StrictPass(const MeshSource& source) : source_(source) {}
 
-    bool operator()(int depth, json::parse_event_t event, json& parsed) {
-        constexpr int kMostBrackets = 256;
-        if (depth > kMostBrackets)
-            source_.fail(ErrorCode::Damaged, "the JSON has too many brackets in brackets, of which at most " +
-                                                 std::to_string(kMostBrackets) + " are read");
-        if (event == json::parse_event_t::object_start) keys_.emplace_back();
-        if (event == json::parse_event_t::object_end) keys_.pop_back();
-        if (event == json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second)
-            source_.fail(ErrorCode::Damaged,
-                         "the key " + in_quotes(parsed.get<std::string>()) + " is given twice in one object");
+    bool start_object(std::size_t) override {
+        open();
+        keys_.emplace_back();
         return true;
     }
+    bool key(string_t& name) override {
+        if (!keys_.back().insert(name).second)
+            source_.fail(ErrorCode::Damaged, "the key " + in_quotes(name) + " is given twice in one object");
+        return true;
+    }
+    bool end_object() override {
+        keys_.pop_back();
+        --depth_;
+        return true;
+    }
+    bool start_array(std::size_t) override {
+        open();
+        return true;
+    }
+    bool end_array() override {
+        --depth_;
+        return true;
+    }
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(number_integer_t) override { return true; }
+    bool number_unsigned(number_unsigned_t) override { return true; }
+    bool number_float(number_float_t, const string_t&) override { return true; }
+    bool string(string_t&) override { return true; }
+    bool binary(binary_t&) override { return true; }
+    /// The parser finds it again and says more about it.
+    bool parse_error(std::size_t, const std::string&, const json::exception&) override { return false; }
 
   private:
+    void open() {
+        constexpr int kMostBrackets = 256;
+        if (++depth_ > kMostBrackets)
+            source_.fail(ErrorCode::Damaged, "the JSON has too many brackets in brackets, of which at most " +
+                                                 std::to_string(kMostBrackets) + " are read");
+    }
+
     const MeshSource& source_;
+    int depth_ = 0;
     std::vector<std::set<std::string>> keys_; // of the objects that are open
 };
 
@@ -252,7 +281,9 @@ GltfFile::GltfFile(const MeshSource& source) : source_(source), budget_(source) 
 
 void GltfFile::parse(std::string_view text) {
     try {
-        document_ = json::parse(text, StrictEvents(source_));
+        StrictPass pass(source_);
+        json::sax_parse(text, &pass);
+        document_ = json::parse(text);
     } catch (const json::parse_error& error) {
         source_.fail(ErrorCode::Damaged, "the JSON is not well formed at its byte " +
                                              std::to_string(error.byte) +
@@ -289,8 +320,9 @@ const GltfValue& GltfFile::element(const char* key, const GltfValue& user) {
 }
 
 std::string_view GltfFile::read_beside(const GltfValue& buffer, const std::string& uri) {
-    if (uri.find("://") != std::string::npos)
-        buffer.fail("lies at " + shown(uri) + "; only files beside this one are read", ErrorCode::Unreadable);
+    if (uri.find("://") != std::string::npos || fs::path(percent_decoded(uri)).has_root_path())
+        buffer.fail("lies at " + shown(uri) + "; only files named by their path from this one are read",
+                    ErrorCode::Unreadable);
     const auto [entry, is_new] = files_.try_emplace(uri);
     std::vector<std::byte>& bytes = entry->second;
     if (is_new) {

@@ -579,8 +579,9 @@ TEST_F(ReadGltf, RefusesAFileWithoutItsBuffer) {
     fs::remove(path("exported.bin"));
     expect_refused(ErrorCode::Unreadable, "buffers[0] is in the file exported.bin, which is not there",
                    "alone.gltf", gltf);
-    expect_refused(ErrorCode::Unreadable, "only files beside this one are read", "far.gltf",
-                   replaced(gltf, "exported.bin", "https://example.org/a.bin"));
+    for (const std::string far : {"https://example.org/a.bin", "/etc/hostname", "%2Fetc/hostname"})
+        expect_refused(ErrorCode::Unreadable, "only files named by their path from this one are read",
+                       "far.gltf", replaced(gltf, "exported.bin", far));
     expect_refused(ErrorCode::Damaged, "buffers[0] has no bytes", "none.gltf",
                    tetrahedron<std::uint8_t>().json(""));
 }
