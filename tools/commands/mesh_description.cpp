@@ -98,8 +98,8 @@ std::string text_of(const Vec3d& point) {
 }
 
 std::string rounding_text(double step) {
-    return fmt::format(
-        "coordinates are floats, which step by {:.6g} here; finer detail of the file is lost", step);
+    return fmt::format("coordinates are floats, which step by {:.6g} here; finer detail of the file is lost",
+                       step);
 }
 
 std::string refusal_of_open_mesh(const echinus::TriangleMesh& mesh, const MeshReport& report,
