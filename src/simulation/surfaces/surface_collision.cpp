@@ -255,6 +255,7 @@ void SurfaceCollision::end_frame(Particles& particles, SimulationProfile& profil
 /// the model bears.
 void SurfaceCollision::shorten_velocities(Particles& particles, SimulationProfile& profile,
                                           LoadMeter* meter) {
+    if (std::find(is_truncated_.begin(), is_truncated_.end(), std::uint8_t{1}) == is_truncated_.end()) return;
     common_motion_.begin_losses();
     models_.for_each_near([&](std::size_t, ModelSurface& model) {
         for (std::uint32_t v = 0; v < particles.count(); ++v)
@@ -305,7 +306,7 @@ bool SurfaceCollision::pass(Particles& particles, bool is_first, const Workers& 
 void SurfaceCollision::shorten_ways(bool is_first, const Particles& particles, const Workers& workers) {
     if (!self_->may_meet(own_pose(), ends_, workers)) return;
     SelfSurface::Bases& bases = leading_->begin(models_);
-    common_motion_.measure(particles, goals_);
+    if (is_first) common_motion_.measure(particles, goals_);
     std::span<const float> shares;
     do {
         find_bases(bases, is_first, particles, workers);
