@@ -102,7 +102,8 @@ def surfaces(folder):
              "most", "gap, mean", "least", "apart, % R"]]
     times = [["scene, contact of", "particles", "ms a frame, mean", "99 %", "worst", "ratio"]]
     for r in results.records:
-        name = f"{r['scene']}: {r['method']}"
+        several = len(results.distinct("particles", scene=r["scene"])) > 1
+        name = f"{r['scene']}{', ' + r['particles'] + ' particles' if several else ''}: {r['method']}"
         rest = r["frames"] if r["rested"] == "yes" else f"not in {r['frames']}"
         judged = f"{r['judged_frames']}, {r['cgal_frames']}" + (f" ({r['judges_differ']})" if r["judges_differ"] != "0" else "")
         rows.append([name, r["model_pairs"], r["own_pairs"], judged, rest]
@@ -137,7 +138,8 @@ def engines_table(records):
         if r["status"] != "done":
             rows.append([r["engine"], r["status"]] + [""] * (len(rows[0]) - 2))
             continue
-        times = [f"{number(r['contact_ms'])} ({number(r['frame_ms'])})" if r["platform"] == platform else "" for platform in ("native", "wasm")]
+        times = [f"{number(r['contact_ms'])} ({number(r['frame_ms'])})" if r["contact_ms"] and r["platform"] == platform else ""
+                 for platform in ("native", "wasm")]
         pairs = [f"{r[c]} ({r[f'{c}_worst']})" if r[c] else "" for c in ("inside", "model_pairs", "own_pairs")]
         deepest = f"{number(r['deepest'])} ({number(r['deepest_worst'])})" if r["deepest"] else ""
         rows.append([r["engine"], pairs[0], deepest, pairs[1], pairs[2], number(r["stretch"], 100), r["lost"], r["rest_frame"] or "not", *times])

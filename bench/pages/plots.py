@@ -112,7 +112,7 @@ def draw(task, folder, images):
     elif task == "engines":
         curves = {}
         for r in rows:
-            if (r["model"], r["setup"], r["status"]) == ("horse", "recommended", "done"):
+            if (r["model"], r["setup"], r["status"]) == ("horse", "recommended", "done") and r["contact_ms"]:
                 point = (float(r["side"]) ** 2, float(r["contact_ms"]))
                 curves.setdefault(r["engine"], ([], "Echinus" in r["engine"]))[0].append(point)
         plot(curves, "particles", "ms a frame", images / "engines_particles.svg")
