@@ -171,8 +171,8 @@ void winding_number_batch(const ExactMapView& map, StridedSpan<const Vec3f> poin
 /// Cost: contains(), and for particles inside or with a margin the search, by vector instructions
 /// (instruction_set.hpp): near the surface about 0.3 microseconds for a particle, of which 0.1 are for the
 /// side. It grows with the number of faces that are about equally near: from the centre of a sphere it visits
-/// them all, at 13 to 40 ns each (0.5 ms for 40 000 faces, 38 ms for a million). A margin bounds the search
-/// for particles outside.
+/// them all, at some tens of nanoseconds each (docs/exact_map.md). A margin bounds the search for particles
+/// outside.
 /// @param margin  particles outside get a contact too when the surface is at most this far; not negative,
 ///                NaN counts as 0
 Contact contact(const ExactMapView& map, Vec3f point_local, float margin = 0) noexcept;

@@ -300,7 +300,8 @@ struct SimulationProfile {
     /// measured: the work of surface_collision, which keeps what it knows as long as that holds.
     std::uint64_t searched_face_count = 0, measured_pair_count = 0;
     /// Times that no place for a particle was proven: a pinned particle was led through something, or
-    /// colliders left no room between them. Only then faces may intersect at the end of a frame.
+    /// colliders left no room between them. While it is 0, no faces intersect at the end of a frame, but for
+    /// rounding, which is not counted, hundreds of a collider's radii from the origin (docs/surfaces.md).
     std::uint64_t squeezed_count = 0;
 };
 
@@ -314,8 +315,8 @@ struct Residual {
 /// every instruction set and number of threads; tested on x86-64 and WebAssembly. Copies are independent.
 class Simulation {
   public:
-    /// Allocates all that step() needs. Rotations whose quaternion is off the unit length by no more than
-    /// 1e-4, as rounding to float leaves them, are brought to it.
+    /// Allocates what step() needs, but for the arrays that it says may grow. Rotations whose quaternion is
+    /// off the unit length by no more than 1e-4, as rounding to float leaves them, are brought to it.
     /// @throws Error InvalidOptions, naming what is at fault, when an option is out of range, the arrays of
     /// the deformable do not fit together, a stick or a face names a particle that does not exist, a number
     /// is not finite, or a collider has a scale of 0, a rotation that is not of unit length, a null pointer
@@ -332,7 +333,8 @@ class Simulation {
 
     /// One frame: substep_count times Verlet integration, drag with the first, colliders that move on along
     /// their velocities, then iteration_count times all folds, all sticks and then collision of all particles
-    /// with all colliders; at last the proof that no particle passed through an exact map. Allocates nothing.
+    /// with all colliders; at last the proof that no particle passed through an exact map. Allocates nothing
+    /// without options.surface_collision.
     ///
     /// A distance map pushes along its rays (docs/paper.md), and a custom map to the points that it names,
     /// both gently: a particle that is not inside is pushed no farther than it came. An exact map pushes to
@@ -355,9 +357,10 @@ class Simulation {
     ///   that cannot be placed there counts as lost.
     ///
     /// With options.surface_collision edges and faces collide in each relaxation, and the proof at the end is
-    /// about them: no face meets a collider, or another face with options.self_collision, in any frame;
-    /// docs/surfaces.md has the limits, and squeezed_count counts where they were met. The arrays of pairs
-    /// that are near grow as far as needed, geometrically; a step that does not need more allocates nothing.
+    /// about them: no face meets a collider, or another face with options.self_collision, when a frame ends;
+    /// docs/surfaces.md has the limits, most of which squeezed_count counts where they were met. The arrays
+    /// of pairs that are near grow as far as needed, geometrically; a step that does not need more allocates
+    /// nothing.
     /// @throws Error Diverged, naming the frame, and so does each further step; as ExactMap::build() where a
     /// vertex cache leads a collider to a surface of which no map can be built: then nothing has changed, and
     /// the simulation can go on after set_collider_cache() with another cache

@@ -23,7 +23,7 @@ constexpr Range kSegmentCount{1, 4096};
 constexpr double kUnitTolerance = 1e-4;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
-/// The defaults beside an exact map. Beside a distance map surfaces cannot collide.
+/// The defaults beside an exact map. Beside a distance map surfaces collide only where the scene asks for it.
 constexpr bool kSurfaceCollision = true;
 constexpr bool kSelfCollision = true; ///< where surfaces collide
 

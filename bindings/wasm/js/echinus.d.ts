@@ -537,9 +537,9 @@ export interface SceneDescription {
     substeps?: number;
     /** 'verlet' only: coarser sheets of a rectangular cloth are relaxed first, so that a large one hardly stretches. */
     multilevel?: boolean;
-    /** Faces and edges of the cloth keep off the model, not only particles; needs an exact map (docs/surfaces.md). */
+    /** Faces and edges of the cloth keep off the model, not only particles (docs/surfaces.md). Default: true beside an exact map. */
     surface_collision?: boolean;
-    /** Nor do faces of the cloth intersect. Needs surface_collision. */
+    /** Nor do faces of the cloth intersect. Needs surface_collision. Default: as surface_collision. */
     self_collision?: boolean;
     /** A start that intersects is parted instead of refused. Needs surface_collision. */
     untangle?: boolean;
