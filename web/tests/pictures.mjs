@@ -36,9 +36,9 @@ async function take(link, moment, { width, height }, path, quality) {
     await browser.close(page);
 }
 
-/** Without the figures of its speed: software draws it. */
+/** Without the times that the page took: software draws it, perhaps beside other work. */
 async function takePage(path) {
-    const page = await stopAt('', MOMENTS.horse, { width: 1200, height: 760 }, '#figures .detail, #figures > :has(#figure-fps) { display: none }');
+    const page = await stopAt('self=true', MOMENTS.horse, { width: 1200, height: 760 }, '#figures .detail, #figures > :has(#figure-fps, #figure-build), #headline > span:last-child { display: none }');
     await page.screenshot({ path });
     console.log(path);
     await browser.close(page);
