@@ -49,7 +49,8 @@ void require_named_instruction_set() {
 
 void parse_and_run(int argc, char** argv) {
     require_named_instruction_set();
-    Program program("echinus", "Echinus: is a particle inside a rigid model, how deep, and which way out?");
+    Program program("echinus",
+                    "Echinus: exact collision of cloth, soft bodies and points with triangle meshes");
     program.add_version("echinus " ECHINUS_VERSION);
     const Command command = program.command();
     command.require_command("A subcommand");

@@ -1,6 +1,7 @@
 #include "output.hpp"
 
 #include "files/part.hpp"
+#include "mesh_io/mesh_source.hpp"
 #include "options.hpp"
 
 #include <echinus/error.hpp>
@@ -9,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -134,6 +136,17 @@ void require_another_file(const fs::path& source, const fs::path& target) {
     std::error_code not_there;
     if (fs::equivalent(source, target, not_there))
         throw WrongUse(target.string(), "this file is read; give the result another name");
+}
+
+void require_ending(const fs::path& target, std::initializer_list<std::string_view> endings) {
+    const std::string ending = echinus::lower_case_ending(target);
+    if (target == kStandardStream || std::ranges::find(endings, ending) != endings.end()) return;
+    std::string list;
+    for (const std::string_view& one : endings) {
+        if (&one != endings.begin()) list += &one + 1 == endings.end() ? " or " : ", ";
+        list += one;
+    }
+    throw WrongUse("--output", "must end in " + list + ", or be -; it is " + target.string());
 }
 
 void require_one_result(const fs::path& target, bool json) {

@@ -4,6 +4,7 @@
 #include "interruption.hpp"
 
 #include <filesystem>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -74,6 +75,10 @@ void flush_standard_output();
 /// Refuses a result that would take the place of what it is made of.
 /// @throws WrongUse, as the next one
 void require_another_file(const std::filesystem::path& source, const std::filesystem::path& target);
+
+/// Refuses a result that is neither "-" nor a file whose name has one of these endings, such as ".obj", in
+/// capitals or not.
+void require_ending(const std::filesystem::path& target, std::initializer_list<std::string_view> endings);
 
 /// Refuses --json together with a result that goes to standard output itself.
 void require_one_result(const std::filesystem::path& target, bool json);

@@ -249,7 +249,8 @@ TEST_F(QueryCommand, RefusesOptionsThatMakeNoSense) {
     expect_failure(2, "--margin", {"query", "box.ech", "points.npy", "-o", "a.npy", "--margin", "-1"});
     expect_failure(2, "--margin", {"query", "box.ech", "points.npy", "-o", "a.npy", "--margin", "nan"});
     expect_failure(2, "--margin", {"query", "box.ech", "points.npy", "-o", "a.npy", "--margin", "inf"});
-    expect_failure(2, "--output", {"query", "box.ech", "points.npy", "-o", "answers.txt"});
+    expect_failure(2, "--output: must end in .npy or .csv, or be -; it is answers.txt",
+                   {"query", "box.ech", "points.npy", "-o", "answers.txt"});
     expect_failure(2, "--output", {"query", "box.ech", "points.npy"});
     expect_failure(2, "POINTS", {"query", "box.ech", "-o", "a.npy"});
 }

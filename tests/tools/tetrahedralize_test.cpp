@@ -59,7 +59,8 @@ TEST_F(TetrahedralizeCommand, PrintsATableOrTheBodyItself) {
 TEST_F(TetrahedralizeCommand, RefusesWhatItCannotDo) {
     write("open.obj", open_box_text());
     expect_failure(1, "open.obj: the mesh is not closed", {"tetrahedralize", "open.obj", "-o", "a.msh"});
-    expect_failure(1, ".msh or .vtk", {"tetrahedralize", "torus.obj", "-o", "a.stl"});
+    expect_failure(2, "must end in .msh or .vtk, or be -; it is a.stl",
+                   {"tetrahedralize", "torus.obj", "-o", "a.stl"});
     expect_failure(1, "torus.obj: no tetrahedra of the size 5",
                    {"tetrahedralize", "torus.obj", "-o", "a.msh", "--size", "5"});
     expect_failure(2, "finite and positive", {"tetrahedralize", "torus.obj", "-o", "a.msh", "--size", "-1"});

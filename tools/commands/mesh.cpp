@@ -15,6 +15,7 @@ namespace {
 using namespace echinus;
 
 void write_result(const std::string& target, const TriangleMesh& mesh) {
+    require_ending(target, {".obj", ".ply", ".stl", ".off"});
     if (target == kStandardStream)
         print(encode_obj(mesh));
     else

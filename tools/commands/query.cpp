@@ -3,6 +3,7 @@
 #include "input_file.hpp"
 #include "json.hpp"
 #include "mesh/local_frame.hpp"
+#include "mesh_io/mesh_source.hpp"
 #include "output.hpp"
 #include "points/answers.hpp"
 #include "points/points.hpp"
@@ -50,10 +51,9 @@ void require_sound(const QueryArguments& arguments) {
 
 /// By the name's extension; on standard output the points' format.
 TableFormat format_of_answers(const fs::path& target, TableFormat format_of_points) {
-    if (target.extension() == ".npy") return TableFormat::Npy;
-    if (target.extension() == ".csv") return TableFormat::Csv;
     if (target == kStandardStream) return format_of_points;
-    throw WrongUse("--output", "must end in .npy or .csv, or be -");
+    require_ending(target, {".npy", ".csv"});
+    return lower_case_ending(target) == ".npy" ? TableFormat::Npy : TableFormat::Csv;
 }
 
 void count(std::span<const Contact> contacts, QuerySummary& summary) {

@@ -133,6 +133,7 @@ void write_body(const std::filesystem::path& target, const TetrahedralMesh& mesh
 }
 
 void run(TetrahedralizeArguments& arguments) {
+    require_ending(arguments.target, {".msh", ".vtk"});
     require_one_result(arguments.target, arguments.json);
     require_another_file(arguments.mesh.path, arguments.target);
     arguments.options.count = arguments.count;
