@@ -1,8 +1,8 @@
 // Measures Echinus beside its rivals; scripts/bench runs it and lists the tasks.
 
+#include "machine.hpp"
 #include "pinning.hpp"
 #include "progress.hpp"
-#include "rivals/compare/machine.hpp"
 #include "task.hpp"
 
 #include <echinus/error.hpp>
@@ -34,7 +34,7 @@ struct Arguments {
 
 /// The machine and the commit; of records that were resumed, those that the earlier ones are from, too.
 std::vector<std::string> comments_of(const Arguments& arguments) {
-    const std::string machine = comparison::describe_machine();
+    const std::string machine = describe_machine();
     if (!arguments.setting.earlier) return {machine, arguments.commit};
     std::vector<std::string> comments = arguments.setting.earlier->comments();
     const auto add = [](std::string& to, const std::string& text) {

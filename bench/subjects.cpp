@@ -9,7 +9,7 @@
 #include <cstdio>
 
 using namespace echinus;
-using comparison::Axis;
+using test::Axis;
 namespace fs = std::filesystem;
 
 namespace {
@@ -26,9 +26,9 @@ Subject subject(std::string name, TriangleMesh mesh, Axis up) {
 
 std::vector<comparison::JudgedSet> Subject::sets(std::size_t count) const {
     const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(count)));
-    return {{"U", comparison::uniform_points(mesh, count), {}},
-            {"S", comparison::surface_points(mesh, count), {}},
-            {"C", comparison::cloth_points(mesh, side, side, up), {}}};
+    return {{"U", test::uniform_points(mesh, count), {}},
+            {"S", test::surface_points(mesh, count), {}},
+            {"C", test::cloth_points(mesh, side, side, up), {}}};
 }
 
 std::vector<comparison::JudgedSet> Subject::sets_for_calls(std::size_t count, std::size_t call_size) const {

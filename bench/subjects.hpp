@@ -1,7 +1,7 @@
 #pragma once
 
 #include "rivals/compare/measuring.hpp"
-#include "rivals/compare/point_sets.hpp"
+#include "support/point_sets.hpp"
 
 #include <echinus/mesh.hpp>
 
@@ -17,7 +17,7 @@ struct Subject {
     double radius;      ///< R, of the bounding sphere
     bool large = false; ///< the slow systems are left out
 
-    echinus::comparison::Axis up;
+    echinus::test::Axis up;
 
     /// U, S and C of `count` particles each, not yet judged. C has a square number, so perhaps a few fewer.
     std::vector<echinus::comparison::JudgedSet> sets(std::size_t count) const;

@@ -44,7 +44,7 @@ void measure_on(const Subject& subject, const Setting& setting, Records& records
 /// poses, in turn, and Embree's build of the first.
 void measure_deforming(std::size_t faces, const Setting& setting, Records& records) {
     constexpr std::size_t kPoses = 24;
-    const Subject torus{"torus with running waves", torus_of(faces), 1.4, true, Axis::Z};
+    const Subject torus{"torus with running waves", torus_of(faces), 1.4, true, test::Axis::Z};
     auto poses = std::make_shared<std::vector<std::vector<Vec3f>>>();
     for (std::size_t i = 0; i < kPoses; ++i) {
         std::vector<Vec3f>& pose = poses->emplace_back(torus.mesh.vertices);
@@ -108,7 +108,7 @@ Records measure_build(const Setting& setting) {
         if (!setting.is_short || faces == 7'000) measure_deforming(faces, setting, records);
     const std::size_t max_faces = setting.is_short ? 5000 : 300'000;
     for (std::size_t faces = 1000; faces <= max_faces; faces *= 4) {
-        Subject torus{"torus of n faces", torus_of(faces), 1.4, true, Axis::Z};
+        Subject torus{"torus of n faces", torus_of(faces), 1.4, true, test::Axis::Z};
         measure_on(torus, setting, records);
     }
     return records;

@@ -128,7 +128,7 @@ void add_call_sizes(const Subject& subject, const Setting& setting, Records& rec
 void add_faces(const Setting& setting, Records& records) {
     const std::size_t most = setting.is_short ? 5000 : 1'100'000;
     for (std::size_t faces = 1000; faces <= most; faces *= 4) {
-        const Subject torus{"torus of n faces", torus_of(faces), 1.4, true, Axis::Z};
+        const Subject torus{"torus of n faces", torus_of(faces), 1.4, true, test::Axis::Z};
         const Systems systems =
             build(torus, [](const std::string& name) { return name == "exact map" || name == "Embree"; });
         const std::size_t count = std::min<std::size_t>(setting.point_count, 100'000);

@@ -2,8 +2,8 @@
 // ratios of their times hardly depend on the machine's load.
 
 #include "builds.hpp"
+#include "machine.hpp"
 #include "queries.hpp"
-#include "rivals/compare/machine.hpp"
 
 #include <fmt/format.h>
 

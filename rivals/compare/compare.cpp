@@ -49,9 +49,9 @@ std::vector<JudgedSet> make_sets(const TriangleMesh& mesh, const CompareOptions&
         Truth truth = truth_of(judge, points);
         sets.push_back({name, std::move(points), std::move(truth)});
     };
-    add("U", uniform_points(mesh, options.point_count));
-    add("S", surface_points(mesh, options.point_count));
-    add("C", cloth_points(mesh, side, side, options.up));
+    add("U", test::uniform_points(mesh, options.point_count));
+    add("S", test::surface_points(mesh, options.point_count));
+    add("C", test::cloth_points(mesh, side, side, options.up));
     return sets;
 }
 

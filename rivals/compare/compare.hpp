@@ -1,7 +1,7 @@
 #pragma once
 
 #include "rivals/compare/measuring.hpp"
-#include "rivals/compare/point_sets.hpp"
+#include "support/point_sets.hpp"
 
 #include <echinus/mesh.hpp>
 
@@ -20,7 +20,7 @@ struct CompareOptions {
     std::vector<std::string> systems{}; ///< their names; empty: all that this program has
     std::size_t byte_budget = 630'000;  ///< of each, the size of the paper's map of a horse
     std::size_t point_count = 100'000;  ///< particles in a set, at least 100
-    Axis up = Axis::Z;                  ///< for the set C
+    test::Axis up = test::Axis::Z;      ///< for the set C
     SystemOptions system{};
     /// How many sizes each curve is made of: the budget times powers of two, up to kTopOfCurve times; 0: no
     /// curves. Builds and measures each system so many times more.

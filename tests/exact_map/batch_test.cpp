@@ -1,7 +1,7 @@
 #include "exact_map/query/stretched_contact.hpp"
-#include "rivals/compare/point_sets.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/mesh_assembly.hpp"
+#include "support/point_sets.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -72,9 +72,9 @@ std::vector<Vec3f> telling_points(const ExactMapView& map, const TriangleMesh& m
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     test::Random random(1);
-    std::vector<Vec3f> points = comparison::surface_points(mesh, 3000);
-    for (const Vec3f& p : comparison::surface_points(mesh, 1000, 0)) points.push_back(p);
-    for (const Vec3f& p : comparison::surface_points(mesh, 500, 1e-6)) points.push_back(p);
+    std::vector<Vec3f> points = test::surface_points(mesh, 3000);
+    for (const Vec3f& p : test::surface_points(mesh, 1000, 0)) points.push_back(p);
+    for (const Vec3f& p : test::surface_points(mesh, 500, 1e-6)) points.push_back(p);
     for (int n = 0; n < 3000; ++n) points.push_back(map.centre + test::in_cube(random, 1.3F * map.radius));
     for (int n = 0; n < 300; ++n) points.push_back(map.centre + test::in_cube(random, 1e-5F * map.radius));
     for (int n = 0; n < 300; ++n) points.push_back(map.centre + test::in_cube(random, 5 * map.radius));
@@ -251,7 +251,7 @@ TEST(ExactMapBatch, TakesAnyNumberOfPointsAtAnyStride) {
         Vec3f position;
         float mass;
     };
-    const std::vector<Vec3f> points = comparison::surface_points(mesh, 600);
+    const std::vector<Vec3f> points = test::surface_points(mesh, 600);
     std::vector<Particle> particles;
     for (const Vec3f& point : points) particles.push_back({point, 1});
     test::under_each_instruction_set([&](std::string_view name) {
@@ -270,7 +270,7 @@ TEST(ExactMapBatch, TakesAnyNumberOfPointsAtAnyStride) {
 TEST(ExactMapBatch, GivesTheSameAnswersOnAnyNumberOfThreads) {
     const TriangleMesh mesh = make_torus(1, 0.4, 40, 16);
     const ExactMap map = ExactMap::build(mesh);
-    const std::vector<Vec3f> points = comparison::surface_points(mesh, 100'000);
+    const std::vector<Vec3f> points = test::surface_points(mesh, 100'000);
     const SignedDistances expected = signed_distances_by_reference(map, points);
     for (unsigned thread_count : {0U, 2U, 3U}) {
         expect_same_sides(map, points, thread_count);
@@ -293,7 +293,7 @@ TEST(ExactMapBatch, AnswersWithIndicesOf32BitsToo) {
     for (const TriangleMesh& mesh : {make_sphere(1, 260, 130), make_sphere(1, 400, 200)}) {
         const ExactMap map = ExactMap::build(mesh, {.divisions = 20});
         ASSERT_FALSE(map.view().references.wide.empty());
-        const std::vector<Vec3f> points = comparison::surface_points(mesh, 3000);
+        const std::vector<Vec3f> points = test::surface_points(mesh, 3000);
         const std::vector<Contact> expected = by_reference(map, points, 0, {1, 1, 1});
         const SignedDistances expected_distances = signed_distances_by_reference(map, points);
         test::under_each_instruction_set([&](std::string_view name) {
@@ -309,7 +309,7 @@ TEST(ExactMapBatch, AnswersWithIndicesOf32BitsToo) {
 TEST(ExactMapBatch, AgreesWithContactWhenTheWorldIsSquashed) {
     const TriangleMesh mesh = make_torus(1, 0.4, 40, 16);
     const ExactMap map = ExactMap::build(mesh);
-    const std::vector<Vec3f> points = comparison::surface_points(mesh, 300);
+    const std::vector<Vec3f> points = test::surface_points(mesh, 300);
     for (const Vec3d& stretch : {Vec3d{1, 1e-5, 1e-3}, Vec3d{1, 1e-25, 1e-25}, Vec3d{1e-25, 1, 1e-50}}) {
         const std::vector<Contact> expected = by_reference(map, points, 0.2F, stretch);
         test::under_each_instruction_set([&](std::string_view name) {

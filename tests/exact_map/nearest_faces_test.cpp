@@ -1,8 +1,8 @@
 #include "exact_map/layout.hpp"
 #include "exact_map/query/nearest.hpp"
 #include "exact_map/query/nearest_faces.hpp"
-#include "rivals/compare/point_sets.hpp"
 #include "support/instruction_sets.hpp"
+#include "support/point_sets.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -68,7 +68,7 @@ TEST(NearestFaces, OfPlacesNearTheSurfaceAreSoughtFromALeafNearBy) {
     const ExactMap map = ExactMap::build(mesh);
     const LatticeFrame frame = frame_of(map);
     int missed = 0;
-    for (const Vec3f& p : comparison::surface_points(mesh, 500)) {
+    for (const Vec3f& p : test::surface_points(mesh, 500)) {
         const Vec3d place = frame.to_lattice(p);
         const std::uint32_t leaf = leaf_near(map, place);
         if (leaf == kNoLeaf) { // the place's ray passes the surface

@@ -1,5 +1,5 @@
-#include "rivals/compare/point_sets.hpp"
 #include "support/mesh_assembly.hpp"
+#include "support/point_sets.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -22,7 +22,7 @@ double tolerance(const ExactMapView& map, double distance) {
 /// In the bounding sphere, near the surface, and up to a million radii away.
 std::vector<Vec3f> points_near_and_far(const ExactMapView& map, const TriangleMesh& mesh) {
     test::Random random(5);
-    std::vector<Vec3f> points = comparison::surface_points(mesh, 500);
+    std::vector<Vec3f> points = test::surface_points(mesh, 500);
     for (int n = 0; n < 1000; ++n) points.push_back(map.centre + test::in_cube(random, 1.5F * map.radius));
     for (float far = 2; far < 1e6F; far *= 3)
         for (int n = 0; n < 40; ++n)

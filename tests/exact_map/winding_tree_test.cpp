@@ -4,9 +4,9 @@
 #include "exact_map/layout.hpp"
 #include "exact_map/query/winding_tree.hpp"
 #include "exact_map/winding_nodes.hpp"
-#include "rivals/compare/point_sets.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/mesh_assembly.hpp"
+#include "support/point_sets.hpp"
 #include "support/soups.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -55,9 +55,9 @@ Vec3<Real> queried_place(const ExactMapView& map, const Vec3f& point) {
 }
 
 std::vector<Vec3f> points_around(const ExactMapView& map, const TriangleMesh& mesh) {
-    std::vector<Vec3f> points = comparison::uniform_points(mesh, 250);
-    for (const Vec3f& p : comparison::surface_points(mesh, 150)) points.push_back(p);
-    for (const Vec3f& p : comparison::surface_points(mesh, 50, 1e-4)) points.push_back(p);
+    std::vector<Vec3f> points = test::uniform_points(mesh, 250);
+    for (const Vec3f& p : test::surface_points(mesh, 150)) points.push_back(p);
+    for (const Vec3f& p : test::surface_points(mesh, 50, 1e-4)) points.push_back(p);
     test::Random random(9);
     for (const float far : {1.1F, 2.0F, 30.0F, 1e6F})
         for (int n = 0; n < 10; ++n)

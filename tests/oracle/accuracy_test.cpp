@@ -4,7 +4,7 @@
 #include "directions/lattice.hpp"
 #include "oracle/accuracy.hpp"
 #include "oracle/test_meshes.hpp"
-#include "rivals/compare/point_sets.hpp"
+#include "support/point_sets.hpp"
 
 #include <gtest/gtest.h>
 
@@ -73,7 +73,7 @@ test::Score score_of_spoilt(const Spoil& spoil, InsideRule rule = InsideRule::No
     constexpr std::size_t kCount = 1000, kSpoilt = 400;
     const BoxFormula box;
     const test::AccuracyJudge judge(box.mesh, lattice_around(box.mesh));
-    const std::vector<Vec3f> points = comparison::uniform_points(box.mesh, kCount);
+    const std::vector<Vec3f> points = test::uniform_points(box.mesh, kCount);
     const test::Defendant defendant{rule, [&](std::span<const Vec3f> asked, test::Answers& answers) {
                                         answers = {};
                                         for (const Vec3f& p : asked) {

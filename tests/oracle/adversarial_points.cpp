@@ -1,6 +1,6 @@
 #include "oracle/adversarial_points.hpp"
 
-#include "rivals/compare/portable_random.hpp"
+#include "support/portable_random.hpp"
 
 #include <algorithm>
 #include <array>
@@ -168,7 +168,7 @@ class Generator {
 
     const TriangleMesh& mesh_;
     MapFrame frame_;
-    comparison::PortableRandom random_;
+    test::PortableRandom random_;
     std::vector<std::uint32_t> edge_on_;
     std::size_t index_ = 0;
 };

@@ -1,6 +1,6 @@
 #include "oracle/check_points.hpp"
 
-#include "rivals/compare/point_sets.hpp"
+#include "support/point_sets.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,8 +42,8 @@ void sort_along_curve(std::vector<Vec3f>& points, const MapFrame& frame) {
 /// Sheets draped over the mesh from three sides.
 std::vector<Vec3f> sheets(const TriangleMesh& mesh, std::size_t side) {
     std::vector<Vec3f> points;
-    for (const comparison::Axis up : {comparison::Axis::X, comparison::Axis::Y, comparison::Axis::Z}) {
-        const std::vector<Vec3f> sheet = comparison::cloth_points(mesh, side, side, up);
+    for (const test::Axis up : {test::Axis::X, test::Axis::Y, test::Axis::Z}) {
+        const std::vector<Vec3f> sheet = test::cloth_points(mesh, side, side, up);
         points.insert(points.end(), sheet.begin(), sheet.end());
     }
     return points;
@@ -57,8 +57,8 @@ std::vector<PointSet> point_sets(const TriangleMesh& mesh, const MapFrame& frame
     const auto side = static_cast<std::size_t>(std::sqrt(static_cast<double>(quarter) / 3));
     const std::size_t rest = count - 2 * quarter - 3 * side * side;
     std::vector<PointSet> sets{
-        {"uniform", [=, &mesh] { return comparison::uniform_points(mesh, quarter, seed); }},
-        {"surface", [=, &mesh] { return comparison::surface_points(mesh, quarter, 0.01, seed + 1); }},
+        {"uniform", [=, &mesh] { return test::uniform_points(mesh, quarter, seed); }},
+        {"surface", [=, &mesh] { return test::surface_points(mesh, quarter, 0.01, seed + 1); }},
         {"cloth", [=, &mesh] { return sheets(mesh, side); }},
         {"adversarial", [=, &mesh] { return adversarial_points(mesh, frame, rest, seed + 2); }},
     };

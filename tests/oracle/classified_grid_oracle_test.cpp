@@ -3,8 +3,8 @@
 #include "directions/lattice.hpp"
 #include "oracle/exact_judge.hpp"
 #include "oracle/test_meshes.hpp"
-#include "rivals/compare/point_sets.hpp"
 #include "rivals/systems/classified_grid/classified_grid.hpp"
+#include "support/point_sets.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@ TEST(ClassifiedGridOracle, IsRightAboutSignsAndDepths) {
     for (const auto& [name, mesh] : test::generated_meshes()) {
         const test::ExactJudge judge(mesh);
         const LatticeMesh lattice = snap_to_lattice(mesh);
-        std::vector<Vec3f> points = comparison::surface_points(mesh, 3000, 0.01);
-        for (const Vec3f& p : comparison::uniform_points(mesh, 3000)) points.push_back(p);
-        for (const Vec3f& p : comparison::surface_points(mesh, 3000, 1e-5)) points.push_back(p);
+        std::vector<Vec3f> points = test::surface_points(mesh, 3000, 0.01);
+        for (const Vec3f& p : test::uniform_points(mesh, 3000)) points.push_back(p);
+        for (const Vec3f& p : test::surface_points(mesh, 3000, 1e-5)) points.push_back(p);
         for (const std::size_t budget : {100'000U, 400'000U}) {
             const auto grid = rivals::ClassifiedGrid::build(mesh, budget);
             std::vector<std::uint8_t> inside(points.size());

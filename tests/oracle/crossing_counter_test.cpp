@@ -3,7 +3,7 @@
 #include "oracle/exact_judge.hpp"
 #include "oracle/solid_angle_tree.hpp"
 #include "oracle/test_meshes.hpp"
-#include "rivals/compare/point_sets.hpp"
+#include "support/point_sets.hpp"
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ TEST(CrossingCounter, CountsWindingNumbersOfOverlappingNestedAndInvertedParts) {
                       test::turned_inside_out(make_sphere(0.6, 24, 12)),
                       test::turned_inside_out(make_box({5, 0.3, 0.3}))});
     const test::CrossingCounter counter(corners_of(parts), unit_of(parts), test::OnPlane::Skip);
-    for (const Vec3f& p : comparison::uniform_points(parts, 2000))
+    for (const Vec3f& p : test::uniform_points(parts, 2000))
         ASSERT_NEAR(counter.winding(Vec3d(p)), winding_number(parts, Vec3d(p)), 1e-9);
 }
 
@@ -85,8 +85,7 @@ TEST(DistanceTree, GivesTheDistancesOfCgalWhateverTheHint) {
         const test::ExactJudge judge(mesh);
         const test::DistanceTree tree(corners_of(mesh));
         const auto last = static_cast<std::uint32_t>(mesh.faces.size() - 1);
-        for (const auto& points :
-             {comparison::uniform_points(mesh, 300), comparison::surface_points(mesh, 300)})
+        for (const auto& points : {test::uniform_points(mesh, 300), test::surface_points(mesh, 300)})
             for (const Vec3f& p : points) {
                 ASSERT_NEAR(tree.distance(Vec3d(p)), judge.distance(Vec3d(p)), 1e-12) << name;
                 ASSERT_EQ(tree.distance(Vec3d(p), last), tree.distance(Vec3d(p))) << name;
@@ -98,7 +97,7 @@ TEST(SolidAngleTree, GivesTheWindingNumberOfOpenSurfaces) {
     TriangleMesh open = test::joined({make_sphere(1, 40, 20), test::turned(make_box({1, 1, 3}, 6))});
     std::erase_if(open.faces, [&](const Triangle& face) { return (face[0] * 7 + face[1]) % 5 == 0; });
     const test::SolidAngleTree tree(open);
-    for (const auto& points : {comparison::uniform_points(open, 500), comparison::surface_points(open, 500)})
+    for (const auto& points : {test::uniform_points(open, 500), test::surface_points(open, 500)})
         for (const Vec3f& p : points)
             ASSERT_NEAR(tree.winding_number(Vec3d(p)), winding_number(open, Vec3d(p)), 1e-9);
 }

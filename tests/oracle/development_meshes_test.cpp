@@ -3,7 +3,7 @@
 #include "oracle/exact_judge.hpp"
 #include "oracle/expect_right_map.hpp"
 #include "oracle/wrong_share.hpp"
-#include "rivals/compare/point_sets.hpp"
+#include "support/point_sets.hpp"
 
 #include <echinus/distance_map.hpp>
 #include <echinus/mesh_io.hpp>
@@ -49,8 +49,8 @@ TEST_F(DevelopmentMeshes, TheHorseIsSeldomJudgedWrongly) {
     const TriangleMesh horse = read_mesh(kFolder / "horse_6k.obj");
     const test::ExactJudge judge(horse);
     const DistanceMap map = DistanceMap::build(horse, {.correction = VertexCorrection::None});
-    EXPECT_LT(test::wrong_share(map, judge, comparison::uniform_points(horse, 15'000)), 0.15);
-    EXPECT_LT(test::wrong_share(map, judge, comparison::surface_points(horse, 15'000)), 5);
+    EXPECT_LT(test::wrong_share(map, judge, test::uniform_points(horse, 15'000)), 0.15);
+    EXPECT_LT(test::wrong_share(map, judge, test::surface_points(horse, 15'000)), 5);
 }
 
 TEST_F(DevelopmentMeshes, ExactMapsAreRight) {

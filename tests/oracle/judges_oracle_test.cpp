@@ -1,6 +1,6 @@
 #include "oracle/exact_judge.hpp"
 #include "oracle/test_meshes.hpp"
-#include "rivals/compare/point_sets.hpp"
+#include "support/point_sets.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,7 @@ using namespace echinus;
 TEST(JudgesOracle, WindingNumberAgreesWithCgalOnTheSide) {
     for (const auto& [name, mesh] : test::generated_meshes()) {
         const test::ExactJudge judge(mesh);
-        for (const auto& points :
-             {comparison::uniform_points(mesh, 300), comparison::surface_points(mesh, 300)})
+        for (const auto& points : {test::uniform_points(mesh, 300), test::surface_points(mesh, 300)})
             for (const Vec3f& p : points) {
                 if (judge.side(Vec3d(p)) == test::ExactSide::OnSurface) continue;
                 ASSERT_NEAR(winding_number(mesh, Vec3d(p)), judge.inside(p) ? 1 : 0, 1e-9) << name;
@@ -21,8 +20,7 @@ TEST(JudgesOracle, WindingNumberAgreesWithCgalOnTheSide) {
 TEST(JudgesOracle, UnsignedDistanceAgreesWithCgal) {
     for (const auto& [name, mesh] : test::generated_meshes()) {
         const test::ExactJudge judge(mesh);
-        for (const auto& points :
-             {comparison::uniform_points(mesh, 300), comparison::surface_points(mesh, 300)})
+        for (const auto& points : {test::uniform_points(mesh, 300), test::surface_points(mesh, 300)})
             for (const Vec3f& p : points)
                 ASSERT_NEAR(unsigned_distance(mesh, Vec3d(p)), judge.distance(Vec3d(p)), 1e-12) << name;
     }

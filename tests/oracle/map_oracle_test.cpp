@@ -1,7 +1,7 @@
 #include "oracle/exact_judge.hpp"
 #include "oracle/test_meshes.hpp"
 #include "oracle/wrong_share.hpp"
-#include "rivals/compare/point_sets.hpp"
+#include "support/point_sets.hpp"
 
 #include <echinus/distance_map.hpp>
 
@@ -39,7 +39,7 @@ TEST(MapOracle, IsSeldomWrongOnTheTorus) {
     for (const auto& [axis, uniform_limit, surface_limit] : cases) {
         const DistanceMap map =
             DistanceMap::build(torus, {.correction = VertexCorrection::None, .pole_axis = axis});
-        EXPECT_LT(test::wrong_share(map, judge, comparison::uniform_points(torus, 15'000)), uniform_limit);
-        EXPECT_LT(test::wrong_share(map, judge, comparison::surface_points(torus, 15'000)), surface_limit);
+        EXPECT_LT(test::wrong_share(map, judge, test::uniform_points(torus, 15'000)), uniform_limit);
+        EXPECT_LT(test::wrong_share(map, judge, test::surface_points(torus, 15'000)), surface_limit);
     }
 }

@@ -1,7 +1,7 @@
 #include "oracle/nasty_meshes.hpp"
 
 #include "oracle/test_meshes.hpp"
-#include "rivals/compare/portable_random.hpp"
+#include "support/portable_random.hpp"
 
 #include <echinus/error.hpp>
 
@@ -39,7 +39,7 @@ TriangleMesh make_aligned_boxes() {
 
 /// Thin rods in all directions, most of them pointing at the centre: long lists of faces seen edge-on.
 TriangleMesh make_needles() {
-    comparison::PortableRandom random(5);
+    test::PortableRandom random(5);
     TriangleMesh whole;
     for (int i = 0; i < 60; ++i) {
         const Vec3d axis{random.normal(), random.normal(), random.normal()};
@@ -182,7 +182,7 @@ TriangleMesh make_slivers() {
 /// Randomly intersecting tetrahedra, randomly oriented outwards or inwards; every third has a corner within
 /// about forty lattice steps of the centre. The octahedron around all keeps the centre there.
 TriangleMesh make_tetrahedra() {
-    comparison::PortableRandom random(6);
+    test::PortableRandom random(6);
     const auto within = [&](double half_width) {
         const double x = random.uniform(-half_width, half_width), y = random.uniform(-half_width, half_width);
         return Vec3f(Vec3d{x, y, random.uniform(-half_width, half_width)});

@@ -3,7 +3,7 @@
 #include "oracle/exact_judge.hpp"
 #include "oracle/nasty_meshes.hpp"
 #include "oracle/test_meshes.hpp"
-#include "rivals/compare/point_sets.hpp"
+#include "support/point_sets.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -18,8 +18,8 @@ namespace {
 
 /// Anywhere in the bounding sphere, near the surface, and outside up to 30 000 radii.
 std::vector<Vec3f> points_around(const TriangleMesh& mesh, const ExactMapView& map, std::size_t count) {
-    std::vector<Vec3f> points = comparison::uniform_points(mesh, count);
-    for (const Vec3f& p : comparison::surface_points(mesh, count)) points.push_back(p);
+    std::vector<Vec3f> points = test::uniform_points(mesh, count);
+    for (const Vec3f& p : test::surface_points(mesh, count)) points.push_back(p);
     test::Random random(7);
     for (float far = 1; far < 3e4F; far *= 2)
         for (std::size_t n = 0; n < count / 16; ++n)

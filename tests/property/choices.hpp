@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rivals/compare/portable_random.hpp"
+#include "support/portable_random.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -25,7 +25,7 @@ class Choices {
     }
 
   private:
-    comparison::PortableRandom random_;
+    test::PortableRandom random_;
 };
 
 } // namespace echinus::test

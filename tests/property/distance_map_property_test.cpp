@@ -24,8 +24,8 @@ bool same(const Contact& a, const Contact& b) {
            std::bit_cast<std::uint32_t>(a.depth) == std::bit_cast<std::uint32_t>(b.depth);
 }
 
-comparison::PortableRandom random_for_points() {
-    return comparison::PortableRandom(*rc::gen::arbitrary<std::uint32_t>().as("seed of the points"));
+test::PortableRandom random_for_points() {
+    return test::PortableRandom(*rc::gen::arbitrary<std::uint32_t>().as("seed of the points"));
 }
 
 DistanceMap random_map() {

@@ -2,9 +2,9 @@
 // which it goes on when it is started again. scripts/bench shapes runs it. Not installed.
 
 #include "bench/records.hpp"
+#include "machine.hpp"
 #include "property/shape_checks.hpp"
 #include "property/shapes.hpp"
-#include "rivals/compare/machine.hpp"
 
 #include <echinus/error.hpp>
 
@@ -95,7 +95,7 @@ Records earlier_report(const Arguments& arguments, const std::vector<std::string
 }
 
 int check(const Arguments& arguments) {
-    const std::vector<std::string> comments{comparison::describe_machine(), arguments.commit};
+    const std::vector<std::string> comments{describe_machine(), arguments.commit};
     Records report = earlier_report(arguments, comments);
     std::set<std::uint64_t> finished;
     for (const Records::Record& record : report.all())

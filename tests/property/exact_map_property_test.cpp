@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kPointCount = 60;
 
-comparison::PortableRandom random_for_points() {
-    return comparison::PortableRandom(*rc::gen::arbitrary<std::uint32_t>().as("seed of the points"));
+test::PortableRandom random_for_points() {
+    return test::PortableRandom(*rc::gen::arbitrary<std::uint32_t>().as("seed of the points"));
 }
 
 ExactMapOptions random_options() {
@@ -28,7 +28,7 @@ ExactMapOptions random_options() {
 }
 
 /// Near the map's surface, on its vertices, or anywhere.
-Vec3f random_point(const TriangleMesh& mesh, const ExactMapView& map, comparison::PortableRandom& random) {
+Vec3f random_point(const TriangleMesh& mesh, const ExactMapView& map, test::PortableRandom& random) {
     const Triangle& face =
         mesh.faces[static_cast<std::size_t>(random.uniform(0, 0.999) * double(mesh.faces.size()))];
     const Vec3d a(mesh.vertices[face[0]]), b(mesh.vertices[face[1]]), c(mesh.vertices[face[2]]);
@@ -55,7 +55,7 @@ struct Placement {
 };
 
 Placement random_placement(const ExactMapView& map) {
-    comparison::PortableRandom random(*rc::gen::arbitrary<std::uint32_t>().as("seed of the placement"));
+    test::PortableRandom random(*rc::gen::arbitrary<std::uint32_t>().as("seed of the placement"));
     Placement placement;
     placement.rotation =
         Rotation::about({random.uniform(-1, 1), random.uniform(-1, 1), 1}, random.uniform(-3, 3));

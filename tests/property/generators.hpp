@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rivals/compare/portable_random.hpp"
+#include "support/portable_random.hpp"
 
 #include <echinus/distance_map.hpp>
 
@@ -26,7 +26,7 @@ namespace echinus::test {
 inline TriangleMesh random_star() {
     const auto meridians = *rc::gen::inRange<std::uint32_t>(3, 14).as("meridians");
     const auto parallels = *rc::gen::inRange<std::uint32_t>(3, 9).as("parallels");
-    comparison::PortableRandom random(*rc::gen::arbitrary<std::uint32_t>().as("seed of the star"));
+    test::PortableRandom random(*rc::gen::arbitrary<std::uint32_t>().as("seed of the star"));
     TriangleMesh mesh = make_sphere(1, meridians, parallels);
     for (Vec3f& vertex : mesh.vertices) {
         if (std::fabs(vertex.z) > 0.9999F) continue;
@@ -90,7 +90,7 @@ inline DistanceMapOptions random_options() {
 }
 
 /// Any float, special values more often than the others.
-inline float any_float(comparison::PortableRandom& random) {
+inline float any_float(test::PortableRandom& random) {
     using Limits = std::numeric_limits<float>;
     constexpr float kOdd[] = {0.0F,
                               -0.0F,
@@ -105,7 +105,7 @@ inline float any_float(comparison::PortableRandom& random) {
 
 /// Points around a map, many of them at special places: on the pole axis and the seam, at the centre and very
 /// near to it.
-inline Vec3f point_about(const DistanceMapView& map, comparison::PortableRandom& random) {
+inline Vec3f point_about(const DistanceMapView& map, test::PortableRandom& random) {
     const auto coordinate = [&] { return static_cast<float>(random.uniform(-1.1, 1.1)) * map.radius; };
     const float x = coordinate(), y = coordinate(), z = coordinate();
     const double kind = random.uniform();

@@ -1,7 +1,7 @@
 // Writes the expected results of the JavaScript module: meshes, particles and, by this machine's scalar
 // reference, maps, answers and the states of simulations. tests/wasm/bits.test.mjs reads them.
 
-#include "rivals/compare/point_sets.hpp"
+#include "support/point_sets.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/instruction_set.hpp>
@@ -72,8 +72,8 @@ const char* const kMaps[] = {
 
 /// Everywhere, near the surface, on it, far away and not finite.
 std::vector<Vec3f> particles_of(const TriangleMesh& mesh) {
-    std::vector<Vec3f> points = comparison::uniform_points(mesh, 600);
-    const std::vector<Vec3f> near = comparison::surface_points(mesh, 600);
+    std::vector<Vec3f> points = test::uniform_points(mesh, 600);
+    const std::vector<Vec3f> near = test::surface_points(mesh, 600);
     points.insert(points.end(), near.begin(), near.end());
     for (std::size_t i = 0; i < mesh.vertices.size() && i < 100; ++i) points.push_back(mesh.vertices[i]);
     constexpr float kInfinity = std::numeric_limits<float>::infinity();

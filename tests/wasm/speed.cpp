@@ -1,7 +1,7 @@
 // The native side of tests/wasm/speed.mjs: writes a model and its particles, then runs the task that each
 // line of its input names once and answers with its processor time.
 
-#include "rivals/compare/point_sets.hpp"
+#include "support/point_sets.hpp"
 
 #include <echinus/instruction_set.hpp>
 #include <echinus/mesh_io.hpp>
@@ -50,8 +50,8 @@ class Tasks {
           mesh_(repair(read_mesh(model), scene_.colliders.front().repair).mesh),
           maps_{{"exact", build_map(mesh_, ExactMapOptions{}, 1)},
                 {"distance", build_map(mesh_, DistanceMapOptions{}, 1)}},
-          points_{{"U", comparison::uniform_points(mesh_, kParticleCount)},
-                  {"S", comparison::surface_points(mesh_, kParticleCount)}} {}
+          points_{{"U", test::uniform_points(mesh_, kParticleCount)},
+                  {"S", test::surface_points(mesh_, kParticleCount)}} {}
 
     void write_inputs(const fs::path& folder) const {
         fs::create_directories(folder);

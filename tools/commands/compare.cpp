@@ -18,8 +18,8 @@
 #include <vector>
 
 using namespace echinus;
-using comparison::Axis;
 using comparison::Comparison;
+using test::Axis;
 
 namespace {
 

@@ -1,8 +1,8 @@
 #include "commands/comparison_report.hpp"
 #include "encoding.hpp"
+#include "machine.hpp"
 #include "rivals/compare/columns.hpp"
 #include "rivals/compare/curve_plots.hpp"
-#include "rivals/compare/machine.hpp"
 #include "rivals/compare/markup.hpp"
 
 #include <fmt/format.h>

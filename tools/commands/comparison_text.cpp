@@ -1,6 +1,6 @@
 #include "commands/comparison_report.hpp"
+#include "machine.hpp"
 #include "rivals/compare/columns.hpp"
-#include "rivals/compare/machine.hpp"
 
 #include <fmt/format.h>
 

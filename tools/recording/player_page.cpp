@@ -2,9 +2,9 @@
 
 #include "encoding.hpp"
 #include "files/read_file.hpp"
+#include "machine.hpp"
 #include "recording/recording_code.hpp"
 #include "recording/threads.hpp"
-#include "rivals/compare/machine.hpp"
 
 #include <echinus/error.hpp>
 
@@ -127,7 +127,7 @@ Json description_of(const PlayedSimulation& played, const Lattice& lattice) {
     return {
         {"format", played.colliders.size() == 1 ? kFormat : kFormatOfSeveral},
         {"version", ECHINUS_VERSION},
-        {"machine", comparison::describe_machine()},
+        {"machine", describe_machine()},
         {"scene", played.scene_name},
         {"model", std::move(model)},
         {"cloth_faces", surface_of(simulation.deformable()).size()},

@@ -2,9 +2,9 @@
 
 #include "engine.hpp"
 #include "files/atomic_file.hpp"
+#include "machine.hpp"
 #include "mesh_io/point_cache.hpp"
 #include "rivals/compare/clock.hpp"
-#include "rivals/compare/machine.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/mesh_io.hpp>
@@ -74,7 +74,7 @@ int run(const Arguments& arguments) {
 int main(int argument_count, char** argument_values) {
     CLI::App app{"Lets a cloth fall on a model in an engine"};
     Arguments arguments;
-    app.set_version_flag("--machine", comparison::describe_machine());
+    app.set_version_flag("--machine", describe_machine());
     app.add_option("--engine", arguments.engine)
         ->required()
         ->check(CLI::IsMember({"bullet", "particles", "surfaces"}));

@@ -2,8 +2,8 @@
 // the caller.
 
 #include "arrays.hpp"
+#include "machine.hpp"
 #include "pinning.hpp"
-#include "rivals/compare/machine.hpp"
 #include "rivals/systems/unshipped/unshipped.hpp"
 #include "systems.hpp"
 #include "truth.hpp"
@@ -52,7 +52,7 @@ std::span<float> span_of(Lengths& lengths) {
 Subject subject_of(const Vertices& vertices, const Faces& faces, std::string name) {
     TriangleMesh mesh = python::mesh_of(python::vertex_array(vertices), python::face_array(faces));
     const double radius = inspect(mesh).bounding_sphere.radius;
-    return {std::move(name), std::move(mesh), radius, false, Axis::Z};
+    return {std::move(name), std::move(mesh), radius, false, test::Axis::Z};
 }
 
 /// Another library around a mesh.
@@ -137,7 +137,8 @@ void contains_by_winding_number(const Vertices& vertices, const Faces& faces, co
 py::array point_set(const Vertices& vertices, const Faces& faces, const std::string& name,
                     std::size_t count) {
     const TriangleMesh mesh = python::mesh_of(vertices, faces);
-    const std::vector<Vec3f> points = name == "U" ? uniform_points(mesh, count) : surface_points(mesh, count);
+    const std::vector<Vec3f> points =
+        name == "U" ? test::uniform_points(mesh, count) : test::surface_points(mesh, count);
     return py::array_t<float>({static_cast<py::ssize_t>(points.size()), py::ssize_t{3}},
                               reinterpret_cast<const float*>(points.data())); // a copy
 }

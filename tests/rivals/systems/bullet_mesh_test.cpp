@@ -1,6 +1,6 @@
-#include "rivals/compare/point_sets.hpp"
 #include "rivals/systems/bullet_mesh/bullet_mesh.hpp"
 #include "support/expect_error.hpp"
+#include "support/point_sets.hpp"
 
 #include <echinus/exact_map.hpp>
 
@@ -13,7 +13,7 @@ using rivals::BulletMesh;
 
 TEST(BulletMesh, TellsNearlyAllSidesThatTheExactMapTells) {
     for (const TriangleMesh& mesh : {make_torus(0.7, 0.3, 24, 12), make_box({1, 2, 0.3}, 2)}) {
-        const std::vector<Vec3f> points = comparison::uniform_points(mesh, 5000);
+        const std::vector<Vec3f> points = test::uniform_points(mesh, 5000);
         std::vector<std::uint8_t> truth(points.size()), answers(points.size(), 2);
         const ExactMap judge = ExactMap::build(mesh);
         contains_batch(judge, points, truth);
@@ -43,7 +43,7 @@ TEST(BulletMesh, FindsTheWayOutOnlyWithinItsReach) {
 TEST(BulletMesh, FindsTheDepthThatTheExactMapFindsWithALongReach) {
     const TriangleMesh torus = make_torus(0.7, 0.3, 24, 12);
     const ExactMap exact = ExactMap::build(torus);
-    const std::vector<Vec3f> points = comparison::uniform_points(torus, 500);
+    const std::vector<Vec3f> points = test::uniform_points(torus, 500);
     std::vector<Contact> contacts(points.size());
     BulletMesh::build(torus, 1).contacts_batch(points, contacts);
     std::size_t inside = 0;

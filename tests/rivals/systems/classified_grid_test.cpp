@@ -1,9 +1,9 @@
 #include "directions/lattice.hpp"
-#include "rivals/compare/point_sets.hpp"
 #include "rivals/systems/classified_grid/classified_grid.hpp"
 #include "support/expect_error.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/mesh_assembly.hpp"
+#include "support/point_sets.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -44,12 +44,12 @@ std::vector<TriangleMesh> closed_meshes() {
 /// On the surface and beside it by a few lattice steps, at vertices, uniform, and on walls between cells.
 std::vector<Vec3f> hard_points(const TriangleMesh& mesh, std::int32_t cell_steps) {
     const LatticeMesh lattice = snap_to_lattice(mesh);
-    std::vector<Vec3f> points = comparison::surface_points(mesh, 2000, 0.01);
+    std::vector<Vec3f> points = test::surface_points(mesh, 2000, 0.01);
     const auto add = [&](const std::vector<Vec3f>& more) {
         points.insert(points.end(), more.begin(), more.end());
     };
-    add(comparison::surface_points(mesh, 2000, 1e-6));
-    add(comparison::uniform_points(mesh, 2000));
+    add(test::surface_points(mesh, 2000, 1e-6));
+    add(test::uniform_points(mesh, 2000));
     add(mesh.vertices);
     std::int64_t low = kLatticeExtent; // of the grid, as build() has it
     for (const LatticePoint& v : lattice.vertices) low = std::min(low, v.x);
@@ -109,7 +109,7 @@ TEST(ClassifiedGrid, DecidesPlacesOnTheLatticeOfTheMesh) {
 TEST(ClassifiedGrid, AnswersBatchesOfEveryLengthLikeSingleParticles) {
     const TriangleMesh mesh = make_torus(1, 0.4, 30, 12);
     const ClassifiedGrid grid = ClassifiedGrid::build(mesh, 60'000);
-    const std::vector<Vec3f> points = comparison::surface_points(mesh, 40);
+    const std::vector<Vec3f> points = test::surface_points(mesh, 40);
     test::under_each_instruction_set([&](std::string_view name) {
         for (std::size_t first = 0; first < 3; ++first)
             for (std::size_t n = 0; first + n <= points.size(); ++n) {
@@ -126,8 +126,8 @@ TEST(ClassifiedGrid, FindsTheNearestPointOfTheWholeSurface) {
     for (const TriangleMesh& mesh : closed_meshes()) {
         const LatticeMesh lattice = snap_to_lattice(mesh);
         const auto radius = double{lattice.radius};
-        std::vector<Vec3f> points = comparison::surface_points(mesh, 150, 0.05);
-        for (const Vec3f& p : comparison::uniform_points(mesh, 150)) points.push_back(p);
+        std::vector<Vec3f> points = test::surface_points(mesh, 150, 0.05);
+        for (const Vec3f& p : test::uniform_points(mesh, 150)) points.push_back(p);
         points.push_back(mesh.vertices[0]);
         points.push_back(lattice.centre);
         points.push_back({9, 8, 7});

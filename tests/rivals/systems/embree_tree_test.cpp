@@ -1,6 +1,6 @@
-#include "rivals/compare/point_sets.hpp"
 #include "rivals/systems/embree_tree/embree_tree.hpp"
 #include "support/mesh_assembly.hpp"
+#include "support/point_sets.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/error.hpp>
@@ -81,8 +81,8 @@ TEST(EmbreeTree, FindsTheNearestPointOfABoxByItsFormula) {
 TEST(EmbreeTree, TellsTheSidesThatTheExactMapTellsButForFewAtEdges) {
     for (const TriangleMesh& mesh : meshes())
         for (const RaySides sides : kBoth) {
-            EXPECT_LE(wrong_sides(mesh, comparison::uniform_points(mesh, 5000), sides), 1);
-            EXPECT_LE(wrong_sides(mesh, comparison::surface_points(mesh, 5000), sides), 3);
+            EXPECT_LE(wrong_sides(mesh, test::uniform_points(mesh, 5000), sides), 1);
+            EXPECT_LE(wrong_sides(mesh, test::surface_points(mesh, 5000), sides), 3);
         }
 }
 
@@ -98,7 +98,7 @@ TEST(EmbreeTree, CountsLongFacesOnce) {
     std::vector<Vec3f> points; // outside all of them, whose overlaps parity tells differently
     std::vector<std::uint8_t> inside;
     const ExactMap exact = ExactMap::build(needles);
-    for (const Vec3f& p : comparison::uniform_points(needles, 5000))
+    for (const Vec3f& p : test::uniform_points(needles, 5000))
         if (!contains(exact, p)) points.push_back(p);
     inside.resize(points.size());
     EmbreeTree::build(needles).contains_batch(points, inside);
@@ -118,7 +118,7 @@ TEST(EmbreeTree, CountsACavityAsOutside) {
 
 TEST(EmbreeTree, AnswersTheSameOneByOneAndInPackets) {
     const TriangleMesh mesh = make_torus(0.7, 0.3, 24, 12);
-    std::vector<Vec3f> points = comparison::uniform_points(mesh, 1003);
+    std::vector<Vec3f> points = test::uniform_points(mesh, 1003);
     points.push_back({std::numeric_limits<float>::quiet_NaN(), 0, 0});
     for (const RaySides sides : kBoth) {
         const EmbreeTree tree = EmbreeTree::build(mesh, sides);

@@ -1,8 +1,8 @@
-#include "rivals/compare/portable_random.hpp"
 #include "rivals/systems/superquadric_map/fit.hpp"
 #include "rivals/systems/superquadric_map/fit_residuals.hpp"
 #include "rivals/systems/superquadric_map/superquadric.hpp"
 #include "support/expect_error.hpp"
+#include "support/portable_random.hpp"
 
 #include <echinus/mesh.hpp>
 
@@ -16,7 +16,7 @@
 
 using namespace echinus;
 using namespace echinus::rivals;
-using comparison::PortableRandom;
+using test::PortableRandom;
 
 namespace {
 

@@ -1,8 +1,8 @@
 #include "bad_meshes.hpp"
-#include "rivals/compare/point_sets.hpp"
 #include "rivals/systems/superquadric_map/superquadric_map.hpp"
 #include "support/expect_error.hpp"
 #include "support/mesh_assembly.hpp"
+#include "support/point_sets.hpp"
 
 #include <echinus/exact_map.hpp>
 
@@ -48,8 +48,8 @@ TriangleMesh coarse_torus() {
 
 /// Everywhere, and near the surface.
 std::vector<Vec3f> points_around(const TriangleMesh& mesh, std::size_t count = 4000) {
-    std::vector<Vec3f> points = comparison::uniform_points(mesh, count);
-    const std::vector<Vec3f> near = comparison::surface_points(mesh, count, 0.03);
+    std::vector<Vec3f> points = test::uniform_points(mesh, count);
+    const std::vector<Vec3f> near = test::surface_points(mesh, count, 0.03);
     points.insert(points.end(), near.begin(), near.end());
     return points;
 }

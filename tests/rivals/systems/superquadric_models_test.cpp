@@ -1,5 +1,5 @@
-#include "rivals/compare/point_sets.hpp"
 #include "rivals/systems/superquadric_map/superquadric_map.hpp"
+#include "support/point_sets.hpp"
 
 #include <echinus/exact_map.hpp>
 #include <echinus/mesh_io.hpp>
@@ -29,6 +29,6 @@ TEST(SuperquadricMapOfTheHorse, HasSeventeenSegmentsOnRequestAndTellsMostParticl
         for (const Vec3f& p : points) wrong += map.contains(p) != contains(exact, p) ? 1 : 0;
         return static_cast<double>(wrong) / static_cast<double>(points.size());
     };
-    EXPECT_LT(wrong_share(comparison::uniform_points(horse, 20'000)), 0.002);
-    EXPECT_LT(wrong_share(comparison::surface_points(horse, 20'000)), 0.04);
+    EXPECT_LT(wrong_share(test::uniform_points(horse, 20'000)), 0.002);
+    EXPECT_LT(wrong_share(test::surface_points(horse, 20'000)), 0.04);
 }

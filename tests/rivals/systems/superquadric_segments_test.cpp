@@ -1,5 +1,4 @@
 #include "directions/face_cone.hpp"
-#include "rivals/compare/portable_random.hpp"
 #include "rivals/systems/superquadric_map/convex_hull.hpp"
 #include "rivals/systems/superquadric_map/decompose.hpp"
 #include "rivals/systems/superquadric_map/sampling.hpp"
@@ -7,6 +6,7 @@
 #include "rivals/systems/superquadric_map/simplify.hpp"
 #include "support/expect_error.hpp"
 #include "support/mesh_assembly.hpp"
+#include "support/portable_random.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@
 
 using namespace echinus;
 using namespace echinus::rivals;
-using comparison::PortableRandom;
 using test::joined;
+using test::PortableRandom;
 using test::translated;
 
 namespace {

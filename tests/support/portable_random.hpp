@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <random>
 
-namespace echinus::comparison {
+namespace echinus::test {
 
 /// Random numbers with the same bits on every machine. The standard fixes the output of its engines but not
 /// of its distributions, so those are our own, and the normal one uses no function of the C library.
@@ -45,4 +45,4 @@ class PortableRandom {
     std::mt19937_64 engine_;
 };
 
-} // namespace echinus::comparison
+} // namespace echinus::test

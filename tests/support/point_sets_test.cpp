@@ -1,5 +1,5 @@
-#include "rivals/compare/point_sets.hpp"
-#include "rivals/compare/portable_random.hpp"
+#include "support/point_sets.hpp"
+#include "support/portable_random.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ const TriangleMesh& torus() {
 } // namespace
 
 TEST(PortableRandom, HasTheMomentsAndTailsOfTheNormalDistribution) {
-    comparison::PortableRandom random(1);
+    test::PortableRandom random(1);
     constexpr int kCount = 200'000;
     double sum = 0, squares = 0, fourths = 0;
     int beyond_one = 0, beyond_two = 0;
@@ -38,7 +38,7 @@ TEST(PortableRandom, HasTheMomentsAndTailsOfTheNormalDistribution) {
 
 TEST(PointSets, UniformPointsFillTheBoundingSphereEvenly) {
     const Sphere sphere = inspect(torus()).bounding_sphere;
-    const auto points = comparison::uniform_points(torus(), 50'000);
+    const auto points = test::uniform_points(torus(), 50'000);
     int in_half_radius = 0, above = 0;
     for (const Vec3f& p : points) {
         const double r = length(Vec3d(p) - sphere.centre);
@@ -52,7 +52,7 @@ TEST(PointSets, UniformPointsFillTheBoundingSphereEvenly) {
 
 TEST(PointSets, SurfacePointsScatterAboutTheSurfaceOnBothSides) {
     const double radius = inspect(torus()).bounding_sphere.radius;
-    const auto points = comparison::surface_points(torus(), 600);
+    const auto points = test::surface_points(torus(), 600);
     double squares = 0;
     int inside = 0;
     for (const Vec3f& p : points) {
@@ -66,7 +66,7 @@ TEST(PointSets, SurfacePointsScatterAboutTheSurfaceOnBothSides) {
 
 TEST(PointSets, SurfacePointsWithoutSpreadLieOnFacesInProportionToTheirArea) {
     const TriangleMesh box = make_box({1, 1, 3});
-    const auto points = comparison::surface_points(box, 20'000, 0);
+    const auto points = test::surface_points(box, 20'000, 0);
     int on_ends = 0;
     for (const Vec3f& p : points) {
         ASSERT_LT(unsigned_distance(box, Vec3d(p)), 1e-6);
@@ -76,7 +76,7 @@ TEST(PointSets, SurfacePointsWithoutSpreadLieOnFacesInProportionToTheirArea) {
 }
 
 TEST(PointSets, ClothLiesOnTheTopmostSurfaceAndOnTheFloorWhereThereIsNone) {
-    const auto points = comparison::cloth_points(torus(), 100, 80, comparison::Axis::Z, 0);
+    const auto points = test::cloth_points(torus(), 100, 80, test::Axis::Z, 0);
     ASSERT_EQ(points.size(), 8'000U);
     for (const Vec3f& p : points) {
         const double rim = std::abs(std::hypot(p.x, p.y) - 1);
@@ -89,8 +89,8 @@ TEST(PointSets, ClothLiesOnTheTopmostSurfaceAndOnTheFloorWhereThereIsNone) {
 }
 
 TEST(PointSets, SmoothingSinksTheClothIntoWhatIsConvexAndKeepsItsVolume) {
-    const auto taut = comparison::cloth_points(torus(), 90, 90, comparison::Axis::Z, 0);
-    const auto smooth = comparison::cloth_points(torus(), 90, 90, comparison::Axis::Z, 0.01);
+    const auto taut = test::cloth_points(torus(), 90, 90, test::Axis::Z, 0);
+    const auto smooth = test::cloth_points(torus(), 90, 90, test::Axis::Z, 0.01);
     double difference = 0;
     int sunk = 0, on_crest = 0;
     for (std::size_t i = 0; i < taut.size(); ++i) {
@@ -107,8 +107,8 @@ TEST(PointSets, SmoothingSinksTheClothIntoWhatIsConvexAndKeepsItsVolume) {
 TEST(PointSets, AreAClothThatCutsInHoweverFewTheyAre) {
     // The share inside and the deviation from the taut cloth, on the flanks of the ring, in R.
     const auto cut_of = [](std::size_t side) {
-        const auto taut = comparison::cloth_points(torus(), side, side, comparison::Axis::Z, 0);
-        const auto smooth = comparison::cloth_points(torus(), side, side, comparison::Axis::Z, 0.01);
+        const auto taut = test::cloth_points(torus(), side, side, test::Axis::Z, 0);
+        const auto smooth = test::cloth_points(torus(), side, side, test::Axis::Z, 0.01);
         double deviation = 0, inside = 0;
         for (std::size_t i = 0; i < taut.size(); ++i) {
             deviation += std::abs(smooth[i].z - taut[i].z);
@@ -128,18 +128,18 @@ TEST(PointSets, AreAClothThatCutsInHoweverFewTheyAre) {
 TEST(PointSets, AxesAreTakenInCyclicOrder) {
     const TriangleMesh tall = make_box({1, 2, 3}, 2);
     for (const auto& [up, height] :
-         {std::pair{comparison::Axis::X, 0.5F}, {comparison::Axis::Y, 1.0F}, {comparison::Axis::Z, 1.5F}})
-        for (const Vec3f& p : comparison::cloth_points(tall, 10, 10, up, 0))
+         {std::pair{test::Axis::X, 0.5F}, {test::Axis::Y, 1.0F}, {test::Axis::Z, 1.5F}})
+        for (const Vec3f& p : test::cloth_points(tall, 10, 10, up, 0))
             ASSERT_EQ((std::array{p.x, p.y, p.z}[static_cast<std::size_t>(up)]), height);
 }
 
 TEST(PointSets, AreTheSameOnEveryMachine) {
     // In hexadecimal, because every bit counts.
     const TriangleMesh box = make_box({1, 2, 3}, 2);
-    EXPECT_EQ(comparison::uniform_points(box, 1000).back(),
+    EXPECT_EQ(test::uniform_points(box, 1000).back(),
               (Vec3f{0x1.17dfa6p+0F, 0x1.a8346ap-3F, 0x1.3d50b4p+0F}));
-    EXPECT_EQ(comparison::surface_points(box, 1000).back(),
+    EXPECT_EQ(test::surface_points(box, 1000).back(),
               (Vec3f{0x1.ff0cf4p-2F, -0x1.fb0038p-4F, 0x1.522b76p-1F}));
-    EXPECT_EQ(comparison::cloth_points(torus(), 40, 25, comparison::Axis::Y, 0.05)[321],
+    EXPECT_EQ(test::cloth_points(torus(), 40, 25, test::Axis::Y, 0.05)[321],
               (Vec3f{-0x1.cac082p-2F, 0x1.c4678ap-3F, -0x1.7ae148p-2F}));
 }

@@ -1,11 +1,9 @@
-#include "rivals/compare/machine.hpp"
+#include "machine.hpp"
 
 #include <fmt/format.h>
 
 #include <fstream>
 #include <thread>
-
-namespace echinus::comparison {
 
 namespace {
 
@@ -29,5 +27,3 @@ std::string describe_machine() {
                        std::thread::hardware_concurrency(), value_of("/etc/os-release", "PRETTY_NAME", '='),
                        __VERSION__);
 }
-
-} // namespace echinus::comparison

@@ -2,9 +2,5 @@
 
 #include <string>
 
-namespace echinus::comparison {
-
 /// The machine and the compiler in words, for a page of measurements: nothing that identifies the computer.
 std::string describe_machine();
-
-} // namespace echinus::comparison

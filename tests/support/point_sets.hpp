@@ -8,7 +8,7 @@
 
 /// The three sets of particles on which Echinus measures itself. They depend on the mesh, the count and the
 /// seed alone and have the same bits on every machine, so that a wrong answer can be named by its number.
-namespace echinus::comparison {
+namespace echinus::test {
 
 /// U: uniform in the bounding sphere.
 std::vector<Vec3f> uniform_points(const TriangleMesh& mesh, std::size_t count, std::uint64_t seed = 1);
@@ -27,4 +27,4 @@ enum class Axis : std::uint8_t { X, Y, Z };
 std::vector<Vec3f> cloth_points(const TriangleMesh& mesh, std::size_t columns, std::size_t rows, Axis up,
                                 double smoothing = 0.01);
 
-} // namespace echinus::comparison
+} // namespace echinus::test

@@ -1,13 +1,13 @@
-#include "rivals/compare/point_sets.hpp"
+#include "support/point_sets.hpp"
 
-#include "rivals/compare/portable_random.hpp"
+#include "support/portable_random.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-namespace echinus::comparison {
+namespace echinus::test {
 
 namespace {
 
@@ -194,4 +194,4 @@ std::vector<Vec3f> cloth_points(const TriangleMesh& mesh, std::size_t columns, s
     return sheet.points(columns_each, rows_each);
 }
 
-} // namespace echinus::comparison
+} // namespace echinus::test
