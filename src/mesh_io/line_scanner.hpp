@@ -21,9 +21,9 @@ class LineScanner {
     /// Does a backslash before the end of a line join it with the next one? One in a comment never does.
     enum class Continuation { None, Backslash };
 
-    /// @throws Error WrongFormat when the text is UTF-16
+    /// @throws Error WrongFormat when the text is UTF-16 or UTF-32
     explicit LineScanner(const MeshSource& source, Continuation continuation = Continuation::None)
-        : source_(source), continuation_(continuation), next_(begin_of_text(source)) {}
+        : source_(source), continuation_(continuation), next_(source.bytes.size() - text_of(source).size()) {}
     /// Begins at an offset, where the line of this number does.
     LineScanner(const MeshSource& source, std::size_t offset, std::size_t line_number)
         : source_(source), next_(offset), next_number_(line_number) {}

@@ -1,18 +1,14 @@
 #include "mesh_io/mesh_source.hpp"
 
+#include "files/utf8_text.hpp"
+
 #include <algorithm>
 
 namespace echinus {
 
-bool begins_as_utf16(std::string_view bytes) {
-    return bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
-}
-
-std::size_t begin_of_text(const MeshSource& source) {
-    constexpr std::string_view kMarkOfUtf8 = "\xef\xbb\xbf";
-    if (begins_as_utf16(source.bytes))
-        source.fail(ErrorCode::WrongFormat, "the text is UTF-16; save it as UTF-8 or ASCII");
-    return source.bytes.starts_with(kMarkOfUtf8) ? kMarkOfUtf8.size() : 0;
+std::string_view text_of(const MeshSource& source) {
+    return utf8_text(source.bytes,
+                     [&](const std::string& what) { source.fail(ErrorCode::WrongFormat, what); });
 }
 
 std::string lower_case(std::string_view text) {

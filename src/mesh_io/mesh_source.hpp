@@ -18,12 +18,9 @@ struct MeshSource {
     }
 };
 
-/// Is this the beginning of a text in UTF-16, as its byte order mark says?
-bool begins_as_utf16(std::string_view bytes);
-
-/// Where the text of a file begins: behind the byte order mark of UTF-8, if there is one.
-/// @throws Error WrongFormat when the text is UTF-16
-std::size_t begin_of_text(const MeshSource& source);
+/// The text of a file, behind the byte order mark of UTF-8 if there is one.
+/// @throws Error WrongFormat when the text is UTF-16 or UTF-32
+std::string_view text_of(const MeshSource& source);
 
 /// With ASCII capitals as small letters, whatever the locale.
 std::string lower_case(std::string_view text);

@@ -156,7 +156,7 @@ bool has_head_of_text(std::string_view bytes) {
 
 /// Many programs also begin binary files with the word solid.
 bool begins_as_text(const MeshSource& source) {
-    std::string_view bytes = source.bytes.substr(begin_of_text(source));
+    std::string_view bytes = text_of(source);
     if (bytes.size() >= kBytesBeforeFaces && !has_head_of_text(bytes)) return false;
     bytes.remove_prefix(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
     return lower_case(bytes.substr(0, 5)) == "solid";

@@ -210,7 +210,7 @@ std::size_t end_of_title(const MeshSource& source) {
 
 TetrahedraInFile read_vtk(const MeshSource& source) {
     constexpr std::string_view kMark = "# vtk DataFile Version ";
-    const std::string_view text = source.bytes.substr(begin_of_text(source));
+    const std::string_view text = text_of(source);
     if (!text.starts_with(kMark))
         source.fail(ErrorCode::WrongFormat,
                     "the file does not begin with '# vtk DataFile Version', as legacy VTK "

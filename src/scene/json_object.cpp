@@ -1,5 +1,6 @@
 #include "scene/json_object.hpp"
 
+#include "files/utf8_text.hpp"
 #include "geometry/number_text.hpp"
 
 #include <echinus/error.hpp>
@@ -127,10 +128,12 @@ std::string excerpt(const json& value) {
 } // namespace
 
 json parse_json(std::string_view text, const std::string& name) {
+    const std::string_view utf8 = utf8_text(
+        text, [&](const std::string& what) { throw Error(ErrorCode::InvalidScene, name + ": " + what); });
     try {
         constexpr bool kThrow = true;
         constexpr bool kIgnoreComments = true;
-        return json::parse(text, ParsingRules(name), kThrow, kIgnoreComments);
+        return json::parse(utf8, ParsingRules(name), kThrow, kIgnoreComments);
     } catch (const json::exception& error) {
         throw Error(ErrorCode::InvalidScene, name + ": not JSON: " + reason_of(error));
     }

@@ -116,6 +116,8 @@ TEST(LineScanner, PassesOverAByteOrderMarkAndNamesUtf16) {
                                                 6)})
         expect_error(ErrorCode::WrongFormat, "text: the text is UTF-16; save it as UTF-8",
                      [&] { words_of(text); });
+    expect_error(ErrorCode::WrongFormat, "text: the text is UTF-32; save it as UTF-8",
+                 [&] { words_of(std::string("\xff\xfe\0\0a\0\0\0", 8)); });
     for (const std::string& text : {std::string("a\0b\0\n\0", 6), std::string("\0a\0\n", 4)})
         expect_error(ErrorCode::WrongFormat, "or it is UTF-16, which must be saved as UTF-8",
                      [&] { words_of(text); });

@@ -41,6 +41,14 @@ TEST(Json, ThatIsNoneIsRefusedWithLineAndColumn) {
     EXPECT_NE(refusal_of_text("{\"a\": 1} {}"), "");
 }
 
+TEST(Json, InAnotherEncodingThanUtf8IsNamed) {
+    EXPECT_EQ(parse_json("\xef\xbb\xbf{\"a\": 1}", "a.json")["a"], 1);
+    EXPECT_EQ(refusal_of_text(std::string("\xff\xfe{\0}\0", 6)),
+              "a.json: the text is UTF-16; save it as UTF-8 or ASCII");
+    EXPECT_EQ(refusal_of_text(std::string("\0\0\xfe\xff\0\0\0{", 8)),
+              "a.json: the text is UTF-32; save it as UTF-8 or ASCII");
+}
+
 TEST(Json, DeepEnoughToOverflowAStackIsRefused) {
     constexpr std::size_t kLevels = 100'000;
     const std::string open(kLevels, '[');

@@ -1,5 +1,6 @@
 #include "points/points.hpp"
 
+#include "files/utf8_text.hpp"
 #include "points/npy_header.hpp"
 
 #include <algorithm>
@@ -76,17 +77,14 @@ std::string remedy_for(std::string_view line) {
 } // namespace
 
 std::unique_ptr<PointSource> open_csv_points(std::unique_ptr<Input> input) {
-    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf"; // spreadsheets put it before the first line
-    constexpr std::string_view kMarksOfUtf16[] = {"\xff\xfe", "\xfe\xff"};
     std::vector<Vec3d> points;
     std::string line;
     bool names_may_follow = true;
     for (std::size_t line_number = 1; input->read_line(line); ++line_number) {
         std::string_view text = line;
-        if (line_number == 1 && text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-        for (const std::string_view mark : kMarksOfUtf16)
-            if (line_number == 1 && text.starts_with(mark))
-                input->fail(ErrorCode::WrongFormat, "the text is UTF-16; save it as UTF-8 or ASCII");
+        if (line_number == 1)
+            text = echinus::utf8_text(
+                text, [&](const std::string& what) { input->fail(ErrorCode::WrongFormat, what); });
         text = trimmed(text);
         if (text.empty() || text.starts_with('#')) continue;
         if (const std::optional<Vec3d> point = parse_point(text)) {
