@@ -98,7 +98,7 @@ struct RepairOptions {
     bool drop_doubled_patches = false;
     /// Reverses every closed component with a negative signed volume that does not lie in another closed one,
     /// together with the closed components in it: cavities stay cavities. Here parts that touch in vertices
-    /// only are components of their own.
+    /// or edges only are components of their own.
     bool flip_inside_out = false;
     /// Closes seams: joins vertices of edges that are not balanced where they are no farther apart than
     /// weld_distance, drops faces that have two equal corners then, and fills holes that are no wider, such
@@ -111,9 +111,10 @@ struct RepairOptions {
     /// Drops faces without area at edges that are not balanced, unless they fill a seam: three corners on one
     /// line, as far as float tells.
     bool drop_loose_slivers = false;
-    /// Turns faces so that neighbours agree, as most of them do, in every component in which they can: one
-    /// that is joined by edges with exactly two faces, and has no other edges. The outcome may be inside out
-    /// without flip_inside_out.
+    /// Turns faces so that neighbours agree, as most of them do, in every patch, faces joined by edges with
+    /// exactly two faces, that is closed without the rest of the mesh. Blocks that share an edge are such
+    /// patches; a block that shares a side, or all edges of one, is not, as turning it takes a guess. The
+    /// outcome may be inside out without flip_inside_out.
     bool orient_faces = false;
 
     /// Fills holes whose border has at most so many edges, up to kMaxHoleEdges; 0 leaves them. A hole is a

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <limits>
+#include <utility>
 
 namespace echinus {
 
@@ -29,11 +30,10 @@ std::vector<std::array<Neighbour, 3>> find_neighbours(std::span<const EdgeUse> e
     return neighbours;
 }
 
-} // namespace
-
-Orientation find_orientation(std::span<const EdgeUse> edge_uses, std::size_t face_count) {
+/// Finds the patches, how their faces run, and which of them are orientable.
+Orientation find_patches(std::span<const EdgeUse> edge_uses, std::size_t face_count) {
     const auto neighbours = find_neighbours(edge_uses, face_count);
-    Orientation result{std::vector(face_count, kNone), std::vector<bool>(face_count), {}};
+    Orientation result{std::vector(face_count, kNone), std::vector<bool>(face_count), {}, {}};
     std::vector<std::uint32_t> waiting;
     for (std::uint32_t first = 0; first < face_count; ++first) {
         if (result.patch_of_face[first] != kNone) continue;
@@ -58,6 +58,35 @@ Orientation find_orientation(std::span<const EdgeUse> edge_uses, std::size_t fac
         }
     }
     return result;
+}
+
+} // namespace
+
+Orientation find_orientation(std::span<const EdgeUse> edge_uses, std::size_t face_count) {
+    Orientation result = find_patches(edge_uses, face_count);
+    result.is_closed =
+        find_closed_sets(edge_uses, result.patch_of_face, result.is_orientable.size(), result.is_turned);
+    for (std::size_t patch = 0; patch < result.is_closed.size(); ++patch)
+        result.is_closed[patch] = result.is_closed[patch] && result.is_orientable[patch];
+    return result;
+}
+
+std::vector<bool> find_closed_sets(std::span<const EdgeUse> edge_uses,
+                                   std::span<const std::uint32_t> set_of_face, std::size_t set_count,
+                                   const std::vector<bool>& is_turned) {
+    std::vector<bool> is_closed(set_count, true);
+    std::vector<std::int64_t> balance(set_count); // of the set's faces along one edge
+    for_each_edge(edge_uses, [&](std::span<const EdgeUse> uses) {
+        for (const EdgeUse& use : uses) {
+            const bool is_ascending = use.ascending != (!is_turned.empty() && is_turned[use.face]);
+            balance[set_of_face[use.face]] += is_ascending ? 1 : -1;
+        }
+        for (const EdgeUse& use : uses) {
+            const std::uint32_t set = set_of_face[use.face];
+            if (std::exchange(balance[set], 0) != 0) is_closed[set] = false;
+        }
+    });
+    return is_closed;
 }
 
 } // namespace echinus

@@ -2,6 +2,7 @@
 #include "mesh/components.hpp"
 #include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
+#include "mesh/orientation.hpp"
 #include "mesh/union_find.hpp"
 #include "mesh/winding_number.hpp"
 #include "repair/repairs.hpp"
@@ -50,11 +51,17 @@ bool has_negative_volume(const TriangleMesh& mesh, const Component& component) {
 }
 
 /// Sets of faces joined by edges, numbered in the order of their first faces. Solids that touch in vertices
-/// are apart.
+/// are apart, and so are those that touch in edges, where each patch is closed without the other.
 Components find_solids(std::span<const EdgeUse> edge_uses, std::size_t face_count) {
+    const Orientation orientation = find_orientation(edge_uses, face_count);
     UnionFind sets(face_count);
     for_each_edge(edge_uses, [&](std::span<const EdgeUse> uses) {
-        for (const EdgeUse& use : uses) sets.join(uses[0].face, use.face);
+        const EdgeUse* first = nullptr; // of a patch that needs others
+        for (const EdgeUse& use : uses) {
+            if (uses.size() != 2 && orientation.is_closed[orientation.patch_of_face[use.face]]) continue;
+            if (first != nullptr) sets.join(first->face, use.face);
+            first = &use;
+        }
     });
     Components components;
     components.of_face.resize(face_count);
@@ -69,18 +76,17 @@ Components find_solids(std::span<const EdgeUse> edge_uses, std::size_t face_coun
 std::vector<Component> examine_components(const TriangleMesh& mesh) {
     const std::vector<EdgeUse> edge_uses = sorted_edge_uses(mesh);
     const Components numbers = find_solids(edge_uses, mesh.faces.size());
+    const std::vector<bool> is_closed = find_closed_sets(edge_uses, numbers.of_face, numbers.count);
     std::vector<Component> components(numbers.count);
     for (std::size_t face = 0; face < mesh.faces.size(); ++face) {
         Component& component = components[numbers.of_face[face]];
         component.face_numbers.push_back(kept_as<std::uint32_t>(face));
         component.faces.push_back(mesh.faces[face]);
     }
-    for (const EdgeUse& use : edge_uses) components[numbers.of_face[use.face]].closed = true;
-    for_each_edge(edge_uses, [&](std::span<const EdgeUse> uses) {
-        if (!is_balanced(uses)) components[numbers.of_face[uses[0].face]].closed = false;
-    });
-    for (Component& component : components) {
+    for (std::size_t number = 0; number < components.size(); ++number) {
+        Component& component = components[number];
         find_bounding_box(mesh, component);
+        component.closed = is_closed[number];
         component.inside_out = component.closed && has_negative_volume(mesh, component);
     }
     return components;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <random>
 
 using namespace echinus;
 using namespace echinus::test;
@@ -157,9 +158,40 @@ TEST(Repair, TurnsNoFaceWhereThatNeedsAGuess) {
     std::swap(open.faces[7][0], open.faces[7][1]);
     open.faces.pop_back();
     expect_unchanged(open, {.orient_faces = true});
-    TriangleMesh joined = weld(together(make_box({1, 1, 1}), moved(make_box({1, 1, 1}), {1, 1, 0})));
-    std::swap(joined.faces[0][0], joined.faces[0][1]); // along an edge with four faces
+    TriangleMesh mirrored = moved(make_box({1, 1, 1}), {1, 0, 0});
+    for (Vec3f& p : mirrored.vertices) p.y = -p.y;
+    TriangleMesh joined = weld(together(make_box({1, 1, 1}), inside_out(mirrored)));
+    std::swap(joined.faces[0][0], joined.faces[0][1]); // of a block that shares a side with another
     expect_unchanged(joined, {.orient_faces = true});
+}
+
+TEST(Repair, TurnsTheFacesOfBlocksThatTouchInEdgesAsOfBlocksThatDoNot) {
+    // Four in a ring around a hole, one more across two of their edges, and one apart.
+    const TriangleMesh box = make_box({1, 1, 1});
+    TriangleMesh whole = box;
+    for (const Vec3f& shift :
+         {Vec3f{1, 1, 0}, Vec3f{2, 0, 0}, Vec3f{1, -1, 0}, Vec3f{0, 1, 1}, Vec3f{5, 0, 0}})
+        whole = together(whole, moved(box, shift));
+    whole = weld(whole);
+    ASSERT_GT(inspect(whole).nonmanifold_edges.count, 4U);
+    std::mt19937 random(1);
+    for (int turn = 0; turn < 200; ++turn) {
+        TriangleMesh mesh = whole;
+        for (Triangle& face : mesh.faces)
+            if (random() % (2 + turn % 5) == 0) std::swap(face[0], face[1]);
+        const MeshReport report = inspect(repair(mesh, RepairOptions::all()).mesh);
+        EXPECT_TRUE(report.closed);
+        EXPECT_EQ(report.misoriented_edges.count, 0U);
+        EXPECT_NEAR(report.signed_volume, 6, 1e-12);
+    }
+}
+
+TEST(Repair, TurnsABlockOutwardsThatTouchesAnotherInAnEdge) {
+    const TriangleMesh box = make_box({1, 1, 1});
+    const TriangleMesh mesh = weld(together(box, inside_out(moved(box, {1, 1, 0}))));
+    const RepairedMesh repaired = repair(mesh, RepairOptions::all());
+    EXPECT_EQ(repaired.report.components_flipped, 1U);
+    EXPECT_NEAR(inspect(repaired.mesh).signed_volume, 2, 1e-12);
 }
 
 TEST(Repair, WeldsCornersThatDifferByLessThanMapsResolve) {
