@@ -72,8 +72,8 @@ void append_contacts(const Collider& collider, std::size_t number, const Strided
 template <typename T>
 std::size_t gather_contacts(std::span<const Collider> colliders, const StridedSpan<const Vec3<T>>& points,
                             float margin, const ContactArrays<T>& contacts) {
-    std::optional<PointBox> box; // one collider would take it for itself alone
-    if (colliders.size() > 1) box.emplace(points);
+    std::optional<AlignedBox<double>> box; // one collider would take it for itself alone
+    if (colliders.size() > 1) box = box_around(points);
     std::size_t count = 0;
     for (std::size_t k = 0; k < colliders.size(); ++k)
         if (!box || may_touch(colliders[k], *box, margin))

@@ -1,40 +1,25 @@
 #pragma once
 
 #include "collider/frame_change.hpp"
+#include "geometry/box.hpp"
 
 #include <echinus/collider.hpp>
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <variant>
 
 /// Which colliders have no contact with any point of a batch, at the price of a bounding box.
 namespace echinus {
 
-/// A box along the world's axes around the finite points; the others have no contact anyway.
-class PointBox {
-  public:
-    template <typename T>
-    explicit PointBox(const StridedSpan<const Vec3<T>>& points) {
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            const Vec3d p(points[i]);
-            if (!is_finite(p)) continue;
-            low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y), std::min(low_.z, p.z)};
-            high_ = {std::max(high_.x, p.x), std::max(high_.y, p.y), std::max(high_.z, p.z)};
-        }
-    }
-
-    double distance(const Vec3d& point) const {
-        const Vec3d below = low_ - point, above = point - high_;
-        return length(Vec3d{std::max({below.x, above.x, 0.0}), std::max({below.y, above.y, 0.0}),
-                            std::max({below.z, above.z, 0.0})});
-    }
-
-  private:
-    static constexpr double kNowhere = std::numeric_limits<double>::infinity();
-    Vec3d low_{kNowhere, kNowhere, kNowhere}, high_{-kNowhere, -kNowhere, -kNowhere};
-};
+/// Around the finite points, in the world; the others have no contact anyway.
+template <typename T>
+AlignedBox<double> box_around(const StridedSpan<const Vec3<T>>& points) {
+    AlignedBox<double> box;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (const Vec3d p(points[i]); is_finite(p)) box.add(p);
+    return box;
+}
 
 /// The ball around a map's surface, beyond which nothing is inside. There is none around a map of the user's
 /// own, nor around an open surface, whose winding number may be anything anywhere.
@@ -50,7 +35,7 @@ inline std::optional<Sphere> ball_around(const std::shared_ptr<const CustomMap>&
 }
 
 /// False only where contacts_batch() finds nothing.
-inline bool may_touch(const Collider& collider, const PointBox& points, float margin_world) {
+inline bool may_touch(const Collider& collider, const AlignedBox<double>& points, float margin_world) {
     const auto local = std::visit([](const auto& map) { return ball_around(map); }, collider.map.kind);
     if (!local) return true;
     // Points are rounded to floats around the map's origin, its centre to doubles around the world's.

@@ -1,29 +1,15 @@
 #include "exact_map/winding_nodes.hpp"
 
+#include "geometry/box.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace echinus {
 
 namespace {
-
-struct Box {
-    Vec3d low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-              std::numeric_limits<double>::infinity()};
-    Vec3d high = low * -1.0;
-
-    void include(const Vec3d& p) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    double farthest_from(const Vec3d& p) const {
-        return length(Vec3d{std::max(high.x - p.x, p.x - low.x), std::max(high.y - p.y, p.y - low.y),
-                            std::max(high.z - p.z, p.z - low.z)});
-    }
-};
 
 /// Moments of some faces about the centre of their area.
 struct Moments {
@@ -32,7 +18,7 @@ struct Moments {
     std::array<Vec3d, 3> first{};  ///< integral of the area vector times the offset along each axis
     std::array<Vec3d, 6> second{}; ///< times products of two offsets: xx, yy, zz, xy, xz, yz
     double total_area = 0, spread = 0, radius = 0;
-    Box box;
+    AlignedBox<double> box;
 };
 
 constexpr std::size_t kAxes[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
@@ -56,7 +42,7 @@ Moments moments_of_leaf(const WindingTree& tree, std::span<const Vec3<std::int32
         }
     };
     for_each([&](const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& area) {
-        for (const Vec3d& corner : {a, b, c}) result.box.include(corner);
+        for (const Vec3d& corner : {a, b, c}) result.box.add(corner);
         result.area += area;
         result.total_area += length(area);
         weighted += (a + b + c) * (length(area) / 3);
@@ -88,8 +74,7 @@ Moments joined(const std::array<Moments, TreeNode::kWidth>& parts, std::size_t c
     Moments result;
     Vec3d weighted;
     for (std::size_t k = 0; k < count; ++k) {
-        result.box.include(parts[k].box.low);
-        result.box.include(parts[k].box.high);
+        result.box.add(parts[k].box);
         result.area += parts[k].area;
         result.total_area += parts[k].total_area;
         weighted += parts[k].centre * parts[k].total_area;
@@ -109,7 +94,7 @@ Moments joined(const std::array<Moments, TreeNode::kWidth>& parts, std::size_t c
         result.spread += part.spread + dot(offset, offset) * part.total_area;
         radius = std::max(radius, length(offset) + part.radius);
     }
-    result.radius = std::min(radius, result.box.farthest_from(result.centre));
+    result.radius = std::min(radius, result.box.farthest_distance(result.centre));
     return result;
 }
 

@@ -1,7 +1,7 @@
 #include "mesh/components.hpp"
 
+#include "geometry/union_find.hpp"
 #include "geometry/whole_numbers.hpp"
-#include "mesh/union_find.hpp"
 
 #include <limits>
 

@@ -1,4 +1,4 @@
-#include "mesh/box_tree.hpp"
+#include "geometry/box_tree.hpp"
 #include "mesh/simplices_meet.hpp"
 
 #include <echinus/error.hpp>
@@ -10,6 +10,13 @@
 namespace echinus {
 
 namespace {
+
+BoxTree tree_of_faces(const TriangleMesh& mesh) {
+    std::vector<BoxTree::Box> boxes(mesh.faces.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        for (const std::uint32_t vertex : mesh.faces[i]) boxes[i].add(mesh.vertices[vertex]);
+    return BoxTree(boxes);
+}
 
 bool has(const Triangle& face, std::uint32_t vertex) {
     return face[0] == vertex || face[1] == vertex || face[2] == vertex;
@@ -121,7 +128,7 @@ std::vector<FacePair> intersecting_pairs(const TriangleMesh& a, const TriangleMe
         throw Error(ErrorCode::InvalidMesh, "the meshes have different origins; move the vertices of one to "
                                             "the other's frame first");
     std::vector<FacePair> pairs;
-    for_each_overlap(BoxTree(a), 0, BoxTree(b), 0, [&](std::uint32_t p, std::uint32_t q) {
+    for_each_overlap(tree_of_faces(a), 0, tree_of_faces(b), 0, [&](std::uint32_t p, std::uint32_t q) {
         if (simplices_meet(simplex_of(a, p), simplex_of(b, q))) pairs.push_back({p, q});
     });
     std::sort(pairs.begin(), pairs.end());
@@ -131,7 +138,7 @@ std::vector<FacePair> intersecting_pairs(const TriangleMesh& a, const TriangleMe
 std::vector<FacePair> self_intersecting_pairs(const TriangleMesh& mesh) {
     require_valid(mesh);
     std::vector<FacePair> pairs;
-    for_each_overlap(BoxTree(mesh), 0, [&](std::uint32_t p, std::uint32_t q) {
+    for_each_overlap(tree_of_faces(mesh), 0, [&](std::uint32_t p, std::uint32_t q) {
         if (intersect_beyond_shared(mesh, mesh.faces[p], mesh.faces[q]))
             pairs.push_back({std::min(p, q), std::max(p, q)});
     });

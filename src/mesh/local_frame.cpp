@@ -1,5 +1,6 @@
 #include "mesh/local_frame.hpp"
 
+#include "geometry/box.hpp"
 #include "geometry/number_text.hpp"
 
 #include <echinus/error.hpp>
@@ -16,19 +17,8 @@ namespace {
 /// Of half the longest side of the box: 3e-5.
 constexpr double kMostRounding = 0x1p-15;
 
-struct Box {
-    Vec3d low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-
-    void add(const Vec3d& p) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    double half_side() const { return std::max({high.x - low.x, high.y - low.y, high.z - low.z}) / 2; }
-    double largest_coordinate() const { return std::max({-low.x, -low.y, -low.z, high.x, high.y, high.z}); }
-};
-
-Vec3d origin_of(const Box& box) {
-    const double half_side = box.half_side();
+Vec3d origin_of(const AlignedBox<double>& box) {
+    const double half_side = box.sides().*box.longest_axis() / 2;
     if (!(half_side > 0) || !(float_rounding(box.largest_coordinate()) > half_side * kMostRounding))
         return {};
     const double grid = std::ldexp(1, std::ilogb(half_side));
@@ -47,7 +37,7 @@ double float_rounding(double coordinate) {
 }
 
 LocalPositions to_local_frame(std::span<const Vec3d> positions, std::span<const std::uint32_t> used) {
-    Box box;
+    AlignedBox<double> box;
     for (const std::uint32_t index : used)
         if (index < positions.size() && is_finite(positions[index])) box.add(positions[index]);
     LocalPositions local{{}, origin_of(box)};

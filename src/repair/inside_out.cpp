@@ -1,9 +1,10 @@
+#include "geometry/box.hpp"
+#include "geometry/union_find.hpp"
 #include "geometry/whole_numbers.hpp"
 #include "mesh/components.hpp"
 #include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
 #include "mesh/orientation.hpp"
-#include "mesh/union_find.hpp"
 #include "mesh/winding_number.hpp"
 #include "repair/repairs.hpp"
 
@@ -19,31 +20,18 @@ namespace {
 struct Component {
     std::vector<std::uint32_t> face_numbers;
     std::vector<Triangle> faces;
-    Vec3f low;  // corners of its bounding box
-    Vec3f high; //
+    AlignedBox<float> box;
     bool closed = false;
     bool inside_out = false;
     bool flip = false;
 };
-
-void find_bounding_box(const TriangleMesh& mesh, Component& component) {
-    component.low = component.high = mesh.vertices[component.faces[0][0]];
-    for (const Triangle& face : component.faces)
-        for (std::uint32_t vertex : face) {
-            const Vec3f& p = mesh.vertices[vertex];
-            component.low = {std::min(component.low.x, p.x), std::min(component.low.y, p.y),
-                             std::min(component.low.z, p.z)};
-            component.high = {std::max(component.high.x, p.x), std::max(component.high.y, p.y),
-                              std::max(component.high.z, p.z)};
-        }
-}
 
 /// By more than rounding makes of one that encloses nothing.
 bool has_negative_volume(const TriangleMesh& mesh, const Component& component) {
     constexpr double kRounding = 1e-12;
     double sum = 0, magnitude = 0;
     for (const Triangle& face : component.faces) {
-        const double part = six_volumes(mesh, face, Vec3d(component.low));
+        const double part = six_volumes(mesh, face, Vec3d(component.box.low));
         sum += part;
         magnitude += std::fabs(part);
     }
@@ -82,25 +70,20 @@ std::vector<Component> examine_components(const TriangleMesh& mesh) {
         Component& component = components[numbers.of_face[face]];
         component.face_numbers.push_back(kept_as<std::uint32_t>(face));
         component.faces.push_back(mesh.faces[face]);
+        for (const std::uint32_t vertex : mesh.faces[face]) component.box.add(mesh.vertices[vertex]);
     }
     for (std::size_t number = 0; number < components.size(); ++number) {
         Component& component = components[number];
-        find_bounding_box(mesh, component);
         component.closed = is_closed[number];
         component.inside_out = component.closed && has_negative_volume(mesh, component);
     }
     return components;
 }
 
-bool box_contains(const Component& outer, const Component& inner) {
-    return outer.low.x <= inner.low.x && outer.low.y <= inner.low.y && outer.low.z <= inner.low.z &&
-           outer.high.x >= inner.high.x && outer.high.y >= inner.high.y && outer.high.z >= inner.high.z;
-}
-
 /// Does the inner component lie in the outer one? One vertex decides for the whole component: components
 /// whose surfaces cross have no meaningful nesting. It is the first of a few that is not on the outer one.
 bool contains(const TriangleMesh& mesh, const Component& outer, const Component& inner) {
-    if (&outer == &inner || !outer.closed || !box_contains(outer, inner)) return false;
+    if (&outer == &inner || !outer.closed || !outer.box.contains(inner.box)) return false;
     constexpr std::size_t kMostVertices = 16;
     constexpr double kOnSurface = 1e-3; // from the next whole number
     const std::size_t count = std::min(kMostVertices, inner.faces.size());

@@ -1,5 +1,5 @@
+#include "geometry/union_find.hpp"
 #include "mesh/faces.hpp"
-#include "mesh/union_find.hpp"
 #include "repair/edge_balance.hpp"
 #include "repair/repairs.hpp"
 

@@ -1,8 +1,8 @@
 #include "geometry/number_text.hpp"
+#include "geometry/union_find.hpp"
 #include "mesh/components.hpp"
 #include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
-#include "mesh/union_find.hpp"
 #include "mesh/used_vertices.hpp"
 #include "repair/repairs.hpp"
 

@@ -1,7 +1,7 @@
 #include "tetrahedra/remove_pinches.hpp"
 
+#include "geometry/union_find.hpp"
 #include "mesh/edges.hpp"
-#include "mesh/union_find.hpp"
 #include "tetrahedra/tetrahedron_faces.hpp"
 #include "tetrahedra/tetrahedron_volume.hpp"
 

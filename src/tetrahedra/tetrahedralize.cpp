@@ -1,4 +1,5 @@
 #include "exact_map/layout.hpp"
+#include "geometry/box.hpp"
 #include "geometry/parallel.hpp"
 #include "geometry/whole_numbers.hpp"
 #include "tetrahedra/cut_points.hpp"
@@ -25,36 +26,19 @@ namespace {
 /// Shares of the time, roughly.
 constexpr double kSidesShare = 0.5, kCutsShare = 0.7, kStencilsShare = 0.8;
 
-struct Box {
-    Vec3d low, high;
-
-    double largest_coordinate() const {
-        double largest = 0;
-        for (const double c : {low.x, low.y, low.z, high.x, high.y, high.z})
-            largest = std::max(largest, std::abs(c));
-        return largest;
-    }
-    float Vec3f::*longest_axis() const {
-        const Vec3d extent = high - low;
-        if (extent.x >= extent.y && extent.x >= extent.z) return &Vec3f::x;
-        return extent.y >= extent.z ? &Vec3f::y : &Vec3f::z;
-    }
-    double volume() const {
-        const Vec3d extent = high - low;
-        return extent.x * extent.y * extent.z;
-    }
-};
+using Box = AlignedBox<double>;
 
 Box box_of(const ExactMapView& map) {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    Box box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+    Box box;
     const LatticeFrame frame = frame_of(map);
-    for (std::size_t i = 0; i < map.corners.size(); ++i) {
-        const Vec3d p = frame.to_local(Vec3d(map.vertices[map.corners[i]]));
-        box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
-        box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
-    }
+    for (std::size_t i = 0; i < map.corners.size(); ++i)
+        box.add(frame.to_local(Vec3d(map.vertices[map.corners[i]])));
     return box;
+}
+
+double volume_of(const Box& box) {
+    const Vec3d sides = box.sides();
+    return sides.x * sides.y * sides.z;
 }
 
 void require_options(const TetrahedralizeOptions& options) {
@@ -183,7 +167,7 @@ Tetrahedralization stuff_count(const ExactMapView& map, const Box& box,
         return std::abs(static_cast<double>(body.mesh.tetrahedra.size()) / wanted - 1);
     };
     // As if the model filled its box, where twelve tetrahedra fill a cube: too large at first, not too small.
-    double size = std::max(std::cbrt(12 * box.volume() / wanted), box.largest_coordinate() / 2048);
+    double size = std::max(std::cbrt(12 * volume_of(box) / wanted), box.largest_coordinate() / 2048);
     Tetrahedralization best;
     for (int i = 0; i < kMostTries; ++i) {
         if (i > 0 && BodyLattice::vertex_count_around(box.low, box.high, size) > most_vertices) break;
@@ -197,10 +181,10 @@ Tetrahedralization stuff_count(const ExactMapView& map, const Box& box,
 }
 
 /// Neighbours have near numbers then, and the body's parts their own stretches of memory.
-void number_along(float Vec3f::*axis, TetrahedralMesh& mesh) {
-    std::vector<std::pair<float, std::uint32_t>> order;
+void number_along(double Vec3d::*axis, TetrahedralMesh& mesh) {
+    std::vector<std::pair<double, std::uint32_t>> order;
     for (const Vec3f& vertex : mesh.vertices)
-        order.emplace_back(vertex.*axis, kept_as<std::uint32_t>(order.size()));
+        order.emplace_back(Vec3d(vertex).*axis, kept_as<std::uint32_t>(order.size()));
     std::sort(order.begin(), order.end());
     std::vector<std::uint32_t> number_of(order.size());
     std::vector<Vec3f> vertices;

@@ -1,6 +1,6 @@
 #include "rivals/systems/classified_grid/nearest.hpp"
 
-#include "exact_map/query/triangle.hpp"
+#include "exact_map/query/spanned_angle.hpp"
 
 #include <algorithm>
 #include <cmath>

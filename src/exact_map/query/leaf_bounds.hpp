@@ -1,7 +1,7 @@
 #pragma once
 
 #include "exact_map/query/face_tree_walk.hpp"
-#include "exact_map/query/triangle.hpp"
+#include "geometry/triangle.hpp"
 
 #include <array>
 

@@ -2,7 +2,7 @@
 
 #include "exact_map/layout.hpp"
 #include "exact_map/query/face_tree_walk.hpp"
-#include "exact_map/query/triangle.hpp"
+#include "exact_map/query/spanned_angle.hpp"
 
 #include <cmath>
 #include <limits>

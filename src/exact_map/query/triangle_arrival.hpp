@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exact_map/query/triangle.hpp"
+#include "geometry/triangle.hpp"
 
 #include <optional>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "directions/lattice.hpp"
-#include "exact_map/query/triangle.hpp"
+#include "geometry/triangle.hpp"
 
 #include <cmath>
 

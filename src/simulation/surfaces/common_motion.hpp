@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/union_find.hpp"
+#include "geometry/union_find.hpp"
 #include "simulation/particles.hpp"
 
 #include <echinus/simulation.hpp>

@@ -1,6 +1,6 @@
 #include "simulation/surfaces/part_from_models.hpp"
 
-#include "mesh/union_find.hpp"
+#include "geometry/union_find.hpp"
 #include "simulation/collider_now.hpp"
 #include "simulation/surfaces/best_places.hpp"
 #include "simulation/surfaces/model_mesh.hpp"

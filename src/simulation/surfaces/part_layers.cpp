@@ -1,6 +1,6 @@
 #include "simulation/surfaces/part_layers.hpp"
 
-#include "mesh/union_find.hpp"
+#include "geometry/union_find.hpp"
 #include "simulation/surfaces/best_places.hpp"
 #include "simulation/surfaces/progress.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <echinus/mesh.hpp>
+#include "geometry/box.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -8,29 +8,16 @@
 
 namespace echinus {
 
-/// The smallest closed box around a face or several, parallel to the axes.
-struct FaceBox {
-    Vec3f low, high;
-
-    static FaceBox around(const Vec3f& a, const Vec3f& b, const Vec3f& c);
-    static FaceBox around(const FaceBox& a, const FaceBox& b);
-
-    /// Touching counts.
-    bool overlaps(const FaceBox& other) const {
-        // Without branches: which comparison fails cannot be predicted.
-        return (low.x <= other.high.x) & (low.y <= other.high.y) & (low.z <= other.high.z) &
-               (other.low.x <= high.x) & (other.low.y <= high.y) & (other.low.z <= high.z);
-    }
-};
-
-/// A tree of boxes over the faces of a mesh, split at the median of the centroids along the longest side.
+/// A tree of boxes over items, such as the faces of a mesh or the tetrahedra of a body, split at the median
+/// of the boxes' centres along the longest side.
 class BoxTree {
   public:
+    using Box = AlignedBox<float>;
     static constexpr std::size_t kLeafSize = 4;
 
-    /// Faces begin to end of the tree's own order. Has no children where there are at most kLeafSize.
+    /// Leaves begin to end of the tree's own order. Has no children where there are at most kLeafSize.
     struct Node {
-        FaceBox box;
+        Box box;
         std::uint32_t begin, end;
         std::uint32_t right; ///< the left child is the next node
 
@@ -39,12 +26,12 @@ class BoxTree {
     };
 
     struct Leaf {
-        FaceBox box;
-        std::uint32_t face;
+        Box box;
+        std::uint32_t item;
     };
 
-    /// @pre there is a face, indices are in range, vertices finite
-    explicit BoxTree(const TriangleMesh& mesh);
+    /// @param boxes  of the items, in their order; at least one, finite
+    explicit BoxTree(const std::vector<Box>& boxes);
 
     const Node& node(std::uint32_t index) const { return nodes_[index]; }
     const Leaf& leaf(std::uint32_t index) const { return leaves_[index]; }
@@ -56,7 +43,7 @@ class BoxTree {
     std::vector<Leaf> leaves_;
 };
 
-/// Calls visit(face of a, face of b) where their boxes overlap.
+/// Calls visit(item of a, item of b) where their boxes overlap.
 template <typename Visit>
 void for_each_overlap(const BoxTree& a, std::uint32_t a_index, const BoxTree& b, std::uint32_t b_index,
                       Visit&& visit) {
@@ -65,7 +52,7 @@ void for_each_overlap(const BoxTree& a, std::uint32_t a_index, const BoxTree& b,
     if (p.is_leaf() && q.is_leaf()) {
         for (std::uint32_t i = p.begin; i < p.end; ++i)
             for (std::uint32_t j = q.begin; j < q.end; ++j)
-                if (a.leaf(i).box.overlaps(b.leaf(j).box)) visit(a.leaf(i).face, b.leaf(j).face);
+                if (a.leaf(i).box.overlaps(b.leaf(j).box)) visit(a.leaf(i).item, b.leaf(j).item);
     } else if (q.is_leaf() || (!p.is_leaf() && p.size() > q.size())) {
         for_each_overlap(a, a_index + 1, b, b_index, visit);
         for_each_overlap(a, p.right, b, b_index, visit);
@@ -75,14 +62,14 @@ void for_each_overlap(const BoxTree& a, std::uint32_t a_index, const BoxTree& b,
     }
 }
 
-/// Calls visit(face, face) for the pairs of different faces of one tree whose boxes overlap, each pair once.
+/// Calls visit(item, item) for the pairs of different items of one tree whose boxes overlap, each pair once.
 template <typename Visit>
 void for_each_overlap(const BoxTree& tree, std::uint32_t index, Visit&& visit) {
     const BoxTree::Node& node = tree.node(index);
     if (node.is_leaf()) {
         for (std::uint32_t i = node.begin; i < node.end; ++i)
             for (std::uint32_t j = i + 1; j < node.end; ++j)
-                if (tree.leaf(i).box.overlaps(tree.leaf(j).box)) visit(tree.leaf(i).face, tree.leaf(j).face);
+                if (tree.leaf(i).box.overlaps(tree.leaf(j).box)) visit(tree.leaf(i).item, tree.leaf(j).item);
     } else {
         for_each_overlap(tree, index + 1, visit);
         for_each_overlap(tree, node.right, visit);

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <echinus/geometry.hpp>
+
+#include <algorithm>
+#include <limits>
+
+namespace echinus {
+
+/// The smallest closed box along the axes around what was added. Empty at first: low is infinite and high is
+/// minus infinite. NaN must not be added.
+template <typename T>
+struct AlignedBox {
+    static constexpr T kInfinity = std::numeric_limits<T>::infinity();
+
+    Vec3<T> low{kInfinity, kInfinity, kInfinity};
+    Vec3<T> high{-kInfinity, -kInfinity, -kInfinity};
+
+    void add(const Vec3<T>& point) {
+        low = {std::min(low.x, point.x), std::min(low.y, point.y), std::min(low.z, point.z)};
+        high = {std::max(high.x, point.x), std::max(high.y, point.y), std::max(high.z, point.z)};
+    }
+    void add(const AlignedBox& other) {
+        add(other.low);
+        add(other.high);
+    }
+
+    /// Touching counts.
+    bool overlaps(const AlignedBox& other) const {
+        // Without branches: which comparison fails cannot be predicted.
+        return (low.x <= other.high.x) & (low.y <= other.high.y) & (low.z <= other.high.z) &
+               (other.low.x <= high.x) & (other.low.y <= high.y) & (other.low.z <= high.z);
+    }
+    bool contains(const AlignedBox& other) const {
+        return low.x <= other.low.x && low.y <= other.low.y && low.z <= other.low.z &&
+               high.x >= other.high.x && high.y >= other.high.y && high.z >= other.high.z;
+    }
+
+    /// The lengths of its sides, minus infinite of an empty box. In double: the difference of two floats may
+    /// exceed all floats.
+    Vec3d sides() const { return Vec3d(high) - Vec3d(low); }
+    /// The axis along which it is longest; of several, the first.
+    T Vec3<T>::*longest_axis() const {
+        const Vec3d side = sides();
+        if (side.x >= side.y && side.x >= side.z) return &Vec3<T>::x;
+        return side.y >= side.z ? &Vec3<T>::y : &Vec3<T>::z;
+    }
+    /// The largest absolute coordinate of its corners. @pre not empty
+    T largest_coordinate() const { return std::max({-low.x, -low.y, -low.z, high.x, high.y, high.z}); }
+
+    /// From a point to the nearest point of the box: 0 inside, infinite from an empty box.
+    double distance(const Vec3d& point) const {
+        const Vec3d below = Vec3d(low) - point, above = point - Vec3d(high);
+        return length(Vec3d{std::max({below.x, above.x, 0.0}), std::max({below.y, above.y, 0.0}),
+                            std::max({below.z, above.z, 0.0})});
+    }
+    /// From a point of the box to the farthest one.
+    double farthest_distance(const Vec3d& point) const {
+        const Vec3d below = point - Vec3d(low), above = Vec3d(high) - point;
+        return length(
+            Vec3d{std::max(above.x, below.x), std::max(above.y, below.y), std::max(above.z, below.z)});
+    }
+};
+
+} // namespace echinus
