@@ -85,8 +85,8 @@ std::vector<LatticePoint> lattice_directions(const std::vector<Vec3d>& units) {
 
 void LatticeSnapper::require_valid(std::span<const Vec3f> vertices) {
     require_numberable(faces_.size(), vertices.size());
-    if (used_.vertex_count() != vertices.size()) used_ = UsedVertices(faces_, vertices.size());
-    used_.require_valid(vertices, faces_);
+    if (!used_ || used_->vertex_count() != vertices.size()) used_.emplace(faces_, vertices.size());
+    used_->require_valid(vertices, faces_);
     if (!open_vertices_) open_vertices_ = find_open_vertices(faces_, vertices.size());
 }
 
@@ -97,7 +97,7 @@ void LatticeSnapper::find_seams(std::span<const Vec3f> vertices, double bounding
 
 void LatticeSnapper::snap(std::span<const Vec3f> vertices, LatticeMesh& result) {
     require_valid(vertices);
-    const Sphere sphere = smallest_enclosing_sphere(used_.positions(vertices, positions_));
+    const Sphere sphere = smallest_enclosing_sphere(used_->positions(vertices, positions_));
     if (!faces_are_closed()) find_seams(vertices, sphere.radius);
     snap_valid(vertices, Vec3f(sphere.centre), result);
 }
@@ -105,13 +105,13 @@ void LatticeSnapper::snap(std::span<const Vec3f> vertices, LatticeMesh& result) 
 void LatticeSnapper::snap(std::span<const Vec3f> vertices, const Vec3f& centre, LatticeMesh& result) {
     require_valid(vertices);
     if (!faces_are_closed())
-        find_seams(vertices, smallest_enclosing_sphere(used_.positions(vertices, positions_)).radius);
+        find_seams(vertices, smallest_enclosing_sphere(used_->positions(vertices, positions_)).radius);
     snap_valid(vertices, centre, result);
 }
 
 void LatticeSnapper::snap_valid(std::span<const Vec3f> vertices, const Vec3f& wanted_centre,
                                 LatticeMesh& result) {
-    const std::span<const Vec3f> points = used_.positions(vertices, positions_);
+    const std::span<const Vec3f> points = used_->positions(vertices, positions_);
     const float radius = enclosing_radius(points, wanted_centre);
     require_usable(radius);
     snap_around(vertices, wanted_centre, radius, result);
@@ -131,7 +131,7 @@ void LatticeSnapper::snap_around(std::span<const Vec3f> vertices, const Vec3f& c
     result.frame = LatticeFrame(centre, radius);
     result.vertices.resize(vertices.size());
     for (std::size_t i = 0; i < vertices.size(); ++i)
-        result.vertices[i] = used_[i] ? result.snap(vertices[i]) : LatticePoint{};
+        result.vertices[i] = (*used_)[i] ? result.snap(vertices[i]) : LatticePoint{};
     for (std::size_t i = 0; i < joined_vertices_.size(); ++i)
         result.vertices[(*open_vertices_)[i]] = result.vertices[joined_vertices_[i]];
     result.faces.resize(faces_.size());

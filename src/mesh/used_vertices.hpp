@@ -13,7 +13,6 @@ namespace echinus {
 /// positions.
 class UsedVertices {
   public:
-    UsedVertices() = default;
     UsedVertices(std::span<const Triangle> faces, std::size_t vertex_count);
 
     std::size_t vertex_count() const { return is_used_.size(); }

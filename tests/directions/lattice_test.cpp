@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 using namespace echinus;
@@ -107,6 +108,18 @@ TEST(Lattice, RefusesAMeshOnOnePointAndSizesBeyondFloat) {
     EXPECT_NO_THROW(snap_to_lattice(make_box({1e9, 1e9, 1e9})));
     EXPECT_NO_THROW(snap_to_lattice(make_box({1e-9, 1e-9, 1e-9})));
     EXPECT_NO_THROW(snap_to_lattice(make_box({1, 1e-6, 1e-6})));
+}
+
+TEST(Lattice, RefusesFacesWhoseVerticesAreNotThere) {
+    const std::vector<Triangle> faces{{0, 1, 2}};
+    for (std::size_t count = 0; count < 3; ++count) {
+        const std::vector<Vec3f> vertices(count);
+        LatticeSnapper snapper(faces);
+        LatticeMesh result;
+        const std::string words = "face 0 of the mesh refers to vertex " + std::to_string(count);
+        test::expect_error(ErrorCode::InvalidMesh, words, [&] { snapper.snap(vertices, result); });
+        test::expect_error(ErrorCode::InvalidMesh, words, [&] { snapper.snap(vertices, Vec3f{}, result); });
+    }
 }
 
 TEST(Lattice, RefusesMoreFacesThanCanBeNumbered) {
