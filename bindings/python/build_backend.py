@@ -20,7 +20,7 @@ import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SOURCES = ["CMakeLists.txt", "LICENSE", "README.md", "adapters/bullet", "bindings/python", "cmake", "include", "pyproject.toml", "src"]
-PARTS_NOT_NEEDED = ["C", "RENDER", "TOOLS", "RIVALS", "TESTS", "EXAMPLES"]
+PARTS_NOT_NEEDED = ["C", "RENDER", "TOOLS", "TESTS", "EXAMPLES"]
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):

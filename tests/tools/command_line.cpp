@@ -52,7 +52,7 @@ ProgramResult CommandLineTest::run(const std::vector<std::string>& arguments, co
                                    const std::string& output_target) const {
     const auto stream = [&](const char* name) { return (stream_folder_ / name).string(); };
     write_all(stream("input"), input);
-    std::string command = "cd " + quoted(folder_.string()) + " && " + quoted(ECHINUS_PROGRAM);
+    std::string command = "cd " + quoted(folder_.string()) + " && " + quoted(program_);
     for (const std::string& argument : arguments) command += " " + quoted(argument);
     command += " <" + quoted(stream("input")) + " 2>" + quoted(stream("error")) + " >" +
                quoted(output_target.empty() ? stream("output") : output_target);
@@ -64,19 +64,19 @@ ProgramResult CommandLineTest::run(const std::vector<std::string>& arguments, co
 void CommandLineTest::expect_failure(int exit_status, const std::string& words,
                                      const std::vector<std::string>& arguments,
                                      const std::string& input) const {
-    SCOPED_TRACE("echinus " + testing::PrintToString(arguments));
+    SCOPED_TRACE(program_.filename().string() + " " + testing::PrintToString(arguments));
     const std::vector<std::string> files_before = files();
     const ProgramResult result = run(arguments, input);
     EXPECT_EQ(result.exit_status, exit_status) << result.error;
     EXPECT_EQ(result.error_line_count(), 1u) << result.error;
-    EXPECT_TRUE(result.error.starts_with("echinus: ")) << result.error;
+    EXPECT_TRUE(result.error.starts_with(program_.filename().string() + ": ")) << result.error;
     EXPECT_NE(result.error.find(words), std::string::npos) << result.error;
     EXPECT_EQ(files(), files_before);
 }
 
 std::string CommandLineTest::expect_success(const std::vector<std::string>& arguments,
                                             const std::string& input) const {
-    SCOPED_TRACE("echinus " + testing::PrintToString(arguments));
+    SCOPED_TRACE(program_.filename().string() + " " + testing::PrintToString(arguments));
     const ProgramResult result = run(arguments, input);
     EXPECT_EQ(result.exit_status, 0);
     EXPECT_EQ(result.error, "");

@@ -4,9 +4,10 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
-/// The result of running the echinus program.
+/// The result of running a program.
 struct ProgramResult {
     int exit_status = -1; ///< -1: killed by a signal
     std::string output;   ///< standard output
@@ -15,19 +16,21 @@ struct ProgramResult {
     std::size_t error_line_count() const;
 };
 
-/// A test with its own empty folder, from which it runs the built program.
+/// A test with its own empty folder, from which it runs a built program: `echinus`, or the one that is named.
 class CommandLineTest : public testing::Test {
   protected:
+    explicit CommandLineTest(std::filesystem::path program = ECHINUS_PROGRAM)
+        : program_(std::move(program)) {}
     void SetUp() override;
     void TearDown() override;
 
-    /// Runs `echinus` with these arguments in the test's folder; `input` becomes its standard input. Standard
+    /// Runs it with these arguments in the test's folder; `input` becomes its standard input. Standard
     /// output is captured, or goes to the file `output_target`.
     ProgramResult run(const std::vector<std::string>& arguments, const std::string& input = "",
                       const std::string& output_target = "") const;
 
     /// The run must fail in the way the command line promises: this exit status, one line on standard error
-    /// that begins with "echinus: " and contains `words`, and no new file in the folder.
+    /// that begins with the program's name and contains `words`, and no new file in the folder.
     void expect_failure(int exit_status, const std::string& words, const std::vector<std::string>& arguments,
                         const std::string& input = "") const;
 
@@ -42,6 +45,7 @@ class CommandLineTest : public testing::Test {
     std::vector<std::string> files() const;
 
   private:
+    std::filesystem::path program_;
     std::filesystem::path folder_;
     std::filesystem::path stream_folder_; // standard streams, kept out of the folder under test
 };

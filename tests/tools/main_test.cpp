@@ -22,6 +22,12 @@ TEST_F(MainCommand, RefusesAMissingOrUnknownCommandAsWrongUse) {
     expect_failure(2, "--frobnicate", {"--frobnicate"});
 }
 
+TEST_F(MainCommand, TellsWhereTheComparisonWentWhateverItsArguments) {
+    expect_failure(2, "echinus-compare", {"compare"});
+    expect_failure(2, "--target echinus-compare", {"compare", "torus.obj", "--systems", "exact,dense"});
+    expect_failure(2, "echinus-compare", {"compare", "--help"});
+}
+
 TEST_F(MainCommand, SaysOnOneLineAlsoWhatAnArgumentWithNewlinesBroke) {
     expect_failure(2, "two lines", {"two\nlines"});
 }

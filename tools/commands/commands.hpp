@@ -4,12 +4,11 @@
 
 /// One function per subcommand, in a file of the same name. Each adds its options, a footer with an example,
 /// and an action that does the work. The action throws echinus::Error when it fails (exit status 1) and
-/// WrongUse when the arguments make no sense (exit status 2); main() prints either as one line.
+/// WrongUse when the arguments make no sense (exit status 2); run_program() prints either as one line.
 void add_mesh_command(Command program);
 void add_info_command(Command program);
 void add_build_command(Command program);
 void add_query_command(Command program);
-void add_compare_command(Command program);
 void add_simulate_command(Command program);
 void add_render_command(Command program);
 void add_tetrahedralize_command(Command program);

@@ -1,0 +1,94 @@
+// The runner of the engines in C++: lab/bench/engines/runners.py has the contract.
+
+#include "compare/clock.hpp"
+#include "engine.hpp"
+#include "files/atomic_file.hpp"
+#include "machine.hpp"
+#include "mesh_io/point_cache.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/mesh_io.hpp>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+
+using namespace echinus;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kMissing = 77;
+
+struct Arguments {
+    fs::path model, cloth, target;
+    std::string setup, engine;
+    std::uint32_t frame_count = 0;
+    bool with_echinus = false;
+};
+
+std::unique_ptr<Engine> make_engine(const Arguments& arguments) {
+    const Task task{.model = read_mesh(arguments.model),
+                    .cloth = read_mesh(arguments.cloth),
+                    .is_matched = arguments.setup == "matched",
+                    .with_echinus = arguments.with_echinus};
+    if (arguments.engine != "bullet") return make_echinus(task, arguments.engine == "surfaces");
+#ifdef ECHINUS_BENCH_BULLET
+    return make_bullet(task);
+#else
+    return nullptr;
+#endif
+}
+
+int run(const Arguments& arguments) {
+    const std::unique_ptr<Engine> engine = make_engine(arguments);
+    if (engine == nullptr) {
+        fmt::print(stderr, "Bullet was not found when this was built (Debian: libbullet-dev)\n");
+        return kMissing;
+    }
+    PointCacheWriter cache(arguments.target / "cloth.pc2", engine->positions().size(), 1);
+    cache.add(engine->positions());
+    std::vector<double> seconds;
+    for (std::uint32_t frame = 0; frame < arguments.frame_count; ++frame) {
+        const double start = comparison::process_seconds();
+        engine->run_frame();
+        seconds.push_back(comparison::process_seconds() - start);
+        cache.add(engine->positions());
+    }
+    cache.commit();
+    const nlohmann::json report{{"engine", engine->name()},
+                                {"version", engine->version()},
+                                {"configuration", engine->configuration()},
+                                {"platform", "native"},
+                                {"substeps", engine->substeps()},
+                                {"settings", engine->settings()},
+                                {"frame_seconds", seconds}};
+    write_file(arguments.target / "run.json", report.dump(1) + "\n");
+    return 0;
+}
+
+} // namespace
+
+int main(int argument_count, char** argument_values) {
+    CLI::App app{"Lets a cloth fall on a model in an engine"};
+    Arguments arguments;
+    app.set_version_flag("--machine", describe_machine());
+    app.add_option("--engine", arguments.engine)
+        ->required()
+        ->check(CLI::IsMember({"bullet", "particles", "surfaces"}));
+    app.add_option("--model", arguments.model)->required();
+    app.add_option("--cloth", arguments.cloth)->required();
+    app.add_option("--setup", arguments.setup)->required()->check(CLI::IsMember({"recommended", "matched"}));
+    app.add_option("--frames", arguments.frame_count)->required();
+    app.add_option("--out", arguments.target)->required();
+    app.add_flag("--echinus", arguments.with_echinus, "The engine's collider is an exact map");
+    CLI11_PARSE(app, argument_count, argument_values);
+    try {
+        return run(arguments);
+    } catch (const Error& error) {
+        fmt::print(stderr, "{}\n", error.what());
+        return 1;
+    }
+}
