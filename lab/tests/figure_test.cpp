@@ -1,4 +1,4 @@
-// scripts/figure, which needs Debian's Python and python3-numpy.
+// The script figure, which needs Debian's Python and python3-numpy.
 
 #include "tools/command_line.hpp"
 
@@ -66,7 +66,7 @@ class Figure : public CommandLineTest {
         if (std::system("/usr/bin/python3 -c 'import numpy' >/dev/null 2>&1") != 0)
             GTEST_SKIP() << "there is no /usr/bin/python3 with numpy";
         write("lift.bvh", capture());
-        const std::string script = std::string("'") + ECHINUS_SOURCE_FOLDER + "/scripts/figure' ";
+        const std::string script = std::string("'") + ECHINUS_SOURCE_FOLDER + "/lab/figure' ";
         const std::string files = "'" + path("lift.bvh").string() + "' -o '" + path("figure.glb").string() +
                                   "' --skirt '" + path("skirt.obj").string() + "'";
         ASSERT_EQ(

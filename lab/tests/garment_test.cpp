@@ -1,4 +1,4 @@
-// scripts/garment, which needs Python.
+// The script garment, which needs Python.
 
 #include "tools/command_line.hpp"
 
@@ -30,7 +30,7 @@ class Garment : public CommandLineTest {
     /// What the script makes of these arguments.
     std::filesystem::path make(const std::string& arguments) const {
         const std::filesystem::path made = path("made.obj");
-        const std::string script = "'" + (kSource / "scripts" / "garment").string() + "' ";
+        const std::string script = "'" + (kSource / "lab" / "garment").string() + "' ";
         EXPECT_EQ(std::system((script + arguments + " -o '" + made.string() + "'").c_str()), 0);
         return made;
     }
