@@ -102,10 +102,10 @@ class LatticeSnapper {
                      LatticeMesh& result) const;
 
     std::span<const Triangle> faces_;
-    std::optional<UsedVertices> used_; ///< not known before the first pose, nor is the next
+    std::optional<UsedVertices> used_; ///< not known before the first pose
     std::vector<Vec3f> positions_;
-    std::optional<std::vector<std::uint32_t>> open_vertices_;
-    std::vector<std::uint32_t> joined_vertices_; ///< [open_vertices_.size()] of the pose
+    std::optional<std::vector<std::uint32_t>> open_vertices_; ///< not known before the first pose
+    std::vector<std::uint32_t> joined_vertices_;              ///< [open_vertices_.size()] of the pose
 };
 
 /// LatticeSnapper::snap() of a single mesh.

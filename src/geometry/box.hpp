@@ -21,8 +21,9 @@ struct AlignedBox {
         high = {std::max(high.x, point.x), std::max(high.y, point.y), std::max(high.z, point.z)};
     }
     void add(const AlignedBox& other) {
-        add(other.low);
-        add(other.high);
+        low = {std::min(low.x, other.low.x), std::min(low.y, other.low.y), std::min(low.z, other.low.z)};
+        high = {std::max(high.x, other.high.x), std::max(high.y, other.high.y),
+                std::max(high.z, other.high.z)};
     }
 
     /// Touching counts.
@@ -36,7 +37,7 @@ struct AlignedBox {
                high.x >= other.high.x && high.y >= other.high.y && high.z >= other.high.z;
     }
 
-    /// The lengths of its sides, minus infinite of an empty box. In double: the difference of two floats may
+    /// The lengths of its sides, minus infinity for an empty box. In double: the difference of two floats may
     /// exceed all floats.
     Vec3d sides() const { return Vec3d(high) - Vec3d(low); }
     /// The axis along which it is longest; of several, the first.

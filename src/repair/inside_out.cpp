@@ -80,16 +80,22 @@ std::vector<Component> examine_components(const TriangleMesh& mesh) {
     return components;
 }
 
-/// Does the inner component lie in the outer one? One vertex decides for the whole component: components
-/// whose surfaces cross have no meaningful nesting. It is the first of a few that is not on the outer one.
+Vec3d centroid_of(const TriangleMesh& mesh, const Triangle& face) {
+    return (Vec3d(mesh.vertices[face[0]]) + Vec3d(mesh.vertices[face[1]]) + Vec3d(mesh.vertices[face[2]])) *
+           (1.0 / 3);
+}
+
+/// Does the inner component lie in the outer one? The centroid of one face decides for the whole component:
+/// components whose surfaces cross have no meaningful nesting. It is the first of a few that is not on the
+/// outer one. Vertices would not do: a cavity may have all of them on the surface around it.
 bool contains(const TriangleMesh& mesh, const Component& outer, const Component& inner) {
     if (&outer == &inner || !outer.closed || !outer.box.contains(inner.box)) return false;
-    constexpr std::size_t kMostVertices = 16;
+    constexpr std::size_t kMostFaces = 16;
     constexpr double kOnSurface = 1e-3; // from the next whole number
-    const std::size_t count = std::min(kMostVertices, inner.faces.size());
+    const std::size_t count = std::min(kMostFaces, inner.faces.size());
     for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t vertex = inner.faces[i * inner.faces.size() / count][0];
-        const double winding = winding_number(mesh.vertices, outer.faces, Vec3d(mesh.vertices[vertex]));
+        const Triangle& face = inner.faces[i * inner.faces.size() / count];
+        const double winding = winding_number(mesh.vertices, outer.faces, centroid_of(mesh, face));
         if (std::fabs(winding - std::round(winding)) <= kOnSurface) return std::round(winding) != 0;
     }
     return false;

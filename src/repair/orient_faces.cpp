@@ -35,8 +35,8 @@ std::size_t orient_faces(TriangleMesh& mesh) {
         const std::uint32_t patch = orientation.patch_of_face[face];
         return orientation.is_closed[patch] && orientation.is_turned[face] == (majority[patch] >= 0);
     };
-    // Faces of two patches may happen to balance each other. What is turned balances more edges than it
-    // opens, so that repair() comes to an end.
+    // Faces of two patches may happen to balance each other. Only a smaller sum of imbalances counts, so that
+    // repair() comes to an end.
     const std::size_t before = total_imbalance(edge_uses);
     for (EdgeUse& use : edge_uses) use.ascending = use.ascending != is_to_turn(use.face);
     if (total_imbalance(edge_uses) >= before) return 0;

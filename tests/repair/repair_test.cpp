@@ -186,6 +186,25 @@ TEST(Repair, TurnsTheFacesOfBlocksThatTouchInEdgesAsOfBlocksThatDoNot) {
     }
 }
 
+TEST(Repair, KeepsACavityWhoseVerticesAllLieOnTheSurfaceAroundIt) {
+    // Its edges lie in the top and the bottom of a box, whose faces they divide.
+    const Vec3f a{1, 2, 4}, b{3, 2, 4}, c{2, 1, 0}, d{2, 3, 0};
+    TriangleMesh mesh{
+        {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 4}, {4, 0, 4}, {4, 4, 4}, {0, 4, 4}, a, b, c, d},
+        {{0, 1, 5},   {0, 5, 4},  {1, 2, 6},  {1, 6, 5},   {2, 3, 7},  {2, 7, 6},  {3, 0, 4},   {3, 4, 7},
+         {4, 5, 8},   {5, 9, 8},  {5, 6, 9},  {6, 7, 9},   {7, 8, 9},  {7, 4, 8},  {1, 0, 10},  {0, 3, 10},
+         {3, 11, 10}, {3, 2, 11}, {2, 1, 11}, {1, 10, 11}, {8, 10, 9}, {8, 9, 11}, {8, 11, 10}, {9, 10, 11}}};
+    const MeshReport report = inspect(mesh);
+    ASSERT_TRUE(report.closed);
+    ASSERT_EQ(report.nonmanifold_edges.count, 2U);
+    if (report.signed_volume > 64) // the cavity's faces run as those of a solid
+        for (std::size_t face = 20; face < 24; ++face) std::swap(mesh.faces[face][1], mesh.faces[face][2]);
+    const double volume = 64 - 8.0 / 3;
+    ASSERT_NEAR(inspect(mesh).signed_volume, volume, 1e-12);
+    expect_unchanged(mesh, RepairOptions::all());
+    EXPECT_NEAR(inspect(repair(inside_out(mesh), RepairOptions::all()).mesh).signed_volume, volume, 1e-12);
+}
+
 TEST(Repair, TurnsABlockOutwardsThatTouchesAnotherInAnEdge) {
     const TriangleMesh box = make_box({1, 1, 1});
     const TriangleMesh mesh = weld(together(box, inside_out(moved(box, {1, 1, 0}))));
