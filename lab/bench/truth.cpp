@@ -1,10 +1,10 @@
 #include "truth.hpp"
 
 #include "files/atomic_file.hpp"
+#include "judges/distance_tree.hpp"
+#include "judges/exact_judge.hpp"
+#include "judges/solid_angle_tree.hpp"
 #include "mesh/mesh_hash.hpp"
-#include "oracle/distance_tree.hpp"
-#include "oracle/exact_judge.hpp"
-#include "oracle/solid_angle_tree.hpp"
 #include "pinning.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// Compiled optimised, as the libraries are, by tests/geometry/CMakeLists.txt.
+// Compiled optimised, as the libraries are, by tests/CMakeLists.txt.
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 // them in one way and expects that fault in the score and no other.
 
 #include "directions/lattice.hpp"
-#include "oracle/accuracy.hpp"
+#include "judges/accuracy.hpp"
 #include "oracle/test_meshes.hpp"
 #include "support/point_sets.hpp"
 

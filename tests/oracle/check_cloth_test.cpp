@@ -1,5 +1,5 @@
+#include "judges/check_cloth.hpp"
 #include "mesh_io/point_cache.hpp"
-#include "oracle/check_cloth.hpp"
 #include "support/expect_error.hpp"
 #include "support/temporary_folder.hpp"
 

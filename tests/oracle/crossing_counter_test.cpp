@@ -1,7 +1,7 @@
-#include "oracle/crossing_counter.hpp"
-#include "oracle/distance_tree.hpp"
-#include "oracle/exact_judge.hpp"
-#include "oracle/solid_angle_tree.hpp"
+#include "judges/crossing_counter.hpp"
+#include "judges/distance_tree.hpp"
+#include "judges/exact_judge.hpp"
+#include "judges/solid_angle_tree.hpp"
 #include "oracle/test_meshes.hpp"
 #include "support/point_sets.hpp"
 

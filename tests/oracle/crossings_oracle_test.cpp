@@ -1,5 +1,5 @@
 #include "directions/cast_rays.hpp"
-#include "oracle/exact_judge.hpp"
+#include "judges/exact_judge.hpp"
 #include "oracle/test_meshes.hpp"
 
 #include <gtest/gtest.h>

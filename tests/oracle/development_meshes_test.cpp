@@ -1,6 +1,6 @@
 // Real models, which are not part of the repository; these tests are skipped where they are missing.
 
-#include "oracle/exact_judge.hpp"
+#include "judges/exact_judge.hpp"
 #include "oracle/expect_right_map.hpp"
 #include "oracle/wrong_share.hpp"
 #include "support/point_sets.hpp"

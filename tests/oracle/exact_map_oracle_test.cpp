@@ -1,8 +1,8 @@
 // Exact maps are right at every tested point of small nasty meshes. echinus-check tests millions, of large
 // meshes too; docs/accuracy.md has its results.
 
+#include "judges/nasty_meshes.hpp"
 #include "oracle/expect_right_map.hpp"
-#include "oracle/nasty_meshes.hpp"
 #include "oracle/test_meshes.hpp"
 #include "support/crowded_meshes.hpp"
 

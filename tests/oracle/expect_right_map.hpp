@@ -1,6 +1,6 @@
 #pragma once
 
-#include "oracle/check_mesh.hpp"
+#include "judges/check_mesh.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The judge of intersections agrees with CGAL's exact predicates.
 
-#include "oracle/intersection_judge.hpp"
+#include "judges/intersection_judge.hpp"
 #include "oracle/test_meshes.hpp"
 #include "support/triangle_soup.hpp"
 

@@ -1,4 +1,4 @@
-#include "oracle/exact_judge.hpp"
+#include "judges/exact_judge.hpp"
 #include "oracle/test_meshes.hpp"
 #include "support/point_sets.hpp"
 

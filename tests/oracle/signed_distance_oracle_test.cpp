@@ -1,7 +1,7 @@
 // Signed distances agree with CGAL: the side exactly, the distance to the rounding of lattice and float.
 
-#include "oracle/exact_judge.hpp"
-#include "oracle/nasty_meshes.hpp"
+#include "judges/exact_judge.hpp"
+#include "judges/nasty_meshes.hpp"
 #include "oracle/test_meshes.hpp"
 #include "support/point_sets.hpp"
 #include "support/random_points.hpp"

@@ -1,5 +1,5 @@
-#include "oracle/exact_judge.hpp"
-#include "oracle/intersection_judge.hpp"
+#include "judges/exact_judge.hpp"
+#include "judges/intersection_judge.hpp"
 #include "oracle/test_meshes.hpp"
 #include "support/mesh_assembly.hpp"
 #include "support/random_points.hpp"

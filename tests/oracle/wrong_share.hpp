@@ -1,6 +1,6 @@
 #pragma once
 
-#include "oracle/exact_judge.hpp"
+#include "judges/exact_judge.hpp"
 
 #include <echinus/distance_map.hpp>
 

@@ -1,8 +1,8 @@
 #include "property/shape_checks.hpp"
 
-#include "oracle/adversarial_points.hpp"
 #include "property/choices.hpp"
 #include "property/shape_judge.hpp"
+#include "support/adversarial_points.hpp"
 
 #include <echinus/distance_map.hpp>
 #include <echinus/error.hpp>

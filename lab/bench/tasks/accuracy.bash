@@ -13,7 +13,7 @@ points=10000000
 folder=../shared/meshes # the development meshes: not part of the repository
 out=out/accuracy
 page=docs/accuracy.md
-check=build/release/tests/oracle/echinus-check
+check=build/release/tests/echinus-check
 
 while [ $# -gt 0 ]; do
     case "$1" in

@@ -3,7 +3,7 @@
 
 #include "cloth_run.hpp"
 #include "compare/clock.hpp"
-#include "oracle/intersection_judge.hpp"
+#include "judges/intersection_judge.hpp"
 #include "task.hpp"
 
 #include <echinus/intersections.hpp>

@@ -1,7 +1,7 @@
 // A classified grid is right about every particle, by CGAL's exact predicates.
 
 #include "directions/lattice.hpp"
-#include "oracle/exact_judge.hpp"
+#include "judges/exact_judge.hpp"
 #include "oracle/test_meshes.hpp"
 #include "rivals/classified_grid/classified_grid.hpp"
 #include "support/point_sets.hpp"

@@ -1,0 +1,85 @@
+// step() allocates nothing, and what a saved state says takes no more memory than its bytes do.
+
+#include "allocation/allocations.hpp"
+#include "support/custom_maps.hpp"
+#include "support/saved_state_attack.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/simulation.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <vector>
+
+using namespace echinus;
+
+TEST(Step, AllocatesNothingBesideAnyKindOfMap) {
+    const TriangleMesh plate = make_box({1.5, 1.5, 0.001});
+    const Vec3d down{0, 0, -0.1};
+    Deformable sheet = make_cloth({.column_count = 20, .row_count = 20, .pose = {Rotation{}, {0, 0, 0.5}}});
+    for (Vec3f& previous : sheet.previous_positions) previous -= Vec3f(down);
+    sheet.folds = {{0, 1, 20, 21, 0, 1}, {1, 2, 21, 22, 0, 1}};
+    sheet.inverse_masses[0] = 0;
+    sheet.attachments = {{0, 0}};
+    Simulation simulation(
+        sheet,
+        {{.map = ExactMap::build(plate), .linear_velocity = {0.5, 0, 5}, .angular_velocity = {4, 18, 2}},
+         {.map = ExactMap::build(make_box({1, 1, 1})), .pose = {Rotation{}, {0, 0, -2}}},
+         {.map = DistanceMap::build(make_box({1, 1, 1})), .pose = {Rotation{}, {3, 0, 0}}},
+         {.map = std::make_shared<test::AnalyticBall>(0.3F), .pose = {Rotation{}, {0.3, 0.2, -0.5}}}},
+        {.thickness = 0.01});
+    const std::size_t before = test::allocation_count();
+    EXPECT_GT(before, 0u);
+    for (int i = 0; i < 100; ++i) simulation.step();
+    EXPECT_EQ(test::allocation_count(), before);
+    EXPECT_GT(simulation.profile().rescued_count, 0u);
+}
+
+TEST(Step, AllocatesNothingMoreForSurfacesOnceTheirListsHaveGrown) {
+    Deformable sheet = make_cloth({.column_count = 20, .row_count = 20, .pose = {Rotation{}, {0, 0, 0.4}}});
+    Simulation simulation(sheet,
+                          {{.map = ExactMap::build(make_sphere(0.3, 20, 10))},
+                           {.map = ExactMap::build(make_box({0.2, 0.2, 0.2})),
+                            .pose = {Rotation{}, {0.45, 0, -0.3}},
+                            .angular_velocity = {0, 0, 2}}},
+                          {.thickness = 0.01, .surface_collision = true, .self_collision = true});
+    const std::size_t at_start = test::allocation_count();
+    for (int i = 0; i < 300; ++i) simulation.step();
+    const std::size_t warm = test::allocation_count();
+    for (int i = 0; i < 300; ++i) simulation.step();
+    // Capacities grow geometrically: few times while the cloth falls, and not again.
+    EXPECT_LT(warm - at_start, 300u);
+    EXPECT_EQ(test::allocation_count(), warm);
+}
+
+TEST(RestoreState, TakesMemoryForTheBytesThatAreThereWhateverCountsSay) {
+    const std::vector<Simulation> fresh = test::simulations_to_attack();
+    Simulation stepped = fresh[0];
+    for (int i = 0; i < 8; ++i) stepped.step();
+    const std::vector<std::byte> good = stepped.save_state();
+    int refused = 0;
+    const auto peak_of = [&](const std::vector<std::byte>& state) {
+        Simulation simulation = fresh[0];
+        const test::PeakOfHeldBytes peak;
+        try {
+            simulation.restore_state(state);
+        } catch (const Error&) {
+            ++refused;
+        }
+        return peak.get();
+    };
+    const std::size_t usual = peak_of(good);
+    ASSERT_EQ(refused, 0);
+    for (std::size_t i = test::kStateAt; i + 8 <= good.size(); i += 4) {
+        std::vector<std::byte> forged = good;
+        const std::uint64_t bytes_left = good.size() - i - 8;
+        std::memcpy(forged.data() + i, &bytes_left, 8);
+        test::mend_checksum(forged);
+        // Items take about as much memory as bytes, and an array that grows twice that.
+        ASSERT_LE(peak_of(forged), usual + 4 * good.size()) << i;
+    }
+    EXPECT_GT(refused, 100);
+}

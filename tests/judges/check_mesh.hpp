@@ -1,0 +1,30 @@
+#pragma once
+
+#include "judges/check_result.hpp"
+
+#include <echinus/mesh.hpp>
+
+#include <functional>
+#include <string>
+
+namespace echinus::test {
+
+struct CheckOptions {
+    std::size_t points = 10'000'000;
+    std::vector<InsideRule> rules{InsideRule::Nonzero, InsideRule::Parity};
+    ExactMapOptions map; ///< each of `rules` replaces its rule
+    std::uint64_t seed = 1;
+    unsigned thread_count = 0; ///< 0: all cores
+    /// Called from time to time with the share of the points judged so far.
+    std::function<void(double fraction)> report_progress = {};
+};
+
+/// Queries a map.
+Defendant defendant_of(const ExactMap& map);
+
+/// Builds a map for each rule and judges them on four sets of points: uniform in the bounding sphere, near
+/// the surface, cloth-like and adversarial. For an open surface only the rule Nonzero is judged: parity is
+/// not defined there.
+CheckResult check_mesh(const std::string& name, const TriangleMesh& mesh, const CheckOptions& options);
+
+} // namespace echinus::test
