@@ -286,6 +286,12 @@ void JsonObject::finish() const {
     }
 }
 
+void JsonObject::refuse_keys(std::initializer_list<const char*> keys, const std::string& choice,
+                             const std::string& word) const {
+    for (const char* key : keys)
+        if (has(key)) refuse(key, "left out, or \"" + choice + "\" must be \"" + word + "\"");
+}
+
 void JsonObject::refuse(const char* key, const std::string& expected) const {
     fail(path_of(key) + " is " + excerpt(value_.at(key)) + "; it must be " + expected);
 }

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -61,6 +62,12 @@ class JsonObject {
 
     /// To be called when everything has been asked for.
     void finish() const;
+
+    /// Refuses keys that are there and need another choice, which the sentence names: they are no
+    /// misspellings.
+    /// @param choice  the key that chooses, and the word that these keys need
+    void refuse_keys(std::initializer_list<const char*> keys, const std::string& choice,
+                     const std::string& word) const;
 
     /// Refuses the value of a key: `expected` completes "...; it must be ".
     [[noreturn]] void refuse(const char* key, const std::string& expected) const;

@@ -1,4 +1,5 @@
 #include "scene/json_object.hpp"
+#include "scene/option_keys.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/scene.hpp>
@@ -6,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <initializer_list>
 #include <numbers>
 
 namespace echinus {
@@ -85,19 +85,16 @@ SceneModel read_model(JsonObject& parent, const char* key) {
 
 RepairOptions read_repair(JsonObject& scene) {
     RepairOptions options;
+    std::vector<std::string_view> words{"small_holes", "sheets"};
+    for (const auto& [word, member] : kRepairWords) words.emplace_back(word);
     bool small_holes = false, sheets = false;
-    for (const std::size_t word :
-         scene.read_words("repair", {"duplicate_faces", "doubled_patches", "small_holes", "inside_out",
-                                     "inner_faces", "sheets", "seams", "slivers", "orientation"})) {
-        if (word == 0) options.drop_duplicate_faces = true;
-        if (word == 1) options.drop_doubled_patches = true;
-        if (word == 2) small_holes = true;
-        if (word == 3) options.flip_inside_out = true;
-        if (word == 4) options.drop_inner_faces = true;
-        if (word == 5) sheets = true;
-        if (word == 6) options.close_seams = true;
-        if (word == 7) options.drop_loose_slivers = true;
-        if (word == 8) options.orient_faces = true;
+    for (const std::size_t word : scene.read_words("repair", words)) {
+        if (word == 0)
+            small_holes = true;
+        else if (word == 1)
+            sheets = true;
+        else
+            options.*kRepairWords[word - 2].second = true;
     }
     if (options.close_seams)
         scene.read("weld_distance", options.weld_distance, kLength);
@@ -118,70 +115,28 @@ RepairOptions read_repair(JsonObject& scene) {
     return options;
 }
 
-/// A key that is valid for another choice is no misspelling: the sentence names the choice that it needs.
-/// @param choice  the key that chooses, and the word that these keys need
-void refuse_keys_of_other_choice(const JsonObject& object, std::initializer_list<const char*> keys,
-                                 const std::string& choice, const std::string& word) {
-    for (const char* key : keys)
-        if (object.has(key)) object.refuse(key, "left out, or \"" + choice + "\" must be \"" + word + "\"");
-}
-
-void read_centre(JsonObject& map, CentreChoice& centre) {
-    if (auto word = map.read_word("centre", {"sphere", "search"})) centre = static_cast<CentreChoice>(*word);
-}
-
-DistanceMapOptions read_distance_map(JsonObject& map) {
-    DistanceMapOptions options;
-    options.grid = static_cast<DirectionGrid>(
-        map.read_word("grid", {"spherical", "octahedral", "cube", "ellipsoidal"}).value_or(0));
-    if (has_poles(options.grid))
-        refuse_keys_of_other_choice(map, {"divisions"}, "map.grid", "octahedral\" or \"cube");
-    else
-        refuse_keys_of_other_choice(map, {"directions", "pole_axis"}, "map.grid",
-                                    "spherical\" or \"ellipsoidal");
-    map.read("divisions", options.divisions,
-             {DistanceMapOptions::kMinDivisions, DistanceMapOptions::kMaxDivisions});
-    Counts directions{options.longitude_count, options.colatitude_count};
-    map.read("directions", directions,
-             {DistanceMapOptions::kMinSampleCount, DistanceMapOptions::kMaxSampleCount});
-    options.longitude_count = directions[0];
-    options.colatitude_count = directions[1];
-    if (auto word = map.read_word("correction", {"none", "paper", "signed"}))
-        options.correction = static_cast<VertexCorrection>(*word);
-    if (auto word = map.read_word("entries", {"float32", "unorm16"}))
-        options.entry_format = static_cast<EntryFormat>(*word);
-    if (auto word = map.read_word("pole_axis", {"x", "y", "z"}))
-        options.pole_axis = static_cast<PoleAxis>(*word);
-    read_centre(map, options.centre);
-    return options;
-}
-
 ExactMapOptions read_exact_map(JsonObject& map) {
     ExactMapOptions options;
     constexpr double kMostCells = double{ExactMapOptions::kMaxDivisions} * ExactMapOptions::kMaxDivisions;
     std::uint32_t cells = 0;
     std::uint32_t budget = 0;
-    map.read("cells_per_octant", cells, {1, kMostCells});
-    map.read("budget", budget, {1, 4e9});
+    map.read("cells_per_octant", cells, {0, kMostCells});
+    map.read("budget", budget, {0, 4e9});
     if (cells != 0 && budget != 0) map.refuse("budget", "left out where map.cells_per_octant is given");
     options.divisions = static_cast<std::uint32_t>(std::sqrt(cells));
     options.byte_budget = budget;
-    if (auto word = map.read_word("rule", {"nonzero", "parity"}))
-        options.rule = static_cast<InsideRule>(*word);
-    read_centre(map, options.centre);
+    read_exact_map_options(map, options);
     return options;
 }
 
 MapOptions read_map(JsonObject map) {
     MapOptions options;
     if (map.read_word("kind", {"exact", "distance"}).value_or(0) == 0) {
-        refuse_keys_of_other_choice(map,
-                                    {"grid", "divisions", "directions", "correction", "entries", "pole_axis"},
-                                    "map.kind", "distance");
+        map.refuse_keys(kKeysOfDistanceMaps, "map.kind", "distance");
         options = read_exact_map(map);
     } else {
-        refuse_keys_of_other_choice(map, {"cells_per_octant", "budget", "rule"}, "map.kind", "exact");
-        options = read_distance_map(map);
+        map.refuse_keys(kKeysOfExactMaps, "map.kind", "exact");
+        read_distance_map_options(map, options.emplace<DistanceMapOptions>());
     }
     map.finish();
     return options;
@@ -318,15 +273,7 @@ void read_sheet(JsonObject& cloth, Scene& scene) {
     for (const char* key : {"rest_mesh", "scale", "bending", "attachments"})
         if (cloth.has(key)) cloth.refuse(key, "left out, or the cloth must have the key \"mesh\"");
     ClothOptions& options = scene.cloth;
-    Counts particles{options.column_count, options.row_count};
-    std::array<double, 2> size{};
-    cloth.require("size");
-    cloth.read("particles", particles, {2, 4096});
-    cloth.read("size", size, kLength);
-    options.column_count = particles[0];
-    options.row_count = particles[1];
-    options.width = size[0];
-    options.height = size[1];
+    read_sheet_options(cloth, options);
     options.pose = read_pose(cloth);
     read_pins(cloth, options);
 }
@@ -358,9 +305,7 @@ void read_mesh_cloth(JsonObject& cloth, Scene& scene) {
     made.mesh = read_model(cloth, "mesh");
     if (cloth.has("rest_mesh")) made.rest_mesh = read_model(cloth, "rest_mesh");
     made.pose = read_pose(cloth);
-    cloth.read("scale", made.scale, kLength);
-    if (auto word = cloth.read_word("bending", {"angles", "sticks"}))
-        made.bending = static_cast<BendingKind>(*word);
+    read_mesh_cloth_options(cloth, made);
     made.pins = read_vertices(cloth, "pins");
     made.attachments = read_vertices(cloth, "attachments");
 }
@@ -384,7 +329,6 @@ bool has_tetrahedra(const SceneModel& model) {
 
 SceneBody read_body(JsonObject& object, const Scene& scene) {
     SceneBody body;
-    SoftBodyOptions& options = body.options;
     object.require("mesh");
     body.mesh = read_model(object, "mesh");
     if (!has_tetrahedra(body.mesh)) {
@@ -393,12 +337,8 @@ SceneBody read_body(JsonObject& object, const Scene& scene) {
     } else if (object.has("element")) {
         object.refuse("element", "left out where the mesh is a file of tetrahedra");
     }
-    object.read("density", options.density, {1e-9, 1e15});
-    object.read("young_modulus", options.young_modulus, {1e-9, 1e15});
-    object.read("poisson_ratio", options.poisson_ratio, {0, 0.4999});
-    object.read("damping", options.damping, {0, 1e9});
-    options.pose = read_pose(object);
-    object.read("scale", options.scale, kLength);
+    read_body_options(object, body.options);
+    body.options.pose = read_pose(object);
     object.read("velocity", body.velocity, kCoordinate);
     body.pins = read_vertices(object, "pins");
     body.attachments = read_vertices(object, "attachments");
@@ -417,26 +357,18 @@ void read_cloth(JsonObject& root, Scene& scene) {
     if (!scene.bodies.empty()) cloth->require("density");
     cloth->read("density", scene.cloth_density, {1e-9, 1e15});
     cloth->read("velocity", scene.cloth_velocity, kCoordinate);
-    cloth->read("thickness", scene.simulation.thickness, {0, 1e9});
-    cloth->read("self_thickness", scene.simulation.self_thickness, {0, 1e9});
+    read_thickness_options(*cloth, scene.simulation);
     scene.cloth_ignores = read_ignores(*cloth, scene);
     if (!std::holds_alternative<ExactMapOptions>(scene.map))
-        refuse_keys_of_other_choice(*cloth, {"self_thickness"}, "map.kind", "exact");
+        cloth->refuse_keys({"self_thickness"}, "map.kind", "exact");
     cloth->has("mesh") ? read_mesh_cloth(*cloth, scene) : read_sheet(*cloth, scene);
     cloth->finish();
 }
 
-/// One number for each kind of stick.
-void read_stick_kinds(JsonObject& object, std::array<double, kStickKindCount>& values, Range range) {
-    object.read("structural", values[0], range);
-    object.read("shear", values[1], range);
-    object.read("bending", values[2], range);
-}
-
-void read_compliance(JsonObject& material, std::array<double, kStickKindCount>& compliance) {
+void read_compliance(JsonObject& material, SimulationOptions& options) {
     auto object = material.object("compliance");
     if (!object) return;
-    read_stick_kinds(*object, compliance, {0, 1e9});
+    read_xpbd_options(*object, options);
     object->finish();
 }
 
@@ -449,69 +381,52 @@ void read_material(JsonObject& root, Scene& scene) {
         for (const char* key : {"thickness", "self_thickness"})
             if (material->has(key)) material->refuse(key, "in \"cloth\", where there is one");
     }
-    material->read("thickness", options.thickness, {0, 1e9});
-    material->read("self_thickness", options.self_thickness, {0, 1e9});
-    if (options.solver == SolverKind::Verlet) {
-        refuse_keys_of_other_choice(*material, {"compliance"}, "solver", "xpbd");
-        read_stick_kinds(*material, options.stiffness, {0, 1.99});
-    } else {
-        refuse_keys_of_other_choice(*material, {"structural", "shear", "bending"}, "solver", "verlet");
-        read_compliance(*material, options.compliance);
-    }
-    material->read("friction", options.friction, {0, 1e9});
-    material->read("drag", options.drag, {0, 1});
+    read_thickness_options(*material, options);
+    read_verlet_options(*material, options);
+    if (options.solver == SolverKind::Verlet) material->refuse_keys({"compliance"}, "solver", "xpbd");
+    read_compliance(*material, options);
+    read_material_options(*material, options);
     material->finish();
 }
 
 /// @pre the map was read
 void read_surfaces(JsonObject& root, Scene& scene) {
     const bool is_exact = std::holds_alternative<ExactMapOptions>(scene.map);
-    bool& surfaces = scene.simulation.surface_collision;
-    bool& self = scene.simulation.self_collision;
-    surfaces = is_exact && kSurfaceCollision;
-    root.read("surface_collision", surfaces);
-    self = surfaces && kSelfCollision;
-    root.read("self_collision", self);
-    if (self && !surfaces) root.refuse("self_collision", "false, or \"surface_collision\" must be true");
+    SimulationOptions& options = scene.simulation;
+    options.surface_collision = is_exact && kSurfaceCollision;
+    read_surfaces_options(root, options);
+    const bool surfaces = options.surface_collision;
+    if (!root.has("self_collision")) options.self_collision = surfaces && kSelfCollision;
+    if (options.self_collision && !surfaces)
+        root.refuse("self_collision", "false, or \"surface_collision\" must be true");
     for (const SceneCollider& collider : scene.colliders)
         if (collider.cache && !surfaces)
             root.refuse(root.has("surface_collision") ? "surface_collision" : "map",
                         "such that surfaces collide, since a collider has a vertex cache");
-    bool& untangle = scene.simulation.untangle;
-    root.read("untangle", untangle);
-    if (untangle && !surfaces) root.refuse("untangle", "false, or \"surface_collision\" must be true");
+    if (options.untangle && !surfaces)
+        root.refuse("untangle", "false, or \"surface_collision\" must be true");
 }
 
 /// @pre the bodies were read, which need small steps
 void read_solver(JsonObject& root, Scene& scene) {
     SimulationOptions& options = scene.simulation;
     const std::size_t usual = scene.bodies.empty() ? 0 : 1;
-    root.read("gravity", options.gravity, kCoordinate);
-    root.read("time_step", options.time_step, {1e-9, 1e9});
     const std::size_t solver = root.read_word("solver", {"verlet", "xpbd"}).value_or(usual);
     if (solver < usual) root.refuse("solver", "\"xpbd\" or left out where there are bodies");
-    if (solver == 0) {
-        refuse_keys_of_other_choice(root, {"substeps"}, "solver", "xpbd");
-        root.read("multilevel", options.multilevel);
-    } else {
-        refuse_keys_of_other_choice(root, {"multilevel"}, "solver", "verlet");
+    if (solver == 1) {
         // As much work as ten iterations, in small steps.
         options.solver = SolverKind::Xpbd;
         options.iteration_count = 1;
         options.substep_count = 10;
-        root.read("substeps", options.substep_count, {1, 1e6});
     }
-    root.read("iterations", options.iteration_count, {1, 1e6});
-    root.read("thread_count", options.thread_count, {0, 1024});
+    read_solver_options(root, options);
 }
 
 void read_end(JsonObject& root, Scene& scene) {
     root.read("frame_limit", scene.frame_limit, {1, 1e9});
     auto rest = root.object("at_rest");
     if (!rest) return;
-    rest->read("distance", scene.simulation.rest.distance, {0, 1e9});
-    rest->read("speed", scene.simulation.rest.speed, {0, 1e9});
-    rest->read("frames", scene.simulation.rest.frame_count, {1, 1e9});
+    read_rest_options(*rest, scene.simulation);
     rest->finish();
 }
 

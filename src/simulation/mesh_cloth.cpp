@@ -33,10 +33,7 @@ void require_possible(const TriangleMesh& mesh, const MeshClothOptions& options)
     require_option(options.rest_vertices.empty() || options.rest_vertices.size() == count,
                    "the cloth has " + std::to_string(count) + " vertices, but its rest shape " +
                        std::to_string(options.rest_vertices.size()) + "; it needs as many");
-    constexpr double kMostScale = 1e9;
-    require_option(options.scale > 0 && options.scale <= kMostScale,
-                   "the scale of a cloth must be positive and at most 1e9; it is " +
-                       std::to_string(options.scale));
+    require_ranges(options);
     require_valid(options.pose, "the cloth");
     for (const auto& ends : options.threads)
         for (const std::uint32_t end : ends)

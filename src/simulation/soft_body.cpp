@@ -1,4 +1,3 @@
-#include "geometry/number_text.hpp"
 #include "mesh/local_frame.hpp"
 #include "simulation/constraint_order.hpp"
 #include "simulation/tetrahedra.hpp"
@@ -20,20 +19,9 @@ namespace echinus {
 
 namespace {
 
-void require_within(const char* name, double value, double least, double most) {
-    require_option(value >= least && value <= most, std::string("the soft body's ") + name + " is " +
-                                                        number_text(value) + "; it must lie in [" +
-                                                        number_text(least) + ", " + number_text(most) + "]");
-}
-
 void require_possible(const TetrahedralMesh& mesh, const SoftBodyOptions& options) {
     require_no_origin(mesh.origin, "the soft body");
-    constexpr double kLeast = 1e-9, kMost = 1e15;
-    require_within("density", options.density, kLeast, kMost);
-    require_within("young_modulus", options.young_modulus, kLeast, kMost);
-    require_within("poisson_ratio", options.poisson_ratio, 0, 0.4999);
-    require_within("damping", options.damping, 0, 1e9);
-    require_within("scale", options.scale, kLeast, 1e9);
+    require_ranges(options);
     require_valid(options.pose, "the soft body");
     const std::size_t count = mesh.vertices.size();
     const auto require_vertex = [&](std::uint32_t vertex, const char* what) {

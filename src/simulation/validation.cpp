@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <string>
 #include <variant>
@@ -20,13 +19,6 @@ namespace {
 
 [[noreturn]] void fail(const std::string& sentence) {
     throw Error(ErrorCode::InvalidOptions, sentence);
-}
-
-/// NaN fails every comparison, so it is refused too.
-void require_within(const char* name, double value, double least, double most) {
-    if (value >= least && value <= most) return;
-    fail(std::string("simulation option ") + name + " is " + number_text(value) + "; it must lie in [" +
-         number_text(least) + ", " + number_text(most) + "]");
 }
 
 double length(const Rotation& r) {
@@ -42,6 +34,20 @@ std::string as_text(const Rotation& r) {
 
 void refuse_mesh(const std::string& sentence) {
     throw Error(ErrorCode::InvalidMesh, sentence);
+}
+
+void require_within(const char* name, double value, double least, double most) {
+    if (value >= least && value <= most) return;
+    fail(std::string(name) + " is " + number_text(value) + "; it must lie in [" + number_text(least) + ", " +
+         number_text(most) + "]");
+}
+
+void require_within(const char* name, const std::optional<double>& value, double least, double most) {
+    if (value) require_within(name, *value, least, most);
+}
+
+void require_within(const char* name, std::span<const double> values, double least, double most) {
+    for (const double value : values) require_within(name, value, least, most);
 }
 
 void require_option(bool condition, const std::string& sentence) {
@@ -60,26 +66,13 @@ void require_valid(const RigidTransform& pose, const std::string& owner) {
 }
 
 void require_valid(const SimulationOptions& options) {
-    constexpr double kLargest = 1e9;
-    require_within("time_step", options.time_step, 1e-9, kLargest);
-    require_within("iteration_count", options.iteration_count, 1, 1e6);
-    require_within("substep_count", options.substep_count, 1, 1e6);
+    require_ranges(options);
     if (options.solver == SolverKind::Verlet && options.substep_count != 1)
         fail("simulation option substep_count is " + std::to_string(options.substep_count) +
              "; it must be 1 with the Verlet solver, whose sticks would become stiffer");
     if (options.multilevel && options.solver != SolverKind::Verlet)
         fail("simulation option multilevel needs the Verlet solver: coarse sheets would take back what "
              "springs give; use substeps");
-    require_within("drag", options.drag, 0, 1);
-    require_within("thickness", options.thickness.value_or(0), 0, kLargest);
-    require_within("self_thickness", options.self_thickness.value_or(0), 0, kLargest);
-    require_within("friction", options.friction, 0, kLargest);
-    require_within("bound", options.bound, 0, 1e30);
-    require_within("rest.distance", options.rest.distance, 0, 1e9);
-    require_within("rest.speed", options.rest.speed, 0, std::numeric_limits<double>::infinity());
-    require_within("rest.frame_count", options.rest.frame_count, 1, kLargest);
-    for (const double stiffness : options.stiffness) require_within("stiffness", stiffness, 0, 1.99);
-    for (const double compliance : options.compliance) require_within("compliance", compliance, 0, kLargest);
     if (!is_finite(options.gravity)) fail("simulation option gravity is not finite");
     if (options.self_collision && !options.surface_collision)
         fail("simulation option self_collision needs surface_collision, which keeps faces off colliders too; "

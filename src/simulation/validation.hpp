@@ -1,8 +1,10 @@
 #pragma once
 
-#include <echinus/simulation.hpp>
+#include <echinus/soft_body.hpp>
 
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,14 @@ inline std::string name_of(const Collider& collider, std::size_t number) {
 // Each throws Error InvalidOptions with a sentence that names the field or the index at fault.
 
 void require_option(bool condition, const std::string& sentence);
+/// NaN is outside of every range.
+void require_within(const char* name, double value, double least, double most);
+void require_within(const char* name, const std::optional<double>& value, double least, double most);
+void require_within(const char* name, std::span<const double> values, double least, double most);
+/// Of each number that has a range in bindings/options.toml.
+void require_ranges(const MeshClothOptions& options);
+void require_ranges(const SoftBodyOptions& options);
+void require_ranges(const SimulationOptions& options);
 void require_valid(const SimulationOptions& options);
 void require_valid(const Deformable& deformable);
 void require_solver(const Deformable& deformable, const SimulationOptions& options);

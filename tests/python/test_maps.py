@@ -235,7 +235,7 @@ def test_the_distance_map_has_as_many_directions_as_asked():
 @pytest.mark.parametrize(
     "options, sentence",
     [
-        ({"cells_per_octant": 0}, "cells_per_octant"),
+        ({"cells_per_octant": -1}, "cells_per_octant"),
         ({"budget": 1}, "budget"),
         ({"rule": "odd"}, "rule"),
         ({"centre": "middle"}, "centre"),

@@ -80,7 +80,7 @@ def test_threads_decide_no_bits():
     two.step(40)
     assert one.profile.contact_count > 0 and one.state_hash == two.state_hash
     for wrong in (-1, 2**31):
-        with pytest.raises(ValueError, match=f"threads must be a whole number from 0 to 2147483647, not {wrong}"):
+        with pytest.raises(ValueError, match=f"threads must be a whole number from 0 to 4294967295, not {wrong}"):
             made(wrong)
 
 

@@ -216,9 +216,9 @@ def test_vertices_that_are_no_numbers_are_refused():
     ("call", "words"),
     [
         (lambda: ech.make_cloth(width="wide"), "width must be a number, not 'wide'"),
-        (lambda: ech.make_cloth(column_count=2.5), "column_count must be a whole number, not 2.5"),
+        (lambda: ech.make_cloth(column_count=2.5), "column_count must be a whole number from 0 to 4294967295, not 2.5"),
         (lambda: ech.make_cloth(position=3), "position must be three numbers, not 3"),
-        (lambda: ech.make_cloth(rotation=(1, 0, None, 0)), "each of rotation must be a number, not None"),
+        (lambda: ech.make_cloth(rotation=(1, 0, None, 0)), "rotation must be the four numbers"),
         (lambda: soft_box(density=None), "density must be a number, not None"),
         (lambda: ech.make_soft_body(BALL), "mesh must be of the class TetrahedralMesh, not Mesh; .* tetrahedralize"),
         (lambda: ech.make_cloth_of_mesh(BOX), "a mesh has .vertices and .faces; TetrahedralMesh does not"),

@@ -122,9 +122,10 @@ def test_arrays_of_another_shape_or_type_are_refused():
 
 
 def test_sizes_and_counts_out_of_range_are_refused():
-    for options in ({}, {"size": 0.1, "count": 10}, {"count": 0}, {"size": 0.1, "most_tetrahedra": -1}):
+    for options in ({}, {"size": 0.1, "count": 10}, {"count": -1}, {"size": 0.1, "most_tetrahedra": -1}):
         with pytest.raises(ValueError):
             body_of_torus(**options)
+    assert refusal(body_of_torus, count=0)[0] == "invalid_options"
     for size in (0, -1, np.nan, np.inf, 1e-9):
         assert refusal(body_of_torus, size=size)[0] == "invalid_options"
     assert refusal(body_of_torus, size=0.05, most_tetrahedra=10)[0] == "invalid_options"

@@ -2,6 +2,7 @@
 #include "collider.hpp"
 #include "deformable.hpp"
 #include "mesh.hpp"
+#include "options.hpp"
 #include "tetrahedra.hpp"
 
 #include <echinus/error.hpp>
@@ -13,17 +14,13 @@
 namespace echinus::c {
 
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_deformable_arrays, filter_count);
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_soft_body_options, attachment_count);
 template <>
 inline constexpr std::size_t kFirstSize<echinus_deformable_arrays> = offsetof(echinus_deformable_arrays,
                                                                               tetrahedra);
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_cloth_options, pin_count);
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_mesh_cloth_options, reserved);
 
 static_assert(ECHINUS_STICK_SHEAR == static_cast<int>(StickKind::Shear) &&
               ECHINUS_STICK_BENDING == static_cast<int>(StickKind::Bending) &&
-              ECHINUS_STICK_KIND_COUNT == kStickKindCount &&
-              ECHINUS_BENDING_STICKS == static_cast<int>(BendingKind::Sticks));
+              ECHINUS_STICK_KIND_COUNT == kStickKindCount);
 static_assert(sizeof(echinus_stick) == sizeof(Stick) && offsetof(echinus_stick, b) == offsetof(Stick, b) &&
               offsetof(echinus_stick, rest_length) == offsetof(Stick, rest_length) &&
               offsetof(echinus_stick, kind) == offsetof(Stick, kind));
@@ -127,88 +124,6 @@ Deformable deformable_from(const echinus_deformable_arrays& arrays) {
     };
 }
 
-echinus_cloth_options as_c(const ClothOptions& options) {
-    return {.size = 0,
-            .column_count = options.column_count,
-            .row_count = options.row_count,
-            .width = options.width,
-            .height = options.height,
-            .pose = pose_to_c(options.pose),
-            .pins = nullptr,
-            .pin_count = 0};
-}
-
-ClothOptions options_from(const echinus_cloth_options* options) {
-    if (options == nullptr) return {};
-    const auto given = read_struct(options, as_c(ClothOptions{}), "options");
-    return {.column_count = given.column_count,
-            .row_count = given.row_count,
-            .width = given.width,
-            .height = given.height,
-            .pose = pose_from(given.pose),
-            .pins = copy_of(given.pins, given.pin_count, "options.pins")};
-}
-
-echinus_mesh_cloth_options as_c(const MeshClothOptions& options) {
-    echinus_mesh_cloth_options result{};
-    result.pose = pose_to_c(options.pose);
-    result.scale = options.scale;
-    result.bending = static_cast<echinus_bending_kind>(options.bending);
-    return result;
-}
-
-std::vector<std::array<std::uint32_t, 2>> edges_from(const std::uint32_t* edges, std::size_t count) {
-    const std::span<const std::uint32_t> ends =
-        values_at(edges, times(count, 2, "options.thread_edges"), "options.thread_edges");
-    std::vector<std::array<std::uint32_t, 2>> result(count);
-    for (std::size_t i = 0; i < count; ++i) result[i] = {ends[2 * i], ends[2 * i + 1]};
-    return result;
-}
-
-MeshClothOptions options_from(const echinus_mesh_cloth_options* options) {
-    if (options == nullptr) return {};
-    const auto given = read_struct(options, as_c(MeshClothOptions{}), "options");
-    require_unused(given.reserved);
-    return {
-        .pose = pose_from(given.pose),
-        .scale = given.scale,
-        .rest_vertices =
-            points_from(given.rest_vertices, given.rest_vertex_count, 0, "options.rest_vertices"),
-        .threads = edges_from(given.thread_edges, given.thread_edge_count),
-        .bending = enumerator(given.bending, BendingKind::Sticks, "options.bending"),
-        .pins = copy_of(given.pins, given.pin_count, "options.pins"),
-        .attachments =
-            attachments_from(values_at(given.attachments, given.attachment_count, "options.attachments")),
-    };
-}
-
-echinus_soft_body_options as_c(const SoftBodyOptions& options) {
-    echinus_soft_body_options result{};
-    result.density = options.density;
-    result.young_modulus = options.young_modulus;
-    result.poisson_ratio = options.poisson_ratio;
-    result.damping = options.damping;
-    result.pose = pose_to_c(options.pose);
-    result.scale = options.scale;
-    return result;
-}
-
-SoftBodyOptions options_from(const echinus_soft_body_options* options) {
-    if (options == nullptr) return {};
-    const auto given = read_struct(options, as_c(SoftBodyOptions{}), "options");
-    return {
-        .density = given.density,
-        .young_modulus = given.young_modulus,
-        .poisson_ratio = given.poisson_ratio,
-        .damping = given.damping,
-        .pose = pose_from(given.pose),
-        .scale = given.scale,
-        .pins = copy_of(given.pins, given.pin_count, "options.pins"),
-        .attachments =
-            attachments_from(values_at(given.attachments, given.attachment_count, "options.attachments")),
-    };
-}
-
 /// What is not there would be found in the next part.
 /// @throws Error InvalidOptions
 void require_own_particles(const Deformable& part, std::size_t number) {
@@ -252,17 +167,11 @@ echinus_status echinus_deformable_create(const echinus_deformable_arrays* arrays
                 [&] { return deformable_from(read_struct(arrays, echinus_deformable_arrays{}, "arrays")); });
 }
 
-void echinus_cloth_options_init(echinus_cloth_options* options, size_t size) {
-    init_struct(options, size, as_c(ClothOptions{}));
-}
 echinus_status echinus_deformable_cloth(const echinus_cloth_options* options,
                                         echinus_deformable** deformable) {
     return make(__func__, deformable, [&] { return make_cloth(options_from(options)); });
 }
 
-void echinus_mesh_cloth_options_init(echinus_mesh_cloth_options* options, size_t size) {
-    init_struct(options, size, as_c(MeshClothOptions{}));
-}
 echinus_status echinus_deformable_cloth_of_mesh(const echinus_mesh* mesh,
                                                 const echinus_mesh_cloth_options* options,
                                                 echinus_deformable** deformable) {
@@ -270,9 +179,6 @@ echinus_status echinus_deformable_cloth_of_mesh(const echinus_mesh* mesh,
                 [&] { return make_cloth(at(mesh, "mesh").value, options_from(options)); });
 }
 
-void echinus_soft_body_options_init(echinus_soft_body_options* options, size_t size) {
-    init_struct(options, size, as_c(SoftBodyOptions{}));
-}
 echinus_status echinus_deformable_soft_body(const echinus_tetrahedra* body,
                                             const echinus_soft_body_options* options,
                                             echinus_deformable** deformable) {

@@ -2,30 +2,15 @@
 
 #include "map.hpp"
 #include "mesh.hpp"
+#include "options.hpp"
 
 namespace echinus::c {
 
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_exact_map_options, reserved);
-template <>
-inline constexpr std::size_t kFirstSize<echinus_exact_map_options> = offsetof(echinus_exact_map_options,
-                                                                              find_certain_gaps);
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_distance_map_options, reserved);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_map_info, origin);
 template <>
 inline constexpr std::size_t kFirstSize<echinus_map_info> = offsetof(echinus_map_info, origin);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_exact_map_statistics, reserved);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_distance_map_statistics, wrong_parity_share);
-
-static_assert(ECHINUS_INSIDE_PARITY == static_cast<int>(InsideRule::Parity) &&
-              ECHINUS_CENTRE_SEARCH == static_cast<int>(CentreChoice::Search) &&
-              ECHINUS_GRID_OCTAHEDRAL == static_cast<int>(DirectionGrid::Octahedral) &&
-              ECHINUS_GRID_CUBE == static_cast<int>(DirectionGrid::Cube) &&
-              ECHINUS_GRID_ELLIPSOIDAL == static_cast<int>(DirectionGrid::Ellipsoidal) &&
-              ECHINUS_CORRECTION_PAPER == static_cast<int>(VertexCorrection::Paper) &&
-              ECHINUS_CORRECTION_SIGNED == static_cast<int>(VertexCorrection::Signed) &&
-              ECHINUS_ENTRY_UNORM16 == static_cast<int>(EntryFormat::Unorm16) &&
-              ECHINUS_POLE_Y == static_cast<int>(PoleAxis::Y) &&
-              ECHINUS_POLE_Z == static_cast<int>(PoleAxis::Z));
 
 const ExactMap& exact_map_at(const echinus_map* map) {
     if (const auto* exact = std::get_if<ExactMap>(&at(map, "map").value.kind)) return *exact;
@@ -44,58 +29,6 @@ AnyMap any_map_at(const echinus_map* map) {
 }
 
 namespace {
-
-echinus_exact_map_options as_c(const ExactMapOptions& options) {
-    return {.size = 0,
-            .divisions = options.divisions,
-            .thread_count = options.thread_count,
-            .byte_budget = options.byte_budget,
-            .rule = static_cast<echinus_inside_rule>(options.rule),
-            .centre = static_cast<echinus_centre_choice>(options.centre),
-            .find_certain_gaps = options.find_certain_gaps,
-            .reserved = 0};
-}
-
-ExactMapOptions options_from(const echinus_exact_map_options* options) {
-    if (options == nullptr) return {};
-    const auto given = read_struct(options, as_c(ExactMapOptions{}), "options");
-    require_unused(given.reserved);
-    return {.divisions = given.divisions,
-            .byte_budget = given.byte_budget,
-            .rule = enumerator(given.rule, InsideRule::Parity, "options.rule"),
-            .centre = enumerator(given.centre, CentreChoice::Search, "options.centre"),
-            .find_certain_gaps = flag(given.find_certain_gaps, "options.find_certain_gaps"),
-            .thread_count = given.thread_count};
-}
-
-echinus_distance_map_options as_c(const DistanceMapOptions& options) {
-    return {.size = 0,
-            .grid = static_cast<echinus_direction_grid>(options.grid),
-            .longitude_count = options.longitude_count,
-            .colatitude_count = options.colatitude_count,
-            .divisions = options.divisions,
-            .correction = static_cast<echinus_vertex_correction>(options.correction),
-            .entry_format = static_cast<echinus_entry_format>(options.entry_format),
-            .pole_axis = static_cast<echinus_pole_axis>(options.pole_axis),
-            .centre = static_cast<echinus_centre_choice>(options.centre),
-            .thread_count = options.thread_count,
-            .reserved = 0};
-}
-
-DistanceMapOptions options_from(const echinus_distance_map_options* options) {
-    if (options == nullptr) return {};
-    const auto given = read_struct(options, as_c(DistanceMapOptions{}), "options");
-    require_unused(given.reserved);
-    return {.grid = enumerator(given.grid, DirectionGrid::Ellipsoidal, "options.grid"),
-            .longitude_count = given.longitude_count,
-            .colatitude_count = given.colatitude_count,
-            .divisions = given.divisions,
-            .correction = enumerator(given.correction, VertexCorrection::Signed, "options.correction"),
-            .entry_format = enumerator(given.entry_format, EntryFormat::Unorm16, "options.entry_format"),
-            .pole_axis = enumerator(given.pole_axis, PoleAxis::Z, "options.pole_axis"),
-            .centre = enumerator(given.centre, CentreChoice::Search, "options.centre"),
-            .thread_count = given.thread_count};
-}
 
 template <typename Map>
 echinus_map_info describe(const Map& map, echinus_map_kind kind) {
@@ -140,13 +73,6 @@ Surface surface_of(const DistanceMap& map) {
 
 using namespace echinus;
 using namespace echinus::c;
-
-void echinus_exact_map_options_init(echinus_exact_map_options* options, size_t size) {
-    init_struct(options, size, as_c(ExactMapOptions{}));
-}
-void echinus_distance_map_options_init(echinus_distance_map_options* options, size_t size) {
-    init_struct(options, size, as_c(DistanceMapOptions{}));
-}
 
 echinus_status echinus_map_build_exact(const echinus_mesh* mesh, const echinus_exact_map_options* options,
                                        echinus_map** map) {

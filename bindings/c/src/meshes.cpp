@@ -1,5 +1,6 @@
 #include "border.hpp"
 #include "mesh.hpp"
+#include "options.hpp"
 
 #include <echinus/intersections.hpp>
 #include <echinus/mesh_io.hpp>
@@ -11,13 +12,9 @@ namespace echinus::c {
 static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Vec3d) == 3 * sizeof(double) &&
               sizeof(Triangle) == 3 * sizeof(std::uint32_t) && sizeof(FacePair) == 2 * sizeof(std::uint32_t));
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_mesh_report, reserved);
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_options, weld_distance);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_repair_report, seams_filled);
 template <>
 inline constexpr std::size_t kFirstSize<echinus_mesh_report> = offsetof(echinus_mesh_report, rounding_step);
-template <>
-inline constexpr std::size_t kFirstSize<echinus_repair_options> = offsetof(echinus_repair_options,
-                                                                           max_hole_edges);
 template <>
 inline constexpr std::size_t kFirstSize<echinus_repair_report> = offsetof(echinus_repair_report,
                                                                           holes_closed);
@@ -74,22 +71,6 @@ echinus_mesh_report describe(const MeshReport& report) {
     result.rounding_step = report.rounding_step;
     result.orientable = report.orientable ? 1 : 0;
     return result;
-}
-
-RepairOptions repair_options_from(const echinus_repair_options* options) {
-    const auto given = read_struct(options, echinus_repair_options{}, "options");
-    require_unused(given.reserved);
-    require_unused(given.reserved_2);
-    return {.drop_duplicate_faces = flag(given.drop_duplicate_faces, "options.drop_duplicate_faces"),
-            .drop_doubled_patches = flag(given.drop_doubled_patches, "options.drop_doubled_patches"),
-            .flip_inside_out = flag(given.flip_inside_out, "options.flip_inside_out"),
-            .close_seams = flag(given.close_seams, "options.close_seams"),
-            .weld_distance = given.weld_distance,
-            .drop_loose_slivers = flag(given.drop_loose_slivers, "options.drop_loose_slivers"),
-            .orient_faces = flag(given.orient_faces, "options.orient_faces"),
-            .max_hole_edges = given.max_hole_edges,
-            .drop_inner_faces = flag(given.drop_inner_faces, "options.drop_inner_faces"),
-            .sheet_thickness = given.sheet_thickness};
 }
 
 echinus_repair_report describe(const RepairReport& report) {
@@ -200,10 +181,6 @@ echinus_status echinus_mesh_inspect(const echinus_mesh* mesh, echinus_mesh_repor
     return guarded(__func__, [&] { write_struct(report, describe(inspect(mesh_at(mesh))), "report"); });
 }
 
-void echinus_repair_options_init(echinus_repair_options* options, size_t size) {
-    init_struct(options, size, {});
-}
-
 echinus_status echinus_mesh_repair(const echinus_mesh* mesh, const echinus_repair_options* options,
                                    echinus_mesh** repaired, echinus_repair_report* report,
                                    echinus_array** dropped) {
@@ -211,7 +188,7 @@ echinus_status echinus_mesh_repair(const echinus_mesh* mesh, const echinus_repai
     if (dropped != nullptr) *dropped = nullptr;
     return guarded(__func__, [&] {
         at(repaired, "repaired");
-        RepairedMesh result = repair(mesh_at(mesh), repair_options_from(options));
+        RepairedMesh result = repair(mesh_at(mesh), options_from(&at(options, "options")));
         auto handle = std::unique_ptr<echinus_mesh>(new echinus_mesh{std::move(result.mesh)});
         if (report != nullptr) write_struct(report, describe(result.report), "report");
         if (dropped != nullptr) *dropped = new echinus_array(array_of(dropped_faces(result.report)));

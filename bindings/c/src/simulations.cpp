@@ -2,94 +2,19 @@
 #include "collider.hpp"
 #include "deformable.hpp"
 #include "mesh.hpp"
+#include "options.hpp"
 #include "simulation.hpp"
 #include "vertex_cache.hpp"
 
 #include <echinus/error.hpp>
 
-#include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace echinus::c {
 
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_options, multilevel);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_profile, squeezed_count);
-static_assert(ECHINUS_SOLVER_XPBD == static_cast<int>(SolverKind::Xpbd));
 
 namespace {
-
-/// There are never more.
-constexpr std::uint64_t kMostThreads = 1U << 16;
-
-/// A thickness that may be left to the library.
-double as_c(const std::optional<double>& thickness) {
-    return thickness.value_or(ECHINUS_THICKNESS_CHOSEN);
-}
-std::optional<double> thickness_from(double thickness) {
-    return thickness == ECHINUS_THICKNESS_CHOSEN ? std::nullopt : std::optional(thickness);
-}
-
-echinus_simulation_options as_c(const SimulationOptions& options) {
-    // All members: one that is added does not compile until it has a place here.
-    const auto& [solver, time_step, iteration_count, substep_count, gravity, drag, stiffness, compliance,
-                 thickness, friction, rest, keep_free, allow_open_colliders, surface_collision,
-                 self_collision, self_thickness, untangle, measure_loads, bound, thread_count, multilevel] =
-        options;
-    echinus_simulation_options result{};
-    result.time_step = time_step;
-    result.solver = static_cast<echinus_solver>(solver);
-    result.iteration_count = iteration_count;
-    result.substep_count = substep_count;
-    result.rest_frame_count = rest.frame_count;
-    result.rest_distance = rest.distance;
-    result.rest_speed = rest.speed;
-    put_vector(gravity, result.gravity);
-    result.drag = drag;
-    std::ranges::copy(stiffness, result.stiffness);
-    std::ranges::copy(compliance, result.compliance);
-    result.thickness = as_c(thickness);
-    result.self_thickness = as_c(self_thickness);
-    result.friction = friction;
-    result.bound = bound;
-    result.keep_free = keep_free ? 1 : 0;
-    result.allow_open_colliders = allow_open_colliders ? 1 : 0;
-    result.surface_collision = surface_collision ? 1 : 0;
-    result.self_collision = self_collision ? 1 : 0;
-    result.untangle = untangle ? 1 : 0;
-    result.measure_loads = measure_loads ? 1 : 0;
-    result.thread_count = thread_count;
-    result.multilevel = multilevel ? 1 : 0;
-    return result;
-}
-
-SimulationOptions options_from(const echinus_simulation_options* options) {
-    if (options == nullptr) return {};
-    const auto given = read_struct(options, as_c(SimulationOptions{}), "options");
-    return {.solver = enumerator(given.solver, SolverKind::Xpbd, "options.solver"),
-            .time_step = given.time_step,
-            .iteration_count = given.iteration_count,
-            .substep_count = given.substep_count,
-            .gravity = vector_of(given.gravity),
-            .drag = given.drag,
-            .stiffness = std::to_array(given.stiffness),
-            .compliance = std::to_array(given.compliance),
-            .thickness = thickness_from(given.thickness),
-            .friction = given.friction,
-            .rest = {.distance = given.rest_distance,
-                     .speed = given.rest_speed,
-                     .frame_count = given.rest_frame_count},
-            .keep_free = flag(given.keep_free, "options.keep_free"),
-            .allow_open_colliders = flag(given.allow_open_colliders, "options.allow_open_colliders"),
-            .surface_collision = flag(given.surface_collision, "options.surface_collision"),
-            .self_collision = flag(given.self_collision, "options.self_collision"),
-            .self_thickness = thickness_from(given.self_thickness),
-            .untangle = flag(given.untangle, "options.untangle"),
-            .measure_loads = flag(given.measure_loads, "options.measure_loads"),
-            .bound = given.bound,
-            .thread_count = static_cast<unsigned>(std::min<std::uint64_t>(given.thread_count, kMostThreads)),
-            .multilevel = flag(given.multilevel, "options.multilevel")};
-}
 
 /// A row of the caller's structs, which may be larger than ours.
 std::vector<Collider> colliders_from(const echinus_collider* first, std::size_t count) {
@@ -152,10 +77,6 @@ void require_index(std::size_t index, std::size_t count, const char* name) {
 
 using namespace echinus;
 using namespace echinus::c;
-
-void echinus_simulation_options_init(echinus_simulation_options* options, size_t size) {
-    init_struct(options, size, as_c(SimulationOptions{}));
-}
 
 echinus_status echinus_simulation_create(const echinus_deformable* deformable,
                                          const echinus_collider* colliders, size_t collider_count,

@@ -3,6 +3,7 @@
 #include "border.hpp"
 #include "map.hpp"
 #include "mesh.hpp"
+#include "options.hpp"
 
 #include <echinus/mesh_io.hpp>
 
@@ -20,7 +21,6 @@ namespace echinus::c {
 
 static_assert(sizeof(Tetrahedron) == 4 * sizeof(std::uint32_t));
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_tetrahedra_file_report, dropped_vertices);
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_tetrahedralize_options, reserved);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_tetrahedralize_report, removed_tetrahedra);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_tetrahedra_report, greatest_angle_deg);
 ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_boundary_distance, greatest_to_boundary);
@@ -40,24 +40,6 @@ TetrahedralMesh body_from(const float* vertices, std::size_t vertex_count, std::
         mesh.tetrahedra.push_back({corners[i], corners[i + 1], corners[i + 2], corners[i + 3]});
     require_valid_tetrahedra(mesh);
     return mesh;
-}
-
-echinus_tetrahedralize_options as_c(const TetrahedralizeOptions& options) {
-    return {.size = 0,
-            .lattice_size = options.size,
-            .count = options.count,
-            .most_tetrahedra = options.most_tetrahedra,
-            .thread_count = options.thread_count,
-            .reserved = 0};
-}
-
-TetrahedralizeOptions options_from(const echinus_tetrahedralize_options* options) {
-    const auto given = read_struct(options, as_c(TetrahedralizeOptions{}), "options");
-    require_unused(given.reserved);
-    return {.size = given.lattice_size,
-            .count = given.count,
-            .most_tetrahedra = given.most_tetrahedra,
-            .thread_count = given.thread_count};
 }
 
 echinus_tetrahedra_report describe(const TetrahedralReport& report) {
@@ -113,14 +95,11 @@ echinus_status echinus_tetrahedra_box(const double* size, const uint32_t* segmen
     });
 }
 
-void echinus_tetrahedralize_options_init(echinus_tetrahedralize_options* options, size_t size) {
-    init_struct(options, size, as_c(TetrahedralizeOptions{}));
-}
 echinus_status echinus_tetrahedralize(const echinus_map* model, const echinus_tetrahedralize_options* options,
                                       echinus_tetrahedra** body, echinus_tetrahedralize_report* report) {
     return make(__func__, body, [&] {
         const ExactMap& map = exact_map_at(model);
-        Tetrahedralization made = tetrahedralize(map.view(), options_from(options));
+        Tetrahedralization made = tetrahedralize(map.view(), options_from(&at(options, "options")));
         if (report != nullptr)
             write_struct(
                 report, {.size = 0, .lattice_size = made.size, .removed_tetrahedra = made.removed_tetrahedra},

@@ -238,13 +238,13 @@ def repair(
     drop_duplicate_faces: bool = True,
     drop_doubled_patches: bool = True,
     flip_inside_out: bool = True,
-    close_seams: bool = True,
-    weld_distance: float = 0.0,
-    drop_loose_slivers: bool = True,
-    orient_faces: bool = True,
     close_holes: int = 0,
     drop_inner_faces: bool = False,
-    sheet_thickness: float = 0.0,
+    sheet_thickness: float = 0,
+    close_seams: bool = True,
+    drop_loose_slivers: bool = True,
+    orient_faces: bool = True,
+    weld_distance: float = 0,
 ) -> tuple[Mesh, RepairReport]:
     """A copy without the faults that can be mended without a guess, and what was done. A closed mesh stays closed.
 
@@ -258,51 +258,38 @@ def repair(
         Vertices are distinguished by index: :func:`weld` first, or close seams, where equal positions mean the
         same vertex.
     drop_duplicate_faces
-        Of faces with the same three vertices, opposite ones cancel and one of the others stays.
+        Of faces with the same three vertices drop opposite ones in pairs, and of the rest keep the first.
     drop_doubled_patches
-        Where two pairs of faces fill the same quadrilateral, each along its own diagonal, one pair is dropped.
+        Where two pairs of faces fill the same quadrilateral, each along its own diagonal, drop one pair.
     flip_inside_out
-        Closed parts whose faces look inwards are turned round; cavities stay cavities.
-    close_seams
-        Corners at the edges of holes that are no farther apart than ``weld_distance`` become one, and holes that are
-        no wider are filled.
-    weld_distance
-        In the unit of the mesh, at most the radius of its bounding sphere. At least 2^-21 of that radius counts,
-        within which maps take such corners for one.
-    drop_loose_slivers
-        Faces without area at the edges of holes are dropped unless they fill a seam.
-    orient_faces
-        In parts in which every edge has just two faces, those that disagree with most about the outside are turned.
+        Turn round closed parts whose faces look inwards; cavities stay cavities.
     close_holes
-        Fills holes whose border has at most so many edges, up to 256, with the triangles of least area. The rim
-        of a sheet, whose filling would have more than a third of the sheet's area, is no hole.
+        Fill holes whose border has at most so many edges, with the triangles of least area. The rim of a sheet,
+        whose filling would have more than a third of the sheet's area, is no hole (0 to 256).
     drop_inner_faces
-        Faces with the solid on both sides are dropped, a patch of neighbours at a time, where no edge that stays is
-        less balanced for it: an engine in the body of a car. A part that crosses the surface stays.
+        Drop faces with the solid on both sides, a patch of neighbours at a time, where no edge that stays is less
+        balanced for it: an engine in the body of a car.
     sheet_thickness
-        Parts that are not closed become solids so thick, half of it on either side, in the unit of the mesh.
+        Make solids of the parts that are not closed, so thick, half of it on either side; 0: none (not negative).
+    close_seams
+        Join vertices at the edges of holes that are no farther apart than ``weld_distance``, and fill holes that
+        are no wider.
+    drop_loose_slivers
+        Drop faces without area at the edges of holes, unless they fill a seam.
+    orient_faces
+        Turn faces so that neighbours agree, in parts that are closed by themselves.
+    weld_distance
+        How wide seams may be; at most the radius of the bounding sphere, and at least 2^-21 of it counts, within
+        which maps take two vertices for one (not negative).
 
     Raises
     ------
     Error
-        ``invalid_mesh`` as :func:`inspect`; ``invalid_options`` for a thickness or a weld distance that does not
-        suit the mesh.
-    ValueError
-        More edges than 256, or fewer than 0.
+        ``invalid_mesh`` as :func:`inspect`; ``invalid_options`` for a number out of range, and for a thickness or a weld
+        distance that does not suit the mesh.
     """
-    arrays, report = _core.repair(
-        *arrays_of(mesh),
-        flag("drop_duplicate_faces", drop_duplicate_faces),
-        flag("drop_doubled_patches", drop_doubled_patches),
-        flag("flip_inside_out", flip_inside_out),
-        whole("close_holes", close_holes, 0, 256),
-        flag("drop_inner_faces", drop_inner_faces),
-        number("sheet_thickness", sheet_thickness),
-        flag("close_seams", close_seams),
-        number("weld_distance", weld_distance),
-        flag("drop_loose_slivers", drop_loose_slivers),
-        flag("orient_faces", orient_faces),
-    )
+    options = locals()
+    arrays, report = _core.repair(*arrays_of(mesh), options)
     return Mesh(*arrays), RepairReport(**report)
 
 

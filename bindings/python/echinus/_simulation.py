@@ -29,29 +29,29 @@ _Model = MeshLike | AnyMap | None
 class SimulationOptions:
     """The options of a simulation that are in force; :class:`Simulation` describes them."""
 
-    solver: Literal["verlet", "xpbd"]
     time_step: float
+    solver: Literal["verlet", "xpbd"]
     iteration_count: int
     substep_count: int
+    rest_frame_count: int
+    rest_distance: float
+    rest_speed: float
     gravity: Vector
     drag: float
-    friction: float
+    stiffness: Vector
+    compliance: Vector
     thickness: float
     self_thickness: float | None
+    friction: float
+    bound: float
+    keep_free: bool
+    allow_open_colliders: bool
     surface_collision: bool
     self_collision: bool
     untangle: bool
-    allow_open_colliders: bool
-    stiffness: Vector
-    compliance: Vector
-    rest_distance: float
-    rest_speed: float
-    rest_frame_count: int
-    keep_free: bool
     measure_loads: bool
-    bound: float
-    threads: int
     multilevel: bool
+    threads: int
 
 
 @dataclass(frozen=True)
@@ -101,48 +101,64 @@ class Simulation:
         Copied.
     colliders
         Any number, each with its own place and motion.
-    solver
-        ``"verlet"``: each relaxation of a stick removes a share of its error. ``"xpbd"``: sticks are springs, and
-        the only one for soft bodies. By default ``"xpbd"`` where there are tetrahedra.
+    frame_limit
+        Of :meth:`run`.
     time_step
-        Seconds per frame.
-    iteration_count, substep_count
-        Relaxations per substep, and substeps per frame: by default 10 and 1, with ``"xpbd"`` 1 and 10.
+        Seconds per frame. Half of it takes twice the time and leaves a quarter of the stretch (1e-9 to 1e9 s).
+    solver
+        ``verlet``: each relaxation of a stick removes a share of its error; ``xpbd``: sticks are springs, and the
+        only one for soft bodies. By default ``"verlet"``; ``"xpbd"`` with ``bodies``.
+    iteration_count
+        Relaxations per substep, each of all sticks and then of all contacts; more cost time and leave less stretch
+        (1 to 1e6). By default 10; 1 with ``xpbd``.
+    substep_count
+        ``xpbd`` only: steps that a frame is made of (1 to 1e6). By default 10.
+    rest_frame_count
+        For how many frames in a row all particles have to be slow and near one place (1 to 1e9).
+    rest_distance
+        How far a particle at rest may be from its place (0 to 1e9).
+    rest_speed
+        How fast a particle at rest may be at the end of a frame (at least 0 length/s).
     gravity
-        Units per second squared.
+        Where down is. A model whose y is up needs ``[0, -9.81, 0]`` (-1e9 to 1e9 length/s^2).
     drag
-        Share of the velocity that is lost per frame, 0 to 1.
+        Share of the velocity that is lost per frame; another ``time_step`` makes another drag (0 to 1).
     stiffness
-        Of structural, shear and bending sticks, with ``"verlet"``: 0 to 1.99.
+        ``verlet`` only: share of a stick's error that one relaxation removes, of structural, shear and bending
+        sticks (0 to 1.99).
     compliance
-        The same with ``"xpbd"``: how far a stick gives per unit of force.
-    thickness, self_thickness
-        Distance that particles keep from colliders, and layers from each other; None: chosen by the library.
+        ``xpbd`` only: how far a stick gives per unit of force, of structural, shear and bending sticks (0 to 1e9
+        s^2).
+    thickness
+        Distance that particles keep from colliders, by default half the mean length of structural sticks at rest (0
+        to 1e9).
+    self_thickness
+        Distance that layers keep from each other, with ``self_collision``; near small faces less. By default the
+        thickness (0 to 1e9).
     friction
-        Coulomb's coefficient.
-    rest_distance, rest_speed, rest_frame_count
-        At rest, no particle was farther than this from one place, or faster, for so many frames.
+        Coulomb's coefficient between cloth and model; 0 is ice (0 to 1e9).
+    bound
+        A particle farther than this from the middle of where all began ends the simulation as diverged; 0: 10 000
+        times the extent at the start (0 to 1e30).
     keep_free
         Rescue particles that would pass through an exact map.
     allow_open_colliders
         Accept exact maps of open meshes, for which nothing is promised. Surface collision needs no such permission.
     surface_collision
-        Edges and faces collide too. By default where all colliders have exact maps.
+        Faces and edges keep off the model, too: none of them intersects it at the end of a frame, within limits. By
+        default ``true`` beside an exact map.
     self_collision
-        Faces of the deformable do not meet each other either. By default as ``surface_collision``.
+        Nor do two faces of what deforms intersect; needs ``surface_collision``. By default as
+        ``surface_collision``.
     untangle
-        Part what begins intersecting, in place of refusing it.
+        What begins intersecting, or inside the model, is parted before the first frame instead of refused; needs
+        ``surface_collision``.
     measure_loads
-        Keep account for :meth:`load_on`.
-    bound
-        Beyond it the simulation has diverged; 0: 10 000 times the extent at the start.
-    threads
-        That compute a frame; 0: all cores. The bits do not depend on it.
+        Keep account of what bears on the colliders; takes a few percent of the time.
     multilevel
-        With ``"verlet"``: each frame relaxes coarser sheets of a rectangular cloth first, so that a large one hardly
-        stretches.
-    frame_limit
-        Of :meth:`run`.
+        ``verlet`` only: relax coarser sheets of a rectangular cloth first, so that a large one hardly stretches.
+    threads
+        Threads that compute a frame; 0: all cores. The same bits with any number (0 to 1024).
 
     Raises
     ------
@@ -158,62 +174,41 @@ class Simulation:
         deformable: Deformable,
         colliders: Sequence[Collider] = (),
         *,
-        solver: Literal["verlet", "xpbd"] | None = None,
+        frame_limit: int = 3000,
         time_step: float = 1 / 240,
+        solver: Literal["verlet", "xpbd"] | None = None,
         iteration_count: int | None = None,
         substep_count: int | None = None,
+        rest_frame_count: int = 60,
+        rest_distance: float = 0.001,
+        rest_speed: float = 0.1,
         gravity: Sequence[float] = (0, 0, -9.81),
         drag: float = 0.005,
         stiffness: Sequence[float] = (1, 1, 0.3),
-        compliance: Sequence[float] = (0, 1e-6, 1e-4),
+        compliance: Sequence[float] = (0, 1e-6, 0.0001),
         thickness: float | None = None,
         self_thickness: float | None = None,
         friction: float = 0.5,
-        rest_distance: float = 0.001,
-        rest_speed: float = 0.1,
-        rest_frame_count: int = 60,
+        bound: float = 0,
         keep_free: bool = True,
         allow_open_colliders: bool = False,
         surface_collision: bool | None = None,
         self_collision: bool | None = None,
         untangle: bool = False,
         measure_loads: bool = False,
-        bound: float = 0,
-        threads: int = 1,
         multilevel: bool = False,
-        frame_limit: int = 3000,
+        threads: int = 1,
     ) -> None:
-        if solver not in (None, "verlet", "xpbd"):
-            raise ValueError(f'solver must be "verlet" or "xpbd", not {solver!r}')
+        options = dict(locals())
         of_kind("deformable", deformable, Deformable)
         models = list_of_kind("colliders", colliders, Collider)
         xpbd = solver == "xpbd" or (solver is None and len(deformable.tetrahedra) > 0)
         surfaces = _chosen(surface_collision, keep_free and all(isinstance(c.map, ExactMap) for c in models))
-        options = {
-            "xpbd": xpbd,
-            "time_step": time_step,
-            "iteration_count": (1 if xpbd else 10) if iteration_count is None else iteration_count,
-            "substep_count": (10 if xpbd else 1) if substep_count is None else substep_count,
-            "gravity": gravity,
-            "drag": drag,
-            "stiffness": stiffness,
-            "compliance": compliance,
-            "thickness": thickness,
-            "self_thickness": self_thickness,
-            "friction": friction,
-            "rest_distance": rest_distance,
-            "rest_speed": rest_speed,
-            "rest_frame_count": rest_frame_count,
-            "keep_free": keep_free,
-            "allow_open_colliders": allow_open_colliders,
-            "surface_collision": surfaces,
-            "self_collision": _chosen(self_collision, surfaces),
-            "untangle": untangle,
-            "measure_loads": measure_loads,
-            "bound": bound,
-            "threads": threads_of(threads),
-            "multilevel": flag("multilevel", multilevel),
-        }
+        options["solver"] = "xpbd" if solver is None and xpbd else solver
+        options["iteration_count"] = (1 if xpbd else 10) if iteration_count is None else iteration_count
+        options["substep_count"] = (10 if xpbd else 1) if substep_count is None else substep_count
+        options["surface_collision"] = surfaces
+        options["self_collision"] = _chosen(self_collision, surfaces)
         self._frame_limit = whole("frame_limit", frame_limit)
         self._simulation = _core.Simulation(deformable._deformable, [c._arguments() for c in models], options)
 

@@ -13,8 +13,6 @@ from echinus._arguments import number, of_kind, path_of, threads_of, vector, who
 from echinus._maps import ExactMap
 from echinus._meshes import Mesh, MeshReport, Path, read_only, report_of
 
-_MOST_COUNT = 2**63 - 1
-
 
 class TetrahedralMesh:
     """A body cut into tetrahedra that share vertices.
@@ -135,7 +133,12 @@ class Tetrahedralization:
 
 
 def tetrahedralize(
-    model: ExactMap, *, size: float | None = None, count: int | None = None, most_tetrahedra: int = 10_000_000, threads: int = 0
+    model: ExactMap,
+    *,
+    size: float | None = None,
+    count: int | None = None,
+    most_tetrahedra: int = 10_000_000,
+    threads: int = 0,
 ) -> Tetrahedralization:
     """Fills what an exact map says is inside with tetrahedra, by isosurface stuffing (Labelle and Shewchuk 2007).
 
@@ -148,13 +151,13 @@ def tetrahedralize(
     model
         The map of a closed surface; of an open one, inside is where the winding number says so.
     size
-        The edge of the lattice's cubes, in the model's unit. Either this or ``count``.
+        The edge of the lattice's cubes, in the model's unit. Either this or ``count``; 0: the other (not negative).
     count
         About so many tetrahedra: the size is found by trying.
     most_tetrahedra
-        More are refused.
+        More tetrahedra are refused.
     threads
-        0: all cores. The result does not depend on it.
+        Threads that work on it; 0: all cores. The result does not depend on it.
 
     Raises
     ------
@@ -164,15 +167,10 @@ def tetrahedralize(
         ``invalid_options`` for a size that is too small or not finite; ``invalid_mesh`` when no tetrahedron of
         that size fits into the model.
     """
+    options = locals()
     if (size is None) == (count is None):
         raise ValueError("give either size or count")
-    arrays, found, removed = _core.tetrahedralize(
-        of_kind("model", model, ExactMap)._built,
-        0.0 if size is None else number("size", size),
-        0 if count is None else whole("count", count, 1, _MOST_COUNT),
-        whole("most_tetrahedra", most_tetrahedra, 0, _MOST_COUNT),
-        threads_of(threads),
-    )
+    arrays, found, removed = _core.tetrahedralize(of_kind("model", model, ExactMap)._built, options)
     return Tetrahedralization(TetrahedralMesh(*arrays), found, removed)
 
 

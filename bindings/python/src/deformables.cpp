@@ -1,5 +1,5 @@
 #include "interface.hpp"
-#include "values.hpp"
+#include "options.hpp"
 
 #include <echinus/soft_body.hpp>
 
@@ -16,66 +16,21 @@ namespace echinus::python {
 
 namespace {
 
-using Edges = std::vector<std::array<std::uint32_t, 2>>;
-
-/// Numbers in pairs, [n, 2].
-Edges pairs_of(const py::object& numbers, const char* name) {
-    const std::vector<std::uint32_t> row = whole_numbers(numbers, name);
-    const py::array array = py::array::ensure(numbers);
-    if (!row.empty() && (array.ndim() != 2 || array.shape(1) != 2))
-        throw py::value_error(std::string(name) + " must have the shape (n, 2)");
-    Edges pairs(row.size() / 2);
-    for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i] = {row[2 * i], row[2 * i + 1]};
-    return pairs;
-}
-
-/// [n, 2] vertices and colliders.
-std::vector<Attachment> attachments_of(const py::object& numbers) {
-    std::vector<Attachment> attachments;
-    for (const auto& [vertex, collider] : pairs_of(numbers, "attachments"))
-        attachments.push_back({vertex, collider});
-    return attachments;
-}
-
-Deformable sheet(std::uint32_t column_count, std::uint32_t row_count, double width, double height,
-                 const Vector& position, const Quaternion& rotation, const py::object& pins) {
-    return make_cloth({.column_count = column_count,
-                       .row_count = row_count,
-                       .width = width,
-                       .height = height,
-                       .pose = pose_of(position, rotation),
-                       .pins = whole_numbers(pins, "pins")});
+Deformable sheet(const py::dict& options) {
+    return make_cloth(options_of<ClothOptions>(options));
 }
 
 Deformable cloth_of_mesh(const py::array& vertices, const py::array_t<std::uint32_t>& faces,
-                         const std::optional<py::array_t<float>>& rest_vertices, const py::object& threads,
-                         bool bends_by_sticks, const Vector& position, const Quaternion& rotation,
-                         double scale, const py::object& pins, const py::object& attachments) {
+                         const py::dict& given) {
     const TriangleMesh mesh = mesh_of(vertices, faces);
-    const MeshClothOptions options{.pose = pose_of(position, rotation),
-                                   .scale = scale,
-                                   .rest_vertices =
-                                       rest_vertices ? points_of(*rest_vertices) : std::vector<Vec3f>{},
-                                   .threads = pairs_of(threads, "threads"),
-                                   .bending = bends_by_sticks ? BendingKind::Sticks : BendingKind::Angles,
-                                   .pins = whole_numbers(pins, "pins"),
-                                   .attachments = attachments_of(attachments)};
+    const auto options = options_of<MeshClothOptions>(given);
     return unlocked([&] { return make_cloth(mesh, options); });
 }
 
-Deformable soft_body(const py::array& vertices, const py::array_t<std::uint32_t>& tetrahedra, double density,
-                     double young_modulus, double poisson_ratio, double damping, const Vector& position,
-                     const Quaternion& rotation, double scale, const py::object& pins,
-                     const py::object& attachments) {
+Deformable soft_body(const py::array& vertices, const py::array_t<std::uint32_t>& tetrahedra,
+                     const py::dict& given) {
     const TetrahedralMesh mesh = body_of(vertices, tetrahedra);
-    const SoftBodyOptions options{.density = density,
-                                  .young_modulus = young_modulus,
-                                  .poisson_ratio = poisson_ratio,
-                                  .damping = damping,
-                                  .pose = pose_of(position, rotation),
-                                  .scale = scale,
-                                  .pins = whole_numbers(pins, "pins"),
-                                  .attachments = attachments_of(attachments)};
+    const auto options = options_of<SoftBodyOptions>(given);
     return unlocked([&] { return make_soft_body(mesh, options); });
 }
 

@@ -1,5 +1,6 @@
 #include "geometry/parallel.hpp"
 #include "interface.hpp"
+#include "values.hpp"
 
 #include <echinus/map_file.hpp>
 #include <echinus/scene.hpp>
@@ -201,15 +202,9 @@ py::class_<Map> bind_map(py::module_& module, const char* name) {
         .def_property_readonly("source_hash", &Map::source_hash)
         .def_property_readonly("byte_count", [](const Map& map) { return map.view().byte_count(); })
         .def_property_readonly("radius", [](const Map& map) { return map.view().radius; })
-        .def_property_readonly("origin",
-                               [](const Map& map) {
-                                   const Vec3d& o = map.view().origin;
-                                   return py::make_tuple(o.x, o.y, o.z);
-                               })
-        .def_property_readonly("centre", [](const Map& map) {
-            const Vec3d c = Vec3d(map.view().centre) + map.view().origin;
-            return py::make_tuple(c.x, c.y, c.z);
-        });
+        .def_property_readonly("origin", [](const Map& map) { return to_python(map.view().origin); })
+        .def_property_readonly(
+            "centre", [](const Map& map) { return to_python(Vec3d(map.view().centre) + map.view().origin); });
 }
 
 } // namespace

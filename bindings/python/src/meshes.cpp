@@ -1,5 +1,6 @@
 #include "geometry/parallel.hpp"
 #include "interface.hpp"
+#include "options.hpp"
 #include "reports.hpp"
 
 #include <echinus/intersections.hpp>
@@ -31,23 +32,8 @@ py::dict inspect_mesh(const Vertices& vertices, const Faces& faces) {
 }
 
 /// ((vertices, faces), report)
-py::tuple repair_mesh(const Vertices& vertices, const Faces& faces, bool drop_duplicate_faces,
-                      bool drop_doubled_patches, bool flip_inside_out, std::int64_t max_hole_edges,
-                      bool drop_inner_faces, double sheet_thickness, bool close_seams, double weld_distance,
-                      bool drop_loose_slivers, bool orient_faces) {
-    if (max_hole_edges < 0 || max_hole_edges > std::int64_t{RepairOptions::kMaxHoleEdges})
-        throw py::value_error("close_holes must be from 0 to " +
-                              std::to_string(RepairOptions::kMaxHoleEdges));
-    const RepairOptions options{.drop_duplicate_faces = drop_duplicate_faces,
-                                .drop_doubled_patches = drop_doubled_patches,
-                                .flip_inside_out = flip_inside_out,
-                                .close_seams = close_seams,
-                                .weld_distance = weld_distance,
-                                .drop_loose_slivers = drop_loose_slivers,
-                                .orient_faces = orient_faces,
-                                .max_hole_edges = static_cast<std::uint32_t>(max_hole_edges),
-                                .drop_inner_faces = drop_inner_faces,
-                                .sheet_thickness = sheet_thickness};
+py::tuple repair_mesh(const Vertices& vertices, const Faces& faces, const py::dict& given) {
+    const auto options = options_of<RepairOptions>(given);
     const TriangleMesh mesh = mesh_of(vertices, faces);
     RepairedMesh repaired = unlocked([&] { return repair(mesh, options); });
     py::dict report;
@@ -134,7 +120,7 @@ void bind_meshes(py::module_& module) {
     });
     module.def("read_mesh_and_edges", [](const std::filesystem::path& path) {
         MeshAndEdges read = unlocked([&] { return read_mesh_and_edges(path); });
-        return py::make_tuple(arrays_of(std::move(read.mesh)), read.edges);
+        return std::pair(arrays_of(std::move(read.mesh)), read.edges);
     });
     module.def("write_mesh",
                [](const std::filesystem::path& path, const Vertices& vertices, const Faces& faces) {

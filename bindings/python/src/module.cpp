@@ -7,8 +7,6 @@
 
 PYBIND11_MODULE(_core, module) {
     using namespace echinus::python;
-    pybind11::options options;
-    options.disable_function_signatures();
     bind_errors(module);
     bind_meshes(module);
     bind_maps(module);

@@ -1,6 +1,7 @@
 #include "arrays.hpp"
 #include "colliders.hpp"
 #include "interface.hpp"
+#include "options.hpp"
 #include "shared_simulation.hpp"
 #include "values.hpp"
 
@@ -18,80 +19,10 @@ namespace echinus::python {
 
 namespace {
 
-// ---- Options
-
-[[noreturn]] void refuse(const char* option, const char* wanted, const py::handle& given) {
-    const std::string sentence =
-        std::string(option) + " must be " + wanted + ", not " + std::string(py::repr(given));
-    const bool has_the_type = py::isinstance<py::int_>(given) || py::isinstance<py::tuple>(given) ||
-                              py::isinstance<py::list>(given);
-    if (has_the_type) throw py::value_error(sentence); // a number out of range, or too few of them
-    throw py::type_error(sentence);
-}
-
-template <typename T>
-constexpr const char* kWanted = "a number";
-template <>
-constexpr const char* kWanted<bool> = "True or False";
-template <>
-constexpr const char* kWanted<std::uint32_t> = "a whole number from 0 to 4294967295";
-template <>
-constexpr const char* kWanted<int> = "a whole number";
-template <>
-constexpr const char* kWanted<Vector> = "three numbers";
-template <>
-constexpr const char* kWanted<std::optional<double>> = "a number or None";
-
-/// Values of a dictionary by their keys.
-class Options {
-  public:
-    explicit Options(const py::dict& values) : values_(values) {}
-
-    template <typename T>
-    T get(const char* key) const {
-        const py::handle value = values_[key];
-        try {
-            return value.cast<T>();
-        } catch (const py::cast_error&) {
-            refuse(key, kWanted<T>, value);
-        }
-    }
-
-  private:
-    const py::dict& values_;
-};
-
-SimulationOptions options_of(const py::dict& values) {
-    const Options given(values);
-    return {.solver = given.get<bool>("xpbd") ? SolverKind::Xpbd : SolverKind::Verlet,
-            .time_step = given.get<double>("time_step"),
-            .iteration_count = given.get<std::uint32_t>("iteration_count"),
-            .substep_count = given.get<std::uint32_t>("substep_count"),
-            .gravity = vector_of(given.get<Vector>("gravity")),
-            .drag = given.get<double>("drag"),
-            .stiffness = given.get<Vector>("stiffness"),
-            .compliance = given.get<Vector>("compliance"),
-            .thickness = given.get<std::optional<double>>("thickness"),
-            .friction = given.get<double>("friction"),
-            .rest = {.distance = given.get<double>("rest_distance"),
-                     .speed = given.get<double>("rest_speed"),
-                     .frame_count = given.get<std::uint32_t>("rest_frame_count")},
-            .keep_free = given.get<bool>("keep_free"),
-            .allow_open_colliders = given.get<bool>("allow_open_colliders"),
-            .surface_collision = given.get<bool>("surface_collision"),
-            .self_collision = given.get<bool>("self_collision"),
-            .self_thickness = given.get<std::optional<double>>("self_thickness"),
-            .untangle = given.get<bool>("untangle"),
-            .measure_loads = given.get<bool>("measure_loads"),
-            .bound = given.get<double>("bound"),
-            .thread_count = thread_count(given.get<int>("threads")),
-            .multilevel = given.get<bool>("multilevel")};
-}
-
 std::unique_ptr<SharedSimulation> simulation_of(const Deformable& deformable,
                                                 const std::vector<ColliderArguments>& arguments,
                                                 const py::dict& option_values) {
-    const SimulationOptions options = options_of(option_values);
+    const SimulationOptions options = options_of<SimulationOptions>(option_values);
     std::vector<Collider> colliders;
     for (const ColliderArguments& collider : arguments) colliders.push_back(collider_of(collider));
     return unlocked([&] {
@@ -137,34 +68,6 @@ py::dict describe(const SimulationProfile& p) {
     result["searched_face_count"] = p.searched_face_count;
     result["measured_pair_count"] = p.measured_pair_count;
     result["squeezed_count"] = p.squeezed_count;
-    return result;
-}
-
-py::dict describe(const SimulationOptions& o) {
-    py::dict result;
-    result["solver"] = o.solver == SolverKind::Verlet ? "verlet" : "xpbd";
-    result["time_step"] = o.time_step;
-    result["iteration_count"] = o.iteration_count;
-    result["substep_count"] = o.substep_count;
-    result["gravity"] = to_python(o.gravity);
-    result["drag"] = o.drag;
-    result["friction"] = o.friction;
-    result["thickness"] = o.thickness;
-    result["self_thickness"] = o.self_thickness;
-    result["surface_collision"] = o.surface_collision;
-    result["self_collision"] = o.self_collision;
-    result["untangle"] = o.untangle;
-    result["allow_open_colliders"] = o.allow_open_colliders;
-    result["stiffness"] = py::tuple(py::cast(o.stiffness));
-    result["compliance"] = py::tuple(py::cast(o.compliance));
-    result["rest_distance"] = o.rest.distance;
-    result["rest_speed"] = o.rest.speed;
-    result["rest_frame_count"] = o.rest.frame_count;
-    result["keep_free"] = o.keep_free;
-    result["measure_loads"] = o.measure_loads;
-    result["bound"] = o.bound;
-    result["threads"] = o.thread_count;
-    result["multilevel"] = o.multilevel;
     return result;
 }
 
@@ -253,6 +156,11 @@ void bind_hands(py::class_<SharedSimulation>& simulation) {
 } // namespace
 
 void bind_simulations(py::module_& module) {
+    module.def("option_defaults", [] {
+        py::dict structs;
+        for_each_struct([&](const char* name, const auto& o) { structs[name] = describe_options(o); });
+        return structs;
+    });
     py::class_<SharedSimulation> simulation(module, "Simulation");
     simulation.def(py::init(&simulation_of))
         .def("step", step)
@@ -285,8 +193,8 @@ void bind_simulations(py::module_& module) {
             [](const py::object& self) {
                 return view_of(self.cast<SharedSimulation&>().unchanging().deformable().tetrahedra, self);
             })
-        .def_property_readonly("options",
-                               [](const SharedSimulation& s) { return describe(s.unchanging().options()); })
+        .def_property_readonly(
+            "options", [](const SharedSimulation& s) { return describe_options(s.unchanging().options()); })
         .def_property_readonly("profile",
                                [](SharedSimulation& shared) {
                                    return describe(shared.alone([](Simulation& s) { return s.profile(); }));

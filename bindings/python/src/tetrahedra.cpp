@@ -1,5 +1,6 @@
 #include "interface.hpp"
 #include "mesh/local_frame.hpp"
+#include "options.hpp"
 #include "reports.hpp"
 
 #include <echinus/exact_map.hpp>
@@ -27,9 +28,8 @@ py::tuple read_file(const std::filesystem::path& path) {
 }
 
 /// ((vertices, tetrahedra), size, removed tetrahedra)
-py::tuple fill(const ExactMap& model, double size, std::size_t count, std::size_t most, int threads) {
-    const TetrahedralizeOptions options{
-        .size = size, .count = count, .most_tetrahedra = most, .thread_count = thread_count(threads)};
+py::tuple fill(const ExactMap& model, const py::dict& given) {
+    const auto options = options_of<TetrahedralizeOptions>(given);
     Tetrahedralization made = unlocked([&] { return tetrahedralize(model.view(), options); });
     return py::make_tuple(arrays_of(std::move(made.mesh)), made.size, made.removed_tetrahedra);
 }

@@ -10,12 +10,12 @@ Vec3d finite_vector_of(const Vector& v, const char* name) {
     return vector_of(v);
 }
 
-py::tuple to_python(const Vec3d& v) {
-    return py::make_tuple(v.x, v.y, v.z);
+std::tuple<double, double, double> to_python(const Vec3d& v) {
+    return {v.x, v.y, v.z};
 }
 
-py::tuple to_python(const Rotation& rotation) {
-    return py::make_tuple(rotation.w, rotation.x, rotation.y, rotation.z);
+std::tuple<double, double, double, double> to_python(const Rotation& rotation) {
+    return {rotation.w, rotation.x, rotation.y, rotation.z};
 }
 
 std::size_t index_below(std::size_t count, std::int64_t index, const char* what) {

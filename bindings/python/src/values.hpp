@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 
 /// Vectors, poses and numbers of Python as the library takes them.
 namespace echinus::python {
@@ -26,8 +27,8 @@ inline RigidTransform pose_of(const Vector& position, const Quaternion& rotation
     return {{rotation[0], rotation[1], rotation[2], rotation[3]}, vector_of(position)};
 }
 
-py::tuple to_python(const Vec3d& v);
-py::tuple to_python(const Rotation& rotation);
+std::tuple<double, double, double> to_python(const Vec3d& v);
+std::tuple<double, double, double, double> to_python(const Rotation& rotation);
 
 /// @param what  is counted
 /// @throws IndexError

@@ -271,23 +271,55 @@ export interface RepairReport {
 /** Keys and limits: docs/scenes.md, `map`. */
 export interface ExactMapOptions {
     kind?: 'exact';
+    // Options: exact_map. By bindings/generate_options from bindings/options.toml: edit that.
+    /**
+     * Cells of directions, rounded down to a square number; 0: chosen by the mesh. More take memory and save time; they
+     * never change an answer (0 to 262144). Default: by the mesh.
+     */
     cells_per_octant?: number;
-    /** Upper limit for the map's bytes. */
+    /**
+     * The finest map that takes no more; 0: no limit. Not together with a number of cells (0 to 4e9 bytes). Default:
+     * none.
+     */
     budget?: number;
+    /**
+     * What is inside where parts of the model overlap: their union, or where an odd number of them is. Default:
+     * `"nonzero"`.
+     */
     rule?: 'nonzero' | 'parity';
+    /**
+     * Where rays start: the centre of the bounding sphere, or a place searched for short lists. Default: `"sphere"`.
+     */
     centre?: 'sphere' | 'search';
+    // End of options.
 }
 export interface DistanceMapOptions {
     kind: 'distance';
+    // Options: distance_map. By bindings/generate_options from bindings/options.toml: edit that.
+    /** How directions are divided. Default: `"spherical"`. */
     grid?: 'spherical' | 'octahedral' | 'cube' | 'ellipsoidal';
-    /** Spherical and ellipsoidal: longitudes and colatitudes. */
+    /** Spherical and ellipsoidal grid: samples of longitude, of colatitude (4 to 8192). Default: `[200, 200]`. */
     directions?: readonly [number, number];
-    /** Octahedral and cube. */
+    /** Octahedral grid and cube: into how many parts each edge is cut (4 to 4096). Default: 100. */
     divisions?: number;
+    /** What is done about vertices between the samples. Default: `"signed"`. */
     correction?: 'none' | 'paper' | 'signed';
+    /**
+     * How a distance is stored; `unorm16` takes half the bytes and is off by at most 7.6e-6 R, on octahedral and
+     * ellipsoidal grids 1.4e-5 R. Default: `"float32"`.
+     */
     entries?: 'float32' | 'unorm16';
+    /**
+     * Spherical and ellipsoidal grid: axis of the mesh through the poles of the directions, where samples crowd.
+     * Default: `"z"`.
+     */
     pole_axis?: 'x' | 'y' | 'z';
+    /**
+     * Where rays start: the centre of the bounding sphere, or a place searched for few wrong answers beside the
+     * surface. Default: `"sphere"`.
+     */
     centre?: 'sphere' | 'search';
+    // End of options.
 }
 export type MapOptions = ExactMapOptions | DistanceMapOptions;
 export type AnyMap = ExactMap | DistanceMap;
@@ -511,40 +543,109 @@ export interface SceneDescription {
         position?: Vec3;
         rotation?: { axis: Vec3; degrees: number };
         velocity?: Vec3;
-        /** Default: half the distance between neighbouring particles. */
+        // Options: thickness. By bindings/generate_options from bindings/options.toml: edit that.
+        /**
+         * Distance that particles keep from colliders, by default half the mean length of structural sticks at rest (0
+         * to 1e9). Default: half the spacing.
+         */
         thickness?: number;
-        /** Between layers of the cloth. Default: the thickness. */
+        /**
+         * Distance that layers keep from each other, with `self_collision`; near small faces less. By default the
+         * thickness (0 to 1e9). Default: `cloth.thickness`.
+         */
         self_thickness?: number;
+        // End of options.
         /** Colliders, by their numbers, that it passes through. */
         ignores?: readonly number[];
     };
     bodies?: readonly Body[];
     material?: {
-        /** Without a cloth. */
+        /** Without a cloth, in place of its own. */
         thickness?: number;
         self_thickness?: number;
-        friction?: number;
-        drag?: number;
+        // Options: verlet. By bindings/generate_options from bindings/options.toml: edit that.
+        /** Stiffness between neighbours of a row or column, or along an edge of a mesh: against stretching; 0 to 1.99. Default: 1. */
         structural?: number;
+        /** Stiffness between neighbours along a diagonal; 0 to 1.99. Default: 1. */
         shear?: number;
+        /** Stiffness between every second particle of a row or column, or of the angles of a mesh: against folding; 0 to 1.99. Default: 0.3. */
         bending?: number;
-        compliance?: { structural?: number; shear?: number; bending?: number };
+        // End of options.
+        compliance?: {
+            // Options: xpbd. By bindings/generate_options from bindings/options.toml: edit that.
+            /** Between neighbours of a row or column; 0 does not give; 0 to 1e9. Default: 0. */
+            structural?: number;
+            /** Between neighbours along a diagonal; 0 to 1e9. Default: 1e-6. */
+            shear?: number;
+            /** Between every second particle of a row or column. for the angles of a mesh: the angle times the mean height of the two faces over their common edge is the way that is given; 0 to 1e9. Default: 0.0001. */
+            bending?: number;
+            // End of options.
+        };
+        // Options: material. By bindings/generate_options from bindings/options.toml: edit that.
+        /**
+         * Share of the velocity that is lost per frame; another `time_step` makes another drag (0 to 1). Default:
+         * 0.005.
+         */
+        drag?: number;
+        /** Coulomb's coefficient between cloth and model; 0 is ice (0 to 1e9). Default: 0.5. */
+        friction?: number;
+        // End of options.
     };
-    gravity?: Vec3;
-    time_step?: number;
-    solver?: 'verlet' | 'xpbd';
-    iterations?: number;
-    substeps?: number;
-    /** 'verlet' only: coarser sheets of a rectangular cloth are relaxed first, so that a large one hardly stretches. */
-    multilevel?: boolean;
-    /** Faces and edges of the cloth keep off the model, not only particles (docs/surfaces.md). Default: true beside an exact map. */
+    // Options: surfaces. By bindings/generate_options from bindings/options.toml: edit that.
+    /**
+     * Faces and edges keep off the model, too: none of them intersects it at the end of a frame, within limits.
+     * Default: `true` beside an exact map.
+     */
     surface_collision?: boolean;
-    /** Nor do faces of the cloth intersect. Needs surface_collision. Default: as surface_collision. */
+    /** Nor do two faces of what deforms intersect; needs `surface_collision`. Default: as `surface_collision`. */
     self_collision?: boolean;
-    /** A start that intersects is parted instead of refused. Needs surface_collision. */
+    /**
+     * What begins intersecting, or inside the model, is parted before the first frame instead of refused; needs
+     * `surface_collision`. Default: false.
+     */
     untangle?: boolean;
+    // End of options.
+    // Options: solver. By bindings/generate_options from bindings/options.toml: edit that.
+    /**
+     * Seconds per frame. Half of it takes twice the time and leaves a quarter of the stretch (1e-9 to 1e9 s). Default:
+     * 1/240.
+     */
+    time_step?: number;
+    /**
+     * `verlet`: each relaxation of a stick removes a share of its error; `xpbd`: sticks are springs, and the only one
+     * for soft bodies. Default: `"verlet"`; `"xpbd"` with `bodies`.
+     */
+    solver?: 'verlet' | 'xpbd';
+    /**
+     * Relaxations per substep, each of all sticks and then of all contacts; more cost time and leave less stretch (1 to
+     * 1e6). Default: 10; 1 with `xpbd`.
+     */
+    iterations?: number;
+    /** `xpbd` only: steps that a frame is made of (1 to 1e6). Default: 10. */
+    substeps?: number;
+    /**
+     * Where down is. A model whose y is up needs `[0, -9.81, 0]` (-1e9 to 1e9 length/s^2). Default: `[0, 0, -9.81]`.
+     */
+    gravity?: Vec3;
+    /** Threads that compute a frame; 0: all cores. The same bits with any number (0 to 1024). Default: 1. */
+    thread_count?: number;
+    /**
+     * `verlet` only: relax coarser sheets of a rectangular cloth first, so that a large one hardly stretches. Default:
+     * false.
+     */
+    multilevel?: boolean;
+    // End of options.
     frame_limit?: number;
-    at_rest?: { distance?: number; speed?: number; frames?: number };
+    at_rest?: {
+        // Options: rest. By bindings/generate_options from bindings/options.toml: edit that.
+        /** For how many frames in a row all particles have to be slow and near one place (1 to 1e9). Default: 60. */
+        frames?: number;
+        /** How far a particle at rest may be from its place (0 to 1e9). Default: 0.001. */
+        distance?: number;
+        /** How fast a particle at rest may be at the end of a frame (at least 0 length/s). Default: 0.1. */
+        speed?: number;
+        // End of options.
+    };
 }
 
 /** Where a model stands, and how it moves: degrees per second. */
@@ -560,13 +661,20 @@ export interface Placement {
 export interface Body {
     mesh: string | Shape;
     element: number;
+    // Options: body. By bindings/generate_options from bindings/options.toml: edit that.
+    /** Water has 1000 kg/m^3 (1e-9 to 1e15 mass/length^3). Default: 1000. */
     density?: number;
+    /** Stiffness; soft tissue has 1e3 to 1e5 Pa (1e-9 to 1e15 mass/(length s^2)). Default: 10000. */
     young_modulus?: number;
+    /** Towards 0.5 the volume is kept (0 to 0.4999). Default: 0.4. */
     poisson_ratio?: number;
+    /** Viscosity over the shear modulus (0 to 1e9 s). Default: 0. */
     damping?: number;
+    /** Factor of size, before the pose (1e-9 to 1e9). Default: 1. */
+    scale?: number;
+    // End of options.
     position?: Vec3;
     rotation?: { axis: Vec3; degrees: number };
-    scale?: number;
     velocity?: Vec3;
     pins?: VertexChoice;
     attachments?: VertexChoice;
@@ -576,8 +684,12 @@ export interface Body {
 
 /** A rectangular cloth. */
 export interface Sheet {
+    // Options: sheet. By bindings/generate_options from bindings/options.toml: edit that.
+    /** Along x, along y (1e-9 to 1e9). */
     size: readonly [number, number];
+    /** Columns, rows. Time per frame grows with the product (2 to 4096). Default: `[100, 100]`. */
     particles?: readonly [number, number];
+    // End of options.
     /** [column, row] of fixed particles. */
     pins?: readonly (readonly [number, number])[];
 }
@@ -589,8 +701,16 @@ export type VertexChoice = readonly number[] | { from: Vec3; to: Vec3 };
 export interface MeshCloth {
     mesh: string | Shape;
     rest_mesh?: string | Shape;
+    // Options: mesh_cloth. By bindings/generate_options from bindings/options.toml: edit that.
+    /** Factor of size, before the pose (1e-9 to 1e9). Default: 1. */
     scale?: number;
+    /**
+     * What keeps it from folding: the angle at each edge between two faces, or a stick between the corners opposite the
+     * edge, as in the paper. Sticks take less time, resist small angles hardly at all, and do not tell a fold to the
+     * front from one to the back. Default: `"angles"`.
+     */
     bending?: 'angles' | 'sticks';
+    // End of options.
     pins?: VertexChoice;
     attachments?: VertexChoice;
 }

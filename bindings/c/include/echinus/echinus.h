@@ -207,25 +207,43 @@ ECHINUS_API echinus_status echinus_to_local(const double* points, size_t count, 
 /// @param report  out; its size is set
 ECHINUS_API echinus_status echinus_mesh_inspect(const echinus_mesh* mesh, echinus_mesh_report* report);
 
+// Options: repair. By bindings/generate_options from bindings/options.toml: edit that.
 /// The steps that a repair may take. All off by default. None opens a closed mesh.
 typedef struct echinus_repair_options {
     size_t size;
+    /// Of faces with the same three vertices drop opposite ones in pairs, and of the rest keep the first
     int32_t drop_duplicate_faces;
-    int32_t drop_doubled_patches; ///< of two pairs of faces that fill one quadrilateral, drops one
-    int32_t flip_inside_out;      ///< turns closed components that are inside out
-    int32_t reserved;             ///< 0
-    uint32_t max_hole_edges;      ///< fills holes with at most so many edges; up to 256, 0: none
-    int32_t drop_inner_faces;     ///< drops faces with the solid on both sides
-    double sheet_thickness;       ///< makes solids so thick of components that are not closed; 0: none
-    int32_t close_seams; ///< joins vertices of edges that are not balanced, and fills holes without width
-    int32_t drop_loose_slivers; ///< drops faces without area at such edges, unless they fill a seam
-    int32_t orient_faces;       ///< turns faces so that neighbours agree, where every edge has two
-    int32_t reserved_2;         ///< 0
-    double weld_distance; ///< how wide seams may be; at most the radius of the bounding sphere, and at least
-                          ///< 2^-21 of it counts
+    /// Where two pairs of faces fill the same quadrilateral, each along its own diagonal, drop one pair
+    int32_t drop_doubled_patches;
+    /// Turn round closed parts whose faces look inwards; cavities stay cavities
+    int32_t flip_inside_out;
+    /// 0
+    int32_t reserved;
+    /// Fill holes whose border has at most so many edges, with the triangles of least area. The rim of a
+    /// sheet, whose filling would have more than a third of the sheet's area, is no hole (0 to 256)
+    uint32_t max_hole_edges;
+    /// Drop faces with the solid on both sides, a patch of neighbours at a time, where no edge that stays is
+    /// less balanced for it: an engine in the body of a car
+    int32_t drop_inner_faces;
+    /// Make solids of the parts that are not closed, so thick, half of it on either side; 0: none (not
+    /// negative)
+    double sheet_thickness;
+    /// Join vertices at the edges of holes that are no farther apart than weld_distance, and fill holes that
+    /// are no wider
+    int32_t close_seams;
+    /// Drop faces without area at the edges of holes, unless they fill a seam
+    int32_t drop_loose_slivers;
+    /// Turn faces so that neighbours agree, in parts that are closed by themselves
+    int32_t orient_faces;
+    /// 0
+    int32_t reserved_2;
+    /// How wide seams may be; at most the radius of the bounding sphere, and at least 2^-21 of it counts,
+    /// within which maps take two vertices for one (not negative)
+    double weld_distance;
 } echinus_repair_options;
 
 ECHINUS_API void echinus_repair_options_init(echinus_repair_options* options, size_t size);
+// End of options.
 
 typedef struct echinus_repair_report {
     size_t size;
@@ -298,20 +316,28 @@ typedef enum echinus_centre_choice {
     ECHINUS_CENTRE_SEARCH = 1           ///< the place that promises the better map; some twenty coarse builds
 } echinus_centre_choice;
 
+// Options: exact_map. By bindings/generate_options from bindings/options.toml: edit that.
 typedef struct echinus_exact_map_options {
     size_t size;
-    uint32_t
-        divisions; ///< each octant of directions has divisions^2 cells, at most 512^2; 0: chosen by the mesh
+    /// Each octant of directions has divisions^2 cells; 0: chosen by the mesh (0 to 512)
+    uint32_t divisions;
+    /// Threads that build the map; 0: all cores. The map does not depend on it
     uint32_t thread_count;
-    uint64_t byte_budget; ///< with divisions 0: as many cells as fit; 0: no budget
+    /// The finest map that takes no more; 0: no limit. Not together with a number of cells (0 to 4e9 bytes)
+    uint64_t byte_budget;
+    /// What is inside where parts of the model overlap: their union, or where an odd number of them is
     echinus_inside_rule rule;
+    /// Where rays start: the centre of the bounding sphere, or a place searched for short lists
     echinus_centre_choice centre;
-    int32_t find_certain_gaps; ///< 0: open surfaces are built sooner, by up to 0.2 s, and the same answers
-                               ///< take up to eight times as long: for maps that last for a frame
-    uint32_t reserved;         ///< 0
+    /// False: open surfaces are built sooner, by up to 0.2 s, and the same answers take up to eight times as
+    /// long: for maps that last for a frame
+    int32_t find_certain_gaps;
+    /// 0
+    uint32_t reserved;
 } echinus_exact_map_options;
 
 ECHINUS_API void echinus_exact_map_options_init(echinus_exact_map_options* options, size_t size);
+// End of options.
 
 /// Builds an exact map: inside or outside in integer arithmetic, and the true nearest point of the surface.
 /// The same bytes for any number of threads.
@@ -350,21 +376,36 @@ typedef enum echinus_pole_axis {
     ECHINUS_POLE_Z = 2
 } echinus_pole_axis;
 
+// Options: distance_map. By bindings/generate_options from bindings/options.toml: edit that.
 typedef struct echinus_distance_map_options {
     size_t size;
+    /// How directions are divided
     echinus_direction_grid grid;
-    uint32_t longitude_count;  ///< spherical and ellipsoidal grids; 4 to 8192
-    uint32_t colatitude_count; ///< the same
-    uint32_t divisions;        ///< octahedral and cube grids; 4 to 4096
+    /// Spherical and ellipsoidal grid: samples of longitude (4 to 8192)
+    uint32_t longitude_count;
+    /// Spherical and ellipsoidal grid: samples of colatitude (4 to 8192)
+    uint32_t colatitude_count;
+    /// Octahedral grid and cube: into how many parts each edge is cut (4 to 4096)
+    uint32_t divisions;
+    /// What is done about vertices between the samples
     echinus_vertex_correction correction;
+    /// How a distance is stored; unorm16 takes half the bytes and is off by at most 7.6e-6 R, on octahedral
+    /// and ellipsoidal grids 1.4e-5 R
     echinus_entry_format entry_format;
+    /// Spherical and ellipsoidal grid: axis of the mesh through the poles of the directions, where samples
+    /// crowd
     echinus_pole_axis pole_axis;
+    /// Where rays start: the centre of the bounding sphere, or a place searched for few wrong answers beside
+    /// the surface
     echinus_centre_choice centre;
+    /// Threads that build the map; 0: all cores. The map does not depend on it
     uint32_t thread_count;
-    uint32_t reserved; ///< 0
+    /// 0
+    uint32_t reserved;
 } echinus_distance_map_options;
 
 ECHINUS_API void echinus_distance_map_options_init(echinus_distance_map_options* options, size_t size);
+// End of options.
 
 /// Builds a distance map: sorted distances along a grid of rays, interpolated; fast, and wrong in places.
 /// @param options  or NULL for the defaults
@@ -755,17 +796,24 @@ ECHINUS_API echinus_status echinus_tetrahedra_write(const echinus_tetrahedra* bo
 ECHINUS_API echinus_status echinus_tetrahedra_box(const double* size, const uint32_t* segments,
                                                   echinus_tetrahedra** body);
 
+// Options: tetrahedralize. By bindings/generate_options from bindings/options.toml: edit that.
 typedef struct echinus_tetrahedralize_options {
     size_t size;
-    double
-        lattice_size; ///< the edge of the lattice's cubes, in the model's unit. Either this or count; 0: not
-    uint64_t count;   ///< about so many tetrahedra
-    uint64_t most_tetrahedra; ///< more are refused
+    /// The edge of the lattice's cubes, in the model's unit. Either this or count; 0: the other (not
+    /// negative)
+    double lattice_size;
+    /// About so many tetrahedra: the size is found by trying
+    uint64_t count;
+    /// More tetrahedra are refused
+    uint64_t most_tetrahedra;
+    /// Threads that work on it; 0: all cores. The result does not depend on it
     uint32_t thread_count;
-    uint32_t reserved; ///< 0
+    /// 0
+    uint32_t reserved;
 } echinus_tetrahedralize_options;
 
 ECHINUS_API void echinus_tetrahedralize_options_init(echinus_tetrahedralize_options* options, size_t size);
+// End of options.
 
 typedef struct echinus_tetrahedralize_report {
     size_t size;
@@ -928,19 +976,28 @@ typedef struct echinus_deformable_arrays {
 ECHINUS_API echinus_status echinus_deformable_create(const echinus_deformable_arrays* arrays,
                                                      echinus_deformable** deformable);
 
+// Options: cloth. By bindings/generate_options from bindings/options.toml: edit that.
 /// A rectangular sheet: columns along x, rows along y, particle row * column_count + column.
 typedef struct echinus_cloth_options {
     size_t size;
+    /// Particles along x; in all at most 2^24 (2 to 8388608)
     uint32_t column_count;
+    /// Particles along y. The particle (row, column) has the number row * column_count + column (2 to
+    /// 8388608)
     uint32_t row_count;
+    /// Along x (positive)
     double width;
+    /// Along y (positive)
     double height;
-    echinus_pose pose;    ///< where the sheet starts
-    const uint32_t* pins; ///< [pin_count] particles that never move
+    /// Where the middle of the sheet starts
+    echinus_pose pose;
+    /// [pin_count] particles that never move
+    const uint32_t* pins;
     size_t pin_count;
 } echinus_cloth_options;
 
 ECHINUS_API void echinus_cloth_options_init(echinus_cloth_options* options, size_t size);
+// End of options.
 
 /// A rectangular sheet of cloth.
 /// @param options  or NULL for the defaults
@@ -953,25 +1010,37 @@ typedef enum echinus_bending_kind {
     ECHINUS_BENDING_STICKS = 1  ///< a stick between the two corners opposite such an edge
 } echinus_bending_kind;
 
+// Options: mesh_cloth. By bindings/generate_options from bindings/options.toml: edit that.
 typedef struct echinus_mesh_cloth_options {
     size_t size;
+    /// A vertex starts at position + rotation * (scale * vertex)
     echinus_pose pose;
-    double scale; ///< before the pose; positive
-    /// [3 rest_vertex_count] the shape at rest, where it is not that of the mesh; as many as the mesh has, or
+    /// Factor of size, before the pose (1e-9 to 1e9)
+    double scale;
+    /// [3 rest_vertex_count] the shape at rest, where it is not that of the mesh: as many as the mesh has, or
     /// none
     const float* rest_vertices;
     size_t rest_vertex_count;
-    const uint32_t* thread_edges; ///< [2 thread_edge_count] edges without faces: threads and needles
+    /// [2 thread_edge_count] edges without faces: threads and needles
+    const uint32_t* thread_edges;
     size_t thread_edge_count;
-    const uint32_t* pins; ///< [pin_count] vertices that never move
+    /// [pin_count] vertices that never move
+    const uint32_t* pins;
     size_t pin_count;
-    const echinus_attachment* attachments; ///< vertices that move with a collider
+    /// [attachment_count] vertices that move with a collider, and the number of that collider in the
+    /// simulation
+    const echinus_attachment* attachments;
     size_t attachment_count;
+    /// What keeps it from folding: the angle at each edge between two faces, or a stick between the corners
+    /// opposite the edge, as in the paper. Sticks take less time, resist small angles hardly at all, and do
+    /// not tell a fold to the front from one to the back
     echinus_bending_kind bending;
-    uint32_t reserved; ///< 0
+    /// 0
+    uint32_t reserved;
 } echinus_mesh_cloth_options;
 
 ECHINUS_API void echinus_mesh_cloth_options_init(echinus_mesh_cloth_options* options, size_t size);
+// End of options.
 
 /// A cloth whose particles are the vertices of a mesh.
 /// @param options  or NULL for the defaults
@@ -980,22 +1049,33 @@ ECHINUS_API echinus_status echinus_deformable_cloth_of_mesh(const echinus_mesh* 
                                                             const echinus_mesh_cloth_options* options,
                                                             echinus_deformable** deformable);
 
+// Options: soft_body. By bindings/generate_options from bindings/options.toml: edit that.
 /// What a soft body is made of, and where it starts; in SI units with metres, kilograms and seconds.
 typedef struct echinus_soft_body_options {
     size_t size;
-    double density;       ///< mass / length^3; positive
-    double young_modulus; ///< mass / (length s^2); positive. Soft tissue has 1e3 to 1e5 Pa
-    double poisson_ratio; ///< 0 to 0.4999; towards 0.5 the volume is kept
-    double damping;       ///< viscosity over the shear modulus, seconds; not negative
+    /// Water has 1000 kg/m^3 (1e-9 to 1e15 mass/length^3)
+    double density;
+    /// Stiffness; soft tissue has 1e3 to 1e5 Pa (1e-9 to 1e15 mass/(length s^2))
+    double young_modulus;
+    /// Towards 0.5 the volume is kept (0 to 0.4999)
+    double poisson_ratio;
+    /// Viscosity over the shear modulus (0 to 1e9 s)
+    double damping;
+    /// A vertex starts at position + rotation * (scale * vertex)
     echinus_pose pose;
-    double scale;         ///< before the pose; positive
-    const uint32_t* pins; ///< [pin_count] vertices that never move
+    /// Factor of size, before the pose (1e-9 to 1e9)
+    double scale;
+    /// [pin_count] vertices that never move
+    const uint32_t* pins;
     size_t pin_count;
-    const echinus_attachment* attachments; ///< vertices that move with a collider
+    /// [attachment_count] vertices that move with a collider, and the number of that collider in the
+    /// simulation
+    const echinus_attachment* attachments;
     size_t attachment_count;
 } echinus_soft_body_options;
 
 ECHINUS_API void echinus_soft_body_options_init(echinus_soft_body_options* options, size_t size);
+// End of options.
 
 /// A body at rest, whose particles are the vertices of the tetrahedra and whose faces their boundary.
 /// Simulate it with ECHINUS_SOLVER_XPBD, one iteration and ten substeps or more.
@@ -1040,37 +1120,70 @@ typedef enum echinus_solver {
 /// In place of a thickness: it is chosen by the library.
 #define ECHINUS_THICKNESS_CHOSEN (-1.0)
 
-/// What each member does, what it costs and its range: SimulationOptions in simulation.hpp, under the same
-/// names.
+// Options: simulation. By bindings/generate_options from bindings/options.toml: edit that.
+/// What each member costs: SimulationOptions in simulation.hpp.
 typedef struct echinus_simulation_options {
     size_t size;
-    double time_step; ///< seconds per frame
+    /// Seconds per frame. Half of it takes twice the time and leaves a quarter of the stretch (1e-9 to 1e9 s)
+    double time_step;
+    /// Verlet: each relaxation of a stick removes a share of its error; xpbd: sticks are springs, and the
+    /// only one for soft bodies
     echinus_solver solver;
-    uint32_t iteration_count; ///< relaxations per substep
-    uint32_t substep_count;   ///< XPBD; Verlet: 1
+    /// Relaxations per substep, each of all sticks and then of all contacts; more cost time and leave less
+    /// stretch (1 to 1e6)
+    uint32_t iteration_count;
+    /// Xpbd only: steps that a frame is made of (1 to 1e6)
+    uint32_t substep_count;
+    /// For how many frames in a row all particles have to be slow and near one place (1 to 1e9)
     uint32_t rest_frame_count;
-    double
-        rest_distance; ///< at rest: no particle farther than this from one place for rest_frame_count frames
-    double rest_speed; ///< and none faster than this
+    /// How far a particle at rest may be from its place (0 to 1e9)
+    double rest_distance;
+    /// How fast a particle at rest may be at the end of a frame (at least 0 length/s)
+    double rest_speed;
+    /// Where down is. A model whose y is up needs [0, -9.81, 0] (-1e9 to 1e9 length/s^2)
     double gravity[3];
-    double drag;                                 ///< share of the velocity that is lost per frame
-    double stiffness[ECHINUS_STICK_KIND_COUNT];  ///< Verlet
-    double compliance[ECHINUS_STICK_KIND_COUNT]; ///< XPBD
-    double thickness;      ///< that particles keep from colliders, or ECHINUS_THICKNESS_CHOSEN
-    double self_thickness; ///< that layers keep from each other, or ECHINUS_THICKNESS_CHOSEN: as thickness
-    double friction;       ///< Coulomb's coefficient
-    double bound;          ///< beyond it the simulation has diverged; 0: 10 000 times the extent at the start
+    /// Share of the velocity that is lost per frame; another time_step makes another drag (0 to 1)
+    double drag;
+    /// Verlet only: share of a stick's error that one relaxation removes, of structural, shear and bending
+    /// sticks (0 to 1.99)
+    double stiffness[ECHINUS_STICK_KIND_COUNT];
+    /// Xpbd only: how far a stick gives per unit of force, of structural, shear and bending sticks (0 to 1e9
+    /// s^2)
+    double compliance[ECHINUS_STICK_KIND_COUNT];
+    /// Distance that particles keep from colliders, by default half the mean length of structural sticks at
+    /// rest (0 to 1e9), or ECHINUS_THICKNESS_CHOSEN
+    double thickness;
+    /// Distance that layers keep from each other, with self_collision; near small faces less. By default the
+    /// thickness (0 to 1e9), or ECHINUS_THICKNESS_CHOSEN
+    double self_thickness;
+    /// Coulomb's coefficient between cloth and model; 0 is ice (0 to 1e9)
+    double friction;
+    /// A particle farther than this from the middle of where all began ends the simulation as diverged; 0: 10
+    /// 000 times the extent at the start (0 to 1e30)
+    double bound;
+    /// Rescue particles that would pass through an exact map
     int32_t keep_free;
+    /// Accept exact maps of open meshes, for which nothing is promised. Surface collision needs no such
+    /// permission
     int32_t allow_open_colliders;
-    int32_t surface_collision; ///< edges and faces collide too
-    int32_t self_collision;    ///< faces of the deformable do not meet each other either
-    int32_t untangle;          ///< with surface_collision: part what begins intersecting
-    int32_t measure_loads;     ///< keep account for echinus_simulation_load_on()
-    uint64_t thread_count;     ///< that compute a frame; 0: all cores. The bits do not depend on it
-    uint64_t multilevel;       ///< Verlet: each frame relaxes coarser sheets of the same cloth first; 0 or 1
+    /// Faces and edges keep off the model, too: none of them intersects it at the end of a frame, within
+    /// limits
+    int32_t surface_collision;
+    /// Nor do two faces of what deforms intersect; needs surface_collision
+    int32_t self_collision;
+    /// What begins intersecting, or inside the model, is parted before the first frame instead of refused;
+    /// needs surface_collision
+    int32_t untangle;
+    /// Keep account of what bears on the colliders; takes a few percent of the time
+    int32_t measure_loads;
+    /// Threads that compute a frame; 0: all cores. The same bits with any number (0 to 1024)
+    uint64_t thread_count;
+    /// Verlet only: relax coarser sheets of a rectangular cloth first, so that a large one hardly stretches
+    uint64_t multilevel;
 } echinus_simulation_options;
 
 ECHINUS_API void echinus_simulation_options_init(echinus_simulation_options* options, size_t size);
+// End of options.
 
 /// A deformable among colliders. The same input gives the same positions bit for bit.
 typedef struct echinus_simulation echinus_simulation;
