@@ -1,6 +1,6 @@
 #include "output.hpp"
 
-#include "files/part.hpp"
+#include "files/atomic_file.hpp"
 #include "mesh_io/mesh_source.hpp"
 #include "options.hpp"
 

@@ -26,8 +26,9 @@ class Output {
     std::optional<echinus::AtomicFile> file_; // empty: standard output
 };
 
-/// A part (files/part.hpp) that is a folder, which only its owner can read. The destructor removes it, or the
-/// interruption of the program; what a killed program left is removed by the next that makes one beside it.
+/// A part (files/atomic_file.hpp) that is a folder, which only its owner can read. The destructor removes it,
+/// or the interruption of the program; what a killed program left is removed by the next that makes one
+/// beside it.
 class PartFolder {
   public:
     /// @throws std::filesystem::filesystem_error when no folder can be made there

@@ -1,6 +1,6 @@
 // Compiled once for each instruction set.
 
-#include "directions/angles.hpp"
+#include "geometry/angles.hpp"
 
 #include <cstddef>
 
@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace echinus {
 namespace HWY_NAMESPACE {
 
-/// atan2_polynomial() of directions/angles.hpp: the same operations in the same order, hence the same bits.
+/// atan2_polynomial() of geometry/angles.hpp: the same operations in the same order, hence the same bits.
 HWY_INLINE FloatLanes angle_of(FloatLanes y, FloatLanes x) {
     const FloatLanes ax = hn::Abs(x);
     const FloatLanes ay = hn::Abs(y);

@@ -1,9 +1,7 @@
 #include "directions/cast_rays.hpp"
 
-#include "directions/cube_samples.hpp"
 #include "directions/face_cone.hpp"
-#include "directions/octahedral_samples.hpp"
-#include "directions/samples_in_cap.hpp"
+#include "directions/samples_near.hpp"
 #include "geometry/parallel.hpp"
 
 #include <echinus/error.hpp>

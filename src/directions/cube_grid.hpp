@@ -1,10 +1,8 @@
 #pragma once
 
-#include "directions/angles.hpp"
-#include "directions/axis_order.hpp"
 #include "directions/bilinear_grid.hpp"
 #include "directions/lattice.hpp"
-#include "geometry/circle.hpp"
+#include "geometry/angles.hpp"
 #include "geometry/whole_numbers.hpp"
 
 #include <echinus/directions.hpp>

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "directions/cube_grid.hpp"
-#include "directions/ellipsoidal_grid.hpp"
 #include "directions/octahedral_grid.hpp"
 #include "directions/spherical_grid.hpp"
 

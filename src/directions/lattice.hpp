@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -111,5 +112,14 @@ class LatticeSnapper {
 /// LatticeSnapper::snap() of a single mesh.
 LatticeMesh snap_to_lattice(const TriangleMesh& mesh);
 LatticeMesh snap_to_lattice(const TriangleMesh& mesh, const Vec3f& centre);
+
+/// Snaps a mesh to the lattice of a low-cost centre. Pattern search from the bounding sphere's centre, with
+/// steps of a quarter to a sixteenth of the radius (Hooke and Jeeves, "Direct Search Solution of Numerical
+/// and Statistical Problems", 1961). Evaluates 19 costs.
+/// @param cost_of  a pure function of the lattice
+/// @param best     becomes the lattice mesh
+/// @throws Error as LatticeSnapper::snap()
+void snap_at_lowest_cost(LatticeSnapper& snapper, std::span<const Vec3f> vertices,
+                         const std::function<double(const LatticeMesh&)>& cost_of, LatticeMesh& best);
 
 } // namespace echinus

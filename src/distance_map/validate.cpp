@@ -1,6 +1,6 @@
 #include "distance_map/validate.hpp"
 
-#include "directions/ellipsoidal_grid.hpp"
+#include "directions/spherical_grid.hpp"
 
 #include <cmath>
 #include <utility>

@@ -1,6 +1,6 @@
 #include "distance_map/view_of.hpp"
 
-#include "directions/ellipsoidal_grid.hpp"
+#include "directions/spherical_grid.hpp"
 
 #include <algorithm>
 #include <cstdint>

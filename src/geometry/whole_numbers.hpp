@@ -4,12 +4,15 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <cstring>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
-/// Conversions to whole numbers that keep the value. A number that is out of range would be undefined, or
-/// other bits without a word: with assertions it stops the program, and without them these are casts.
 namespace echinus {
+
+// Conversions to whole numbers that keep the value. A number that is out of range would be undefined, or
+// other bits without a word: with assertions it stops the program, and without them these are casts.
 
 namespace detail {
 
@@ -51,6 +54,16 @@ template <int kLowBits>
 constexpr std::uint64_t packed(std::uint64_t high, std::uint64_t low) {
     assert(low >> kLowBits == 0 && high >> (64 - kLowBits) == 0);
     return high << kLowBits | low;
+}
+
+/// std::bit_cast, which the libc++ of Emscripten 3.1 lacks.
+template <typename To, typename From>
+To bit_cast(const From& from) noexcept {
+    static_assert(sizeof(To) == sizeof(From) && std::is_trivially_copyable_v<To> &&
+                  std::is_trivially_copyable_v<From>);
+    To to;
+    std::memcpy(&to, &from, sizeof to);
+    return to;
 }
 
 } // namespace echinus

@@ -1,5 +1,5 @@
 #include "directions/checker.hpp"
-#include "files/mapped_file.hpp"
+#include "files/read_file.hpp"
 #include "map_file/distance_map_table.hpp"
 #include "map_file/exact_map_table.hpp"
 #include "map_file/table_arrays.hpp"

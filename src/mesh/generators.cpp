@@ -1,5 +1,5 @@
-#include "geometry/circle.hpp"
-#include "geometry/number_text.hpp"
+#include "files/text.hpp"
+#include "geometry/angles.hpp"
 #include "geometry/whole_numbers.hpp"
 
 #include <echinus/error.hpp>

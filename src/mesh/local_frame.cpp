@@ -1,7 +1,7 @@
 #include "mesh/local_frame.hpp"
 
+#include "files/text.hpp"
 #include "geometry/box.hpp"
-#include "geometry/number_text.hpp"
 
 #include <echinus/error.hpp>
 

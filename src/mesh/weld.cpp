@@ -1,6 +1,5 @@
 #include "mesh/weld.hpp"
 
-#include "geometry/bit_cast.hpp"
 #include "geometry/whole_numbers.hpp"
 #include "mesh/require_valid.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/bit_cast.hpp"
+#include "geometry/whole_numbers.hpp"
 #include "mesh_io/mesh_source.hpp"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "mesh_io/gltf_accessor.hpp"
 
-#include "geometry/bit_cast.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <cstring>

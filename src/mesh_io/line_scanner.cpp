@@ -1,6 +1,6 @@
 #include "mesh_io/line_scanner.hpp"
 
-#include "geometry/bit_cast.hpp"
+#include "geometry/whole_numbers.hpp"
 
 #include <algorithm>
 #include <cerrno>

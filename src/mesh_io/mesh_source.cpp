@@ -1,6 +1,6 @@
 #include "mesh_io/mesh_source.hpp"
 
-#include "files/utf8_text.hpp"
+#include "files/text.hpp"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "files/atomic_file.hpp"
-#include "files/random_access_file.hpp"
+#include "files/read_file.hpp"
 
 #include <echinus/geometry.hpp>
 

@@ -1,4 +1,4 @@
-#include "geometry/number_text.hpp"
+#include "files/text.hpp"
 #include "mesh/faces.hpp"
 #include "mesh/seams.hpp"
 #include "mesh/used_vertices.hpp"

@@ -1,4 +1,4 @@
-#include "geometry/number_text.hpp"
+#include "files/text.hpp"
 #include "geometry/union_find.hpp"
 #include "mesh/components.hpp"
 #include "mesh/edges.hpp"

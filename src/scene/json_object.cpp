@@ -1,7 +1,6 @@
 #include "scene/json_object.hpp"
 
-#include "files/utf8_text.hpp"
-#include "geometry/number_text.hpp"
+#include "files/text.hpp"
 
 #include <echinus/error.hpp>
 

@@ -1,7 +1,7 @@
 #include "simulation/deforming_collider.hpp"
 
 #include "collider/frame_change.hpp"
-#include "geometry/number_text.hpp"
+#include "files/text.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
 #include "simulation/validation.hpp"
 

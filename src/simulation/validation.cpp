@@ -1,7 +1,7 @@
 #include "simulation/validation.hpp"
 
 #include "collider/frame_change.hpp"
-#include "geometry/number_text.hpp"
+#include "files/text.hpp"
 #include "mesh/local_frame.hpp"
 
 #include <echinus/error.hpp>

@@ -1,8 +1,9 @@
 #include "directions/cast_rays.hpp"
-#include "directions/cube_samples.hpp"
+#include "directions/cube_grid.hpp"
 #include "directions/face_cone.hpp"
-#include "directions/octahedral_samples.hpp"
-#include "directions/samples_in_cap.hpp"
+#include "directions/octahedral_grid.hpp"
+#include "directions/samples_near.hpp"
+#include "directions/spherical_grid.hpp"
 #include "support/random_points.hpp"
 
 #include <gtest/gtest.h>
@@ -11,8 +12,213 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 using namespace echinus;
+
+namespace {
+
+const SphericalGrid kGrids[] = {{200, 200, PoleAxis::Z}, {16, 9, PoleAxis::X}, {7, 4, PoleAxis::Y}};
+
+float corner_weight(const SphericalGrid::Cell& cell, int corner) {
+    return (corner & 1 ? cell.u : 1 - cell.u) * (corner & 2 ? cell.v : 1 - cell.v);
+}
+
+} // namespace
+
+TEST(SphericalGrid, LocatesEachOfItsSamplesAtItself) {
+    for (const SphericalGrid& grid : kGrids) {
+        const std::vector<Vec3d> directions = grid.directions();
+        for (std::uint32_t j = 0; j < grid.colatitude_count(); ++j)
+            for (std::uint32_t i = 0; i < grid.longitude_count(); ++i) {
+                const auto cell = grid.locate(grid.to_grid(Vec3f(directions[grid.index(i, j)])));
+                float weight = 0;
+                for (int corner = 0; corner < 4; ++corner)
+                    if (cell.corners[static_cast<std::size_t>(corner)] == grid.index(i, j))
+                        weight += corner_weight(cell, corner);
+                ASSERT_NEAR(weight, 1, 1e-3) << i << ", " << j;
+            }
+    }
+}
+
+TEST(SphericalGrid, CornersOfACellLieAroundTheDirection) {
+    test::Random random(1);
+    const SphericalGrid grid(64, 32, PoleAxis::Y);
+    const std::vector<Vec3d> directions = grid.directions();
+    for (int n = 0; n < 20'000; ++n) {
+        const Vec3f d = test::unit_vector(random);
+        const auto cell = grid.locate(grid.to_grid(d));
+        for (std::uint32_t corner : cell.corners) {
+            ASSERT_GT(dot(directions[corner], Vec3d(d)),
+                      std::cos(0.15)); // the diagonal of a cell is 0.139 rad
+        }
+    }
+}
+
+TEST(SphericalGrid, HasFourDifferentCornersInEveryCell) {
+    test::Random random(2);
+    const SphericalGrid grid(8, 4, PoleAxis::Z);
+    for (int n = 0; n < 20'000; ++n) {
+        const auto cell = grid.locate(test::unit_vector(random));
+        ASSERT_EQ(std::set<std::uint32_t>(cell.corners.begin(), cell.corners.end()).size(), 4U);
+    }
+}
+
+TEST(SphericalGrid, CrossesAPoleToTheOppositeLongitude) {
+    const SphericalGrid grid(8, 4, PoleAxis::Z);
+    const auto cell = grid.locate({0.01F, 0.0F, 1});
+    EXPECT_EQ(cell.corners[0], grid.index(4, 0)); // beyond the pole
+    EXPECT_EQ(cell.corners[2], grid.index(0, 0));
+}
+
+TEST(EllipsoidalGrid, SpacesItsSamplesEvenlyByAngleInTheScaledFrame) {
+    const Vec3f scale{1, 0.25F, 0.5F};
+    const EllipsoidalGrid grid(16, 9, PoleAxis::X, scale);
+    const std::vector<Vec3d> directions = grid.directions();
+    for (std::uint32_t j = 0; j < 9; ++j)
+        for (std::uint32_t i = 0; i < 16; ++i) {
+            const double phi = 2 * std::numbers::pi * i / 16, theta = std::numbers::pi * (j + 0.5) / 9;
+            // Poles on x: the grid's x, y, z are the mesh's y, z, x.
+            const Vec3d g{std::cos(theta), std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi)};
+            const Vec3d d = directions[grid.index(i, j)];
+            EXPECT_NEAR(length(Vec3d{d.x, d.y / 4, d.z / 2} - g), 0, 1e-15);
+            EXPECT_NEAR(grid.radial_norm(d), 1, 1e-15);
+        }
+}
+
+TEST(EllipsoidalGrid, IsTheSphericalOneWhereNothingIsScaled) {
+    const EllipsoidalGrid grid(20, 10, PoleAxis::Y, {1, 1, 1});
+    const SphericalGrid sphere(20, 10, PoleAxis::Y);
+    EXPECT_EQ(grid.directions(), sphere.directions());
+    EXPECT_EQ(grid.largest_entry(3), sphere.largest_entry(3));
+    test::Random random(1);
+    for (int n = 0; n < 1000; ++n) {
+        const Vec3f d = test::unit_vector(random);
+        EXPECT_EQ(grid.locate(d).corners, sphere.locate(d).corners);
+        EXPECT_EQ(EllipsoidalGrid::distance_of(2, grid.coordinates_of(d)), 2);
+    }
+}
+
+TEST(EllipsoidalGrid, HoldsEveryRadialCoordinateInItsBox) {
+    test::Random random(2);
+    for (const Vec3f& half : {Vec3f{1, 1, 1}, Vec3f{1, 4, 2}, Vec3f{60, 1, 1}, Vec3f{1, 0.9F, 0.8F}}) {
+        const float shortest = std::min({half.x, half.y, half.z});
+        const EllipsoidalGrid grid(8, 4, PoleAxis::Z,
+                                   {shortest / half.x, shortest / half.y, shortest / half.z});
+        const float largest = grid.largest_entry(length(half) * (1 + 1e-7F)); // a radius is rounded up
+        EXPECT_LE(grid.radial_norm(Vec3d(half)), static_cast<double>(largest));
+        for (int n = 0; n < 1000; ++n)
+            ASSERT_LE(grid.radial_norm(Vec3d(product(test::in_cube(random, 1), half))),
+                      static_cast<double>(largest));
+    }
+}
+
+TEST(EllipsoidalGrid, WeighsEachSampleByTheSolidAngleOfItsCell) {
+    // The weights of an evenly scaled octant add up to an eighth, whatever the scale.
+    const EllipsoidalGrid grid(400, 200, PoleAxis::Z, {0.2F, 1, 0.5F});
+    const std::vector<double> weights = grid.solid_angle_weights();
+    const std::vector<Vec3d> directions = grid.directions();
+    double all = 0, narrow = 0;
+    for (std::size_t d = 0; d < weights.size(); ++d) {
+        all += weights[d];
+        // A cone about x of 30 degrees takes (1 - cos 30) / 2 of the sphere.
+        if (directions[d].x > length(directions[d]) * std::cos(std::numbers::pi / 6)) narrow += weights[d];
+    }
+    EXPECT_NEAR(narrow / all, (1 - std::cos(std::numbers::pi / 6)) / 2, 1e-3);
+}
+
+namespace {
+
+float along_cube(const Vec3d& d) {
+    return static_cast<float>(std::max({std::fabs(d.x), std::fabs(d.y), std::fabs(d.z)}));
+}
+
+} // namespace
+
+TEST(CubeGrid, SpacesItsSamplesEvenlyByAngleAlongEachSide) {
+    const std::uint32_t n = 6;
+    const CubeGrid grid(n);
+    const std::vector<Vec3d> directions = grid.directions();
+    ASSERT_EQ(directions.size(), grid.direction_count());
+    const std::array<Vec3d, 6> outward{Vec3d{1, 0, 0},  Vec3d{-1, 0, 0}, Vec3d{0, 1, 0},
+                                       Vec3d{0, -1, 0}, Vec3d{0, 0, 1},  Vec3d{0, 0, -1}};
+    for (std::uint32_t side = 0; side < 6; ++side)
+        for (std::uint32_t j = 0; j <= n; ++j)
+            for (std::uint32_t i = 0; i <= n; ++i) {
+                const Vec3d d = directions[grid.index(side, i, j)];
+                EXPECT_NEAR(length(d), 1, 1e-15);
+                EXPECT_NEAR(dot(d, outward[side]), along_cube(d), 1e-7);
+                const Vec3d s = CubeGrid::to_side(side, d);
+                const double angle = std::numbers::pi / 4 * (2.0 * i / n - 1);
+                EXPECT_NEAR(std::atan2(s.x, std::fabs(s.z)), angle, 1e-14);
+            }
+}
+
+TEST(CubeGrid, GivesSamplesOfOneDirectionTheSameBitsAndOneCanonicalIndex) {
+    const CubeGrid grid(5);
+    const std::vector<Vec3d> directions = grid.directions();
+    std::set<std::uint32_t> distinct;
+    for (std::uint32_t side = 0; side < 6; ++side)
+        for (std::uint32_t j = 0; j <= 5; ++j)
+            for (std::uint32_t i = 0; i <= 5; ++i) {
+                const std::uint32_t same = grid.canonical(side, i, j);
+                EXPECT_EQ(directions[grid.index(side, i, j)], directions[same]);
+                distinct.insert(same);
+            }
+    EXPECT_EQ(distinct.size(), 6U * 5 * 5 + 2); // the surface points of a cube of 5 x 5 x 5 cells
+}
+
+TEST(CubeGrid, SharesOutTheWholeSphereBySolidAngle) {
+    const CubeGrid grid(40);
+    double sum = 0;
+    for (const double weight : grid.solid_angle_weights()) sum += weight;
+    const double cell = std::numbers::pi / 2 / 40;
+    EXPECT_NEAR(sum * cell * cell, 4 * std::numbers::pi, 0.01);
+}
+
+namespace {
+
+/// The point of the octahedron that a cell's weights define.
+Vec3d weighted_corners(const OctahedralGrid::Cell& cell, const std::vector<Vec3d>& directions) {
+    const std::array<float, 4> weights = OctahedralGrid::weights(cell);
+    Vec3d sum;
+    for (std::size_t corner = 0; corner < 4; ++corner)
+        sum += directions[cell.corners[corner]] * static_cast<double>(weights[corner]);
+    return sum;
+}
+
+} // namespace
+
+TEST(OctahedralGrid, HasItsSamplesOnTheOctahedron) {
+    const OctahedralGrid grid(6);
+    for (const Vec3d& d : grid.directions()) EXPECT_NEAR(OctahedralGrid::radial_norm(d), 1, 1e-15);
+    for (std::uint32_t row = 0; row < grid.width(); ++row)
+        for (std::uint32_t column = 0; column < grid.width(); ++column) {
+            const std::uint32_t same = grid.canonical(column, row);
+            EXPECT_EQ(grid.sample(column, row), grid.sample(same % grid.width(), same / grid.width()));
+        }
+}
+
+TEST(OctahedralGrid, LocatesADirectionInTheTriangleAroundIt) {
+    test::Random random(1);
+    for (std::uint32_t divisions : {4U, 7U, 64U}) {
+        const OctahedralGrid grid(divisions);
+        const std::vector<Vec3d> directions = grid.directions();
+        for (int n = 0; n < 20'000; ++n) {
+            Vec3f d = test::unit_vector(random);
+            if (n % 4 == 1) d.x *= 1e-4F; // next to the edges of the octahedron
+            if (n % 4 == 2) d.y *= -1e-4F;
+            if (n % 4 == 3) d.z *= 1e-4F;
+            const OctahedralGrid::Cell cell = grid.locate(d);
+            const Vec3d on_octahedron = Vec3d(d) * (1 / OctahedralGrid::radial_norm(Vec3d(d)));
+            ASSERT_LT(length(weighted_corners(cell, directions) - on_octahedron), 2e-6) << n;
+            for (float weight : OctahedralGrid::weights(cell)) ASSERT_GE(weight, 0);
+            for (std::uint32_t corner : cell.corners)
+                ASSERT_LT(OctahedralGrid::radial_norm(directions[corner] - on_octahedron),
+                          2.0 / divisions + 1e-5);
+        }
+    }
+}
 
 // Properties of every grid of directions.
 

@@ -1,3 +1,4 @@
+#include "files/atomic_file.hpp"
 #include "files/read_file.hpp"
 #include "support/expect_error.hpp"
 #include "support/temporary_folder.hpp"
@@ -79,4 +80,87 @@ TEST_F(ReadFile, RefusesAMissingFileAndADirectoryByName) {
     for (const fs::path& refused : {path("missing"), path("")})
         test::expect_error(ErrorCode::Unreadable, refused.string(), [&] { read_file(refused); });
     test::expect_error(ErrorCode::Unreadable, "a path that is empty: cannot", [] { read_file(""); });
+}
+
+namespace {
+
+using MappedFileTest = test::TemporaryFolderTest;
+
+std::string text(const MappedFile& file) {
+    return {reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size()};
+}
+
+} // namespace
+
+TEST_F(MappedFileTest, ShowsTheBytesOfAFile) {
+    const std::string content(100'000, 'x');
+    EXPECT_EQ(text(MappedFile(write("file", content))), content);
+}
+
+TEST_F(MappedFileTest, ShowsNothingForAnEmptyFile) {
+    EXPECT_TRUE(MappedFile(write("file", "")).bytes().empty());
+}
+
+TEST_F(MappedFileTest, KeepsTheOldBytesWhenTheFileIsReplaced) {
+    const MappedFile file(write("file", "old"));
+    write_file(path("file"), "newer");
+    EXPECT_EQ(text(file), "old");
+}
+
+TEST_F(MappedFileTest, ReadsWhatCannotBeMapped) {
+    if (!fs::exists("/dev/null")) GTEST_SKIP() << "this system has no /dev/null";
+    EXPECT_TRUE(MappedFile("/dev/null").bytes().empty());
+}
+
+TEST_F(MappedFileTest, RefusesAMissingFileAndADirectoryByName) {
+    for (const fs::path& refused : {path("missing"), path("")}) {
+        test::expect_error(ErrorCode::Unreadable, refused.string(), [&] { MappedFile file(refused); });
+    }
+    test::expect_error(ErrorCode::Unreadable, "a path that is empty: cannot", [] { MappedFile file(""); });
+}
+
+namespace {
+
+using RandomAccessFileTest = test::TemporaryFolderTest;
+
+std::string piece(const RandomAccessFile& file, std::uint64_t offset, std::size_t byte_count) {
+    std::string text(byte_count, '?');
+    text.resize(file.read(offset, std::as_writable_bytes(std::span(text))));
+    return text;
+}
+
+void expect_pieces(const RandomAccessFile& file) {
+    EXPECT_EQ(file.size(), 10U);
+    EXPECT_EQ(piece(file, 0, 3), "012");
+    EXPECT_EQ(piece(file, 7, 3), "789");
+    EXPECT_EQ(piece(file, 8, 5), "89");
+    EXPECT_EQ(piece(file, 11, 5), "");
+    EXPECT_EQ(piece(file, 5, 0), "");
+}
+
+} // namespace
+
+TEST_F(RandomAccessFileTest, GivesPiecesOfAFileAndOfAPipe) {
+    expect_pieces(RandomAccessFile(write("file", "0123456789")));
+    ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+    const std::jthread writer([&] { std::ofstream(path("pipe")) << "0123456789"; });
+    expect_pieces(RandomAccessFile(path("pipe")));
+}
+
+TEST_F(RandomAccessFileTest, GivesFewerBytesOfAFileThatWasShortened) {
+    const RandomAccessFile file(write("file", std::string(100'000, 'x')));
+    fs::resize_file(path("file"), 50'000);
+    EXPECT_EQ(piece(file, 0, 100'000).size(), 50'000U);
+    EXPECT_EQ(piece(file, 60'000, 10), "");
+}
+
+TEST_F(RandomAccessFileTest, KeepsTheOldBytesWhenTheFileIsReplaced) {
+    const RandomAccessFile file(write("file", "0123456789"));
+    fs::rename(write("newer", "newer"), path("file"));
+    expect_pieces(file);
+}
+
+TEST_F(RandomAccessFileTest, RefusesAMissingFileAndADirectoryByName) {
+    for (const fs::path& refused : {path("missing"), path("")})
+        test::expect_error(ErrorCode::Unreadable, refused.string(), [&] { RandomAccessFile file(refused); });
 }

@@ -1,6 +1,6 @@
 #include "property/shape_parts.hpp"
 
-#include "geometry/circle.hpp"
+#include "geometry/angles.hpp"
 
 #include <algorithm>
 #include <map>

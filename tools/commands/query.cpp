@@ -1,5 +1,5 @@
 #include "commands/commands.hpp"
-#include "geometry/number_text.hpp"
+#include "files/text.hpp"
 #include "input_file.hpp"
 #include "json.hpp"
 #include "mesh/local_frame.hpp"

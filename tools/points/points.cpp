@@ -1,6 +1,6 @@
 #include "points/points.hpp"
 
-#include "files/utf8_text.hpp"
+#include "files/text.hpp"
 #include "points/npy_header.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "rivals/superquadric_map/sampling.hpp"
 
-#include "directions/direction_cap.hpp"
 #include "directions/face_cone.hpp"
+#include "directions/samples_near.hpp"
 
 #include <algorithm>
 #include <array>

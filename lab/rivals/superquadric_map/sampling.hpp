@@ -2,7 +2,7 @@
 
 #include "directions/lattice.hpp"
 #include "directions/spherical_grid.hpp"
-#include "geometry/circle.hpp"
+#include "geometry/angles.hpp"
 #include "rivals/superquadric_map/superquadric.hpp"
 #include "rivals/superquadric_map/superquadric_map.hpp"
 

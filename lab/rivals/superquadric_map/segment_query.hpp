@@ -1,6 +1,6 @@
 #pragma once
 
-#include "directions/angles.hpp"
+#include "geometry/angles.hpp"
 #include "rivals/superquadric_map/layout.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "distance_map/build/centre_of_fewest_errors.hpp"
 
 #include "directions/cast_rays.hpp"
-#include "directions/centre_search.hpp"
+#include "directions/lattice.hpp"
 #include "distance_map/build/centre_side.hpp"
 #include "distance_map/layout.hpp"
 #include "distance_map/view_of.hpp"

@@ -1,7 +1,7 @@
 #include "distance_map/build/vertex_layers.hpp"
 
 #include "directions/face_cone.hpp"
-#include "directions/samples_in_cap.hpp"
+#include "directions/samples_near.hpp"
 
 #include <algorithm>
 #include <span>

@@ -2,7 +2,7 @@
 // set. Each step has the bits of its scalar counterpart: the same operations in the same order, no fused
 // multiply-add.
 
-#include "directions/axis_order.hpp"
+#include "directions/bilinear_grid.hpp"
 
 #include <array>
 #include <cstddef>
@@ -23,7 +23,7 @@ HWY_BEFORE_NAMESPACE();
 namespace echinus {
 namespace HWY_NAMESPACE {
 
-/// turned_last() and turned_back() of directions/axis_order.hpp.
+/// turned_last() and turned_back() of directions/bilinear_grid.hpp.
 HWY_INLINE PointLanes turned_last(PoleAxis axis, const PointLanes& v) {
     switch (axis) {
     case PoleAxis::X:

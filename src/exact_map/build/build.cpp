@@ -9,7 +9,7 @@
 #include "exact_map/build/resolution.hpp"
 #include "exact_map/layout.hpp"
 #include "exact_map/validate.hpp"
-#include "geometry/number_text.hpp"
+#include "files/text.hpp"
 #include "geometry/parallel.hpp"
 #include "geometry/whole_numbers.hpp"
 #include "mesh/mesh_hash.hpp"

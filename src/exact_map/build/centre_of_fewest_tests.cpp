@@ -1,6 +1,6 @@
 #include "exact_map/build/centre_of_fewest_tests.hpp"
 
-#include "directions/centre_search.hpp"
+#include "directions/lattice.hpp"
 #include "exact_map/build/resolution.hpp"
 
 #include <limits>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "directions/angles.hpp"
+#include "geometry/angles.hpp"
 #include "geometry/triangle.hpp"
 
 namespace echinus {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "collider/frame_change.hpp"
-#include "geometry/piecewise_list.hpp"
 #include "geometry/workers.hpp"
 #include "simulation/surfaces/elements.hpp"
 #include "simulation/surfaces/near_elements.hpp"

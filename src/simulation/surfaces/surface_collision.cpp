@@ -1,7 +1,7 @@
 #include "simulation/surfaces/surface_collision.hpp"
 
 #include "directions/lattice.hpp"
-#include "geometry/number_text.hpp"
+#include "files/text.hpp"
 #include "simulation/collider_now.hpp"
 #include "simulation/surfaces/edge_lengths.hpp"
 

@@ -1,6 +1,4 @@
 #pragma once
-
-#include "geometry/piecewise_list.hpp"
 #include "geometry/workers.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/surfaces/element_tree.hpp"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdio>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,6 +24,14 @@ std::string_view utf8_text(std::string_view bytes, Fail&& fail) {
         if (bytes.starts_with(mark))
             fail("the text is " + std::string(encoding) + "; save it as UTF-8 or ASCII");
     return bytes.starts_with(kMarkOfUtf8) ? bytes.substr(kMarkOfUtf8.size()) : bytes;
+}
+
+/// A number in a sentence: six significant digits, as a stream writes it. Streams would bring their locales
+/// along, which make the WebAssembly file a fifth larger.
+inline std::string number_text(double number) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%g", number);
+    return digits;
 }
 
 } // namespace echinus
