@@ -1,6 +1,6 @@
 #include "collider/frame_change.hpp"
 #include "collider/queries_in_frame.hpp"
-#include "collider/reach.hpp"
+#include "geometry/box.hpp"
 
 #include <echinus/collider.hpp>
 
@@ -12,6 +12,42 @@
 namespace echinus {
 
 namespace {
+
+/// Around the finite points, in the world; the others have no contact anyway.
+template <typename T>
+AlignedBox<double> box_around(const StridedSpan<const Vec3<T>>& points) {
+    AlignedBox<double> box;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (const Vec3d p(points[i]); is_finite(p)) box.add(p);
+    return box;
+}
+
+/// The ball around a map's surface, beyond which nothing is inside. There is none around a map of the user's
+/// own, nor around an open surface, whose winding number may be anything anywhere.
+std::optional<Sphere> ball_around(const ExactMap& map) {
+    if (!map.view().border.empty()) return {};
+    return Sphere{Vec3d(map.view().centre), map.view().radius};
+}
+std::optional<Sphere> ball_around(const DistanceMap& map) {
+    return Sphere{Vec3d(map.view().centre), map.view().radius};
+}
+std::optional<Sphere> ball_around(const std::shared_ptr<const CustomMap>&) {
+    return {};
+}
+
+/// False only where contacts_batch() finds nothing.
+bool may_touch(const Collider& collider, const AlignedBox<double>& points, float margin_world) {
+    const auto local = std::visit([](const auto& map) { return ball_around(map); }, collider.map.kind);
+    if (!local) return true;
+    // Points are rounded to floats around the map's origin, its centre to doubles around the world's.
+    constexpr double kFloats = 1e-6, kDoubles = 1e-14;
+    const Vec3d &s = collider.scale, origin = origin_of(collider.map);
+    const double size = std::max({std::fabs(s.x), std::fabs(s.y), std::fabs(s.z)});
+    const double rounding = kFloats * size * (length(local->centre) + local->radius) +
+                            kDoubles * (length(collider.pose.translation) + size * length(origin));
+    const double reach = size * local->radius + std::max(0.0F, margin_world) * (1 + kFloats) + rounding;
+    return !(points.distance(collider.pose.to_world(times(local->centre + origin, s))) > reach);
+}
 
 /// Calls `body(begin, points_local)` for consecutive pieces of a batch.
 template <std::size_t piece_size, typename T, typename Body>
@@ -147,6 +183,56 @@ SweepHit sweep(const Collider& collider, const RigidTransform& previous_pose, Ve
     hit.point = frame.point_to_world(met.point);
     hit.normal = frame.normal_to_world(frame.scaled_normal(met.normal));
     return hit;
+}
+
+Vec3d velocity_at(const Collider& collider, const Vec3d& point_world) {
+    return collider.linear_velocity +
+           cross(collider.angular_velocity, point_world - collider.pose.translation);
+}
+
+RigidTransform pose_after(const Collider& collider, double seconds) {
+    RigidTransform pose = collider.pose;
+    pose.translation += collider.linear_velocity * seconds;
+    const double speed = length(collider.angular_velocity);
+    if (speed == 0) return pose;
+    const Rotation turn = Rotation::about(collider.angular_velocity, speed * seconds);
+    pose.rotation = (turn * pose.rotation).normalised();
+    return pose;
+}
+
+void head_for(Collider& collider, const RigidTransform& pose, double seconds) {
+    const Rotation turn = (pose.rotation * collider.pose.rotation.inverse()).normalised();
+    collider.linear_velocity = (pose.translation - collider.pose.translation) * (1 / seconds);
+    collider.angular_velocity = turn.vector() * (1 / seconds);
+}
+
+RigidTransform pose_at(std::span<const PoseKey> keys, double seconds) {
+    const auto next = std::upper_bound(keys.begin(), keys.end(), seconds,
+                                       [](double time, const PoseKey& key) { return time < key.time; });
+    if (next == keys.begin()) return keys.front().pose;
+    const PoseKey& before = *(next - 1);
+    if (next == keys.end()) return before.pose;
+    const double share = (seconds - before.time) / (next->time - before.time);
+    const Rotation turn = (next->pose.rotation * before.pose.rotation.inverse()).normalised();
+    const Vec3d way = turn.vector();
+    RigidTransform pose = before.pose;
+    pose.translation += (next->pose.translation - before.pose.translation) * share;
+    if (way != Vec3d{})
+        pose.rotation = (Rotation::about(way, length(way) * share) * pose.rotation).normalised();
+    return pose;
+}
+
+std::vector<Vec3f> vertices_at(const VertexCache& cache, double seconds) {
+    const auto last = static_cast<double>(cache.sample_count() - 1);
+    const double place = std::clamp((seconds - cache.start_time) / cache.sample_seconds, 0.0, last);
+    const auto sample = static_cast<std::size_t>(place);
+    const auto share = static_cast<float>(place - static_cast<double>(sample));
+    const Vec3f* from = cache.samples->data() + sample * cache.vertex_count;
+    std::vector<Vec3f> vertices(from, from + cache.vertex_count);
+    if (share > 0)
+        for (std::size_t i = 0; i < vertices.size(); ++i)
+            vertices[i] += (from[cache.vertex_count + i] - from[i]) * share;
+    return vertices;
 }
 
 } // namespace echinus

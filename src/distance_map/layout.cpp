@@ -1,5 +1,10 @@
 #include "distance_map/layout.hpp"
 
+#include "directions/spherical_grid.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
 #include <utility>
 
 namespace echinus {
@@ -25,6 +30,42 @@ std::vector<std::size_t> entry_histogram(const DistanceMapView& map) {
         ++histogram[count];
     }
     return histogram;
+}
+
+namespace {
+
+/// The scale that turns the mesh's box about the centre into a cube, unless it is thinner than the grid
+/// allows: the shortest half edge keeps its length, the others shrink to it.
+Vec3f scale_of(const LatticeMesh& lattice) {
+    LatticePoint reach;
+    for (const LatticePoint& v : lattice.vertices)
+        reach = {std::max(reach.x, std::abs(v.x)), std::max(reach.y, std::abs(v.y)),
+                 std::max(reach.z, std::abs(v.z))};
+    const Vec3d half(reach);
+    const double least = std::max({half.x, half.y, half.z}) * double{EllipsoidalGrid::kSmallestScale};
+    const double shortest = std::max(std::min({half.x, half.y, half.z}), least);
+    const auto of_axis = [&](double edge) { return static_cast<float>(shortest / std::max(edge, shortest)); };
+    return {of_axis(half.x), of_axis(half.y), of_axis(half.z)};
+}
+
+} // namespace
+
+DistanceMapView view_of(const DistanceMapOptions& options, const LatticeMesh& lattice) {
+    DistanceMapView view;
+    view.centre = lattice.centre;
+    view.radius = lattice.radius;
+    view.grid = options.grid;
+    if (has_poles(options.grid)) {
+        view.longitude_count = options.longitude_count;
+        view.colatitude_count = options.colatitude_count;
+        view.pole_axis = options.pole_axis;
+    } else {
+        view.divisions = options.divisions;
+    }
+    if (options.grid == DirectionGrid::Ellipsoidal) view.scale = scale_of(lattice);
+    view.entry_format = options.entry_format;
+    view.correction = options.correction;
+    return view;
 }
 
 } // namespace echinus

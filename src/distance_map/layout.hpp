@@ -1,6 +1,7 @@
 #pragma once
 
 #include "directions/grids.hpp"
+#include "directions/lattice.hpp"
 #include "geometry/whole_numbers.hpp"
 
 #include <echinus/distance_map.hpp>
@@ -58,5 +59,8 @@ inline std::uint32_t entry_count_of(const DistanceMapView& map, std::uint32_t di
 inline bool is_outward(bool centre_inside, std::uint32_t k) {
     return (k % 2 == 0) == centre_inside;
 }
+
+/// The part of a view that the options and the mesh around its centre decide, before any ray is cast.
+DistanceMapView view_of(const DistanceMapOptions& options, const LatticeMesh& lattice);
 
 } // namespace echinus

@@ -1,7 +1,6 @@
-#include "map_file/distance_map_table.hpp"
 
 #include "distance_map/validate.hpp"
-#include "map_file/table_arrays.hpp"
+#include "map_file/tables.hpp"
 
 #include <utility>
 

@@ -1,8 +1,7 @@
-#include "map_file/exact_map_table.hpp"
 
 #include "exact_map/layout.hpp"
 #include "exact_map/validate.hpp"
-#include "map_file/table_arrays.hpp"
+#include "map_file/tables.hpp"
 
 #include <cstdint>
 #include <utility>

@@ -1,7 +1,5 @@
 #include "files/atomic_file.hpp"
-#include "map_file/distance_map_table.hpp"
-#include "map_file/exact_map_table.hpp"
-#include "map_file/table_arrays.hpp"
+#include "map_file/tables.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/map_file.hpp>

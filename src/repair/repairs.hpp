@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-/// The repairs of RepairOptions, each in a source file of its own.
+/// The repairs of RepairOptions, in source files by what they do.
 namespace echinus {
 
 /// The faces that repair() drops as duplicates, see RepairOptions::drop_duplicate_faces; ascending.

@@ -1,20 +1,31 @@
 #include "geometry/union_find.hpp"
+#include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
 #include "repair/edge_balance.hpp"
 #include "repair/repairs.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
+#include <tuple>
 #include <utility>
 
-// Faces on the same three vertices are a group. Which of them are surplus depends on the faces around them,
-// so groups that share an edge are decided together, and those that do not, apart.
-
 namespace echinus {
+
+// The faces that repair() drops from a surface before anything else: equal ones, doubled patches and loose
+// slivers; each where that leaves no edge less balanced.
 
 namespace {
 
 using Faces = std::vector<std::uint32_t>;
+
+} // namespace
+
+// Faces on the same three vertices are a group. Which of them are surplus depends on the faces around them,
+// so groups that share an edge are decided together, and those that do not, apart.
+
+namespace {
 
 /// Distinguishes the two orientations of a face on three vertices. Faces with two equal corners, which bound
 /// nothing, all count as the same orientation.
@@ -81,6 +92,109 @@ std::vector<std::uint32_t> find_surplus_faces(const TriangleMesh& mesh) {
     }
     std::sort(all.begin(), all.end());
     return all.size() < mesh.faces.size() ? all : Faces{};
+}
+
+// A quadrilateral a b c d that a modeller filled twice, once along the diagonal a c and once along b d,
+// leaves the four faces of a flat tetrahedron on the surface:
+//
+//      d ------ c        d ------ c
+//      |      / |        | \      |
+//      |    /   |   and  |   \    |      with the rest of the surface along a b, b c, c d, d a
+//      |  /     |        |     \  |
+//      a ------ b        a ------ b
+//
+// Its edges identify it: each diagonal has exactly the two faces of its own patch, each side has a face of
+// either patch and at least one face of the surrounding surface. (A separate tetrahedron has two faces at
+// every edge and is left alone.) A face has at most one such patch, and a quadrilateral at most two. Dropping
+// one patch leaves the surface as its author meant it: the one without which the edges are balanced better.
+// Where the common side of two solids is divided along either diagonal, all edges are balanced, and both
+// patches stay.
+
+namespace {
+
+struct Patch {
+    std::array<std::uint32_t, 4> corners{}; // ascending
+    Faces faces;                            // two, ascending
+};
+
+std::uint32_t corner_opposite(const TriangleMesh& mesh, const EdgeUse& use) {
+    return mesh.faces[use.face][(use.corner + 2U) % 3];
+}
+
+/// The patch of the two faces at an edge, if the edge may be the diagonal of a doubled one.
+std::optional<Patch> patch_along(const TriangleMesh& mesh, std::span<const EdgeUse> all,
+                                 std::span<const EdgeUse> diagonal) {
+    if (diagonal.size() != 2) return std::nullopt;
+    const std::array<std::uint32_t, 2> ends{diagonal[0].low, diagonal[0].high};
+    const std::array<std::uint32_t, 2> tips{corner_opposite(mesh, diagonal[0]),
+                                            corner_opposite(mesh, diagonal[1])};
+    if (tips[0] == tips[1]) return std::nullopt;
+    for (const std::uint32_t end : ends)
+        for (const std::uint32_t tip : tips)
+            if (uses_of_edge(all, end, tip).size() < 3) return std::nullopt;
+
+    Patch patch{{ends[0], ends[1], tips[0], tips[1]}, {diagonal[0].face, diagonal[1].face}};
+    std::sort(patch.corners.begin(), patch.corners.end());
+    return patch;
+}
+
+} // namespace
+
+std::vector<std::uint32_t> find_doubled_patch_faces(const TriangleMesh& mesh) {
+    const std::vector<EdgeUse> edge_uses = sorted_edge_uses(mesh);
+    std::vector<Patch> patches;
+    for_each_edge(edge_uses, [&](std::span<const EdgeUse> uses) {
+        if (auto patch = patch_along(mesh, edge_uses, uses)) patches.push_back(std::move(*patch));
+    });
+    if (patches.empty()) return {};
+    std::sort(patches.begin(), patches.end(), [](const Patch& a, const Patch& b) {
+        return std::tie(a.corners, a.faces) < std::tie(b.corners, b.faces);
+    });
+    EdgeBalance balance(mesh);
+    std::vector<Faces> doubled; // of equally good patches the later one
+    for (std::size_t i = 1; i < patches.size(); ++i) {
+        if (patches[i].corners != patches[i - 1].corners) continue;
+        const bool first_is_better =
+            balance.gain_without(patches[i].faces) >= balance.gain_without(patches[i - 1].faces);
+        doubled.push_back(patches[first_is_better ? i : i - 1].faces);
+    }
+    return balance.droppable(std::move(doubled));
+}
+
+namespace {
+
+/// Are the corners on one line, as far as float tells? The height over the longest side is then no more than
+/// the corners are rounded.
+bool has_no_area(const TriangleMesh& mesh, const Triangle& face) {
+    constexpr double kRounding = 0x1p-23;
+    double longest = 0, farthest = 0;
+    std::array<Vec3d, 3> corners;
+    for (std::size_t k = 0; k < 3; ++k) {
+        corners[k] = Vec3d(mesh.vertices[face[k]]);
+        const Vec3d& p = corners[k];
+        farthest = std::max({farthest, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+        longest = std::max(longest, length(corners[(k + 1) % 3] - corners[k]));
+    return length(cross(corners[1] - corners[0], corners[2] - corners[0])) <= kRounding * farthest * longest;
+}
+
+} // namespace
+
+std::vector<std::uint32_t> find_loose_slivers(const TriangleMesh& mesh) {
+    std::vector<bool> is_listed(mesh.faces.size());
+    std::vector<std::vector<std::uint32_t>> slivers;
+    for_each_edge(sorted_edge_uses(mesh), [&](std::span<const EdgeUse> uses) {
+        if (is_balanced(uses)) return;
+        for (const EdgeUse& use : uses) {
+            if (is_listed[use.face] || !has_no_area(mesh, mesh.faces[use.face])) continue;
+            is_listed[use.face] = true;
+            slivers.push_back({use.face});
+        }
+    });
+    if (slivers.empty()) return {};
+    std::vector<std::uint32_t> loose = EdgeBalance(mesh).droppable(std::move(slivers));
+    return loose.size() < mesh.faces.size() ? loose : std::vector<std::uint32_t>{};
 }
 
 } // namespace echinus

@@ -1,5 +1,5 @@
 #include "directions/face_cone.hpp"
-#include "distance_map/build/vertex_layers.hpp"
+#include "distance_map/build/vertex_correction.hpp"
 
 #include <echinus/mesh.hpp>
 

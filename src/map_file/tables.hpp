@@ -1,15 +1,19 @@
 #pragma once
 
+#include <echinus/distance_map.hpp>
+#include <echinus/exact_map.hpp>
 #include <echinus/geometry.hpp>
 
 #include <map_generated.h>
 
 #include <bit>
 #include <span>
+#include <string>
 #include <type_traits>
 
-/// What all kinds of maps share between the file and the memory that queries read.
 namespace echinus {
+
+// What all kinds of maps share between the file and the memory that queries read.
 
 static_assert(std::endian::native == std::endian::little, "map files are little-endian and used in place");
 
@@ -76,5 +80,27 @@ inline schema::Point to_stored(const Vec3f& point) {
 inline Vec3f from_stored(const schema::Point& point) {
     return {point.x(), point.y(), point.z()};
 }
+
+// A distance map as a table of a map file.
+
+flatbuffers::Offset<schema::DistanceMap> write_table(flatbuffers::FlatBufferBuilder& builder,
+                                                     const DistanceMap& map);
+
+/// Reads in place, after checking the meaning.
+/// @pre the table's structure is sound; `storage` keeps its bytes alive
+/// @throws Error Damaged; the sentence begins with `name` and names the field or the array and the index
+DistanceMap read_table(const schema::DistanceMap& stored, std::uint64_t source_hash,
+                       std::shared_ptr<const void> storage, const std::string& name);
+
+// An exact map as a table of a map file.
+
+flatbuffers::Offset<schema::ExactMap> write_table(flatbuffers::FlatBufferBuilder& builder,
+                                                  const ExactMap& map);
+
+/// Reads in place, after checking the meaning.
+/// @pre the table's structure is sound; `storage` keeps its bytes alive
+/// @throws Error Damaged; the sentence begins with `name` and names the field or the array and the index
+ExactMap read_table(const schema::ExactMap& stored, std::uint64_t source_hash,
+                    std::shared_ptr<const void> storage, const std::string& name);
 
 } // namespace echinus
