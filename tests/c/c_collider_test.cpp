@@ -127,6 +127,8 @@ TEST(CColliders, AreRefusedWhenTheirPoseIsNone) {
     expect_wrong("scale is 0 or not finite");
     collider.size = 3;
     expect_wrong("size of collider is 3");
+    collider.map = nullptr;
+    expect_wrong("the map of the collider is NULL");
     expect_ok(echinus_collider_contains(&collider, point, 1, 0, &inside));
 
     double rotation[4];

@@ -72,18 +72,3 @@ TEST(CFarAway, CallersWithTheStructsOfBeforeGetWhatTheyKnow) {
     EXPECT_EQ(info.face_count, 12U);
     EXPECT_EQ(info.origin[0], -1);
 }
-
-TEST(CFarAway, WrongArgumentsAreRefused) {
-    float local[3];
-    const double point[3] = {1, 2, 3};
-    expect_refused(echinus_to_local(point, 1, nullptr, local), ECHINUS_INVALID_ARGUMENT, "origin");
-    expect_refused(echinus_to_local(nullptr, 1, point, local), ECHINUS_INVALID_ARGUMENT, "points");
-    expect_refused(echinus_to_local(point, 1, point, nullptr), ECHINUS_INVALID_ARGUMENT, "local");
-    EXPECT_EQ(echinus_mesh_origin(nullptr), nullptr);
-    EXPECT_EQ(echinus_tetrahedra_origin(nullptr), nullptr);
-    CMesh mesh;
-    const std::uint32_t face[3] = {0, 1, 2};
-    expect_refused(echinus_mesh_create_double(nullptr, 3, face, 1, out(mesh)), ECHINUS_INVALID_ARGUMENT,
-                   "vertices");
-    expect_refused(echinus_mesh_create_double(point, 1, face, 1, out(mesh)), ECHINUS_INVALID_MESH, "vertex");
-}

@@ -37,22 +37,6 @@ struct Counter {
     static void add(void* context) { ++static_cast<Counter*>(context)->count; }
 };
 
-TEST(CMaps, OfOpenSurfacesHaveTheBytesOfCppWithAndWithoutCertainGaps) {
-    TriangleMesh open = make_torus(1.0, 0.4, 60, 24);
-    open.faces.pop_back();
-    CMesh mesh;
-    expect_ok(echinus_mesh_create(&open.vertices.data()->x, open.vertices.size(), 0,
-                                  open.faces.data()->data(), open.faces.size(), out(mesh)));
-    echinus_exact_map_options options;
-    echinus_exact_map_options_init(&options, sizeof options);
-    for (const bool finds : {true, false}) {
-        options.find_certain_gaps = finds ? 1 : 0;
-        CMap map;
-        expect_ok(echinus_map_build_exact(mesh.get(), &options, out(map)));
-        EXPECT_EQ(bytes_of(map), serialise(ExactMap::build(open, {.find_certain_gaps = finds})));
-    }
-}
-
 TEST(CMaps, HaveTheBytesOfCpp) {
     const CMesh mesh = c_torus();
     const TriangleMesh torus = make_torus(1.0, 0.4, 60, 24);
@@ -96,20 +80,6 @@ TEST(CMaps, HaveTheBytesOfCpp) {
                                                                   .correction = VertexCorrection::Paper,
                                                                   .entry_format = EntryFormat::Unorm16,
                                                                   .pole_axis = PoleAxis::X})));
-}
-
-TEST(CMaps, AreRefusedAsInCpp) {
-    const CMesh mesh = c_torus();
-    echinus_exact_map_options options;
-    echinus_exact_map_options_init(&options, sizeof options);
-    options.divisions = 513;
-    CMap map;
-    expect_refused(echinus_map_build_exact(mesh.get(), &options, out(map)), ECHINUS_INVALID_OPTIONS, "513");
-    echinus_distance_map_options distance;
-    echinus_distance_map_options_init(&distance, sizeof distance);
-    distance.longitude_count = 3;
-    expect_refused(echinus_map_build_distance(mesh.get(), &distance, out(map)), ECHINUS_INVALID_OPTIONS, "3");
-    EXPECT_EQ(map, nullptr);
 }
 
 TEST(CMaps, AreDescribedAsInCpp) {
@@ -192,20 +162,6 @@ TEST_F(CMapFile, IsSavedAndLoaded) {
     }
     expect_refused(echinus_map_save(c_map(c_torus()).get(), path("no/torus.ech").c_str()), ECHINUS_UNWRITABLE,
                    "no");
-}
-
-TEST_F(CMapFile, IsRefusedWhenTruncatedOrSomethingElse) {
-    const std::vector<std::byte> whole = bytes_of(c_map(c_torus()));
-    CMap map;
-    for (const std::size_t size : {std::size_t{40}, whole.size() / 2, whole.size() - 1}) {
-        const std::string part(reinterpret_cast<const char*>(whole.data()), size);
-        expect_refused(echinus_map_load(write("part.ech", part).c_str(), out(map)), ECHINUS_DAMAGED,
-                       "part.ech");
-        EXPECT_EQ(map, nullptr);
-    }
-    expect_refused(echinus_map_load(write("text.ech", "no map").c_str(), out(map)), ECHINUS_WRONG_FORMAT,
-                   "text.ech");
-    expect_refused(echinus_map_load(path("none.ech").c_str(), out(map)), ECHINUS_UNREADABLE, "none.ech");
 }
 
 TEST(CMapViews, ReadInPlaceAndReleaseWhenTheLastUserIsGone) {

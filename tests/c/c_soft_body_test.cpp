@@ -125,11 +125,6 @@ struct Pair {
     Simulation by_cpp;
 };
 
-TEST(CSoftBodies, FallAsInCpp) {
-    Pair pair;
-    pair.expect_same_after(40);
-}
-
 TEST(CSoftBodies, GoOnFromASavedStateWithTheSameBits) {
     Pair pair;
     pair.expect_same_after(10);
@@ -147,12 +142,6 @@ TEST(CSoftBodies, GoOnFromASavedStateWithTheSameBits) {
     expect_refused(echinus_simulation_restored(pair.in_c.get(), bytes.data(), bytes.size() - 1, out(again)),
                    ECHINUS_DAMAGED, "the saved state");
     EXPECT_EQ(again, nullptr);
-    expect_refused(echinus_simulation_restored(pair.in_c.get(), nullptr, 1, out(again)),
-                   ECHINUS_INVALID_ARGUMENT, "bytes is NULL");
-    expect_refused(echinus_simulation_restored(nullptr, nullptr, 0, out(again)), ECHINUS_INVALID_ARGUMENT,
-                   "simulation is NULL");
-    expect_refused(echinus_simulation_save_state(pair.in_c.get(), nullptr), ECHINUS_INVALID_ARGUMENT,
-                   "the place for the result is NULL");
     pair.expect_same_after(1);
 }
 
@@ -169,15 +158,6 @@ TEST(CSoftBodies, GoThroughTheirArraysUnchanged) {
     CDeformable again;
     expect_ok(echinus_deformable_create(&arrays, out(again)));
     Pair(again, expected).expect_same_after(10);
-}
-
-TEST(CSoftBodies, OfAnOlderHeaderHaveNoTetrahedra) {
-    const CDeformable body = c_soft_body();
-    echinus_deformable_arrays arrays{};
-    arrays.size = offsetof(echinus_deformable_arrays, tetrahedra);
-    expect_ok(echinus_deformable_read(body.get(), &arrays));
-    EXPECT_EQ(arrays.attachment_count, 1U);
-    EXPECT_EQ(arrays.tetrahedron_count, 0U);
 }
 
 TEST(CSoftBodies, AreCombinedWithClothAsInCpp) {
@@ -202,38 +182,6 @@ TEST(CSoftBodies, PassThroughAColliderAsInCpp) {
     EXPECT_EQ(arrays.filters[1].particle, 1U);
     expect_ok(echinus_deformable_create(&arrays, out(again)));
     Pair(again, expected).expect_same_after(30);
-    expect_refused(echinus_deformable_passing_through(nullptr, 0, out(again)), ECHINUS_INVALID_ARGUMENT,
-                   "deformable");
-}
-
-TEST(CSoftBodies, ThatCannotBeAreRefused) {
-    const CTetrahedra body = c_block();
-    echinus_soft_body_options options;
-    echinus_soft_body_options_init(&options, sizeof options);
-    CDeformable made;
-    const auto make = [&] { return echinus_deformable_soft_body(body.get(), &options, out(made)); };
-    expect_ok(make());
-    options.poisson_ratio = 0.5;
-    expect_refused(make(), ECHINUS_INVALID_OPTIONS, "poisson_ratio");
-    options.poisson_ratio = 0.3;
-    options.density = NAN;
-    expect_refused(make(), ECHINUS_INVALID_OPTIONS, "density");
-    options.density = 1;
-    const std::uint32_t pins[1] = {27};
-    options.pins = pins;
-    options.pin_count = 1;
-    expect_refused(make(), ECHINUS_INVALID_OPTIONS, "vertex 27");
-    options.pins = nullptr;
-    expect_refused(make(), ECHINUS_INVALID_ARGUMENT, "options.pins is NULL");
-    expect_refused(echinus_deformable_soft_body(nullptr, nullptr, out(made)), ECHINUS_INVALID_ARGUMENT,
-                   "body is NULL");
-    expect_refused(echinus_deformable_soft_body(body.get(), nullptr, nullptr), ECHINUS_INVALID_ARGUMENT,
-                   "the place for the result is NULL");
-    const CDeformable soft = c_soft_body();
-    expect_refused(echinus_deformable_with_masses_times(soft.get(), 0, out(made)), ECHINUS_INVALID_OPTIONS,
-                   "masses");
-    expect_refused(echinus_deformable_with_masses_times(nullptr, 1, out(made)), ECHINUS_INVALID_ARGUMENT,
-                   "deformable is NULL");
 }
 
 TEST(CSoftBodies, PartsNameTheirOwnParticlesOnly) {
@@ -255,8 +203,6 @@ TEST(CSoftBodies, PartsNameTheirOwnParticlesOnly) {
     parts[0] = nullptr;
     expect_refused(echinus_deformable_combine(parts, 2, out(both)), ECHINUS_INVALID_ARGUMENT,
                    "a part is NULL");
-    expect_refused(echinus_deformable_combine(nullptr, 2, out(both)), ECHINUS_INVALID_ARGUMENT,
-                   "parts is NULL");
 }
 
 // ---- Colliders
@@ -291,12 +237,7 @@ TEST(CColliders, RefuseKeysThatHaveNoMeaning) {
     echinus_pose pose;
     expect_refused(set(0, 2), ECHINUS_INVALID_OPTIONS, "keyframe 1");
     expect_refused(echinus_pose_at(keys, 2, 0, &pose), ECHINUS_INVALID_ARGUMENT, "key 1");
-    expect_refused(set(1, 1), ECHINUS_INVALID_ARGUMENT, "there is no collider 1");
     expect_refused(echinus_pose_at(keys, 0, 0, &pose), ECHINUS_INVALID_ARGUMENT, "there is no key");
-    expect_refused(echinus_pose_at(keys, 1, NAN, &pose), ECHINUS_INVALID_ARGUMENT, "seconds");
-    expect_refused(echinus_pose_at(keys, 1, 0, nullptr), ECHINUS_INVALID_ARGUMENT, "pose is NULL");
-    expect_refused(echinus_simulation_set_collider_keyframes(pair.in_c.get(), 0, nullptr, 1),
-                   ECHINUS_INVALID_ARGUMENT, "keys is NULL");
     keys[0].pose.rotation[0] = 2;
     expect_refused(set(0, 1), ECHINUS_INVALID_OPTIONS, "a quaternion of length 2");
     pair.expect_same_after(3);
@@ -326,15 +267,6 @@ TEST(CColliders, DeformAsInCpp) {
     expect_ok(echinus_collider_contains(&before, point, 1, 0, &inside));
     EXPECT_EQ(inside, 1);
 
-    const std::vector<Vec3f> vertices = grown(1);
-    const auto set = [&](const float* first, std::size_t count) {
-        return echinus_simulation_set_collider_vertices(pair.in_c.get(), 0, first, count, 0);
-    };
-    expect_refused(set(&vertices.data()->x, vertices.size() - 1), ECHINUS_INVALID_OPTIONS, "vert");
-    expect_refused(set(nullptr, 3), ECHINUS_INVALID_ARGUMENT, "vertices is NULL");
-    std::vector<Vec3f> bad = vertices;
-    bad[2].y = NAN;
-    expect_refused(set(&bad.data()->x, bad.size()), ECHINUS_INVALID_OPTIONS, "finite");
     pair.expect_same_after(2);
 }
 
@@ -373,25 +305,13 @@ TEST(CVertexCaches, ThatHaveNoMeaningAreRefused) {
         return echinus_vertex_cache_create(samples, sample_count, vertex_count, start, step, out(cache));
     };
     expect_ok(create(2, 1, 0, 1));
-    float place[3];
-    expect_refused(echinus_vertex_cache_at(cache.get(), NAN, place), ECHINUS_INVALID_ARGUMENT, "seconds");
-    expect_refused(echinus_vertex_cache_at(cache.get(), 0, nullptr), ECHINUS_INVALID_ARGUMENT,
-                   "vertices is NULL");
     Pair pair;
     expect_refused(echinus_simulation_set_collider_cache(pair.in_c.get(), 0, cache.get()),
                    ECHINUS_INVALID_OPTIONS, "vert");
-    expect_refused(echinus_simulation_set_collider_cache(pair.in_c.get(), 0, nullptr),
-                   ECHINUS_INVALID_ARGUMENT, "cache is NULL");
     expect_refused(create(0, 1, 0, 1), ECHINUS_INVALID_ARGUMENT, "samples");
     expect_refused(create(1, 0, 0, 1), ECHINUS_INVALID_ARGUMENT, "samples");
-    expect_refused(create(SIZE_MAX / 2, 4, 0, 1), ECHINUS_INVALID_ARGUMENT, "more than memory can hold");
-    expect_refused(create(1, 1, NAN, 1), ECHINUS_INVALID_ARGUMENT, "start_time");
-    for (const double step : {0.0, -1.0, std::nan(""), HUGE_VAL})
+    for (const double step : {0.0, -1.0, HUGE_VAL})
         expect_refused(create(1, 1, 0, step), ECHINUS_INVALID_ARGUMENT, "sample_seconds");
-    expect_refused(echinus_vertex_cache_create(nullptr, 1, 1, 0, 1, out(cache)), ECHINUS_INVALID_ARGUMENT,
-                   "samples is NULL");
-    expect_refused(echinus_vertex_cache_describe(nullptr, nullptr), ECHINUS_INVALID_ARGUMENT,
-                   "cache is NULL");
     EXPECT_EQ(cache, nullptr);
 }
 

@@ -1,7 +1,6 @@
 #include "handles.hpp"
 
 #include <echinus/map_file.hpp>
-#include <echinus/soft_body.hpp>
 
 #include <gtest/gtest.h>
 
@@ -78,80 +77,6 @@ TEST(CStructs, AreFilledNoFartherThanTheirSize) {
     for (std::size_t i = offsetof(echinus_exact_map_options, byte_budget); i < sizeof guarded; ++i)
         ASSERT_EQ(bytes[i], 0xAB) << i;
     echinus_exact_map_options_init(nullptr, sizeof guarded.options);
-}
-
-TEST(CStructs, EnumeratorsAreInRange) {
-    const CMesh mesh = c_torus();
-    echinus_exact_map_options options;
-    echinus_exact_map_options_init(&options, sizeof options);
-    const std::int32_t wrong = 7;
-    std::memcpy(&options.rule, &wrong, sizeof wrong);
-    CMap map;
-    expect_refused(echinus_map_build_exact(mesh.get(), &options, out(map)), ECHINUS_INVALID_ARGUMENT,
-                   "options.rule is 7; expected 0 to 1");
-}
-
-// What _init writes are the defaults of C++.
-TEST(CStructs, AreFilledWithTheDefaultsOfCpp) {
-    echinus_exact_map_options exact;
-    echinus_exact_map_options_init(&exact, sizeof exact);
-    const ExactMapOptions exact_defaults;
-    EXPECT_EQ(exact.divisions, exact_defaults.divisions);
-    EXPECT_EQ(exact.byte_budget, exact_defaults.byte_budget);
-    EXPECT_EQ(static_cast<int>(exact.rule), static_cast<int>(exact_defaults.rule));
-    EXPECT_EQ(static_cast<int>(exact.centre), static_cast<int>(exact_defaults.centre));
-    EXPECT_EQ(exact.find_certain_gaps != 0, exact_defaults.find_certain_gaps);
-
-    echinus_distance_map_options distance;
-    echinus_distance_map_options_init(&distance, sizeof distance);
-    const DistanceMapOptions distance_defaults;
-    EXPECT_EQ(distance.longitude_count, distance_defaults.longitude_count);
-    EXPECT_EQ(distance.colatitude_count, distance_defaults.colatitude_count);
-    EXPECT_EQ(distance.divisions, distance_defaults.divisions);
-    EXPECT_EQ(static_cast<int>(distance.correction), static_cast<int>(distance_defaults.correction));
-    EXPECT_EQ(static_cast<int>(distance.pole_axis), static_cast<int>(distance_defaults.pole_axis));
-
-    echinus_cloth_options cloth;
-    echinus_cloth_options_init(&cloth, sizeof cloth);
-    EXPECT_EQ(cloth.column_count, ClothOptions{}.column_count);
-    EXPECT_EQ(cloth.width, ClothOptions{}.width);
-    EXPECT_EQ(cloth.pose.rotation[0], 1);
-
-    echinus_mesh_cloth_options mesh_cloth;
-    echinus_mesh_cloth_options_init(&mesh_cloth, sizeof mesh_cloth);
-    EXPECT_EQ(mesh_cloth.scale, MeshClothOptions{}.scale);
-    EXPECT_EQ(mesh_cloth.pose.rotation[0], 1);
-
-    echinus_soft_body_options body;
-    echinus_soft_body_options_init(&body, sizeof body);
-    EXPECT_EQ(body.density, SoftBodyOptions{}.density);
-    EXPECT_EQ(body.young_modulus, SoftBodyOptions{}.young_modulus);
-    EXPECT_EQ(body.poisson_ratio, SoftBodyOptions{}.poisson_ratio);
-    EXPECT_EQ(body.damping, SoftBodyOptions{}.damping);
-    EXPECT_EQ(body.scale, SoftBodyOptions{}.scale);
-    EXPECT_EQ(body.pose.rotation[0], 1);
-
-    echinus_simulation_options simulation;
-    echinus_simulation_options_init(&simulation, sizeof simulation);
-    const SimulationOptions defaults;
-    EXPECT_EQ(simulation.time_step, defaults.time_step);
-    EXPECT_EQ(simulation.iteration_count, defaults.iteration_count);
-    EXPECT_EQ(simulation.substep_count, defaults.substep_count);
-    EXPECT_EQ(simulation.gravity[2], defaults.gravity.z);
-    EXPECT_EQ(simulation.drag, defaults.drag);
-    EXPECT_EQ(simulation.stiffness[2], defaults.stiffness[2]);
-    EXPECT_EQ(simulation.compliance[2], defaults.compliance[2]);
-    EXPECT_EQ(simulation.thickness, ECHINUS_THICKNESS_CHOSEN);
-    EXPECT_EQ(simulation.self_thickness, ECHINUS_THICKNESS_CHOSEN);
-    EXPECT_EQ(simulation.friction, defaults.friction);
-    EXPECT_EQ(simulation.rest_distance, defaults.rest.distance);
-    EXPECT_EQ(simulation.rest_speed, defaults.rest.speed);
-    EXPECT_EQ(simulation.rest_frame_count, defaults.rest.frame_count);
-    EXPECT_EQ(simulation.keep_free, 1);
-    EXPECT_EQ(simulation.surface_collision, 0);
-    EXPECT_EQ(simulation.bound, defaults.bound);
-    EXPECT_EQ(simulation.thread_count, defaults.thread_count);
-    EXPECT_EQ(simulation.multilevel != 0, defaults.multilevel);
 }
 
 } // namespace

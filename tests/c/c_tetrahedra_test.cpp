@@ -121,18 +121,6 @@ TEST_F(CTetrahedraFiles, ReadBackWithTheSameBits) {
     EXPECT_EQ(none, nullptr);
 }
 
-TEST_F(CTetrahedraFiles, TellWhatTheyWereChangedIn) {
-    write("a.node", "5 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n4 9 9 9\n");
-    write("a.ele", "1 4 0\n0 0 2 1 3\n");
-    CTetrahedra body;
-    echinus_tetrahedra_file_report report{};
-    report.size = sizeof report;
-    expect_ok(echinus_tetrahedra_read(path("a.node").c_str(), out(body), &report));
-    EXPECT_EQ(report.turned_tetrahedra, 1U);
-    EXPECT_EQ(report.dropped_vertices, 1U);
-    EXPECT_EQ(echinus_tetrahedra_vertex_count(body.get()), 4U);
-}
-
 TEST(CTetrahedra, ThatAreNotValidAreRefused) {
     CTetrahedra body;
     const auto create = [&](std::initializer_list<std::uint32_t> corners) {
@@ -141,37 +129,6 @@ TEST(CTetrahedra, ThatAreNotValidAreRefused) {
     expect_ok(create({0, 1, 2, 3}));
     expect_refused(create({0, 2, 1, 3}), ECHINUS_INVALID_MESH, "tetrahedron 0");
     EXPECT_EQ(body, nullptr);
-    expect_refused(create({0, 1, 2, 3, 0, 1, 2, 4}), ECHINUS_INVALID_MESH, "tetrahedron 1");
-    expect_refused(create({}), ECHINUS_INVALID_MESH, "tetrahedr");
-    const std::uint32_t corners[4] = {0, 1, 2, 3};
-    expect_refused(echinus_tetrahedra_create(kCorner, 4, 0, corners, SIZE_MAX / 2, out(body)),
-                   ECHINUS_INVALID_ARGUMENT, "more than memory can hold");
-    float bad[12];
-    std::memcpy(bad, kCorner, sizeof bad);
-    bad[4] = std::numeric_limits<float>::quiet_NaN();
-    expect_refused(echinus_tetrahedra_create(bad, 4, 0, corners, 1, out(body)), ECHINUS_INVALID_MESH, "");
-}
-
-TEST(CTetrahedra, OptionsOutOfRangeAreRefused) {
-    const CMesh mesh = c_torus();
-    const CMap map = c_map(mesh), distance = c_distance_map(mesh);
-    echinus_tetrahedralize_options options;
-    echinus_tetrahedralize_options_init(&options, sizeof options);
-    CTetrahedra body;
-    const auto fill = [&] { return echinus_tetrahedralize(map.get(), &options, out(body), nullptr); };
-    expect_refused(fill(), ECHINUS_INVALID_OPTIONS, "");
-    options.lattice_size = -1;
-    expect_refused(fill(), ECHINUS_INVALID_OPTIONS, "");
-    options.lattice_size = 50;
-    expect_refused(fill(), ECHINUS_INVALID_MESH, "");
-    options.lattice_size = 0.2;
-    options.most_tetrahedra = 1;
-    expect_refused(fill(), ECHINUS_INVALID_OPTIONS, "");
-    expect_refused(echinus_tetrahedralize(distance.get(), &options, out(body), nullptr),
-                   ECHINUS_INVALID_ARGUMENT, "map is not an exact map");
-    const double size[3] = {1, 1, 1};
-    const std::uint32_t none[3] = {1, 0, 1};
-    expect_refused(echinus_tetrahedra_box(size, none, out(body)), ECHINUS_INVALID_OPTIONS, "");
 }
 
 TEST(CTetrahedra, CarryAFinerMeshAlong) {
@@ -193,50 +150,6 @@ TEST(CTetrahedra, CarryAFinerMeshAlong) {
     expect_refused(echinus_embedding_carry(embedding.get(), &moved.data()->x, vertex_count - 1, 0, 1,
                                            &carried.data()->x),
                    ECHINUS_INVALID_ARGUMENT, "position_count is");
-    const float nowhere[3] = {NAN, 0, 0};
-    expect_refused(echinus_embedding_create(body.get(), nowhere, 1, 0, 1, out(embedding)),
-                   ECHINUS_INVALID_MESH, "");
-    EXPECT_EQ(embedding, nullptr);
-}
-
-TEST(CTetrahedra, OfNullAreRefusedByTheNameOfTheArgument) {
-    const CTetrahedra body = c_body(0.4);
-    const CMap map = c_map(c_torus());
-    const double size[3] = {1, 1, 1};
-    float points[3] = {};
-    const auto expect_null = [](echinus_status status, const std::string& name) {
-        expect_refused(status, ECHINUS_INVALID_ARGUMENT, name + " is NULL");
-    };
-    CTetrahedra none;
-    CMesh mesh;
-    CEmbedding embedding;
-    const std::string place = "the place for the result";
-    expect_null(echinus_tetrahedra_create(nullptr, 4, 0, nullptr, 0, out(none)), "vertices");
-    expect_null(echinus_tetrahedra_create(kCorner, 4, 0, nullptr, 1, out(none)), "tetrahedra");
-    expect_null(echinus_tetrahedra_create(kCorner, 4, 0, nullptr, 0, nullptr), place);
-    expect_null(echinus_tetrahedra_read(nullptr, out(none), nullptr), "path");
-    expect_null(echinus_tetrahedra_write(nullptr, "a.msh"), "body");
-    expect_null(echinus_tetrahedra_write(body.get(), nullptr), "path");
-    expect_null(echinus_tetrahedra_box(nullptr, nullptr, out(none)), "size");
-    expect_null(echinus_tetrahedra_box(size, nullptr, out(none)), "segments");
-    expect_null(echinus_tetrahedralize(nullptr, nullptr, out(none), nullptr), "map");
-    expect_null(echinus_tetrahedralize(map.get(), nullptr, out(none), nullptr), "options");
-    expect_null(echinus_tetrahedra_inspect(body.get(), nullptr), "report");
-    expect_null(echinus_tetrahedra_boundary(nullptr, out(mesh)), "body");
-    expect_null(echinus_tetrahedra_measure_distance(body.get(), nullptr, 1, nullptr), "map");
-    expect_null(echinus_tetrahedra_measure_distance(body.get(), map.get(), 1, nullptr), "distance");
-    expect_null(echinus_embedding_create(nullptr, points, 1, 0, 1, out(embedding)), "body");
-    expect_null(echinus_embedding_create(body.get(), points, 1, 0, 1, nullptr), place);
-    expect_null(echinus_embedding_carry(nullptr, points, 1, 0, 1, points), "embedding");
-    expect_ok(echinus_embedding_create(body.get(), points, 1, 0, 1, out(embedding)));
-    expect_null(echinus_embedding_carry(embedding.get(), echinus_tetrahedra_vertices(body.get()),
-                                        echinus_tetrahedra_vertex_count(body.get()), 0, 1, nullptr),
-                "points");
-    EXPECT_EQ(echinus_tetrahedra_count(nullptr), 0U);
-    EXPECT_EQ(echinus_tetrahedra_vertex_count(nullptr), 0U);
-    EXPECT_EQ(echinus_tetrahedra_vertices(nullptr), nullptr);
-    EXPECT_EQ(echinus_tetrahedra_indices(nullptr), nullptr);
-    EXPECT_EQ(echinus_embedding_count(nullptr), 0U);
 }
 
 } // namespace

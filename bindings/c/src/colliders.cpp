@@ -116,8 +116,10 @@ echinus_status echinus_collider_velocity_at(const echinus_collider* collider, co
 
 echinus_status echinus_collider_pose_after(const echinus_collider* collider, double seconds,
                                            echinus_pose* pose) {
-    return guarded(__func__,
-                   [&] { at(pose, "pose") = pose_to_c(pose_after(collider_at(collider), seconds)); });
+    return guarded(__func__, [&] {
+        require(std::isfinite(seconds), "seconds is not finite");
+        at(pose, "pose") = pose_to_c(pose_after(collider_at(collider), seconds));
+    });
 }
 
 echinus_status echinus_pose_at(const echinus_pose_key* keys, size_t key_count, double seconds,

@@ -49,9 +49,10 @@ struct FromC {
     void operator()(const char* name, const T& c, Value& o, Unused...) const {
         if constexpr (std::is_same_v<Value, bool>)
             o = flag(c, ("options." + std::string(name)).c_str());
+        else if constexpr (std::is_floating_point_v<T>)
+            o = c;
         else // of threads there are never more than an unsigned has
-            o = static_cast<Value>(
-                std::min<std::common_type_t<T, Value>>(c, std::numeric_limits<Value>::max()));
+            o = static_cast<Value>(std::min<std::uint64_t>(c, std::numeric_limits<Value>::max()));
     }
     template <typename CEnum, typename Enum>
     requires std::is_enum_v<CEnum>

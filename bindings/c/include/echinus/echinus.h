@@ -502,6 +502,7 @@ ECHINUS_API echinus_status echinus_map_load(const char* path, echinus_map** map)
 /// @param bytes    at an address that is a multiple of 8; unchanged until release is called
 /// @param release  called with `context` once the map and all simulations that use it are gone, from the
 ///                 thread that destroys the last of them; or NULL. Not called if this call fails
+/// @param context  the caller's own, or NULL
 /// @param name     stands for the path in errors
 ECHINUS_API echinus_status echinus_map_view(const void* bytes, size_t byte_count,
                                             void (*release)(void* context), void* context, const char* name,
@@ -706,6 +707,7 @@ ECHINUS_API echinus_status echinus_collider_velocity_at(const echinus_collider* 
                                                         double* velocity);
 
 /// The pose of a collider a time later.
+/// @param seconds  finite
 ECHINUS_API echinus_status echinus_collider_pose_after(const echinus_collider* collider, double seconds,
                                                        echinus_pose* pose);
 
