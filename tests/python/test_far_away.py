@@ -50,23 +50,6 @@ def test_maps_answer_about_points_in_the_frame_of_the_mesh(place):
     assert np.array_equal(far.winding_number(points[:10] + place) > 0.5, is_inside[:10])
 
 
-def test_brute_force_takes_the_same_points(place):
-    box = ech.make_box((1, 2, 3))
-    points = np.random.default_rng(2).uniform(-2, 2, (50, 3))
-    far = moved(box, place)
-    assert np.allclose(ech.unsigned_distance(far, points + place), ech.unsigned_distance(box, points), atol=1e-6)
-    assert np.allclose(ech.winding_number(far, points + place), ech.winding_number(box, points), atol=1e-5)
-
-
-@pytest.mark.parametrize("extension", ["obj", "ply", "off", "stl"])
-def test_files_hold_them(extension, place, tmp_path):
-    far = moved(ech.make_torus(), place)
-    ech.write_mesh(tmp_path / f"far.{extension}", far)
-    again = ech.read_mesh(tmp_path / f"far.{extension}")
-    assert again.vertices.dtype == np.float64
-    assert np.abs(again.vertices[again.faces] - far.vertices[far.faces]).max() < 2e-7
-
-
 def test_maps_and_meshes_keep_their_place_in_files_and_pickles(place, tmp_path):
     far = moved(ech.make_torus(), place)
     exact = ech.ExactMap(far)
@@ -75,16 +58,6 @@ def test_maps_and_meshes_keep_their_place_in_files_and_pickles(place, tmp_path):
     for again in (ech.load(tmp_path / "far.ech"), pickle.loads(pickle.dumps(exact))):
         assert again.origin == exact.origin and again.contains(inside) and again.contains(place) == exact.contains(place)
     assert np.array_equal(pickle.loads(pickle.dumps(far)).vertices, far.vertices)
-
-
-def test_tetrahedra_fill_them(place):
-    box = moved(ech.make_box((1, 2, 3)), place)
-    body = ech.tetrahedralize(ech.ExactMap(box), size=0.4).mesh
-    assert body.vertices.dtype == np.float64
-    assert ech.inspect_tetrahedra(body).volume == pytest.approx(6, rel=0.05)
-    assert ech.measure_distance(body, ech.ExactMap(box)).greatest_to_model < 0.4
-    with pytest.raises(ech.Error, match="the body stands around"):
-        ech.embed(body, body.vertices[:1])
 
 
 def test_float32_says_how_coarse_it_is_there():

@@ -5,8 +5,6 @@ import types
 
 import numpy as np
 import pytest
-from hypothesis import given, strategies
-from hypothesis.extra import numpy as arrays
 
 import echinus as ech
 from support import open_torus, points_around, torus
@@ -76,45 +74,6 @@ def test_arrays_that_are_no_mesh_are_refused(vertices, faces, error, sentence):
         ech.Mesh(vertices, faces)
 
 
-@pytest.mark.parametrize(
-    "vertices, faces",
-    [
-        (np.zeros((3, 3)), [[0, 1, 3]]),
-        (np.zeros((3, 3)), np.zeros((0, 3), int)),
-        (np.full((3, 3), np.nan), [[0, 1, 2]]),
-        ([[0, 0, 0], [1e39, 0, 0], [0, 1, 0]], [[0, 1, 2]]),
-    ],
-)
-def test_what_reads_a_mesh_refuses_an_invalid_one(vertices, faces):
-    mesh = ech.Mesh(vertices, faces)
-    calls = [
-        lambda: ech.inspect(mesh),
-        lambda: ech.repair(mesh),
-        lambda: ech.ExactMap(mesh),
-        lambda: ech.DistanceMap(mesh),
-        lambda: ech.winding_number(mesh, [0, 0, 0]),
-        lambda: ech.unsigned_distance(mesh, [0, 0, 0]),
-        lambda: ech.self_intersecting_pairs(mesh),
-        lambda: ech.intersecting_pairs(torus(), mesh),
-    ]
-    for call in calls:
-        with pytest.raises(ech.Error) as raised:
-            call()
-        assert raised.value.code == "invalid_mesh"
-
-
-@given(
-    arrays.arrays(np.float32, strategies.tuples(strategies.integers(0, 8), strategies.just(3)), elements=strategies.floats(width=32)),
-    arrays.arrays(np.int64, strategies.tuples(strategies.integers(0, 8), strategies.just(3)), elements=strategies.integers(-1, 9)),
-)
-def test_any_arrays_give_a_map_or_an_error(vertices, faces):
-    try:
-        m = ech.ExactMap(ech.Mesh(vertices, faces), threads=1)
-    except (ech.Error, ValueError):
-        return
-    assert m.contains(np.full((10, 3), 1e30)).sum() == 0
-
-
 def test_the_faults_of_a_mesh_are_counted_with_their_faces():
     report = ech.inspect(open_torus())
     assert not report.closed and report.border_edges.count > 0
@@ -129,60 +88,6 @@ def test_repairs_are_done_and_reported():
     assert report.changed_anything and ech.inspect(mended).closed
     same, nothing = ech.repair(faulty, drop_duplicate_faces=False, drop_doubled_patches=False, flip_inside_out=False)
     assert not nothing.changed_anything and np.array_equal(same.faces, faulty.faces)
-
-
-def test_a_repair_closes_seams_and_turns_faces():
-    mesh = torus()
-    corners = mesh.vertices[mesh.faces].reshape(-1, 3)  # each face with corners of its own
-    faces = np.arange(len(corners), dtype=np.uint32).reshape(-1, 3)
-    faces[::3] = faces[::3, ::-1]
-    torn = ech.Mesh(corners + np.float32([1e-7, 0, 0]) * (np.arange(len(corners)) % 2)[:, None], faces)
-    mended, report = ech.repair(torn)
-    assert report.vertices_welded == len(corners) - len(mesh.vertices) and report.faces_turned == len(faces[::3])
-    assert report.changed_anything and ech.inspect(mended).closed and ech.inspect(mended).orientable
-    assert not ech.inspect(ech.repair(torn, orient_faces=False)[0]).closed
-
-    box = ech.make_box((1, 1, 1))
-    vertices = np.concatenate([box.vertices, box.vertices[box.faces[0, :1]] + np.float32([0, 0, 1e-3])])
-    cracked = ech.Mesh(vertices, np.concatenate([[[8, *box.faces[0, 1:]]], box.faces[1:]]))
-    assert not ech.inspect(ech.repair(cracked)[0]).closed
-    assert ech.inspect(ech.repair(cracked, weld_distance=2e-3)[0]).closed
-    with pytest.raises(ech.Error, match="welded within 9"):
-        ech.repair(cracked, weld_distance=9)
-
-
-def test_a_mesh_is_made_solid_on_request():
-    mesh = torus()
-    holed = ech.Mesh(mesh.vertices, mesh.faces[5:])
-    assert not ech.inspect(ech.repair(holed)[0]).closed
-    filled, report = ech.repair(holed, close_holes=16)
-    assert report.holes_closed >= 1 and report.holes_left == 0 and report.changed_anything
-    assert ech.inspect(filled).closed and np.array_equal(filled.faces[: len(holed.faces)], holed.faces)
-
-    engine = ech.make_box((0.1, 0.1, 0.1))
-    vertices = np.concatenate([mesh.vertices, engine.vertices + np.float32([1, 0, 0])])
-    car = ech.Mesh(vertices, np.concatenate([mesh.faces, engine.faces + np.uint32(len(mesh.vertices))]))
-    body, report = ech.repair(car, drop_inner_faces=True)
-    assert report.inner_faces_dropped == tuple(range(len(mesh.faces), len(car.faces)))
-    assert np.array_equal(body.faces, mesh.faces)
-
-    sheet = ech.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
-    plate, report = ech.repair(sheet, sheet_thickness=0.1)
-    assert report.sheets_thickened == 1 and report.faces_added == 7
-    assert ech.inspect(plate).signed_volume == pytest.approx(0.05)
-    assert ech.ExactMap(plate).contains([[0.2, 0.2, 0.04], [0.2, 0.2, 0.06]]).tolist() == [True, False]
-
-
-def test_an_impossible_repair_is_an_error():
-    sheet = ech.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
-    with pytest.raises(ValueError, match="close_holes"):
-        ech.repair(sheet, close_holes=-1)
-    with pytest.raises(ech.Error, match="holes of up to 257 edges"):
-        ech.repair(sheet, close_holes=257)
-    for thickness in (-1, np.nan, np.inf, 1e-9, 100):
-        with pytest.raises(ech.Error, match="thickness") as raised:
-            ech.repair(sheet, sheet_thickness=thickness)
-        assert raised.value.code == "invalid_options"
 
 
 def test_welding_joins_equal_positions():
@@ -207,23 +112,6 @@ def test_the_judges_keep_leading_dimensions_and_say_what_nan_is():
     assert np.array_equal(ech.unsigned_distance(torus(), points, threads=0), ech.unsigned_distance(torus(), points))
     assert np.isnan(ech.winding_number(torus(), [np.nan, 0, 0]))
     assert ech.unsigned_distance(torus(), [np.nan, 0, 0]) == np.inf
-
-
-def test_generators_refuse_what_is_no_shape():
-    for call in (lambda: ech.make_torus(1, 2), lambda: ech.make_sphere(-1), lambda: ech.make_box((0, 1, 1))):
-        with pytest.raises(ech.Error) as raised:
-            call()
-        assert raised.value.code == "invalid_options"
-
-
-def test_generators_name_the_size_that_is_too_large():
-    for call, words in (
-        (lambda: ech.make_torus(np.inf, 1), "the major radius of a torus is inf"),
-        (lambda: ech.make_sphere(1e39), "the radius of a sphere is 1e[+]39; it must be positive and finite"),
-        (lambda: ech.make_box((1, np.inf, 1)), "the edge length of a box is inf"),
-    ):
-        with pytest.raises(ech.Error, match=words):
-            call()
 
 
 def test_an_error_names_the_file(tmp_path):

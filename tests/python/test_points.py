@@ -108,48 +108,8 @@ def test_half_precision_and_whole_numbers_are_real_numbers():
     assert MAP.contains(np.array([[1, 0, 0], [0, 0, 0]], np.int64)).tolist() == [True, False]
 
 
-@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-@pytest.mark.parametrize("dtype", [np.float32, np.float64])
-def test_points_that_are_not_finite_are_outside_and_have_no_contact(value, dtype):
-    points = np.array([[value, 0, 0], [1, value, 0], [1, 0, value], [1, 0, 0]], dtype)
-    assert MAP.contains(points).tolist() == [False, False, False, True]
-    contacts = MAP.contacts(points, 10)
-    assert contacts.found.tolist() == [False, False, False, True]
-    assert (contacts.face[:3] == -1).all() and (contacts.depth[:3] == 0).all()
-
-
 def test_numbers_beyond_float32_are_outside_without_a_warning():
     assert not MAP.contains([[1e300, 0, 0]]).any()
-
-
-@pytest.mark.parametrize("points", [[], [1, 2], [[1, 2]], np.zeros((3, 4)), np.float32(1), np.zeros((3, 0))])
-def test_a_wrong_shape_is_an_error_that_names_the_argument(points):
-    with pytest.raises(ValueError, match=r"points must have the shape \(\.\.\., 3\), not \("):
-        MAP.contains(points)
-
-
-@pytest.mark.parametrize("points", ["text", [["a", "b", "c"]], np.zeros((2, 3), complex), np.zeros((2, 3), bool), [None] * 3, object()])
-def test_a_wrong_type_is_an_error_that_names_the_argument(points):
-    with pytest.raises(TypeError, match="points must be an array of real numbers"):
-        MAP.contains(points)
-
-
-def test_ragged_points_are_an_error():
-    with pytest.raises(TypeError, match="points must be an array of real numbers"):
-        MAP.contains([[1, 2, 3], [4, 5]])
-
-
-@pytest.mark.parametrize("threads", [-1, 2**31, 2**70])
-def test_threads_out_of_range_are_named_with_their_range(threads):
-    for call in (lambda: MAP.contains(POINTS, threads=threads), lambda: ech.ExactMap(torus(), threads=threads)):
-        with pytest.raises(ValueError, match=f"threads must be a whole number from 0 to 2147483647, not {threads}"):
-            call()
-
-
-@pytest.mark.parametrize("margin", [-1, np.nan])
-def test_a_margin_must_not_be_negative(margin):
-    with pytest.raises(ValueError, match="margin must be 0 or more"):
-        MAP.contacts(POINTS, margin)
 
 
 def test_answers_go_where_out_says():

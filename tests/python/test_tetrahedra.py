@@ -4,8 +4,6 @@ import pickle
 
 import numpy as np
 import pytest
-from hypothesis import given, strategies
-from hypothesis.extra import numpy as arrays
 
 import echinus as ech
 from support import torus
@@ -79,14 +77,6 @@ def test_what_is_written_reads_back_with_the_same_bits(tmp_path, extension):
     assert same(read.mesh, made) and read.turned_tetrahedra == read.dropped_vertices == 0
 
 
-def test_a_file_of_tetgen_tells_what_was_changed(tmp_path):
-    (tmp_path / "a.node").write_text("5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 9 9 9\n")
-    (tmp_path / "a.ele").write_text("1 4 0\n1 1 3 2 4\n")
-    read = ech.read_tetrahedra(tmp_path / "a.ele")
-    assert (read.turned_tetrahedra, read.dropped_vertices) == (1, 1)
-    assert ech.inspect_tetrahedra(read.mesh).volume == pytest.approx(1 / 6)
-
-
 def test_files_that_are_none_are_refused(tmp_path):
     assert refusal(ech.read_tetrahedra, tmp_path / "none.msh")[0] == "unreadable"
     (tmp_path / "torn.msh").write_text("$MeshFormat\n")
@@ -96,64 +86,6 @@ def test_files_that_are_none_are_refused(tmp_path):
     inverted = ech.TetrahedralMesh(*CORNER)
     assert refusal(ech.write_tetrahedra, tmp_path / "a.msh", inverted)[0] == "invalid_mesh"
     assert not (tmp_path / "a.msh").exists()
-
-
-@pytest.mark.parametrize("tetrahedra", [[[0, 1, 2, 4]], [[0, 2, 1, 3]], [[0, 1, 2, 2]], np.zeros((0, 4), int)])
-def test_a_body_with_a_fault_is_refused_by_all_that_need_it_valid(tetrahedra):
-    mesh = ech.TetrahedralMesh(CORNER[0], tetrahedra)
-    for use in (
-        ech.require_valid_tetrahedra,
-        ech.inspect_tetrahedra,
-        ech.make_soft_body,
-        lambda m: ech.embed(m, [[0, 0, 0]]),
-        lambda m: ech.measure_distance(m, ech.ExactMap(torus())),
-    ):
-        assert refusal(use, mesh)[0] == "invalid_mesh"
-
-
-def test_arrays_of_another_shape_or_type_are_refused():
-    for tetrahedra in ([[0, 1, 2]], [0, 1, 2, 3], [[[0, 1, 2, 3]]]):
-        with pytest.raises(ValueError, match=r"tetrahedra must have the shape \(n, 4\)"):
-            ech.TetrahedralMesh(CORNER[0], tetrahedra)
-    with pytest.raises(ValueError, match="tetrahedron 1 names the vertex -1"):
-        ech.TetrahedralMesh(CORNER[0], [[0, 1, 2, 3], [0, 1, 2, -1]])
-    with pytest.raises(TypeError, match="tetrahedra must be an array of whole numbers"):
-        ech.TetrahedralMesh(CORNER[0], [[0.0, 1, 2, 3]])
-
-
-def test_sizes_and_counts_out_of_range_are_refused():
-    for options in ({}, {"size": 0.1, "count": 10}, {"count": -1}, {"size": 0.1, "most_tetrahedra": -1}):
-        with pytest.raises(ValueError):
-            body_of_torus(**options)
-    assert refusal(body_of_torus, count=0)[0] == "invalid_options"
-    for size in (0, -1, np.nan, np.inf, 1e-9):
-        assert refusal(body_of_torus, size=size)[0] == "invalid_options"
-    assert refusal(body_of_torus, size=0.05, most_tetrahedra=10)[0] == "invalid_options"
-    assert refusal(body_of_torus, size=50)[0] == "invalid_mesh"
-    assert refusal(ech.make_solid_box, (1, 1, -1))[0] == "invalid_options"
-    with pytest.raises(ValueError, match="each of segments must be a whole number from 0 to 4294967295, not -1"):
-        ech.make_solid_box((1, 1, 1), (1, 1, -1))
-    with pytest.raises(ValueError, match="segments must be three whole numbers"):
-        ech.make_solid_box((1, 1, 1), (1, 1))
-
-
-shapes = strategies.tuples(strategies.integers(1, 8), strategies.just(4))
-indices = arrays.arrays(np.int64, shapes, elements=strategies.integers(0, 9))
-places = arrays.arrays(np.float32, (8, 3), elements=strategies.floats(-1, 1, width=32) | strategies.just(np.nan))
-
-
-@given(places, indices)
-def test_any_arrays_are_a_valid_body_or_are_refused(vertices, tetrahedra):
-    mesh = ech.TetrahedralMesh(vertices, tetrahedra)
-    try:
-        report = ech.inspect_tetrahedra(mesh)
-    except ech.Error as error:
-        assert error.code == "invalid_mesh"
-        return
-    a, b, c, d = (vertices[corners].astype(float) for corners in mesh.tetrahedra.T)
-    volumes = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6
-    assert (volumes > 0).all() and report.volume == pytest.approx(volumes.sum())
-    assert ech.inspect(ech.boundary(mesh)).closed
 
 
 def test_embedded_points_go_along_with_every_affine_motion():

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 namespace echinus::python {
 
@@ -26,7 +27,8 @@ T numbers(const char* name, const std::string& wanted, const py::handle& given) 
     try {
         return given.cast<T>();
     } catch (const py::cast_error&) {
-        if (has_numbers(given)) throw py::value_error(sentence(name, wanted, given));
+        if (!std::is_same_v<T, double> && has_numbers(given))
+            throw py::value_error(sentence(name, wanted, given));
         throw py::type_error(sentence(name, wanted, given));
     }
 }
@@ -71,7 +73,7 @@ void FromPython::operator()(const char* name, double& member) const {
     member = numbers<double>(name, "a number", values_[name]);
 }
 void FromPython::operator()(const char* name, std::optional<double>& member) const {
-    member = numbers<std::optional<double>>(name, "a number or None", values_[name]);
+    if (!values_[name].is_none()) member = numbers<double>(name, "a number or None", values_[name]);
 }
 void FromPython::operator()(const char* name, std::uint32_t& member) const {
     member = whole<std::uint32_t>(name, values_[name]);
