@@ -10,6 +10,8 @@ if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "Kind of build" FORCE)
 endif()
 
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 0) # where CMAKE_UNITY_BUILD is on, a target without groups is compiled as one
+
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND PROJECT_IS_TOP_LEVEL)
   # Without this, ccache caches nothing that is compiled with a precompiled header.
@@ -23,6 +25,8 @@ target_compile_options(echinus_options INTERFACE
   # GCC 12 warns about its own std::string when optimising, the more with precompiled headers: gcc.gnu.org/PR105651.
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-stringop-overflow>
+  # In a unity build every source counts as included, so that what is private to one looks shared.
+  $<$<AND:$<BOOL:${CMAKE_UNITY_BUILD}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>
   $<$<BOOL:${ECHINUS_WARNINGS_AS_ERRORS}>:-Werror>
   # The same bits on every machine: a fused multiply-add rounds once where the source rounds twice.
   -ffp-contract=off

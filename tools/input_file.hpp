@@ -1,7 +1,7 @@
 #pragma once
 
+#include "console/options.hpp"
 #include "input.hpp"
-#include "options.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/mesh.hpp>

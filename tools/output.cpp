@@ -1,8 +1,8 @@
 #include "output.hpp"
 
+#include "console/options.hpp"
 #include "files/atomic_file.hpp"
 #include "mesh_io/mesh_source.hpp"
-#include "options.hpp"
 
 #include <echinus/error.hpp>
 

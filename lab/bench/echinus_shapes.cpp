@@ -1,7 +1,7 @@
 // The program echinus-shapes: checks shapes of a range of seeds and keeps what it found in a report, from
 // which it goes on when it is started again. scripts/bench shapes runs it. Not installed.
 
-#include "machine.hpp"
+#include "console/machine.hpp"
 #include "property/shape_checks.hpp"
 #include "property/shapes.hpp"
 #include "records.hpp"

@@ -1,8 +1,8 @@
 // Measures Echinus beside its rivals; scripts/bench runs it and lists the tasks.
 
-#include "machine.hpp"
+#include "console/machine.hpp"
+#include "console/progress.hpp"
 #include "pinning.hpp"
-#include "progress.hpp"
 #include "task.hpp"
 
 #include <echinus/error.hpp>

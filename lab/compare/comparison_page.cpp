@@ -2,8 +2,8 @@
 #include "compare/comparison_report.hpp"
 #include "compare/curve_plots.hpp"
 #include "compare/markup.hpp"
+#include "console/machine.hpp"
 #include "encoding.hpp"
-#include "machine.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "compare/compare.hpp"
-#include "json.hpp"
+#include "console/json.hpp"
 
 #include <echinus/render.hpp>
 

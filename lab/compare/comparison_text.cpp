@@ -1,6 +1,6 @@
 #include "compare/columns.hpp"
 #include "compare/comparison_report.hpp"
-#include "machine.hpp"
+#include "console/machine.hpp"
 
 #include <fmt/format.h>
 

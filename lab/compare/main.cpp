@@ -3,9 +3,9 @@
 #include "commands/descriptions.hpp"
 #include "compare/compare.hpp"
 #include "compare/comparison_report.hpp"
+#include "console/progress.hpp"
 #include "input_file.hpp"
 #include "output.hpp"
-#include "progress.hpp"
 #include "run_program.hpp"
 
 #include <echinus/error.hpp>

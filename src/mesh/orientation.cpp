@@ -10,11 +10,11 @@ namespace echinus {
 
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoFace = std::numeric_limits<std::uint32_t>::max();
 
 /// The face beyond an edge, if there is just one.
 struct Neighbour {
-    std::uint32_t face = kNone;
+    std::uint32_t face = kNoFace;
     bool runs_alike = false; ///< both run along the edge the same way, so that one of them is turned
 };
 
@@ -33,10 +33,10 @@ std::vector<std::array<Neighbour, 3>> find_neighbours(std::span<const EdgeUse> e
 /// Finds the patches, how their faces run, and which of them are orientable.
 Orientation find_patches(std::span<const EdgeUse> edge_uses, std::size_t face_count) {
     const auto neighbours = find_neighbours(edge_uses, face_count);
-    Orientation result{std::vector(face_count, kNone), std::vector<bool>(face_count), {}, {}};
+    Orientation result{std::vector(face_count, kNoFace), std::vector<bool>(face_count), {}, {}};
     std::vector<std::uint32_t> waiting;
     for (std::uint32_t first = 0; first < face_count; ++first) {
-        if (result.patch_of_face[first] != kNone) continue;
+        if (result.patch_of_face[first] != kNoFace) continue;
         const auto patch = kept_as<std::uint32_t>(result.is_orientable.size());
         result.is_orientable.push_back(true);
         result.patch_of_face[first] = patch;
@@ -45,9 +45,9 @@ Orientation find_patches(std::span<const EdgeUse> edge_uses, std::size_t face_co
             const std::uint32_t face = waiting.back();
             waiting.pop_back();
             for (const Neighbour& neighbour : neighbours[face]) {
-                if (neighbour.face == kNone) continue;
+                if (neighbour.face == kNoFace) continue;
                 const bool is_turned = result.is_turned[face] != neighbour.runs_alike;
-                if (result.patch_of_face[neighbour.face] == kNone) {
+                if (result.patch_of_face[neighbour.face] == kNoFace) {
                     result.patch_of_face[neighbour.face] = patch;
                     result.is_turned[neighbour.face] = is_turned;
                     waiting.push_back(neighbour.face);

@@ -14,7 +14,7 @@ namespace echinus {
 
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoEdge = std::numeric_limits<std::uint32_t>::max();
 
 /// The cells of a grid in which places lie. A double holds the number of a cell exactly, or where it is too
 /// large for that, float does not resolve cells, and a cell holds one place.
@@ -80,14 +80,14 @@ std::vector<std::uint32_t> join_near_vertices(std::span<const Vec3f> vertices,
                                               std::span<const std::uint32_t> open, double width) {
     const Grid grid(width);
     std::unordered_map<Grid::Cell, std::uint32_t, HashOfCell> last_in_cell; // which stands for itself
-    std::vector<std::uint32_t> next(open.size(), kNone), result(open.begin(), open.end());
+    std::vector<std::uint32_t> next(open.size(), kNoEdge), result(open.begin(), open.end());
     for (std::uint32_t i = 0; i < open.size(); ++i) {
         const Vec3d place(vertices[open[i]]);
         std::uint32_t first = i;
         grid.for_each_near(place, width, [&](const Grid::Cell& cell) {
             const auto found = last_in_cell.find(cell);
             if (found == last_in_cell.end()) return;
-            for (std::uint32_t k = found->second; k != kNone; k = next[k])
+            for (std::uint32_t k = found->second; k != kNoEdge; k = next[k])
                 if (length(Vec3d(vertices[open[k]]) - place) <= width) first = std::min(first, k);
         });
         result[i] = open[first];

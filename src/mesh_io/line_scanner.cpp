@@ -267,6 +267,13 @@ std::int64_t LineScanner::next_integer(const std::string& what) {
     return value;
 }
 
+std::size_t LineScanner::next_count(const std::string& what) {
+    const std::int64_t count = next_integer(what);
+    if (count < 0 || count >= std::numeric_limits<std::uint32_t>::max())
+        fail(ErrorCode::Damaged, what + " cannot be " + std::to_string(count));
+    return static_cast<std::size_t>(count);
+}
+
 std::uint32_t LineScanner::next_vertex_index(std::size_t vertex_count) {
     const std::int64_t index = next_integer("a vertex number");
     if (index < 0 || static_cast<std::uint64_t>(index) >= vertex_count)

@@ -74,6 +74,9 @@ class LineScanner {
     /// @throws Error Damaged when the next word is no integer of 64 bits
     std::int64_t next_integer(const std::string& what);
 
+    /// @throws Error Damaged when the next word is no integer in [0, 2^32 - 2]
+    std::size_t next_count(const std::string& what);
+
     /// The next word as an index below `vertex_count`.
     /// @throws Error Damaged when there is none; InvalidMesh when it is out of range
     std::uint32_t next_vertex_index(std::size_t vertex_count);

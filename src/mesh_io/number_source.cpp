@@ -7,14 +7,14 @@ namespace echinus {
 
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r";
+constexpr std::string_view kSeparators = " \t\r";
 
 std::vector<std::string_view> words_of(std::string_view line) {
     std::vector<std::string_view> words;
     while (true) {
-        line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
+        line.remove_prefix(std::min(line.find_first_not_of(kSeparators), line.size()));
         if (line.empty()) return words;
-        words.push_back(line.substr(0, line.find_first_of(kBlanks)));
+        words.push_back(line.substr(0, line.find_first_of(kSeparators)));
         line.remove_prefix(words.back().size());
     }
 }

@@ -14,7 +14,7 @@ namespace echinus {
 
 namespace {
 
-constexpr std::int64_t kTetrahedron = 4;
+constexpr std::int64_t kMshTetrahedron = 4;
 
 /// The nodes of an element type of at most two dimensions; none for others.
 std::optional<int> flat_node_count(std::int64_t type) {
@@ -182,7 +182,7 @@ class MshReader {
     Vec3d next_position() { return numbers_.position(NumberType::Float64); }
 
     void read_element(std::int64_t type, NumberType number_type) {
-        if (type == kTetrahedron) {
+        if (type == kMshTetrahedron) {
             Tetrahedron& corners = mesh_.tetrahedra.emplace_back();
             for (std::uint32_t& corner : corners) corner = index_of(numbers_.integer(number_type, "a node"));
             return;

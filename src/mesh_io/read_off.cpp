@@ -12,14 +12,6 @@ namespace echinus {
 
 namespace {
 
-/// The next count, which may be any up to 2^32 - 2.
-std::size_t next_count(LineScanner& scanner, const char* what) {
-    const std::int64_t count = scanner.next_integer(what);
-    if (count < 0 || count >= std::numeric_limits<std::uint32_t>::max())
-        scanner.fail(ErrorCode::Damaged, "there cannot be " + std::to_string(count) + " of them");
-    return static_cast<std::size_t>(count);
-}
-
 std::string promised(const char* kind, std::size_t index, std::size_t count) {
     return std::string(kind) + " " + std::to_string(index + 1) + " of " + std::to_string(count);
 }
@@ -32,8 +24,8 @@ class OffReader {
         scanner_.require_line("the word OFF");
         scanner_.read_across_lines();
         read_keyword();
-        const std::size_t vertex_count = next_count(scanner_, "the number of vertices");
-        const std::size_t face_count = next_count(scanner_, "the number of faces");
+        const std::size_t vertex_count = scanner_.next_count("the number of vertices");
+        const std::size_t face_count = scanner_.next_count("the number of faces");
         skip_edge_count();
         begin_body(vertex_count + face_count);
         // Nothing is reserved: the counts may be false, but the lines exist.
@@ -73,7 +65,7 @@ class OffReader {
     }
 
     void require_three_dimensions() {
-        const std::size_t dimension = next_count(scanner_, "the number of dimensions");
+        const std::size_t dimension = scanner_.next_count("the number of dimensions");
         if (dimension != 3 || is_homogeneous_)
             scanner_.fail(ErrorCode::WrongFormat, "vertices have " + std::to_string(dimension) +
                                                       (is_homogeneous_ ? " + 1" : "") +
@@ -91,13 +83,13 @@ class OffReader {
     /// It is often missing, and may have a line of its own, where no vertex has a single number.
     void skip_edge_count() {
         if (!scanner_.at_end_of_line()) {
-            next_count(scanner_, "the number of edges");
+            scanner_.next_count("the number of edges");
             return;
         }
         LineScanner ahead(source_, scanner_.offset(), scanner_.line_number() + 1);
         if (!ahead.next_line()) return;
         ahead.next_word();
-        if (ahead.at_end_of_line()) next_count(scanner_, "the number of edges");
+        if (ahead.at_end_of_line()) scanner_.next_count("the number of edges");
     }
 
     void begin_body(std::size_t element_count) {
@@ -129,7 +121,7 @@ class OffReader {
     /// Whatever the lines, the rest of a face's line is its colour.
     void read_face(const std::string& what) {
         begin_element(what);
-        const std::size_t corner_count = next_count(scanner_, "the number of the face's corners");
+        const std::size_t corner_count = scanner_.next_count("the number of the face's corners");
         for (std::size_t corner = 0; corner < corner_count; ++corner)
             mesh_.corners.push_back(scanner_.next_vertex_index(mesh_.vertices.size()));
         mesh_.corner_counts.push_back(static_cast<std::uint32_t>(corner_count));

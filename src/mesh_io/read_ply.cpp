@@ -63,8 +63,8 @@ class BinaryBody {
     void skip(PlyType type) { number(type); }
     /// A line's end may follow, or what fills up a block.
     bool at_end() const {
-        constexpr std::string_view kPadding{" \r\n\0\x1a", 5};
-        return source_.bytes.substr(bytes_.offset()).find_first_not_of(kPadding) == std::string_view::npos;
+        constexpr std::string_view kFilling{" \r\n\0\x1a", 5};
+        return source_.bytes.substr(bytes_.offset()).find_first_not_of(kFilling) == std::string_view::npos;
     }
     [[noreturn]] void fail(ErrorCode code, const std::string& what) const {
         source_.fail(code, what + ", before byte " + std::to_string(bytes_.offset()));

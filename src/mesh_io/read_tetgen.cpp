@@ -12,13 +12,6 @@ namespace echinus {
 
 namespace {
 
-std::size_t next_count(LineScanner& scanner, const char* what) {
-    const std::int64_t count = scanner.next_integer(what);
-    if (count < 0 || count >= std::numeric_limits<std::uint32_t>::max())
-        scanner.fail(ErrorCode::Damaged, std::string(what) + " cannot be " + std::to_string(count));
-    return static_cast<std::size_t>(count);
-}
-
 void require_number(LineScanner& scanner, std::int64_t expected, const char* what) {
     const std::int64_t number = scanner.next_integer(what);
     if (number != expected)
@@ -30,7 +23,7 @@ void require_number(LineScanner& scanner, std::int64_t expected, const char* wha
 std::int64_t read_nodes(const MeshSource& source, TetrahedraInFile& mesh) {
     LineScanner scanner(source);
     scanner.require_line("the number of points");
-    const std::size_t point_count = next_count(scanner, "the number of points");
+    const std::size_t point_count = scanner.next_count("the number of points");
     require_number(scanner, 3, "the dimension");
     std::int64_t first = 0;
     for (std::size_t i = 0; i < point_count; ++i) {
@@ -65,8 +58,8 @@ TetrahedraInFile read_tetgen(const MeshSource& nodes, const MeshSource& elements
     const std::int64_t first = read_nodes(nodes, mesh);
     LineScanner scanner(elements);
     scanner.require_line("the number of tetrahedra");
-    const std::size_t count = next_count(scanner, "the number of tetrahedra");
-    if (const std::size_t corner_count = next_count(scanner, "the number of corners"); corner_count != 4)
+    const std::size_t count = scanner.next_count("the number of tetrahedra");
+    if (const std::size_t corner_count = scanner.next_count("the number of corners"); corner_count != 4)
         scanner.fail(ErrorCode::WrongFormat, "tetrahedra of four points are read, not of " +
                                                  std::to_string(corner_count) + "; run TetGen without -o2");
     for (std::size_t i = 0; i < count; ++i) {

@@ -15,7 +15,7 @@ namespace echinus {
 
 namespace {
 
-constexpr std::int64_t kTetrahedron = 10;
+constexpr std::int64_t kVtkTetrahedron = 10;
 
 /// Vertices, lines and plane cells: VTK_VERTEX to VTK_QUAD.
 bool is_flat(std::int64_t type) {
@@ -171,7 +171,7 @@ class VtkReader {
                                                   " cells, but " + std::string(words[1]) + " types");
         for (std::size_t i = 0; i < corner_counts_.size(); ++i) {
             types_.push_back(numbers_.integer(NumberType::Int32, "the type of a cell"));
-            if (types_.back() == kTetrahedron ? corner_counts_[i] != 4 : !is_flat(types_.back()))
+            if (types_.back() == kVtkTetrahedron ? corner_counts_[i] != 4 : !is_flat(types_.back()))
                 numbers_.fail(ErrorCode::WrongFormat,
                               "cell " + std::to_string(i) + " of type " + std::to_string(types_.back()) +
                                   " is no tetrahedron of four corners; save the body as linear tetrahedra");
@@ -181,7 +181,7 @@ class VtkReader {
     void gather() {
         std::size_t begin = 0;
         for (std::size_t cell = 0; cell < types_.size(); begin += corner_counts_[cell++])
-            if (types_[cell] == kTetrahedron)
+            if (types_[cell] == kVtkTetrahedron)
                 mesh_.tetrahedra.push_back(
                     {corners_[begin], corners_[begin + 1], corners_[begin + 2], corners_[begin + 3]});
     }

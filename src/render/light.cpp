@@ -16,10 +16,6 @@ constexpr Vec3f kZenith{0.44F, 0.455F, 0.48F};
 constexpr Vec3f kHorizon{0.26F, 0.27F, 0.283F};
 constexpr Vec3f kFloorBounce{0.20F, 0.194F, 0.185F};
 
-Vec3f unit(const Vec3f& v) {
-    return v * (1 / length(v));
-}
-
 struct Basis {
     Vec3f x, y;
 };
@@ -57,7 +53,7 @@ Vec3f lamp_middle(const Camera& camera) {
     const double azimuth = kLampAzimuthDeg * kDegree;
     const double elevation = kLampElevationDeg * kDegree;
     const Vec3d level = towards_camera * std::cos(azimuth) - camera.right * std::sin(azimuth);
-    return unit(Vec3f(level * std::cos(elevation) + camera.world_up * std::sin(elevation)));
+    return unit_of(Vec3f(level * std::cos(elevation) + camera.world_up * std::sin(elevation)));
 }
 
 } // namespace

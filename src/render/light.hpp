@@ -6,6 +6,11 @@
 
 namespace echinus {
 
+/// A vector other than 0, made a unit long.
+inline Vec3f unit_of(const Vec3f& v) {
+    return v * (1 / length(v));
+}
+
 /// The fixed light of all pictures: a large soft lamp above the camera's left shoulder, a pale sky, and the
 /// light reflected by the floor. Radiances are linear, in units of a white surface that faces the sky.
 class StudioLight {

@@ -31,9 +31,6 @@ Vec3f multiply(const Vec3f& a, const Vec3f& b) {
 float grey(const Vec3f& light) {
     return (light.x + light.y + light.z) / 3;
 }
-Vec3f unit(const Vec3f& v) {
-    return v * (1 / length(v));
-}
 
 /// Everything drawn lies within the unit sphere; most rays from the floor miss it and need no Embree. The
 /// sphere here is a little larger, to allow for rounding.
@@ -104,7 +101,7 @@ Lens::Lens(const Camera& camera, const UnitFrame& frame, std::uint32_t width, st
 }
 
 Ray Lens::ray_through(float x, float y) const {
-    return {position_, unit(corner_ + step_x_ * x + step_y_ * y)};
+    return {position_, unit_of(corner_ + step_x_ * x + step_y_ * y)};
 }
 
 Tracer::Tracer(const PaintedSurface& surface, const Intersector& intersector, const Camera& camera,
@@ -173,7 +170,7 @@ Tracer::Place Tracer::object_place(const Ray& ray, const RayHit& hit, const Draw
     const Vec3f position = blend(corners, hit);
     const Vec3f smooth = blend(normals, hit);
     // Opposite normals may cancel out.
-    const Vec3f normal = dot(smooth, smooth) > 1e-6F ? unit(smooth) : outward * side;
+    const Vec3f normal = dot(smooth, smooth) > 1e-6F ? unit_of(smooth) : outward * side;
     const Vec3f start =
         lift_to_smooth_surface(position, corners, normals, hit) + outward * (side * kClearance);
     const Vec3f paint = albedo(hit, position, from_behind);

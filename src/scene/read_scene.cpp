@@ -449,8 +449,8 @@ std::string read_text(const fs::path& path) {
 
 } // namespace
 
-Scene parse_scene(std::string_view json, const std::string& name) {
-    const nlohmann::json document = parse_json(json, name);
+Scene parse_scene(std::string_view text, const std::string& name) {
+    const nlohmann::json document = parse_json(text, name);
     JsonObject root(document, name, "");
     Scene scene;
     read_colliders(root, scene);
@@ -464,8 +464,8 @@ Scene parse_scene(std::string_view json, const std::string& name) {
     return scene;
 }
 
-MapOptions parse_map_options(std::string_view json, const std::string& name) {
-    const nlohmann::json document = parse_json(json, name);
+MapOptions parse_map_options(std::string_view text, const std::string& name) {
+    const nlohmann::json document = parse_json(text, name);
     return read_map(JsonObject(document, name, "map"));
 }
 

@@ -12,7 +12,7 @@ namespace echinus {
 
 namespace {
 
-[[noreturn]] void fail(const std::string& sentence) {
+[[noreturn]] void fail_for_surface(const std::string& sentence) {
     throw Error(ErrorCode::InvalidMesh, sentence);
 }
 
@@ -26,16 +26,17 @@ std::string name_of(std::span<const EdgeUse> uses) {
 void require_cloth(const TriangleMesh& mesh, std::span<const EdgeUse> edge_uses) {
     for (std::size_t face = 0; face < mesh.faces.size(); ++face)
         if (has_equal_corners(mesh.faces[face]))
-            fail("face " + std::to_string(face) + " of the cloth has two equal corners; remove it");
+            fail_for_surface("face " + std::to_string(face) +
+                             " of the cloth has two equal corners; remove it");
     for_each_edge(edge_uses, [](std::span<const EdgeUse> uses) {
         if (uses.size() > 2)
-            fail(name_of(uses) +
-                 "; an edge of a cloth has at most two: give all others vertices of their own");
+            fail_for_surface(name_of(uses) +
+                             "; an edge of a cloth has at most two: give all others vertices of their own");
     });
     const auto equal = find_equal_faces(mesh);
     if (!equal.empty())
-        fail("faces " + std::to_string(equal[0][0]) + " and " + std::to_string(equal[0][1]) +
-             " of the cloth have the same corners; remove one of them (repair() can)");
+        fail_for_surface("faces " + std::to_string(equal[0][0]) + " and " + std::to_string(equal[0][1]) +
+                         " of the cloth have the same corners; remove one of them (repair() can)");
 }
 
 /// A face beyond an edge, and whether both run along it the same way.

@@ -13,7 +13,7 @@ namespace {
 /// In lattice steps. The lattice itself is off by one step, a mesh judged without it by as much.
 constexpr float kGuard = 8;
 
-float largest(const Vec3d& scale) {
+float largest_of(const Vec3d& scale) {
     return static_cast<float>(std::max({std::fabs(scale.x), std::fabs(scale.y), std::fabs(scale.z)}));
 }
 
@@ -27,8 +27,8 @@ ColliderNow::ColliderNow(const Collider& collider, const RigidTransform& previou
                          const SimulationOptions& options)
     : map(map_of_surface(collider)->view()), scale(collider.scale), local(collider),
       body(collider.pose, {1, 1, 1}), material(previous_pose, collider.pose),
-      step(map.radius / static_cast<float>(kLatticeExtent) * largest(collider.scale)), guard(kGuard * step),
-      thickness(std::max(static_cast<float>(options.thickness.value()), 2 * guard)),
+      step(map.radius / static_cast<float>(kLatticeExtent) * largest_of(collider.scale)),
+      guard(kGuard * step), thickness(std::max(static_cast<float>(options.thickness.value()), 2 * guard)),
       friction(static_cast<float>(options.friction)),
       two_sided(options.surface_collision && !map.border.empty()),
       coordinate_sum(sum_of_coordinates(collider.pose.translation) +

@@ -9,8 +9,8 @@ namespace {
 
 /// In which a stick of twenty times its length comes down to its length.
 constexpr std::uint32_t kFrames = 30;
-constexpr float kMostStretch = 1.3F; ///< in rest lengths
-constexpr float kKept = 0.9F;        ///< of the length of a stretched stick, in a frame
+constexpr float kMostGentleStretch = 1.3F; ///< in rest lengths
+constexpr float kKept = 0.9F;              ///< of the length of a stretched stick, in a frame
 
 } // namespace
 
@@ -27,7 +27,7 @@ void GentleSticks::set_goals(StickArrays& sticks, const PointArrays& positions) 
     for (std::size_t i = 0; i < sticks.count(); ++i) {
         const Vec3f across = positions[sticks.b[i]] - positions[sticks.a[i]];
         const float length_sq = dot(across, across);
-        const float most = kMostStretch * sticks.rest_lengths[i];
+        const float most = kMostGentleStretch * sticks.rest_lengths[i];
         if (length_sq > most * most)
             sticks.goal_lengths[i] = std::max(sticks.rest_lengths[i], kKept * std::sqrt(length_sq));
     }

@@ -42,10 +42,10 @@ SimulationOptions with_thickness(SimulationOptions options, const Deformable& de
 
 /// Rotations that are of unit length to rounding in double stay as they are, to the bit.
 std::vector<Collider> with_unit_rotations(std::vector<Collider> colliders) {
-    constexpr double kRounding = 1e-12;
+    constexpr double kUnitRounding = 1e-12;
     for (Collider& collider : colliders) {
         Rotation& r = collider.pose.rotation;
-        if (std::abs(r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z - 1) > kRounding) r = r.normalised();
+        if (std::abs(r.w * r.w + r.x * r.x + r.y * r.y + r.z * r.z - 1) > kUnitRounding) r = r.normalised();
     }
     return colliders;
 }

@@ -136,17 +136,18 @@ ConstraintSchedule<StickRun> schedule_of(const StickArrays& sticks, std::size_t 
 }
 
 /// How the ends share the correction, and what is left to the goal.
-struct Shares {
+struct StickShares {
     double a, b, yield;
 };
 
 /// Jakobsen 2001, section 4.
-Shares shares_of_stick(double inverse_mass_a, double inverse_mass_b, double stiffness) {
+StickShares shares_of_stick(double inverse_mass_a, double inverse_mass_b, double stiffness) {
     const double sum = inverse_mass_a + inverse_mass_b;
     return {stiffness * inverse_mass_a / sum, stiffness * inverse_mass_b / sum, 0};
 }
 
-Shares shares_of_spring(double inverse_mass_a, double inverse_mass_b, double compliance, double substep) {
+StickShares shares_of_spring(double inverse_mass_a, double inverse_mass_b, double compliance,
+                             double substep) {
     const double scaled_compliance = compliance / (substep * substep);
     const double sum = inverse_mass_a + inverse_mass_b + scaled_compliance;
     return {inverse_mass_a / sum, inverse_mass_b / sum, scaled_compliance / sum};
@@ -166,9 +167,9 @@ StickArrays weighted_sticks(const Deformable& deformable, const SimulationOption
         const double mass_b = deformable.inverse_masses[stick.b];
         if (mass_a + mass_b == 0) continue; // both pinned
         const auto kind = static_cast<std::size_t>(stick.kind);
-        const Shares shares = options.solver == SolverKind::Verlet
-                                  ? shares_of_stick(mass_a, mass_b, options.stiffness[kind])
-                                  : shares_of_spring(mass_a, mass_b, options.compliance[kind], substep);
+        const StickShares shares = options.solver == SolverKind::Verlet
+                                       ? shares_of_stick(mass_a, mass_b, options.stiffness[kind])
+                                       : shares_of_spring(mass_a, mass_b, options.compliance[kind], substep);
         sticks.a.push_back(stick.a);
         sticks.b.push_back(stick.b);
         sticks.share_a.push_back(static_cast<float>(shares.a));

@@ -14,7 +14,7 @@ namespace echinus {
 
 namespace {
 
-constexpr std::size_t kBatchSize = 65'536;
+constexpr std::size_t kPointsPerBatch = 65'536;
 
 double mean_edge(const TriangleMesh& mesh) {
     double sum = 0;
@@ -32,7 +32,7 @@ class Sampler {
 
     void add(const Vec3d& point) {
         points_.emplace_back(point);
-        if (points_.size() == kBatchSize) measure();
+        if (points_.size() == kPointsPerBatch) measure();
     }
 
     /// The mean and the greatest distance of all samples.

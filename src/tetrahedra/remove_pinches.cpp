@@ -17,11 +17,11 @@ namespace echinus {
 namespace {
 
 /// Two vertices of an edge, ascending, or a vertex twice.
-using Place = std::pair<std::uint32_t, std::uint32_t>;
+using Pinch = std::pair<std::uint32_t, std::uint32_t>;
 
 /// The edges with more than two faces, and elsewhere the vertices whose faces form more than one fan.
-std::vector<Place> find_pinches(const TriangleMesh& surface) {
-    std::vector<Place> pinches;
+std::vector<Pinch> find_pinches(const TriangleMesh& surface) {
+    std::vector<Pinch> pinches;
     std::vector<std::uint8_t> on_pinched_edge(surface.vertices.size());
     UnionFind fans(3 * surface.faces.size()); // of the corners of all faces
     const auto join_at = [&](bool low, const EdgeUse& a, const EdgeUse& b) {
@@ -60,7 +60,7 @@ bool has(const Tetrahedron& corners, std::uint32_t vertex) {
 
 /// Of the tetrahedra around a place, those outside the largest part that hangs together by faces at the
 /// place; all of them where they are one part.
-std::vector<std::uint32_t> to_remove(const TetrahedralMesh& mesh, const Place& place,
+std::vector<std::uint32_t> to_remove(const TetrahedralMesh& mesh, const Pinch& place,
                                      const std::vector<std::uint32_t>& around) {
     UnionFind parts(around.size());
     std::map<Triangle, std::uint32_t> seen; // faces at the place
@@ -87,14 +87,14 @@ std::vector<std::uint32_t> to_remove(const TetrahedralMesh& mesh, const Place& p
 }
 
 /// One round; the places are treated as they were at its beginning.
-std::size_t remove_at(TetrahedralMesh& mesh, const std::vector<Place>& pinches) {
+std::size_t remove_at(TetrahedralMesh& mesh, const std::vector<Pinch>& pinches) {
     std::vector<std::uint8_t> at_pinch(mesh.vertices.size()), removed(mesh.tetrahedra.size());
-    for (const Place& place : pinches) at_pinch[place.first] = 1;
+    for (const Pinch& place : pinches) at_pinch[place.first] = 1;
     std::map<std::uint32_t, std::vector<std::uint32_t>> around; // by vertex
     for (std::uint32_t number = 0; number < mesh.tetrahedra.size(); ++number)
         for (const std::uint32_t vertex : mesh.tetrahedra[number])
             if (at_pinch[vertex] != 0) around[vertex].push_back(number);
-    for (const Place& place : pinches) {
+    for (const Pinch& place : pinches) {
         std::vector<std::uint32_t> here;
         for (const std::uint32_t number : around[place.first])
             if (has(mesh.tetrahedra[number], place.second)) here.push_back(number);
@@ -113,7 +113,7 @@ std::size_t remove_at(TetrahedralMesh& mesh, const std::vector<Place>& pinches) 
 std::size_t remove_pinches(TetrahedralMesh& mesh) {
     std::size_t count = 0;
     while (!mesh.tetrahedra.empty()) {
-        const std::vector<Place> pinches = find_pinches(boundary(mesh));
+        const std::vector<Pinch> pinches = find_pinches(boundary(mesh));
         if (pinches.empty()) break;
         count += remove_at(mesh, pinches);
     }

@@ -18,8 +18,6 @@ using namespace echinus::test;
 
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 bool same(const echinus_contact& a, const Contact& b) {
     return std::memcmp(&a, &b, offsetof(echinus_contact, feature) + 1) == 0;
 }

@@ -22,9 +22,6 @@ using namespace echinus::test;
 
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 /// A torus with a hole, so that some answers are not certain.
 TriangleMesh open_torus() {
     TriangleMesh mesh = make_torus(1.0, 0.4, 60, 24);
@@ -50,10 +47,10 @@ std::vector<float> spread(std::span<const Vec3f> points, std::size_t stride) {
 }
 
 /// Every member but the padding.
-bool same(const echinus_contact& a, const Contact& b) {
+bool same_answer(const echinus_contact& a, const Contact& b) {
     return std::memcmp(&a, &b, offsetof(echinus_contact, feature) + 1) == 0;
 }
-bool same(const echinus_sweep_hit& a, const SweepHit& b) {
+bool same_answer(const echinus_sweep_hit& a, const SweepHit& b) {
     return std::memcmp(&a, &b, offsetof(echinus_sweep_hit, entering) + 1) == 0;
 }
 
@@ -73,7 +70,7 @@ void expect_answers_of_cpp(const echinus_map* map, const Map& by_cpp) {
             EXPECT_EQ(inside, expected_inside);
             std::vector<echinus_contact> contacts(count);
             expect_ok(echinus_map_contacts(map, floats.data(), count, stride, 0.1F, 0, contacts.data()));
-            for (std::size_t i = 0; i < count; ++i) ASSERT_TRUE(same(contacts[i], expected[i])) << i;
+            for (std::size_t i = 0; i < count; ++i) ASSERT_TRUE(same_answer(contacts[i], expected[i])) << i;
         }
     }
 }
@@ -167,7 +164,7 @@ TEST(CQueries, SweepAsInCpp) {
     std::size_t hit_count = 0;
     for (std::size_t i = 0; i < from.size(); ++i) {
         const SweepHit expected = sweep(by_cpp.view(), from[i], to[i]);
-        ASSERT_TRUE(same(hits[i], expected)) << i;
+        ASSERT_TRUE(same_answer(hits[i], expected)) << i;
         hit_count += expected.found() ? 1 : 0;
     }
     EXPECT_GT(hit_count, 100U);

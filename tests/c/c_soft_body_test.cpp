@@ -87,9 +87,9 @@ CMesh c_mesh(const TriangleMesh& mesh) {
 }
 
 /// The same block over the same ball, in C and in C++.
-struct Pair {
-    Pair() : Pair(c_soft_body(), make_soft_body(block(), body_options())) {}
-    Pair(const CDeformable& c_deformable, Deformable deformable)
+struct BodyPair {
+    BodyPair() : BodyPair(c_soft_body(), make_soft_body(block(), body_options())) {}
+    BodyPair(const CDeformable& c_deformable, Deformable deformable)
         : by_cpp(std::move(deformable), {{.map = ExactMap::build(kBall)}},
                  {.solver = SolverKind::Xpbd,
                   .iteration_count = 1,
@@ -126,7 +126,7 @@ struct Pair {
 };
 
 TEST(CSoftBodies, GoOnFromASavedStateWithTheSameBits) {
-    Pair pair;
+    BodyPair pair;
     pair.expect_same_after(10);
     CArray state;
     expect_ok(echinus_simulation_save_state(pair.in_c.get(), out(state)));
@@ -157,7 +157,7 @@ TEST(CSoftBodies, GoThroughTheirArraysUnchanged) {
               0);
     CDeformable again;
     expect_ok(echinus_deformable_create(&arrays, out(again)));
-    Pair(again, expected).expect_same_after(10);
+    BodyPair(again, expected).expect_same_after(10);
 }
 
 TEST(CSoftBodies, AreCombinedWithClothAsInCpp) {
@@ -168,7 +168,7 @@ TEST(CSoftBodies, AreCombinedWithClothAsInCpp) {
     const CDeformable body = c_soft_body();
     const echinus_deformable* const parts[2] = {light.get(), body.get()};
     expect_ok(echinus_deformable_combine(parts, 2, out(both)));
-    Pair(both, combine(expected)).expect_same_after(30);
+    BodyPair(both, combine(expected)).expect_same_after(30);
 }
 
 TEST(CSoftBodies, PassThroughAColliderAsInCpp) {
@@ -181,7 +181,7 @@ TEST(CSoftBodies, PassThroughAColliderAsInCpp) {
     ASSERT_EQ(arrays.filter_count, expected.particle_count());
     EXPECT_EQ(arrays.filters[1].particle, 1U);
     expect_ok(echinus_deformable_create(&arrays, out(again)));
-    Pair(again, expected).expect_same_after(30);
+    BodyPair(again, expected).expect_same_after(30);
 }
 
 TEST(CSoftBodies, PartsNameTheirOwnParticlesOnly) {
@@ -208,7 +208,7 @@ TEST(CSoftBodies, PartsNameTheirOwnParticlesOnly) {
 // ---- Colliders
 
 TEST(CColliders, FollowKeyframesAsInCpp) {
-    Pair pair;
+    BodyPair pair;
     const echinus_pose_key keys[2] = {
         {.time = 0, .pose = {.rotation = {1, 0, 0, 0}, .translation = {0, 0, 0}}},
         {.time = 0.1, .pose = {.rotation = {0.8, 0.6, 0, 0}, .translation = {0, 0, 0.1}}}};
@@ -228,7 +228,7 @@ TEST(CColliders, FollowKeyframesAsInCpp) {
 }
 
 TEST(CColliders, RefuseKeysThatHaveNoMeaning) {
-    Pair pair;
+    BodyPair pair;
     echinus_pose_key keys[2] = {{.time = 1, .pose = {.rotation = {1, 0, 0, 0}, .translation = {}}},
                                 {.time = 1, .pose = {.rotation = {1, 0, 0, 0}, .translation = {}}}};
     const auto set = [&](std::size_t index, std::size_t count) {
@@ -250,7 +250,7 @@ std::vector<Vec3f> grown(float factor) {
 }
 
 TEST(CColliders, DeformAsInCpp) {
-    Pair pair;
+    BodyPair pair;
     echinus_collider before{};
     before.size = sizeof before;
     for (const float factor : {1.02F, 1.04F, 1.06F}) {
@@ -291,7 +291,7 @@ TEST(CColliders, FollowAVertexCacheAsInCpp) {
     expect_ok(echinus_vertex_cache_at(cache.get(), 0.03, &there.data()->x));
     EXPECT_EQ(there, vertices_at(expected, 0.03));
 
-    Pair pair;
+    BodyPair pair;
     expect_ok(echinus_simulation_set_collider_cache(pair.in_c.get(), 0, cache.get()));
     cache.reset();
     pair.by_cpp.set_collider_cache(0, expected);
@@ -305,7 +305,7 @@ TEST(CVertexCaches, ThatHaveNoMeaningAreRefused) {
         return echinus_vertex_cache_create(samples, sample_count, vertex_count, start, step, out(cache));
     };
     expect_ok(create(2, 1, 0, 1));
-    Pair pair;
+    BodyPair pair;
     expect_refused(echinus_simulation_set_collider_cache(pair.in_c.get(), 0, cache.get()),
                    ECHINUS_INVALID_OPTIONS, "vert");
     expect_refused(create(0, 1, 0, 1), ECHINUS_INVALID_ARGUMENT, "samples");

@@ -18,8 +18,13 @@ using namespace echinus::test;
 
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+echinus_deformable_arrays one_particle(const float* position) {
+    echinus_deformable_arrays arrays{};
+    arrays.size = sizeof arrays;
+    arrays.particle_count = 1;
+    arrays.positions = position;
+    return arrays;
+}
 
 // ---- Arguments
 
@@ -158,9 +163,13 @@ class Samples {
     CSimulation simulation_;
     CScene scene_;
     echinus_collider collider_{};
-    echinus_custom_map custom_{.size = sizeof custom_};
+    echinus_custom_map custom_ = [] {
+        echinus_custom_map custom{};
+        custom.size = sizeof custom;
+        return custom;
+    }();
     echinus_pose_key key_{.time = 0, .pose = {.rotation = {1, 0, 0, 0}, .translation = {}}};
-    echinus_deformable_arrays arrays_{.size = sizeof arrays_, .particle_count = 1, .positions = floats_};
+    echinus_deformable_arrays arrays_ = one_particle(floats_);
     const echinus_deformable* part_ = nullptr;
     Place<echinus_array, echinus_array_destroy> array_places_[2]; // one call may give two
     std::size_t array_turn_ = 0;
@@ -386,7 +395,7 @@ TEST(COptions, HaveTheDefaultsOfCppAndAreRefusedWithAnyMemberOutOfItsRange) {
     CTetrahedra body;
     expect_ok(echinus_tetrahedra_box(size, one, out(body)));
     const float position[3] = {};
-    const echinus_deformable_arrays arrays{.size = sizeof arrays, .particle_count = 1, .positions = position};
+    const echinus_deformable_arrays arrays = one_particle(position);
     CDeformable particle;
     expect_ok(echinus_deformable_create(&arrays, out(particle)));
 

@@ -7,13 +7,16 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
-#include <vector>
 
 /// Handles of the C interface that destroy themselves, and what its tests expect of a status.
 namespace echinus::test {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <typename T, void (*destroy)(T*)>
 struct Destroyer {

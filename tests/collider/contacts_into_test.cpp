@@ -45,7 +45,7 @@ std::vector<Collider> colliders_of_all_kinds() {
             {.map = std::make_shared<const Ball>(), .pose = pose}};
 }
 
-std::vector<Vec3f> points_around(const Collider& collider, std::size_t count) {
+std::vector<Vec3f> points_about(const Collider& collider, std::size_t count) {
     std::mt19937 engine(11);
     std::uniform_real_distribution<double> coordinate(-1.6, 1.6);
     std::vector<Vec3f> points;
@@ -103,15 +103,15 @@ TEST(ContactsInto, AreThoseOfSingleQueriesBitForBitWithoutTheOthers) {
     for (const Collider& collider : colliders_of_all_kinds())
         for (const std::size_t count : {0U, 1U, 255U, 256U, 5000U})
             for (const float margin : {0.0F, 0.2F})
-                expect_contacts_of({&collider, 1}, points_around(collider, count), margin,
+                expect_contacts_of({&collider, 1}, points_about(collider, count), margin,
                                    count == 5000U ? 100 : 0);
 }
 
 TEST(ContactsInto, OfSeveralCollidersFollowOneAnother) {
     const std::vector<Collider> colliders = colliders_of_all_kinds();
     for (const float margin : {0.0F, 0.2F})
-        expect_contacts_of(colliders, points_around(colliders[1], 2000), margin, 200);
-    expect_contacts_of({}, points_around(colliders[1], 10), 1, 0);
+        expect_contacts_of(colliders, points_about(colliders[1], 2000), margin, 200);
+    expect_contacts_of({}, points_about(colliders[1], 10), 1, 0);
 }
 
 TEST(ContactsInto, LackNoneOfCollidersThatTheirBallsOnlyJustReach) {
@@ -152,7 +152,7 @@ TEST(ContactsInto, InDoubleAreTheSameAMillionAway) {
     for (const Collider& here : colliders_of_all_kinds()) {
         Collider there = here;
         there.pose.translation += away;
-        std::vector<Vec3f> points = points_around(here, 3000);
+        std::vector<Vec3f> points = points_about(here, 3000);
         for (Vec3f& p : points) p = {on_lattice(p.x), on_lattice(p.y), on_lattice(p.z)};
         std::vector<Vec3d> moved;
         for (const Vec3f& p : points) moved.push_back(Vec3d(p) + away);
@@ -173,7 +173,7 @@ TEST(ContactsInto, InDoubleAreTheSameAMillionAway) {
 
 TEST(ContactsInto, InDoubleAtFloatPlacesAreThoseInFloat) {
     for (const Collider& collider : colliders_of_all_kinds()) {
-        const std::vector<Vec3f> points = points_around(collider, 1000);
+        const std::vector<Vec3f> points = points_about(collider, 1000);
         const std::vector<Vec3d> exact(points.begin(), points.end());
         Arrays<float> in_float(points.size());
         Arrays<double> in_double(points.size());

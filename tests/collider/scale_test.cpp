@@ -14,7 +14,7 @@ using namespace echinus;
 
 namespace {
 
-const RigidTransform kPose{Rotation::about({3, -1, 2}, 1.1), {10, -20, 30}};
+const RigidTransform kScaledPose{Rotation::about({3, -1, 2}, 1.1), {10, -20, 30}};
 
 const Vec3d kScales[] = {{2.5, 2.5, 2.5}, {1, 2, 0.5}, {-1, 1, 1}, {0.5, -3, -1.2}, {-2, -2, -2}};
 
@@ -32,14 +32,14 @@ TriangleMesh stretched(TriangleMesh mesh, const Vec3d& scale) {
 
 Vec3f random_point(test::Random& random, const Vec3d& scale) {
     const Vec3f local = test::in_cube(random, 1.6F);
-    return Vec3f(kPose.to_world({local.x * scale.x, local.y * scale.y, local.z * scale.z}));
+    return Vec3f(kScaledPose.to_world({local.x * scale.x, local.y * scale.y, local.z * scale.z}));
 }
 
 struct Judge {
     explicit Judge(const Vec3d& scale) : solid(stretched(torus(), scale)) {}
 
-    bool inside(const Vec3f& p) const { return winding_number(solid, kPose.to_local(Vec3d(p))) > 0.5; }
-    double distance(const Vec3f& p) const { return unsigned_distance(solid, kPose.to_local(Vec3d(p))); }
+    bool inside(const Vec3f& p) const { return winding_number(solid, kScaledPose.to_local(Vec3d(p))) > 0.5; }
+    double distance(const Vec3f& p) const { return unsigned_distance(solid, kScaledPose.to_local(Vec3d(p))); }
 
     TriangleMesh solid;
 };
@@ -52,7 +52,7 @@ TEST(ScaledCollider, WithAnExactMapAnswersAsTheScaledMeshDoes) {
     const ExactMap map = ExactMap::build(torus());
     test::Random random(1);
     for (const Vec3d& scale : kScales) {
-        const Collider collider{.map = map, .pose = kPose, .scale = scale};
+        const Collider collider{.map = map, .pose = kScaledPose, .scale = scale};
         const Judge judge(scale);
         int inside = 0;
         for (int i = 0; i < 1000; ++i) {
@@ -111,8 +111,8 @@ TEST(ScaledCollider, WithADistanceMapPushesAlongTheParticlesRayByTheDepth) {
     const DistanceMap map = DistanceMap::build(torus(), {.longitude_count = 64, .colatitude_count = 64});
     test::Random random(2);
     for (const Vec3d& scale : kScales) {
-        const Collider collider{.map = map, .pose = kPose, .scale = scale};
-        const Vec3d centre = kPose.to_world(Vec3d(map.view().centre));
+        const Collider collider{.map = map, .pose = kScaledPose, .scale = scale};
+        const Vec3d centre = kScaledPose.to_world(Vec3d(map.view().centre));
         int found_count = 0;
         int outwards = 0;
         for (int i = 0; i < 1000; ++i) {
@@ -154,7 +154,7 @@ TEST(ScaledCollider, AnswersABatchAsItAnswersEachPoint) {
     const DistanceMap sampled = DistanceMap::build(torus(), {.longitude_count = 64, .colatitude_count = 64});
     test::Random random(3);
     for (const AnyMap& map : {AnyMap(exact), AnyMap(sampled)}) {
-        const Collider collider{.map = map, .pose = kPose, .scale = {0.5, -3, -1.2}};
+        const Collider collider{.map = map, .pose = kScaledPose, .scale = {0.5, -3, -1.2}};
         std::vector<Vec3f> points;
         for (int i = 0; i < 600; ++i) points.push_back(random_point(random, collider.scale));
         std::vector<Contact> contacts(points.size());
@@ -178,12 +178,12 @@ TEST(ScaledCollider, PassesOnTheFaceTheFeatureAndTheMarkOfCertainty) {
     TriangleMesh open = make_sphere(1, 24, 12);
     open.faces.resize(open.faces.size() * 3 / 4);
     const ExactMap map = ExactMap::build(open);
-    const Collider collider{.map = map, .pose = kPose, .scale = {2, 2, 2}};
+    const Collider collider{.map = map, .pose = kScaledPose, .scale = {2, 2, 2}};
     test::Random random(4);
     int uncertain = 0;
     for (int i = 0; i < 3000; ++i) {
         const Vec3f point = random_point(random, collider.scale);
-        const Vec3f local(kPose.to_local(Vec3d(point)) * 0.5);
+        const Vec3f local(kScaledPose.to_local(Vec3d(point)) * 0.5);
         const Contact expected = contact(map, local, 0.2F);
         const Contact found = contact(collider, point, 0.4F);
         if (expected.inside != found.inside) continue; // two roundings to the local frame

@@ -12,8 +12,8 @@ using namespace echinus;
 
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
+constexpr float kFarAway = std::numeric_limits<float>::infinity();
 
 float box_side(const Vec3f& p) {
     return std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
@@ -102,17 +102,17 @@ TEST(DistanceMapQuery, ReportsParticlesOutsideWithinTheMarginWithNegativeDepth) 
     EXPECT_EQ(none.normal, Vec3f{});
     EXPECT_EQ(none.point, far);
     EXPECT_TRUE(contact(sphere, far, 0.03F).found());
-    EXPECT_FALSE(contact(sphere, far, kNaN).found());
+    EXPECT_FALSE(contact(sphere, far, kNoNumber).found());
     EXPECT_FALSE(contact(sphere, far, -1).found());
-    EXPECT_TRUE(contact(sphere, far, kInfinity).found());
+    EXPECT_TRUE(contact(sphere, far, kFarAway).found());
 }
 
 TEST(DistanceMapQuery, TreatsNaNAndInfinityAsOutside) {
     const DistanceMap box = DistanceMap::build(make_box({2, 2, 2}));
-    for (float bad : {kNaN, kInfinity, -kInfinity, std::numeric_limits<float>::max()})
+    for (float bad : {kNoNumber, kFarAway, -kFarAway, std::numeric_limits<float>::max()})
         for (const Vec3f& p : {Vec3f{bad, 0, 0}, Vec3f{0, bad, 0}, Vec3f{0, 0, bad}, Vec3f{bad, bad, bad}}) {
             EXPECT_FALSE(contains(box, p));
-            for (float margin : {0.0F, 1.0F, kInfinity}) EXPECT_FALSE(contact(box, p, margin).found());
+            for (float margin : {0.0F, 1.0F, kFarAway}) EXPECT_FALSE(contact(box, p, margin).found());
             EXPECT_EQ(usable_sample_count(box, p), 0);
         }
 }
@@ -150,7 +150,7 @@ TEST(DistanceMapQuery, AnswersBatchesAsSinglePoints) {
         const DistanceMap torus = DistanceMap::build(make_torus(1, 0.4, 60, 24), {.entry_format = format});
         std::vector<Vec3f> points(5000);
         for (Vec3f& p : points) p = test::in_cube(random, 1.5F);
-        points[17].x = kNaN;
+        points[17].x = kNoNumber;
         std::vector<std::uint8_t> inside(points.size());
         std::vector<Contact> contacts(points.size());
         contains_batch(torus, points, inside);

@@ -16,7 +16,7 @@ using namespace echinus::test;
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
 TrianglePoints random_triangle(Random& random, const ExactMap& map, float size) {
     const float radius = map.view().radius;
@@ -129,7 +129,7 @@ TEST(TriangleIntersects, IsFalseInsideAndForWhatIsNotFinite) {
     const ExactMap map = ExactMap::build(make_box({2, 2, 2}, 4));
     EXPECT_FALSE(intersects(map.view(), {{{-0.5F, 0, 0}, {0.5F, 0, 0}, {0, 0.5F, 0.9F}}}));
     EXPECT_TRUE(intersects(map.view(), {{{-0.5F, 0, 0}, {0.5F, 0, 0}, {0, 0.5F, 1.1F}}}));
-    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), kInfinity}) {
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), kFloatInfinity}) {
         const TrianglePoints spoilt{{{-5, 0, 0}, {5, 0, 0}, {0, bad, 0}}};
         EXPECT_FALSE(intersects(map.view(), spoilt));
         EXPECT_FALSE(clearance(map.view(), spoilt).found());
@@ -151,7 +151,7 @@ TEST(TriangleClearance, IsTheLeastDistanceOfAnyFaceAndNeverMore) {
         TrianglePoints triangle = random_triangle(random, map, i % 2 == 0 ? 0.05F : 0.5F);
         if (i % 5 == 0) triangle[2] = triangle[1];
         if (i % 10 == 0) triangle[1] = triangle[2] = triangle[0];
-        double expected = kInfinity;
+        double expected = kFloatInfinity;
         for (std::size_t face = 0; face < seen.mesh.faces.size(); ++face)
             expected = std::min(expected, distance_by_search(triangle, corners_of(seen.mesh, face)));
         const Clearance found = clearance(map.view(), triangle);

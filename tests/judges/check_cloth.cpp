@@ -1,6 +1,6 @@
 #include "judges/check_cloth.hpp"
 
-#include "json.hpp"
+#include "console/json.hpp"
 #include "judges/intersection_judge.hpp"
 #include "recording/simulation_folder.hpp"
 #include "recording/threads.hpp"

@@ -1,4 +1,4 @@
-#include "json.hpp"
+#include "console/json.hpp"
 #include "judges/check_result.hpp"
 
 #include <fmt/format.h>

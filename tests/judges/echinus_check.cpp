@@ -1,11 +1,11 @@
 // The program echinus-check: is a map of this mesh right at millions of points, and does a recorded cloth
 // meet anything? Not installed, because its judge uses parts of CGAL that are under the GPL.
 
+#include "console/options.hpp"
+#include "console/progress.hpp"
 #include "judges/check_cloth.hpp"
 #include "judges/check_mesh.hpp"
 #include "judges/nasty_meshes.hpp"
-#include "options.hpp"
-#include "progress.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/mesh_io.hpp>

@@ -25,17 +25,17 @@ namespace {
 
 constexpr EntryFormat kFormats[] = {EntryFormat::Float32, EntryFormat::Unorm16};
 
-DistanceMap load_bytes(const std::vector<std::byte>& bytes) {
+DistanceMap load_distance_bytes(const std::vector<std::byte>& bytes) {
     return std::get<DistanceMap>(load_map(bytes, nullptr, "m"));
 }
 
 /// Bit for bit: floats are compared as bytes, so -0 differs from 0.
 template <typename T>
-bool same_bits(std::span<const T> a, std::span<const T> b) {
+bool same_entries(std::span<const T> a, std::span<const T> b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
 }
 
-void expect_same_map(const DistanceMap& a, const DistanceMap& b) {
+void expect_same_distance_map(const DistanceMap& a, const DistanceMap& b) {
     EXPECT_EQ(a.view().centre, b.view().centre);
     EXPECT_EQ(a.view().origin, b.view().origin);
     EXPECT_EQ(a.view().radius, b.view().radius);
@@ -48,9 +48,9 @@ void expect_same_map(const DistanceMap& a, const DistanceMap& b) {
     EXPECT_EQ(a.view().entry_format, b.view().entry_format);
     EXPECT_EQ(a.view().correction, b.view().correction);
     EXPECT_EQ(a.view().centre_inside, b.view().centre_inside);
-    EXPECT_TRUE(same_bits(a.view().entry_offsets, b.view().entry_offsets));
-    EXPECT_TRUE(same_bits(a.view().entries_float32, b.view().entries_float32));
-    EXPECT_TRUE(same_bits(a.view().entries_unorm16, b.view().entries_unorm16));
+    EXPECT_TRUE(same_entries(a.view().entry_offsets, b.view().entry_offsets));
+    EXPECT_TRUE(same_entries(a.view().entries_float32, b.view().entries_float32));
+    EXPECT_TRUE(same_entries(a.view().entries_unorm16, b.view().entries_unorm16));
     EXPECT_EQ(a.statistics().face_count, b.statistics().face_count);
     EXPECT_EQ(a.statistics().dropped_faces, b.statistics().dropped_faces);
     EXPECT_EQ(a.statistics().max_entries, b.statistics().max_entries);
@@ -97,7 +97,7 @@ TEST(MapFile, ReadsBackEveryBit) {
     for (std::uint32_t seed = 0; seed < 50; ++seed) {
         for (const EntryFormat format : kFormats) {
             const DistanceMap map = random_map_parts(format, 4 + seed % 7, 4 + seed % 5, seed).map();
-            expect_same_map(map, load_bytes(serialise(map)));
+            expect_same_distance_map(map, load_distance_bytes(serialise(map)));
         }
     }
 }
@@ -109,7 +109,7 @@ TEST(MapFile, ReadsBackAMapWithoutEntries) {
         parts.entries_float32.clear();
         parts.entries_unorm16.clear();
         parts.statistics.max_entries = 0;
-        expect_same_map(parts.map(), load_bytes(serialise(parts.map())));
+        expect_same_distance_map(parts.map(), load_distance_bytes(serialise(parts.map())));
     }
 }
 
@@ -117,13 +117,13 @@ TEST(MapFile, GivesTheSameBytesForTheSameMap) {
     const MapParts parts = random_map_parts(EntryFormat::Float32, 8, 6, 1);
     EXPECT_EQ(serialise(parts.map()), serialise(parts.map()));
     const auto once = serialise(parts.map());
-    EXPECT_EQ(serialise(load_bytes(once)), once);
+    EXPECT_EQ(serialise(load_distance_bytes(once)), once);
 }
 
 TEST(MapFile, IsReadInPlace) {
     for (const EntryFormat format : kFormats) {
         const auto bytes = serialise(random_map_parts(format, 8, 6, 2).map());
-        const DistanceMap map = load_bytes(bytes);
+        const DistanceMap map = load_distance_bytes(bytes);
         const auto lies_within = [&](const void* address) {
             return address >= bytes.data() && address < bytes.data() + bytes.size();
         };
@@ -167,7 +167,7 @@ TEST(MapFile, ReadsBackEveryBitOnEveryGrid) {
     for (const DirectionGrid grid : kEveryGrid)
         for (const EntryFormat format : kFormats) {
             const DistanceMap map = random_map_parts(format, grid, 5, 3).map();
-            expect_same_map(map, load_bytes(serialise(map)));
+            expect_same_distance_map(map, load_distance_bytes(serialise(map)));
         }
 }
 
@@ -191,7 +191,7 @@ TEST(MapFile, NamesWhatContradictsTheMeaningOfAnEllipsoid) {
     const auto expect_damaged = [](const char* words, const std::function<void(MapParts&)>& spoil) {
         MapParts parts = random_map_parts(EntryFormat::Float32, DirectionGrid::Ellipsoidal, 5, 6);
         spoil(parts);
-        expect_error(ErrorCode::Damaged, words, [&] { load_bytes(serialise(parts.map())); });
+        expect_error(ErrorCode::Damaged, words, [&] { load_distance_bytes(serialise(parts.map())); });
     };
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
     expect_damaged("scale is 1.5", [](MapParts& p) { p.view.scale.y = 1.5F; });
@@ -209,7 +209,7 @@ TEST(MapFile, NamesWhatContradictsTheMeaningOfACube) {
     const auto expect_damaged = [](const char* words, const std::function<void(MapParts&)>& spoil) {
         MapParts parts = random_map_parts(EntryFormat::Float32, DirectionGrid::Cube, 5, 6);
         spoil(parts);
-        expect_error(ErrorCode::Damaged, words, [&] { load_bytes(serialise(parts.map())); });
+        expect_error(ErrorCode::Damaged, words, [&] { load_distance_bytes(serialise(parts.map())); });
     };
     expect_damaged("longitude_count is 7 and not 0", [](MapParts& p) { p.view.longitude_count = 7; });
     expect_damaged("divisions is 4097", [](MapParts& p) { p.view.divisions = 4097; });
@@ -239,7 +239,7 @@ TEST(MapFile, NamesWhatContradictsTheMeaningOfAnOctahedralMap) {
     for (const Case& wrong : cases) {
         MapParts parts = random_map_parts(EntryFormat::Float32, DirectionGrid::Octahedral, 5, 6);
         wrong.spoil(parts);
-        expect_error(ErrorCode::Damaged, wrong.words, [&] { load_bytes(serialise(parts.map())); });
+        expect_error(ErrorCode::Damaged, wrong.words, [&] { load_distance_bytes(serialise(parts.map())); });
     }
 }
 
@@ -285,8 +285,8 @@ TEST(MapFile, NamesWhatContradictsTheMeaning) {
         spoilt.spoil(parts);
         const DistanceMap map = parts.map();
         const auto bytes = serialise(map);
-        expect_error(ErrorCode::Damaged, spoilt.words, [&] { load_bytes(bytes); });
-        expect_error(ErrorCode::Damaged, "echinus build", [&] { load_bytes(bytes); });
+        expect_error(ErrorCode::Damaged, spoilt.words, [&] { load_distance_bytes(bytes); });
+        expect_error(ErrorCode::Damaged, "echinus build", [&] { load_distance_bytes(bytes); });
         // A build that made it would not hand it out.
         const auto prove = [&] { proven(map.view(), map.statistics(), 0, nullptr); };
         expect_error(ErrorCode::Damaged, spoilt.words, prove);
@@ -308,7 +308,7 @@ TEST(MapFile, RefusesEntriesOfADirectionThatDescend) {
             std::swap(parts.entries_unorm16[first], parts.entries_unorm16[first + 1]);
         }
         expect_error(ErrorCode::Damaged, "[" + std::to_string(first + 1) + "]",
-                     [&] { load_bytes(serialise(parts.map())); });
+                     [&] { load_distance_bytes(serialise(parts.map())); });
     }
 }
 
@@ -316,11 +316,11 @@ TEST(MapFile, RefusesAnotherVersionBeforeItLooksFurther) {
     auto bytes = serialise(random_map_parts(EntryFormat::Float32, 8, 6, 7).map());
     constexpr std::size_t kVersionField = 0;
     bytes[root_field_position(bytes, kVersionField)] = std::byte{9};
-    expect_error(ErrorCode::UnsupportedVersion, "version 9", [&] { load_bytes(bytes); });
+    expect_error(ErrorCode::UnsupportedVersion, "version 9", [&] { load_distance_bytes(bytes); });
     // A later version may change anything else, here the place of the map.
     constexpr std::size_t kMapField = 3;
     bytes[root_field_position(bytes, kMapField) + 3] = std::byte{0xff};
-    expect_error(ErrorCode::UnsupportedVersion, "version 9", [&] { load_bytes(bytes); });
+    expect_error(ErrorCode::UnsupportedVersion, "version 9", [&] { load_distance_bytes(bytes); });
 }
 
 TEST(MapFile, HasVersion2WhereAReaderThatKnowsNoOriginsWouldMisplaceTheMap) {
@@ -353,9 +353,9 @@ TEST(MapFile, RefusesAnUnknownKindOfMap) {
     auto bytes = serialise(random_map_parts(EntryFormat::Float32, 8, 6, 8).map());
     constexpr std::size_t kMapTypeField = 2;
     bytes[root_field_position(bytes, kMapTypeField)] = std::byte{77};
-    expect_error(ErrorCode::UnsupportedVersion, "unknown kind 77", [&] { load_bytes(bytes); });
+    expect_error(ErrorCode::UnsupportedVersion, "unknown kind 77", [&] { load_distance_bytes(bytes); });
     bytes[root_field_position(bytes, kMapTypeField)] = std::byte{0};
-    expect_error(ErrorCode::Damaged, "holds no map", [&] { load_bytes(bytes); });
+    expect_error(ErrorCode::Damaged, "holds no map", [&] { load_distance_bytes(bytes); });
 }
 
 TEST_F(MapFileOnDisk, KeepsTheMapAliveWhenTheFileIsReplacedOrRemoved) {
@@ -365,9 +365,9 @@ TEST_F(MapFileOnDisk, KeepsTheMapAliveWhenTheFileIsReplacedOrRemoved) {
     save(map, file);
     const DistanceMap loaded = load_distance_map(file);
     save(other, file);
-    expect_same_map(load_distance_map(file), other);
+    expect_same_distance_map(load_distance_map(file), other);
     fs::remove(file);
-    expect_same_map(loaded, map);
+    expect_same_distance_map(loaded, map);
 }
 
 TEST_F(MapFileOnDisk, CarriesNotesBesideTheMap) {
@@ -376,7 +376,7 @@ TEST_F(MapFileOnDisk, CarriesNotesBesideTheMap) {
     save(map, path("noted.ech"), {.build_milliseconds = 12.25});
     EXPECT_EQ(load_map_file_notes(path("plain.ech")).build_milliseconds, std::nullopt);
     EXPECT_EQ(load_map_file_notes(path("noted.ech")).build_milliseconds, 12.25);
-    expect_same_map(load_distance_map(path("noted.ech")), map);
+    expect_same_distance_map(load_distance_map(path("noted.ech")), map);
 }
 
 TEST_F(MapFileOnDisk, RefusesNotesThatAreNoDuration) {

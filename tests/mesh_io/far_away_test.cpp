@@ -61,7 +61,7 @@ std::string text_stl() {
 }
 
 template <typename Number>
-std::string bytes_of(Number number) {
+std::string bytes_of_number(Number number) {
     const auto bytes = std::bit_cast<std::array<char, sizeof(Number)>>(number);
     return {bytes.data(), bytes.size()};
 }
@@ -72,10 +72,10 @@ std::string binary_ply(const std::string& type) {
                         " x\nproperty " + type + " y\nproperty " + type +
                         " z\nelement face 12\nproperty list uchar int vertex_indices\nend_header\n";
     for (const auto& corner : kCorners)
-        for (const std::string& word : corner) bytes += bytes_of(static_cast<Number>(std::stod(word)));
+        for (const std::string& word : corner) bytes += bytes_of_number(static_cast<Number>(std::stod(word)));
     for (const Triangle& face : kFaces) {
         bytes += '\3';
-        for (const std::uint32_t corner : face) bytes += bytes_of(corner);
+        for (const std::uint32_t corner : face) bytes += bytes_of_number(corner);
     }
     return bytes;
 }

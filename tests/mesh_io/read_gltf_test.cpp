@@ -23,7 +23,7 @@ namespace {
 constexpr ExportedKind kGlb{"glb2", ".glb"};
 constexpr ExportedKind kGltf{"gltf2", ".gltf"};
 
-const TriangleMesh kBox = make_box({1, 2, 3}, 2);
+const TriangleMesh kBoxInGltf = make_box({1, 2, 3}, 2);
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
     const std::size_t at = text.find(what);
@@ -34,11 +34,12 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 /// A file of the box in one node.
 GltfText box_file(const std::string& more_of_primitive = "", const std::string& more_attributes = "") {
     GltfText file;
-    file.meshes = R"([{"primitives":[{)" + file.add_mesh(kBox, more_attributes) + more_of_primitive + "}]}]";
+    file.meshes =
+        R"([{"primitives":[{)" + file.add_mesh(kBoxInGltf, more_attributes) + more_of_primitive + "}]}]";
     return file;
 }
 
-TriangleMesh moved(TriangleMesh mesh, const Vec3f& way) {
+TriangleMesh translated(TriangleMesh mesh, const Vec3f& way) {
     for (Vec3f& p : mesh.vertices) p += way;
     return mesh;
 }
@@ -61,15 +62,15 @@ std::vector<float> flat(const std::vector<Vec3f>& vertices) {
 }
 
 /// The tetrahedron with corners at the origin and on the axes, of volume 1/6.
-const std::vector<Vec3f> kCorners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-const std::vector<std::uint32_t> kFaces{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+const std::vector<Vec3f> kTriangleCorners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+const std::vector<std::uint32_t> kTriangleFaces{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
 
 template <typename Index>
 GltfText tetrahedron(Index last_corner = 3) {
-    std::vector<Index> corners(kFaces.begin(), kFaces.end());
+    std::vector<Index> corners(kTriangleFaces.begin(), kTriangleFaces.end());
     corners.back() = last_corner;
     GltfText file;
-    const std::string positions = std::to_string(file.add(flat(kCorners), 3));
+    const std::string positions = std::to_string(file.add(flat(kTriangleCorners), 3));
     file.meshes = R"([{"primitives":[{"attributes":{"POSITION":)" + positions + R"(},"indices":)" +
                   std::to_string(file.add(corners)) + "}]}]";
     return file;
@@ -86,7 +87,7 @@ class ReadGltf : public TemporaryFolderTest {
 
     std::string exported(const ExportedKind& kind) const {
         const fs::path file = path(std::string("exported") + kind.ending);
-        export_with_assimp(file, kBox, kind);
+        export_with_assimp(file, kBoxInGltf, kind);
         std::ifstream stream(file, std::ios::binary);
         return {std::istreambuf_iterator<char>(stream), {}};
     }
@@ -107,13 +108,13 @@ class ReadGltf : public TemporaryFolderTest {
 // ---- Nodes and scenes ----
 
 TEST_F(ReadGltf, AppliesTheTransformsOfNodes) {
-    // Turned by a quarter about z, twice as large along x, and moved.
+    // Turned by a quarter about z, twice as large along x, and translated.
     const Placement placement{0, -1, 0, 10, 2, 0, 0, 20, 0, 0, 1, 30};
-    TriangleMesh expected = kBox;
+    TriangleMesh expected = kBoxInGltf;
     for (Vec3f& p : expected.vertices) p = {10 - p.y, 20 + 2 * p.x, 30 + p.z};
     for (const ExportedKind& kind : {kGlb, kGltf}) {
         const fs::path file = path(std::string("placed") + kind.ending);
-        export_with_assimp(file, kBox, kind, placement);
+        export_with_assimp(file, kBoxInGltf, kind, placement);
         expect_same_faces(read_mesh(file), expected);
     }
 }
@@ -122,14 +123,14 @@ TEST_F(ReadGltf, ComposesTranslationRotationAndScaleDownTheTree) {
     GltfText file = box_file();
     file.nodes = R"([{"translation":[10,20,30],"children":[1]},)"
                  R"({"rotation":[0,0,0.70710678118654752,0.70710678118654752],"scale":[2,1,1],"mesh":0}])";
-    TriangleMesh expected = kBox;
+    TriangleMesh expected = kBoxInGltf;
     for (Vec3f& p : expected.vertices) p = {10 - p.y, 20 + 2 * p.x, 30 + p.z};
     expect_same_faces(read(file), expected, 1e-6);
 }
 
 TEST_F(ReadGltf, KeepsFacesOutwardUnderAMirroringTransform) {
     const Placement mirror{-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-    export_with_assimp(path("mirror.glb"), kBox, kGlb, mirror);
+    export_with_assimp(path("mirror.glb"), kBoxInGltf, kGlb, mirror);
     const MeshReport report = inspect(read_mesh(path("mirror.glb")));
     EXPECT_TRUE(report.closed);
     EXPECT_NEAR(report.signed_volume, 6, 1e-6);
@@ -139,12 +140,13 @@ TEST_F(ReadGltf, ShowsTheSceneThatTheFileNames) {
     GltfText file = box_file();
     file.nodes = R"([{"mesh":0},{"mesh":0,"translation":[9,0,0]},{"mesh":0,"translation":[0,9,0]}])";
     file.scenes = R"([{"nodes":[0]},{"nodes":[2,1]}])";
-    expect_same_faces(read(file), kBox); // the first, where none is named
+    expect_same_faces(read(file), kBoxInGltf); // the first, where none is named
     file.more = R"(,"scene":1)";
-    expect_same_faces(read(file), joined({moved(kBox, {0, 9, 0}), moved(kBox, {9, 0, 0})}));
+    expect_same_faces(read(file),
+                      joined({translated(kBoxInGltf, {0, 9, 0}), translated(kBoxInGltf, {9, 0, 0})}));
     file.more = "";
     file.scenes = "[]"; // all of them
-    EXPECT_EQ(read(file).faces.size(), 3 * kBox.faces.size());
+    EXPECT_EQ(read(file).faces.size(), 3 * kBoxInGltf.faces.size());
 }
 
 TEST_F(ReadGltf, ReadsAChainOfAHundredThousandNodes) {
@@ -155,7 +157,7 @@ TEST_F(ReadGltf, ReadsAChainOfAHundredThousandNodes) {
         file.nodes +=
             R"({"translation":[1,0,0],"childre\u006e":[)" + std::to_string(i) + "]},"; // of any spelling
     file.nodes += R"({"mesh":0}])";
-    expect_same_faces(read(file), moved(kBox, {kLength - 1, 0, 0}), 0.01);
+    expect_same_faces(read(file), translated(kBoxInGltf, {kLength - 1, 0, 0}), 0.01);
 }
 
 TEST_F(ReadGltf, RefusesNodesThatFormNoTree) {
@@ -184,7 +186,7 @@ namespace {
 GltfText skinned_box(const std::string& mesh_node, const std::string& bones, const std::string& skin) {
     GltfText file;
     std::vector<std::uint8_t> joints, weights;
-    for (std::size_t i = 0; i < kBox.vertices.size(); ++i) {
+    for (std::size_t i = 0; i < kBoxInGltf.vertices.size(); ++i) {
         const auto upper = static_cast<std::uint8_t>(i % 256);
         for (const int joint : {0, 1, 0, 0}) joints.push_back(static_cast<std::uint8_t>(joint));
         for (const int weight : {255 - upper, int{upper}, 0, 0})
@@ -193,7 +195,7 @@ GltfText skinned_box(const std::string& mesh_node, const std::string& bones, con
     const std::string attributes = R"(,"JOINTS_0":)" + std::to_string(file.add(joints, 4)) +
                                    R"(,"WEIGHTS_0":)" +
                                    std::to_string(file.add(weights, 4, R"(,"normalized":true)"));
-    file.meshes = R"([{"primitives":[{)" + file.add_mesh(kBox, attributes) + "}]}]";
+    file.meshes = R"([{"primitives":[{)" + file.add_mesh(kBoxInGltf, attributes) + "}]}]";
     file.nodes = "[" + mesh_node + "," + bones + "]";
     file.scenes = R"([{"nodes":[0,1]}])";
     file.more = R"(,"skins":[)" + skin + "]";
@@ -204,8 +206,9 @@ GltfText skinned_box(const std::string& mesh_node, const std::string& bones, con
 
 TEST_F(ReadGltf, BonesLeadASkinAndNotTheNodeOfItsMesh) {
     const std::string mesh_node = R"({"mesh":0,"skin":0,"scale":[100,100,100],"translation":[9,9,9]})";
-    expect_same_faces(read(skinned_box(mesh_node, R"({"children":[2]},{})", R"({"joints":[1,2]})")), kBox);
-    TriangleMesh larger = kBox;
+    expect_same_faces(read(skinned_box(mesh_node, R"({"children":[2]},{})", R"({"joints":[1,2]})")),
+                      kBoxInGltf);
+    TriangleMesh larger = kBoxInGltf;
     for (Vec3f& p : larger.vertices) p = {2 * p.x + 1, 2 * p.y, 2 * p.z};
     expect_same_faces(
         read(skinned_box(mesh_node, R"({"children":[2],"scale":[2,2,2],"translation":[1,0,0]},{})",
@@ -214,7 +217,7 @@ TEST_F(ReadGltf, BonesLeadASkinAndNotTheNodeOfItsMesh) {
     // Each vertex between where one bone leads it and where the other does.
     const TriangleMesh parted =
         read(skinned_box(mesh_node, R"({"children":[2]},{"translation":[0,0,10]})", R"({"joints":[1,2]})"));
-    TriangleMesh expected = kBox;
+    TriangleMesh expected = kBoxInGltf;
     for (std::size_t i = 0; i < expected.vertices.size(); ++i)
         expected.vertices[i].z += 10 * static_cast<float>(i) / 255;
     expect_same_faces(parted, expected, 1e-5);
@@ -230,14 +233,14 @@ TEST_F(ReadGltf, BonesThatStandWhereTheyWereBoundLeaveVerticesAsTheyAreInTheFile
     const double c = std::cos(0.4), s = std::sin(0.4);
     std::vector<float> matrices;
     for (const Vec3d& origin : {Vec3d{0, 0, 0}, Vec3d{0.3, 1.9, 0.7}}) {
-        const Vec3d moved = Vec3d{-0.1 * c - 0.7 * s, 0.1 * s - 0.7 * c, 3.3} - origin;
-        for (const double number :
-             {c, -s, 0.0, 0.0, s, c, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, moved.x, moved.y, moved.z, 1.0})
+        const Vec3d translated = Vec3d{-0.1 * c - 0.7 * s, 0.1 * s - 0.7 * c, 3.3} - origin;
+        for (const double number : {c, -s, 0.0, 0.0, s, c, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, translated.x,
+                                    translated.y, translated.z, 1.0})
             matrices.push_back(static_cast<float>(number));
     }
     const std::size_t accessor = file.add(matrices, 16);
     file.more = replaced(file.more, "MATRICES", std::to_string(accessor));
-    expect_same_faces(read(file), kBox);
+    expect_same_faces(read(file), kBoxInGltf);
     EXPECT_TRUE(inspect(read(file)).closed);
 }
 
@@ -260,15 +263,15 @@ TEST_F(ReadGltf, RefusesASkinThatDoesNotFitItsMesh) {
 
 TEST_F(ReadGltf, MorphsByTheWeightsOfTheMeshOrThoseOfTheNode) {
     GltfText file;
-    std::vector<Vec3f> up(kBox.vertices.size(), Vec3f{0, 0, 2}), along;
-    for (const Vec3f& p : kBox.vertices) along.push_back({p.x, 0, 0});
-    const std::string primitive = file.add_mesh(kBox);
+    std::vector<Vec3f> up(kBoxInGltf.vertices.size(), Vec3f{0, 0, 2}), along;
+    for (const Vec3f& p : kBoxInGltf.vertices) along.push_back({p.x, 0, 0});
+    const std::string primitive = file.add_mesh(kBoxInGltf);
     file.meshes = R"([{"weights":[0.5,0],"primitives":[{)" + primitive + R"(,"targets":[{"POSITION":)" +
                   std::to_string(file.add(flat(up), 3)) + R"(},{"POSITION":)" +
                   std::to_string(file.add(flat(along), 3)) + "}]}]}]";
-    expect_same_faces(read(file), moved(kBox, {0, 0, 1}));
+    expect_same_faces(read(file), translated(kBoxInGltf, {0, 0, 1}));
     file.nodes = R"([{"mesh":0,"weights":[0,1]}])";
-    TriangleMesh wide = kBox;
+    TriangleMesh wide = kBoxInGltf;
     for (Vec3f& p : wide.vertices) p.x *= 2;
     expect_same_faces(read(file), wide);
     file.nodes = R"([{"mesh":0,"weights":[1]}])";
@@ -285,7 +288,7 @@ TEST_F(ReadGltf, CopiesAMeshForEachOfItsInstances) {
                  positions + R"(,"SCALE":)" + scales + "}}}}]";
     file.more = R"(,"extensionsRequired":["EXT_mesh_gpu_instancing"])";
     const TriangleMesh mesh = read(file);
-    EXPECT_EQ(mesh.faces.size(), 3 * kBox.faces.size());
+    EXPECT_EQ(mesh.faces.size(), 3 * kBoxInGltf.faces.size());
     EXPECT_TRUE(inspect(mesh).closed);
     EXPECT_NEAR(inspect(mesh).signed_volume, 6 + 6 + 6 * 8, 1e-4);
     EXPECT_EQ(inspect(mesh).component_count, 3U);
@@ -339,7 +342,7 @@ TEST_F(ReadGltf, TakesDataThatArePercentEncoded) {
 }
 
 TEST_F(ReadGltf, ReadsFromSeveralBuffers) {
-    const std::string positions = bytes_of(flat(kCorners)), corners = bytes_of(kFaces);
+    const std::string positions = bytes_of(flat(kTriangleCorners)), corners = bytes_of(kTriangleFaces);
     write("positions.bin", positions);
     write("corners.bin", "skip" + corners + "and more");
     const auto length = [](const std::string& bytes) { return std::to_string(bytes.size()); };
@@ -358,14 +361,14 @@ TEST_F(ReadGltf, ReadsFromSeveralBuffers) {
 TEST_F(ReadGltf, ReadsPositionsInWholeNumbers) {
     GltfText file;
     std::vector<std::int16_t> positions; // interleaved: three numbers in eight bytes
-    for (const Vec3f& p : kCorners)
+    for (const Vec3f& p : kTriangleCorners)
         for (const float number : {p.x, p.y, p.z, 77.0F})
             positions.push_back(static_cast<std::int16_t>(4 * number));
     const std::size_t view = file.add_view(bytes_of(positions));
     file.views.insert(file.views.size() - 1, R"(,"byteStride":8)");
     const std::size_t accessor = file.add_accessor(R"("bufferView":)" + std::to_string(view) +
                                                    R"(,"componentType":5122,"count":4,"type":"VEC3")");
-    const std::string indices = std::to_string(file.add(kFaces));
+    const std::string indices = std::to_string(file.add(kTriangleFaces));
     file.meshes = R"([{"primitives":[{"attributes":{"POSITION":)" + std::to_string(accessor) +
                   R"(},"indices":)" + indices + "}]}]";
     file.nodes = R"([{"mesh":0,"scale":[0.5,0.5,0.5]}])";
@@ -378,7 +381,7 @@ TEST_F(ReadGltf, TakesNormalizedNumbersForFractions) {
         GltfText file;
         const std::string accessor = std::to_string(file.add(positions, 3, R"(,"normalized":true)"));
         file.meshes = R"([{"primitives":[{"attributes":{"POSITION":)" + accessor + R"(},"indices":)" +
-                      std::to_string(file.add(kFaces)) + "}]}]";
+                      std::to_string(file.add(kTriangleFaces)) + "}]}]";
         return inspect(read(file)).signed_volume;
     };
     EXPECT_NEAR(volume(std::vector<std::uint8_t>{0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 255}), 1.0 / 6, 1e-9);
@@ -394,12 +397,12 @@ TEST_F(ReadGltf, ReplacesTheElementsOfASparseAccessor) {
     // With a view, in which the last corner is elsewhere, and without one, where all are zero.
     for (const bool has_view : {true, false}) {
         GltfText file;
-        std::vector<Vec3f> corners = kCorners;
+        std::vector<Vec3f> corners = kTriangleCorners;
         corners[3] = {5, 5, 5};
         const std::vector<std::uint16_t> elements =
             has_view ? std::vector<std::uint16_t>{3} : std::vector<std::uint16_t>{1, 2, 3};
         std::vector<Vec3f> values;
-        for (const std::uint16_t element : elements) values.push_back(kCorners[element]);
+        for (const std::uint16_t element : elements) values.push_back(kTriangleCorners[element]);
         const std::string dense = std::to_string(file.add_view(bytes_of(flat(corners))));
         const std::string at = std::to_string(file.add_view(bytes_of(elements)));
         const std::string with = std::to_string(file.add_view(bytes_of(flat(values))));
@@ -408,7 +411,7 @@ TEST_F(ReadGltf, ReplacesTheElementsOfASparseAccessor) {
                               R"("componentType":5126,"count":4,"type":"VEC3","sparse":{"count":)" +
                               std::to_string(elements.size()) + R"(,"indices":{"bufferView":)" + at +
                               R"(,"componentType":5123},"values":{"bufferView":)" + with + "}}");
-        const std::string indices = std::to_string(file.add(kFaces));
+        const std::string indices = std::to_string(file.add(kTriangleFaces));
         file.meshes = R"([{"primitives":[{"attributes":{"POSITION":)" + std::to_string(accessor) +
                       R"(},"indices":)" + indices + "}]}]";
         EXPECT_NEAR(inspect(read(file)).signed_volume, 1.0 / 6, 1e-9);
@@ -421,7 +424,7 @@ TEST_F(ReadGltf, ReadsStripsFansAndListsWithoutIndices) {
     const auto volume = [&](const std::vector<std::uint32_t>& order, int mode) {
         GltfText file;
         std::vector<Vec3f> positions;
-        for (const std::uint32_t vertex : order) positions.push_back(kCorners[vertex]);
+        for (const std::uint32_t vertex : order) positions.push_back(kTriangleCorners[vertex]);
         file.meshes = R"([{"primitives":[{"mode":)" + std::to_string(mode) + R"(,"attributes":{"POSITION":)" +
                       std::to_string(file.add(flat(positions), 3)) + "}}]}]";
         const MeshReport report = inspect(read(file));
@@ -429,14 +432,14 @@ TEST_F(ReadGltf, ReadsStripsFansAndListsWithoutIndices) {
         EXPECT_TRUE(report.closed);
         return report.signed_volume;
     };
-    EXPECT_NEAR(volume(kFaces, 4), 1.0 / 6, 1e-9);
+    EXPECT_NEAR(volume(kTriangleFaces, 4), 1.0 / 6, 1e-9);
     EXPECT_NEAR(volume({0, 2, 1, 3, 0, 2}, 5), 1.0 / 6, 1e-9);
     // Corners that stand twice have no triangles; each one more turns the others over.
     EXPECT_NEAR(volume({0, 0, 2, 1, 3, 0, 2, 2}, 5), -1.0 / 6, 1e-9);
     EXPECT_NEAR(volume({0, 0, 0, 2, 1, 3, 0, 2}, 5), 1.0 / 6, 1e-9);
     // A fan around a corner, and one that closes it.
     GltfText fans;
-    const std::string positions = std::to_string(fans.add(flat(kCorners), 3));
+    const std::string positions = std::to_string(fans.add(flat(kTriangleCorners), 3));
     const std::string around = std::to_string(fans.add(std::vector<std::uint8_t>{3, 0, 1, 2, 0}));
     const std::string below = std::to_string(fans.add(std::vector<std::uint8_t>{0, 2, 1}));
     fans.meshes = R"([{"primitives":[{"mode":6,"attributes":{"POSITION":)" + positions + R"(},"indices":)" +
@@ -448,7 +451,7 @@ TEST_F(ReadGltf, ReadsStripsFansAndListsWithoutIndices) {
 
 TEST_F(ReadGltf, LeavesPointsOutAndKeepsLinesApart) {
     GltfText file;
-    const std::string positions = std::to_string(file.add(flat(kCorners), 3));
+    const std::string positions = std::to_string(file.add(flat(kTriangleCorners), 3));
     const auto primitive = [&](int mode) {
         return R"({"mode":)" + std::to_string(mode) + R"(,"attributes":{"POSITION":)" + positions + "}}";
     };
@@ -631,10 +634,10 @@ TEST_F(ReadGltf, RefusesRequiredExtensionsThatItDoesNotReadByTheirNames) {
         file.more = R"(,"extensionsRequired":[")" + extension + "\"]";
         expect_refused(ErrorCode::WrongFormat, "the file requires the extension " + extension, file);
         file.more = R"(,"extensionsUsed":[")" + extension + "\"]"; // and does without
-        expect_same_faces(read(file), kBox);
+        expect_same_faces(read(file), kBoxInGltf);
     }
     file.more = R"(,"extensionsRequired":["KHR_materials_unlit","KHR_texture_transform"])";
-    expect_same_faces(read(file), kBox);
+    expect_same_faces(read(file), kBoxInGltf);
     GltfText compressed = tetrahedron<std::uint16_t>();
     compressed.accessors = replaced(compressed.accessors, R"("bufferView":0,)", "");
     compressed.meshes = replaced(compressed.meshes, R"("indices")",

@@ -14,12 +14,12 @@ namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
-PolygonMesh read(const std::string& bytes) {
+PolygonMesh read_ply_text(const std::string& bytes) {
     return read_ply({"a.ply", bytes});
 }
 
 void expect_ply_error(ErrorCode code, const std::string& words, const std::string& bytes) {
-    expect_error(code, words, [&] { read(bytes); });
+    expect_error(code, words, [&] { read_ply_text(bytes); });
 }
 
 const std::string kElements = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
@@ -59,7 +59,7 @@ std::string binary_triangle(bool big_endian, float last_coordinate = 0, std::int
 TEST(ReadPly, ReadsTextAndBothByteOrders) {
     for (const std::string& bytes :
          {kText + kThreeVertices + "3 0 1 2\n", binary_triangle(false), binary_triangle(true)}) {
-        const PolygonMesh mesh = read(bytes);
+        const PolygonMesh mesh = read_ply_text(bytes);
         EXPECT_EQ(mesh.vertices, (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
         EXPECT_EQ(mesh.corners, (Indices{0, 1, 2}));
         EXPECT_EQ(mesh.corner_counts, (Indices{3}));
@@ -91,17 +91,18 @@ TEST(ReadPly, PassesOverOtherPropertiesAndElementsOfEveryType) {
     const std::string text = "2.5 200 -7 2 0.5 0.25 1.5\n9 1 -1\n4000000000 3 0 0 0 -1\n";
     for (const std::string& bytes : {"ply\nformat ascii 1.0\ncomment # hello\nobj_info x\n" + header + text,
                                      "ply\r\nformat binary_little_endian 1.0\r\n" + header + binary.text()}) {
-        const PolygonMesh mesh = read(bytes);
+        const PolygonMesh mesh = read_ply_text(bytes);
         EXPECT_EQ(mesh.vertices, (std::vector<Vec3d>{{1.5, 2.5, -7}}));
         EXPECT_EQ(mesh.corners, (Indices{0, 0, 0}));
     }
 }
 
 TEST(ReadPly, ReadsFacesThatPrecedeTheirVertices) {
-    EXPECT_EQ(read("ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement "
-                   "vertex 3\n"
-                   "property float x\nproperty float y\nproperty float z\nend_header\n3 2 1 0\n" +
-                   kThreeVertices)
+    EXPECT_EQ(read_ply_text(
+                  "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement "
+                  "vertex 3\n"
+                  "property float x\nproperty float y\nproperty float z\nend_header\n3 2 1 0\n" +
+                  kThreeVertices)
                   .corners,
               (Indices{2, 1, 0}));
 }
@@ -120,14 +121,14 @@ TEST(ReadPly, NoticesMissingAndSurplusData) {
     expect_ply_error(ErrorCode::Damaged, "a.ply: the file ends at byte " + std::to_string(binary.size() - 1),
                      binary.substr(0, binary.size() - 1));
     expect_ply_error(ErrorCode::Damaged, "a.ply: the file goes on", binary + "x");
-    EXPECT_NO_THROW(read(binary + "\n"));
-    EXPECT_NO_THROW(read(binary + "\r\n\x1a" + std::string(100, '\0')));
+    EXPECT_NO_THROW(read_ply_text(binary + "\n"));
+    EXPECT_NO_THROW(read_ply_text(binary + "\r\n\x1a" + std::string(100, '\0')));
 }
 
 TEST(ReadPly, PassesOverFurtherNumbersOfALine) {
     for (const std::string lines : {"0 0 0 7\n1 0 0\n0 1 0 1 1 1 # c\n3 0 1 2 6 0.5 0.5 0 0 0 0\n",
                                     "0 0 0 x\n1 0 0\n0 1 0\n3 0 1 2 comment\n"}) {
-        const PolygonMesh mesh = read(kText + lines);
+        const PolygonMesh mesh = read_ply_text(kText + lines);
         EXPECT_EQ(mesh.vertices, (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
         EXPECT_EQ(mesh.corners, (Indices{0, 1, 2}));
     }
@@ -136,14 +137,15 @@ TEST(ReadPly, PassesOverFurtherNumbersOfALine) {
 TEST(ReadPly, ReadsNumbersAcrossLinesWhereTheLinesAreNotAsManyAsTheElements) {
     for (const std::string lines : {"0 0 0 1 0 0 0 1 0 3 0 1 2", "0\n0\n0\n1\n0\n0\n0\n1\n0\n3\n0\n1\n2\n",
                                     "0 0 0 1\n0 0 0 1 0 3 0\n\n1 2\n\x1a"}) {
-        const PolygonMesh mesh = read(kText + lines);
+        const PolygonMesh mesh = read_ply_text(kText + lines);
         EXPECT_EQ(mesh.vertices, (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << lines;
         EXPECT_EQ(mesh.corners, (Indices{0, 1, 2})) << lines;
     }
-    expect_ply_error(ErrorCode::Damaged,
-                     "a.ply: line 10: the file goes on after the elements that its head promises, where "
-                     "numbers are read across lines, as 1 lines follow the head, but it promises 4 elements",
-                     kText + "0 0 0 1 0 0 0 1 0 3 0 1 2 5\n");
+    expect_ply_error(
+        ErrorCode::Damaged,
+        "a.ply: line 10: the file goes on after the elements that its head promises, where "
+        "numbers are read_ply_text across lines, as 1 lines follow the head, but it promises 4 elements",
+        kText + "0 0 0 1 0 0 0 1 0 3 0 1 2 5\n");
     expect_ply_error(ErrorCode::Damaged, "a.ply: the file ends where an integer was expected",
                      kText + "0 0 0 1 0 0 0 1 0 3 0 1\n");
 }
@@ -153,7 +155,8 @@ TEST(ReadPly, IgnoresNumbersThatAreNoneWhereTheyDoNotMatter) {
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float nx\nproperty float x\nproperty float y\n"
         "property float z\nproperty float u\nelement face 1\nproperty list uchar int vertex_indices\n"
         "property float quality\nend_header\n";
-    EXPECT_EQ(read(head + "-1.#IND 0 0 0 nan\n1.#QNAN0 1 0 0 -inf\n-nan(ind) 0 1 0 1e999\n3 0 1 2 1.#INF\n")
+    EXPECT_EQ(read_ply_text(head +
+                            "-1.#IND 0 0 0 nan\n1.#QNAN0 1 0 0 -inf\n-nan(ind) 0 1 0 1e999\n3 0 1 2 1.#INF\n")
                   .vertices,
               (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
     expect_ply_error(ErrorCode::InvalidMesh, "a.ply: line 13: the coordinate '-1.#IND' is not finite",
@@ -168,7 +171,7 @@ TEST(ReadPly, CutsStripsIntoTrianglesThatAllTurnTheSameWay) {
                                  "element tristrips 1\nproperty list int int vertex_indices\nend_header\n";
     const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n";
     const auto read_strips = [&](const std::string& strips) {
-        return read("ply\nformat ascii 1.0\n" + elements + vertices + strips + "\n");
+        return read_ply_text("ply\nformat ascii 1.0\n" + elements + vertices + strips + "\n");
     };
     EXPECT_EQ(read_strips("5 0 1 2 3 4").corners, (Indices{0, 1, 2, 2, 1, 3, 2, 3, 4}));
     EXPECT_EQ(read_strips("9 -1 0 1 2 -1 1 3 2 -1").corners, (Indices{0, 1, 2, 1, 3, 2}));
@@ -182,8 +185,8 @@ TEST(ReadPly, CutsStripsIntoTrianglesThatAllTurnTheSameWay) {
         Bytes bytes(big_endian);
         for (const float c : {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 2, 0}) bytes.add(c);
         for (const std::int32_t i : {6, 0, 1, 2, -1, 3, 4}) bytes.add(i);
-        EXPECT_EQ(read(std::string("ply\nformat binary_") + (big_endian ? "big" : "little") +
-                       "_endian 1.0\n" + elements + bytes.text())
+        EXPECT_EQ(read_ply_text(std::string("ply\nformat binary_") + (big_endian ? "big" : "little") +
+                                "_endian 1.0\n" + elements + bytes.text())
                       .corners,
                   (Indices{0, 1, 2}));
     }
@@ -195,7 +198,8 @@ TEST(ReadPly, CutsStripsIntoTrianglesThatAllTurnTheSameWay) {
 
 TEST(ReadPly, ReadsHeadsWithAMarkCommentsAnywhereAndEveryEndOfLine) {
     std::string head = "ply\ncomment C:\\a\\\nobj_info \\\nformat ascii 1.0\ncomment\n" + kElements;
-    EXPECT_EQ(read("\xef\xbb\xbf" + head + kThreeVertices + "3 0 1 2\n").corners, (Indices{0, 1, 2}));
+    EXPECT_EQ(read_ply_text("\xef\xbb\xbf" + head + kThreeVertices + "3 0 1 2\n").corners,
+              (Indices{0, 1, 2}));
     // A byte that looks like half of an end of line begins the data.
     const std::string binary =
         "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty uchar x\nproperty uchar y\n"
@@ -204,7 +208,7 @@ TEST(ReadPly, ReadsHeadsWithAMarkCommentsAnywhereAndEveryEndOfLine) {
     for (const std::string end : {"\r", "\n", "\r\n"}) {
         std::string bytes;
         for (const char c : binary) bytes += c == '\n' ? end : std::string(1, c);
-        EXPECT_EQ(read(bytes + data).vertices[0], (Vec3d{10, 0, 0}));
+        EXPECT_EQ(read_ply_text(bytes + data).vertices[0], (Vec3d{10, 0, 0}));
     }
 }
 

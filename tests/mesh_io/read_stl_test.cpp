@@ -14,12 +14,12 @@ using namespace echinus::test;
 
 namespace {
 
-PolygonMesh read(const std::string& bytes) {
+PolygonMesh read_stl_text(const std::string& bytes) {
     return read_stl({"a.stl", bytes});
 }
 
 void expect_stl_error(ErrorCode code, const std::string& words, const std::string& bytes) {
-    expect_error(code, "a.stl: " + words, [&] { read(bytes); });
+    expect_error(code, "a.stl: " + words, [&] { read_stl_text(bytes); });
 }
 
 const std::string kFacet =
@@ -33,7 +33,7 @@ std::string binary_box() {
 
 TEST(ReadStl, ReadsTextWithSeveralSolids) {
     const PolygonMesh mesh =
-        read("solid a b c\n" + kFacet + kFacet + "endsolid a b c\nsolid\n" + kFacet + "endsolid\n");
+        read_stl_text("solid a b c\n" + kFacet + kFacet + "endsolid a b c\nsolid\n" + kFacet + "endsolid\n");
     EXPECT_EQ(mesh.corner_counts, (std::vector<std::uint32_t>{3, 3, 3}));
     EXPECT_EQ(mesh.vertices.size(), 9U);
     EXPECT_EQ(mesh.vertices[4], (Vec3d{1, 0, 0}));
@@ -41,9 +41,9 @@ TEST(ReadStl, ReadsTextWithSeveralSolids) {
 
 TEST(ReadStl, ReadsBinaryAlsoWhenItBeginsLikeText) {
     std::string bytes = binary_box();
-    EXPECT_EQ(read(bytes).corner_counts.size(), 12U);
+    EXPECT_EQ(read_stl_text(bytes).corner_counts.size(), 12U);
     bytes.replace(0, 5, "solid");
-    EXPECT_EQ(read(bytes).corner_counts.size(), 12U);
+    EXPECT_EQ(read_stl_text(bytes).corner_counts.size(), 12U);
 }
 
 TEST(ReadStl, ReadsTextInAnyCaseAndWithWordsApartOrTogether) {
@@ -64,7 +64,7 @@ TEST(ReadStl, ReadsTextInAnyCaseAndWithWordsApartOrTogether) {
               facet("facet normal nan -1.#IND 1,5", "OuterLoop", "vertex", "endloop", "endfacet") +
               "endsolid endfacet\n",
           "\xef\xbb\xbf solid \\\r\n" + plain + "endsolid\x1a" + std::string(99, '\0')}) {
-        const PolygonMesh mesh = read(text);
+        const PolygonMesh mesh = read_stl_text(text);
         EXPECT_EQ(mesh.vertices, (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << text;
     }
 }
@@ -72,15 +72,16 @@ TEST(ReadStl, ReadsTextInAnyCaseAndWithWordsApartOrTogether) {
 TEST(ReadStl, ReadsTextWhateverStandsOnOneLine) {
     std::string one_line = "solid a\n" + kFacet + kFacet + "endsolid\n";
     std::replace(one_line.begin() + 8, one_line.end(), '\n', ' ');
-    EXPECT_EQ(read(one_line).corner_counts.size(), 2U);
+    EXPECT_EQ(read_stl_text(one_line).corner_counts.size(), 2U);
     std::string words = "solid a\n" + kFacet.substr(kFacet.find(" outer"));
     words.insert(8, "facet\n");
     for (std::size_t i = words.find("vertex"); i < words.size(); ++i)
         if (words[i] == ' ') words[i] = '\n';
-    EXPECT_EQ(read(words + "endsolid").corner_counts.size(), 1U);
-    EXPECT_EQ(read("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0 1 1 1\nvertex 1 0 0 # c\nvertex 0 "
-                   "1 0\nendloop\n"
-                   "endfacet\nendsolid\n")
+    EXPECT_EQ(read_stl_text(words + "endsolid").corner_counts.size(), 1U);
+    EXPECT_EQ(read_stl_text(
+                  "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0 1 1 1\nvertex 1 0 0 # c\nvertex 0 "
+                  "1 0\nendloop\n"
+                  "endfacet\nendsolid\n")
                   .corner_counts.size(),
               1U);
 }
@@ -90,7 +91,8 @@ TEST(ReadStl, PassesOverBytesAfterTheFacesThatCannotBeFaces) {
     for (const std::string& tail :
          {std::string("\0\0", 2), std::string("more"), std::string(100, '\0'), std::string(1001, 'x')})
         for (const char* begin : {"solid", "STLEX"})
-            EXPECT_EQ(read(box.replace(0, 5, begin) + tail).corner_counts.size(), 12U) << tail.size();
+            EXPECT_EQ(read_stl_text(box.replace(0, 5, begin) + tail).corner_counts.size(), 12U)
+                << tail.size();
 }
 
 TEST(ReadStl, RefusesBytesAfterTheFacesThatCouldBeFaces) {
@@ -144,7 +146,7 @@ TEST(ReadStl, IgnoresNormalsThatAreNotFinite) {
     std::string bytes = binary_box();
     const float nan = std::numeric_limits<float>::quiet_NaN();
     std::memcpy(bytes.data() + 84, &nan, sizeof(nan));
-    EXPECT_EQ(read(bytes).corner_counts.size(), 12U);
+    EXPECT_EQ(read_stl_text(bytes).corner_counts.size(), 12U);
 }
 
 TEST(ReadStl, RefusesOtherFormats) {

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string content_of(const fs::path& path) {
+std::string bytes_of_file(const fs::path& path) {
     std::ifstream stream(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -29,7 +29,7 @@ std::vector<fs::path> samples() {
     return paths;
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
+std::string with_replaced(std::string text, const std::string& from, const std::string& to) {
     const std::size_t at = text.find(from);
     EXPECT_NE(at, std::string::npos) << from;
     return text.replace(at, from.size(), to);
@@ -48,7 +48,7 @@ class ReadTetrahedra : public TemporaryFolderTest {
         expect_error(code, file.string() + ": ", [&] { read_tetrahedra(file); });
     }
     std::string sample(const std::string& name) const {
-        return content_of(fs::path(ECHINUS_TETRAHEDRA) / name);
+        return bytes_of_file(fs::path(ECHINUS_TETRAHEDRA) / name);
     }
 };
 
@@ -60,7 +60,7 @@ TEST_F(ReadTetrahedra, GivesTheSameBodyFromEveryFormat) {
     EXPECT_EQ(paths.size(), 10U);
     for (const fs::path& path : paths) {
         SCOPED_TRACE(path);
-        const TetrahedraFile file = read_any_tetrahedra(content_of(path));
+        const TetrahedraFile file = read_any_tetrahedra(bytes_of_file(path));
         EXPECT_EQ(file.mesh.vertices, vertices);
         EXPECT_EQ(file.mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 1, 2, 3}, {1, 2, 3, 4}}));
         EXPECT_EQ(file.turned_tetrahedra, 0U);
@@ -96,7 +96,7 @@ TEST_F(ReadTetrahedra, FindsTheOtherFileOfTetGensPair) {
 
 TEST_F(ReadTetrahedra, TurnsNegativeTetrahedraAndDropsUnusedVertices) {
     const std::string text = "5 3 0 0\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 1 1 1\n";
-    write("body.node", replaced(text, "5 3", "6 3") + "6 9 9 9\n");
+    write("body.node", with_replaced(text, "5 3", "6 3") + "6 9 9 9\n");
     write("body.ele", "2 4 0\n1 2 1 3 4\n2 2 3 4 5\n"); // the first one is negative, the second not
     const TetrahedraFile file = read_tetrahedra(path("body.ele"));
     EXPECT_EQ(file.turned_tetrahedra, 1U);
@@ -114,39 +114,43 @@ TEST_F(ReadTetrahedra, RefusesFlatOnesAndThoseThatAreFoldedOverOthers) {
     expect_refused("folded.vtk", encode_vtk(folded), ErrorCode::InvalidMesh,
                    "lie on the same side of a face");
     expect_refused("twice.msh",
-                   replaced(sample("text_2.msh"), "4 4 2 1 1 11 21 31 41", "4 4 2 1 1 1 11 21 31"),
+                   with_replaced(sample("text_2.msh"), "4 4 2 1 1 11 21 31 41", "4 4 2 1 1 1 11 21 31"),
                    ErrorCode::InvalidMesh, "lie on the same side of a face");
 }
 
 TEST_F(ReadTetrahedra, NamesTheLineAndTheRemedyInText) {
     const std::string msh = sample("text_2.msh"), vtk = sample("text.vtk");
-    expect_refused("a.msh", replaced(msh, "2.2 0 8", "1 0 8"), ErrorCode::WrongFormat,
+    expect_refused("a.msh", with_replaced(msh, "2.2 0 8", "1 0 8"), ErrorCode::WrongFormat,
                    "save the file as version 4.1");
-    expect_refused("a.msh", replaced(msh, "2.2 0 8", "4 0 8"), ErrorCode::WrongFormat, "line 2");
-    expect_refused("a.msh", replaced(msh, "$MeshFormat", "MeshFormat"), ErrorCode::WrongFormat,
+    expect_refused("a.msh", with_replaced(msh, "2.2 0 8", "4 0 8"), ErrorCode::WrongFormat, "line 2");
+    expect_refused("a.msh", with_replaced(msh, "$MeshFormat", "MeshFormat"), ErrorCode::WrongFormat,
                    "$MeshFormat");
-    expect_refused("a.msh", replaced(msh, "$Nodes\n5", "$Nodes\n-5"), ErrorCode::Damaged,
+    expect_refused("a.msh", with_replaced(msh, "$Nodes\n5", "$Nodes\n-5"), ErrorCode::Damaged,
                    "the number of nodes");
-    expect_refused("a.msh", replaced(msh, "$Nodes\n5", "$Nodes\n4000000000"), ErrorCode::Damaged, "line 15");
-    expect_refused("a.msh", replaced(msh, "$Nodes\n5", "$Nodes\n4"), ErrorCode::Damaged,
+    expect_refused("a.msh", with_replaced(msh, "$Nodes\n5", "$Nodes\n4000000000"), ErrorCode::Damaged,
+                   "line 15");
+    expect_refused("a.msh", with_replaced(msh, "$Nodes\n5", "$Nodes\n4"), ErrorCode::Damaged,
                    "$EndNodes was expected");
-    expect_refused("a.msh", replaced(msh, "\n11 ", "\n1 "), ErrorCode::Damaged, "there are two nodes 1");
-    expect_refused("a.msh", replaced(msh, "11 1.5 0 0", "11 1e99 0 0"), ErrorCode::InvalidMesh, "line 11");
-    expect_refused("a.msh", replaced(msh, "1 11 21 31\n", "1 11 21 32\n"), ErrorCode::InvalidMesh,
+    expect_refused("a.msh", with_replaced(msh, "\n11 ", "\n1 "), ErrorCode::Damaged, "there are two nodes 1");
+    expect_refused("a.msh", with_replaced(msh, "11 1.5 0 0", "11 1e99 0 0"), ErrorCode::InvalidMesh,
+                   "line 11");
+    expect_refused("a.msh", with_replaced(msh, "1 11 21 31\n", "1 11 21 32\n"), ErrorCode::InvalidMesh,
                    "node 32, which does not exist");
-    expect_refused("a.msh", replaced(msh, "3 4 2 1 1", "3 5 2 1 1"), ErrorCode::WrongFormat,
+    expect_refused("a.msh", with_replaced(msh, "3 4 2 1 1", "3 5 2 1 1"), ErrorCode::WrongFormat,
                    "type 5 is no tetrahedron");
-    expect_refused("a.vtk", replaced(vtk, "# vtk", "#vtk"), ErrorCode::WrongFormat, "XML files are not read");
-    expect_refused("a.vtk", replaced(vtk, "UNSTRUCTURED_GRID", "POLYDATA"), ErrorCode::WrongFormat,
+    expect_refused("a.vtk", with_replaced(vtk, "# vtk", "#vtk"), ErrorCode::WrongFormat,
+                   "XML files are not read");
+    expect_refused("a.vtk", with_replaced(vtk, "UNSTRUCTURED_GRID", "POLYDATA"), ErrorCode::WrongFormat,
                    "UNSTRUCTURED_GRID");
-    expect_refused("a.vtk", replaced(vtk, "ASCII", "ASKII"), ErrorCode::WrongFormat, "line 3");
-    expect_refused("a.vtk", replaced(vtk, "4 1 2 3 4", "4 1 2 3 5"), ErrorCode::InvalidMesh, "line 10");
-    expect_refused("a.vtk", replaced(vtk, "CELLS 3 14", "CELLS 3 13"), ErrorCode::Damaged,
+    expect_refused("a.vtk", with_replaced(vtk, "ASCII", "ASKII"), ErrorCode::WrongFormat, "line 3");
+    expect_refused("a.vtk", with_replaced(vtk, "4 1 2 3 4", "4 1 2 3 5"), ErrorCode::InvalidMesh, "line 10");
+    expect_refused("a.vtk", with_replaced(vtk, "CELLS 3 14", "CELLS 3 13"), ErrorCode::Damaged,
                    "14 numbers, not 13");
-    expect_refused("a.vtk", replaced(vtk, "\n10\n", "\n24\n"), ErrorCode::WrongFormat, "cell 1 of type 24");
-    expect_refused("a.vtk", replaced(vtk, "CELL_TYPES 3", "CELL_TYPES 2"), ErrorCode::Damaged,
+    expect_refused("a.vtk", with_replaced(vtk, "\n10\n", "\n24\n"), ErrorCode::WrongFormat,
+                   "cell 1 of type 24");
+    expect_refused("a.vtk", with_replaced(vtk, "CELL_TYPES 3", "CELL_TYPES 2"), ErrorCode::Damaged,
                    "3 cells, but 2 types");
-    expect_refused("a.vtk", replaced(vtk, "POINTS 5 float", "POINTS 5 char"), ErrorCode::WrongFormat,
+    expect_refused("a.vtk", with_replaced(vtk, "POINTS 5 float", "POINTS 5 char"), ErrorCode::WrongFormat,
                    "'char'");
     expect_refused("a.stl", msh, ErrorCode::WrongFormat, ".msh, .vtk, .node or .ele");
     expect_refused("a.msh", "", ErrorCode::Damaged, "the file is empty");
@@ -165,18 +169,18 @@ TEST_F(ReadTetrahedra, NamesTheLineOfTetGensFiles) {
         write("b.ele", ele);
         expect_error(ErrorCode::Damaged, words, [&] { read_tetrahedra(path("b.ele")); });
     };
-    expect(node, replaced(ele, "2 3", "2 4"), ErrorCode::InvalidMesh,
+    expect(node, with_replaced(ele, "2 3", "2 4"), ErrorCode::InvalidMesh,
            "line 2: the tetrahedron refers to point 4");
-    expect(node, replaced(ele, "2 3", "2 -9223372036854775808"), ErrorCode::InvalidMesh,
+    expect(node, with_replaced(ele, "2 3", "2 -9223372036854775808"), ErrorCode::InvalidMesh,
            "refers to point -922");
-    expect(node, replaced(ele, "1 4 0", "1 10 0"), ErrorCode::WrongFormat, "run TetGen without -o2");
-    expect(node, replaced(ele, "1 4 0", "2 4 0"), ErrorCode::Damaged, "tetrahedron 2 of 2");
+    expect(node, with_replaced(ele, "1 4 0", "1 10 0"), ErrorCode::WrongFormat, "run TetGen without -o2");
+    expect(node, with_replaced(ele, "1 4 0", "2 4 0"), ErrorCode::Damaged, "tetrahedron 2 of 2");
     expect(node, ele + "1 0 1 2 3\n", ErrorCode::Damaged, "goes on after the 1 tetrahedra");
-    expect(node, replaced(ele, "\n0 ", "\n1 "), ErrorCode::Damaged, "number should be 0, not 1");
-    expect_of_nodes(replaced(node, "4 3", "4 2"), "the dimension should be 3");
-    expect_of_nodes(replaced(node, "\n0 ", "\n2 "), "numbered from 0 or 1");
-    expect_of_nodes(replaced(node, "\n2 ", "\n7 "), "should be 2, not 7");
-    expect_of_nodes(replaced(node, "4 3 0", "4294967295 3 0"), "cannot be 4294967295");
+    expect(node, with_replaced(ele, "\n0 ", "\n1 "), ErrorCode::Damaged, "number should be 0, not 1");
+    expect_of_nodes(with_replaced(node, "4 3", "4 2"), "the dimension should be 3");
+    expect_of_nodes(with_replaced(node, "\n0 ", "\n2 "), "numbered from 0 or 1");
+    expect_of_nodes(with_replaced(node, "\n2 ", "\n7 "), "should be 2, not 7");
+    expect_of_nodes(with_replaced(node, "4 3 0", "4294967295 3 0"), "cannot be 4294967295");
 }
 
 TEST_F(ReadTetrahedra, PassesOverFieldsAndMetadataBetweenTheParts) {
@@ -188,14 +192,14 @@ TEST_F(ReadTetrahedra, PassesOverFieldsAndMetadataBetweenTheParts) {
         const bool is_text = content.find("ASCII") != std::string::npos;
         const std::string time = is_text ? "nan" : "\nPOINTS1";
         const std::string cycles = is_text ? "7\n-8" : std::string("\0\0\0\nPOIN", 8);
-        std::string with = replaced(content, "POINTS", name + time + cycle + cycles + "\nPOINTS");
-        with = replaced(with, "CELLS", metadata + "CELLS");
+        std::string with = with_replaced(content, "POINTS", name + time + cycle + cycles + "\nPOINTS");
+        with = with_replaced(with, "CELLS", metadata + "CELLS");
         EXPECT_EQ(read_tetrahedra(write("with.vtk", with)).mesh.tetrahedra,
                   read_tetrahedra(write("without.vtk", content)).mesh.tetrahedra);
     }
     const std::string text = sample("text.vtk");
     const auto with_field = [&](const std::string& field) {
-        return replaced(text, "POINTS", field + "POINTS");
+        return with_replaced(text, "POINTS", field + "POINTS");
     };
     expect_refused("a.vtk", with_field("FIELD f 1\nnames 1 1 string\nx\n"), ErrorCode::WrongFormat,
                    "the array 'names' of a field is none of numbers");
@@ -207,9 +211,9 @@ TEST_F(ReadTetrahedra, PassesOverFieldsAndMetadataBetweenTheParts) {
 }
 
 TEST_F(ReadTetrahedra, NamesTheByteInBinaryFiles) {
-    expect_refused("b.msh", replaced(sample("binary_2.msh"), "$Nodes\n5", "$Nodes\n4"), ErrorCode::Damaged,
-                   "byte ");
-    expect_refused("b.vtk", replaced(sample("binary.vtk"), "CELLS 2 10", "CELLS 3 15"),
+    expect_refused("b.msh", with_replaced(sample("binary_2.msh"), "$Nodes\n5", "$Nodes\n4"),
+                   ErrorCode::Damaged, "byte ");
+    expect_refused("b.vtk", with_replaced(sample("binary.vtk"), "CELLS 2 10", "CELLS 3 15"),
                    ErrorCode::InvalidMesh, "refers to point");
     std::string wrong_mark = sample("binary_4.msh");
     wrong_mark[wrong_mark.find('\1')] = '\2';
@@ -219,7 +223,7 @@ TEST_F(ReadTetrahedra, NamesTheByteInBinaryFiles) {
 TEST_F(ReadTetrahedra, RefusesEveryFileThatIsCut) {
     for (const fs::path& path : samples()) {
         SCOPED_TRACE(path);
-        const std::string whole = content_of(path);
+        const std::string whole = bytes_of_file(path);
         std::size_t end = whole.find_last_not_of('\n');
         // TetGen's last word is a region, which may be missing; VTK's data are none of ours.
         if (path.extension() == ".tetgen") end -= 3;

@@ -13,10 +13,10 @@ using namespace echinus::test;
 
 namespace {
 
-using Corners = std::array<Vec3f, 3>;
+using FloatCorners = std::array<Vec3f, 3>;
 
 /// A point of a triangle or near it: where floats can hold it on an edge or in the plane, else rounded.
-Vec3f point_of(Random& random, const Corners& t) {
+Vec3f point_of(Random& random, const FloatCorners& t) {
     const double u = std::uniform_int_distribution<int>(-2, 10)(random) / 8.0;
     const double v = std::uniform_int_distribution<int>(-2, 10)(random) / 8.0;
     const Vec3d a(t[0]);
@@ -45,7 +45,7 @@ TEST(IntersectionsOracle, TrianglesOfWholeNumbersMeetAsCgalSays) {
     Random random(1);
     for (const int half_width : {1, 2, 4, 1000}) {
         for (int i = 0; i < 20'000; ++i) {
-            Corners a, b;
+            FloatCorners a, b;
             for (Vec3f& p : a) p = whole_point(random, half_width);
             for (Vec3f& p : b) p = whole_point(random, half_width);
             ASSERT_EQ(triangles_intersect(a, b), triangles_intersect_by_cgal(a, b))
@@ -59,9 +59,9 @@ TEST(IntersectionsOracle, TrianglesThatNearlyTouchMeetAsCgalSays) {
     int meeting = 0;
     constexpr int kCount = 40'000;
     for (int i = 0; i < kCount; ++i) {
-        Corners a{in_cube(random, 1), in_cube(random, 1), in_cube(random, 1)};
+        FloatCorners a{in_cube(random, 1), in_cube(random, 1), in_cube(random, 1)};
         if (i % 8 == 0) a[2] = point_of(random, {a[0], a[1], a[1]}); // a sliver, up to rounding
-        Corners b{nudged(random, point_of(random, a)), in_cube(random, 1), in_cube(random, 1)};
+        FloatCorners b{nudged(random, point_of(random, a)), in_cube(random, 1), in_cube(random, 1)};
         if (i % 2 == 0) b[1] = nudged(random, point_of(random, a));
         if (i % 4 == 0) b[2] = nudged(random, point_of(random, a));
         const bool expected = triangles_intersect_by_cgal(a, b);

@@ -22,18 +22,18 @@ using namespace echinus::test;
 namespace {
 
 using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
-using Corners = std::array<Vec3d, 3>;
+using QueryCorners = std::array<Vec3d, 3>;
 
 Kernel::Point_3 to_cgal(const Vec3d& p) {
     return {p.x, p.y, p.z};
 }
 
-Corners in_double(const TrianglePoints& t) {
+QueryCorners in_double(const TrianglePoints& t) {
     return {Vec3d(t[0]), Vec3d(t[1]), Vec3d(t[2])};
 }
 
 /// In exact arithmetic: of two triangles that do not meet, edges are nearest or a corner and a face.
-double distance_by_cgal(const Corners& a, const Corners& b) {
+double distance_by_cgal(const QueryCorners& a, const QueryCorners& b) {
     std::array<Kernel::Point_3, 3> p, q;
     for (std::size_t k = 0; k < 3; ++k) {
         p[k] = to_cgal(a[k]);
@@ -115,7 +115,7 @@ TEST(SurfaceQueriesOracle, DistancesAreCgalsFromBelow) {
                                lists);
             double least = std::numeric_limits<double>::infinity();
             for (std::size_t f = 0; f < view.face_count(); ++f) {
-                Corners face;
+                QueryCorners face;
                 for (std::size_t k = 0; k < 3; ++k)
                     face[k] = frame.to_local(Vec3d(view.vertices[view.corners[3 * f + k]]));
                 const double distance = distance_by_cgal(in_double(triangle), face);

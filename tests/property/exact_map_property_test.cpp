@@ -12,9 +12,9 @@ using namespace echinus;
 
 namespace {
 
-constexpr int kPointCount = 60;
+constexpr int kExactPointCount = 60;
 
-test::PortableRandom random_for_points() {
+test::PortableRandom random_for_exact_points() {
     return test::PortableRandom(*rc::gen::arbitrary<std::uint32_t>().as("seed of the points"));
 }
 
@@ -94,8 +94,8 @@ RC_GTEST_PROP(ExactMap, AnswersTheSameWhereverTheWholeIsPlaced, ()) {
     const double step =
         std::max(double{map.view().radius}, moved_map.view().radius / placement.scale) / (1 << 19);
     const double rounding = 4 * 0x1p-24 * largest_coordinate(moved) / placement.scale;
-    auto random = random_for_points();
-    for (int n = 0; n < kPointCount; ++n) {
+    auto random = random_for_exact_points();
+    for (int n = 0; n < kExactPointCount; ++n) {
         const Vec3f p = random_point(mesh, map.view(), random);
         if (contains(map, p) == contains(moved_map, Vec3f(placement(Vec3d(p))))) continue;
         RC_ASSERT(unsigned_distance(mesh, Vec3d(p)) <= 2 * 2 * step + rounding);
@@ -107,8 +107,8 @@ RC_GTEST_PROP(ExactMap, AnswersTheSameForEveryResolutionAndRuleOfASimpleSolid, (
     const ExactMap coarse = ExactMap::build(mesh, {.divisions = 1});
     const ExactMap fine =
         ExactMap::build(mesh, {.divisions = *rc::gen::inRange(2U, 40U), .rule = InsideRule::Parity});
-    auto random = random_for_points();
-    for (int n = 0; n < kPointCount; ++n) {
+    auto random = random_for_exact_points();
+    for (int n = 0; n < kExactPointCount; ++n) {
         const Vec3f p = random_point(mesh, coarse, random);
         RC_ASSERT(contains(coarse, p) == contains(fine, p));
         RC_ASSERT(contact(coarse, p, 1).depth == contact(fine, p, 1).depth);
@@ -119,8 +119,8 @@ RC_GTEST_PROP(ExactMap, GivesContactsThatAreSound, ()) {
     const TriangleMesh mesh = test::random_mesh();
     const ExactMap map = ExactMap::build(mesh, random_options());
     const double radius = map.view().radius;
-    auto random = random_for_points();
-    for (int n = 0; n < kPointCount; ++n) {
+    auto random = random_for_exact_points();
+    for (int n = 0; n < kExactPointCount; ++n) {
         const Vec3f p = random_point(mesh, map, random);
         const auto margin = static_cast<float>(random.uniform(0, 0.5) * radius);
         const Contact c = contact(map, p, margin);
@@ -156,8 +156,8 @@ RC_GTEST_PROP(ExactMap, FindsTheNearestPointOfAStretchedWorld, ()) {
     const Vec3d stretch{x, y, factor()};
     TriangleMesh world = mesh;
     for (Vec3f& v : world.vertices) v = Vec3f(Vec3d{v.x * stretch.x, v.y * stretch.y, v.z * stretch.z});
-    auto random = random_for_points();
-    for (int n = 0; n < kPointCount; ++n) {
+    auto random = random_for_exact_points();
+    for (int n = 0; n < kExactPointCount; ++n) {
         const Vec3f p = random_point(mesh, map, random);
         const Vec3d in_world{p.x * stretch.x, p.y * stretch.y, p.z * stretch.z};
         const Contact c = stretched_contact(map, p, 1e30F, stretch);
@@ -172,8 +172,8 @@ RC_GTEST_PROP(ExactMap, FindsTheNearestPointOfAStretchedWorld, ()) {
 RC_GTEST_PROP(ExactMap, SweepsAreOfOneMindWithContains, ()) {
     const TriangleMesh mesh = test::random_part();
     const ExactMap map = ExactMap::build(mesh, random_options());
-    auto random = random_for_points();
-    for (int n = 0; n < kPointCount; ++n) {
+    auto random = random_for_exact_points();
+    for (int n = 0; n < kExactPointCount; ++n) {
         const Vec3f from = random_point(mesh, map, random), to = random_point(mesh, map, random);
         const SweepHit hit = sweep(map, from, to);
         if (!hit.found()) {

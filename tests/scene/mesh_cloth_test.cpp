@@ -13,13 +13,13 @@ using namespace echinus;
 
 namespace {
 
-Scene scene_with(const std::string& cloth) {
+Scene scene_with_cloth(const std::string& cloth) {
     return parse_scene(R"({"model": {"box": {}}, "cloth": {)" + cloth + "}}", "a.json");
 }
 
 void expect_refusal(ErrorCode code, const std::string& words, const std::string& cloth,
                     const ClothMeshes& meshes = {}) {
-    test::expect_error(code, words, [&] { make_cloth(scene_with(cloth), meshes); });
+    test::expect_error(code, words, [&] { make_cloth(scene_with_cloth(cloth), meshes); });
 }
 
 } // namespace
@@ -28,7 +28,7 @@ TEST(SceneMeshCloth, IsMadeOfTheMeshThatTheCallerHasRead) {
     const TriangleMesh sheet = test::sheet_mesh(5, 5);
     TriangleMesh smaller = sheet;
     for (Vec3f& vertex : smaller.vertices) vertex *= 0.5F;
-    const Scene scene = scene_with(R"("mesh": "sheet.obj", "rest_mesh": "smaller.obj", "scale": 2,
+    const Scene scene = scene_with_cloth(R"("mesh": "sheet.obj", "rest_mesh": "smaller.obj", "scale": 2,
         "position": [0, 0, 3], "pins": [0, 4], "velocity": [0, 0, -1])");
     const Deformable cloth = make_cloth(scene, {sheet, smaller});
     EXPECT_EQ(cloth.positions[0], Vec3f(-1, -1, 3));
@@ -42,14 +42,14 @@ TEST(SceneMeshCloth, IsMadeOfTheMeshThatTheCallerHasRead) {
 }
 
 TEST(SceneMeshCloth, MayBeAGeneratedShapeThatNobodyReads) {
-    const Deformable bag = make_cloth(
-        scene_with(R"("mesh": {"sphere": {"radius": 0.5, "segments": [12, 8]}}, "position": [0, 0, 2])"));
+    const Deformable bag = make_cloth(scene_with_cloth(
+        R"("mesh": {"sphere": {"radius": 0.5, "segments": [12, 8]}}, "position": [0, 0, 2])"));
     EXPECT_EQ(bag.faces, make_sphere(0.5, 12, 8).faces);
     EXPECT_FALSE(bag.folds.empty());
 }
 
 TEST(SceneMeshCloth, ChoosesItsVerticesByABoxInTheMeshsOwnCoordinates) {
-    const Deformable cloth = make_cloth(scene_with(R"("mesh": {"box": {"size": [2, 2, 2]}}, "scale": 3,
+    const Deformable cloth = make_cloth(scene_with_cloth(R"("mesh": {"box": {"size": [2, 2, 2]}}, "scale": 3,
         "position": [9, 9, 9], "pins": {"from": [-1, -1, 1], "to": [0, 0, 1]},
         "attachments": {"from": [1, 1, -1], "to": [1, 1, 1]})"));
     for (std::uint32_t i = 0; i < 8; ++i) {
@@ -82,7 +82,7 @@ TEST(SceneMeshCloth, IsRefusedByNameWhereItsMeshesDoNotFit) {
 
 TEST(SceneMeshCloth, RefusesTheKeysOfASheetAndTheOtherWayRound) {
     const auto expect_invalid_scene = [](const std::string& words, const std::string& cloth) {
-        test::expect_error(ErrorCode::InvalidScene, words, [&] { scene_with(cloth); });
+        test::expect_error(ErrorCode::InvalidScene, words, [&] { scene_with_cloth(cloth); });
     };
     expect_invalid_scene("cloth.size is [1,1]; it must be left out where the cloth has the key \"mesh\"",
                          R"("mesh": "s.obj", "size": [1, 1])");

@@ -26,11 +26,11 @@ using namespace echinus::test;
 
 namespace {
 
-constexpr double kThickness = 0.01;
+constexpr double kSheetThickness = 0.01;
 constexpr double kPi = std::numbers::pi;
 
 SimulationOptions surfaces(bool self = false) {
-    return {.thickness = kThickness, .surface_collision = true, .self_collision = self};
+    return {.thickness = kSheetThickness, .surface_collision = true, .self_collision = self};
 }
 
 /// Where a point of the mesh is at a time.

@@ -19,7 +19,7 @@ using namespace echinus;
 
 namespace {
 
-constexpr double kThickness = 0.01;
+constexpr double kClothThickness = 0.01;
 
 struct MapKind {
     std::string_view name;
@@ -80,8 +80,8 @@ Deformable particle_at(const Vec3f& place) {
 
 /// A small sheet that lies on a box at its thickness.
 Simulation sheet_on(const Collider& box) {
-    return Simulation(test::sheet_at(0.5 + kThickness, 0.3, 7), {box},
-                      {.thickness = kThickness, .friction = 0.8});
+    return Simulation(test::sheet_at(0.5 + kClothThickness, 0.3, 7), {box},
+                      {.thickness = kClothThickness, .friction = 0.8});
 }
 
 /// How far a corner of the sheet is from where it would be, had it been carried along as if glued.
@@ -94,11 +94,11 @@ double distance_from_carried(const Simulation& simulation, const Vec3f& corner) 
 
 TEST_P(Draping, LaysASheetFlatOnABoxAtItsThickness) {
     Simulation simulation(test::sheet_at(0.55, 0.5, 15), {{.map = map_of(make_box({1, 1, 1}))}},
-                          {.thickness = kThickness});
+                          {.thickness = kClothThickness});
     test::run_to_rest(simulation, 1000);
     // Between samples a distance map is off by the sagitta: 0.001 here.
     const double tolerance = GetParam().is_exact ? 1e-3 : 2e-3;
-    for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(p.z, 0.5 + kThickness, tolerance);
+    for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(p.z, 0.5 + kClothThickness, tolerance);
     EXPECT_NEAR(middle(simulation).x, 0, 1e-3);
     EXPECT_NEAR(middle(simulation).y, 0, 1e-3);
 }
@@ -106,9 +106,9 @@ TEST_P(Draping, LaysASheetFlatOnABoxAtItsThickness) {
 TEST_P(DrapingOnABall, BringsASheetToRestOutside) {
     const TriangleMesh sphere = make_sphere(1, 80, 40);
     Simulation simulation(test::sheet_at(1.05, 2, 15), {{.map = map_of(sphere)}},
-                          {.thickness = kThickness, .friction = 0.8});
+                          {.thickness = kClothThickness, .friction = 0.8});
     test::run_to_rest(simulation, 6000);
-    test::expect_draped_over_unit_ball(simulation, kThickness);
+    test::expect_draped_over_unit_ball(simulation, kClothThickness);
     if (!GetParam().is_exact) return;
     for (const Vec3f& p : simulation.positions()) EXPECT_LT(winding_number(sphere, Vec3d(p)), 0.5);
 }
@@ -138,7 +138,7 @@ TEST_P(Draping, TurnsASheetWithATurningColliderAndDoesNotFlingItOff) {
 TEST_P(Draping, LiftsASheetOnARisingCollider) {
     Simulation simulation = sheet_on({.map = map_of(make_box({2, 2, 1})), .linear_velocity = {0, 0, 0.5}});
     for (int i = 0; i < 240; ++i) simulation.step();
-    for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(p.z, 1 + kThickness, 3e-3);
+    for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(p.z, 1 + kClothThickness, 3e-3);
 }
 
 TEST_P(Draping, CarriesTurnsAndLiftsASheetAtOnce) {
@@ -152,7 +152,7 @@ TEST_P(Draping, CarriesTurnsAndLiftsASheetAtOnce) {
 
 TEST_P(Draping, LetsAParticleOutThatBeganInside) {
     Simulation simulation(particle_at({0.1F, 0.05F, 0.8F}), {{.map = map_of(make_sphere(1, 80, 40))}},
-                          {.thickness = kThickness});
+                          {.thickness = kClothThickness});
     for (int i = 0; i < 60; ++i) simulation.step();
     EXPECT_GT(length(simulation.positions()[0]), 0.999);
 }
@@ -160,7 +160,8 @@ TEST_P(Draping, LetsAParticleOutThatBeganInside) {
 TEST_P(Draping, LeavesPinnedParticlesAloneEvenInside) {
     Deformable particle = particle_at({0, 0, 0.5F});
     particle.inverse_masses = {0};
-    Simulation simulation(particle, {{.map = map_of(make_sphere(1, 80, 40))}}, {.thickness = kThickness});
+    Simulation simulation(particle, {{.map = map_of(make_sphere(1, 80, 40))}},
+                          {.thickness = kClothThickness});
     for (int i = 0; i < 10; ++i) simulation.step();
     EXPECT_EQ(simulation.positions()[0], (Vec3f{0, 0, 0.5F}));
     EXPECT_EQ(simulation.profile().lost_count, 0u);
@@ -181,7 +182,7 @@ TEST_P(Draping, GivesTheSameBitsOnEveryRunInEveryCopyAndUnderEachInstructionSet)
         const Collider turning{
             .map = torus, .linear_velocity = {0, 0, 0.4}, .angular_velocity = {0.2, 0.1, 2}};
         const Collider still{.map = torus, .pose = {Rotation::about({1, 2, 3}, 1), {0.3, 0.2, -1}}};
-        Simulation simulation(test::sheet_at(0.45, 2, 15), {turning, still}, {.thickness = kThickness});
+        Simulation simulation(test::sheet_at(0.45, 2, 15), {turning, still}, {.thickness = kClothThickness});
         for (int i = 0; i < 30; ++i) simulation.step();
         Simulation copy = simulation;
         for (Simulation* each : {&simulation, &copy}) {

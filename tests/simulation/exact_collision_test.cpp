@@ -16,7 +16,7 @@ using namespace echinus;
 
 namespace {
 
-constexpr double kThickness = 0.01;
+constexpr double kContactThickness = 0.01;
 
 Deformable particles_at(const std::vector<Vec3f>& places) {
     return {.positions = places,
@@ -61,7 +61,7 @@ Simulation plate_and_sheet(bool keep_free) {
                          .linear_velocity = {0.5, 0, 5},
                          .angular_velocity = {4, 18, 2}};
     return Simulation(test::sheet_at(0.7, 1, 25, Vec3d{0, 0, -30} * kStep), {plate},
-                      {.time_step = kStep, .thickness = kThickness, .keep_free = keep_free});
+                      {.time_step = kStep, .thickness = kContactThickness, .keep_free = keep_free});
 }
 
 } // namespace
@@ -97,7 +97,7 @@ TEST(ExactCollision, LosesNoParticleHoweverFastAmongModelsOfAnyScale) {
         for (Vec3f& previous : particles.previous_positions) previous += test::in_cube(random, 1);
         for (std::uint32_t i = 0; i + 1 < 200; ++i)
             particles.sticks.push_back({i, i + 1, 0.5F, StickKind::Structural});
-        Simulation simulation(particles, {collider}, {.thickness = n % 4 == 0 ? 0 : kThickness});
+        Simulation simulation(particles, {collider}, {.thickness = n % 4 == 0 ? 0 : kContactThickness});
         EXPECT_EQ(lost_in(simulation, 60), 0u);
         EXPECT_EQ(simulation.profile().lost_count, 0u);
     }
@@ -130,7 +130,7 @@ TEST(ExactCollision, DoesNotAddToTheSpeedOfAParticle) {
     }
     Deformable particles = particles_at(places);
     for (std::size_t i = 0; i < places.size(); ++i) particles.previous_positions[i] -= steps[i];
-    Simulation simulation(particles, {torus}, {.gravity = {}, .drag = 0, .thickness = kThickness});
+    Simulation simulation(particles, {torus}, {.gravity = {}, .drag = 0, .thickness = kContactThickness});
     for (int frame = 0; frame < 100; ++frame) {
         simulation.step();
         for (std::size_t i = 0; i < places.size(); ++i) {
@@ -146,12 +146,12 @@ TEST(ExactCollision, DoesNotAddToTheSpeedOfAParticle) {
 TEST(ExactCollision, LetsAParticleOutThatBeganInsideAndKeepsItOutsideFromThenOn) {
     const Collider sphere{.map = ExactMap::build(make_sphere(1, 80, 40))};
     Simulation simulation(particles_at({{0.1F, 0.05F, 0.8F}, {0, 0, 0}}), {sphere},
-                          {.gravity = {}, .thickness = kThickness});
+                          {.gravity = {}, .thickness = kContactThickness});
     simulation.step();
-    for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(length(p), 1 + kThickness, 5e-3);
+    for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(length(p), 1 + kContactThickness, 5e-3);
     for (int i = 0; i < 60; ++i) EXPECT_EQ(step_and_count_lost(simulation), 0u);
     // Pushed, not thrown.
-    for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(length(p), 1 + kThickness, 5e-3);
+    for (const Vec3f& p : simulation.positions()) EXPECT_NEAR(length(p), 1 + kContactThickness, 5e-3);
     EXPECT_EQ(simulation.profile().lost_count, 0u);
 }
 
@@ -160,7 +160,7 @@ TEST(ExactCollision, KeepsAParticleFreeOfTwoCollidersWhileThereIsRoom) {
     const ExactMap plate = ExactMap::build(make_box({1, 1, 0.1}));
     const Collider below{.map = plate, .pose = {Rotation{}, {0, 0, -0.052}}};
     const Collider above{.map = plate, .pose = {Rotation{}, {0, 0, 0.152}}, .linear_velocity = {0, 0, -1}};
-    Simulation simulation(test::sheet_at(0.02, 0.5, 8), {below, above}, {.thickness = kThickness});
+    Simulation simulation(test::sheet_at(0.02, 0.5, 8), {below, above}, {.thickness = kContactThickness});
     EXPECT_EQ(lost_in(simulation, 24), 0u);
     simulation.set_collider_velocity(1, {}, {});
     EXPECT_EQ(lost_in(simulation, 60), 0u);
@@ -173,7 +173,7 @@ TEST(ExactCollision, CountsTheParticlesThatGetInsideAnOpenMesh) {
         return std::ranges::all_of(face, [&](std::uint32_t v) { return open.vertices[v].z > 0.49F; });
     });
     Simulation simulation(test::sheet_at(0.6, 0.8, 9), {{.map = ExactMap::build(open)}},
-                          {.thickness = kThickness, .allow_open_colliders = true});
+                          {.thickness = kContactThickness, .allow_open_colliders = true});
     for (int i = 0; i < 60; ++i) simulation.step();
     const auto inside_count = std::ranges::count_if(
         simulation.positions(), [&](const Vec3f& p) { return contains(simulation.colliders()[0], p); });
@@ -185,15 +185,15 @@ TEST(ExactCollision, CountsWhatTwoCollidersThatOverlapLeaveNoRoomFor) {
     const ExactMap plate = ExactMap::build(make_box({1, 1, 0.5}));
     const Collider below{.map = plate, .pose = {Rotation{}, {0, 0, -0.26}}};
     const Collider above{.map = plate, .pose = {Rotation{}, {0, 0, 0.26}}, .linear_velocity = {0, 0, -0.5}};
-    Simulation simulation(particles_at({{0, 0, 0}}), {below, above}, {.thickness = kThickness});
+    Simulation simulation(particles_at({{0, 0, 0}}), {below, above}, {.thickness = kContactThickness});
     for (int i = 0; i < 48; ++i) simulation.step();
     EXPECT_GT(simulation.profile().lost_count, 0u);
     EXPECT_FALSE(contains(simulation.colliders()[0], simulation.positions()[0]));
 }
 
 TEST(ExactCollision, AnswersParticlesThatHardlyMoveFromMemory) {
-    Simulation simulation(test::sheet_at(0.5 + kThickness, 0.5, 10),
-                          {{.map = ExactMap::build(make_box({1, 1, 1}))}}, {.thickness = kThickness});
+    Simulation simulation(test::sheet_at(0.5 + kContactThickness, 0.5, 10),
+                          {{.map = ExactMap::build(make_box({1, 1, 1}))}}, {.thickness = kContactThickness});
     for (int i = 0; i < 100; ++i) simulation.step();
     EXPECT_EQ(simulation.profile().query_count, 100u * 100u * 10u);
     EXPECT_LT(simulation.profile().map_query_count, simulation.profile().query_count / 20);

@@ -11,7 +11,7 @@ using namespace echinus;
 
 namespace {
 
-constexpr double kThickness = 0.02;
+constexpr double kWideThickness = 0.02;
 
 Particles particles_around(const Vec3f& centre, std::size_t count, float half_width, test::Random& random) {
     Deformable deformable;
@@ -55,7 +55,7 @@ TEST(KnownContacts, PushAndListTheSameParticlesUnderEachInstructionSet) {
     const Collider box{.map = ExactMap::build(make_box({1, 1, 1}, 2)),
                        .pose = {Rotation::about({1, 2, 3}, 1), {0.1, 0.2, 0.3}}};
     const RigidTransform before{Rotation::about({1, 2, 3}, 0.9), {0.1, 0.2, 0.31}};
-    const ColliderNow now(box, before, {.thickness = kThickness});
+    const ColliderNow now(box, before, {.thickness = kWideThickness});
     for (std::size_t count = 1; count < 200; count += 11) {
         test::Random random(static_cast<unsigned>(count));
         Particles start = particles_around({}, count, 0.8F, random);
@@ -80,7 +80,7 @@ TEST(KnownContacts, PushAndListTheSameParticlesUnderEachInstructionSet) {
 
 TEST(KnownContacts, PutAParticleAtTheThicknessOverItsPlane) {
     const Collider box{.map = ExactMap::build(make_box({1, 1, 1}))};
-    const ColliderNow now(box, box.pose, {.thickness = kThickness});
+    const ColliderNow now(box, box.pose, {.thickness = kWideThickness});
     Deformable deformable{.positions = {{0.1F, 0.2F, 0.51F}},
                           .previous_positions = {{0.1F, 0.2F, 0.53F}},
                           .inverse_masses = {1},
@@ -91,12 +91,12 @@ TEST(KnownContacts, PutAParticleAtTheThicknessOverItsPlane) {
     ParticleList to_ask(1);
     EXPECT_EQ(push_known(known, now, 0, particles.count(), particles, to_ask), 1u);
     EXPECT_EQ(to_ask.count, 0u);
-    EXPECT_NEAR(particles.positions[0].z, 0.5 + kThickness, 1e-6);
+    EXPECT_NEAR(particles.positions[0].z, 0.5 + kWideThickness, 1e-6);
 }
 
 TEST(KnownContacts, AskAgainAboutParticlesThatMovedAlongTheSurface) {
     const Collider box{.map = ExactMap::build(make_box({1, 1, 1}))};
-    const ColliderNow now(box, box.pose, {.thickness = kThickness});
+    const ColliderNow now(box, box.pose, {.thickness = kWideThickness});
     Deformable deformable{.positions = {{0.1F, 0.2F, 0.51F}, {0.1F, 0.2F, 1.2F}},
                           .previous_positions = {{0.1F, 0.2F, 0.51F}, {0.1F, 0.2F, 1.2F}},
                           .inverse_masses = {1, 1},
@@ -118,11 +118,11 @@ TEST(KnownContacts, ProveNoWayFreeThatCrossesTheSurfaceEvenFarFromTheOrigin) {
     test::Random random(3);
     for (const Vec3f& centre : {Vec3f{}, Vec3f{30, 20, -10}, Vec3f{1000, -700, 500}}) {
         Collider collider{.map = box, .pose = {Rotation::about({3, 2, 1}, 2), Vec3d(centre)}};
-        const ColliderNow then(collider, collider.pose, {.thickness = kThickness});
+        const ColliderNow then(collider, collider.pose, {.thickness = kWideThickness});
         const Particles particles = particles_around(centre, 5000, 0.8F, random);
         KnownContacts known = known_of(particles, then, 0.1F);
         collider.pose.rotation = Rotation::about({1, -1, 2}, 0.7);
-        const ColliderNow now(collider, collider.pose, {.thickness = kThickness});
+        const ColliderNow now(collider, collider.pose, {.thickness = kWideThickness});
         known.follow(now);
         std::size_t proven_count = 0;
         std::size_t crossing_count = 0;

@@ -17,7 +17,7 @@ using namespace echinus::test;
 
 namespace {
 
-constexpr double kGravity = 9.81;
+constexpr double kStandardGravity = 9.81;
 
 SimulationOptions measured(bool surfaces, bool small_steps = false) {
     SimulationOptions options{.thickness = 0.01, .surface_collision = surfaces, .self_collision = surfaces};
@@ -80,7 +80,7 @@ TEST(Load, OfAClothAtRestIsItsWeight) {
             Simulation simulation(sheet_at(0.55, 1.2, 25), colliders_of(models),
                                   measured(surfaces, small_steps));
             for (int i = 0; i < 1500 && !simulation.at_rest(); ++i) simulation.step();
-            const double weight = mass_of(simulation) * kGravity;
+            const double weight = mass_of(simulation) * kStandardGravity;
             const Load load = mean_load(simulation, 0);
             EXPECT_NEAR(load.force.z, -weight, 0.02 * weight);
             EXPECT_NEAR(std::hypot(load.force.x, load.force.y), 0, 0.02 * weight);
@@ -97,7 +97,7 @@ TEST(Load, OfASoftBodyAtRestIsItsWeightWhereverItLies) {
             plate[0].pose.translation = place;
             Simulation simulation(body, plate, measured(surfaces, true));
             for (int i = 0; i < 240; ++i) simulation.step();
-            const double weight = mass_of(simulation) * kGravity;
+            const double weight = mass_of(simulation) * kStandardGravity;
             const Load load = mean_load(simulation, 0, 240);
             EXPECT_NEAR(load.force.z, -weight, 0.005 * weight) << "at " << place.x << ' ' << place.z;
             EXPECT_NEAR(std::hypot(load.force.x, load.force.y), 0, 0.005 * weight);
@@ -110,7 +110,7 @@ TEST(Load, HasTheMomentOfWhereTheClothLies) {
     sheet.previous_positions = sheet.positions;
     Simulation simulation(sheet, colliders_of({make_box({2, 2, 0.1})}), measured(true));
     for (int i = 0; i < 300; ++i) simulation.step();
-    const double weight = mass_of(simulation) * kGravity;
+    const double weight = mass_of(simulation) * kStandardGravity;
     const Load load = mean_load(simulation, 0);
     // r x F with r = (0.6, -0.2, 0.06) and F = (0, 0, -weight).
     EXPECT_NEAR(load.force.z, -weight, 0.02 * weight);
@@ -126,7 +126,7 @@ TEST(Load, IsSharedByTwoTablesHalfEach) {
     colliders[1].pose.translation = {0.3, 0, 0};
     Simulation simulation(sheet_at(0.07, 0.8, 20), colliders, measured(true));
     for (int i = 0; i < 1200; ++i) simulation.step();
-    const double weight = mass_of(simulation) * kGravity;
+    const double weight = mass_of(simulation) * kStandardGravity;
     Vec3d left, right;
     for (int i = 0; i < 60; ++i) {
         simulation.step();
@@ -172,7 +172,7 @@ TEST(Load, OfAClothThatHangsFromItIsItsWeight) {
         options.drag = 0.02;
         Simulation simulation(sheet, colliders_of({make_box({0.1, 0.1, 0.1})}), options);
         for (int i = 0; i < 2400; ++i) simulation.step();
-        const double weight = mass_of(simulation) * kGravity;
+        const double weight = mass_of(simulation) * kStandardGravity;
         EXPECT_NEAR(mean_load(simulation, 0, 240).force.z, -weight, 0.02 * weight);
     }
 }
@@ -187,7 +187,7 @@ TEST(Load, OfFrictionIsAgainstTheMotion) {
     options.friction = 0.3;
     Simulation simulation(sheet_at(0.0601, 0.5, 10), colliders, options);
     for (int i = 0; i < 60; ++i) simulation.step();
-    const double weight = mass_of(simulation) * kGravity;
+    const double weight = mass_of(simulation) * kStandardGravity;
     const Load load = mean_load(simulation, 0, 60);
     EXPECT_NEAR(load.force.z, -weight, 0.02 * weight);
     EXPECT_NEAR(load.force.x, -0.3 * weight, 0.02 * weight);

@@ -21,7 +21,7 @@ using namespace echinus;
 
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNaNLength = std::numeric_limits<float>::quiet_NaN();
 /// That adds up over some frames in coordinates around 1.
 constexpr double kRounding = 1e-5;
 const SimulationOptions kWeightless{.gravity = {}};
@@ -262,7 +262,7 @@ TEST(MeshCloth, OfAMeshThatIsNoSurfaceIsRefusedByName) {
     expect_refusal("face 2 of the mesh refers to vertex 9", broken);
 
     TriangleMesh nowhere = test::sheet_mesh(3, 3);
-    nowhere.vertices[4].z = kNaN;
+    nowhere.vertices[4].z = kNaNLength;
     expect_refusal("uses vertex 4", nowhere);
     expect_refusal("neither faces nor threads", {});
 }
@@ -359,6 +359,6 @@ TEST(Folds, AreRefusedByNameWhereTheyDoNotFit) {
     expect_words("fold 1 lies between particles 0, 1, 2 and 9", {0, 1, 2, 9, 0, 1});
     expect_words("fold 1 lies between particles 0, 1, 2 and 2", {0, 1, 2, 2, 0, 1});
     expect_words("fold 1 has a rest angle", {0, 1, 2, 3, 4, 1});
-    expect_words("fold 1 has a rest angle", {0, 1, 2, 3, kNaN, 1});
+    expect_words("fold 1 has a rest angle", {0, 1, 2, 3, kNaNLength, 1});
     expect_words("fold 1 has a rest angle", {0, 1, 2, 3, 0, 0});
 }

@@ -17,7 +17,7 @@ using namespace echinus::test;
 
 namespace {
 
-SimulationOptions surfaces(bool self) {
+SimulationOptions with_surfaces(bool self) {
     return {.thickness = 0.01, .surface_collision = true, .self_collision = self};
 }
 
@@ -39,7 +39,7 @@ TEST(SeveralColliders, KeepASheetOffAllOfThemWhileEachMovesOnItsOwn) {
             keys.push_back(
                 {0.2 * i, {Rotation::about({0, 1, 1}, 0.5 * i), {0.45, 0.3 * (i % 2), -0.3 + 0.05 * i}}});
         colliders[3].pose = pose_at(keys, 0);
-        Simulation simulation(sheet_at(0.25, 1.4, 25), colliders, surfaces(self));
+        Simulation simulation(sheet_at(0.25, 1.4, 25), colliders, with_surfaces(self));
         simulation.set_collider_keyframes(3, keys);
         expect_nothing_meets(simulation, models, 400);
         EXPECT_EQ(simulation.profile().lost_count, 0u);
@@ -49,7 +49,7 @@ TEST(SeveralColliders, KeepASheetOffAllOfThemWhileEachMovesOnItsOwn) {
 TEST(SeveralColliders, ChangeNothingWhileTheyAreFarAway) {
     const std::vector<TriangleMesh> ball{make_sphere(0.4, 24, 12)};
     for (const bool surface : {false, true}) {
-        SimulationOptions options = surfaces(surface);
+        SimulationOptions options = with_surfaces(surface);
         options.surface_collision = surface;
         std::vector<Collider> colliders = colliders_of({ball[0], make_box({1, 1, 1}), make_sphere(1, 16, 8)});
         colliders[1].pose.translation = {9, 0, 0};
@@ -71,7 +71,7 @@ TEST(SeveralColliders, AreMetHoweverFastTheyCome) {
     const std::vector<TriangleMesh> models{make_box({0.1, 0.1, 0.1}), make_box({2, 2, 0.05}, 4)};
     for (const bool surface : {false, true})
         for (const bool sheet_comes : {false, true}) {
-            SimulationOptions options = surfaces(surface);
+            SimulationOptions options = with_surfaces(surface);
             options.surface_collision = surface;
             std::vector<Collider> colliders = colliders_of(models);
             colliders[0].pose.translation = {0, 0, 40};
@@ -106,7 +106,7 @@ TEST(SeveralColliders, AreMetLateWhereGravityIsStrongerThanFramesForesee) {
             colliders[2].pose.translation = {0, 0, -0.35};
             if (plate_moves) colliders[1].linear_velocity = {0, 0, 0.5};
             if (floor_moves) colliders[2].linear_velocity = {0, 0, 0.5};
-            SimulationOptions options = surfaces(true);
+            SimulationOptions options = with_surfaces(true);
             options.gravity = {0, 0, -3e4};
             Simulation simulation(sheet_at(0, 0.5, 10), colliders, options);
             float lowest = 0;
@@ -131,7 +131,7 @@ TEST(SeveralColliders, ComeAndGo) {
     colliders[1].pose = pose_at(keys, 0);
     Deformable sheet = sheet_at(0.27, 1, 20);
     for (const std::size_t corner : {0u, 19u, 380u, 399u}) sheet.inverse_masses[corner] = 0;
-    Simulation simulation(sheet, colliders, surfaces(true));
+    Simulation simulation(sheet, colliders, with_surfaces(true));
     simulation.set_collider_keyframes(1, keys);
     expect_nothing_meets(simulation, models, 480);
 }

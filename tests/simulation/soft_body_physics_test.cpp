@@ -21,21 +21,21 @@ struct Slide {
 };
 
 Slide slide_down(double degrees) {
-    constexpr double kFriction = 0.5, kThickness = 0.004, kSeconds = 0.5, kGravity = 9.81;
+    constexpr double kFriction = 0.5, kThinBody = 0.004, kSeconds = 0.5, kGravity = 9.81;
     const double angle = degrees * std::numbers::pi / 180;
     const Rotation tilt = Rotation::about({0, 1, 0}, angle); // down along x
     const Deformable block = make_soft_body(make_solid_box({0.2, 0.2, 0.1}, {4, 4, 2}),
                                             {.young_modulus = 2e5,
                                              .poisson_ratio = 0.3,
                                              .damping = 0.02,
-                                             .pose = {tilt, tilt.apply({0, 0, 0.5 + 0.05 + kThickness})}});
+                                             .pose = {tilt, tilt.apply({0, 0, 0.5 + 0.05 + kThinBody})}});
     const Collider slope{.map = ExactMap::build(make_box({3, 1, 1})), .pose = {tilt, {}}};
     Simulation simulation(block, {slope},
                           {.solver = SolverKind::Xpbd,
                            .iteration_count = 1,
                            .substep_count = 10,
                            .drag = 0,
-                           .thickness = kThickness,
+                           .thickness = kThinBody,
                            .friction = kFriction,
                            .surface_collision = true});
     const auto middle = [&] {

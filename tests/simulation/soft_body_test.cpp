@@ -16,13 +16,13 @@ using namespace echinus;
 
 namespace {
 
-constexpr double kThickness = 0.004;
+constexpr double kBodyThickness = 0.004;
 
 SimulationOptions with_surfaces() {
     return {.solver = SolverKind::Xpbd,
             .iteration_count = 1,
             .substep_count = 10,
-            .thickness = kThickness,
+            .thickness = kBodyThickness,
             .surface_collision = true,
             .self_collision = true};
 }
@@ -186,7 +186,7 @@ TEST(SoftBody, PressedBetweenPlatesIsTakenAlongByBothAndMeetsNeither) {
                                            {.young_modulus = 2e3, .poisson_ratio = 0.2});
     const std::vector<TriangleMesh> plates(2, make_box({0.6, 0.6, 0.05}, 4));
     std::vector<Collider> colliders = test::colliders_of(plates);
-    const double start = 0.1 + kThickness + 0.026, end = 8 * kThickness + 0.05 - start;
+    const double start = 0.1 + kBodyThickness + 0.026, end = 8 * kBodyThickness + 0.05 - start;
     colliders[0].pose.translation = {0, 0, -start};
     colliders[1].pose.translation = {0, 0, start};
     SimulationOptions options = with_surfaces();

@@ -15,7 +15,7 @@ using namespace echinus::test;
 
 namespace {
 
-const SimulationOptions kWeightless{.time_step = 0.01, .gravity = {}, .drag = 0};
+const SimulationOptions kWithoutForces{.time_step = 0.01, .gravity = {}, .drag = 0};
 
 /// A sheet in the plane z = 0 around the origin.
 Simulation sheet(const SimulationOptions& options, std::vector<std::uint32_t> pins = {}) {
@@ -38,7 +38,7 @@ TEST(Steering, GivesAParticleItsVelocity) {
                            .inverse_masses = {1},
                            .sticks = {},
                            .faces = {}},
-                          {}, kWeightless);
+                          {}, kWithoutForces);
     simulation.set_particle_velocity(0, {10, 0, -20});
     simulation.step();
     EXPECT_NEAR(simulation.positions()[0].x, 1.1, 1e-6);
@@ -47,7 +47,7 @@ TEST(Steering, GivesAParticleItsVelocity) {
 }
 
 TEST(Steering, LeavesAPinnedParticleWhereItIs) {
-    Simulation simulation = sheet(kWeightless, {0});
+    Simulation simulation = sheet(kWithoutForces, {0});
     const Vec3f before = simulation.positions()[0];
     simulation.set_particle_velocity(0, {10, 0, 0});
     for (int i = 0; i < 10; ++i) {
@@ -79,7 +79,7 @@ TEST(Steering, DragsNoParticleIntoAModel) {
 }
 
 TEST(Steering, WindAcrossASheetCarriesItAlongInTheEnd) {
-    Simulation simulation = sheet(kWeightless);
+    Simulation simulation = sheet(kWithoutForces);
     for (int i = 0; i < 300; ++i) {
         simulation.blow({0, 0, 2}, 5);
         simulation.step();
@@ -88,7 +88,7 @@ TEST(Steering, WindAcrossASheetCarriesItAlongInTheEnd) {
 }
 
 TEST(Steering, WindGivesItsShareInOneFrame) {
-    Simulation simulation = sheet(kWeightless);
+    Simulation simulation = sheet(kWithoutForces);
     simulation.blow({3, -1, 2}, 5);
     // Along the sheet, air slips by.
     const Vec3d velocity = mean_velocity(simulation);
@@ -98,7 +98,7 @@ TEST(Steering, WindGivesItsShareInOneFrame) {
 }
 
 TEST(Steering, AirAtRestBrakesAndNeverTurnsRound) {
-    Simulation simulation = sheet(kWeightless);
+    Simulation simulation = sheet(kWithoutForces);
     for (std::size_t i = 0; i < simulation.positions().size(); ++i)
         simulation.set_particle_velocity(i, {0, 0, 1});
     simulation.blow({}, 1e9);
@@ -118,7 +118,7 @@ void expect_pose(const RigidTransform& pose, const RigidTransform& expected) {
 
 TEST(Steering, LeadsAColliderToAPoseInOneFrameAndLeavesItThere) {
     for (const std::uint32_t substeps : {1u, 10u}) {
-        SimulationOptions options = kWeightless;
+        SimulationOptions options = kWithoutForces;
         options.solver = substeps == 1 ? SolverKind::Verlet : SolverKind::Xpbd;
         options.substep_count = substeps;
         Simulation simulation(sheet_at(5, 1, 4), colliders_of({make_box({1, 1, 1})}), options);
@@ -141,7 +141,7 @@ TEST(Steering, LeadsAColliderToAPoseInOneFrameAndLeavesItThere) {
 
 TEST(Steering, LeadsAColliderAlongKeysAndRestsNotBeforeTheLast) {
     const std::vector<PoseKey> keys{{0, {}}, {0.1, {{}, {0, 0, 1}}}, {3, {{}, {0, 0, 1}}}};
-    SimulationOptions options = kWeightless;
+    SimulationOptions options = kWithoutForces;
     options.rest.frame_count = 5;
     Simulation simulation(sheet_at(5, 1, 4), colliders_of({make_box({1, 1, 1})}), options);
     simulation.set_collider_keyframes(0, keys);

@@ -15,8 +15,8 @@ using namespace echinus;
 namespace {
 
 /// A sheet whose sticks are all off their length.
-Deformable rumpled_cloth(std::uint32_t column_count, std::uint32_t row_count,
-                         std::vector<std::uint32_t> pins = {}) {
+Deformable crumpled_cloth(std::uint32_t column_count, std::uint32_t row_count,
+                          std::vector<std::uint32_t> pins = {}) {
     Deformable cloth =
         make_cloth({.column_count = column_count, .row_count = row_count, .pins = std::move(pins)});
     test::Random random(column_count * 100 + row_count);
@@ -57,19 +57,19 @@ std::size_t scattered_count(const StickArrays& sticks) {
 
 TEST(Sticks, RelaxToTheSameBitsUnderEachInstructionSetInSheetsOfAnySize) {
     for (std::uint32_t columns = 2; columns < 40; ++columns)
-        expect_same_bits_under_each_instruction_set(rumpled_cloth(columns, 3 + columns % 4));
+        expect_same_bits_under_each_instruction_set(crumpled_cloth(columns, 3 + columns % 4));
 }
 
 TEST(Sticks, RelaxToTheSameBitsUnderEachInstructionSetWithPinsAndUnequalMasses) {
-    expect_same_bits_under_each_instruction_set(rumpled_cloth(37, 9, {0, 3, 40, 41, 300}));
-    Deformable uneven = rumpled_cloth(20, 20);
+    expect_same_bits_under_each_instruction_set(crumpled_cloth(37, 9, {0, 3, 40, 41, 300}));
+    Deformable uneven = crumpled_cloth(20, 20);
     for (std::size_t i = 0; i < uneven.particle_count(); ++i)
         uneven.inverse_masses[i] = 1.0F / static_cast<float>(1 + i / 100);
     expect_same_bits_under_each_instruction_set(uneven);
 }
 
 TEST(Sticks, RelaxToTheSameBitsUnderEachInstructionSetInAnyOrder) {
-    Deformable cloth = rumpled_cloth(17, 11);
+    Deformable cloth = crumpled_cloth(17, 11);
     test::Random random(5);
     std::shuffle(cloth.sticks.begin(), cloth.sticks.end(), random);
     expect_same_bits_under_each_instruction_set(cloth);
@@ -89,13 +89,13 @@ TEST(Sticks, OfAMeshRelaxToTheSameBitsUnderEachInstructionSet) {
 TEST(Sticks, ThatGiveWayRelaxToTheSameBitsUnderEachInstructionSet) {
     const SimulationOptions springs{.solver = SolverKind::Xpbd, .compliance = {1e-6, 1e-5, 1e-4}};
     for (std::uint32_t columns = 2; columns < 40; ++columns)
-        expect_same_bits_under_each_instruction_set(rumpled_cloth(columns, 4, {1}), springs);
-    expect_same_bits_under_each_instruction_set(rumpled_cloth(600, 3), springs);
+        expect_same_bits_under_each_instruction_set(crumpled_cloth(columns, 4, {1}), springs);
+    expect_same_bits_under_each_instruction_set(crumpled_cloth(600, 3), springs);
 }
 
 TEST(Sticks, StandInRunsThatFollowEachOtherAndShareNoParticle) {
     for (const Deformable& cloth :
-         {rumpled_cloth(2, 2), rumpled_cloth(33, 7), rumpled_cloth(24, 24, {30}),
+         {crumpled_cloth(2, 2), crumpled_cloth(33, 7), crumpled_cloth(24, 24, {30}),
           make_cloth(make_torus(1, 0.4, 30, 20), {}), make_cloth(make_sphere(1, 100, 20), {})}) {
         const StickArrays sticks = weighted_sticks(cloth, {});
         std::size_t next = 0;
@@ -117,7 +117,7 @@ TEST(Sticks, StandInRunsThatFollowEachOtherAndShareNoParticle) {
 }
 
 TEST(Sticks, OfAClothStandInLongRuns) {
-    EXPECT_EQ(scattered_count(weighted_sticks(rumpled_cloth(100, 20), {})), 0u);
+    EXPECT_EQ(scattered_count(weighted_sticks(crumpled_cloth(100, 20), {})), 0u);
 }
 
 TEST(Sticks, OfAMeshStandInRunsThatShareNoParticle) {
@@ -129,7 +129,7 @@ TEST(Sticks, OfAMeshStandInRunsThatShareNoParticle) {
 }
 
 TEST(Sticks, BetweenPinnedParticlesAreLeftOut) {
-    const Deformable cloth = rumpled_cloth(6, 4, {0, 1});
+    const Deformable cloth = crumpled_cloth(6, 4, {0, 1});
     EXPECT_EQ(weighted_sticks(cloth, {}).count(), cloth.sticks.size() - 1);
 }
 

@@ -25,8 +25,8 @@ using namespace echinus::test;
 
 namespace {
 
-constexpr double kThickness = 0.01;
-const SimulationOptions kSurfaces{.thickness = kThickness, .surface_collision = true};
+constexpr double kSurfaceThickness = 0.01;
+const SimulationOptions kSurfaces{.thickness = kSurfaceThickness, .surface_collision = true};
 
 /// A tetrahedron two units high and a hundredth wide, its tip in the origin.
 TriangleMesh needle() {
@@ -207,7 +207,7 @@ TEST(SurfaceCollision, KeepsASheetOffASurfaceWithHoles) {
 TEST(SurfaceCollision, LeavesFreeFallAsItIs) {
     const std::vector<Collider> ball = colliders_of({make_sphere(0.4, 24, 12)});
     Simulation surfaces(sheet_at(0.6, 1, 20), ball, kSurfaces);
-    Simulation particles(sheet_at(0.6, 1, 20), ball, {.thickness = kThickness});
+    Simulation particles(sheet_at(0.6, 1, 20), ball, {.thickness = kSurfaceThickness});
     for (int i = 0; i < 40; ++i) {
         surfaces.step();
         particles.step();
@@ -241,14 +241,14 @@ TEST(SurfaceCollision, ComesToRestWithHardlyAVertexTruncatedAndAtItsThickness) {
     double sum = 0;
     int count = 0;
     for (const Vec3f& p : simulation.positions()) {
-        const Contact near = contact(ball[0], p, float(2 * kThickness));
+        const Contact near = contact(ball[0], p, float(2 * kSurfaceThickness));
         if (!near.found()) continue;
         sum += double{-near.depth};
         ++count;
     }
     ASSERT_GT(count, 100);
-    EXPECT_LE(sum / count, 1.2 * kThickness);
-    EXPECT_GE(sum / count, 0.9 * kThickness);
+    EXPECT_LE(sum / count, 1.2 * kSurfaceThickness);
+    EXPECT_GE(sum / count, 0.9 * kSurfaceThickness);
 }
 
 TEST(SurfaceCollision, SlidesDownASlopeLikeParticles) {
@@ -354,7 +354,7 @@ TEST(SurfaceCollision, KeepsASheetOffAnAssemblyOfOpenParts) {
 TEST(SurfaceCollision, OfParticlesOnlyKeepsPositionsFiniteOnASoup) {
     const TriangleMesh soup = exploded(make_torus(1, 0.4, 24, 12), 0.97F);
     Simulation simulation(sheet_at(0.5, 1.6, 10, {0, 0, -0.02}), {{ExactMap::build(soup)}},
-                          {.thickness = kThickness, .allow_open_colliders = true});
+                          {.thickness = kSurfaceThickness, .allow_open_colliders = true});
     for (int frame = 0; frame < 60; ++frame) simulation.step();
     for (const Vec3f& p : simulation.positions()) ASSERT_TRUE(is_finite(p));
 }

@@ -15,7 +15,7 @@ using namespace echinus;
 
 namespace {
 
-SimulationOptions weightless(std::uint32_t substep_count = 10) {
+SimulationOptions floating(std::uint32_t substep_count = 10) {
     return {.solver = SolverKind::Xpbd,
             .iteration_count = 1,
             .substep_count = substep_count,
@@ -23,7 +23,7 @@ SimulationOptions weightless(std::uint32_t substep_count = 10) {
             .drag = 0};
 }
 
-Deformable cube(std::uint32_t segments, const SoftBodyOptions& options = {}) {
+Deformable block(std::uint32_t segments, const SoftBodyOptions& options = {}) {
     return make_soft_body(make_solid_box({0.2, 0.2, 0.2}, {segments, segments, segments}), options);
 }
 
@@ -39,16 +39,16 @@ void set_in_motion(Simulation& simulation, test::Random& random, float speed) {
         simulation.set_particle_velocity(i, Vec3d(test::in_cube(random, speed * std::sqrt(3.0F))));
 }
 
-struct Momentum {
+struct BodyMomentum {
     Vec3d linear, angular;
     double of_all = 0; ///< sum of the particles' linear ones, whatever their directions
 };
 
 /// Angular about the origin.
-Momentum momentum(const Simulation& simulation) {
+BodyMomentum momentum_of_body(const Simulation& simulation) {
     const Deformable& body = simulation.deformable();
     const double substep = simulation.options().time_step / simulation.options().substep_count;
-    Momentum sum;
+    BodyMomentum sum;
     for (std::size_t i = 0; i < body.particle_count(); ++i) {
         const Vec3d position(body.positions[i]);
         const Vec3d impulse =
@@ -66,10 +66,10 @@ TEST(Tetrahedra, RelaxToTheSameBitsUnderEachInstructionSetInAnyShape) {
     test::Random random(3);
     for (const float distance : {0.0F, 0.001F, 0.02F, 0.2F})
         for (const std::uint32_t iterations : {1U, 3U}) {
-            Deformable body = cube(4, {.damping = 0.1, .pins = {0, 1, 7}});
+            Deformable body = block(4, {.damping = 0.1, .pins = {0, 1, 7}});
             shake(body, random, distance);
             for (Vec3f& p : body.previous_positions) p += test::in_cube(random, 0.01F);
-            SimulationOptions options = weightless();
+            SimulationOptions options = floating();
             options.iteration_count = iterations;
             std::vector<std::uint64_t> hashes;
             test::under_each_instruction_set([&](std::string_view) {
@@ -82,8 +82,8 @@ TEST(Tetrahedra, RelaxToTheSameBitsUnderEachInstructionSetInAnyShape) {
 }
 
 TEST(Tetrahedra, AreRelaxedInRunsWithoutACommonParticle) {
-    const Deformable body = cube(5);
-    const TetrahedronArrays all = weighted_tetrahedra(body, weightless());
+    const Deformable body = block(5);
+    const TetrahedronArrays all = weighted_tetrahedra(body, floating());
     ASSERT_EQ(all.count(), body.tetrahedra.size());
     EXPECT_LT(all.schedule.runs.size(), all.count() / 10); // packs have 16
     for (const ConstraintRun& run : all.schedule.runs) {
@@ -97,8 +97,9 @@ TEST(Tetrahedra, StayAtRestWhereverTheyStandHoweverTheyAreTurned) {
     test::Random random(5);
     for (int i = 0; i < 10; ++i) {
         const Rotation turn = Rotation::about(Vec3d(test::unit_vector(random)), 3 * i);
-        Deformable body = cube(3, {.young_modulus = 1e5, .pose = {turn, Vec3d(test::in_cube(random, 0.5F))}});
-        Simulation simulation(body, {}, weightless());
+        Deformable body =
+            block(3, {.young_modulus = 1e5, .pose = {turn, Vec3d(test::in_cube(random, 0.5F))}});
+        Simulation simulation(body, {}, floating());
         for (int frame = 0; frame < 100; ++frame) simulation.step();
         for (std::size_t p = 0; p < body.particle_count(); ++p)
             EXPECT_LT(length(simulation.positions()[p] - body.positions[p]), 2e-6F);
@@ -111,12 +112,12 @@ TEST(Tetrahedra, DoNotStayInsideOutAndReturnToTheirShapeUnlessTangledAndHardlyCo
         for (const double young : {1e3, 1e7})
             for (const float distance : {0.02F, 0.1F, 0.3F}) {
                 Deformable body =
-                    cube(3, {.young_modulus = young, .poisson_ratio = poisson, .damping = 0.01});
+                    block(3, {.young_modulus = young, .poisson_ratio = poisson, .damping = 0.01});
                 if (distance == 0.3F)
                     for (Vec3f& p : body.positions) p.z = 0; // flat as a sheet, and then shaken
                 shake(body, random, distance == 0.3F ? 0.001F : distance);
                 ASSERT_LT(test::least_volume_ratio(body, body.positions), distance > 0.05F ? 0.0 : 0.5);
-                SimulationOptions options = weightless();
+                SimulationOptions options = floating();
                 options.drag = 0.02;
                 Simulation simulation(body, {}, options);
                 for (int frame = 0; frame < 500; ++frame) simulation.step();
@@ -134,9 +135,9 @@ TEST(Tetrahedra, NeverGainEnergyWithoutALoad) {
             for (const double damping : {0.0, 0.02}) {
                 test::Random random(11);
                 Deformable body =
-                    cube(4, {.young_modulus = young, .poisson_ratio = poisson, .damping = damping});
+                    block(4, {.young_modulus = young, .poisson_ratio = poisson, .damping = damping});
                 shake(body, random, 0.005F);
-                Simulation simulation(body, {}, weightless());
+                Simulation simulation(body, {}, floating());
                 const double start = test::energy(simulation);
                 for (int frame = 0; frame < 150; ++frame) {
                     simulation.step();
@@ -150,8 +151,7 @@ TEST(Tetrahedra, NeverGainEnergyWhereParticlesMoveFasterThanWaves) {
     for (const double poisson : {0.0, 0.3, 0.45, 0.49})
         for (const float wave_speeds : {2.0F, 4.0F, 10.0F}) {
             test::Random random(19);
-            Simulation simulation(cube(4, {.young_modulus = 1e3, .poisson_ratio = poisson}), {},
-                                  weightless());
+            Simulation simulation(block(4, {.young_modulus = 1e3, .poisson_ratio = poisson}), {}, floating());
             set_in_motion(simulation, random, wave_speeds);
             const double start = test::energy(simulation);
             for (int frame = 0; frame < 120; ++frame) {
@@ -167,15 +167,15 @@ TEST(Tetrahedra, KeepTheMomentumOfABodyWhoseElementsAreThrownInsideOut) {
     for (const double poisson : {0.0, 0.45})
         for (const float wave_speeds : {2.0F, 10.0F}) {
             test::Random random(23);
-            const Deformable body = cube(4, {.young_modulus = 1e3, .poisson_ratio = poisson});
-            Simulation simulation(body, {}, weightless());
+            const Deformable body = block(4, {.young_modulus = 1e3, .poisson_ratio = poisson});
+            Simulation simulation(body, {}, floating());
             set_in_motion(simulation, random, wave_speeds);
-            const Momentum start = momentum(simulation);
+            const BodyMomentum start = momentum_of_body(simulation);
             double least = 1;
             for (int frame = 0; frame < 120; ++frame) {
                 simulation.step();
                 least = std::min(least, test::least_volume_ratio(body, simulation.positions()));
-                const Momentum now = momentum(simulation);
+                const BodyMomentum now = momentum_of_body(simulation);
                 ASSERT_LT(length(now.linear - start.linear), 1e-4 * start.of_all) << "frame " << frame;
                 ASSERT_LT(length(now.angular - start.angular), 2e-3 * length(start.angular))
                     << "frame " << frame << ", Poisson " << poisson << ", wave speeds " << wave_speeds;
@@ -187,8 +187,8 @@ TEST(Tetrahedra, KeepTheMomentumOfABodyWhoseElementsAreThrownInsideOut) {
 TEST(Tetrahedra, DoNotStayInsideOutInABodyThatNothingDamps) {
     for (const double poisson : {0.0, 0.3, 0.45}) {
         test::Random random(29);
-        const Deformable body = cube(3, {.young_modulus = 1e3, .poisson_ratio = poisson});
-        Simulation simulation(body, {}, weightless());
+        const Deformable body = block(3, {.young_modulus = 1e3, .poisson_ratio = poisson});
+        Simulation simulation(body, {}, floating());
         set_in_motion(simulation, random, 5);
         double least = 1;
         for (int frame = 0; frame < 2400; ++frame) {
@@ -202,19 +202,19 @@ TEST(Tetrahedra, DoNotStayInsideOutInABodyThatNothingDamps) {
 
 TEST(Tetrahedra, KeepTheMomentumOfAFreeBodyThatTurnsAndTrembles) {
     test::Random random(13);
-    Deformable body = cube(4, {.young_modulus = 1e4});
+    Deformable body = block(4, {.young_modulus = 1e4});
     shake(body, random, 0.003F);
-    const SimulationOptions options = weightless();
+    const SimulationOptions options = floating();
     const double substep = options.time_step / options.substep_count;
     for (std::size_t i = 0; i < body.particle_count(); ++i) {
         const Vec3d velocity = cross(Vec3d{1, 2, 8}, Vec3d(body.positions[i])) + Vec3d{0.1, 0.05, 0.02};
         body.previous_positions[i] = Vec3f(Vec3d(body.positions[i]) - velocity * substep);
     }
     Simulation simulation(body, {}, options);
-    const Momentum start = momentum(simulation);
+    const BodyMomentum start = momentum_of_body(simulation);
     for (int frame = 0; frame < 240; ++frame) {
         simulation.step();
-        const Momentum now = momentum(simulation);
+        const BodyMomentum now = momentum_of_body(simulation);
         ASSERT_LT(length(now.linear - start.linear), 2e-3 * start.of_all) << "frame " << frame;
         ASSERT_LT(length(now.angular - start.angular), 2e-3 * length(start.angular)) << "frame " << frame;
     }
@@ -224,9 +224,9 @@ TEST(Tetrahedra, AreDampedWithoutBeingHeldUp) {
     // A body that only turns and moves does not strain, so viscosity does not slow it.
     const auto left_of = [](double damping, bool trembles) {
         test::Random random(17);
-        Deformable body = cube(3, {.young_modulus = 1e5, .damping = damping});
+        Deformable body = block(3, {.young_modulus = 1e5, .damping = damping});
         if (trembles) shake(body, random, 0.005F);
-        const SimulationOptions options = weightless();
+        const SimulationOptions options = floating();
         const double substep = options.time_step / options.substep_count;
         if (!trembles)
             for (std::size_t i = 0; i < body.particle_count(); ++i)

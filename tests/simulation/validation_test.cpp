@@ -19,7 +19,7 @@ using test::expect_error, test::sheet_at;
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNaNOption = std::numeric_limits<double>::quiet_NaN();
 
 /// The sentence with which a simulation refuses a change to a sound set-up; empty when it does not.
 std::string refusal(const std::function<void(Deformable&, SimulationOptions&)>& spoil) {
@@ -51,16 +51,16 @@ TEST(SimulationSetUp, IsAcceptedWhenSound) {
 
 TEST(SimulationSetUp, NamesTheOptionOutOfRange) {
     expect_names(refusal_of_option([](auto& o) { o.time_step = 0; }), "time_step");
-    expect_names(refusal_of_option([](auto& o) { o.time_step = kNaN; }), "time_step");
+    expect_names(refusal_of_option([](auto& o) { o.time_step = kNaNOption; }), "time_step");
     expect_names(refusal_of_option([](auto& o) { o.iteration_count = 0; }), "iteration_count");
     expect_names(refusal_of_option([](auto& o) { o.drag = 1.01; }), "drag");
     expect_names(refusal_of_option([](auto& o) { o.thickness = -0.1; }), "thickness");
-    expect_names(refusal_of_option([](auto& o) { o.friction = kNaN; }), "friction");
+    expect_names(refusal_of_option([](auto& o) { o.friction = kNaNOption; }), "friction");
     expect_names(refusal_of_option([](auto& o) { o.stiffness[1] = 2; }), "stiffness");
-    expect_names(refusal_of_option([](auto& o) { o.gravity.y = kNaN; }), "gravity");
+    expect_names(refusal_of_option([](auto& o) { o.gravity.y = kNaNOption; }), "gravity");
     expect_names(refusal_of_option([](auto& o) { o.bound = -1; }), "bound");
     expect_names(refusal_of_option([](auto& o) { o.rest.distance = -1; }), "rest.distance");
-    expect_names(refusal_of_option([](auto& o) { o.rest.speed = kNaN; }), "rest.speed");
+    expect_names(refusal_of_option([](auto& o) { o.rest.speed = kNaNOption; }), "rest.speed");
     expect_names(refusal_of_option([](auto& o) { o.rest.frame_count = 0; }), "rest.frame_count");
 }
 
@@ -76,7 +76,7 @@ TEST(SimulationSetUp, RefusesAColliderWhoseScaleIsZeroOrNoNumber) {
         return false;
     };
     EXPECT_TRUE(is_refused({1, 0, 1}));
-    EXPECT_TRUE(is_refused({1, 1, kNaN}));
+    EXPECT_TRUE(is_refused({1, 1, kNaNOption}));
     EXPECT_TRUE(is_refused({1 / 0.0, 1, 1}));
     EXPECT_FALSE(is_refused({1, -2, 0.5}));
 }
@@ -99,8 +99,8 @@ TEST(SimulationSetUp, RefusesWhatStandsTooFarAwayForFloats) {
 
 TEST(SimulationSetUp, RefusesARotationThatIsNotOfUnitLength) {
     const ExactMap map = ExactMap::build(make_box({1, 1, 1}));
-    for (const Rotation& rotation :
-         {Rotation{0, 0, 0, 0}, Rotation{2, 0, 0, 0}, Rotation{1, 0.1, 0, 0}, Rotation{kNaN, 0, 0, 0}}) {
+    for (const Rotation& rotation : {Rotation{0, 0, 0, 0}, Rotation{2, 0, 0, 0}, Rotation{1, 0.1, 0, 0},
+                                     Rotation{kNaNOption, 0, 0, 0}}) {
         const std::vector<Collider> colliders{{.map = map}, {.map = map, .pose = {rotation, {}}}};
         test::expect_error(ErrorCode::InvalidOptions, "collider 1 has the rotation",
                            [&] { Simulation(make_cloth({}), colliders, {}); });
@@ -147,13 +147,14 @@ TEST(SimulationSetUp, KeepsHalfTheSpacingOfTheParticlesAwayUnlessToldOtherwise) 
 }
 
 TEST(SimulationSetUp, NamesTheParticleStickOrFaceAtFault) {
-    expect_names(refusal([](Deformable& d, auto&) { d.positions[4].x = float(kNaN); }), "particle 4");
+    expect_names(refusal([](Deformable& d, auto&) { d.positions[4].x = float(kNaNOption); }), "particle 4");
     expect_names(refusal([](Deformable& d, auto&) { d.previous_positions[5].z = float(1 / 0.0F); }),
                  "particle 5");
     expect_names(refusal([](Deformable& d, auto&) { d.inverse_masses[6] = -1; }), "particle 6");
     expect_names(refusal([](Deformable& d, auto&) { d.sticks[2].b = 9; }), "stick 2");
     expect_names(refusal([](Deformable& d, auto&) { d.sticks[3].a = d.sticks[3].b; }), "stick 3");
-    expect_names(refusal([](Deformable& d, auto&) { d.sticks[1].rest_length = float(kNaN); }), "stick 1");
+    expect_names(refusal([](Deformable& d, auto&) { d.sticks[1].rest_length = float(kNaNOption); }),
+                 "stick 1");
     expect_names(refusal([](Deformable& d, auto&) { d.faces[5][2] = 9; }), "face 5 names particle 9");
     expect_names(refusal([](Deformable& d, auto&) { d.inverse_masses.pop_back(); }), "8 inverse masses");
     expect_names(refusal([](Deformable& d, auto&) { d.positions[7].y = -1.1e15F; }),
@@ -181,7 +182,7 @@ TEST(SimulationSetUp, RefusesSurfaceOptionsThatContradictEachOther) {
     refuses({.self_collision = true}, "self_collision needs surface_collision");
     refuses({.keep_free = false, .surface_collision = true}, "keep_free is false");
     refuses({.surface_collision = true, .self_thickness = -1}, "self_thickness");
-    refuses({.surface_collision = true, .self_thickness = kNaN}, "self_thickness");
+    refuses({.surface_collision = true, .self_thickness = kNaNOption}, "self_thickness");
 }
 
 TEST(SimulationSetUp, NamesTheFacesWithWhichADeformableBeginsIntersecting) {

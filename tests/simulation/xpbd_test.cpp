@@ -19,7 +19,7 @@ using namespace echinus;
 namespace {
 
 constexpr double kGravity = 10;
-constexpr double kThickness = 0.01;
+constexpr double kFilmThickness = 0.01;
 
 SimulationOptions small_steps(std::uint32_t substep_count = 10) {
     return {.solver = SolverKind::Xpbd, .iteration_count = 1, .substep_count = substep_count};
@@ -50,7 +50,7 @@ double sag(const Deformable& chain, SimulationOptions options, int frame_count) 
 }
 
 /// Of motion and of springs.
-double energy(const Simulation& simulation) {
+double energy_of_cloth(const Simulation& simulation) {
     const SimulationOptions& options = simulation.options();
     const Deformable& d = simulation.deformable();
     const double substep = options.time_step / options.substep_count;
@@ -154,10 +154,10 @@ TEST(Xpbd, AddsNoEnergyToAFreeSheet) {
         options.drag = 0;
         options.compliance = compliance;
         Simulation simulation(sheet, {}, options);
-        const double start = energy(simulation);
+        const double start = energy_of_cloth(simulation);
         for (int i = 0; i < 1000; ++i) {
             simulation.step();
-            ASSERT_LE(energy(simulation), 1.05 * start) << "frame " << i;
+            ASSERT_LE(energy_of_cloth(simulation), 1.05 * start) << "frame " << i;
         }
     }
 }
@@ -187,7 +187,7 @@ TEST(Xpbd, StretchesAHangingSheetLessInSubstepsThanInIterations) {
 TEST(Xpbd, DrapesASheetOverASphereAndABoxWithNoneInside) {
     for (const TriangleMesh& mesh : {make_sphere(0.5, 60, 30), make_box({0.8, 0.8, 0.8})}) {
         SimulationOptions options = small_steps();
-        options.thickness = kThickness;
+        options.thickness = kFilmThickness;
         options.friction = 0.8;
         options.drag = 0.02; // the corners swing, and small steps damp them little
         Simulation simulation(test::sheet_at(0.55, 1.2, 17), {{.map = ExactMap::build(mesh)}}, options);
@@ -208,7 +208,7 @@ TEST(Xpbd, LosesNoParticleOfAFastSheetToAThinPlateThatMovesAndTurnsFast) {
                          .angular_velocity = {4, 18, 2}};
     for (const std::uint32_t substeps : {1U, 4U, 16U}) {
         SimulationOptions options = small_steps(substeps);
-        options.thickness = kThickness;
+        options.thickness = kFilmThickness;
         const Vec3d step = Vec3d{0, 0, -30} * (options.time_step / substeps);
         Simulation simulation(test::sheet_at(0.7, 1, 25, step), {plate}, options);
         for (int frame = 0; frame < 240; ++frame) {
@@ -230,9 +230,9 @@ TEST(Xpbd, CarriesTurnsAndLiftsASheetAlongWithItsCollider) {
                        .linear_velocity = {0.2, 0, 0.3},
                        .angular_velocity = {0, 0, 1}};
     SimulationOptions options = small_steps();
-    options.thickness = kThickness;
+    options.thickness = kFilmThickness;
     options.friction = 0.8;
-    Simulation simulation(test::sheet_at(0.5 + kThickness, 0.3, 7), {box}, options);
+    Simulation simulation(test::sheet_at(0.5 + kFilmThickness, 0.3, 7), {box}, options);
     const Vec3f corner = simulation.positions()[0];
     for (int i = 0; i < 240; ++i) simulation.step();
     const Vec3d expected = simulation.colliders()[0].pose.to_world(Vec3d(corner));
@@ -245,7 +245,7 @@ TEST(Xpbd, GivesTheSameBitsOnEveryRunInEveryCopyAndUnderEachInstructionSet) {
         const Collider collider{.map = torus, .angular_velocity = {0.2, 0.1, 0.5}};
         SimulationOptions options = small_steps(5);
         options.iteration_count = 2;
-        options.thickness = kThickness;
+        options.thickness = kFilmThickness;
         return Simulation(test::sheet_at(0.45, 2, 20), {collider}, options);
     };
     std::vector<std::uint64_t> hashes;
@@ -296,10 +296,10 @@ namespace {
 /// @param x  of the box's middle
 double slid_on_box(const ColliderMap& box, double x, double speed, double box_speed, double seconds,
                    SimulationOptions options) {
-    options.thickness = kThickness;
+    options.thickness = kFilmThickness;
     options.friction = 0.3;
     options.drag = 0;
-    Deformable sheet = test::sheet_at(0.5 + kThickness, 0.3, 5);
+    Deformable sheet = test::sheet_at(0.5 + kFilmThickness, 0.3, 5);
     for (Vec3f& p : sheet.positions) p = Vec3f(Vec3d(p) + Vec3d{x, 0, 0});
     sheet.previous_positions = sheet.positions;
     const Collider collider{.map = box, .pose = {{}, {x, 0, 0}}, .linear_velocity = {box_speed, 0, 0}};

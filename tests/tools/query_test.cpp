@@ -14,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-const std::vector<Vec3f> kPoints{
+const std::vector<Vec3f> kThreePoints{
     {0, 0, 0}, {0.9F, 0.1F, -0.2F}, {1.05F, 0.1F, 0}, {9, 9, 9}, {0.5F, -1.4F, 1.9F}};
 
 template <typename T>
@@ -68,14 +68,14 @@ class QueryCommand : public CommandLineTest {
         write("box.obj", box_text());
         expect_success({"build", "box.obj", "-o", "exact.ech"});
         expect_success({"build", "box.obj", "--kind", "distance", "--directions", "48x24", "-o", "box.ech"});
-        write("points.npy", npy_text(kPoints));
-        write("points.csv", csv_text(kPoints));
+        write("points.npy", npy_text(kThreePoints));
+        write("points.csv", csv_text(kThreePoints));
     }
 
     std::vector<Contact> contacts(const std::string& file, float margin) const {
         const AnyMap map = load_map(path(file));
-        std::vector<Contact> contacts(kPoints.size());
-        contacts_batch(map, kPoints, margin, contacts);
+        std::vector<Contact> contacts(kThreePoints.size());
+        contacts_batch(map, kThreePoints, margin, contacts);
         return contacts;
     }
 };
@@ -130,12 +130,12 @@ TEST_F(QueryCommand, CountsInItsSummary) {
 
 TEST_F(QueryCommand, ReadsAndWritesTheStandardStreams) {
     expect_success({"query", "box.ech", "points.npy", "-o", "answers.npy"});
-    EXPECT_EQ(expect_success({"query", "box.ech", "-", "-o", "-"}, npy_text(kPoints)),
+    EXPECT_EQ(expect_success({"query", "box.ech", "-", "-o", "-"}, npy_text(kThreePoints)),
               content("answers.npy"));
     EXPECT_EQ(expect_success({"query", "-", "points.npy", "-o", "-"}, content("box.ech")),
               content("answers.npy"));
     expect_success({"query", "box.ech", "points.csv", "-o", "answers.csv"});
-    EXPECT_EQ(expect_success({"query", "box.ech", "-", "-o", "-"}, csv_text(kPoints)),
+    EXPECT_EQ(expect_success({"query", "box.ech", "-", "-o", "-"}, csv_text(kThreePoints)),
               content("answers.csv"));
     expect_failure(2, "POINTS", {"query", "-", "-", "-o", "answers.npy"});
     expect_failure(2, "--json", {"query", "box.ech", "points.npy", "-o", "-", "--json"});
@@ -146,7 +146,7 @@ TEST_F(QueryCommand, AddsSignedDistancesAndWindingNumbers) {
     expect_success({"build", "open.obj", "--allow-open", "-o", "open.ech"});
     const ExactMap map = load_exact_map(path("open.ech"));
     std::string expected;
-    for (const Vec3f& point : kPoints) {
+    for (const Vec3f& point : kThreePoints) {
         std::ostringstream line;
         line.precision(9);
         line << signed_distance(map, point) << ' ' << winding_number(map, point, 1e-4F) << '\n';
@@ -169,8 +169,8 @@ TEST_F(QueryCommand, AddsSignedDistancesAndWindingNumbers) {
     expect_success({"query", "open.ech", "points.npy", "--signed-distance", "-o", "with.npy"});
     expect_success({"query", "open.ech", "points.npy", "-o", "without.npy"});
     EXPECT_NE(content("with.npy").find("('certain', '|u1'), ('signed_distance', '<f4')]"), std::string::npos);
-    EXPECT_EQ(content("with.npy").size() % 64, (kPoints.size() * (34 + 4)) % 64);
-    EXPECT_EQ(content("without.npy").size() % 64, (kPoints.size() * 34) % 64);
+    EXPECT_EQ(content("with.npy").size() % 64, (kThreePoints.size() * (34 + 4)) % 64);
+    EXPECT_EQ(content("without.npy").size() % 64, (kThreePoints.size() * 34) % 64);
 }
 
 TEST_F(QueryCommand, AsksADistanceMapForNothingThatItDoesNotHave) {
@@ -194,7 +194,7 @@ TEST_F(QueryCommand, AnswersPointsThatAreNoNumbers) {
 
 TEST_F(QueryCommand, AnswersMoreThanOneBlock) {
     constexpr std::size_t kPointCount = 150'001;
-    write("many.npy", npy_text(std::vector<Vec3f>(kPointCount, kPoints[1])));
+    write("many.npy", npy_text(std::vector<Vec3f>(kPointCount, kThreePoints[1])));
     const json summary =
         json::parse(expect_success({"query", "box.ech", "many.npy", "-o", "answers.npy", "--json"}));
     EXPECT_EQ(summary["points"], kPointCount);
@@ -223,9 +223,9 @@ TEST_F(QueryCommand, RefusesPointsThatItCannotRead) {
     };
     refuse("bad.npy", "", "not a .npy file");
     refuse("bad.npy", "1,2,3\n", "not a .npy file");
-    refuse("bad.npy", npy_text(kPoints).substr(0, 150),
+    refuse("bad.npy", npy_text(kThreePoints).substr(0, 150),
            "its header promises 5 points, but the file ends before");
-    refuse("bad.npy", npy_text(kPoints) + "x",
+    refuse("bad.npy", npy_text(kThreePoints) + "x",
            "its header promises 5 points, but the file goes on behind them");
     refuse("bad.csv", "", "it holds neither points nor a line of names");
     refuse("bad.csv", "1,2,3\n1,2\n", "line 2");

@@ -42,7 +42,7 @@ class SimulateCommand : public CommandLineTest {
     }
 };
 
-const std::string kFallingSheet = R"({"model": {"box": {"size": [1, 1, 1]}},
+const std::string kFallingSheetScene = R"({"model": {"box": {"size": [1, 1, 1]}},
     "cloth": {"particles": [4, 3], "size": [1, 1], "position": [0, 0, 2]}, "frame_limit": 6})";
 
 const std::vector<std::array<float, 3>> kTableCorners{
@@ -111,7 +111,7 @@ TEST_F(SimulateCommand, DrapesTheSmallClothOnTheHorseAsEverBefore) {
 }
 
 TEST_F(SimulateCommand, WritesTheClothItsMotionTheColliderAndAReport) {
-    write("scene.json", kFallingSheet);
+    write("scene.json", kFallingSheetScene);
     const nlohmann::json report = simulate("scene.json", {"--every", "2"});
     EXPECT_EQ(report, nlohmann::json::parse(content("run/report.json")));
     EXPECT_EQ(report.at("particles"), 12);
@@ -125,7 +125,7 @@ TEST_F(SimulateCommand, WritesTheClothItsMotionTheColliderAndAReport) {
 }
 
 TEST_F(SimulateCommand, GoesOnFromASavedStateToTheSameEnd) {
-    write("scene.json", kFallingSheet);
+    write("scene.json", kFallingSheetScene);
     const nlohmann::json whole = simulate("scene.json");
     simulate("scene.json", {"--frames", "3", "--save-state", "middle.state"});
     const nlohmann::json rest = simulate("scene.json", {"--from-state", "middle.state"});
@@ -137,7 +137,7 @@ TEST_F(SimulateCommand, GoesOnFromASavedStateToTheSameEnd) {
 }
 
 TEST_F(SimulateCommand, RefusesAStateThatIsNotBeforeTheLastFrame) {
-    write("scene.json", kFallingSheet);
+    write("scene.json", kFallingSheetScene);
     simulate("scene.json", {"--frames", "4", "--save-state", "middle.state"});
     for (const char* frames : {"3", "4"})
         expect_failure(
@@ -147,7 +147,7 @@ TEST_F(SimulateCommand, RefusesAStateThatIsNotBeforeTheLastFrame) {
 }
 
 TEST_F(SimulateCommand, WritesAStateToStandardOutputAndNothingElse) {
-    write("scene.json", kFallingSheet);
+    write("scene.json", kFallingSheetScene);
     const std::string state = expect_success({"simulate", "scene.json", "-o", "run", "--save-state", "-"});
     EXPECT_TRUE(state.starts_with("ECHSTATE"));
     EXPECT_FALSE(fs::exists(path("-")));
@@ -159,7 +159,7 @@ TEST_F(SimulateCommand, WritesAStateToStandardOutputAndNothingElse) {
 }
 
 TEST_F(SimulateCommand, WritesNoStateOfARunWhoseFolderCannotBeWritten) {
-    write("scene.json", kFallingSheet);
+    write("scene.json", kFallingSheetScene);
     write("run", "a file");
     expect_failure(1, "is not a folder",
                    {"simulate", "scene.json", "-o", "run", "--save-state", "end.state"});
@@ -183,7 +183,7 @@ TEST_F(SimulateCommand, CountsTheFacesThatIntersectInTheWorstSavedFrame) {
 }
 
 TEST_F(SimulateCommand, CountsTheFacesThatIntersectAtTheEnd) {
-    write("apart.json", kFallingSheet);
+    write("apart.json", kFallingSheetScene);
     const nlohmann::json apart = simulate("apart.json");
     EXPECT_EQ(apart.at("intersecting_pairs"), 0);
     EXPECT_EQ(apart.at("self_intersecting_pairs"), 0);
@@ -198,7 +198,7 @@ TEST_F(SimulateCommand, CountsTheFacesThatIntersectAtTheEnd) {
 }
 
 TEST_F(SimulateCommand, MeasuresTheGapOfTheParticlesInContact) {
-    write("apart.json", kFallingSheet);
+    write("apart.json", kFallingSheetScene);
     EXPECT_EQ(simulate("apart.json").at("contact_gap"),
               nlohmann::json::parse(R"({"particles": 0, "mean": null, "least": null})"));
     // Lies 0.1 above the box, which its middle row reaches over; nothing moves.
@@ -212,7 +212,7 @@ TEST_F(SimulateCommand, MeasuresTheGapOfTheParticlesInContact) {
 }
 
 TEST_F(SimulateCommand, WritesOneObjPerMomentWhereAskedTo) {
-    write("scene.json", kFallingSheet);
+    write("scene.json", kFallingSheetScene);
     simulate("scene.json", {"--every", "3", "--obj"});
     std::size_t count = 0;
     for (const auto& entry : fs::directory_iterator(path("run/frames")))
@@ -326,7 +326,7 @@ TEST_F(SimulateCommand, NamesAnOpenModelAndTheRepairThatWouldCloseIt) {
 }
 
 TEST_F(SimulateCommand, ReadsNoSceneFromStandardInput) {
-    expect_failure(2, "SCENE: cannot be standard input", {"simulate", "-", "-o", "run"}, kFallingSheet);
+    expect_failure(2, "SCENE: cannot be standard input", {"simulate", "-", "-o", "run"}, kFallingSheetScene);
 }
 
 TEST_F(SimulateCommand, LeavesNoFolderBehindWhenItDiverges) {

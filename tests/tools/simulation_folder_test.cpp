@@ -46,21 +46,21 @@ std::vector<Vec3f> positions_at(std::size_t sample, std::size_t sample_count) {
 }
 
 template <typename T>
-void append(std::string& bytes, const T& value) {
+void append_bytes(std::string& bytes, const T& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
 }
 
 std::string cache_bytes(std::int32_t sample_count, float start_frame = 0, float frames_per_sample = 1) {
     std::string bytes("POINTCACHE2\0", 12);
-    append(bytes, std::int32_t{1});
-    append(bytes, static_cast<std::int32_t>(kPointCount));
-    append(bytes, start_frame);
-    append(bytes, frames_per_sample);
-    append(bytes, sample_count);
+    append_bytes(bytes, std::int32_t{1});
+    append_bytes(bytes, static_cast<std::int32_t>(kPointCount));
+    append_bytes(bytes, start_frame);
+    append_bytes(bytes, frames_per_sample);
+    append_bytes(bytes, sample_count);
     for (std::int32_t sample = 0; sample < sample_count; ++sample) {
         for (const Vec3f& point :
              positions_at(static_cast<std::size_t>(sample), static_cast<std::size_t>(sample_count)))
-            append(bytes, point);
+            append_bytes(bytes, point);
     }
     return bytes;
 }

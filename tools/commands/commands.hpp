@@ -1,6 +1,6 @@
 #pragma once
 
-#include "options.hpp"
+#include "console/options.hpp"
 
 /// One function per subcommand, in a file of the same name. Each adds its options, a footer with an example,
 /// and an action that does the work. The action throws echinus::Error when it fails (exit status 1) and

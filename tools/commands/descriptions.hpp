@@ -1,6 +1,6 @@
 #pragma once
 
-#include "json.hpp"
+#include "console/json.hpp"
 
 #include <echinus/any_map.hpp>
 #include <echinus/map_file.hpp>

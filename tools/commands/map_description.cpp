@@ -191,7 +191,7 @@ std::string own_text(const ExactMap&) {
 // ---- Common to both ----
 
 template <typename Map>
-Json to_json(const MapDescription& description, const Map& map) {
+Json json_of(const MapDescription& description, const Map& map) {
     const auto& view = map.view();
     Json object;
     object.add("kind", name_of(map));
@@ -212,7 +212,7 @@ Json to_json(const MapDescription& description, const Map& map) {
 }
 
 template <typename Map>
-std::string to_text(const MapDescription& description, const std::string& title, const Map& map) {
+std::string text_about(const MapDescription& description, const std::string& title, const Map& map) {
     const auto& view = map.view();
     const auto build_ms = description.notes.build_milliseconds;
     Table table(title);
@@ -236,9 +236,9 @@ std::string to_text(const MapDescription& description, const std::string& title,
 } // namespace
 
 Json to_json(const MapDescription& description) {
-    return std::visit([&](const auto& map) { return to_json(description, map); }, description.map);
+    return std::visit([&](const auto& map) { return json_of(description, map); }, description.map);
 }
 
 std::string to_text(const MapDescription& description, const std::string& title) {
-    return std::visit([&](const auto& map) { return to_text(description, title, map); }, description.map);
+    return std::visit([&](const auto& map) { return text_about(description, title, map); }, description.map);
 }

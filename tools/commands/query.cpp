@@ -1,7 +1,7 @@
 #include "commands/commands.hpp"
+#include "console/json.hpp"
 #include "files/text.hpp"
 #include "input_file.hpp"
-#include "json.hpp"
 #include "mesh/local_frame.hpp"
 #include "mesh_io/mesh_source.hpp"
 #include "output.hpp"

@@ -1,8 +1,8 @@
 #include "commands/commands.hpp"
+#include "console/progress.hpp"
 #include "input_file.hpp"
 #include "mesh/local_frame.hpp"
 #include "output.hpp"
-#include "progress.hpp"
 #include "recording/simulation_folder.hpp"
 #include "recording/threads.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "options.hpp"
+#include "console/options.hpp"
 
 #include <echinus/mesh.hpp>
 

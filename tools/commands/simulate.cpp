@@ -2,10 +2,10 @@
 #include "commands/loaded_colliders.hpp"
 #include "commands/scene_model.hpp"
 #include "commands/simulation_result.hpp"
+#include "console/progress.hpp"
 #include "input_file.hpp"
 #include "mesh_io/point_cache.hpp"
 #include "output.hpp"
-#include "progress.hpp"
 #include "recording/player_page.hpp"
 #include "recording/threads.hpp"
 

@@ -87,37 +87,37 @@ const char* solver_of(const SimulationOptions& options) {
     return options.solver == SolverKind::Verlet ? "verlet" : "xpbd";
 }
 
-Json to_json(const Vec3d& v) {
+Json json_of(const Vec3d& v) {
     return {v.x, v.y, v.z};
 }
 
-Json to_json(const std::vector<SavedPose>& poses) {
+Json json_of(const std::vector<SavedPose>& poses) {
     Json list = Json::array();
     for (const auto& [frame, pose] : poses) {
         const Rotation& r = pose.rotation;
         list.push_back({{"frame", frame},
-                        {"translation", to_json(pose.translation)},
+                        {"translation", json_of(pose.translation)},
                         {"rotation", {r.w, r.x, r.y, r.z}}});
     }
     return list;
 }
 
-Json to_json(const ContactGap& gap) {
+Json json_of(const ContactGap& gap) {
     if (gap.particle_count == 0) return {{"particles", 0}, {"mean", nullptr}, {"least", nullptr}};
     return {{"particles", gap.particle_count}, {"mean", gap.mean}, {"least", gap.least}};
 }
 
-Json to_json(const WorstFrame& worst) {
+Json json_of(const WorstFrame& worst) {
     Json frame = nullptr;
     if (worst.pair_count != 0) frame = worst.frame;
     return {{"pairs", worst.pair_count}, {"frame", frame}};
 }
 
-Json to_json(const std::optional<WorstFrames>& worst) {
+Json json_of(const std::optional<WorstFrames>& worst) {
     if (!worst) return nullptr;
     return {{"judged", worst->judged_count},
-            {"intersecting_pairs", to_json(worst->with_models)},
-            {"self_intersecting_pairs", to_json(worst->own)}};
+            {"intersecting_pairs", json_of(worst->with_models)},
+            {"self_intersecting_pairs", json_of(worst->own)}};
 }
 
 /// The first and the last of each run of particles that a collider lets through.
@@ -133,21 +133,21 @@ Json runs_of(const std::vector<std::uint8_t>& passes) {
     return runs;
 }
 
-Json to_json(const ColliderResult& collider, const std::vector<std::uint8_t>& passes) {
+Json json_of(const ColliderResult& collider, const std::vector<std::uint8_t>& passes) {
     Json result{{"mesh", collider.mesh_name},
                 {"faces", collider.model.face_count},
                 {"vertices", collider.model.vertex_count},
                 {"radius", collider.radius},
-                {"poses", to_json(collider.poses)}};
+                {"poses", json_of(collider.poses)}};
     if (!collider.cache_name.empty()) result.add("cache", collider.cache_name);
     if (!passes.empty()) result.add("lets_through", runs_of(passes));
     return result;
 }
 
-Json to_json(const std::vector<ColliderResult>& colliders, const Deformable& deformable) {
+Json json_of(const std::vector<ColliderResult>& colliders, const Deformable& deformable) {
     Json list = Json::array();
     for (std::size_t c = 0; c < colliders.size(); ++c)
-        list.push_back(to_json(colliders[c], let_through(deformable, c)));
+        list.push_back(json_of(colliders[c], let_through(deformable, c)));
     return list;
 }
 
@@ -206,20 +206,20 @@ Json to_json(const SimulationResult& result) {
         {"deepest", {{"absolute", result.verdict.deepest}, {"in_radii", result.verdict.deepest / radius}}},
         {"intersecting_pairs", result.verdict.pairs.with_models},
         {"self_intersecting_pairs", result.verdict.pairs.own},
-        {"worst_frames", to_json(result.worst)},
-        {"contact_gap", to_json(result.verdict.gap)},
+        {"worst_frames", json_of(result.worst)},
+        {"contact_gap", json_of(result.verdict.gap)},
         {"strain",
          {{"mean", strain.mean}, {"percentile_99", strain.percentile_99}, {"largest", strain.largest}}},
         {"largest_speed", simulation.largest_speed()},
         {"thickness", thickness},
         {"thickness_in_radii", thickness / radius},
-        {"gravity", to_json(options.gravity)},
+        {"gravity", json_of(options.gravity)},
         {"model",
          {{"faces", first.model.face_count},
           {"vertices", first.model.vertex_count},
           {"radius", first.radius}}},
-        {"collider", {{"mesh", first.mesh_name}, {"poses", to_json(first.poses)}}},
-        {"colliders", to_json(result.colliders, deformable)},
+        {"collider", {{"mesh", first.mesh_name}, {"poses", json_of(first.poses)}}},
+        {"colliders", json_of(result.colliders, deformable)},
         {"state_hash", fmt::format("{:016x}", simulation.state_hash())},
     };
 }

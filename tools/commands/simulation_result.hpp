@@ -1,7 +1,7 @@
 #pragma once
 
 #include "commands/verdict.hpp"
-#include "json.hpp"
+#include "console/json.hpp"
 
 #include <echinus/mesh.hpp>
 #include <echinus/simulation.hpp>

@@ -1,9 +1,9 @@
 #include "commands/commands.hpp"
 #include "commands/descriptions.hpp"
+#include "console/progress.hpp"
 #include "input_file.hpp"
 #include "mesh_io/encode.hpp"
 #include "output.hpp"
-#include "progress.hpp"
 #include "table.hpp"
 
 #include <echinus/exact_map.hpp>

@@ -1,8 +1,8 @@
 #include "recording/player_page.hpp"
 
+#include "console/machine.hpp"
 #include "encoding.hpp"
 #include "files/read_file.hpp"
-#include "machine.hpp"
 #include "recording/recording_code.hpp"
 #include "recording/threads.hpp"
 

@@ -156,7 +156,7 @@ py::bytes bytes_of(const AnyMap& map) {
 }
 
 /// The map reads a copy of the bytes, whose first is where the reader needs it.
-AnyMap map_of(const py::bytes& bytes) {
+AnyMap map_from_bytes(const py::bytes& bytes) {
     const std::string_view text = bytes;
     auto copy = std::make_shared<std::vector<std::uint64_t>>((text.size() + 7) / 8);
     text.copy(reinterpret_cast<char*>(copy->data()), text.size());
@@ -227,7 +227,7 @@ void bind_maps(py::module_& module) {
         const py::gil_scoped_release unlocked;
         return load_map(path);
     });
-    module.def("map_from_bytes", map_of);
+    module.def("map_from_bytes", map_from_bytes);
 }
 
 } // namespace echinus::python

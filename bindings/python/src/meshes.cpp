@@ -19,7 +19,7 @@ namespace {
 using Vertices = py::array; // float32, or float64 for a mesh with an origin
 using Faces = py::array_t<std::uint32_t>;
 
-py::dict to_python(const Fault& fault) {
+py::dict fault_dict(const Fault& fault) {
     py::dict result;
     result["count"] = fault.count;
     result["first_faces"] = py::tuple(py::cast(fault.first_faces));
@@ -28,7 +28,7 @@ py::dict to_python(const Fault& fault) {
 
 py::dict inspect_mesh(const Vertices& vertices, const Faces& faces) {
     const TriangleMesh mesh = mesh_of(vertices, faces);
-    return describe(unlocked([&] { return inspect(mesh); }), mesh.origin);
+    return report_dict(unlocked([&] { return inspect(mesh); }), mesh.origin);
 }
 
 /// ((vertices, faces), report)
@@ -90,7 +90,7 @@ py::array pair_array(const std::vector<FacePair>& pairs) {
 
 } // namespace
 
-py::dict describe(const MeshReport& report, const Vec3d& origin) {
+py::dict report_dict(const MeshReport& report, const Vec3d& origin) {
     const Vec3d centre = report.bounding_sphere.centre + origin;
     py::dict result;
     result["face_count"] = report.face_count;
@@ -99,11 +99,11 @@ py::dict describe(const MeshReport& report, const Vec3d& origin) {
     result["closed"] = report.closed;
     result["manifold"] = report.manifold;
     result["orientable"] = report.orientable;
-    result["border_edges"] = to_python(report.border_edges);
-    result["nonmanifold_edges"] = to_python(report.nonmanifold_edges);
-    result["misoriented_edges"] = to_python(report.misoriented_edges);
-    result["duplicate_faces"] = to_python(report.duplicate_faces);
-    result["degenerate_faces"] = to_python(report.degenerate_faces);
+    result["border_edges"] = fault_dict(report.border_edges);
+    result["nonmanifold_edges"] = fault_dict(report.nonmanifold_edges);
+    result["misoriented_edges"] = fault_dict(report.misoriented_edges);
+    result["duplicate_faces"] = fault_dict(report.duplicate_faces);
+    result["degenerate_faces"] = fault_dict(report.degenerate_faces);
     result["signed_volume"] = report.signed_volume;
     result["centre"] = py::make_tuple(centre.x, centre.y, centre.z);
     result["radius"] = report.bounding_sphere.radius;

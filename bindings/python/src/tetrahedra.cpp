@@ -46,7 +46,7 @@ py::dict inspect_body(const Vertices& vertices, const Tetrahedra& tetrahedra) {
     result["longest_edge"] = report.longest_edge;
     result["least_angle_deg"] = report.least_angle_deg;
     result["greatest_angle_deg"] = report.greatest_angle_deg;
-    result["boundary"] = describe(report.boundary, mesh.origin);
+    result["boundary"] = report_dict(report.boundary, mesh.origin);
     return result;
 }
 

@@ -2,7 +2,7 @@
 // ratios of their times hardly depend on the machine's load.
 
 #include "builds.hpp"
-#include "machine.hpp"
+#include "console/machine.hpp"
 #include "queries.hpp"
 
 #include <fmt/format.h>

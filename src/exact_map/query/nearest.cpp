@@ -155,7 +155,7 @@ class BoxExcesses {
 
 /// A float a little above a double: by more than box distances are rounded. Infinity is excluded, since
 /// missing children are at infinity.
-float rounded_up(double value) {
+float bound_above(double value) {
     return static_cast<float>(std::min(value, 1e37)) * (1 + 1e-6F);
 }
 
@@ -216,9 +216,9 @@ std::optional<std::uint32_t> nearest_face_from_afar(const ExactMapView& map, con
 std::optional<std::uint32_t> nearest_face_from_nearby(const ExactMapView& map, const Vec3d& place,
                                                       const Vec3d& stretch, double farthest) {
     NearestSoFar nearest(map, place, stretch, farthest);
-    float bound = rounded_up(nearest.distance_sq());
+    float bound = bound_above(nearest.distance_sq());
     walk_near_leaves(map, bound, BoxDistances(place, stretch), [&](const LeafFaces& faces) {
-        if (nearest.improve(faces)) bound = rounded_up(nearest.distance_sq());
+        if (nearest.improve(faces)) bound = bound_above(nearest.distance_sq());
     });
     return nearest.face();
 }
@@ -258,7 +258,7 @@ double distance_sq_to_face(const ExactMapView& map, std::uint32_t face, const Ve
 Vec3f pseudonormal(const ExactMapView& map, const NearestPoint& nearest, const Vec3d& stretch,
                    double reach) noexcept {
     const Vec3d& point = nearest.point;
-    const float bound = rounded_up(reach * reach);
+    const float bound = bound_above(reach * reach);
     Vec3d sum;
     walk_near_leaves(map, bound, BoxDistances(point, kUnstretched), [&](const LeafFaces& faces) {
         for (std::uint32_t face = faces.first; face < faces.last; ++face) {

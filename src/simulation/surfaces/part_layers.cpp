@@ -16,8 +16,8 @@ namespace echinus {
 
 namespace {
 
-constexpr int kMostRounds = 200;
-constexpr int kPatience = 12;
+constexpr int kMostLayerRounds = 200;
+constexpr int kLayerPatience = 12;
 
 /// An edge that passes through a face.
 struct Crossing {
@@ -36,16 +36,16 @@ struct Step {
 /// To which side of another layer one goes where neither is cut off.
 enum class Side { Front, Back, Nearer };
 
-class Attempt {
+class LayerAttempt {
   public:
-    Attempt(const Elements& elements, const std::vector<float>& inverse_masses, float gap, bool face_moves,
-            const std::vector<Vec3f>& start, Side side)
+    LayerAttempt(const Elements& elements, const std::vector<float>& inverse_masses, float gap,
+                 bool face_moves, const std::vector<Vec3f>& start, Side side)
         : elements_(elements), inverse_masses_(inverse_masses), positions_(start), gap_(gap),
           face_moves_(face_moves), side_(side) {}
 
     void go(BestPlaces& best) {
-        Progress progress(kPatience);
-        for (int round = 0; round < kMostRounds; ++round) {
+        Progress progress(kLayerPatience);
+        for (int round = 0; round < kMostLayerRounds; ++round) {
             const std::vector<FacePair> pairs = self_intersecting_pairs(mesh());
             best.consider(positions_, pairs.size());
             if (pairs.empty() || !progress.goes_on(pairs.size())) return;
@@ -190,7 +190,7 @@ bool part_layers(const Elements& elements, const std::vector<float>& inverse_mas
                  bool face_moves, std::vector<Vec3f>& positions) {
     BestPlaces best(elements, positions);
     for (const Side side : {Side::Front, Side::Back, Side::Nearer}) {
-        Attempt attempt(elements, inverse_masses, gap, face_moves, positions, side);
+        LayerAttempt attempt(elements, inverse_masses, gap, face_moves, positions, side);
         attempt.go(best);
         if (best.pair_count() == 0 && !attempt.chose_a_side()) break;
     }

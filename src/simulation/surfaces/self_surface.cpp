@@ -15,10 +15,10 @@ namespace echinus {
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kUnlimited = std::numeric_limits<float>::infinity();
 
 /// Of loops over vertices and over pairs.
-constexpr std::size_t kVerticesPerPiece = 1024, kPairsPerPiece = 512;
+constexpr std::size_t kVerticesPerPiece = 1024, kOwnPairsPerPiece = 512;
 
 /// After so many rounds a way that is still too long is given up.
 constexpr int kRounds = 12;
@@ -33,13 +33,13 @@ constexpr std::uint8_t kNow = 1, kOver = 2;
 
 /// A pair that is led on one way stays as far apart but for rounding, which is so large a share of the least
 /// gap. Of that more may be lost, frame by frame, but for a rest that no rounding in a frame takes.
-constexpr float kRounding = 1.0F / 32, kLeastShare = 1.0F / 8;
+constexpr float kRigidTolerance = 1.0F / 32, kLeastShare = 1.0F / 8;
 /// A pair that a plane kept apart which turned can still be led on one way in later frames.
 constexpr float kLeastTurningShare = 1.0F / 4;
 
 /// Of layers that slide over each other: three degrees, since a sheet that crumples needs the contacts of its
 /// edges. What is nearer to the faces around an edge than half a thickness lies beside it.
-constexpr SlidingLimits kSliding{.smoothness = 0.9985F, .towards = 0.7F};
+constexpr SlidingLimits kOwnSliding{.smoothness = 0.9985F, .towards = 0.7F};
 constexpr float kLeastHeight = 0.5F;
 
 /// No way is shortened to quite the length that is left.
@@ -50,7 +50,7 @@ constexpr float kAlmost = 1 - 1.0F / (1 << 10);
 constexpr float kMostOfHeight = 0.4F;
 
 float least_height(const Element& element, const PointArrays& positions) {
-    if (element.vertex_count == 1) return kInfinity;
+    if (element.vertex_count == 1) return kUnlimited;
     const Vec3f a = positions[element.vertices[0]], b = positions[element.vertices[1]];
     if (element.vertex_count == 2) return length(b - a);
     const Vec3f c = positions[element.vertices[2]];
@@ -106,7 +106,7 @@ SelfSurface::SelfSurface(std::shared_ptr<const Elements> own, std::span<const El
       vertices_(vertices_of(surface_)), reach_(reach), thickness_(thickness), friction_(friction),
       mobility_(particles.mobility) {
     const std::size_t count = own_->vertex_count();
-    most_.assign(count, kInfinity);
+    most_.assign(count, kUnlimited);
     for (const Element& element : own_->all) {
         const float most = kMostOfHeight * least_height(element, particles.positions);
         for (const std::uint32_t v : element.vertices) most_[v] = std::min(most_[v], most);
@@ -380,7 +380,7 @@ void SelfSurface::keep_near(Search& search, std::vector<Pair>& found) const {
         const Pair& pair = search.candidates[i];
         const Vec3f normal = search.separations[i].normal;
         const std::size_t own = own_count(pair.kind);
-        float least = kInfinity, most = -kInfinity;
+        float least = kUnlimited, most = -kUnlimited;
         for (std::size_t k = 0; k < 4; ++k) {
             const float height = dot(normal, to_[pair.points[k]] - from_[pair.points[0]]);
             least = k < own ? std::min(least, height) : least;
@@ -398,7 +398,7 @@ void SelfSurface::lessen(std::vector<float>& radii, float most, const Workers& w
                          const RadiusOf& radius_of) {
     lessened_.resize(workers.count());
     for (std::vector<float>& of_worker : lessened_) of_worker.assign(radii.size(), most);
-    workers.for_ranges(pairs_.size(), kPairsPerPiece,
+    workers.for_ranges(pairs_.size(), kOwnPairsPerPiece,
                        [&](std::size_t worker, std::size_t piece, std::size_t begin, std::size_t end) {
                            std::vector<float>& lessened = lessened_[worker];
                            radius_of(worker, piece, begin, end, [&](std::size_t i, float radius) {
@@ -441,7 +441,7 @@ void SelfSurface::look_ahead(const RigidTransform* frame, const PointArrays& goa
     contacts_.clear();
     list_pairs(workers);
     measure(workers);
-    contacts_found_.begin(workers, Workers::piece_count(pairs_.size(), kPairsPerPiece));
+    contacts_found_.begin(workers, Workers::piece_count(pairs_.size(), kOwnPairsPerPiece));
     lessen(quiet_, reach_.near / 2, workers,
            [&](std::size_t worker, std::size_t piece, std::size_t begin, std::size_t end, const auto& give) {
                contacts_found_.add(worker, piece, [&](std::vector<Contact>& found) {
@@ -477,7 +477,7 @@ bool SelfSurface::slides_past(const Pair& pair, const Separation& apart, float t
         const std::uint32_t v = pair.points[k];
         way += (goals_[v] - starts_[v]) * (k < own ? apart.weights[k] : -apart.weights[k]);
     }
-    SlidingLimits limits = kSliding;
+    SlidingLimits limits = kOwnSliding;
     limits.least_height = kLeastHeight * thickness / apart.gap;
     const std::span<const std::uint32_t> points(pair.points);
     const std::span<const float> weights(apart.weights);
@@ -581,7 +581,7 @@ SelfSurface::Ending SelfSurface::ending_of(std::size_t i) const {
     const Separation& apart = separations_[i];
     const std::size_t own = own_count(pair.kind);
     const Vec3f origin = starts_[pair.points[0]];
-    float least = kInfinity, most = -kInfinity, least_base = kInfinity, most_base = -kInfinity;
+    float least = kUnlimited, most = -kUnlimited, least_base = kUnlimited, most_base = -kUnlimited;
     const Vec3f led = bases_[pair.points[0]] - origin;
     const bool keeps_gap = apart.gap > kLeastShare * reach_.least_gap;
     bool stays = true, is_rigid = keeps_gap;
@@ -590,7 +590,7 @@ SelfSurface::Ending SelfSurface::ending_of(std::size_t i) const {
         const float height = dot(apart.normal, place_at_share(v) - origin);
         const float base = dot(apart.normal, bases_[v] - origin);
         stays = stays && bases_[v] == starts_[v];
-        is_rigid = is_rigid && length(bases_[v] - starts_[v] - led) <= kRounding * reach_.least_gap;
+        is_rigid = is_rigid && length(bases_[v] - starts_[v] - led) <= kRigidTolerance * reach_.least_gap;
         least = k < own ? std::min(least, height) : least;
         most = k < own ? most : std::max(most, height);
         least_base = k < own ? std::min(least_base, base) : least_base;
@@ -606,7 +606,7 @@ SelfSurface::Ending SelfSurface::ending_of(std::size_t i) const {
 /// Of the ways as they are.
 void SelfSurface::find_meeting(const Workers& workers) {
     meets_.resize(pairs_.size());
-    workers.for_ranges(pairs_.size(), kPairsPerPiece,
+    workers.for_ranges(pairs_.size(), kOwnPairsPerPiece,
                        [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
                            for (std::size_t i = begin; i < end; ++i)
                                meets_[i] = is_apart(i, ending_of(i)) ? 0 : 1;

@@ -9,7 +9,7 @@ namespace echinus {
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kBoundless = std::numeric_limits<float>::infinity();
 
 /// Where nothing is near, the tree is asked for a clearance up to so many times the reach of the lists, or
 /// the way of a vertex that goes farther than that.
@@ -46,7 +46,7 @@ SurfacePairs::SurfacePairs(const Elements& own, const PairReach& reach)
 void SurfacePairs::reset() {
     rooms_.assign(own_->vertex_count(), -1);
     quiet_.assign(own_->vertex_count(), -1);
-    list_reaches_.assign(own_->all.size(), -kInfinity);
+    list_reaches_.assign(own_->all.size(), -kBoundless);
     for (std::size_t e = 0; e < own_->all.size(); ++e) lists_.clear(e);
 }
 
@@ -351,7 +351,7 @@ std::array<Vec3f, 4> SurfacePairs::points_of(const Pair& pair) const {
 /// How far the opponent's part of a pair comes along the normal.
 float SurfacePairs::advance(const Pair& pair, const Vec3f& normal) const {
     if (opponent_.ends == nullptr) return 0;
-    float most = -kInfinity;
+    float most = -kBoundless;
     for (std::size_t k = own_count(pair.kind); k < 4; ++k)
         most = std::max(
             most, dot(normal, (*opponent_.ends)[pair.points[k]] - (*opponent_.positions)[pair.points[k]]));
@@ -360,7 +360,7 @@ float SurfacePairs::advance(const Pair& pair, const Vec3f& normal) const {
 
 /// By how much the gap of a pair shrinks along the normal while its own part goes to the bases.
 float SurfacePairs::closing(const Pair& pair, const Vec3f& normal) const {
-    float least = kInfinity;
+    float least = kBoundless;
     for (std::size_t k = 0; k < own_count(pair.kind); ++k)
         least = std::min(least, dot(normal, (*bases_)[pair.points[k]] - (*starts_)[pair.points[k]]));
     return advance(pair, normal) - least;
@@ -378,7 +378,7 @@ bool SurfacePairs::is_beyond(std::uint32_t vertex, const Vec3f& goal, float radi
 
 void SurfacePairs::wake(std::uint32_t vertex) {
     anchors_.set(vertex, (*bases_)[vertex]);
-    rooms_[vertex] = quiet_[vertex] = kInfinity;
+    rooms_[vertex] = quiet_[vertex] = kBoundless;
     renewed_in_[vertex] = frame_;
     woken_.push_back(vertex);
 }
@@ -395,7 +395,7 @@ void SurfacePairs::collect_measured() {
 /// Not to look for contacts: it is too late for them in this frame, so the next one does.
 void SurfacePairs::measure_woken(const Workers& workers) {
     collect_measured();
-    measure_collected([](std::uint32_t, const Pair&, const Separation&) { return -kInfinity; }, workers);
+    measure_collected([](std::uint32_t, const Pair&, const Separation&) { return -kBoundless; }, workers);
 }
 
 void SurfacePairs::shrink(std::uint32_t vertex, float room, float quiet) {
@@ -436,7 +436,7 @@ bool SurfacePairs::renew(std::uint32_t vertex, const Workers& workers) {
 Shares SurfacePairs::allowed(std::uint32_t vertex, const Vec3f& from, const Vec3f& to, float rounding) const {
     const Vec3f start = (*starts_)[vertex], base = (*bases_)[vertex];
     Shares shares;
-    float bound = kInfinity;
+    float bound = kBoundless;
     for (const std::uint32_t element : own_->at(vertex)) {
         bound = std::min(bound, bound_of(element));
         for (const Pair& pair : lists_.of(element)) {
@@ -447,7 +447,7 @@ Shares SurfacePairs::allowed(std::uint32_t vertex, const Vec3f& from, const Vec3
             // What deforms would have to be followed exactly.
             if (!(apart.gap > 0)) return opponent_.ends != nullptr ? Shares{1, 0} : Shares{0, 0};
             // How far above the plane at the end of the pair's own part the vertex begins.
-            float above = kInfinity;
+            float above = kBoundless;
             for (std::size_t k = 0; k < own_count(pair.kind); ++k)
                 above = std::min(above, dot(apart.normal, points[k] - start));
             const float allowed_way = std::max(usable(apart.gap), 0.0F) - above - advance(pair, apart.normal);

@@ -1,9 +1,9 @@
 // The runner of the engines in C++: lab/bench/engines/runners.py has the contract.
 
 #include "compare/clock.hpp"
+#include "console/machine.hpp"
 #include "engine.hpp"
 #include "files/atomic_file.hpp"
-#include "machine.hpp"
 #include "mesh_io/point_cache.hpp"
 
 #include <echinus/error.hpp>

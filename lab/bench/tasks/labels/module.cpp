@@ -2,7 +2,7 @@
 // the caller.
 
 #include "arrays.hpp"
-#include "machine.hpp"
+#include "console/machine.hpp"
 #include "pinning.hpp"
 #include "rivals/unshipped/unshipped.hpp"
 #include "systems.hpp"

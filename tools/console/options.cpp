@@ -1,4 +1,4 @@
-#include "options.hpp"
+#include "console/options.hpp"
 
 #include <CLI/CLI.hpp>
 
