@@ -252,6 +252,8 @@ class CSweep : public ::testing::Test {
             }
             if constexpr (std::is_floating_point_v<T>)
                 EXPECT_NE(with(static_cast<T>(kNan)), ECHINUS_OK) << name << " is NaN";
+            if constexpr (std::is_same_v<T, float>) // lengths and tolerances
+                EXPECT_EQ(with(-1.0F), ECHINUS_INVALID_ARGUMENT) << name << " is negative";
             if constexpr (std::is_same_v<T, std::size_t>) {
                 if (name.ends_with("stride")) EXPECT_EQ(with(7), ECHINUS_INVALID_ARGUMENT) << name;
                 if (name.ends_with("count")) EXPECT_NE(with(SIZE_MAX / 4), ECHINUS_OK) << name;
