@@ -57,14 +57,14 @@ static_assert(sizeof(TreeNode) == 128);
 
 /// The triangles below each child of the TreeNode of the same number, as seen from afar: moments of their
 /// area vectors about a centre, for the winding number of an open surface. In lattice steps, divided by 4 pi.
-/// All 0 but the centre for a child that does not exist. src/exact_map/winding_nodes.hpp explains them.
+/// All 0 but the centre for a child that does not exist. src/exact_map/build/open_surface.hpp explains them.
 struct WindingNode {
     static constexpr std::size_t kWidth = TreeNode::kWidth;
 
     double centre[3][kWidth];
     double area[3][kWidth];    ///< sum of the area vectors
     double first[6][kWidth];   ///< coefficients of x^2, y^2, z^2, xy, xz, yz
-    double second[7][kWidth];  ///< of x (x^2 - 3 z^2), y (y^2 - 3 z^2), ... see winding_nodes.cpp
+    double second[7][kWidth];  ///< of x (x^2 - 3 z^2), y (y^2 - 3 z^2), ... see open_surface.cpp
     double radius[kWidth];     ///< no corner is farther from the centre
     double spread[kWidth];     ///< integral of the squared distance from the centre
     double total_area[kWidth]; ///< sum of the areas
@@ -125,7 +125,7 @@ struct ExactMapView {
     std::span<const TreeNode> nodes;    ///< the first is the root
     std::span<const BorderEdge> border; ///< empty when the surface is closed
     /// What queries of an open surface sum: its faces, or caps that close it, where they are far fewer
-    /// (src/exact_map/border_part.hpp). Empty when the surface is closed. Not in map files, as it follows
+    /// (src/exact_map/query/winding.cpp). Empty when the surface is closed. Not in map files, as it follows
     /// from the faces.
     WindingTree winding_tree;
     bool winding_tree_has_caps = false;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "geometry/whole_numbers.hpp"
-#include "mesh/used_vertices.hpp"
+#include "mesh/require_valid.hpp"
 
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>

@@ -142,7 +142,7 @@ class TreeCheck {
 
   private:
     static constexpr std::size_t kWidth = TreeNode::kWidth;
-    static constexpr std::uint8_t kMaxDepth = 12; // src/exact_map/query/face_tree_walk.hpp
+    static constexpr std::uint8_t kMaxDepth = 12; // src/exact_map/query/nearest.hpp
 
     void check_child(std::uint32_t node, std::size_t k) {
         const TreeNode& n = map_.nodes[node];

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "geometry/angles.hpp"
+
 #include <echinus/contact.hpp>
 #include <echinus/geometry.hpp>
 
@@ -7,9 +9,10 @@
 #include <cstddef>
 #include <limits>
 
-/// The nearest point of a segment and of a triangle to the origin. Segments may be points, and triangles may
-/// have no area.
 namespace echinus {
+
+// The nearest point of a segment and of a triangle to the origin. Segments may be points, and triangles may
+// have no area.
 
 using TriangleCorners = std::array<Vec3d, 3>;
 
@@ -54,6 +57,25 @@ inline NearestOnTriangle nearest_on_triangle(const TriangleCorners& corners) {
     }
     nearest.distance = length(nearest.point);
     return nearest;
+}
+
+/// The angle between two vectors.
+inline float angle_between(const Vec3d& a, const Vec3d& b) {
+    return atan2_polynomial(static_cast<float>(length(cross(a, b)) / (length(a) * length(b))),
+                            static_cast<float>(dot(a, b) / (length(a) * length(b))));
+}
+
+/// The angle that a triangle spans around the origin: a full turn inside, half a turn on an edge, the
+/// corner's angle at a corner. Edges and corners within `reach` count as met.
+inline float spanned_angle(const TriangleCorners& corners, double reach) {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (length(corners[k]) <= reach)
+            return angle_between(corners[(k + 1) % 3] - corners[k], corners[(k + 2) % 3] - corners[k]);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3d edge = corners[(k + 1) % 3] - corners[k];
+        if (length(corners[k] + edge * nearest_share(corners[k], edge)) <= reach) return kPi;
+    }
+    return 2 * kPi;
 }
 
 } // namespace echinus

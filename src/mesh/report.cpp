@@ -1,11 +1,8 @@
 #include "geometry/union_find.hpp"
-#include "mesh/components.hpp"
-#include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
 #include "mesh/local_frame.hpp"
-#include "mesh/orientation.hpp"
+#include "mesh/require_valid.hpp"
 #include "mesh/seams.hpp"
-#include "mesh/used_vertices.hpp"
 
 #include <echinus/mesh.hpp>
 

@@ -8,10 +8,16 @@
 #include <span>
 #include <vector>
 
-/// Seams: where the faces on either side of a surface's edge have corners of their own, which coincide but
-/// for rounding. They are no holes. inspect() and all maps take such corners for one, by the same rule, so
-/// that they agree on what is closed.
 namespace echinus {
+
+/// Is every edge balanced, as MeshReport::closed defines it? Positions do not matter. Time O(faces), except
+/// O(n log n) at vertices with many edges.
+/// @pre indices are below vertex_count
+bool is_closed(std::span<const Triangle> faces, std::size_t vertex_count);
+
+// Seams: where the faces on either side of a surface's edge have corners of their own, which coincide but
+// for rounding. They are no holes. inspect() and all maps take such corners for one, by the same rule, so
+// that they agree on what is closed.
 
 /// How far apart two corners of a seam may be: a quarter of a lattice step (directions/lattice.hpp), which is
 /// what rounding to the lattice leaves of the two steps that docs/accuracy.md promises, and about what float

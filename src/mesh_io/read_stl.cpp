@@ -1,5 +1,5 @@
-#include "mesh_io/byte_reader.hpp"
 #include "mesh_io/line_scanner.hpp"
+#include "mesh_io/mesh_source.hpp"
 #include "mesh_io/readers.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #include "mesh/local_frame.hpp"
-#include "mesh_io/polygon_mesh.hpp"
+#include "mesh_io/readers.hpp"
 
 #include <algorithm>
 #include <span>

@@ -1,11 +1,218 @@
+#include "mesh_io/write_mesh.hpp"
+
 #include "files/atomic_file.hpp"
-#include "mesh_io/encode.hpp"
+#include "mesh_io/line_scanner.hpp"
 #include "mesh_io/mesh_source.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/mesh_io.hpp>
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <limits>
+#include <string_view>
+
 namespace echinus {
+
+namespace {
+
+template <typename Number>
+void append_text(std::string& text, Number value) {
+    std::array<char, 32> digits;
+    const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value);
+    text.append(digits.data(), result.ptr);
+}
+
+/// "x y z\n"
+template <typename Number>
+void append_line(std::string& text, Number x, Number y, Number z) {
+    append_text(text, x);
+    text += ' ';
+    append_text(text, y);
+    text += ' ';
+    append_text(text, z);
+    text += '\n';
+}
+
+template <typename Number>
+void append_little_endian(std::string& bytes, Number value) {
+    auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(value);
+    if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
+    bytes.append(raw.data(), raw.size());
+}
+
+template <typename Number>
+void append_little_endian(std::string& bytes, const Vec3<Number>& v) {
+    for (const Number coordinate : {v.x, v.y, v.z}) append_little_endian(bytes, coordinate);
+}
+
+template <typename Mesh>
+bool has_origin(const Mesh& mesh) {
+    return mesh.origin != Vec3d{};
+}
+
+/// The coordinate in the frame of files: of the numbers that lead back to the same float, the one with the
+/// fewest decimals.
+double in_file(float local, double origin) {
+    const double exact = local + origin;
+    for (int decimals = 0; decimals < std::numeric_limits<double>::max_digits10; ++decimals) {
+        std::array<char, 32> digits;
+        const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), exact,
+                                       std::chars_format::scientific, decimals);
+        double shorter = 0;
+        parse_number(std::string_view(digits.data(), end.ptr - digits.data()), shorter);
+        if (static_cast<float>(shorter - origin) == local) return shorter;
+    }
+    return exact;
+}
+
+Vec3d in_file(const Vec3f& local, const Vec3d& origin) {
+    return {in_file(local.x, origin.x), in_file(local.y, origin.y), in_file(local.z, origin.z)};
+}
+
+/// In the frame of files: as floats, or as doubles where the mesh has an origin.
+template <typename Mesh, typename Write>
+void for_each_position(const Mesh& mesh, const Write& write) {
+    for (const Vec3f& vertex : mesh.vertices)
+        if (has_origin(mesh))
+            write(in_file(vertex, mesh.origin));
+        else
+            write(vertex);
+}
+
+Vec3f unit_normal(const TriangleMesh& mesh, const Triangle& face) {
+    const Vec3d a(mesh.vertices[face[0]]);
+    const Vec3d normal = cross(Vec3d(mesh.vertices[face[1]]) - a, Vec3d(mesh.vertices[face[2]]) - a);
+    const double size = length(normal);
+    return size > 0 ? Vec3f(normal * (1 / size)) : Vec3f{};
+}
+
+} // namespace
+
+std::string encode_obj(const TriangleMesh& mesh) {
+    std::string text;
+    for_each_position(mesh, [&](const auto& p) {
+        text += "v ";
+        append_line(text, p.x, p.y, p.z);
+    });
+    for (const Triangle& f : mesh.faces) {
+        text += "f ";
+        append_line(text, f[0] + 1ULL, f[1] + 1ULL, f[2] + 1ULL);
+    }
+    return text;
+}
+
+std::string encode_obj_lines(std::span<const std::array<std::uint32_t, 2>> edges) {
+    std::string text;
+    for (const auto& [a, b] : edges) {
+        text += "l ";
+        append_text(text, a + 1ULL);
+        text += ' ';
+        append_text(text, b + 1ULL);
+        text += '\n';
+    }
+    return text;
+}
+
+std::string encode_off(const TriangleMesh& mesh) {
+    std::string text =
+        "OFF\n" + std::to_string(mesh.vertices.size()) + " " + std::to_string(mesh.faces.size()) + " 0\n";
+    for_each_position(mesh, [&](const auto& p) { append_line(text, p.x, p.y, p.z); });
+    for (const Triangle& f : mesh.faces) {
+        text += "3 ";
+        append_line(text, f[0], f[1], f[2]);
+    }
+    return text;
+}
+
+std::string encode_ply(const TriangleMesh& mesh) {
+    const std::string property = std::string("\nproperty ") + (has_origin(mesh) ? "double " : "float ");
+    std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                        std::to_string(mesh.vertices.size()) + property + "x" + property + "y" + property +
+                        "z\nelement face " + std::to_string(mesh.faces.size()) +
+                        "\nproperty list uchar uint vertex_indices\nend_header\n";
+    for_each_position(mesh, [&](const auto& p) { append_little_endian(bytes, p); });
+    for (const Triangle& f : mesh.faces) {
+        append_little_endian(bytes, std::uint8_t{3});
+        for (const std::uint32_t vertex : f) append_little_endian(bytes, vertex);
+    }
+    return bytes;
+}
+
+namespace {
+
+std::string encode_text_stl(const TriangleMesh& mesh) {
+    std::string text = "solid\n";
+    for (const Triangle& f : mesh.faces) {
+        const Vec3f normal = unit_normal(mesh, f);
+        text += "facet normal ";
+        append_line(text, normal.x, normal.y, normal.z);
+        text += "outer loop\n";
+        for (const std::uint32_t vertex : f) {
+            const Vec3d p = in_file(mesh.vertices[vertex], mesh.origin);
+            text += "vertex ";
+            append_line(text, p.x, p.y, p.z);
+        }
+        text += "endloop\nendfacet\n";
+    }
+    return text + "endsolid\n";
+}
+
+} // namespace
+
+std::string encode_stl(const TriangleMesh& mesh) {
+    if (has_origin(mesh)) return encode_text_stl(mesh); // the binary kind has floats only
+    std::string bytes = "binary STL";
+    bytes.resize(80, ' ');
+    append_little_endian(bytes, static_cast<std::uint32_t>(mesh.faces.size()));
+    for (const Triangle& f : mesh.faces) {
+        append_little_endian(bytes, unit_normal(mesh, f));
+        for (const std::uint32_t vertex : f) append_little_endian(bytes, mesh.vertices[vertex]);
+        append_little_endian(bytes, std::uint16_t{0}); // attributes
+    }
+    return bytes;
+}
+
+std::string encode_msh(const TetrahedralMesh& mesh) {
+    std::string text =
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" + std::to_string(mesh.vertices.size()) + "\n";
+    std::size_t node = 0;
+    for_each_position(mesh, [&](const auto& p) {
+        append_text(text, ++node);
+        text += ' ';
+        append_line(text, p.x, p.y, p.z);
+    });
+    text += "$EndNodes\n$Elements\n" + std::to_string(mesh.tetrahedra.size()) + "\n";
+    for (std::size_t number = 0; number < mesh.tetrahedra.size(); ++number) {
+        append_text(text, number + 1);
+        text += " 4 2 1 1"; // a tetrahedron with two tags: the physical and the geometrical entity
+        for (const std::uint32_t vertex : mesh.tetrahedra[number]) {
+            text += ' ';
+            append_text(text, vertex + 1ULL);
+        }
+        text += '\n';
+    }
+    return text + "$EndElements\n";
+}
+
+std::string encode_vtk(const TetrahedralMesh& mesh) {
+    const std::string count = std::to_string(mesh.tetrahedra.size());
+    std::string text = "# vtk DataFile Version 3.0\ntetrahedra\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS " +
+                       std::to_string(mesh.vertices.size()) + (has_origin(mesh) ? " double\n" : " float\n");
+    for_each_position(mesh, [&](const auto& p) { append_line(text, p.x, p.y, p.z); });
+    text += "CELLS " + count + " " + std::to_string(5 * mesh.tetrahedra.size()) + "\n";
+    for (const Tetrahedron& corners : mesh.tetrahedra) {
+        text += "4 ";
+        append_text(text, corners[0]);
+        text += ' ';
+        append_line(text, corners[1], corners[2], corners[3]);
+    }
+    text += "CELL_TYPES " + count + "\n";
+    for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) text += "10\n"; // VTK_TETRA
+    return text;
+}
 
 namespace {
 
@@ -40,6 +247,17 @@ void write_mesh_and_edges(const std::filesystem::path& path, const MeshAndEdges&
     for (const auto& [a, b] : drawn.edges) joined.faces.push_back({a, b, b});
     require_valid(joined);
     write_file(path, encode_obj(drawn.mesh) + encode_obj_lines(drawn.edges));
+}
+
+void write_tetrahedra(const std::filesystem::path& path, const TetrahedralMesh& mesh) {
+    const std::string ending = lower_case_ending(path);
+    if (ending != ".msh" && ending != ".vtk")
+        throw Error(ErrorCode::WrongFormat, path.string() +
+                                                ": tetrahedra are written to files that end in .msh or .vtk, "
+                                                "not in " +
+                                                in_quotes(ending));
+    require_valid_tetrahedra(mesh);
+    write_file(path, ending == ".msh" ? encode_msh(mesh) : encode_vtk(mesh));
 }
 
 } // namespace echinus

@@ -2,7 +2,6 @@
 #include "render/image.hpp"
 #include "render/intersector.hpp"
 #include "render/painted_surface.hpp"
-#include "render/tone.hpp"
 #include "render/tracer.hpp"
 
 #include <echinus/error.hpp>

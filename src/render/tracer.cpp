@@ -1,6 +1,6 @@
 #include "render/tracer.hpp"
 
-#include "render/tone.hpp"
+#include "render/image.hpp"
 
 #include <algorithm>
 #include <array>

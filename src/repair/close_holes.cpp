@@ -1,5 +1,4 @@
-#include "mesh/components.hpp"
-#include "mesh/edges.hpp"
+#include "mesh/faces.hpp"
 #include "repair/repairs.hpp"
 
 #include <echinus/mesh.hpp>

@@ -1,7 +1,7 @@
 #include "repair/edge_balance.hpp"
 
 #include "geometry/whole_numbers.hpp"
-#include "mesh/edges.hpp"
+#include "mesh/faces.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,5 +1,5 @@
 #include "geometry/union_find.hpp"
-#include "mesh/edges.hpp"
+#include "mesh/faces.hpp"
 #include "repair/repairs.hpp"
 
 #include <echinus/exact_map.hpp>

@@ -1,11 +1,7 @@
 #include "geometry/box.hpp"
 #include "geometry/union_find.hpp"
 #include "geometry/whole_numbers.hpp"
-#include "mesh/components.hpp"
-#include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
-#include "mesh/orientation.hpp"
-#include "mesh/winding_number.hpp"
 #include "repair/repairs.hpp"
 
 #include <algorithm>

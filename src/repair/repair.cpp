@@ -1,7 +1,7 @@
 #include "files/text.hpp"
 #include "mesh/faces.hpp"
+#include "mesh/require_valid.hpp"
 #include "mesh/seams.hpp"
-#include "mesh/used_vertices.hpp"
 #include "repair/repairs.hpp"
 
 #include <echinus/error.hpp>

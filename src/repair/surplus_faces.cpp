@@ -1,5 +1,4 @@
 #include "geometry/union_find.hpp"
-#include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
 #include "repair/edge_balance.hpp"
 #include "repair/repairs.hpp"

@@ -1,9 +1,7 @@
 #include "files/text.hpp"
 #include "geometry/union_find.hpp"
-#include "mesh/components.hpp"
-#include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
-#include "mesh/used_vertices.hpp"
+#include "mesh/require_valid.hpp"
 #include "repair/repairs.hpp"
 
 #include <echinus/error.hpp>

@@ -1,6 +1,5 @@
 #include "simulation/cloth_surface.hpp"
 
-#include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
 
 #include <echinus/error.hpp>

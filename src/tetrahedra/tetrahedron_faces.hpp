@@ -3,6 +3,7 @@
 #include <echinus/tetrahedra.hpp>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -30,5 +31,13 @@ std::vector<FaceUse> sorted_face_uses(const TetrahedralMesh& mesh);
 /// @throws Error InvalidMesh when there are more tetrahedra than std::uint32_t counts, an index is out of
 /// range, or a tetrahedron has two equal corners
 void require_indices(const TetrahedralMesh& mesh);
+
+/// Of a positive tetrahedron positive; in the cube of the mesh's unit.
+inline double tetrahedron_volume(const TetrahedralMesh& mesh, std::size_t number) {
+    const Tetrahedron& corners = mesh.tetrahedra[number];
+    const Vec3d a(mesh.vertices[corners[0]]);
+    const auto way_to = [&](std::size_t i) { return Vec3d(mesh.vertices[corners[i]]) - a; };
+    return dot(cross(way_to(1), way_to(2)), way_to(3)) / 6;
+}
 
 } // namespace echinus

@@ -1,7 +1,7 @@
 // The adapter for Bullet, in worlds as its users have them. Sides are judged by a winding number over all
 // faces.
 
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 
 #include <echinus/bullet.hpp>
 #include <echinus/mesh.hpp>

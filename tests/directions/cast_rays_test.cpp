@@ -1,6 +1,6 @@
 #include "directions/cast_rays.hpp"
 #include "directions/face_cone.hpp"
-#include "support/mesh_assembly.hpp"
+#include "support/meshes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "directions/lattice.hpp"
 #include "mesh/require_valid.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 
 #include <echinus/error.hpp>
 

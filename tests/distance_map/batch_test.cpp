@@ -1,8 +1,6 @@
-#include "support/grid_options.hpp"
-#include "support/hand_made_map.hpp"
+#include "support/distance_maps.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/random_points.hpp"
-#include "support/sample_map.hpp"
 
 #include <echinus/distance_map.hpp>
 

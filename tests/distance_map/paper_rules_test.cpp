@@ -1,6 +1,6 @@
 // One test for each clause of the paper's section 2.2, on maps with hand-written entries.
 
-#include "support/hand_made_map.hpp"
+#include "support/distance_maps.hpp"
 
 #include <echinus/distance_map.hpp>
 

@@ -1,6 +1,6 @@
 #include "exact_map/query/stretched_contact.hpp"
 #include "support/instruction_sets.hpp"
-#include "support/mesh_assembly.hpp"
+#include "support/meshes.hpp"
 #include "support/point_sets.hpp"
 #include "support/random_points.hpp"
 

@@ -1,4 +1,4 @@
-#include "support/crowded_meshes.hpp"
+#include "support/meshes.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/exact_map.hpp>

@@ -1,5 +1,5 @@
 #include "exact_map/query/stretched_contact.hpp"
-#include "support/mesh_assembly.hpp"
+#include "support/meshes.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/exact_map.hpp>

@@ -1,5 +1,4 @@
-#include "support/mesh_assembly.hpp"
-#include "support/prisms.hpp"
+#include "support/meshes.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/exact_map.hpp>

@@ -1,4 +1,4 @@
-#include "support/far_away.hpp"
+#include "support/meshes.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/collider.hpp>

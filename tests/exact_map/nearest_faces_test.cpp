@@ -1,6 +1,5 @@
 #include "exact_map/layout.hpp"
 #include "exact_map/query/nearest.hpp"
-#include "exact_map/query/nearest_faces.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/point_sets.hpp"
 #include "support/random_points.hpp"

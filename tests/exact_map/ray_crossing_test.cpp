@@ -1,5 +1,4 @@
 #include "exact_map/query/ray_crossing.hpp"
-#include "exact_map/query/segment_crossing.hpp"
 
 #include <gtest/gtest.h>
 

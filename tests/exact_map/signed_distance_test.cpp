@@ -1,4 +1,4 @@
-#include "support/mesh_assembly.hpp"
+#include "support/meshes.hpp"
 #include "support/point_sets.hpp"
 #include "support/random_points.hpp"
 

@@ -1,7 +1,7 @@
 // How large a map gets.
 
 #include "exact_map/build/resolution.hpp"
-#include "support/crowded_meshes.hpp"
+#include "support/meshes.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/error.hpp>

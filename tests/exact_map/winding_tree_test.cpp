@@ -1,13 +1,10 @@
 #include "directions/face_cone.hpp"
-#include "exact_map/build/border.hpp"
-#include "exact_map/build/border_caps.hpp"
+#include "exact_map/build/open_surface.hpp"
 #include "exact_map/layout.hpp"
 #include "exact_map/query/winding_tree.hpp"
-#include "exact_map/winding_nodes.hpp"
 #include "support/instruction_sets.hpp"
-#include "support/mesh_assembly.hpp"
+#include "support/meshes.hpp"
 #include "support/point_sets.hpp"
-#include "support/soups.hpp"
 
 #include <echinus/exact_map.hpp>
 #include <echinus/map_file.hpp>

@@ -1,5 +1,5 @@
 #include "files/atomic_file.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <echinus/error.hpp>

@@ -1,4 +1,4 @@
-#include "support/mesh_attack.hpp"
+#include "support/attacks.hpp"
 
 #include <cstddef>
 #include <cstdint>

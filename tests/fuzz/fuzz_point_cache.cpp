@@ -1,6 +1,5 @@
 #include "mesh_io/point_cache.hpp"
-#include "support/memory_file.hpp"
-#include "support/require_sentence.hpp"
+#include "support/attacks.hpp"
 
 #include <echinus/error.hpp>
 

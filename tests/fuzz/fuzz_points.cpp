@@ -1,6 +1,5 @@
 #include "points/points.hpp"
-#include "support/memory_file.hpp"
-#include "support/require_sentence.hpp"
+#include "support/attacks.hpp"
 
 #include <echinus/error.hpp>
 

@@ -1,4 +1,4 @@
-#include "support/require_sentence.hpp"
+#include "support/attacks.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/scene.hpp>

@@ -1,7 +1,6 @@
-#include "mesh_io/node_animation.hpp"
 #include "mesh_io/readers.hpp"
-#include "mesh_io/scene_file.hpp"
-#include "support/require_sentence.hpp"
+#include "mesh_io/scenes/scene_file.hpp"
+#include "support/attacks.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/mesh.hpp>

@@ -4,7 +4,7 @@
 #include "judges/distance_tree.hpp"
 #include "judges/exact_judge.hpp"
 #include "judges/solid_angle_tree.hpp"
-#include "support/adversarial_points.hpp"
+#include "support/point_sets.hpp"
 
 #include <echinus/exact_map.hpp>
 

@@ -1,13 +1,25 @@
 #pragma once
 
 #include "judges/check_result.hpp"
+#include "support/point_sets.hpp"
 
 #include <echinus/mesh.hpp>
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace echinus::test {
+
+struct PointSet {
+    const char* name;
+    std::function<std::vector<Vec3f>()> make; ///< made on demand: a set of millions takes memory
+};
+
+/// The four sets of echinus-check, `count` points together, a quarter each up to rounding: uniform in the
+/// bounding sphere, near the surface, cloth-like and adversarial. The mesh must outlive them.
+std::vector<PointSet> point_sets(const TriangleMesh& mesh, const MapFrame& frame, std::size_t count,
+                                 std::uint64_t seed);
 
 struct CheckOptions {
     std::size_t points = 10'000'000;

@@ -1,7 +1,7 @@
 #include "judges/nasty_meshes.hpp"
 
 #include "oracle/test_meshes.hpp"
-#include "support/portable_random.hpp"
+#include "support/random_points.hpp"
 
 #include <echinus/error.hpp>
 

@@ -1,8 +1,7 @@
 #include "distance_map/validate.hpp"
-#include "support/expect_error.hpp"
-#include "support/grid_options.hpp"
+#include "support/distance_maps.hpp"
+#include "support/expectations.hpp"
 #include "support/map_file_attack.hpp"
-#include "support/sample_map.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <echinus/error.hpp>

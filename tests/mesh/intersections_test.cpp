@@ -1,6 +1,5 @@
-#include "support/expect_error.hpp"
-#include "support/mesh_assembly.hpp"
-#include "support/triangle_soup.hpp"
+#include "support/expectations.hpp"
+#include "support/meshes.hpp"
 
 #include <echinus/intersections.hpp>
 

@@ -1,6 +1,6 @@
 #include "mesh/local_frame.hpp"
-#include "support/expect_error.hpp"
-#include "support/far_away.hpp"
+#include "support/expectations.hpp"
+#include "support/meshes.hpp"
 
 #include <echinus/intersections.hpp>
 

@@ -1,5 +1,6 @@
-#include "support/broken_meshes.hpp"
-#include "support/expect_error.hpp"
+#include "mesh/seams.hpp"
+#include "support/expectations.hpp"
+#include "support/meshes.hpp"
 
 #include <echinus/mesh.hpp>
 
@@ -11,10 +12,102 @@
 #include <numbers>
 #include <numeric>
 #include <random>
+#include <string>
 #include <utility>
 
 using namespace echinus;
 using namespace echinus::test;
+
+namespace {
+
+void expect_invalid(const TriangleMesh& mesh, const std::string& words) {
+    expect_error(ErrorCode::InvalidMesh, words, [&] { require_valid(mesh); });
+}
+
+const std::vector<Vec3f> kCorners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+
+} // namespace
+
+TEST(RequireValid, AcceptsASingleFace) {
+    EXPECT_NO_THROW(require_valid({kCorners, {{0, 1, 2}}}));
+}
+
+TEST(RequireValid, RefusesAMeshWithoutFaces) {
+    expect_invalid({}, "no faces");
+    expect_invalid({kCorners, {}}, "no faces");
+}
+
+TEST(RequireValid, NamesTheFirstFaceWithAnIndexOutOfRange) {
+    expect_invalid({kCorners, {{0, 1, 2}, {0, 1, 4}, {9, 9, 9}}}, "face 1 of the mesh refers to vertex 4");
+}
+
+TEST(RequireValid, NamesTheFirstFaceWithAPositionThatIsNotFinite) {
+    for (float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        auto vertices = kCorners;
+        vertices[3].y = bad;
+        expect_invalid({vertices, {{0, 1, 2}, {0, 1, 3}}}, "face 1 of the mesh uses vertex 3");
+        EXPECT_NO_THROW(require_valid({vertices, {{0, 1, 2}}})); // an unused vertex may be anything
+    }
+}
+
+namespace {
+
+bool closed(const TriangleMesh& mesh) {
+    return is_closed(mesh.faces, mesh.vertices.size());
+}
+
+TriangleMesh without_last_face(TriangleMesh mesh) {
+    mesh.faces.pop_back();
+    return mesh;
+}
+
+} // namespace
+
+TEST(IsClosed, HoldsForGeneratedMeshesUntilAFaceIsGoneOrTurned) {
+    // The poles of the spheres have as many edges as there are meridians.
+    for (const TriangleMesh& mesh : {make_box({1, 1, 1}), make_torus(1, 0.4, 12, 8), make_sphere(1, 4, 3),
+                                     make_sphere(1, 13, 5), make_sphere(1, 200, 4)}) {
+        EXPECT_TRUE(closed(mesh));
+        EXPECT_FALSE(closed(without_last_face(mesh)));
+        TriangleMesh turned = mesh;
+        std::swap(turned.faces[0][0], turned.faces[0][1]);
+        EXPECT_FALSE(closed(turned));
+    }
+}
+
+TEST(IsClosed, CountsHowOftenAnEdgeIsUsed) {
+    const TriangleMesh box = make_box({1, 1, 1});
+    TriangleMesh twice = box, both_ways = without_last_face(box);
+    twice.faces.insert(twice.faces.end(), box.faces.begin(), box.faces.end());
+    EXPECT_TRUE(closed(twice));
+    EXPECT_FALSE(closed(without_last_face(twice)));
+    const auto [a, b, c] = box.faces[0];
+    both_ways.faces = {{a, b, c}, {c, b, a}};
+    EXPECT_TRUE(closed(both_ways));
+}
+
+TEST(IsClosed, SeesNoEdgeInAFaceWithTwoEqualCorners) {
+    TriangleMesh mesh = make_box({1, 1, 1});
+    mesh.faces.push_back({0, 1, 1});
+    mesh.faces.push_back({2, 2, 2});
+    EXPECT_TRUE(closed(mesh));
+}
+
+TEST(IsClosed, AgreesWithTheReportOnRandomFaces) {
+    std::mt19937 random(1);
+    int closed_count = 0;
+    for (int n = 0; n < 2000; ++n) {
+        TriangleMesh mesh;
+        mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+        for (std::size_t face = 0; face < 2 + random() % 4; ++face)
+            mesh.faces.push_back({static_cast<std::uint32_t>(random() % 4),
+                                  static_cast<std::uint32_t>(random() % 4),
+                                  static_cast<std::uint32_t>(random() % 4)});
+        EXPECT_EQ(closed(mesh), inspect(mesh).closed);
+        closed_count += closed(mesh) ? 1 : 0;
+    }
+    EXPECT_GT(closed_count, 20);
+}
 
 namespace {
 
@@ -62,7 +155,7 @@ TEST(MeshReport, FindsNothingWrongWithWhatTheGeneratorsMake) {
 
 TEST(MeshReport, GivesTheVolumeOfABox) {
     EXPECT_NEAR(inspect(make_box({1, 2, 3}, 3)).signed_volume, 6, 1e-14);
-    EXPECT_NEAR(inspect(inside_out(make_box({1, 2, 3}, 3))).signed_volume, -6, 1e-14);
+    EXPECT_NEAR(inspect(turned_inside_out(make_box({1, 2, 3}, 3))).signed_volume, -6, 1e-14);
 }
 
 TEST(MeshReport, GivesTheVolumeOfATorusOfPolygons) {
@@ -91,7 +184,7 @@ TEST(MeshReport, SeesTheVolumeOfASphereConvergeFromBelow) {
 }
 
 TEST(MeshReport, DoesNotLoseTheVolumeFarFromTheOrigin) {
-    const TriangleMesh box = moved(make_box({2, 2, 2}, 2), {1e6F, -1e6F, 2e6F});
+    const TriangleMesh box = translated(make_box({2, 2, 2}, 2), {1e6F, -1e6F, 2e6F});
     EXPECT_NEAR(inspect(box).signed_volume, 8, 1e-9);
 }
 
@@ -215,7 +308,7 @@ TEST(MeshReport, CallsTwoBoxesThatShareAnEdgeClosedButNotManifold) {
     //      |   |
     //      +---+
     const TriangleMesh box = make_box({1, 1, 1});
-    const MeshReport report = inspect(weld(together(box, moved(box, {1, 1, 0}))));
+    const MeshReport report = inspect(weld(joined({box, translated(box, {1, 1, 0})})));
     EXPECT_TRUE(report.closed);
     EXPECT_FALSE(report.manifold);
     EXPECT_EQ(report.nonmanifold_edges.count, 1U);
@@ -225,7 +318,7 @@ TEST(MeshReport, CallsTwoBoxesThatShareAnEdgeClosedButNotManifold) {
 
 TEST(MeshReport, CallsTwoBoxesThatShareAVertexClosedButNotManifold) {
     const TriangleMesh box = make_box({1, 1, 1});
-    const MeshReport report = inspect(weld(together(box, moved(box, {1, 1, 1}))));
+    const MeshReport report = inspect(weld(joined({box, translated(box, {1, 1, 1})})));
     EXPECT_TRUE(report.closed);
     EXPECT_FALSE(report.manifold);
     EXPECT_EQ(report.nonmanifold_edges.count, 0U);
@@ -240,7 +333,8 @@ TEST(MeshReport, CallsAnOpenFanManifoldAndTwoFansAtOneVertexNot) {
 
 TEST(MeshReport, CountsComponents) {
     TriangleMesh mesh = make_box({1, 1, 1});
-    for (int i = 1; i < 5; ++i) mesh = together(mesh, moved(make_sphere(0.4, 6, 4), {3.0F * float(i), 0, 0}));
+    for (int i = 1; i < 5; ++i)
+        mesh = joined({mesh, translated(make_sphere(0.4, 6, 4), {3.0F * float(i), 0, 0})});
     const MeshReport report = inspect(mesh);
     EXPECT_EQ(report.component_count, 5U);
     EXPECT_TRUE(report.closed);

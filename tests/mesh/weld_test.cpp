@@ -1,5 +1,4 @@
-#include "support/expect_error.hpp"
-#include "support/expect_same_faces.hpp"
+#include "support/expectations.hpp"
 
 #include <echinus/mesh.hpp>
 

@@ -1,6 +1,6 @@
-#include "mesh_io/encode.hpp"
 #include "mesh_io/exported_files.hpp"
 #include "mesh_io/readers.hpp"
+#include "mesh_io/write_mesh.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <echinus/error.hpp>

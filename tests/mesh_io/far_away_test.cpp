@@ -1,8 +1,8 @@
 // Files whose coordinates floats cannot hold, such as those in the coordinates of a country.
 
 #include "mesh_io/readers.hpp"
-#include "support/expect_error.hpp"
-#include "support/far_away.hpp"
+#include "support/expectations.hpp"
+#include "support/meshes.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <echinus/mesh_io.hpp>

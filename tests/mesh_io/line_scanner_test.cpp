@@ -1,5 +1,5 @@
 #include "mesh_io/line_scanner.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 #include "mesh_io/exported_files.hpp"
 #include "mesh_io/gltf_text.hpp"
-#include "support/expect_error.hpp"
-#include "support/expect_same_faces.hpp"
+#include "support/expectations.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <echinus/mesh_io.hpp>

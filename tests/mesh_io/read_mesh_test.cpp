@@ -1,6 +1,5 @@
 #include "mesh_io/exported_files.hpp"
-#include "support/expect_error.hpp"
-#include "support/expect_same_faces.hpp"
+#include "support/expectations.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <echinus/mesh_io.hpp>

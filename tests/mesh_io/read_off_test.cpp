@@ -1,5 +1,5 @@
 #include "mesh_io/readers.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 
 #include <gtest/gtest.h>
 

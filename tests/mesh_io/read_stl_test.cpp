@@ -1,6 +1,6 @@
-#include "mesh_io/encode.hpp"
 #include "mesh_io/readers.hpp"
-#include "support/expect_error.hpp"
+#include "mesh_io/write_mesh.hpp"
+#include "support/expectations.hpp"
 
 #include <gtest/gtest.h>
 

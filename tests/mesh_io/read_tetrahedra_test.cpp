@@ -1,8 +1,8 @@
-#include "mesh_io/encode.hpp"
-#include "support/expect_error.hpp"
+#include "mesh_io/write_mesh.hpp"
+#include "support/attacks.hpp"
+#include "support/expectations.hpp"
+#include "support/soft_bodies.hpp"
 #include "support/temporary_folder.hpp"
-#include "support/tetrahedra.hpp"
-#include "support/tetrahedra_attack.hpp"
 
 #include <gtest/gtest.h>
 

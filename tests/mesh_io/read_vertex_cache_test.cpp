@@ -1,5 +1,5 @@
 #include "mesh_io/point_cache.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <echinus/mesh.hpp>

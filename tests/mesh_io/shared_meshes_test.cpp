@@ -1,4 +1,4 @@
-#include "support/expect_same_faces.hpp"
+#include "support/expectations.hpp"
 
 #include <echinus/mesh_io.hpp>
 

@@ -1,5 +1,5 @@
-#include "mesh_io/polygon_mesh.hpp"
-#include "support/expect_error.hpp"
+#include "mesh_io/readers.hpp"
+#include "support/expectations.hpp"
 
 #include <gtest/gtest.h>
 

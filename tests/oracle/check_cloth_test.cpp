@@ -1,6 +1,6 @@
 #include "judges/check_cloth.hpp"
 #include "mesh_io/point_cache.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <echinus/mesh_io.hpp>

@@ -2,7 +2,7 @@
 
 #include "judges/intersection_judge.hpp"
 #include "oracle/test_meshes.hpp"
-#include "support/triangle_soup.hpp"
+#include "support/meshes.hpp"
 
 #include <gtest/gtest.h>
 

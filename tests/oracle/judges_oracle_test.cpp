@@ -1,8 +1,13 @@
+#include "judges/crossing_counter.hpp"
+#include "judges/distance_tree.hpp"
 #include "judges/exact_judge.hpp"
+#include "judges/solid_angle_tree.hpp"
 #include "oracle/test_meshes.hpp"
 #include "support/point_sets.hpp"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 using namespace echinus;
 
@@ -32,4 +37,95 @@ TEST(JudgesOracle, RecognisesTheSurface) {
     EXPECT_EQ(judge.side({1, 1, 1}), test::ExactSide::OnSurface);
     EXPECT_EQ(judge.side({1 + 1e-15, 0.25, 0.5}), test::ExactSide::Outside);
     EXPECT_EQ(judge.side({1 - 1e-15, 0.25, 0.5}), test::ExactSide::Inside);
+}
+
+namespace {
+
+std::vector<test::Corners> corners_of(const TriangleMesh& mesh) {
+    std::vector<test::Corners> corners;
+    for (const auto& [a, b, c] : mesh.faces)
+        corners.push_back({Vec3d(mesh.vertices[a]), Vec3d(mesh.vertices[b]), Vec3d(mesh.vertices[c])});
+    return corners;
+}
+
+double unit_of(const TriangleMesh& mesh) {
+    return inspect(mesh).bounding_sphere.radius * 0x1p-19;
+}
+
+} // namespace
+
+TEST(CrossingCounter, CountsWindingNumbersOfOverlappingNestedAndInvertedParts) {
+    const TriangleMesh parts =
+        test::joined({make_sphere(1, 24, 12), test::translated(make_sphere(1, 24, 12), {0.5F, 0, 0}),
+                      test::turned_inside_out(make_sphere(0.6, 24, 12)),
+                      test::turned_inside_out(make_box({5, 0.3, 0.3}))});
+    const test::CrossingCounter counter(corners_of(parts), unit_of(parts), test::OnPlane::Skip);
+    for (const Vec3f& p : test::uniform_points(parts, 2000))
+        ASSERT_NEAR(counter.winding(Vec3d(p)), winding_number(parts, Vec3d(p)), 1e-9);
+}
+
+TEST(CrossingCounter, IsRightOnTheExtensionsOfFacesAndEdges) {
+    const TriangleMesh box = make_box({2, 2, 2}, 2);
+    const test::CrossingCounter counter(corners_of(box), unit_of(box), test::OnPlane::Skip);
+    for (const Vec3d& p : {Vec3d{1, 1, 1.5}, Vec3d{1, 0, -1.5}, Vec3d{1.5, 1, 0}, Vec3d{0.5, 1, -2}})
+        EXPECT_EQ(counter.winding(p), 0);
+    for (const Vec3d& p : {Vec3d{0, 0, 0}, Vec3d{0, 0.5, 0}, Vec3d{0, 0.25, 0.25}})
+        EXPECT_EQ(counter.winding(p), 1);
+}
+
+// A particle on the surface counts as displaced by (e, e^2, e^3): an axis-aligned box therefore owns its
+// lower sides, and no neighbour owns them as well.
+TEST(CrossingCounter, DisplacesWhatLiesOnTheSurface) {
+    const TriangleMesh box = make_box({4, 4, 4}, 2);
+    const test::CrossingCounter counter(corners_of(box), 1, test::OnPlane::Displace);
+    const auto owns = [](double coordinate) { return coordinate >= -2 && coordinate < 2; };
+    for (double x = -3; x <= 3; ++x)
+        for (double y = -3; y <= 3; ++y)
+            for (double z = -3; z <= 3; ++z)
+                EXPECT_EQ(counter.winding({x, y, z}), owns(x) && owns(y) && owns(z) ? 1 : 0)
+                    << x << ", " << y << ", " << z;
+}
+
+TEST(CrossingCounter, DisplacesAlongYWhereXDecidesNothing) {
+    // A plane that contains the x axis: y = z. Since e^2 > e^3, a particle on it moves to the side of larger
+    // y.
+    TriangleMesh wedge;
+    wedge.vertices = {{-8, -8, -8}, {8, -8, -8}, {8, 8, 8}, {-8, 8, 8}, {0, 8, -8}};
+    wedge.faces = {{0, 2, 1}, {0, 3, 2}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+    if (inspect(wedge).signed_volume < 0) wedge = test::turned_inside_out(wedge);
+    const test::CrossingCounter counter(corners_of(wedge), 1, test::OnPlane::Displace);
+    EXPECT_EQ(counter.winding({1, 2, 2}), 1);
+    EXPECT_EQ(counter.winding({1, 2, 3}), 0);
+    EXPECT_EQ(counter.winding({1, 3, 2}), 1);
+}
+
+TEST(CrossingCounter, FindsAnotherRayWhereTheFirstEndsOnThePlaneOfAFace) {
+    constexpr double kRadius = 524288;
+    TriangleMesh octahedron = make_sphere(kRadius, 4, 2);
+    const test::CrossingCounter counter(corners_of(octahedron), 1, test::OnPlane::Displace);
+    // The first ray ends on x + y - z = kRadius, the plane of a face.
+    const double difference = 1299709 + 1999993 - 2750159 - kRadius;
+    EXPECT_EQ(counter.winding({-60000, 30000, difference - 30000}), 1);
+}
+
+TEST(DistanceTree, GivesTheDistancesOfCgalWhateverTheHint) {
+    for (const auto& [name, mesh] : test::generated_meshes()) {
+        const test::ExactJudge judge(mesh);
+        const test::DistanceTree tree(corners_of(mesh));
+        const auto last = static_cast<std::uint32_t>(mesh.faces.size() - 1);
+        for (const auto& points : {test::uniform_points(mesh, 300), test::surface_points(mesh, 300)})
+            for (const Vec3f& p : points) {
+                ASSERT_NEAR(tree.distance(Vec3d(p)), judge.distance(Vec3d(p)), 1e-12) << name;
+                ASSERT_EQ(tree.distance(Vec3d(p), last), tree.distance(Vec3d(p))) << name;
+            }
+    }
+}
+
+TEST(SolidAngleTree, GivesTheWindingNumberOfOpenSurfaces) {
+    TriangleMesh open = test::joined({make_sphere(1, 40, 20), test::turned(make_box({1, 1, 3}, 6))});
+    std::erase_if(open.faces, [&](const Triangle& face) { return (face[0] * 7 + face[1]) % 5 == 0; });
+    const test::SolidAngleTree tree(open);
+    for (const auto& points : {test::uniform_points(open, 500), test::surface_points(open, 500)})
+        for (const Vec3f& p : points)
+            ASSERT_NEAR(tree.winding_number(Vec3d(p)), winding_number(open, Vec3d(p)), 1e-9);
 }

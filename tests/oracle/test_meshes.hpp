@@ -1,6 +1,6 @@
 #pragma once
 
-#include "support/mesh_assembly.hpp"
+#include "support/meshes.hpp"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "judges/exact_judge.hpp"
 #include "judges/intersection_judge.hpp"
 #include "oracle/test_meshes.hpp"
-#include "support/mesh_assembly.hpp"
+#include "support/meshes.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/exact_map.hpp>

@@ -1,5 +1,5 @@
 #include "property/generators.hpp"
-#include "support/sample_map.hpp"
+#include "support/distance_maps.hpp"
 
 #include <echinus/map_file.hpp>
 

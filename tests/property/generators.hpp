@@ -1,6 +1,6 @@
 #pragma once
 
-#include "support/portable_random.hpp"
+#include "support/random_points.hpp"
 
 #include <echinus/distance_map.hpp>
 

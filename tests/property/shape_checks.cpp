@@ -1,8 +1,8 @@
 #include "property/shape_checks.hpp"
 
-#include "property/choices.hpp"
 #include "property/shape_judge.hpp"
-#include "support/adversarial_points.hpp"
+#include "property/shape_parts.hpp"
+#include "support/point_sets.hpp"
 
 #include <echinus/distance_map.hpp>
 #include <echinus/error.hpp>

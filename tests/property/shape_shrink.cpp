@@ -1,4 +1,4 @@
-#include "mesh/components.hpp"
+#include "mesh/faces.hpp"
 #include "property/shape_checks.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/render.hpp>

@@ -1,7 +1,6 @@
-#include "support/expect_error.hpp"
-#include "support/mesh_assembly.hpp"
+#include "support/expectations.hpp"
+#include "support/meshes.hpp"
 #include "support/random_points.hpp"
-#include "support/soups.hpp"
 
 #include <echinus/mesh.hpp>
 

@@ -1,4 +1,4 @@
-#include "support/broken_meshes.hpp"
+#include "support/meshes.hpp"
 
 #include <echinus/mesh.hpp>
 
@@ -51,9 +51,9 @@ TriangleMesh random_assembly(Random& random) {
     const int count = 1 + below(random, 4);
     for (int i = 0; i < count; ++i) {
         TriangleMesh block = random_block(random);
-        if (below(random, 5) == 0) block = inside_out(block);
-        mesh = together(mesh, block);
-        if (below(random, 6) == 0) mesh = together(mesh, block);
+        if (below(random, 5) == 0) block = turned_inside_out(block);
+        mesh = joined({mesh, block});
+        if (below(random, 6) == 0) mesh = joined({mesh, block});
     }
     mesh = weld(mesh);
     std::shuffle(mesh.faces.begin(), mesh.faces.end(), random);

@@ -1,5 +1,5 @@
-#include "support/broken_meshes.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
+#include "support/meshes.hpp"
 
 #include <echinus/mesh.hpp>
 
@@ -31,7 +31,7 @@ TriangleMesh glued_tetrahedra() {
 } // namespace
 
 TEST(Repair, ChangesNothingUnlessAskedTo) {
-    TriangleMesh mesh = inside_out(cube_with_doubled_top());
+    TriangleMesh mesh = turned_inside_out(cube_with_doubled_top());
     mesh.faces.push_back(mesh.faces[0]);
     expect_unchanged(mesh, {});
 }
@@ -125,9 +125,9 @@ TEST(Repair, LeavesASeparateTetrahedronAlone) {
 
 TEST(Repair, KeepsTheCommonSquareOfTouchingSolidsThatDivideItAlongEitherDiagonal) {
     const TriangleMesh cube = make_box({1, 1, 1});
-    TriangleMesh mirrored = moved(cube, {1, 0, 0});
+    TriangleMesh mirrored = translated(cube, {1, 0, 0});
     for (Vec3f& p : mirrored.vertices) p.y = -p.y;
-    const TriangleMesh mesh = weld(together(cube, inside_out(mirrored)));
+    const TriangleMesh mesh = weld(joined({cube, turned_inside_out(mirrored)}));
     ASSERT_TRUE(inspect(mesh).closed);
     ASSERT_EQ(inspect(mesh).nonmanifold_edges.count, 4U);
     ASSERT_EQ(inspect(mesh).duplicate_faces.count, 0U); // the diagonals do differ
@@ -158,11 +158,11 @@ TEST(Repair, TurnsNoFaceWhereThatNeedsAGuess) {
     std::swap(open.faces[7][0], open.faces[7][1]);
     open.faces.pop_back();
     expect_unchanged(open, {.orient_faces = true});
-    TriangleMesh mirrored = moved(make_box({1, 1, 1}), {1, 0, 0});
+    TriangleMesh mirrored = translated(make_box({1, 1, 1}), {1, 0, 0});
     for (Vec3f& p : mirrored.vertices) p.y = -p.y;
-    TriangleMesh joined = weld(together(make_box({1, 1, 1}), inside_out(mirrored)));
-    std::swap(joined.faces[0][0], joined.faces[0][1]); // of a block that shares a side with another
-    expect_unchanged(joined, {.orient_faces = true});
+    TriangleMesh whole = weld(joined({make_box({1, 1, 1}), turned_inside_out(mirrored)}));
+    std::swap(whole.faces[0][0], whole.faces[0][1]); // of a block that shares a side with another
+    expect_unchanged(whole, {.orient_faces = true});
 }
 
 TEST(Repair, TurnsTheFacesOfBlocksThatTouchInEdgesAsOfBlocksThatDoNot) {
@@ -171,7 +171,7 @@ TEST(Repair, TurnsTheFacesOfBlocksThatTouchInEdgesAsOfBlocksThatDoNot) {
     TriangleMesh whole = box;
     for (const Vec3f& shift :
          {Vec3f{1, 1, 0}, Vec3f{2, 0, 0}, Vec3f{1, -1, 0}, Vec3f{0, 1, 1}, Vec3f{5, 0, 0}})
-        whole = together(whole, moved(box, shift));
+        whole = joined({whole, translated(box, shift)});
     whole = weld(whole);
     ASSERT_GT(inspect(whole).nonmanifold_edges.count, 4U);
     std::mt19937 random(1);
@@ -202,12 +202,13 @@ TEST(Repair, KeepsACavityWhoseVerticesAllLieOnTheSurfaceAroundIt) {
     const double volume = 64 - 8.0 / 3;
     ASSERT_NEAR(inspect(mesh).signed_volume, volume, 1e-12);
     expect_unchanged(mesh, RepairOptions::all());
-    EXPECT_NEAR(inspect(repair(inside_out(mesh), RepairOptions::all()).mesh).signed_volume, volume, 1e-12);
+    EXPECT_NEAR(inspect(repair(turned_inside_out(mesh), RepairOptions::all()).mesh).signed_volume, volume,
+                1e-12);
 }
 
 TEST(Repair, TurnsABlockOutwardsThatTouchesAnotherInAnEdge) {
     const TriangleMesh box = make_box({1, 1, 1});
-    const TriangleMesh mesh = weld(together(box, inside_out(moved(box, {1, 1, 0}))));
+    const TriangleMesh mesh = weld(joined({box, turned_inside_out(translated(box, {1, 1, 0}))}));
     const RepairedMesh repaired = repair(mesh, RepairOptions::all());
     EXPECT_EQ(repaired.report.components_flipped, 1U);
     EXPECT_NEAR(inspect(repaired.mesh).signed_volume, 2, 1e-12);
@@ -286,7 +287,8 @@ TEST(Repair, DropsALooseSliverAndKeepsOneThatFillsASeam) {
 
 TEST(Repair, FlipsASolidThatTouchesAnotherInAVertex) {
     const TriangleMesh box = make_box({1, 1, 1});
-    const TriangleMesh mesh = weld(together(make_box({2, 2, 2}), inside_out(moved(box, {1.5F, 1.5F, 1.5F}))));
+    const TriangleMesh mesh =
+        weld(joined({make_box({2, 2, 2}), turned_inside_out(translated(box, {1.5F, 1.5F, 1.5F}))}));
     ASSERT_EQ(inspect(mesh).component_count, 1U);
     const RepairedMesh repaired = repair(mesh, {.flip_inside_out = true});
     EXPECT_EQ(repaired.report.components_flipped, 1U);
@@ -295,7 +297,8 @@ TEST(Repair, FlipsASolidThatTouchesAnotherInAVertex) {
 
 TEST(Repair, LeavesACavityThatTouchesTheSurfaceInAVertex) {
     const TriangleMesh box = make_box({1, 1, 1});
-    const TriangleMesh mesh = weld(together(make_box({2, 2, 2}), inside_out(moved(box, {0.5F, 0.5F, 0.5F}))));
+    const TriangleMesh mesh =
+        weld(joined({make_box({2, 2, 2}), turned_inside_out(translated(box, {0.5F, 0.5F, 0.5F}))}));
     ASSERT_EQ(inspect(mesh).component_count, 1U);
     expect_unchanged(mesh, RepairOptions::all());
 }
@@ -310,7 +313,8 @@ TEST(Repair, NumbersFacesAsInTheInputMesh) {
 }
 
 TEST(Repair, FlipsAnInsideOutMesh) {
-    const RepairedMesh repaired = repair(inside_out(make_torus(1, 0.4, 12, 8)), {.flip_inside_out = true});
+    const RepairedMesh repaired =
+        repair(turned_inside_out(make_torus(1, 0.4, 12, 8)), {.flip_inside_out = true});
     EXPECT_EQ(repaired.report.components_flipped, 1U);
     const MeshReport report = inspect(repaired.mesh);
     EXPECT_TRUE(report.closed);
@@ -320,7 +324,7 @@ TEST(Repair, FlipsAnInsideOutMesh) {
 TEST(Repair, FlipsOnlyTheComponentsThatAreInsideOut) {
     const TriangleMesh box = make_box({1, 1, 1});
     const TriangleMesh mesh =
-        together(together(box, inside_out(moved(box, {3, 0, 0}))), moved(box, {6, 0, 0}));
+        joined({joined({box, turned_inside_out(translated(box, {3, 0, 0}))}), translated(box, {6, 0, 0})});
     const RepairedMesh repaired = repair(mesh, {.flip_inside_out = true});
     EXPECT_EQ(repaired.report.components_flipped, 1U);
     EXPECT_NEAR(inspect(repaired.mesh).signed_volume, 3, 1e-14);
@@ -328,19 +332,20 @@ TEST(Repair, FlipsOnlyTheComponentsThatAreInsideOut) {
 }
 
 TEST(Repair, LeavesACavityInsideASolidAsItIs) {
-    expect_unchanged(together(make_box({4, 4, 4}), inside_out(make_sphere(1, 8, 6))), RepairOptions::all());
+    expect_unchanged(joined({make_box({4, 4, 4}), turned_inside_out(make_sphere(1, 8, 6))}),
+                     RepairOptions::all());
 }
 
 TEST(Repair, TurnsACavityTogetherWithTheSolidAroundIt) {
-    const TriangleMesh hollow = together(make_box({4, 4, 4}), inside_out(make_sphere(1, 8, 6)));
-    const RepairedMesh repaired = repair(inside_out(hollow), {.flip_inside_out = true});
+    const TriangleMesh hollow = joined({make_box({4, 4, 4}), turned_inside_out(make_sphere(1, 8, 6))});
+    const RepairedMesh repaired = repair(turned_inside_out(hollow), {.flip_inside_out = true});
     EXPECT_EQ(repaired.report.components_flipped, 2U);
     EXPECT_NEAR(winding_number(repaired.mesh, {0, 0, 0}), 0, 1e-12);
     EXPECT_NEAR(winding_number(repaired.mesh, {1.5, 1.5, 1.5}), 1, 1e-12);
 }
 
 TEST(Repair, DoesNotTurnAnOpenMesh) {
-    TriangleMesh mesh = inside_out(make_sphere(1, 8, 6));
+    TriangleMesh mesh = turned_inside_out(make_sphere(1, 8, 6));
     mesh.faces.pop_back();
     expect_unchanged(mesh, RepairOptions::all());
 }

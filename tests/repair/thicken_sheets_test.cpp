@@ -1,6 +1,5 @@
-#include "support/expect_error.hpp"
-#include "support/mesh_assembly.hpp"
-#include "support/soups.hpp"
+#include "support/expectations.hpp"
+#include "support/meshes.hpp"
 
 #include <echinus/mesh.hpp>
 

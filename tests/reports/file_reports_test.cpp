@@ -1,7 +1,7 @@
 // Public reports about mesh files that were refused, misread or fatal, most of them of other programs: each
 // with bytes that were made anew from the description, and the right answer.
 
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <echinus/error.hpp>

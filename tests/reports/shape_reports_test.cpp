@@ -1,7 +1,7 @@
 // Public reports about sides, distances and repair, most of them of other programs: the shape, made anew from
 // the description, and the right answer.
 
-#include "support/mesh_assembly.hpp"
+#include "support/meshes.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/exact_map.hpp>

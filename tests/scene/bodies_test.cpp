@@ -1,6 +1,6 @@
 // Scenes with soft bodies.
 
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 
 #include <echinus/scene.hpp>
 

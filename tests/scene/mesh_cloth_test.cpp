@@ -1,7 +1,7 @@
 // Scenes whose cloth is a mesh.
 
 #include "support/cloth_meshes.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 
 #include <echinus/scene.hpp>
 

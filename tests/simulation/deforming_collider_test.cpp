@@ -2,7 +2,7 @@
 
 #include "support/cloth_meshes.hpp"
 #include "support/draping.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/kinds_of_simulations.hpp"
 #include "support/surface_judge.hpp"

@@ -1,7 +1,7 @@
 // Pairs of particles and colliders that do not collide (Deformable::filters).
 
 #include "support/draping.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 #include "support/surface_judge.hpp"
 
 #include <echinus/intersections.hpp>

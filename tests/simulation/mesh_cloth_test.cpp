@@ -2,9 +2,9 @@
 
 #include "simulation/folds.hpp"
 #include "support/cloth_meshes.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 #include "support/instruction_sets.hpp"
-#include "support/mesh_assembly.hpp"
+#include "support/meshes.hpp"
 
 #include <echinus/simulation.hpp>
 

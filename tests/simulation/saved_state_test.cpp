@@ -1,7 +1,7 @@
 // Saved states: what follows has the same bits.
 
 #include "simulation/state/state_archive.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 #include "support/kinds_of_simulations.hpp"
 #include "support/random_points.hpp"
 #include "support/saved_state_attack.hpp"

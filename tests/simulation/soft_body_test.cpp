@@ -1,18 +1,22 @@
-// Soft bodies: how they are made, and that their surfaces collide as those of cloth do.
-
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 #include "support/random_points.hpp"
 #include "support/soft_bodies.hpp"
 #include "support/surface_judge.hpp"
+
+#include <echinus/soft_body.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <numbers>
 #include <set>
 
 using namespace echinus;
+
+// Soft bodies: how they are made, and that their surfaces collide as those of cloth do.
 
 namespace {
 
@@ -369,4 +373,181 @@ TEST(SoftBody, CollidesWithAnotherAndWithClothAsWithItself) {
     // The upper body lies on the cloth, and the cloth on the lower body.
     const float lower = simulation.positions()[0].z, upper = simulation.positions()[64].z;
     EXPECT_GT(upper - lower, 0.12F);
+}
+
+/// Bars and beams of length 1 that are held at one end, beside what the theory of elasticity says.
+namespace echinus::test {
+
+struct Beam {
+    std::uint32_t segments = 4; ///< across its height
+    double poisson_ratio = 0.3;
+    double slenderness = 5; ///< length over height; its width is half its height where it bends
+    /// density * gravity * length / Young's modulus: twice the strain of a bar that hangs, on the average.
+    double strain = 0.02;
+    /// How far a wave goes in a substep, in segments: the smaller, the less is left of what one relaxation
+    /// leaves undone, and the coarser are forces rounded.
+    double courant_number = 0.5;
+    std::uint32_t iterations = 1;
+};
+
+struct Settled {
+    double deflection, expected; ///< of the free end
+    double volume_ratio;         ///< of what it has at rest
+    std::size_t tetrahedron_count;
+};
+
+/// @param down  along x for a bar, across for a beam
+/// @param pace  the lowest frequency, radians per second; drag makes it die away fastest
+inline Settled settle(const Beam& beam, const Vec3d& down, std::uint32_t segments_across, double pace,
+                      double expected) {
+    constexpr double kDensity = 1000, kGravity = 10;
+    const double height = 1 / beam.slenderness, spacing = height / beam.segments;
+    const auto along = static_cast<std::uint32_t>(std::lround(1 / spacing));
+    TetrahedralMesh mesh =
+        make_solid_box({1, segments_across * spacing, height}, {along, segments_across, beam.segments});
+    for (Vec3f& vertex : mesh.vertices) vertex.x += 0.5F;
+    const double young = kDensity * kGravity / beam.strain;
+    const Deformable body = make_soft_body(mesh, {.density = kDensity,
+                                                  .young_modulus = young,
+                                                  .poisson_ratio = beam.poisson_ratio,
+                                                  .pins = vertices_at_x(mesh, 0)});
+    const double speed = std::sqrt(young / kDensity);
+    SimulationOptions options{.solver = SolverKind::Xpbd,
+                              .iteration_count = beam.iterations,
+                              .substep_count = 10,
+                              .gravity = down * kGravity};
+    options.time_step = beam.courant_number * spacing / speed * options.substep_count;
+    options.drag = std::min(0.9, 1.6 * pace * speed * options.time_step);
+    Simulation simulation(body, {}, options);
+    while (simulation.frame() * options.time_step * pace * speed < 12) simulation.step();
+    Settled settled{0, expected * beam.strain, 0, body.tetrahedra.size()};
+    const auto end = vertices_at_x(mesh, 1);
+    for (const std::uint32_t i : end)
+        settled.deflection += dot(Vec3d(simulation.positions()[i]) - Vec3d(mesh.vertices[i]), down) /
+                              static_cast<double>(end.size());
+    settled.volume_ratio =
+        volume_of(body.tetrahedra, simulation.positions()) / volume_of(body.tetrahedra, body.positions);
+    return settled;
+}
+
+/// A bar that hangs from one end gets longer by density gravity length^2 / (2 E).
+inline Settled hang_bar(Beam beam) {
+    beam.slenderness = 8;
+    return settle(beam, {1, 0, 0}, beam.segments, std::numbers::pi / 2, 0.5);
+}
+
+/// A beam that is fixed at one end and bends under its own weight: that of Bernoulli, and of Timoshenko for
+/// its shear, with Cowper's coefficient of a rectangle.
+inline Settled bend_cantilever(Beam beam) {
+    beam.strain = 2e-3;
+    const double height = 1 / beam.slenderness, nu = beam.poisson_ratio;
+    const double shear_coefficient = 10 * (1 + nu) / (12 + 11 * nu);
+    const double bending = 1.5 / (height * height), shear = (1 + nu) / shear_coefficient;
+    return settle(beam, {0, 0, -1}, std::max(1U, beam.segments / 2), 3.516 * height / std::sqrt(12.0),
+                  bending + shear);
+}
+
+} // namespace echinus::test
+
+// Soft bodies against answers that are known: bars, beams, what cannot be compressed, what slides.
+// docs/soft_bodies.md has the same at finer resolutions.
+
+namespace {
+
+/// How far a block of rubber slides down a slope in half a second, with the friction 0.5, and the friction
+/// that its acceleration in the second half of that time tells. In the first it sags onto the slope.
+struct Slide {
+    double distance, friction;
+};
+
+Slide slide_down(double degrees) {
+    constexpr double kFriction = 0.5, kSeconds = 0.5, kGravity = 9.81;
+    const double angle = degrees * std::numbers::pi / 180;
+    const Rotation tilt = Rotation::about({0, 1, 0}, angle); // down along x
+    const Deformable block =
+        make_soft_body(make_solid_box({0.2, 0.2, 0.1}, {4, 4, 2}),
+                       {.young_modulus = 2e5,
+                        .poisson_ratio = 0.3,
+                        .damping = 0.02,
+                        .pose = {tilt, tilt.apply({0, 0, 0.5 + 0.05 + kBodyThickness})}});
+    const Collider slope{.map = ExactMap::build(make_box({3, 1, 1})), .pose = {tilt, {}}};
+    Simulation simulation(block, {slope},
+                          {.solver = SolverKind::Xpbd,
+                           .iteration_count = 1,
+                           .substep_count = 10,
+                           .drag = 0,
+                           .thickness = kBodyThickness,
+                           .friction = kFriction,
+                           .surface_collision = true});
+    const auto middle = [&] {
+        Vec3d sum;
+        for (const Vec3f& p : simulation.positions()) sum += Vec3d(p);
+        return sum * (1.0 / static_cast<double>(block.particle_count()));
+    };
+    const Vec3d start = middle(), down = tilt.apply({1, 0, 0});
+    const auto speed = [&] {
+        const Vec3d before = middle();
+        simulation.step();
+        return dot(middle() - before, down) / simulation.options().time_step;
+    };
+    while (simulation.frame() * simulation.options().time_step < kSeconds / 2) simulation.step();
+    const double first_speed = speed();
+    while (simulation.frame() * simulation.options().time_step < kSeconds) simulation.step();
+    const double distance = dot(middle() - start, down);
+    const double acceleration = (speed() - first_speed) / (kSeconds / 2);
+    return {distance, (std::sin(angle) - acceleration / kGravity) / std::cos(angle)};
+}
+
+} // namespace
+
+TEST(SoftBodyPhysics, HangsABarAsLowAsHookeSays) {
+    const test::Settled bar = test::hang_bar({.segments = 3, .poisson_ratio = 0.3, .iterations = 3});
+    EXPECT_NEAR(bar.deflection / bar.expected, 1, 0.03);
+}
+
+TEST(SoftBodyPhysics, BendsACantileverAsTimoshenkoSaysTheCloserTheFinerItIs) {
+    const test::Settled coarse =
+        test::bend_cantilever({.segments = 2, .poisson_ratio = 0.3, .iterations = 3});
+    const test::Settled fine = test::bend_cantilever({.segments = 4, .poisson_ratio = 0.3, .iterations = 3});
+    const double coarse_error = 1 - coarse.deflection / coarse.expected;
+    const double fine_error = 1 - fine.deflection / fine.expected;
+    EXPECT_LT(coarse_error, 0.4);
+    EXPECT_LT(fine_error, 0.14);
+    EXPECT_GT(fine_error, -0.03);
+    EXPECT_LT(fine_error, 0.45 * coarse_error);
+}
+
+TEST(SoftBodyPhysics, KeepsItsVolumeWhereItCannotBeCompressed) {
+    const test::Settled bar = test::hang_bar({.segments = 3, .poisson_ratio = 0.49, .strain = 0.1});
+    EXPECT_NEAR(bar.volume_ratio, 1, 0.01);
+    const test::Settled compressible = test::hang_bar({.segments = 3, .poisson_ratio = 0, .strain = 0.1});
+    EXPECT_GT(compressible.volume_ratio, 1.03);
+}
+
+TEST(SoftBodyPhysics, SlidesDownASlopeOnlyBeyondTheAngleOfFrictionAndThenAsFastAsCoulombSays) {
+    // The angle is atan(0.5) = 26.6 degrees.
+    EXPECT_LT(std::fabs(slide_down(24).distance), 0.001);
+    EXPECT_LT(std::fabs(slide_down(26).distance), 0.003);
+    for (const double degrees : {27.0, 28.0, 30.0, 40.0})
+        EXPECT_NEAR(slide_down(degrees).friction, 0.5, 0.0025) << degrees;
+}
+
+TEST(SoftBodyPhysics, FallsAsFastFarFromTheOriginAndInSmallStepsAsNearIt) {
+    for (const float height : {0.5F, 2.0F, 8.0F})
+        for (const std::uint32_t substeps : {5U, 10U, 20U}) {
+            const Deformable body =
+                make_soft_body(make_solid_box({0.3, 0.3, 0.3}, {2, 2, 2}), {.pose = {{}, {0, 0, height}}});
+            Simulation simulation(
+                body, {},
+                {.solver = SolverKind::Xpbd, .iteration_count = 1, .substep_count = substeps, .drag = 0});
+            for (int frame = 0; frame < 60; ++frame) simulation.step();
+            double fallen = 0;
+            for (std::size_t i = 0; i < body.particle_count(); ++i)
+                fallen += double{body.positions[i].z} - double{simulation.positions()[i].z};
+            const double n = 60.0 * substeps, seconds = 60 * simulation.options().time_step / n;
+            EXPECT_NEAR(fallen / static_cast<double>(body.particle_count()) /
+                            (9.81 * seconds * seconds * n * (n + 1) / 2),
+                        1, 0.005)
+                << height << ' ' << substeps;
+        }
 }

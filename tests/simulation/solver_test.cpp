@@ -1,5 +1,5 @@
 #include "support/draping.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 #include "support/surface_judge.hpp"
 
 #include <echinus/error.hpp>

@@ -1,11 +1,10 @@
 // Contact of surfaces: no face of the deformable ever meets a model. Every frame is judged exactly.
 
 #include "support/cloth_meshes.hpp"
-#include "support/crowded_meshes.hpp"
 #include "support/custom_maps.hpp"
 #include "support/draping.hpp"
 #include "support/instruction_sets.hpp"
-#include "support/soups.hpp"
+#include "support/meshes.hpp"
 #include "support/surface_judge.hpp"
 
 #include <echinus/simulation.hpp>

@@ -2,8 +2,8 @@
 
 #include "support/cloth_meshes.hpp"
 #include "support/draping.hpp"
-#include "support/expect_error.hpp"
-#include "support/mesh_assembly.hpp"
+#include "support/expectations.hpp"
+#include "support/meshes.hpp"
 #include "support/surface_judge.hpp"
 
 #include <echinus/simulation.hpp>

@@ -1,6 +1,6 @@
 #include "support/custom_maps.hpp"
 #include "support/draping.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/intersections.hpp>

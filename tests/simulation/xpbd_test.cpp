@@ -2,7 +2,7 @@
 // the time step.
 
 #include "support/draping.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/random_points.hpp"
 

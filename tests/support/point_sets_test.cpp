@@ -1,5 +1,5 @@
 #include "support/point_sets.hpp"
-#include "support/portable_random.hpp"
+#include "support/random_points.hpp"
 
 #include <gtest/gtest.h>
 

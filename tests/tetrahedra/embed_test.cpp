@@ -1,6 +1,6 @@
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 #include "support/random_points.hpp"
-#include "support/tetrahedra.hpp"
+#include "support/soft_bodies.hpp"
 
 #include <echinus/exact_map.hpp>
 

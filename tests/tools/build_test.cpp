@@ -1,4 +1,4 @@
-#include "support/crowded_meshes.hpp"
+#include "support/meshes.hpp"
 #include "tools/command_line.hpp"
 #include "tools/sample_files.hpp"
 

@@ -1,7 +1,5 @@
-#include "points/answers.hpp"
-#include "points/npy_header.hpp"
 #include "points/points.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 #include "support/random_points.hpp"
 #include "support/temporary_folder.hpp"
 

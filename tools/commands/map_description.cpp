@@ -1,5 +1,4 @@
 #include "commands/descriptions.hpp"
-#include "table.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 #include "commands/descriptions.hpp"
 #include "commands/repair_arguments.hpp"
 #include "input_file.hpp"
-#include "mesh_io/encode.hpp"
+#include "mesh_io/write_mesh.hpp"
 #include "output.hpp"
 
 #include <echinus/mesh_io.hpp>

@@ -5,7 +5,6 @@
 #include "mesh/local_frame.hpp"
 #include "mesh_io/mesh_source.hpp"
 #include "output.hpp"
-#include "points/answers.hpp"
 #include "points/points.hpp"
 
 #include <echinus/map_file.hpp>

@@ -1,5 +1,4 @@
 #include "commands/commands.hpp"
-#include "commands/loaded_colliders.hpp"
 #include "commands/scene_model.hpp"
 #include "commands/simulation_result.hpp"
 #include "console/progress.hpp"

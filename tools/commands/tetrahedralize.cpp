@@ -2,9 +2,8 @@
 #include "commands/descriptions.hpp"
 #include "console/progress.hpp"
 #include "input_file.hpp"
-#include "mesh_io/encode.hpp"
+#include "mesh_io/write_mesh.hpp"
 #include "output.hpp"
-#include "table.hpp"
 
 #include <echinus/exact_map.hpp>
 #include <echinus/mesh_io.hpp>

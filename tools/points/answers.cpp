@@ -1,7 +1,6 @@
-#include "points/answers.hpp"
 
 #include "output.hpp"
-#include "points/npy_header.hpp"
+#include "points/points.hpp"
 
 #include <fmt/format.h>
 

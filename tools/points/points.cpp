@@ -1,7 +1,6 @@
 #include "points/points.hpp"
 
 #include "files/text.hpp"
-#include "points/npy_header.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,6 +2,7 @@
 
 #include "input.hpp"
 
+#include <echinus/contact.hpp>
 #include <echinus/geometry.hpp>
 
 #include <cstddef>
@@ -68,3 +69,52 @@ class PointList final : public PointSource {
     bool holds_floats_;
     std::size_t read_count_ = 0;
 };
+
+/// What the header of a .npy file says of the array behind it (NumPy enhancement proposal 1; the format's
+/// versions 1 to 3).
+struct NpyHeader {
+    std::string descr; ///< the type of the elements, such as "<f4"; a list of fields begins with "["
+    bool fortran_order = false;
+    std::vector<std::uint64_t> shape;
+};
+
+/// The first byte of every .npy file, and of no text.
+inline constexpr char kNpyFirstByte = '\x93';
+
+/// Reads the header and leaves the input at the first element.
+/// @throws echinus::Error WrongFormat or Damaged
+NpyHeader read_npy_header(Input& input);
+
+/// The header of a version 1 file, for an array [element_count] of elements whose type is written as the
+/// Python literal `descr`.
+std::string format_npy_header(const std::string& descr, std::uint64_t element_count);
+
+/// The answers about some points. What was not asked for is empty.
+struct Answers {
+    std::span<const echinus::Contact> contacts = {};
+    std::span<const float> signed_distances = {}, winding_numbers = {};
+};
+
+/// Which of them there are, besides contacts.
+struct AnswerFields {
+    bool signed_distance = false, winding_number = false;
+    echinus::Vec3d origin{}; ///< of the map; where it is not 0, contact points are written as doubles
+};
+
+/// Where the answers of a query go, in the order of the points, block by block. Nothing is left unless
+/// finish() is reached.
+class AnswerWriter {
+  public:
+    virtual ~AnswerWriter() = default;
+
+    virtual void write(const Answers& answers) = 0;
+    virtual void finish() = 0;
+};
+
+/// Opens a table of `count` answers. As .npy: a structured array that numpy.load takes without pickle, its
+/// fields packed: inside u1, depth f4, normal 3 f4, point 3 f4 (or 3 f8: AnswerFields::origin), face i4,
+/// certain u1, and f4 for signed_distance and winding_number where they are wanted. As .csv: a line of names
+/// and one line for each answer, floats with as many digits as read back to the same bits.
+/// @throws echinus::Error Unwritable
+std::unique_ptr<AnswerWriter> open_answers(const std::filesystem::path& target, TableFormat format,
+                                           std::uint64_t count, AnswerFields fields);

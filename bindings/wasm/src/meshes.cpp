@@ -2,7 +2,6 @@
 
 #include "arrays.hpp"
 #include "interface.hpp"
-#include "mesh/edges.hpp"
 #include "mesh/faces.hpp"
 #include "mesh/local_frame.hpp"
 #include "mesh_io/readers.hpp"

@@ -1,8 +1,8 @@
 // From a mesh to a classified grid: faces are put into cells, then the winding number is carried along the
 // rows of centres, from outside.
 
-#include "exact_map/build/border.hpp"
-#include "exact_map/query/segment_crossing.hpp"
+#include "exact_map/build/open_surface.hpp"
+#include "exact_map/query/ray_crossing.hpp"
 #include "rivals/classified_grid/classified_grid.hpp"
 #include "rivals/classified_grid/face_cells.hpp"
 #include "rivals/classified_grid/layout.hpp"

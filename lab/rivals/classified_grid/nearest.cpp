@@ -1,6 +1,6 @@
 #include "rivals/classified_grid/nearest.hpp"
 
-#include "exact_map/query/spanned_angle.hpp"
+#include "geometry/triangle.hpp"
 
 #include <algorithm>
 #include <cmath>

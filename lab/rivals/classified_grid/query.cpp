@@ -1,6 +1,6 @@
 // One particle at a time, exactly: what the kernels are compared with.
 
-#include "exact_map/query/segment_crossing.hpp"
+#include "exact_map/query/ray_crossing.hpp"
 #include "rivals/classified_grid/classified_grid.hpp"
 #include "rivals/classified_grid/kernels.hpp"
 #include "rivals/classified_grid/layout.hpp"

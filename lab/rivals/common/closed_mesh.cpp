@@ -1,7 +1,7 @@
 #include "rivals/common/closed_mesh.hpp"
 
 #include "directions/lattice.hpp"
-#include "exact_map/build/border.hpp"
+#include "exact_map/build/open_surface.hpp"
 
 #include <echinus/error.hpp>
 

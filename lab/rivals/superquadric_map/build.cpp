@@ -2,7 +2,6 @@
 #include "rivals/common/closed_mesh.hpp"
 #include "rivals/superquadric_map/fitted_segments.hpp"
 #include "rivals/superquadric_map/layout.hpp"
-#include "rivals/superquadric_map/make_report.hpp"
 #include "rivals/superquadric_map/sampling.hpp"
 #include "rivals/superquadric_map/superquadric_map.hpp"
 

@@ -1,18 +1,207 @@
 #include "rivals/superquadric_map/decompose.hpp"
 
-#include "mesh/edges.hpp"
-#include "rivals/superquadric_map/simplify.hpp"
+#include "mesh/faces.hpp"
 
 #include <echinus/error.hpp>
 
 #include <hacdHACD.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
 #include <limits>
+#include <queue>
 #include <span>
 #include <string>
+#include <tuple>
 
 namespace echinus::rivals {
+
+namespace {
+
+/// The sum of squared distances from planes, each weighted by the area of its face, as a quadratic form.
+class Quadric {
+  public:
+    Quadric() = default;
+    Quadric(const Vec3d& normal, double offset, double weight)
+        : xx_(weight * normal.x * normal.x), xy_(weight * normal.x * normal.y),
+          xz_(weight * normal.x * normal.z), yy_(weight * normal.y * normal.y),
+          yz_(weight * normal.y * normal.z), zz_(weight * normal.z * normal.z),
+          linear_(normal * (weight * offset)), constant_(weight * offset * offset) {}
+
+    Quadric& operator+=(const Quadric& b) {
+        xx_ += b.xx_, xy_ += b.xy_, xz_ += b.xz_, yy_ += b.yy_, yz_ += b.yz_, zz_ += b.zz_;
+        linear_ += b.linear_;
+        constant_ += b.constant_;
+        return *this;
+    }
+    double at(const Vec3d& p) const {
+        const Vec3d product{xx_ * p.x + xy_ * p.y + xz_ * p.z, xy_ * p.x + yy_ * p.y + yz_ * p.z,
+                            xz_ * p.x + yz_ * p.y + zz_ * p.z};
+        return dot(p, product) + 2 * dot(linear_, p) + constant_;
+    }
+
+  private:
+    double xx_ = 0, xy_ = 0, xz_ = 0, yy_ = 0, yz_ = 0, zz_ = 0;
+    Vec3d linear_;
+    double constant_ = 0;
+};
+
+/// One end of an edge onto the other, as it was judged when both had these ages.
+struct Collapse {
+    double cost;
+    std::uint32_t from, to;
+    std::uint32_t from_age, to_age;
+
+    friend bool operator>(const Collapse& a, const Collapse& b) {
+        return std::tie(a.cost, a.from, a.to) > std::tie(b.cost, b.from, b.to);
+    }
+};
+
+bool has_corner(const Triangle& face, std::uint32_t vertex) {
+    return face[0] == vertex || face[1] == vertex || face[2] == vertex;
+}
+
+class Simplifier {
+  public:
+    explicit Simplifier(const TriangleMesh& mesh)
+        : faces_(mesh.faces), alive_(mesh.faces.size(), 0), ages_(mesh.vertices.size()),
+          faces_at_(mesh.vertices.size()), quadrics_(mesh.vertices.size()) {
+        // Around the first vertex in use: a quadric's terms cancel, the farther away the worse.
+        const Vec3d origin(mesh.vertices[mesh.faces.front()[0]]);
+        for (const Vec3f& p : mesh.vertices) positions_.push_back(Vec3d(p) - origin);
+        for (std::uint32_t face = 0; face < faces_.size(); ++face) add(face);
+        for (std::uint32_t vertex = 0; vertex < faces_at_.size(); ++vertex) judge_edges_from(vertex);
+    }
+
+    void reduce_to(std::size_t face_limit) {
+        while (alive_count_ > face_limit && !queue_.empty()) {
+            const Collapse next = queue_.top();
+            queue_.pop();
+            const bool is_stale = ages_[next.from] != next.from_age || ages_[next.to] != next.to_age;
+            if (is_stale || !may_collapse(next.from, next.to)) continue;
+            collapse(next.from, next.to);
+        }
+    }
+
+    SimplifiedMesh result(const TriangleMesh& mesh) const {
+        SimplifiedMesh simplified;
+        simplified.mesh.vertices = mesh.vertices;
+        for (std::uint32_t face = 0; face < faces_.size(); ++face) {
+            if (!alive_[face]) continue;
+            simplified.mesh.faces.push_back(faces_[face]);
+            simplified.face_numbers.push_back(face);
+        }
+        return simplified;
+    }
+
+  private:
+    Vec3d normal_of(const Triangle& face) const { // twice the area long
+        return cross(positions_[face[1]] - positions_[face[0]], positions_[face[2]] - positions_[face[0]]);
+    }
+
+    void add(std::uint32_t number) {
+        const Triangle& face = faces_[number];
+        const Vec3d normal = normal_of(face);
+        const double double_area = length(normal);
+        if (!(double_area > 0)) return;
+        alive_[number] = 1;
+        ++alive_count_;
+        const Vec3d unit = normal * (1 / double_area);
+        const Quadric quadric(unit, -dot(unit, positions_[face[0]]), double_area);
+        for (const std::uint32_t vertex : face) {
+            faces_at_[vertex].push_back(number);
+            quadrics_[vertex] += quadric;
+        }
+    }
+
+    /// Ascending, each once.
+    std::vector<std::uint32_t> neighbours_of(std::uint32_t vertex) const {
+        std::vector<std::uint32_t> result;
+        for (const std::uint32_t face : faces_at_[vertex])
+            for (const std::uint32_t other : faces_[face])
+                if (other != vertex) result.push_back(other);
+        std::ranges::sort(result);
+        result.erase(std::unique(result.begin(), result.end()), result.end());
+        return result;
+    }
+
+    void judge(std::uint32_t from, std::uint32_t to) {
+        // The second term is next to nothing but on plane parts, which it shrinks evenly.
+        constexpr double kEvenness = 1e-6;
+        Quadric both = quadrics_[from];
+        both += quadrics_[to];
+        const Vec3d edge = positions_[to] - positions_[from];
+        const double cost =
+            std::max(both.at(positions_[to]), 0.0) + kEvenness * dot(edge, edge) * dot(edge, edge);
+        queue_.push({cost, from, to, ages_[from], ages_[to]});
+    }
+    void judge_edges_from(std::uint32_t vertex) {
+        for (const std::uint32_t other : neighbours_of(vertex)) judge(vertex, other);
+    }
+
+    /// The surface stays a surface of the same topology, and no face turns over.
+    bool may_collapse(std::uint32_t from, std::uint32_t to) const {
+        std::vector<std::uint32_t> common;
+        std::ranges::set_intersection(neighbours_of(from), neighbours_of(to), std::back_inserter(common));
+        const auto holds_both = [&](std::uint32_t f) { return has_corner(faces_[f], to); };
+        const auto shared = std::ranges::count_if(faces_at_[from], holds_both);
+        if (common.size() != 2 || shared != 2) return false;
+        for (const std::uint32_t number : faces_at_[to]) // the last four faces of a part
+            if (has_corner(faces_[number], common[0]) && has_corner(faces_[number], common[1])) return false;
+        return std::ranges::all_of(faces_at_[from], [&](std::uint32_t number) {
+            return has_corner(faces_[number], to) || stays_upright(number, from, to);
+        });
+    }
+    bool stays_upright(std::uint32_t number, std::uint32_t from, std::uint32_t to) const {
+        constexpr double kMinCosine = 0.2;
+        Triangle moved = faces_[number];
+        std::ranges::replace(moved, from, to);
+        const Vec3d before = normal_of(faces_[number]), after = normal_of(moved);
+        return dot(before, after) > kMinCosine * length(before) * length(after);
+    }
+
+    void collapse(std::uint32_t from, std::uint32_t to) {
+        const std::vector<std::uint32_t> around = neighbours_of(from);
+        for (const std::uint32_t number : faces_at_[from]) {
+            if (has_corner(faces_[number], to)) {
+                alive_[number] = 0;
+                --alive_count_;
+            } else {
+                std::ranges::replace(faces_[number], from, to);
+                faces_at_[to].push_back(number);
+            }
+        }
+        faces_at_[from].clear();
+        for (const std::uint32_t vertex : around)
+            std::erase_if(faces_at_[vertex], [&](std::uint32_t number) { return !alive_[number]; });
+        quadrics_[to] += quadrics_[from];
+        ++ages_[from];
+        ++ages_[to];
+        for (const std::uint32_t other : neighbours_of(to)) {
+            judge(to, other);
+            judge(other, to);
+        }
+    }
+
+    std::vector<Vec3d> positions_;
+    std::vector<Triangle> faces_;
+    std::vector<std::uint8_t> alive_; ///< [face_count]
+    std::size_t alive_count_ = 0;
+    std::vector<std::uint32_t> ages_; ///< [vertex_count] how often a vertex took part in a collapse
+    std::vector<std::vector<std::uint32_t>> faces_at_;
+    std::vector<Quadric> quadrics_;
+    std::priority_queue<Collapse, std::vector<Collapse>, std::greater<>> queue_;
+};
+
+} // namespace
+
+SimplifiedMesh simplify(const TriangleMesh& mesh, std::size_t face_limit) {
+    Simplifier simplifier(mesh);
+    simplifier.reduce_to(face_limit);
+    return simplifier.result(mesh);
+}
 
 namespace {
 

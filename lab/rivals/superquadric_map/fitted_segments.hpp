@@ -2,7 +2,9 @@
 
 #include "directions/lattice.hpp"
 #include "rivals/superquadric_map/decompose.hpp"
+#include "rivals/superquadric_map/layout.hpp"
 #include "rivals/superquadric_map/report.hpp"
+#include "rivals/superquadric_map/segments.hpp"
 #include "rivals/superquadric_map/superquadric.hpp"
 
 #include <echinus/mesh.hpp>
@@ -36,5 +38,13 @@ struct FittedSegments {
 /// @param thread_count  0: all cores. What is fitted does not depend on it.
 FittedSegments fit_segments(const TriangleMesh& mesh, const DecompositionOptions& options,
                             unsigned thread_count, const Progress& progress);
+
+/// The part of a segment's report that its own faces tell; area_share is still the area itself.
+/// @param fitted  before the enlargement
+SegmentReport report_on(const Segment& segment, const Superquadric& fitted, double enlargement);
+
+/// Fills in which part of the surface the map covers, and turns areas into shares.
+void measure_coverage(const TriangleMesh& mesh, const SegmentArrays& map, double bounding_radius,
+                      SuperquadricReport& report);
 
 } // namespace echinus::rivals

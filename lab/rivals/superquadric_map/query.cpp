@@ -2,6 +2,7 @@
 #include "rivals/superquadric_map/segment_query.hpp"
 #include "rivals/superquadric_map/superquadric_map.hpp"
 
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -76,6 +77,89 @@ void SuperquadricMap::contacts_batch(std::span<const Vec3f> points, float margin
                                      std::span<Contact> contacts) const {
     assert(points.size() == contacts.size());
     for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = contact(points[i], margin);
+}
+
+// The surface that a map stands for: its normals, and as triangles.
+
+namespace {
+
+/// The map's point at a sample, in the segment's frame. @param sample  not empty
+Vec3f map_point(const SegmentArrays& map, std::size_t segment, std::uint32_t index, float sample) {
+    const Vec3f p = map.surface_point(segment, index);
+    return p * (1 - sample / length(p));
+}
+
+/// The gradient of the inside-outside function but for a factor.
+Vec3f superquadric_normal(const SegmentFrame& frame, const Vec3f& place) {
+    const float e1 = frame.eta_exponent, e2 = frame.omega_exponent;
+    const float x = 2 / e2 * log2_of_ratio(place.x, frame.sizes.x);
+    const float y = 2 / e2 * log2_of_ratio(place.y, frame.sizes.y);
+    const float z = 2 / e1 * log2_of_ratio(place.z, frame.sizes.z);
+    const float section = log2_of_sum(x, y);
+    const float disc = e2 / e1 * section;
+    const float whole = log2_of_sum(disc, z);
+    const auto slope = [](float log_share, float coordinate) {
+        return std::fabs(coordinate) > 0 ? std::exp2(log_share) / coordinate : 0;
+    };
+    const Vec3f gradient{slope(disc - whole + x - section, place.x),
+                         slope(disc - whole + y - section, place.y), slope(z - whole, place.z)};
+    const float size = length(gradient);
+    if (size > 0 && std::isfinite(size)) return gradient * (1 / size);
+    return {1, 0, 0}; // at the centre, whose way out is along the first axis
+}
+
+} // namespace
+
+Vec3f surface_normal(const SegmentArrays& map, std::size_t segment, const Vec3f& place,
+                     const SuperquadricPlace& at) {
+    const SampleCell cell(map, segment, at.at);
+    if (cell.is_complete) {
+        std::array<Vec3f, 4> p;
+        for (std::size_t k = 0; k < 4; ++k)
+            p[k] = map_point(map, segment, cell.cell.corners[k], cell.samples[k]);
+        const float u = cell.cell.u, v = cell.cell.v;
+        const Vec3f along_omega = (p[1] - p[0]) * (1 - v) + (p[3] - p[2]) * v;
+        const Vec3f along_theta = (p[2] - p[0]) * (1 - u) + (p[3] - p[1]) * u;
+        const Vec3f normal = cross(along_theta, along_omega);
+        const float size_sq = dot(normal, normal);
+        // Outward means away from the centre; beyond a pole columns run the other way.
+        const Vec3f outward = at.distance > 0 ? place : Vec3f{1, 0, 0};
+        if (size_sq > 1e-12F * dot(along_omega, along_omega) * dot(along_theta, along_theta) && size_sq > 0)
+            return normal * (std::copysign(1.0F, dot(normal, outward)) / std::sqrt(size_sq));
+    }
+    return superquadric_normal(map.frames[segment], place);
+}
+
+TriangleMesh SuperquadricMap::surface_of(std::size_t segment) const {
+    const SegmentArrays& map = *arrays_;
+    const std::uint32_t columns = map.grid.longitude_count(), rows = map.grid.colatitude_count();
+    const SegmentFrame& frame = map.frames[segment];
+    TriangleMesh mesh;
+    std::vector<std::uint8_t> is_empty(map.grid.direction_count());
+    for (std::uint32_t index = 0; index < map.grid.direction_count(); ++index) {
+        const float sample = map.sample(segment, index);
+        is_empty[index] = sample < 0 ? 1 : 0;
+        mesh.vertices.push_back(
+            frame.centre + frame.turned_from_frame(map_point(map, segment, index, std::max(sample, 0.0F))));
+    }
+    const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        if (!is_empty[a] && !is_empty[b] && !is_empty[c]) mesh.faces.push_back({a, b, c});
+    };
+    for (std::uint32_t row = 0; row + 1 < rows; ++row)
+        for (std::uint32_t column = 0; column < columns; ++column) {
+            const std::uint32_t next = (column + 1) % columns;
+            const std::uint32_t a = map.grid.index(column, row), b = map.grid.index(next, row);
+            const std::uint32_t c = map.grid.index(next, row + 1), d = map.grid.index(column, row + 1);
+            add(a, d, c);
+            add(a, c, b);
+        }
+    // The two small holes at the poles.
+    for (std::uint32_t column = 1; column + 1 < columns; ++column) {
+        add(map.grid.index(0, 0), map.grid.index(column, 0), map.grid.index(column + 1, 0));
+        add(map.grid.index(0, rows - 1), map.grid.index(column + 1, rows - 1),
+            map.grid.index(column, rows - 1));
+    }
+    return mesh;
 }
 
 } // namespace echinus::rivals

@@ -36,7 +36,7 @@ inline float angle_of(float log_sine_sq, float sine_sign, float log_cosine_sq, f
                             std::copysign(steep ? smaller : 1, cosine_sign));
 }
 
-/// The inside-outside function by logarithms, as in log_powers.hpp, and the angles from its terms.
+/// The inside-outside function by logarithms, as in superquadric.hpp, and the angles from its terms.
 /// @param place  finite
 inline SuperquadricPlace locate(const SegmentArrays& map, const SegmentFrame& frame, const Vec3f& place) {
     const float e1 = frame.eta_exponent, e2 = frame.omega_exponent;

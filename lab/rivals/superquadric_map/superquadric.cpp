@@ -1,7 +1,5 @@
 #include "rivals/superquadric_map/superquadric.hpp"
 
-#include "rivals/superquadric_map/log_powers.hpp"
-
 #include <cmath>
 #include <numbers>
 

@@ -3,19 +3,45 @@
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 
-/// Superquadrics, or superellipsoids (Barr, "Superquadrics and angle-preserving transformations", IEEE
-/// Computer Graphics and Applications 1(1), 1981): with powers that keep the sign, the points
-///
-///     r(eta, omega) = (a1 cos^e1(eta) cos^e2(omega), a2 cos^e1(eta) sin^e2(omega), a3 sin^e1(eta))
-///
-/// for eta in [-pi/2, pi/2] and omega in [-pi, pi), or where the inside-outside function
-///
-///     F(x, y, z) = ((x / a1)^(2/e2) + (y / a2)^(2/e2))^(e2/e1) + (z / a3)^(2/e1)
-///
-/// is 1. Exponents near 0 give boxes and cylinders, 1 ellipsoids, 2 double pyramids; all of these are convex.
 namespace echinus::rivals {
+
+/// ln(e^a + e^b) without overflow; minus infinity stands for ln 0.
+inline double log_of_sum(double a, double b) {
+    const double largest = std::max(a, b);
+    if (std::isinf(largest)) return largest;
+    return largest + std::log1p(std::exp(std::min(a, b) - largest));
+}
+
+/// The terms of a superquadric's inside-outside function as logarithms: powers of 2 / 0.1 = 20 leave the
+/// range of floating point long before the place is far away.
+struct LogPowers {
+    double x, y, z; ///< of (x / a1)^(2/e2), (y / a2)^(2/e2), (z / a3)^(2/e1)
+    double section; ///< of the sum of the first two
+    double disc;    ///< of that sum to the power e2 / e1
+    double whole;   ///< of F
+
+    LogPowers(const Vec3d& place, const Vec3d& sizes, double eta_exponent, double omega_exponent)
+        : x(2 / omega_exponent * std::log(std::fabs(place.x) / sizes.x)),
+          y(2 / omega_exponent * std::log(std::fabs(place.y) / sizes.y)),
+          z(2 / eta_exponent * std::log(std::fabs(place.z) / sizes.z)), section(log_of_sum(x, y)),
+          disc(omega_exponent / eta_exponent * section), whole(log_of_sum(disc, z)) {}
+};
+
+// Superquadrics, or superellipsoids (Barr, "Superquadrics and angle-preserving transformations", IEEE
+// Computer Graphics and Applications 1(1), 1981): with powers that keep the sign, the points
+//
+//     r(eta, omega) = (a1 cos^e1(eta) cos^e2(omega), a2 cos^e1(eta) sin^e2(omega), a3 sin^e1(eta))
+//
+// for eta in [-pi/2, pi/2] and omega in [-pi, pi), or where the inside-outside function
+//
+//     F(x, y, z) = ((x / a1)^(2/e2) + (y / a2)^(2/e2))^(e2/e1) + (z / a3)^(2/e1)
+//
+// is 1. Exponents near 0 give boxes and cylinders, 1 ellipsoids, 2 double pyramids; all of these are convex.
 
 /// Coordinates on a superquadric, radians. They are not angles of space unless both exponents are 1.
 struct SuperquadricAngles {

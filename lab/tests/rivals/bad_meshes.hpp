@@ -1,6 +1,6 @@
 #pragma once
 
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 
 #include <echinus/mesh.hpp>
 

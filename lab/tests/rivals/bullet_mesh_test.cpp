@@ -1,5 +1,5 @@
 #include "rivals/bullet_mesh/bullet_mesh.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 #include "support/point_sets.hpp"
 
 #include <echinus/exact_map.hpp>

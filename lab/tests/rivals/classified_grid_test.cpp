@@ -1,8 +1,8 @@
 #include "directions/lattice.hpp"
 #include "rivals/classified_grid/classified_grid.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 #include "support/instruction_sets.hpp"
-#include "support/mesh_assembly.hpp"
+#include "support/meshes.hpp"
 #include "support/point_sets.hpp"
 #include "support/random_points.hpp"
 

@@ -1,5 +1,5 @@
 #include "rivals/embree_tree/embree_tree.hpp"
-#include "support/mesh_assembly.hpp"
+#include "support/meshes.hpp"
 #include "support/point_sets.hpp"
 #include "support/random_points.hpp"
 

@@ -1,5 +1,5 @@
 #include "rivals/sparse_field/sparse_field.hpp"
-#include "support/expect_error.hpp"
+#include "support/expectations.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/exact_map.hpp>

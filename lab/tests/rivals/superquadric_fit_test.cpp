@@ -1,8 +1,7 @@
 #include "rivals/superquadric_map/fit.hpp"
-#include "rivals/superquadric_map/fit_residuals.hpp"
 #include "rivals/superquadric_map/superquadric.hpp"
-#include "support/expect_error.hpp"
-#include "support/portable_random.hpp"
+#include "support/expectations.hpp"
+#include "support/random_points.hpp"
 
 #include <echinus/mesh.hpp>
 

@@ -1,7 +1,7 @@
 #include "bad_meshes.hpp"
 #include "rivals/superquadric_map/superquadric_map.hpp"
-#include "support/expect_error.hpp"
-#include "support/mesh_assembly.hpp"
+#include "support/expectations.hpp"
+#include "support/meshes.hpp"
 #include "support/point_sets.hpp"
 
 #include <echinus/exact_map.hpp>

@@ -1,12 +1,10 @@
 #include "directions/face_cone.hpp"
-#include "rivals/superquadric_map/convex_hull.hpp"
 #include "rivals/superquadric_map/decompose.hpp"
 #include "rivals/superquadric_map/sampling.hpp"
 #include "rivals/superquadric_map/segments.hpp"
-#include "rivals/superquadric_map/simplify.hpp"
-#include "support/expect_error.hpp"
-#include "support/mesh_assembly.hpp"
-#include "support/portable_random.hpp"
+#include "support/expectations.hpp"
+#include "support/meshes.hpp"
+#include "support/random_points.hpp"
 
 #include <gtest/gtest.h>
 

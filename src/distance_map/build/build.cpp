@@ -1,3 +1,5 @@
+// Building a distance map: paper section 2.1.
+
 #include "directions/cast_rays.hpp"
 #include "directions/grids.hpp"
 #include "directions/lattice.hpp"
@@ -24,8 +26,6 @@
 #include <xxhash.h>
 
 namespace echinus {
-
-// Building a distance map: paper section 2.1.
 
 namespace {
 

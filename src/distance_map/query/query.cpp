@@ -5,9 +5,11 @@
 // theta_d) its angles, S an interpolated distance.
 
 #include "distance_map/interpolation.hpp"
-#include "distance_map/query/query_kernels.hpp"
+#include "distance_map/query/grid_kernels.hpp"
 #include "geometry/parallel.hpp"
 #include "simd/dispatch.hpp"
+
+#include <echinus/distance_map.hpp>
 
 #include <algorithm>
 #include <array>
@@ -17,6 +19,40 @@
 namespace echinus {
 
 namespace {
+
+GridKernels kernels_of(DirectionGrid grid) noexcept {
+    switch (grid) {
+    case DirectionGrid::Ellipsoidal:
+        return ellipsoidal_kernels();
+    case DirectionGrid::Octahedral:
+        return octahedral_kernels();
+    case DirectionGrid::Cube:
+        return cube_kernels();
+    default:
+        return spherical_kernels();
+    }
+}
+
+/// Can the kernels read this map? Not when it is too small to be worth it, or its arrays are too large for
+/// 32-bit positions.
+bool kernels_read(const DistanceMapView& map) noexcept {
+    constexpr std::size_t kMinEntries = 4; // a row
+    constexpr std::size_t kMaxEntries = std::size_t{1}
+                                        << 30; // offsets in bytes of 16-bit entries have 31 bits
+    return map.entry_count() >= kMinEntries && map.entry_count() < kMaxEntries;
+}
+
+/// @pre kernels_read(map), use_kernels()
+void contains_by_kernel(const DistanceMapView& map, const StridedSpan<const Vec3f>& points_local,
+                        std::span<std::uint8_t> inside) noexcept {
+    kernels_of(map.grid).contains(map, points_local, inside.data());
+}
+
+/// @pre as above; margin >= 0
+void contacts_by_kernel(const DistanceMapView& map, const StridedSpan<const Vec3f>& points_local,
+                        float margin, std::span<Contact> contacts) noexcept {
+    kernels_of(map.grid).contacts(map, points_local, margin, contacts.data());
+}
 
 /// The ray from the centre to a particle.
 template <typename Grid>

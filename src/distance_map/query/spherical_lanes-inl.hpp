@@ -1,6 +1,6 @@
 // SphericalGrid for a vector of particles: the same members with the same bits.
 
-#include "distance_map/query/bilinear_lanes-inl.hpp"
+#include "distance_map/query/lanes-inl.hpp"
 
 #include <echinus/distance_map.hpp>
 

@@ -1,11 +1,7 @@
-// From a mesh to an exact map: onto the lattice, into a tree, into the cells.
-
+#include "directions/lattice.hpp"
 #include "exact_map/build/bands.hpp"
-#include "exact_map/build/border.hpp"
-#include "exact_map/build/centre_of_fewest_tests.hpp"
 #include "exact_map/build/face_tree.hpp"
-#include "exact_map/build/index_storage.hpp"
-#include "exact_map/build/make_winding_tree.hpp"
+#include "exact_map/build/open_surface.hpp"
 #include "exact_map/build/resolution.hpp"
 #include "exact_map/layout.hpp"
 #include "exact_map/validate.hpp"
@@ -15,6 +11,7 @@
 #include "mesh/mesh_hash.hpp"
 
 #include <echinus/error.hpp>
+#include <echinus/mesh.hpp>
 
 #include <algorithm>
 #include <array>
@@ -22,6 +19,7 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -30,7 +28,47 @@
 
 namespace echinus {
 
+// From a mesh to an exact map: onto the lattice, into a tree, into the cells.
+
 namespace {
+
+/// Faces on the list of the average reference, which is what a particle near the surface meets, in maps of
+/// few cells.
+class ListLengths {
+  public:
+    ListLengths(unsigned thread_count, BandFinder& finder) : thread_count_(thread_count), finder_(finder) {}
+
+    /// The first centre decides on the cells; another for which they take too many bytes is none.
+    double of(const LatticeMesh& lattice) {
+        bool found = find(lattice);
+        for (; !found && is_first_; found = find(lattice)) divisions_ /= 2;
+        is_first_ = false;
+        return found ? expected_tests(bands_) : std::numeric_limits<double>::infinity();
+    }
+
+  private:
+    bool find(const LatticeMesh& lattice) {
+        const std::size_t limit = default_byte_limit(lattice.faces.size(), lattice.vertices.size());
+        // The border does not matter to the length of lists.
+        return finder_.find(lattice, {}, {OctahedralCells(divisions_)}, thread_count_, limit, bands_);
+    }
+
+    unsigned thread_count_;
+    BandFinder& finder_;
+    Bands bands_;
+    std::uint32_t divisions_ = 12; ///< more would take much time and rank centres alike
+    bool is_first_ = true;
+};
+
+/// Snaps the mesh to the lattice of a centre from which queries should test few faces, estimated by maps of
+/// few cells. About twenty coarse builds.
+/// @throws Error as LatticeSnapper::snap()
+void snap_around_best_centre(LatticeSnapper& snapper, std::span<const Vec3f> vertices, unsigned thread_count,
+                             BandFinder& finder, LatticeMesh& best) {
+    ListLengths lengths(thread_count, finder);
+    snap_at_lowest_cost(
+        snapper, vertices, [&](const LatticeMesh& lattice) { return lengths.of(lattice); }, best);
+}
 
 constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 

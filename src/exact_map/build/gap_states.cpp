@@ -1,6 +1,5 @@
 #include "exact_map/build/gap_states.hpp"
 
-#include "exact_map/query/cap_crossings.hpp"
 #include "exact_map/query/winding.hpp"
 #include "geometry/whole_numbers.hpp"
 

@@ -8,14 +8,15 @@
 
 #include "exact_map/layout.hpp"
 #include "exact_map/query/band_search-inl.hpp"
-#include "exact_map/query/cell_lanes-inl.hpp"
-#include "exact_map/query/crossing_lanes-inl.hpp"
+#include "exact_map/query/place_in_bands.hpp"
 #include "exact_map/query/ray_crossing.hpp"
 #include "simd/compress-inl.hpp"
+#include "simd/lanes-inl.hpp"
 #include "simd/rows-inl.hpp"
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -24,6 +25,153 @@
 #if HWY_TARGET != HWY_SCALAR // where the reference is used instead
 HWY_BEFORE_NAMESPACE();
 namespace echinus::HWY_NAMESPACE {
+
+/// How faces count for particles, one pair per lane.
+template <typename D>
+struct CrossingLanes {
+    hn::Vec<hn::RebindToSigned<D>> crossing; ///< as crossing_on() has it, where sure
+    hn::Mask<D> unsure;
+};
+
+/// A filter in single precision for crossing_on().
+///
+/// With corners a, b, c counted from the particle p, the ray from the origin through p passes an edge (a, b)
+/// on the side given by the sign of p . (a x b), and p lies on the side of the plane given by the sign of a .
+/// (b x c); added to the sum of the former, that is the volume as seen from the origin.
+///
+/// Corners are exact here: differences of whole numbers up to 2^19. With m^2 the largest of |a|^2, |b|^2,
+/// |c|^2 and u = 2^-24, each component of a x b is off by at most 4 u m^2, and its product with a vector v by
+/// at most 10 u |v| m^2 in the L1 norm, which is at most 3 * 2^19 for p and 3 * 2^20 for a: less than m^2 and
+/// 2 m^2. So three edges and the volume: less than 5 m^2, and a little for their sum. Three times as much is
+/// allowed for.
+/// @param f       of the lanes
+/// @param before  with its sign bit set, crossings between the origin and p are wanted; else those from p on
+template <typename D, typename Lanes>
+HWY_INLINE CrossingLanes<D> crossings_of(D f, const Vec3Lanes<Lanes>& a, const Vec3Lanes<Lanes>& b,
+                                         const Vec3Lanes<Lanes>& c, const Vec3Lanes<Lanes>& p,
+                                         hn::Vec<hn::RebindToSigned<D>> before) {
+    constexpr hn::RebindToSigned<D> i;
+    const Vec3Lanes<Lanes> b_c = fused_cross(b, c);
+    const Lanes past_bc = fused_dot(p, b_c);
+    const Lanes past_ca = fused_dot(p, fused_cross(c, a));
+    const Lanes past_ab = fused_dot(p, fused_cross(a, b));
+    const Lanes volume = fused_dot(a, b_c);
+    const Lanes bound =
+        hn::Mul(hn::Max(hn::Max(fused_dot(a, a), fused_dot(b, b)), fused_dot(c, c)), hn::Set(f, 16));
+
+    // All of one sign, and by how much; negative where the signs differ.
+    const Lanes least = hn::Min(hn::Min(past_ab, past_bc), past_ca);
+    const Lanes most = hn::Max(hn::Max(past_ab, past_bc), past_ca);
+    const Lanes hit = hn::Max(least, hn::Neg(most));
+    // Where it is hit, from its front with sign +: the plane lies ahead of p where the first is positive,
+    // behind the origin where the second is negative.
+    const Lanes sign_bit = hn::SignBit(f);
+    const Lanes side = hn::And(past_ab, sign_bit);
+    const Lanes ahead = hn::Xor(volume, side);
+    const Lanes from_origin = hn::Add(ahead, hn::Abs(hn::Add(hn::Add(past_ab, past_bc), past_ca)));
+    const Lanes wanted = hn::Xor(ahead, hn::And(hn::BitCast(f, before), sign_bit));
+    const Lanes clear_of_plane = hn::Min(hn::Abs(volume), from_origin);
+    const hn::Mask<D> counts = hn::Gt(hn::Min(hit, wanted), bound);
+    const hn::Mask<D> unsure = hn::Le(hn::Min(hn::Abs(hit), hn::Max(hn::Neg(hit), clear_of_plane)), bound);
+    const auto sign = hn::Or(hn::BroadcastSignBit(hn::BitCast(i, past_ab)), hn::Set(i, 1));
+    return {hn::IfThenElseZero(hn::RebindMask(i, counts), sign), unsure};
+}
+
+/// Crossings of one place's ray with the faces of its band, which are the lanes.
+template <typename Face, typename Vertex>
+class BandOfOne {
+  public:
+    /// @param references, corners  those of the map, in their width
+    BandOfOne(const ExactMapView& map, const Face* references, const Vertex* corners, const LatticePoint& p)
+        : map_(map), references_(references), corners_(corners), p_(p) {}
+
+    int operator()(RaySide side, const PlaceInBands& at) const {
+        const std::uint32_t first = map_.bands[at.band].first_reference;
+        const std::uint32_t last = map_.bands[at.band + 1].first_reference;
+        std::array<std::uint32_t, kPieceSize + kWidth> faces;
+        int sum = 0;
+        for (std::uint32_t begin = first; begin < last; begin += kPieceSize) {
+            const std::uint32_t end = std::min(begin + kPieceSize, last);
+            std::uint32_t count = 0; // of the faces that touch the part; listed without a branch
+            for (std::uint32_t r = begin; r < end; ++r) {
+                faces[count] = references_[r];
+                count += std::uint32_t{map_.reference_parts[r]} >> at.part & 1U;
+            }
+            if (count == 0) continue;
+            std::fill_n(&faces[count], kWidth - 1, faces[0]);
+            for (std::uint32_t i = 0; i < count; i += kWidth)
+                sum += crossings(side, &faces[i], std::min<std::uint32_t>(kWidth, count - i));
+        }
+        return sum;
+    }
+
+  private:
+    static constexpr std::uint32_t kPieceSize = 64, kWidth = 8;
+    using Eight = hn::CappedTag<float, kWidth>;
+    using Points = Vec3Lanes<hn::Vec<Eight>>;
+
+    HWY_INLINE int crossings(RaySide side, const std::uint32_t* faces, std::uint32_t count) const {
+        constexpr Eight f;
+        constexpr hn::RebindToSigned<Eight> i;
+        const Points p{hn::Set(f, static_cast<float>(p_.x)), hn::Set(f, static_cast<float>(p_.y)),
+                       hn::Set(f, static_cast<float>(p_.z))};
+        const auto before = hn::Set(i, side == RaySide::Before ? -1 : 0);
+        int sum = 0;
+        for (std::uint32_t lane = 0; lane < count; lane += static_cast<std::uint32_t>(hn::Lanes(f))) {
+            const auto valid = hn::FirstN(i, count - lane);
+            const auto [crossing, unsure] =
+                crossings_of(f, corner(faces + lane, 0) - p, corner(faces + lane, 1) - p,
+                             corner(faces + lane, 2) - p, p, before);
+            const auto sure = hn::AndNot(hn::RebindMask(i, unsure), valid);
+            sum += hn::GetLane(hn::SumOfLanes(i, hn::IfThenElseZero(sure, crossing)));
+            const auto left = hn::And(valid, hn::RebindMask(i, unsure));
+            if (!hn::AllFalse(i, left)) [[unlikely]]
+                sum += decided(side, faces + lane, left);
+        }
+        return sum;
+    }
+
+    template <typename Mask>
+    HWY_NOINLINE int decided(RaySide side, const std::uint32_t* faces, Mask unsure) const {
+        std::array<std::uint8_t, 8> bytes{};
+        hn::StoreMaskBits(hn::RebindToSigned<Eight>(), unsure, bytes.data());
+        int sum = 0;
+        for (std::uint32_t bits = bytes[0]; bits != 0; bits &= bits - 1)
+            sum += crossing_on(side, face_corners(map_, faces[std::countr_zero(bits)]), p_);
+        return sum;
+    }
+
+    HWY_INLINE Points corner(const std::uint32_t* faces, std::size_t k) const {
+        constexpr Eight f;
+        const std::int32_t* vertices = &map_.vertices.data()->x;
+        const Vertex* corners = corners_ + k;
+        // The vertex as the last three numbers of a row.
+        const auto [before, x, y, z] =
+            load_rows(hn::RebindToSigned<Eight>(), [=](std::size_t lane) HWY_ATTR {
+                const std::size_t vertex = corners[3 * std::size_t{faces[lane]}];
+                return hn::LoadU(hn::FixedTag<std::int32_t, 4>(), vertices + 3 * vertex - 1);
+            }).at;
+        return {hn::ConvertTo(f, x), hn::ConvertTo(f, y), hn::ConvertTo(f, z)};
+    }
+
+    const ExactMapView& map_;
+    const Face* references_;
+    const Vertex* corners_;
+    LatticePoint p_;
+};
+
+/// winding_in_bands() of a place of the lattice.
+HWY_INLINE int winding_of_one(const ExactMapView& map, const PlaceInBands& at, const LatticePoint& p) {
+    const auto by = [&](const auto* references, const auto* corners) {
+        return winding_in_bands(map, at, BandOfOne(map, references, corners, p));
+    };
+    const auto by_references = [&](const auto* references) {
+        return map.corners.wide.empty() ? by(references, map.corners.narrow.data())
+                                        : by(references, map.corners.wide.data());
+    };
+    return map.references.wide.empty() ? by_references(map.references.narrow.data())
+                                       : by_references(map.references.wide.data());
+}
 
 /// Winding numbers around particles in bands.
 ///

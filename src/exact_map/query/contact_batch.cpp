@@ -1,11 +1,10 @@
 // Three passes: the sides of all particles; the nearest faces of those that need one, in an order that keeps
 // neighbours together where there are many; and the contacts with these faces.
 
-#include "exact_map/query/contact_batch.hpp"
-
-#include "exact_map/query/nearest_faces.hpp"
-#include "exact_map/query/spatial_order.hpp"
-#include "geometry/raw_array.hpp"
+#include "exact_map/query/contact_search.hpp"
+#include "exact_map/query/nearest.hpp"
+#include "geometry/arena.hpp"
+#include "geometry/spatial_order.hpp"
 
 #include <algorithm>
 #include <array>

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace echinus {
 
@@ -115,5 +116,17 @@ class ContactSearch {
     Vec3d stretch_;
     double margin_; ///< in lattice steps
 };
+
+/// The contacts of many particles; the same as by the search, whatever the instruction set.
+/// @throws std::bad_alloc
+/// @pre points_local.size() == contacts.size()
+void find_contacts(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
+                   std::span<Contact> contacts);
+
+/// The signed distances, and the gradients if asked for, in the same way.
+/// @param search     finds everything, however far
+/// @param gradients  empty, or as long as `distances`
+void find_signed_distances(const ContactSearch& search, const StridedSpan<const Vec3f>& points_local,
+                           std::span<float> distances, std::span<Vec3f> gradients);
 
 } // namespace echinus

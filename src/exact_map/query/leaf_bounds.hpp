@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exact_map/query/face_tree_walk.hpp"
+#include "exact_map/query/nearest.hpp"
 #include "geometry/triangle.hpp"
 
 #include <array>

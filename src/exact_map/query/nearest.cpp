@@ -1,8 +1,7 @@
 #include "exact_map/query/nearest.hpp"
 
 #include "exact_map/layout.hpp"
-#include "exact_map/query/face_tree_walk.hpp"
-#include "exact_map/query/spanned_angle.hpp"
+#include "geometry/triangle.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,6 +1,3 @@
-#include "exact_map/query/nearest_faces.hpp"
-
-#include "exact_map/query/face_tree_walk.hpp"
 #include "exact_map/query/nearest.hpp"
 
 #include <algorithm>
@@ -15,9 +12,7 @@
 #include <hwy/foreach_target.h>
 
 // After foreach_target.h, which includes this file once for each instruction set.
-#include "exact_map/query/afar_lanes-inl.hpp"
-#include "exact_map/query/face_candidates-inl.hpp"
-#include "exact_map/query/leaf_lanes-inl.hpp"
+#include "exact_map/query/face_lanes-inl.hpp"
 #include "exact_map/query/one_place-inl.hpp"
 #include "geometry/whole_numbers.hpp"
 #include "simd/dispatch.hpp"

@@ -8,7 +8,6 @@
 
 #include "exact_map/layout.hpp"
 #include "exact_map/query/nearest.hpp"
-#include "exact_map/query/nearest_faces.hpp"
 #include "geometry/whole_numbers.hpp"
 #include "simd/compress-inl.hpp"
 #include "simd/rows-inl.hpp"

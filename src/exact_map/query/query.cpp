@@ -1,8 +1,6 @@
-// Inside or outside, and the nearest way out.
-
-#include "exact_map/query/contact_batch.hpp"
+#include "exact_map/layout.hpp"
 #include "exact_map/query/contact_search.hpp"
-#include "exact_map/query/nearest_faces.hpp"
+#include "exact_map/query/nearest.hpp"
 #include "exact_map/query/sides.hpp"
 #include "exact_map/query/stretched_contact.hpp"
 #include "exact_map/query/winding.hpp"
@@ -11,11 +9,14 @@
 
 #include <echinus/exact_map.hpp>
 
+#include <algorithm>
 #include <cassert>
 #include <limits>
 #include <new>
 
 namespace echinus {
+
+// Inside or outside, and the nearest way out.
 
 bool contains(const ExactMapView& map, Vec3f point_local) noexcept {
     return (find_side(map, frame_of(map), point_local, false).side & kInsideBit) != 0;
@@ -137,6 +138,36 @@ void signed_distance_batch(const ExactMapView& map, StridedSpan<const Vec3f> poi
         for (std::size_t i = begin; i < end; ++i)
             distances[i] = signed_distance(map, points_local[i], gradients.empty() ? nullptr : &gradients[i]);
     });
+}
+
+namespace {
+
+std::vector<std::uint32_t> longest_lists(const ExactMapView& map) {
+    std::vector<std::uint32_t> longest(map.face_count());
+    for (std::size_t band = 0; band + 1 < map.bands.size(); ++band) {
+        const std::uint32_t first = map.bands[band].first_reference;
+        const std::uint32_t last = map.bands[band + 1].first_reference;
+        for (std::uint32_t r = first; r < last; ++r) {
+            std::uint32_t& length = longest[map.references[r]];
+            length = std::max(length, last - first);
+        }
+    }
+    return longest;
+}
+
+} // namespace
+
+ExactMapSurface reconstruct_surface(const ExactMapView& map) {
+    ExactMapSurface surface;
+    surface.mesh.origin = map.origin;
+    const LatticeFrame frame = frame_of(map);
+    for (const Vec3<std::int32_t>& vertex : map.vertices)
+        surface.mesh.vertices.push_back(Vec3f(frame.to_local(Vec3d(vertex))));
+    for (std::size_t face = 0; face < map.face_count(); ++face)
+        surface.mesh.faces.push_back(
+            {map.corners[3 * face], map.corners[3 * face + 1], map.corners[3 * face + 2]});
+    surface.longest_list = longest_lists(map);
+    return surface;
 }
 
 } // namespace echinus

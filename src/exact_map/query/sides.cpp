@@ -14,7 +14,6 @@
 #include <hwy/foreach_target.h>
 
 // After foreach_target.h, which includes this file once for each instruction set.
-#include "exact_map/query/band_of_one-inl.hpp"
 #include "exact_map/query/band_search-inl.hpp"
 #include "exact_map/query/band_windings-inl.hpp"
 #include "simd/dispatch.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "exact_map/layout.hpp"
-#include "exact_map/query/near_leaf.hpp"
+#include "exact_map/query/place_in_bands.hpp"
 #include "exact_map/query/winding.hpp"
 
 #include <cstdint>

@@ -1,9 +1,8 @@
 // Triangles against the surface: the face tree's boxes around the triangle's box, then each face.
 
 #include "exact_map/layout.hpp"
-#include "exact_map/query/face_tree_walk.hpp"
 #include "exact_map/query/leaf_bounds.hpp"
-#include "exact_map/query/triangle_arrival.hpp"
+#include "exact_map/query/nearest.hpp"
 #include "exact_map/query/triangle_distance.hpp"
 #include "geometry/parallel.hpp"
 #include "geometry/whole_numbers.hpp"

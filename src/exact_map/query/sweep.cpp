@@ -2,8 +2,8 @@
 // an exact test of each face.
 
 #include "exact_map/layout.hpp"
-#include "exact_map/query/face_tree_walk.hpp"
-#include "exact_map/query/segment_crossing.hpp"
+#include "exact_map/query/nearest.hpp"
+#include "exact_map/query/ray_crossing.hpp"
 #include "exact_map/query/winding.hpp"
 #include "geometry/whole_numbers.hpp"
 

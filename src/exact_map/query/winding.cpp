@@ -1,19 +1,153 @@
 #include "exact_map/query/winding.hpp"
 
-#include "exact_map/border_part.hpp"
+#include "directions/face_cone.hpp"
+#include "directions/lattice.hpp"
 #include "exact_map/layout.hpp"
-#include "exact_map/query/cap_crossings.hpp"
 #include "exact_map/query/place_in_bands.hpp"
 #include "exact_map/query/ray_crossing.hpp"
 #include "geometry/whole_numbers.hpp"
 
 #include <echinus/exact_map.hpp>
+#include <echinus/exact_map_view.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <span>
 
 namespace echinus {
+
+// How the border of an open surface affects winding numbers.
+//
+// Close the surface with a cone: a triangle from each border edge to the origin of the lattice. The rays
+// from the origin see that cone edge-on and never cross it, so the signed crossings of a particle's ray
+// beyond the particle are the winding number of the closed whole, an integer. The generalised winding number
+// of the surface alone (Jacobson et al. 2013) is that integer less the cone's part:
+//
+//     w(p) = crossings_beyond(p) + border_part(p),  border_part = - sum of solid angles of the cone / 4 pi.
+//
+// The build and, where rounding leaves their answer open, queries sum this; other queries sum caps of the
+// border (build/open_surface.hpp), most of which are far away as seen from most places.
+
+namespace {
+
+/// A hair's breadth in the direction in which the perturbation (e, e^2, e^3) leads away from a ray first.
+Vec3d nudge_from_ray(const LatticePoint& d) {
+    constexpr double kHair =
+        0x1p-22; // lattice steps: less than what parts lattice points from rays, more than rounding
+    // At the origin, the tip of all cone triangles, only the direction matters: it has to pass by their
+    // sides.
+    if (d == LatticePoint{}) return {0x1p-10, 0x1p-31, 0x1p-52};
+    const bool along_x = d.y == 0 && d.z == 0;
+    return along_x ? Vec3d{0, kHair, 0} : Vec3d{kHair, 0, 0};
+}
+
+/// Solid angle of the cone triangle (origin, a, b) seen from share * d. On which side of it that lies, where
+/// the angle jumps by a full turn, is decided exactly, and so is whether it lies in the triangle's plane.
+/// There, and above all on its sides through the origin, where rays through border vertices run, the place is
+/// nudged, so that the two triangles on both sides of such a ray add up. Van Oosterom and Strackee 1983, as
+/// in mesh/judges.cpp.
+double cone_solid_angle(const LatticePoint& a, const LatticePoint& b, const LatticePoint& d, double share) {
+    const LatticePoint normal = cross(a, b);
+    const std::int64_t volume = -dot(d, normal);
+    const Vec3d nudge = volume == 0 ? nudge_from_ray(d) : Vec3d{};
+    const Vec3d p = Vec3d(d) * share + nudge;
+    const Vec3d pa = Vec3d(a) - p, pb = Vec3d(b) - p, po = p * -1.0;
+    const double la = length(pa), lb = length(pb), lo = length(po);
+    const double numerator =
+        volume == 0 ? std::fabs(dot(nudge, Vec3d(normal))) : share * std::fabs(static_cast<double>(volume));
+    const double denominator = la * lb * lo + dot(pa, pb) * lo + dot(pb, po) * la + dot(po, pa) * lb;
+    const double angle = 2 * std::atan2(numerator, denominator);
+    const bool positive = volume != 0 ? volume > 0 : sign_of_perturbation(normal) < 0;
+    return positive ? angle : -angle;
+}
+
+/// The border's contribution to the generalised winding number, beside the signed crossings beyond the place
+/// share * d. A place on the cone counts as displaced by (e, e^2, e^3), as everywhere.
+double border_part(std::span<const BorderEdge> border, std::span<const Vec3<std::int32_t>> vertices,
+                   const LatticePoint& d, double share = 1) {
+    double sum = 0;
+    for (const BorderEdge& edge : border)
+        sum += edge.multiplicity *
+               cone_solid_angle(LatticePoint(vertices[edge.a]), LatticePoint(vertices[edge.b]), d, share);
+    return sum / (4 * std::numbers::pi);
+}
+
+constexpr std::size_t kWidth = TreeNode::kWidth;
+
+/// A ray from a particle on, away from the origin.
+class OutwardRay {
+  public:
+    explicit OutwardRay(const LatticePoint& p)
+        : from_{static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)} {
+        // At the origin the ray leads where the perturbation does: first along x.
+        const std::array<double, 3> along{p == LatticePoint{} ? 1 : from_[0], from_[1], from_[2]};
+        constexpr double kAcross = 1e30; // the inverse of no movement at all along an axis
+        for (std::size_t i = 0; i < 3; ++i) inverse_[i] = along[i] == 0 ? kAcross : 1 / along[i];
+    }
+
+    /// Which of a node's boxes does it meet? One lattice step around them is more than all of this is
+    /// rounded, and than the ray is perturbed.
+    std::array<bool, kWidth> meets(const TreeNode& node) const {
+        std::array<double, kWidth> begin{}, end;
+        end.fill(1e30);
+        for (std::size_t i = 0; i < 3; ++i) {
+            for (std::size_t k = 0; k < kWidth; ++k) {
+                const double low = node.low[i][k] * ExactMapView::kBoxUnit - 1;
+                const double high = node.high[i][k] * ExactMapView::kBoxUnit + 1;
+                const double s = (low - from_[i]) * inverse_[i], t = (high - from_[i]) * inverse_[i];
+                begin[k] = std::max(begin[k], std::min(s, t));
+                end[k] = std::min(end[k], std::max(s, t));
+            }
+        }
+        std::array<bool, kWidth> result;
+        for (std::size_t k = 0; k < kWidth; ++k)
+            result[k] = (begin[k] <= end[k]) & (node.low[0][k] <= node.high[0][k]); // is there such a child?
+        return result;
+    }
+
+  private:
+    std::array<double, 3> from_, inverse_{};
+};
+
+int crossings_of_leaf(const ExactMapView& map, std::uint32_t leaf, const LatticePoint& p) {
+    const CrossingFilter filter(p);
+    const IndexArray& corners = map.winding_tree.corners;
+    const std::size_t first = leaf * kWidth, last = std::min(first + kWidth, corners.size() / 3);
+    int sum = 0;
+    for (std::size_t cap = first; cap < last; ++cap) {
+        const auto vertex = [&](std::size_t k) { return map.vertices[corners[3 * cap + k]]; };
+        const auto a = vertex(0), b = vertex(1), c = vertex(2);
+        const auto [crossing, sure] = filter(RaySide::Beyond, &a.x, &b.x, &c.x);
+        sum += sure ? crossing
+                    : crossing_on(RaySide::Beyond, {LatticePoint(a), LatticePoint(b), LatticePoint(c)}, p);
+    }
+    return sum;
+}
+
+} // namespace
+
+int cap_crossings(const ExactMapView& map, const LatticePoint& p) noexcept {
+    const OutwardRay ray(p);
+    constexpr std::size_t kMaxDepth = 12; // as in walk_near_leaves()
+    std::array<std::uint32_t, kMaxDepth * kWidth> waiting;
+    std::size_t count = 0;
+    waiting[count++] = 0;
+    int sum = 0;
+    while (count > 0) {
+        const std::uint32_t child = waiting[--count];
+        if ((child & TreeNode::kLeaf) != 0) {
+            sum += crossings_of_leaf(map, child - TreeNode::kLeaf, p);
+            continue;
+        }
+        const TreeNode& node = map.winding_tree.nodes[child];
+        const std::array<bool, kWidth> met = ray.meets(node);
+        for (std::size_t k = 0; k < kWidth; ++k)
+            if (met[k]) waiting[count++] = node.children[k];
+    }
+    return sum;
+}
 
 namespace {
 

@@ -10,6 +10,11 @@
 
 namespace echinus {
 
+/// Signed crossings of the ray from the origin through a particle with the caps of the border, beyond the
+/// particle, as crossing_on() counts them. Visits the nodes whose boxes the ray meets.
+/// @pre the map's winding tree holds caps
+int cap_crossings(const ExactMapView& map, const LatticePoint& p) noexcept;
+
 /// How often the surface winds around a place.
 struct Winding {
     std::int64_t number = 0; ///< of an open surface the generalised winding number, rounded

@@ -10,7 +10,7 @@
 #include <optional>
 
 /// The generalised winding number by a tree of triangles: groups of them far away by their moments, with
-/// bounds (winding_nodes.hpp), the triangles nearby one by one.
+/// bounds (build/open_surface.hpp), the triangles nearby one by one.
 namespace echinus {
 
 /// What a winding number is wanted for.

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <echinus/mesh.hpp>
+#include <echinus/tetrahedra.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace echinus {
+
+// The bytes of mesh files. Text has the shortest decimals that read back to the same float. Of a mesh with
+// an origin positions are written as doubles, in the file's frame.
+// @pre indices are in range
+
+std::string encode_obj(const TriangleMesh& mesh);
+/// The part of an OBJ with edges that no face has.
+std::string encode_obj_lines(std::span<const std::array<std::uint32_t, 2>> edges);
+std::string encode_off(const TriangleMesh& mesh);
+std::string encode_ply(const TriangleMesh& mesh); ///< binary, little endian
+std::string encode_stl(const TriangleMesh& mesh); ///< binary; text where the mesh has an origin. Normals
+                                                  ///< are computed, 0 for faces without area
+
+std::string encode_msh(const TetrahedralMesh& mesh); ///< version 2.2
+std::string encode_vtk(const TetrahedralMesh& mesh); ///< legacy, an unstructured grid
+
+} // namespace echinus
