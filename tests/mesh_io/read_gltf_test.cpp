@@ -107,7 +107,7 @@ class ReadGltf : public TemporaryFolderTest {
 // ---- Nodes and scenes ----
 
 TEST_F(ReadGltf, AppliesTheTransformsOfNodes) {
-    // Turned by a quarter about z, twice as large along x, and translated.
+    // Turned by a quarter about z, twice as large along x, and moved.
     const Placement placement{0, -1, 0, 10, 2, 0, 0, 20, 0, 0, 1, 30};
     TriangleMesh expected = kBoxInGltf;
     for (Vec3f& p : expected.vertices) p = {10 - p.y, 20 + 2 * p.x, 30 + p.z};

@@ -53,7 +53,7 @@ TEST(ReadOff, ReadsNumbersAcrossLinesWhereTheLinesAreNotAsManyAsVerticesAndFaces
     EXPECT_EQ(mesh.corners, (Indices{0, 1, 2, 3, 0, 2, 3}));
     EXPECT_EQ(mesh.corner_counts, (Indices{4, 3}));
     expect_off_error(ErrorCode::Damaged,
-                     "line 3: a coordinate was expected, not 'x', where numbers are read_off_text across "
+                     "line 3: a coordinate was expected, not 'x', where numbers are read across "
                      "lines, as 3 lines follow the head, but it promises 5 vertices and faces",
                      "OFF\n4 1 0\n0 0 0 1 0 x\n1 1 0 0 1 0\n3 0 1 2\n");
 }
@@ -129,8 +129,7 @@ TEST(ReadOff, RefusesOtherFormats) {
                          "nOFF\n" + dimension + "\n1 1 1\n");
     expect_off_error(ErrorCode::WrongFormat, "line 1: vertices have 3 + 1 coordinates", "4nOFF 3\n1 1 1\n");
     for (const char* keyword : {"OFF BINARY\n", "COFF binary\n"})
-        expect_off_error(ErrorCode::WrongFormat,
-                         "line 1: binary OFF is not read_off_text; save the mesh as text",
+        expect_off_error(ErrorCode::WrongFormat, "line 1: binary OFF is not read; save the mesh as text",
                          keyword + std::string("\0\0\0\4\0\0\0\1", 8));
     expect_off_error(ErrorCode::Damaged, "line 2: the number of edges was expected, not 'x'",
                      "OFF\n4 1 x\n" + kVertices);

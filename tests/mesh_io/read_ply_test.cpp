@@ -141,11 +141,10 @@ TEST(ReadPly, ReadsNumbersAcrossLinesWhereTheLinesAreNotAsManyAsTheElements) {
         EXPECT_EQ(mesh.vertices, (std::vector<Vec3d>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << lines;
         EXPECT_EQ(mesh.corners, (Indices{0, 1, 2})) << lines;
     }
-    expect_ply_error(
-        ErrorCode::Damaged,
-        "a.ply: line 10: the file goes on after the elements that its head promises, where "
-        "numbers are read_ply_text across lines, as 1 lines follow the head, but it promises 4 elements",
-        kText + "0 0 0 1 0 0 0 1 0 3 0 1 2 5\n");
+    expect_ply_error(ErrorCode::Damaged,
+                     "a.ply: line 10: the file goes on after the elements that its head promises, where "
+                     "numbers are read across lines, as 1 lines follow the head, but it promises 4 elements",
+                     kText + "0 0 0 1 0 0 0 1 0 3 0 1 2 5\n");
     expect_ply_error(ErrorCode::Damaged, "a.ply: the file ends where an integer was expected",
                      kText + "0 0 0 1 0 0 0 1 0 3 0 1\n");
 }
