@@ -1,6 +1,7 @@
 #include "mesh_io/exported_files.hpp"
 #include "mesh_io/gltf_text.hpp"
 #include "support/expectations.hpp"
+#include "support/meshes.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <echinus/mesh_io.hpp>
@@ -82,11 +83,6 @@ std::string file_of(const std::string& objects, const std::string& nodes = "") {
                              (nodes.empty() ? "" : chunk(0xB000, nodes)));
 }
 
-TriangleMesh moved(TriangleMesh mesh, const Vec3f& way) {
-    for (Vec3f& p : mesh.vertices) p += way;
-    return mesh;
-}
-
 class Read3ds : public TemporaryFolderTest {
   protected:
     TriangleMesh read(const std::string& bytes) const { return read_mesh(write("a.3ds", bytes)); }
@@ -135,7 +131,7 @@ TEST_F(Read3ds, KeyframesDoNotMoveTheModel) {
 TEST_F(Read3ds, FurtherNodesOfAnObjectPlaceCopies) {
     const std::string first = node(0, "box", kNoParent, stands());
     const std::string second = node(1, "box", kNoParent, stands({10, 0, 0}));
-    TriangleMesh two = kBox, copy = moved(kBox, {10, 0, 0});
+    TriangleMesh two = kBox, copy = translated(kBox, {10, 0, 0});
     const auto count = static_cast<std::uint32_t>(two.vertices.size());
     two.vertices.insert(two.vertices.end(), copy.vertices.begin(), copy.vertices.end());
     for (const Triangle& face : copy.faces)

@@ -1,6 +1,7 @@
 #include "mesh_io/exported_files.hpp"
 #include "mesh_io/gltf_text.hpp"
 #include "support/expectations.hpp"
+#include "support/meshes.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <echinus/mesh_io.hpp>
@@ -36,22 +37,6 @@ GltfText box_file(const std::string& more_of_primitive = "", const std::string& 
     file.meshes =
         R"([{"primitives":[{)" + file.add_mesh(kBoxInGltf, more_attributes) + more_of_primitive + "}]}]";
     return file;
-}
-
-TriangleMesh translated(TriangleMesh mesh, const Vec3f& way) {
-    for (Vec3f& p : mesh.vertices) p += way;
-    return mesh;
-}
-
-TriangleMesh joined(const std::vector<TriangleMesh>& meshes) {
-    TriangleMesh all;
-    for (const TriangleMesh& mesh : meshes) {
-        const auto first = static_cast<std::uint32_t>(all.vertices.size());
-        all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
-        for (const Triangle& face : mesh.faces)
-            all.faces.push_back({first + face[0], first + face[1], first + face[2]});
-    }
-    return all;
 }
 
 std::vector<float> flat(const std::vector<Vec3f>& vertices) {

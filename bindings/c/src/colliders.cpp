@@ -1,6 +1,5 @@
 #include "border.hpp"
-#include "collider.hpp"
-#include "map.hpp"
+#include "handles.hpp"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // The caller's own structures in place of maps.
 
-#include "map.hpp"
+#include "handles.hpp"
 
 namespace echinus::c {
 

@@ -1,9 +1,6 @@
 #include "border.hpp"
-#include "collider.hpp"
-#include "deformable.hpp"
-#include "mesh.hpp"
+#include "handles.hpp"
 #include "options.hpp"
-#include "tetrahedra.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/soft_body.hpp>

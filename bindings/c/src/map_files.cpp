@@ -1,4 +1,4 @@
-#include "map.hpp"
+#include "handles.hpp"
 
 #include <echinus/map_file.hpp>
 

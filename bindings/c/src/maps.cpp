@@ -1,7 +1,6 @@
 // Maps: build, look at, destroy.
 
-#include "map.hpp"
-#include "mesh.hpp"
+#include "handles.hpp"
 #include "options.hpp"
 
 namespace echinus::c {

@@ -1,5 +1,5 @@
 #include "border.hpp"
-#include "mesh.hpp"
+#include "handles.hpp"
 #include "options.hpp"
 
 #include <echinus/intersections.hpp>

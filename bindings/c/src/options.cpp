@@ -2,8 +2,7 @@
 
 #include "options.hpp"
 
-#include "collider.hpp"
-#include "mesh.hpp"
+#include "handles.hpp"
 
 #include <algorithm>
 #include <optional>

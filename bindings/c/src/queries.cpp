@@ -1,7 +1,6 @@
 // Queries of maps and of colliders for many points.
 
-#include "collider.hpp"
-#include "map.hpp"
+#include "handles.hpp"
 
 using namespace echinus;
 using namespace echinus::c;

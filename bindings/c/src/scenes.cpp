@@ -1,8 +1,7 @@
 // Simulations as JSON.
 
 #include "border.hpp"
-#include "scene.hpp"
-#include "simulation.hpp"
+#include "handles.hpp"
 
 #include <echinus/mesh_io.hpp>
 

@@ -1,10 +1,6 @@
 #include "border.hpp"
-#include "collider.hpp"
-#include "deformable.hpp"
-#include "mesh.hpp"
+#include "handles.hpp"
 #include "options.hpp"
-#include "simulation.hpp"
-#include "vertex_cache.hpp"
 
 #include <echinus/error.hpp>
 

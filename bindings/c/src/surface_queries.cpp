@@ -1,7 +1,6 @@
 // Triangles against the surface of an exact map.
 
-#include "map.hpp"
-#include "mesh.hpp"
+#include "handles.hpp"
 
 #include <echinus/surface_queries.hpp>
 

@@ -1,8 +1,5 @@
-#include "tetrahedra.hpp"
-
 #include "border.hpp"
-#include "map.hpp"
-#include "mesh.hpp"
+#include "handles.hpp"
 #include "options.hpp"
 
 #include <echinus/mesh_io.hpp>

@@ -1,6 +1,5 @@
 #include "border.hpp"
-#include "mesh.hpp"
-#include "vertex_cache.hpp"
+#include "handles.hpp"
 
 #include <echinus/mesh_io.hpp>
 

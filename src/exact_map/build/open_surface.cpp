@@ -275,20 +275,20 @@ Moments joined(const std::array<Moments, TreeNode::kWidth>& parts, std::size_t c
 ///
 /// found by taking away multiples of x r^2, y r^2 and z r^2, which are not harmonic.
 void store(const Moments& moments, std::size_t k, WindingNode& node) {
-    constexpr double kUnit = 1 / (4 * std::numbers::pi);
+    constexpr double kPerSolidAngle = 1 / (4 * std::numbers::pi);
     const auto set = [&](double(&rows)[3][WindingNode::kWidth], const Vec3d& v) {
         rows[0][k] = v.x;
         rows[1][k] = v.y;
         rows[2][k] = v.z;
     };
     set(node.centre, moments.centre);
-    set(node.area, moments.area * kUnit);
+    set(node.area, moments.area * kPerSolidAngle);
 
     const auto& [x, y, z] = moments.first;
     const double third_of_trace = (x.x + y.y + z.z) / 3;
     const double quadratic[6] = {
         x.x - third_of_trace, y.y - third_of_trace, z.z - third_of_trace, x.y + y.x, x.z + z.x, y.z + z.y};
-    for (std::size_t i = 0; i < 6; ++i) node.first[i][k] = -3 * kUnit * quadratic[i];
+    for (std::size_t i = 0; i < 6; ++i) node.first[i][k] = -3 * kPerSolidAngle * quadratic[i];
 
     // Coefficients of the cubic form: x^3, y^3, z^3, then x y^2, x z^2, y x^2, y z^2, z x^2, z y^2, then xyz.
     const auto& [xx, yy, zz, xy, xz, yz] = moments.second;
@@ -299,13 +299,13 @@ void store(const Moments& moments, std::size_t k, WindingNode& node) {
     const double lx = (3 * xxx + xyy + xzz) / 5, ly = (3 * yyy + yxx + yzz) / 5,
                  lz = (3 * zzz + zxx + zyy) / 5;
     const double cubic[7] = {xxx - lx, yyy - ly, zzz - lz, xyy - lx, yxx - ly, zyy - lz, xyz};
-    for (std::size_t i = 0; i < 7; ++i) node.second[i][k] = 7.5 * kUnit * cubic[i];
+    for (std::size_t i = 0; i < 7; ++i) node.second[i][k] = 7.5 * kPerSolidAngle * cubic[i];
 
     // Rounded up by more than all of the above is rounded.
     constexpr double kUp = 1 + 0x1p-30;
     node.radius[k] = moments.radius * kUp;
-    node.spread[k] = moments.spread * (kUnit * kUp);
-    node.total_area[k] = moments.total_area * (kUnit * kUp);
+    node.spread[k] = moments.spread * (kPerSolidAngle * kUp);
+    node.total_area[k] = moments.total_area * (kPerSolidAngle * kUp);
 }
 
 } // namespace

@@ -1,10 +1,26 @@
 #pragma once
 
+// What the handles of the C interface hold, and what several of its sources convert between C and C++.
+
 #include "border.hpp"
 
 #include <echinus/any_map.hpp>
 #include <echinus/collider.hpp>
 #include <echinus/echinus.h>
+#include <echinus/mesh.hpp>
+#include <echinus/scene.hpp>
+#include <echinus/simulation.hpp>
+#include <echinus/tetrahedra.hpp>
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <utility>
+#include <vector>
+
+struct echinus_mesh {
+    echinus::TriangleMesh value;
+};
 
 /// Immutable. Copies share the arrays of a map.
 struct echinus_map {
@@ -14,7 +30,48 @@ struct echinus_map_builder {
     echinus::ExactMapBuilder value;
 };
 
+/// Valid.
+struct echinus_tetrahedra {
+    echinus::TetrahedralMesh value;
+};
+
+struct echinus_deformable {
+    echinus::Deformable value;
+};
+
+/// Has a sample of a vertex.
+struct echinus_vertex_cache {
+    echinus::VertexCache value;
+};
+
+struct echinus_scene {
+    echinus::Scene value;
+    std::filesystem::path folder; ///< files of the scene may lie in it
+};
+
+struct echinus_simulation {
+    explicit echinus_simulation(echinus::Simulation simulation) : value(std::move(simulation)) {
+        for (const echinus::Collider& collider : value.colliders()) maps.push_back({collider.map});
+    }
+
+    echinus::Simulation value;
+    /// [collider_count] For those who read a collider, as it was then.
+    mutable std::vector<echinus_map> maps;
+    bool failed = false; ///< a step has; then it can only be read
+};
+
 namespace echinus::c {
+
+// ---- Meshes and deformables
+
+/// Copies of a caller's arrays.
+std::vector<Vec3f> points_from(const float* points, std::size_t count, std::size_t stride, const char* name);
+std::vector<Triangle> faces_from(const std::uint32_t* faces, std::size_t count, const char* name);
+
+/// The arrays of a deformable, in place.
+echinus_deformable_arrays arrays_of(const Deformable& deformable);
+
+// ---- Maps and their answers
 
 /// The layouts of the answers are those of C++, which are written in place.
 static_assert(sizeof(echinus_contact) == sizeof(Contact) &&
@@ -81,5 +138,25 @@ inline std::span<Contact> contacts_at(echinus_contact* first, std::size_t count)
 inline std::span<SweepHit> hits_at(echinus_sweep_hit* first, std::size_t count) {
     return values_at(reinterpret_cast<SweepHit*>(first), count, "hits");
 }
+
+// ---- Colliders
+
+/// A pose as it is; the library checks it.
+RigidTransform pose_from(const echinus_pose& pose);
+echinus_pose pose_to_c(const RigidTransform& pose);
+
+/// @throws WrongArgument unless it is finite and its rotation of unit length
+RigidTransform checked_pose(const echinus_pose& pose, const char* name);
+
+/// Keys as they are; a simulation checks them.
+std::vector<PoseKey> keys_from(std::span<const echinus_pose_key> keys);
+
+/// A collider for queries, which do not check it.
+/// @throws WrongArgument for what a query must not get
+Collider collider_at(const echinus_collider* collider);
+
+/// A collider for a simulation, which checks it.
+/// @throws WrongArgument for a null map
+Collider collider_from(const echinus_collider& collider);
 
 } // namespace echinus::c
