@@ -62,7 +62,7 @@ function(echinus_precompile target)
 endfunction()
 
 # echinus_group_by_folder(SOURCES...): where CMAKE_UNITY_BUILD is on, sources of one folder are compiled as one, which takes
-# a third of the time. Kernels stay alone: Highway includes each once more for every set of instructions. So does what has
+# half of the time. Kernels stay alone: Highway includes each once more for every set of instructions. So does what has
 # options of its own.
 function(echinus_group_by_folder)
   foreach(source IN LISTS ARGN)

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the handles of the C interface hold, and what several of its sources convert between C and C++.
+// The values behind the handles of the C interface, and the conversions that several of its sources share.
 
 #include "border.hpp"
 
