@@ -47,17 +47,17 @@ if(TARGET echinus)
 endif()
 
 # A header is installed only with its library.
-set(absent_headers)
-foreach(pair IN ITEMS io:mesh_io scene:scene render:render)
-  string(REPLACE ":" ";" pair ${pair})
-  list(GET pair 0 component)
-  list(GET pair 1 header)
-  if(NOT component IN_LIST echinus_components)
-    list(APPEND absent_headers PATTERN ${header}.hpp EXCLUDE)
+set(header_folders ${PROJECT_SOURCE_DIR}/include/echinus)
+foreach(component IN ITEMS scene render)
+  if(component IN_LIST echinus_components)
+    list(APPEND header_folders ${PROJECT_SOURCE_DIR}/include/echinus_${component})
   endif()
 endforeach()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/echinus DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
-  FILES_MATCHING PATTERN *.hpp PATTERN *.h ${absent_headers})
+if(NOT io IN_LIST echinus_components)
+  set(absent_header PATTERN mesh_io.hpp EXCLUDE)
+endif()
+install(DIRECTORY ${header_folders} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  FILES_MATCHING PATTERN *.hpp PATTERN *.h ${absent_header})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/echinusConfig.cmake.in ${PROJECT_BINARY_DIR}/echinusConfig.cmake

@@ -2,7 +2,7 @@
 
 #include <echinus/collider.hpp>
 #include <echinus/exact_map.hpp>
-#include <echinus/scene.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <cstddef>
 #include <functional>

@@ -3,7 +3,7 @@
 #include "compare/compare.hpp"
 #include "console/json.hpp"
 
-#include <echinus/render.hpp>
+#include <echinus_render/render.hpp>
 
 #include <string>
 

@@ -9,7 +9,7 @@
 #include "run_program.hpp"
 
 #include <echinus/error.hpp>
-#include <echinus/render.hpp>
+#include <echinus_render/render.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #include "render/painted_surface.hpp"
 
 #include <echinus/error.hpp>
-#include <echinus/render.hpp>
+#include <echinus_render/render.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "files/atomic_file.hpp"
 
 #include <echinus/error.hpp>
-#include <echinus/render.hpp>
+#include <echinus_render/render.hpp>
 
 #include <png.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <echinus/render.hpp>
+#include <echinus_render/render.hpp>
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include "render/page.hpp"
 
 #include <echinus/error.hpp>
-#include <echinus/render.hpp>
+#include <echinus_render/render.hpp>
 
 #include <algorithm>
 #include <array>

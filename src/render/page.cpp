@@ -3,7 +3,7 @@
 #include "render/image.hpp"
 
 #include <echinus/error.hpp>
-#include <echinus/render.hpp>
+#include <echinus_render/render.hpp>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <echinus/mesh.hpp>
-#include <echinus/render.hpp>
+#include <echinus_render/render.hpp>
 
 #include <array>
 #include <span>

@@ -5,7 +5,7 @@
 #include "render/tracer.hpp"
 
 #include <echinus/error.hpp>
-#include <echinus/render.hpp>
+#include <echinus_render/render.hpp>
 
 #include <algorithm>
 #include <mutex>

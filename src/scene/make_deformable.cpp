@@ -2,7 +2,7 @@
 #include "scene/vertex_choice.hpp"
 
 #include <echinus/error.hpp>
-#include <echinus/scene.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <algorithm>
 #include <cmath>

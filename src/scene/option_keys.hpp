@@ -4,7 +4,7 @@
 
 #include "scene/json_object.hpp"
 
-#include <echinus/scene.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <array>
 #include <limits>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <echinus/scene.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <cstdint>
 #include <string>

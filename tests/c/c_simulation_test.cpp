@@ -4,8 +4,8 @@
 #include "support/temporary_folder.hpp"
 
 #include <echinus/mesh_io.hpp>
-#include <echinus/scene.hpp>
 #include <echinus/simulation.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include "support/attacks.hpp"
 
 #include <echinus/error.hpp>
-#include <echinus/scene.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <cstdint>
 #include <string_view>

@@ -3,7 +3,7 @@
 #include "support/temporary_folder.hpp"
 
 #include <echinus/error.hpp>
-#include <echinus/render.hpp>
+#include <echinus_render/render.hpp>
 
 #include <gtest/gtest.h>
 #include <png.h>

@@ -1,5 +1,5 @@
 #include <echinus/error.hpp>
-#include <echinus/render.hpp>
+#include <echinus_render/render.hpp>
 
 #include <gtest/gtest.h>
 

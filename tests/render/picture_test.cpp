@@ -1,7 +1,7 @@
 #include "render/image.hpp"
 #include "render/painted_surface.hpp"
 
-#include <echinus/render.hpp>
+#include <echinus_render/render.hpp>
 
 #include <gtest/gtest.h>
 

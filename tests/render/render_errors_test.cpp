@@ -1,7 +1,7 @@
 #include "support/expectations.hpp"
 
 #include <echinus/error.hpp>
-#include <echinus/render.hpp>
+#include <echinus_render/render.hpp>
 
 #include <gtest/gtest.h>
 

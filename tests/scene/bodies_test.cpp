@@ -2,7 +2,7 @@
 
 #include "support/expectations.hpp"
 
-#include <echinus/scene.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #include <echinus/error.hpp>
-#include <echinus/scene.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include "support/cloth_meshes.hpp"
 #include "support/expectations.hpp"
 
-#include <echinus/scene.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <gtest/gtest.h>
 

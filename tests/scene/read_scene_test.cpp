@@ -1,7 +1,7 @@
 #include "support/expectations.hpp"
 
 #include <echinus/error.hpp>
-#include <echinus/scene.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -6,7 +6,7 @@
 #include <echinus/error.hpp>
 #include <echinus/instruction_set.hpp>
 #include <echinus/map_file.hpp>
-#include <echinus/scene.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <nlohmann/json.hpp>
 

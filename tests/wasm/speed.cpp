@@ -5,7 +5,7 @@
 
 #include <echinus/instruction_set.hpp>
 #include <echinus/mesh_io.hpp>
-#include <echinus/scene.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <ctime>
 #include <filesystem>

@@ -8,7 +8,7 @@
 
 #include <echinus/intersections.hpp>
 #include <echinus/map_file.hpp>
-#include <echinus/render.hpp>
+#include <echinus_render/render.hpp>
 
 #include <algorithm>
 #include <array>

@@ -5,7 +5,7 @@
 #include <echinus/collider.hpp>
 #include <echinus/error.hpp>
 #include <echinus/mesh.hpp>
-#include <echinus/scene.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <filesystem>
 #include <optional>

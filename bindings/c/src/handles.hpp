@@ -8,9 +8,9 @@
 #include <echinus/collider.hpp>
 #include <echinus/echinus.h>
 #include <echinus/mesh.hpp>
-#include <echinus/scene.hpp>
 #include <echinus/simulation.hpp>
 #include <echinus/tetrahedra.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <cstddef>
 #include <filesystem>

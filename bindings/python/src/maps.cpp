@@ -3,7 +3,7 @@
 #include "values.hpp"
 
 #include <echinus/map_file.hpp>
-#include <echinus/scene.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>

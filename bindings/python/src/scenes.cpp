@@ -5,7 +5,7 @@
 
 #include <echinus/error.hpp>
 #include <echinus/mesh_io.hpp>
-#include <echinus/scene.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>

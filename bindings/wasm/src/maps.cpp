@@ -4,7 +4,7 @@
 
 #include <echinus/any_map.hpp>
 #include <echinus/map_file.hpp>
-#include <echinus/scene.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <cstddef>
 #include <cstring>

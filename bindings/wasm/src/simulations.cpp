@@ -3,7 +3,7 @@
 #include "interface.hpp"
 
 #include <echinus/error.hpp>
-#include <echinus/scene.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <vector>
 

@@ -6,8 +6,8 @@
 
 #include <echinus/intersections.hpp>
 #include <echinus/mesh_io.hpp>
-#include <echinus/scene.hpp>
 #include <echinus/surface_queries.hpp>
+#include <echinus_scene/scene.hpp>
 
 #include <fmt/format.h>
 

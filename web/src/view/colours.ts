@@ -1,4 +1,4 @@
-/** The colours of the project's figures: namespace palette of echinus/render.hpp, where their sources are. */
+/** The colours of the project's figures: namespace palette of echinus_render/render.hpp, where their sources are. */
 export const CLAY = 0xbdb5aa;
 export const CLOTH = 0xb4584e;
 export const CLOTH_BACK = 0xd39a7c;
