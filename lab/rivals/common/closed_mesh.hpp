@@ -10,7 +10,7 @@
 namespace echinus::rivals {
 
 /// Throws unless the mesh has an inside: for an open one, the answers of every system are an accident of its
-/// rule. Vertices on one point of ExactMap's lattice count as one, so that faces need not share vertices.
+/// rule. Closed is what MeshReport::closed says, for which faces need not share vertices.
 /// @param system  for the sentence, such as "a dense grid"
 /// @throws Error InvalidMesh as inspect() does, for an open mesh, or when the bounding radius lies outside
 /// [1e-15, 1e15]

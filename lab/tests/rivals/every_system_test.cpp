@@ -1,10 +1,14 @@
 // What holds for every system behind the common interface.
 
 #include "bad_meshes.hpp"
-#include "rivals/classified_grid/classified_grid.hpp"
-#include "rivals/dense_grid/dense_grid.hpp"
 #include "rivals/maps/maps.hpp"
 #include "rivals/system.hpp"
+#ifdef ECHINUS_HAS_CLASSIFIED_GRID
+#include "rivals/classified_grid/classified_grid.hpp"
+#endif
+#ifdef ECHINUS_HAS_DENSE_GRID
+#include "rivals/dense_grid/dense_grid.hpp"
+#endif
 #ifdef ECHINUS_HAS_SPARSE_FIELD
 #include "rivals/sparse_field/sparse_field.hpp"
 #endif
@@ -59,13 +63,17 @@ std::vector<TestedSystem> all_systems() {
              options.grid = DirectionGrid::Octahedral;
              return distance_map(mesh, options);
          }},
+#ifdef ECHINUS_HAS_CLASSIFIED_GRID
         {"classified", 0.01,
          [](const TriangleMesh& mesh) { return held(ClassifiedGrid::build(mesh, 2'000'000)); }},
+#endif
+#ifdef ECHINUS_HAS_DENSE_GRID
         {"dense", 0.05, [](const TriangleMesh& mesh) { return held(DenseGrid::with_samples(mesh, 31)); },
          true,
          [](const Vec3f& p) {
              return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= 1;
          }},
+#endif
 #ifdef ECHINUS_HAS_SPARSE_FIELD
         {"openvdb", 0.05, [](const TriangleMesh& mesh) { return held(SparseField::with_samples(mesh, 21)); }},
 #endif
