@@ -3,7 +3,7 @@
 
 #include "console/machine.hpp"
 #include "property/shape_checks.hpp"
-#include "property/shapes.hpp"
+#include "property/shape_parts.hpp"
 #include "records.hpp"
 
 #include <echinus/error.hpp>

@@ -1,9 +1,10 @@
 #pragma once
 
 #include "compare/systems.hpp"
-#include "rivals/unshipped/triangle_rivals.hpp"
+#include "rivals/unshipped/unshipped.hpp"
 #include "subjects.hpp"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -45,3 +46,19 @@ BenchSystem bench_system(std::string name, bool is_ours, Build build) {
                     return std::make_unique<const Result>(build());
             }}};
 }
+
+/// A structure to build over and over, on one thread.
+struct TimedStructure {
+    std::string system; ///< as tables show it
+    bool is_ours;
+    std::function<void()> build;
+};
+
+/// The exact map, built and rebuilt, the distance map, Embree and, up to 300 000 faces, CGAL.
+/// @pre the subject outlives the result
+std::vector<TimedStructure> builds_on(const Subject& subject);
+
+/// Milliseconds of processor time of each, a number for each pass, from turns that they take.
+/// @param report_progress  as in take_turns()
+std::vector<echinus::comparison::Pace> time_builds(const std::vector<TimedStructure>& builds, int passes,
+                                                   const std::function<void(double)>& report_progress);

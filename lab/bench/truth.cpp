@@ -1,9 +1,8 @@
 #include "truth.hpp"
 
 #include "files/atomic_file.hpp"
-#include "judges/distance_tree.hpp"
 #include "judges/exact_judge.hpp"
-#include "judges/solid_angle_tree.hpp"
+#include "judges/judge_trees.hpp"
 #include "mesh/mesh_hash.hpp"
 #include "pinning.hpp"
 

@@ -1,6 +1,6 @@
 #include "compare/compare.hpp"
 
-#include "compare/clock.hpp"
+#include "compare/turns.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/exact_map.hpp>

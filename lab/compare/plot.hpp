@@ -1,6 +1,9 @@
 #pragma once
 
+#include "compare/compare.hpp"
+
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace echinus::comparison {
@@ -32,7 +35,26 @@ struct Plot {
 /// @pre coordinates are positive
 std::string svg(const Plot& plot);
 
-/// Exponent b of y = a x^b by least squares of the logarithms, from the points with x >= from.
-double fitted_exponent(const std::vector<PlotPoint>& points, double from = 0);
+/// As text or as the value of an attribute, in HTML and in SVG.
+std::string escaped(std::string_view plain);
+
+/// A line of text in a picture.
+/// @param anchor  which part of it lies at (x, y): "start", "middle" or "end"
+/// @param more    further attributes, with a space in front
+std::string svg_text(double x, double y, std::string_view anchor, std::string_view content,
+                     std::string_view more = {});
+
+/// The SVG colour of a system in all plots; distinguishable with every common kind of colour blindness.
+/// Dashed: not a map of Echinus.
+struct LineStyle {
+    std::string colour;
+    bool dashed;
+};
+LineStyle line_style_of(const SystemType& system);
+
+/// Near the surface (the set S), each system a curve over its sizes: error against bytes and time against
+/// error, of signs and of depths. An error of 0 is drawn at the edge, as noted on the axis.
+/// @pre comparison.curves is not empty
+std::vector<Plot> curve_plots(const Comparison& comparison);
 
 } // namespace echinus::comparison

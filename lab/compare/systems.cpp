@@ -1,6 +1,6 @@
 #include "compare/systems.hpp"
 
-#include "compare/clock.hpp"
+#include "compare/turns.hpp"
 #include "rivals/classified_grid/classified_grid.hpp"
 #include "rivals/dense_grid/dense_grid.hpp"
 #include "rivals/maps/maps.hpp"

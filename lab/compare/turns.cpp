@@ -1,7 +1,5 @@
 #include "compare/turns.hpp"
 
-#include "compare/clock.hpp"
-
 #include <algorithm>
 #include <cmath>
 

@@ -1,9 +1,8 @@
 #pragma once
 
 #include "judges/crossing_counter.hpp"
-#include "judges/distance_tree.hpp"
 #include "judges/exact_judge.hpp"
-#include "judges/solid_angle_tree.hpp"
+#include "judges/judge_trees.hpp"
 #include "support/point_sets.hpp"
 
 #include <echinus/exact_map.hpp>

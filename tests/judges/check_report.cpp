@@ -1,5 +1,5 @@
 #include "console/json.hpp"
-#include "judges/check_result.hpp"
+#include "judges/check_mesh.hpp"
 
 #include <fmt/format.h>
 

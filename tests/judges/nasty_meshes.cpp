@@ -1,6 +1,5 @@
 #include "judges/nasty_meshes.hpp"
 
-#include "oracle/test_meshes.hpp"
 #include "support/random_points.hpp"
 
 #include <echinus/error.hpp>

@@ -3,7 +3,7 @@
 
 #include "directions/lattice.hpp"
 #include "judges/accuracy.hpp"
-#include "oracle/test_meshes.hpp"
+#include "judges/nasty_meshes.hpp"
 #include "support/point_sets.hpp"
 
 #include <gtest/gtest.h>

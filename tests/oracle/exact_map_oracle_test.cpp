@@ -1,7 +1,6 @@
 #include "judges/check_mesh.hpp"
 #include "judges/exact_judge.hpp"
 #include "judges/nasty_meshes.hpp"
-#include "oracle/test_meshes.hpp"
 #include "support/meshes.hpp"
 #include "support/point_sets.hpp"
 #include "support/random_points.hpp"

@@ -1,7 +1,7 @@
 // The judge of intersections agrees with CGAL's exact predicates.
 
 #include "judges/intersection_judge.hpp"
-#include "oracle/test_meshes.hpp"
+#include "judges/nasty_meshes.hpp"
 #include "support/meshes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 #include "judges/exact_judge.hpp"
 #include "judges/intersection_judge.hpp"
-#include "oracle/test_meshes.hpp"
+#include "judges/nasty_meshes.hpp"
 #include "support/meshes.hpp"
 #include "support/random_points.hpp"
 

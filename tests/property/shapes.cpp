@@ -1,5 +1,3 @@
-#include "property/shapes.hpp"
-
 #include "property/shape_parts.hpp"
 
 #include <algorithm>

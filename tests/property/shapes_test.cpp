@@ -2,7 +2,6 @@
 #include "property/shape_checks.hpp"
 #include "property/shape_judge.hpp"
 #include "property/shape_parts.hpp"
-#include "property/shapes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,5 @@
 // The task build: build times on one thread, also against the number of faces.
 
-#include "builds.hpp"
 #include "systems.hpp"
 #include "task.hpp"
 

@@ -1,9 +1,9 @@
 // The guard: what got slower since recorded.csv was recorded? Ours and two rivals take turns, so the
 // ratios of their times hardly depend on the machine's load.
 
-#include "builds.hpp"
 #include "console/machine.hpp"
 #include "queries.hpp"
+#include "systems.hpp"
 
 #include <fmt/format.h>
 

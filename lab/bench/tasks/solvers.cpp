@@ -1,6 +1,5 @@
 // The task solvers: what a large cloth that hangs stretches under each solver, and how long its frame takes.
 
-#include "compare/clock.hpp"
 #include "compare/turns.hpp"
 #include "task.hpp"
 

@@ -2,7 +2,7 @@
 // its faces with each other too. Judged exactly, on published positions.
 
 #include "cloth_run.hpp"
-#include "compare/clock.hpp"
+#include "compare/turns.hpp"
 #include "judges/intersection_judge.hpp"
 #include "task.hpp"
 

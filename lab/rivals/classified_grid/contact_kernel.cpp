@@ -5,7 +5,7 @@
 // holds these; for each group first faces are lanes (distances from the middle), then particles are, for the
 // few faces that are left.
 
-#include "rivals/classified_grid/kernels.hpp"
+#include "rivals/classified_grid/layout.hpp"
 #include "rivals/classified_grid/nearest.hpp"
 
 #include <hwy/cache_control.h>

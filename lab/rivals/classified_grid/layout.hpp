@@ -2,12 +2,14 @@
 
 #include "directions/lattice.hpp"
 
+#include <echinus/contact.hpp>
 #include <echinus/exact_map.hpp>
 
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 /// What a classified grid stores, and where a particle finds its cell.
@@ -177,5 +179,13 @@ inline CellList list_of(const GridArrays& grid, const Brick& brick, std::uint32_
 inline int winding_of_centre(const GridArrays& grid, std::uint32_t list, std::uint32_t state) {
     return grid.windings.empty() ? static_cast<int>(state & kInsideBit) : grid.windings[list];
 }
+
+// The batch queries in vector instructions; simd/dispatch.hpp chooses which.
+
+void contains_kernel(const GridArrays& grid, std::span<const Vec3f> points_local,
+                     std::span<std::uint8_t> inside);
+
+void contacts_kernel(const GridArrays& grid, std::span<const Vec3f> points_local, float margin,
+                     std::span<Contact> contacts);
 
 } // namespace echinus::rivals

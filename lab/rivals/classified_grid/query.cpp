@@ -2,7 +2,6 @@
 
 #include "exact_map/query/ray_crossing.hpp"
 #include "rivals/classified_grid/classified_grid.hpp"
-#include "rivals/classified_grid/kernels.hpp"
 #include "rivals/classified_grid/layout.hpp"
 #include "rivals/classified_grid/nearest.hpp"
 #include "simd/dispatch.hpp"

@@ -2,7 +2,7 @@
 // but those in cells on the surface. These are sorted by the length of their cells' lists, so that particles
 // with lists of one length are lanes: lane by lane another cell and another face, none of them idle.
 
-#include "rivals/classified_grid/kernels.hpp"
+#include "rivals/classified_grid/layout.hpp"
 #include "rivals/classified_grid/nearest.hpp"
 
 #include <algorithm>

@@ -28,4 +28,13 @@ struct SampledField {
 /// Gradients are divided by at least this squared and rooted, so that none is divided by 0.
 inline constexpr float kMinGradientSq = 1e-30F;
 
+// The batch queries in vector instructions; simd/dispatch.hpp chooses which. The same operations in the same
+// order as DenseGrid::sample(), hence the same bits.
+
+void contains_kernel(const SampledField& field, std::span<const Vec3f> points,
+                     std::span<std::uint8_t> inside);
+
+void contacts_kernel(const SampledField& field, std::span<const Vec3f> points,
+                     const DenseGrid::Contacts& contacts);
+
 } // namespace echinus::rivals

@@ -1,6 +1,6 @@
 // One particle at a time: the reference for the kernels.
 
-#include "rivals/dense_grid/kernels.hpp"
+#include "rivals/dense_grid/field.hpp"
 #include "simd/dispatch.hpp"
 
 #include <algorithm>

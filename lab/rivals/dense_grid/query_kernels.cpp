@@ -2,7 +2,7 @@
 // a branch. Gathers of two neighbouring floats at once were tried, and loads one by one; both took longer.
 // Two neighbours of 16 bits are one word and one gather.
 
-#include "rivals/dense_grid/kernels.hpp"
+#include "rivals/dense_grid/field.hpp"
 
 #include <algorithm>
 #include <array>

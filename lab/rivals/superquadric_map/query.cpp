@@ -1,5 +1,4 @@
 #include "rivals/superquadric_map/layout.hpp"
-#include "rivals/superquadric_map/segment_query.hpp"
 #include "rivals/superquadric_map/superquadric_map.hpp"
 
 #include <array>
@@ -79,7 +78,7 @@ void SuperquadricMap::contacts_batch(std::span<const Vec3f> points, float margin
     for (std::size_t i = 0; i < contacts.size(); ++i) contacts[i] = contact(points[i], margin);
 }
 
-// The surface that a map stands for: its normals, and as triangles.
+// The normals of the surface that a map stands for.
 
 namespace {
 
@@ -128,38 +127,6 @@ Vec3f surface_normal(const SegmentArrays& map, std::size_t segment, const Vec3f&
             return normal * (std::copysign(1.0F, dot(normal, outward)) / std::sqrt(size_sq));
     }
     return superquadric_normal(map.frames[segment], place);
-}
-
-TriangleMesh SuperquadricMap::surface_of(std::size_t segment) const {
-    const SegmentArrays& map = *arrays_;
-    const std::uint32_t columns = map.grid.longitude_count(), rows = map.grid.colatitude_count();
-    const SegmentFrame& frame = map.frames[segment];
-    TriangleMesh mesh;
-    std::vector<std::uint8_t> is_empty(map.grid.direction_count());
-    for (std::uint32_t index = 0; index < map.grid.direction_count(); ++index) {
-        const float sample = map.sample(segment, index);
-        is_empty[index] = sample < 0 ? 1 : 0;
-        mesh.vertices.push_back(
-            frame.centre + frame.turned_from_frame(map_point(map, segment, index, std::max(sample, 0.0F))));
-    }
-    const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-        if (!is_empty[a] && !is_empty[b] && !is_empty[c]) mesh.faces.push_back({a, b, c});
-    };
-    for (std::uint32_t row = 0; row + 1 < rows; ++row)
-        for (std::uint32_t column = 0; column < columns; ++column) {
-            const std::uint32_t next = (column + 1) % columns;
-            const std::uint32_t a = map.grid.index(column, row), b = map.grid.index(next, row);
-            const std::uint32_t c = map.grid.index(next, row + 1), d = map.grid.index(column, row + 1);
-            add(a, d, c);
-            add(a, c, b);
-        }
-    // The two small holes at the poles.
-    for (std::uint32_t column = 1; column + 1 < columns; ++column) {
-        add(map.grid.index(0, 0), map.grid.index(column, 0), map.grid.index(column + 1, 0));
-        add(map.grid.index(0, rows - 1), map.grid.index(column + 1, rows - 1),
-            map.grid.index(column, rows - 1));
-    }
-    return mesh;
 }
 
 } // namespace echinus::rivals

@@ -86,28 +86,18 @@ DirectionCap cap_in_frame(const std::array<LatticePoint, 3>& corners, const Rota
 
 } // namespace
 
-ProfilePoint profile_point(const CirclePoint& angle, double exponent, SuperquadricSampling sampling) {
-    if (sampling == SuperquadricSampling::Formula)
-        return {signed_power(angle.cosine, exponent), signed_power(angle.sine, exponent)};
-    const double largest =
-        std::max(std::fabs(angle.cosine), std::fabs(angle.sine)); // keeps the powers in range
-    const double c = std::fabs(angle.cosine) / largest, s = std::fabs(angle.sine) / largest;
-    const double radius =
-        std::pow(std::pow(c, 2 / exponent) + std::pow(s, 2 / exponent), -exponent / 2) / largest;
-    return {radius * angle.cosine, radius * angle.sine};
+ProfilePoint profile_point(const CirclePoint& angle, double exponent) {
+    return {signed_power(angle.cosine, exponent), signed_power(angle.sine, exponent)};
 }
 
-std::vector<Vec3d> sample_points(const Superquadric& shape, const SphericalGrid& grid,
-                                 SuperquadricSampling sampling) {
+std::vector<Vec3d> sample_points(const Superquadric& shape, const SphericalGrid& grid) {
     std::vector<ProfilePoint> section;
     for (std::uint32_t column = 0; column < grid.longitude_count(); ++column)
-        section.push_back(
-            profile_point(circle_point(column, grid.longitude_count()), shape.omega_exponent, sampling));
+        section.push_back(profile_point(circle_point(column, grid.longitude_count()), shape.omega_exponent));
     std::vector<Vec3d> points;
     points.reserve(grid.direction_count());
     for (std::uint32_t row = 0; row < grid.colatitude_count(); ++row) {
-        const ProfilePoint eta =
-            profile_point(eta_of_row(row, grid.colatitude_count()), shape.eta_exponent, sampling);
+        const ProfilePoint eta = profile_point(eta_of_row(row, grid.colatitude_count()), shape.eta_exponent);
         for (const ProfilePoint& omega : section)
             points.push_back({shape.sizes.x * eta.cosine * omega.cosine,
                               shape.sizes.y * eta.cosine * omega.sine, shape.sizes.z * eta.sine});

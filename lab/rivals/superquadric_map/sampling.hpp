@@ -4,14 +4,12 @@
 #include "directions/spherical_grid.hpp"
 #include "geometry/angles.hpp"
 #include "rivals/superquadric_map/superquadric.hpp"
-#include "rivals/superquadric_map/superquadric_map.hpp"
 
 #include <vector>
 
 namespace echinus::rivals {
 
-/// A point of a superellipse with half axes 1: the cosine and sine of an angle to the power of an exponent,
-/// or, by centre, what stands for them.
+/// A point of a superellipse with half axes 1: the cosine and sine of an angle to the power of an exponent.
 struct ProfilePoint {
     double cosine, sine;
 };
@@ -20,11 +18,10 @@ inline CirclePoint eta_of_row(std::uint32_t row, std::uint32_t row_count) {
     const CirclePoint from_pole = circle_point(2 * std::uint64_t{row} + 1, 4 * std::uint64_t{row_count});
     return {from_pole.sine, from_pole.cosine};
 }
-ProfilePoint profile_point(const CirclePoint& angle, double exponent, SuperquadricSampling sampling);
+ProfilePoint profile_point(const CirclePoint& angle, double exponent);
 
 /// The samples of a superquadric's grid as points of its surface, in its frame, by index in the grid.
-std::vector<Vec3d> sample_points(const Superquadric& shape, const SphericalGrid& grid,
-                                 SuperquadricSampling sampling);
+std::vector<Vec3d> sample_points(const Superquadric& shape, const SphericalGrid& grid);
 
 /// How far from the centre each ray crosses a face of the segment for the last time or, where it crosses
 /// none, a face of its hull, in the mesh's unit; negative where it misses both. The rays run from the

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "rivals/superquadric_map/report.hpp"
 #include "rivals/system.hpp"
 
 #include <echinus/contact.hpp>
@@ -32,7 +31,9 @@
 ///   - the superquadric is the one nearest to the hull (fit.hpp), whose centre then lies within, enlarged
 ///     about that centre until it holds the segment;
 ///   - distances are radial, along rays from the superquadric's centre, and rays are cast by exact integers,
-///     as for the other maps; samples lie half a step off the poles;
+///     as for the other maps; samples lie half a step off the poles, uniform in the angles of the formula:
+///     exponents below 1 draw them towards edges and corners, and at 0.3 a box has a quarter of a side's
+///     length between the two samples next to its middle;
 ///   - a ray that misses the hull too, as it may where that is flat, leaves its sample empty. A particle
 ///     whose nearest sample is empty is not in the segment; other empty samples do not enter the
 ///     interpolation;
@@ -42,19 +43,6 @@
 /// where a hull leaves the solid. Depth is radial: at least the distance to the segment's surface, often
 /// more.
 namespace echinus::rivals {
-
-/// Where along eta and omega the samples lie.
-enum class SuperquadricSampling : std::uint8_t {
-    /// Uniform in the angles of the formula, as SQ-Map has it. Exponents below 1 draw samples towards edges
-    /// and
-    /// corners: at 0.3 a box has a quarter of a side's length between the two samples next to its middle.
-    Formula,
-    /// Uniform in the directions of profile and section as seen from their centre (angle-centre
-    /// parametrisation:
-    /// Loeffelmann and Groeller, "Parameterizing superquadrics", WSCG 1995). Ours, to see what the formula
-    /// costs.
-    Centre,
-};
 
 struct SuperquadricMapOptions {
     static constexpr std::uint32_t kMinSampleCount = 4;
@@ -74,7 +62,6 @@ struct SuperquadricMapOptions {
     std::size_t byte_budget = 0;
     EntryFormat sample_format =
         EntryFormat::Float32; ///< Unorm16 halves the bytes, costs 8e-6 of a segment's size
-    SuperquadricSampling sampling = SuperquadricSampling::Formula;
     /// Meshes with more faces are simplified for the decomposition alone: decompose.hpp has HACD's times.
     std::uint32_t decomposition_face_limit = 6000;
     unsigned thread_count =
@@ -149,21 +136,10 @@ class SuperquadricMap final : public System {
                         std::span<Contact> contacts) const override;
     using System::contacts_batch;
 
-    /// What the map holds of the surface, and how well its superquadrics fit.
-    const SuperquadricReport& report() const { return *report_; }
-
-    /// A segment's surface as the map has it, for pictures: two triangles for each cell without an empty
-    /// corner.
-    /// @pre segment < segment_count()
-    TriangleMesh surface_of(std::size_t segment) const;
-
   private:
-    SuperquadricMap(std::shared_ptr<const SegmentArrays> arrays,
-                    std::shared_ptr<const SuperquadricReport> report)
-        : arrays_(std::move(arrays)), report_(std::move(report)) {}
+    explicit SuperquadricMap(std::shared_ptr<const SegmentArrays> arrays) : arrays_(std::move(arrays)) {}
 
     std::shared_ptr<const SegmentArrays> arrays_;
-    std::shared_ptr<const SuperquadricReport> report_;
 };
 
 } // namespace echinus::rivals

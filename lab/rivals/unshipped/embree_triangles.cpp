@@ -1,4 +1,4 @@
-#include "rivals/unshipped/triangle_rivals.hpp"
+#include "rivals/unshipped/unshipped.hpp"
 
 #include <echinus/intersections.hpp>
 

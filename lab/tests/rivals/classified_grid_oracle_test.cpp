@@ -2,7 +2,7 @@
 
 #include "directions/lattice.hpp"
 #include "judges/exact_judge.hpp"
-#include "oracle/test_meshes.hpp"
+#include "judges/nasty_meshes.hpp"
 #include "rivals/classified_grid/classified_grid.hpp"
 #include "support/point_sets.hpp"
 

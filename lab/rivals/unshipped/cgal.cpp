@@ -4,6 +4,7 @@
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
+#include <CGAL/AABB_triangle_primitive.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Side_of_triangle_mesh.h>
 #include <CGAL/Surface_mesh.h>
@@ -93,6 +94,43 @@ class CgalTree final : public System {
 std::unique_ptr<const System> cgal_tree(const TriangleMesh& mesh) {
     require_closed(mesh, "a parity of crossings");
     return std::make_unique<const CgalTree>(mesh);
+}
+
+namespace {
+
+using Triangles = std::vector<Kernel::Triangle_3>;
+using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
+using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
+
+Kernel::Triangle_3 triangle_of(const TriangleMesh& mesh, const Triangle& face) {
+    const auto corner = [&](std::size_t k) { return to_cgal(mesh.vertices[face[k]]); };
+    return {corner(0), corner(1), corner(2)};
+}
+
+class CgalTriangles final : public TriangleRival {
+  public:
+    explicit CgalTriangles(const TriangleMesh& model) {
+        for (const Triangle& face : model.faces)
+            if (const auto triangle = triangle_of(model, face); !triangle.is_degenerate())
+                triangles_.push_back(triangle);
+        tree_.insert(triangles_.begin(), triangles_.end());
+        tree_.build();
+    }
+
+    void find_intersecting(const TriangleMesh& mesh, std::span<std::uint8_t> meets) const override {
+        for (std::size_t i = 0; i < mesh.faces.size(); ++i)
+            meets[i] = tree_.do_intersect(triangle_of(mesh, mesh.faces[i]));
+    }
+
+  private:
+    Triangles triangles_;
+    Tree tree_;
+};
+
+} // namespace
+
+std::unique_ptr<const TriangleRival> cgal_triangles(const TriangleMesh& model) {
+    return std::make_unique<const CgalTriangles>(model);
 }
 
 } // namespace echinus::rivals
