@@ -3,7 +3,7 @@
 import pytest
 
 import echinus as ech
-from echinus_blender.start_errors import in_words_of_the_panel
+from echinus_blender.run import in_words_of_the_panel
 
 
 def sentence_of(mesh, *bodies, **options):

@@ -4,10 +4,9 @@ import bpy
 from bpy_extras.io_utils import ExportHelper
 
 from .meshes import require_mesh, world_mesh
-from .modes import object_mode
-from .places import writable_place
+from .motion_files import writable_place
 from .refusal import Refusal
-from .reporting import Reporting
+from .operators import Reporting, object_mode
 
 
 class BakeMap(Reporting, bpy.types.Operator, ExportHelper):

@@ -15,9 +15,8 @@ from .meshes import (
     vertices_of,
     world_mesh,
 )
-from .modes import object_mode
 from .modifiers import modifiers_after_motion, unchecked_movers, without
-from .reporting import Reporting
+from .operators import Reporting, object_mode
 
 INSIDE, CUT = "Echinus Inside", "Echinus Cut"
 

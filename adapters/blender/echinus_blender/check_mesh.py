@@ -6,9 +6,8 @@ import numpy as np
 
 from .faults import find_faults
 from .meshes import require_mesh, triangles_of, vertices_of
-from .modes import object_mode
 from .refusal import Refusal
-from .reporting import Reporting
+from .operators import Reporting, object_mode
 
 KINDS = [
     ("BORDER", "Open Edges", "Edges with one face: borders of holes and sheets"),

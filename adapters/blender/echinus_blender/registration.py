@@ -1,15 +1,32 @@
-"""Which classes Blender knows, and where the settings are kept."""
+"""Which classes Blender knows, where the settings are kept, and the folder of the Python module, if Blender does not
+find it by itself."""
 
 import bpy
 
-from . import motion_files
+from . import library, motion_files
 from .bake_map import BakeMap
 from .check_collisions import CheckCollisions
 from .check_mesh import CheckMesh
 from .panel import ClothPanel, MeshPanel, SimulationPanel
-from .preferences import Preferences
 from .settings import Settings
 from .simulate_cloth import SimulateCloth
+
+
+class Preferences(bpy.types.AddonPreferences):
+    bl_idname = __package__
+
+    module_folder: bpy.props.StringProperty(
+        name="Folder of the Module",
+        description="The folder that has the Python module echinus, such as the site-packages of a virtual"
+        " environment. Empty: Blender's Python finds it",
+        subtype="DIR_PATH",
+    )
+
+    def draw(self, context):
+        self.layout.prop(self, "module_folder")
+        problem = library.problem()
+        self.layout.label(text=problem or f"Echinus {library.load().__version__}", icon="ERROR" if problem else "INFO")
+
 
 CLASSES = [
     Preferences,

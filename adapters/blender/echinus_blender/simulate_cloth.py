@@ -7,11 +7,10 @@ import time
 import bpy
 
 from .bodies import said_of
-from .modes import object_mode
 from .modifiers import unchecked_movers
 from .playing import play
 from .refusal import Refusal
-from .reporting import Reporting
+from .operators import Reporting, object_mode
 from .run import Run, RunOptions
 from .sampling import sample
 

@@ -1,4 +1,9 @@
-"""Errors in Blender's way: shown in its window, a RuntimeError for scripts."""
+"""What operators share: errors in Blender's way, shown in its window, a RuntimeError for scripts; and object mode for a
+while, where alone the data of objects are what the user sees in other modes."""
+
+import contextlib
+
+import bpy
 
 from . import library
 from .refusal import Refusal
@@ -24,3 +29,20 @@ class Reporting:
         """Shows a result, and keeps it for the panel and for scripts."""
         scene.echinus.result = sentence
         self.report({"WARNING" if is_bad else "INFO"}, sentence)
+
+
+@contextlib.contextmanager
+def object_mode(context):
+    """Afterwards the active object is in its mode again, if it still is the active one."""
+    thing = context.object
+    mode = thing.mode if thing else "OBJECT"
+    if mode == "OBJECT":
+        yield
+        return
+    name = thing.name
+    bpy.ops.object.mode_set(mode="OBJECT")
+    try:
+        yield
+    finally:
+        if context.object and context.object.name == name:
+            bpy.ops.object.mode_set(mode=mode)
