@@ -3,6 +3,7 @@
 #include <echinus_render/render.hpp>
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 namespace echinus {
@@ -26,5 +27,18 @@ void require_drawable(std::uint64_t width, std::uint64_t height);
 
 /// @throws Error InvalidOptions when the picture is empty or its size is not that of its data
 void require_consistent(const Image& image);
+
+/// A place on a picture, in pixels from its upper left corner.
+struct PagePoint {
+    double x = 0, y = 0;
+};
+
+struct PageStroke {
+    PagePoint start, end;
+};
+
+/// Draws strokes of one width with round ends as one shape: overlaps do not show. Parts outside the picture
+/// are not drawn.
+void draw_strokes(Image& image, std::span<const PageStroke> strokes, double width_px, Colour colour);
 
 } // namespace echinus

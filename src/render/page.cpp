@@ -1,5 +1,3 @@
-#include "render/page.hpp"
-
 #include "render/image.hpp"
 
 #include <echinus/error.hpp>

@@ -4,7 +4,6 @@
 #include "geometry/whole_numbers.hpp"
 #include "tetrahedra/cut_points.hpp"
 #include "tetrahedra/mend.hpp"
-#include "tetrahedra/stencils.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus/tetrahedra.hpp>

@@ -1,7 +1,7 @@
 #include "geometry/parallel.hpp"
 #include "interface.hpp"
 #include "options.hpp"
-#include "reports.hpp"
+#include "values.hpp"
 
 #include <echinus/intersections.hpp>
 #include <echinus/mesh_io.hpp>

@@ -1,9 +1,12 @@
 #include "interface.hpp"
 
+#include <echinus/error.hpp>
 #include <echinus/instruction_set.hpp>
 #include <echinus/version.hpp>
 
 #include <pybind11/stl.h>
+
+#include <exception>
 
 PYBIND11_MODULE(_core, module) {
     using namespace echinus::python;
@@ -23,3 +26,55 @@ PYBIND11_MODULE(_core, module) {
     module.def("use_instruction_set", echinus::use_instruction_set,
                "Selects another set of vector instructions for the whole process.");
 }
+
+namespace echinus::python {
+
+namespace {
+
+const char* name_of(ErrorCode code) {
+    switch (code) {
+    case ErrorCode::Unreadable:
+        return "unreadable";
+    case ErrorCode::Unwritable:
+        return "unwritable";
+    case ErrorCode::WrongFormat:
+        return "wrong_format";
+    case ErrorCode::Damaged:
+        return "damaged";
+    case ErrorCode::UnsupportedVersion:
+        return "unsupported_version";
+    case ErrorCode::InvalidMesh:
+        return "invalid_mesh";
+    case ErrorCode::InvalidOptions:
+        return "invalid_options";
+    case ErrorCode::InvalidScene:
+        return "invalid_scene";
+    case ErrorCode::Diverged:
+        return "diverged";
+    }
+    return "internal";
+}
+
+/// A sentence may name a file whose name is not UTF-8: then as Python itself shows such names.
+py::str text_of(const Error& error) {
+    const std::string_view sentence = error.what();
+    return py::reinterpret_steal<py::str>(
+        PyUnicode_DecodeUTF8(sentence.data(), static_cast<Py_ssize_t>(sentence.size()), "surrogateescape"));
+}
+
+void translate(std::exception_ptr thrown) {
+    try {
+        if (thrown) std::rethrow_exception(thrown);
+    } catch (const Error& error) {
+        const py::object type = py::module_::import("echinus._errors").attr("Error");
+        PyErr_SetObject(type.ptr(), type(text_of(error), name_of(error.code())).ptr());
+    }
+}
+
+} // namespace
+
+void bind_errors(py::module_&) {
+    py::register_local_exception_translator(translate);
+}
+
+} // namespace echinus::python

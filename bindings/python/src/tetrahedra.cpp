@@ -1,7 +1,7 @@
 #include "interface.hpp"
 #include "mesh/local_frame.hpp"
 #include "options.hpp"
-#include "reports.hpp"
+#include "values.hpp"
 
 #include <echinus/exact_map.hpp>
 #include <echinus/mesh_io.hpp>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <echinus/geometry.hpp>
+#include <echinus/mesh.hpp>
 
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -33,5 +34,9 @@ std::tuple<double, double, double, double> to_python(const Rotation& rotation);
 /// @param what  is counted
 /// @throws IndexError
 std::size_t index_below(std::size_t count, std::int64_t index, const char* what);
+
+/// The members of a report, by their names, places in the frame of the file.
+/// @param origin  the mesh's
+pybind11::dict report_dict(const MeshReport& report, const Vec3d& origin);
 
 } // namespace echinus::python
