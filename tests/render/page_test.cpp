@@ -1,4 +1,4 @@
-#include "render/page.hpp"
+#include "render/image.hpp"
 
 #include <echinus/error.hpp>
 #include <echinus_render/render.hpp>

@@ -3,8 +3,8 @@
 #include "support/random_points.hpp"
 #include "support/soft_bodies.hpp"
 #include "tetrahedra/body_lattice.hpp"
+#include "tetrahedra/cut_points.hpp"
 #include "tetrahedra/mend.hpp"
-#include "tetrahedra/stencils.hpp"
 
 #include <echinus/exact_map.hpp>
 #include <echinus/intersections.hpp>

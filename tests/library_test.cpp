@@ -1,10 +1,21 @@
 #include "support/instruction_sets.hpp"
 
 #include <echinus/error.hpp>
+#include <echinus/version.hpp>
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 using namespace echinus;
+
+TEST(Version, IsOneInTheHeaderAndInTheLibrary) {
+    const std::string numbers = std::to_string(ECHINUS_VERSION_MAJOR) + "." +
+                                std::to_string(ECHINUS_VERSION_MINOR) + "." +
+                                std::to_string(ECHINUS_VERSION_PATCH);
+    EXPECT_EQ(ECHINUS_VERSION_STRING, numbers);
+    EXPECT_EQ(version(), numbers);
+}
 
 TEST(InstructionSet, EndsTheListWithTheReference) {
     ASSERT_FALSE(available_instruction_sets().empty());
