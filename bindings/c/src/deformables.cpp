@@ -6,7 +6,8 @@
 #include <echinus/soft_body.hpp>
 
 #include <array>
-#include <bit>
+#include <cstring>
+#include <type_traits>
 
 namespace echinus::c {
 
@@ -58,10 +59,14 @@ echinus_deformable_arrays arrays_of(const Deformable& deformable) {
 
 namespace {
 
-template <typename T>
-std::vector<T> copy_of(const T* first, std::size_t count, const char* name) {
-    const std::span<const T> values = values_at(first, count, name);
-    return {values.begin(), values.end()};
+/// Values of C++ from those of C, which lie in memory as they do.
+template <typename T, typename Given>
+std::vector<T> copy_of(const Given* first, std::size_t count, const char* name) {
+    static_assert(sizeof(T) == sizeof(Given) && std::is_trivially_copyable_v<T>);
+    const std::span<const Given> values = values_at(first, count, name);
+    std::vector<T> result(values.size());
+    if (!values.empty()) std::memcpy(static_cast<void*>(result.data()), values.data(), values.size_bytes());
+    return result;
 }
 
 std::vector<Stick> sticks_from(std::span<const echinus_stick> sticks) {
@@ -75,31 +80,6 @@ std::vector<Stick> sticks_from(std::span<const echinus_stick> sticks) {
     return result;
 }
 
-std::vector<Fold> folds_from(std::span<const echinus_fold> folds) {
-    std::vector<Fold> result;
-    for (const echinus_fold& f : folds) result.push_back({f.a, f.b, f.c, f.d, f.rest_angle, f.lever});
-    return result;
-}
-
-std::vector<Attachment> attachments_from(std::span<const echinus_attachment> attachments) {
-    std::vector<Attachment> result;
-    for (const echinus_attachment& a : attachments) result.push_back({a.particle, a.collider});
-    return result;
-}
-
-std::vector<CollisionFilter> filters_from(std::span<const echinus_collision_filter> filters) {
-    std::vector<CollisionFilter> result;
-    for (const echinus_collision_filter& f : filters) result.push_back({f.particle, f.collider});
-    return result;
-}
-
-std::vector<ElasticTetrahedron> tetrahedra_from(std::span<const echinus_elastic_tetrahedron> tetrahedra) {
-    std::vector<ElasticTetrahedron> result;
-    for (const echinus_elastic_tetrahedron& t : tetrahedra)
-        result.push_back(std::bit_cast<ElasticTetrahedron>(t));
-    return result;
-}
-
 Deformable deformable_from(const echinus_deformable_arrays& arrays) {
     const std::size_t count = arrays.particle_count;
     const std::vector<Vec3f> positions = points_from(arrays.positions, count, 0, "positions");
@@ -110,14 +90,13 @@ Deformable deformable_from(const echinus_deformable_arrays& arrays) {
                                   : points_from(arrays.previous_positions, count, 0, "previous_positions"),
         .inverse_masses = arrays.inverse_masses == nullptr
                               ? std::vector<float>(count, 1.0F)
-                              : copy_of(arrays.inverse_masses, count, "inverse_masses"),
+                              : copy_of<float>(arrays.inverse_masses, count, "inverse_masses"),
         .sticks = sticks_from(values_at(arrays.sticks, arrays.stick_count, "sticks")),
         .faces = faces_from(arrays.faces, arrays.face_count, "faces"),
-        .folds = folds_from(values_at(arrays.folds, arrays.fold_count, "folds")),
-        .attachments =
-            attachments_from(values_at(arrays.attachments, arrays.attachment_count, "attachments")),
-        .tetrahedra = tetrahedra_from(values_at(arrays.tetrahedra, arrays.tetrahedron_count, "tetrahedra")),
-        .filters = filters_from(values_at(arrays.filters, arrays.filter_count, "filters")),
+        .folds = copy_of<Fold>(arrays.folds, arrays.fold_count, "folds"),
+        .attachments = copy_of<Attachment>(arrays.attachments, arrays.attachment_count, "attachments"),
+        .tetrahedra = copy_of<ElasticTetrahedron>(arrays.tetrahedra, arrays.tetrahedron_count, "tetrahedra"),
+        .filters = copy_of<CollisionFilter>(arrays.filters, arrays.filter_count, "filters"),
     };
 }
 

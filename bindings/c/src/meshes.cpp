@@ -49,7 +49,7 @@ echinus_fault describe(const Fault& fault) {
     echinus_fault result{};
     result.count = fault.count;
     result.first_face_count = static_cast<std::uint32_t>(fault.first_faces.size());
-    std::ranges::copy(fault.first_faces, result.first_faces);
+    std::copy(fault.first_faces.begin(), fault.first_faces.end(), result.first_faces);
     return result;
 }
 
@@ -94,7 +94,7 @@ std::vector<std::uint32_t> dropped_faces(const RepairReport& report) {
     for (const auto& faces : {report.duplicate_faces_dropped, report.doubled_patch_faces_dropped,
                               report.slivers_dropped, report.inner_faces_dropped})
         result.insert(result.end(), faces.begin(), faces.end());
-    std::ranges::sort(result);
+    std::sort(result.begin(), result.end());
     return result;
 }
 

@@ -27,7 +27,7 @@ struct ToC {
     }
     template <std::size_t kCount>
     void operator()(const char*, double (&c)[kCount], const std::array<double, kCount>& o, Limits) const {
-        std::ranges::copy(o, c);
+        std::copy(o.begin(), o.end(), c);
     }
     void operator()(const char*, double (&c)[3], const Vec3d& o, Limits) const { put_vector(o, c); }
     void operator()(const char*, echinus_pose& c, const RigidTransform& o) const { c = pose_to_c(o); }

@@ -9,8 +9,12 @@ echinus_status echinus_map_contains(const echinus_map* map, const float* points,
                                     uint32_t thread_count, uint8_t* inside) {
     return guarded(__func__, [&] {
         with_map(map, [&](const auto& kind) {
-            contains_batch(kind.view(), batch_at<Vec3f>(points, count, stride, "points"),
-                           values_at(inside, count, "inside"), thread_count);
+            const auto batch = batch_at<Vec3f>(points, count, stride, "points");
+            const std::span<uint8_t> answers = values_at(inside, count, "inside");
+            if (count == 1) // the same bits, without what is done once for a batch
+                answers[0] = contains(kind.view(), batch[0]) ? 1 : 0;
+            else
+                contains_batch(kind.view(), batch, answers, thread_count);
         });
     });
 }
@@ -39,8 +43,13 @@ echinus_status echinus_map_contacts(const echinus_map* map, const float* points,
                                     float margin, uint32_t thread_count, echinus_contact* contacts) {
     return guarded(__func__, [&] {
         with_map(map, [&](const auto& kind) {
-            contacts_batch(kind.view(), batch_at<Vec3f>(points, count, stride, "points"),
-                           not_negative(margin, "margin"), contacts_at(contacts, count), thread_count);
+            const auto batch = batch_at<Vec3f>(points, count, stride, "points");
+            const std::span<Contact> answers = contacts_at(contacts, count);
+            not_negative(margin, "margin");
+            if (count == 1)
+                answers[0] = contact(kind.view(), batch[0], margin);
+            else
+                contacts_batch(kind.view(), batch, margin, answers, thread_count);
         });
     });
 }

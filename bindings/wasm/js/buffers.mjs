@@ -1,5 +1,6 @@
 import { Handle, requireOwn } from './core.mjs';
 import { EchinusError, refuse, requireCount } from './errors.mjs';
+import { contact } from './structs.mjs';
 
 /**
  * Module memory that JavaScript reads and writes through typed arrays, so that queries copy nothing.
@@ -12,7 +13,7 @@ class Buffer extends Handle {
 
     constructor(core, length, bytesPerItem) {
         requireCount(length, 'the length of a buffer');
-        super(core, core.take(Math.max(length * bytesPerItem, 1)), 'memory_give_back');
+        super(core, core.take(length * bytesPerItem), 'free');
         Object.defineProperty(this, 'length', { value: length, enumerable: true });
     }
 
@@ -47,20 +48,20 @@ export class FlagBuffer extends Buffer {
 
 const FEATURES = ['unknown', 'face', 'edge', 'vertex'];
 
-/** A Contact of the library, 36 bytes, read at an address. */
+/** A contact at an address. */
 export function readContact(core, address) {
     const { floats, ints, bytes } = core.views;
     const f = address >>> 2;
-    const inside = bytes[address + 32] !== 0;
-    const normal = Array.from(floats.subarray(f + 3, f + 6));
+    const inside = bytes[address + ContactBuffer.INSIDE] !== 0;
+    const normal = Array.from(floats.subarray(f + ContactBuffer.NORMAL, f + ContactBuffer.NORMAL + 3));
     return {
-        point: Array.from(floats.subarray(f, f + 3)),
+        point: Array.from(floats.subarray(f + ContactBuffer.POINT, f + ContactBuffer.POINT + 3)),
         normal,
-        depth: floats[f + 6],
-        face: ints[f + 7],
+        depth: floats[f + ContactBuffer.DEPTH],
+        face: ints[f + ContactBuffer.FACE],
         inside,
-        certain: bytes[address + 33] !== 0,
-        feature: FEATURES[bytes[address + 34]],
+        certain: bytes[address + ContactBuffer.CERTAIN] !== 0,
+        feature: FEATURES[bytes[address + ContactBuffer.FEATURE]],
         found: inside || normal.some((c) => c !== 0),
     };
 }
@@ -78,12 +79,12 @@ export class ContactBuffer extends Buffer {
     }
     get ints() {
         const { buffer } = this.floats;
-        if (this.#ints?.buffer !== buffer) this.#ints = new Int32Array(buffer, this.address, 9 * this.length);
+        if (this.#ints?.buffer !== buffer) this.#ints = new Int32Array(buffer, this.address, ContactBuffer.STRIDE * this.length);
         return this.#ints;
     }
     get bytes() {
         const { buffer } = this.floats;
-        if (this.#bytes?.buffer !== buffer) this.#bytes = new Uint8Array(buffer, this.address, 36 * this.length);
+        if (this.#bytes?.buffer !== buffer) this.#bytes = new Uint8Array(buffer, this.address, ContactBuffer.BYTES * this.length);
         return this.#bytes;
     }
     at(index) {
@@ -91,15 +92,9 @@ export class ContactBuffer extends Buffer {
         return readContact(this.core, this.address + ContactBuffer.BYTES * index);
     }
 }
-ContactBuffer.BYTES = 36;
-ContactBuffer.STRIDE = 9; // in floats and ints
-ContactBuffer.POINT = 0; // in floats, three each
-ContactBuffer.NORMAL = 3;
-ContactBuffer.DEPTH = 6; // in floats
-ContactBuffer.FACE = 7; // in ints
-ContactBuffer.INSIDE = 32; // in bytes
-ContactBuffer.CERTAIN = 33;
-ContactBuffer.FEATURE = 34;
+ContactBuffer.BYTES = contact.bytes;
+ContactBuffer.STRIDE = contact.bytes / 4; // in floats and ints
+for (const [member, [offset, kind]] of Object.entries(contact.members)) ContactBuffer[member.toUpperCase()] = kind === 'Uint8' ? offset : offset / 4;
 
 /**
  * The address of points for a batch, without a copy where they are a PointBuffer.

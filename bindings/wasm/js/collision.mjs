@@ -1,7 +1,8 @@
 import { Handle } from './core.mjs';
-import { EchinusError, refuse, requireFinite, withDefaults } from './errors.mjs';
+import { EchinusError, refuse, requireCount, requireFinite, withDefaults } from './errors.mjs';
 import { requireMap } from './maps.mjs';
 import { asIndices, asVertices } from './mesh.mjs';
+import { collider, deformableArrays, pose, simulationOptions, simulationProfile } from './structs.mjs';
 
 const NO_TURN = [1, 0, 0, 0];
 
@@ -10,13 +11,15 @@ export class Collision extends Handle {
     #views = { buffer: null };
 
     constructor(core, options) {
-        const { positions, faces, ...rest } = complete(options);
-        const [particleCount, faceCount] = [positions, faces].map(({ length }) => length / 3); // now: see Mesh.fromArrays
-        super(core, core.withCopies([positions, faces, mapsOf(core, rest.colliders)], (p, f, m) =>
-            core.withTexts([JSON.stringify(rest, withoutMaps)], (...text) =>
-                inOwnWords(() => core.try('collision_make', p, particleCount, f, faceCount, m, rest.colliders.length, ...text)))), 'collision_delete');
+        const all = complete(options);
+        const particleCount = all.positions.length / 3; // now: see Mesh.fromArrays
+        super(core, core.make('wasm_collision_make', inOwnWords(() => makeSimulation(core, all))), 'wasm_collision_delete');
         Object.defineProperty(this, 'particleCount', { value: particleCount, enumerable: true });
-        Object.defineProperty(this, 'colliderCount', { value: rest.colliders.length, enumerable: true });
+        Object.defineProperty(this, 'colliderCount', { value: all.colliders.length, enumerable: true });
+    }
+
+    get #simulation() {
+        return this.core.call('wasm_collision_simulation', this.address);
     }
 
     // Views of the module's memory: see Buffer in buffers.mjs.
@@ -27,9 +30,9 @@ export class Collision extends Handle {
             const at = (name) => this.core.call(name, address) >>> 0;
             this.#views = {
                 buffer,
-                positions: new Float32Array(buffer, at('collision_positions'), 3 * this.particleCount),
-                velocities: new Float32Array(buffer, at('collision_velocities'), 3 * this.particleCount),
-                corrected: new Uint32Array(buffer, at('collision_corrected'), this.particleCount),
+                positions: new Float32Array(buffer, at('wasm_collision_positions'), 3 * this.particleCount),
+                velocities: new Float32Array(buffer, at('wasm_collision_velocities'), 3 * this.particleCount),
+                corrected: new Uint32Array(buffer, at('wasm_collision_corrected'), this.particleCount),
             };
         }
         return this.#views;
@@ -41,22 +44,25 @@ export class Collision extends Handle {
         return this.#arrays.velocities;
     }
     get corrected() {
-        return this.#arrays.corrected.subarray(0, this.core.call('collision_corrected_count', this.address));
+        return this.#arrays.corrected.subarray(0, this.#correctedCount);
     }
     get squeezedCount() {
-        return this.core.call('collision_squeezed_count', this.address);
+        return this.core.ask(simulationProfile, 'echinus_simulation_read_profile', this.#simulation).squeezedCount;
+    }
+    get #correctedCount() {
+        return this.core.call('wasm_collision_corrected_count', this.address);
     }
 
-    setColliderPose(collider, position, rotation = NO_TURN) {
-        if (!(Number.isInteger(collider) && collider >= 0 && collider < this.colliderCount))
-            refuse(`there is no collider ${String(collider)}; there are ${this.colliderCount}`);
-        this.core.try('collision_set_pose', this.address, collider, ...requireFinite(position, 'the position'), ...requireRotation(rotation));
+    setColliderPose(index, position, rotation = NO_TURN) {
+        requireCount(index, 'the collider');
+        const place = { translation: Array.from(requireFinite(position, 'the position')), rotation: Array.from(requireRotation(rotation)) };
+        this.core.withStruct(pose, place, (address) => this.core.do('echinus_simulation_set_collider_pose', this.#simulation, index, address));
     }
 
     correct(seconds) {
         if (!(seconds > 0 && seconds < Infinity)) refuse(`the step takes ${String(seconds)} seconds; it must be a finite number above 0`);
-        this.core.try('collision_correct', this.address, seconds);
-        return this.core.call('collision_corrected_count', this.address);
+        this.core.do('wasm_collision_correct', this.address, seconds);
+        return this.#correctedCount;
     }
 }
 
@@ -67,15 +73,17 @@ const COLLIDER_DEFAULTS = { map: undefined, position: [0, 0, 0], rotation: NO_TU
 function complete(options) {
     const all = withDefaults(options, DEFAULTS, 'an option of a collision');
     if (!Array.isArray(all.colliders) || all.colliders.length === 0) refuse('colliders must be an array of at least one collider');
-    for (const name of ['thickness', 'friction']) if (!Number.isFinite(all[name])) refuse(`${name} is ${String(all[name])}; it must be a number`);
+    for (const name of ['thickness', 'friction']) if (!(Number.isFinite(all[name]) && all[name] >= 0)) refuse(`${name} is ${String(all[name])}; it must be a number, not negative`);
     for (const name of ['surfaces', 'selfCollision', 'allowOpenColliders', 'untangle']) if (typeof all[name] !== 'boolean') refuse(`${name} must be true or false`);
     const colliders = all.colliders.map((given) => {
-        const collider = withDefaults(given, COLLIDER_DEFAULTS, 'a key of a collider');
-        const scale = typeof collider.scale === 'number' ? Array(3).fill(collider.scale) : collider.scale;
+        const placed = withDefaults(given, COLLIDER_DEFAULTS, 'a key of a collider');
+        const scale = typeof placed.scale === 'number' ? Array(3).fill(placed.scale) : placed.scale;
         return {
-            map: collider.map,
-            position: Array.from(requireFinite(collider.position, 'the position of a collider')),
-            rotation: Array.from(requireRotation(collider.rotation)),
+            map: placed.map,
+            pose: {
+                translation: Array.from(requireFinite(placed.position, 'the position of a collider')),
+                rotation: Array.from(requireRotation(placed.rotation)),
+            },
             scale: Array.from(requireFinite(scale, 'the scale of a collider')),
         };
     });
@@ -102,5 +110,31 @@ function requireRotation(rotation) {
     return rotation;
 }
 
-const mapsOf = (core, colliders) => Uint32Array.from(colliders, ({ map }) => requireMap(core, map));
-const withoutMaps = (key, value) => (key === 'map' ? undefined : value);
+/**
+ * A simulation without sticks, in which particles only collide. Its unit of time is one step of the other solver, however
+ * long that is. Surfaces need more relaxations than particles, each of which has one nearest point.
+ */
+const options = ({ thickness, friction, surfaces, selfCollision, allowOpenColliders, untangle }) => ({
+    timeStep: 1, gravity: [0, 0, 0], drag: 0, iterationCount: surfaces ? 4 : 1,
+    bound: 1e30, // where the other solver sends its particles is not ours to judge
+    thickness, friction, surfaceCollision: surfaces, selfCollision, allowOpenColliders, untangle,
+});
+
+function makeSimulation(core, { positions, faces, colliders, ...rest }) {
+    const counts = { particleCount: positions.length / 3, faceCount: faces.length / 3 };
+    const maps = colliders.map(({ map }) => requireMap(core, map));
+    const deformable = core.withCopies([positions, faces], (p, f) =>
+        core.withStruct(deformableArrays, { ...counts, positions: p, faces: f }, (arrays) => core.make('echinus_deformable_create', arrays)));
+    try {
+        return core.withMemory(collider.bytes * colliders.length, (row) => {
+            colliders.forEach(({ pose, scale }, i) => {
+                core.call('echinus_collider_init', row + collider.bytes * i, collider.bytes, maps[i]);
+                core.write(collider, row + collider.bytes * i, { pose, scale });
+            });
+            return core.withOptions('echinus_simulation_options_init', simulationOptions, options(rest), (chosen) =>
+                core.make('echinus_simulation_create', deformable, row, colliders.length, chosen));
+        });
+    } finally {
+        core.call('echinus_deformable_destroy', deformable);
+    }
+}

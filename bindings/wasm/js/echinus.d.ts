@@ -249,21 +249,23 @@ export interface MeshFaults {
     degenerateFaces: Uint32Array;
 }
 export interface RepairReport {
-    duplicateFacesDropped: number[];
-    doubledPatchFacesDropped: number[];
+    duplicateFacesDropped: number;
+    doubledPatchFacesDropped: number;
     componentsFlipped: number;
-    /** What only a scene may ask for; 0 or empty otherwise. */
+    /** What only a scene may ask for; 0 otherwise. */
     holesClosed: number;
     holesLeft: number;
-    innerFacesDropped: number[];
+    innerFacesDropped: number;
     sheetsThickened: number;
     facesAdded: number;
     verticesWelded: number;
-    sliversDropped: number[];
+    sliversDropped: number;
     /** So that neighbours agree. */
     facesTurned: number;
     /** Holes without width. */
     seamsFilled: number;
+    /** The numbers of all dropped faces, ascending; those that closed a hole have the numbers after the mesh's. */
+    droppedFaces: Uint32Array;
 }
 
 // ---- Maps

@@ -65,10 +65,10 @@ export class Echinus {
         return this.#core.memory.buffer.byteLength;
     }
     get instructionSet() {
-        return this.#core.text('instruction_set_name');
+        return this.#core.textOf('echinus_instruction_set');
     }
     set instructionSet(name) {
-        this.#core.withTexts([String(name)], (text, size) => this.#core.try('instruction_set_use', text, size));
+        this.#core.withTexts([String(name)], (text) => this.#core.do('echinus_use_instruction_set', text));
     }
 
     makePoints(length) {

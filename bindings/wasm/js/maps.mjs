@@ -2,18 +2,19 @@ import { ContactBuffer, FlagBuffer, readContact, requireWithin, withPoints } fro
 import { Handle, requireOwn } from './core.mjs';
 import { refuse, requirePoint } from './errors.mjs';
 import { Mesh, asBytes } from './mesh.mjs';
+import { distanceMapStatistics, exactMapStatistics, mapInfo, sweepHit, words } from './structs.mjs';
 
 /** The queries of both kinds of map. */
 class Map extends Handle {
     #description = null;
 
     constructor(core, address) {
-        super(core, address, 'map_delete');
+        super(core, address, 'echinus_map_destroy');
     }
 
     /** Statistics and layout, which never change. */
     get description() {
-        this.#description ??= Object.freeze(this.core.json('map_describe', this.address));
+        this.#description ??= Object.freeze(describe(this.core, this.address));
         return this.#description;
     }
     get kind() {
@@ -33,22 +34,24 @@ class Map extends Handle {
     }
 
     contains(point) {
-        return this.core.call('map_contains', this.address, ...requirePoint(point, 'the point')) !== 0;
+        const { core } = this;
+        const place = writePoints(core, requirePoint(point, 'the point'));
+        core.do('echinus_map_contains', this.address, place, 1, 0, 1, place + RESULT);
+        return core.views.bytes[place + RESULT] !== 0;
     }
 
     contact(point, margin = 0) {
-        requirePoint(point, 'the point');
-        return withResult(this.core, (result) => {
-            this.core.call('map_contact', this.address, ...point, margin, result);
-            return readContact(this.core, result);
-        });
+        const { core } = this;
+        const place = writePoints(core, requirePoint(point, 'the point'));
+        core.do('echinus_map_contacts', this.address, place, 1, 0, margin, 1, place + RESULT);
+        return readContact(core, place + RESULT);
     }
 
     containsBatch(points, inside, count) {
         const flags = requireOwn(this.core, inside, FlagBuffer);
         return withPoints(this.core, points, count, (address, wanted) => {
             requireWithin(wanted, inside.length, 'answers');
-            this.core.call('map_contains_batch', this.address, address, wanted, flags);
+            this.core.do('echinus_map_contains', this.address, address, wanted, 0, 1, flags);
             return inside;
         });
     }
@@ -57,34 +60,26 @@ class Map extends Handle {
         const results = requireOwn(this.core, contacts, ContactBuffer);
         return withPoints(this.core, points, count, (address, wanted) => {
             requireWithin(wanted, contacts.length, 'contacts');
-            this.core.call('map_contacts_batch', this.address, address, wanted, margin, results);
+            this.core.do('echinus_map_contacts', this.address, address, wanted, 0, margin, 1, results);
             return contacts;
         });
     }
 
-    ray(direction) {
-        return this.core.json('map_ray', this.address, ...requirePoint(direction, 'the direction'));
+    /** Lists about a ray, in the order of src/looking.cpp. */
+    lookAlong(direction) {
+        const lists = this.core.lists('wasm_map_ray', this.address, ...requirePoint(direction, 'the direction'));
+        const intervals = records(lists.pop(), 'from', 'to', 'inside', 'certain');
+        return [...lists, intervals.map(({ inside, certain, ...rest }) => ({ ...rest, inside: inside !== 0, certain: certain !== 0 }))];
     }
 
     /** A Mesh, owned by the caller, and a number for each of its faces. */
     surfaceAndClasses() {
-        const surface = this.core.try('map_surface', this.address);
-        try {
-            const mesh = new Mesh(this.core, this.core.try('surface_mesh', surface));
-            return [mesh, this.core.copyWords(this.core.call('surface_classes', surface), mesh.faceCount)];
-        } finally {
-            this.core.call('surface_delete', surface);
-        }
+        const [mesh, classes] = this.core.makeAll(2, 'echinus_map_surface', this.address);
+        return [new Mesh(this.core, mesh), this.core.copyArray(classes)];
     }
 
     save() {
-        const bytes = this.core.try('map_serialise', this.address);
-        try {
-            const first = this.core.call('bytes_first', bytes) >>> 0;
-            return this.core.views.bytes.slice(first, first + this.core.call('bytes_size', bytes));
-        } finally {
-            this.core.call('bytes_delete', bytes);
-        }
+        return this.core.copyArray(this.core.make('echinus_map_serialise', this.address), Uint8Array);
     }
 }
 
@@ -93,8 +88,12 @@ export class DistanceMap extends Map {
         const [mesh, layers] = this.surfaceAndClasses();
         return { mesh, layers };
     }
+    ray(direction) {
+        const [samples, sampleEntryCounts, used, crossings, intervals] = this.lookAlong(direction);
+        return { samples, sampleEntryCounts, samplesUsed: used.map(Boolean), crossings, intervals };
+    }
     usableSampleCount(point) {
-        return this.core.call('map_usable_sample_count', this.address, ...requirePoint(point, 'the point'));
+        return this.core.call('wasm_map_usable_sample_count', this.address, ...requirePoint(point, 'the point'));
     }
 }
 
@@ -104,70 +103,113 @@ export class ExactMap extends Map {
         return { mesh, longestLists };
     }
 
+    ray(direction) {
+        const [[cell], corners, bands, crossings, intervals] = this.lookAlong(direction);
+        return {
+            cell,
+            cellCorners: [0, 3, 6].map((i) => corners.slice(i, i + 3)),
+            bands: records(bands, 'from', 'to', 'faceCount', 'windingBelow').map(({ windingBelow, ...band }) => ({ ...band, windingBelow: Number.isNaN(windingBelow) ? null : windingBelow })),
+            crossings,
+            intervals,
+        };
+    }
+
     classify(point) {
-        const bits = this.core.call('map_classify', this.address, ...requirePoint(point, 'the point'));
-        return { inside: (bits & 1) !== 0, certain: (bits & 2) !== 0 };
+        const { core } = this;
+        const place = writePoints(core, requirePoint(point, 'the point'));
+        core.do('echinus_map_classify', this.address, place, 1, 0, place + RESULT, place + RESULT + 1);
+        const { bytes } = core.views;
+        return { inside: bytes[place + RESULT] !== 0, certain: bytes[place + RESULT + 1] !== 0 };
     }
 
     sweep(from, to) {
-        requirePoint(from, 'the beginning of the way');
-        requirePoint(to, 'the end of the way');
-        return withResult(this.core, (result) => {
-            this.core.call('map_sweep', this.address, ...from, ...to, result);
-            const { floats, ints, bytes } = this.core.views;
-            const f = result >>> 2;
-            const face = ints[f + 7];
-            return {
-                fraction: floats[f],
-                point: Array.from(floats.subarray(f + 1, f + 4)),
-                normal: Array.from(floats.subarray(f + 4, f + 7)),
-                face,
-                entering: bytes[result + 32] !== 0,
-                found: face !== -1,
-            };
-        });
+        const { core } = this;
+        const place = writePoints(core, requirePoint(from, 'the beginning of the way'), requirePoint(to, 'the end of the way'));
+        core.do('echinus_map_sweep', this.address, place, 0, place + POINT, 0, 1, place + RESULT);
+        const { floats, ints, bytes } = core.views;
+        const f = (place + RESULT) >>> 2;
+        const face = ints[f + HIT.face / 4];
+        return {
+            fraction: floats[f + HIT.fraction / 4],
+            point: Array.from(floats.subarray(f + HIT.point / 4, f + HIT.point / 4 + 3)),
+            normal: Array.from(floats.subarray(f + HIT.normal / 4, f + HIT.normal / 4 + 3)),
+            face,
+            entering: bytes[place + RESULT + HIT.entering] !== 0,
+            found: face !== -1,
+        };
     }
 
     cells() {
-        const arrays = this.core.try('map_cells', this.address);
-        try {
-            const numbers = (which) => this.core.copyWords(
-                this.core.call('arrays_numbers', arrays, which), this.core.call('arrays_number_count', arrays, which));
-            return {
-                bandCounts: numbers(0),
-                faceCounts: numbers(1),
-                corners: this.core.copyFloats(this.core.call('arrays_floats', arrays, 0), this.core.call('arrays_float_count', arrays, 0)),
-            };
-        } finally {
-            this.core.call('arrays_delete', arrays);
-        }
+        const [bands, faces, corners] = this.core.makeAll(3, 'wasm_map_cells', this.address);
+        return { bandCounts: this.core.copyArray(bands), faceCounts: this.core.copyArray(faces), corners: this.core.copyArray(corners, Float32Array) };
     }
 }
 
-/** Memory for one answer. */
-function withResult(core, use) {
-    const result = core.take(ContactBuffer.BYTES);
-    try {
-        return use(result);
-    } finally {
-        core.giveBack(result);
+// One point or two, and the answer about them, in the scratch of a core.
+const POINT = 12;
+const RESULT = 24;
+
+/** Where the members of a hit lie. */
+const HIT = Object.fromEntries(Object.entries(sweepHit.members).map(([name, [offset]]) => [name, offset]));
+
+/** @returns the address of a point or two, behind which is room for the answer */
+function writePoints(core, first, second) {
+    const place = core.scratch;
+    const { floats } = core.views;
+    for (let k = 0; k < 3; ++k) {
+        floats[(place >>> 2) + k] = first[k];
+        if (second) floats[((place + POINT) >>> 2) + k] = second[k];
     }
+    return place;
+}
+
+const KINDS = [undefined, 'exact', 'distance'];
+
+/** Objects with these members from their values, one after the other. */
+const records = (values, ...names) =>
+    Array.from({ length: values.length / names.length }, (_, i) => Object.fromEntries(names.map((name, k) => [name, values[i * names.length + k]])));
+
+function exactLayout([numbers]) {
+    const [divisions, rule, closed, cellCount, bandCount, referenceCount] = numbers;
+    return { divisions, rule: words.rule[rule], closed: closed !== 0, cellCount, bandCount, referenceCount };
+}
+function distanceLayout([numbers, entryHistogram]) {
+    const [grid, longitudeCount, colatitudeCount, divisions, pole, entry, correction, centreInside, directionCount, entryCount] = numbers;
+    const choices = { grid: words.grid[grid], poleAxis: words.pole[pole], entryFormat: words.entry[entry], correction: words.correction[correction] };
+    return { ...choices, longitudeCount, colatitudeCount, divisions, centreInside: centreInside !== 0, directionCount, entryCount, entryHistogram };
+}
+
+function describe(core, address) {
+    const { kind, sourceHash, ...info } = core.ask(mapInfo, 'echinus_map_describe', address);
+    const layout = core.lists('wasm_map_layout', address);
+    const details = KINDS[kind] === 'exact'
+        ? { ...core.ask(exactMapStatistics, 'echinus_map_exact_statistics', address), ...exactLayout(layout) }
+        : { ...core.ask(distanceMapStatistics, 'echinus_map_distance_statistics', address), ...distanceLayout(layout) };
+    return { kind: KINDS[kind], ...info, sourceHash: BigInt(sourceHash).toString(16).padStart(16, '0'), ...details };
 }
 
 /** The map at an address, as an object of its kind. */
 export function wrapMap(core, address) {
-    return core.call('map_is_exact', address) ? new ExactMap(core, address) : new DistanceMap(core, address);
+    return KINDS[core.ask(mapInfo, 'echinus_map_describe', address).kind] === 'exact' ? new ExactMap(core, address) : new DistanceMap(core, address);
 }
 
 export function buildMap(core, mesh, options) {
     const meshAddress = requireOwn(core, mesh, Mesh);
-    return core.withTexts([asJson(options)], (text, size) => wrapMap(core, core.try('map_build', meshAddress, text, size)));
+    return core.withTexts([asJson(options)], (text) => wrapMap(core, core.make('wasm_map_build', meshAddress, text)));
 }
 
 export function loadMap(core, bytes, name) {
     const data = asBytes(bytes);
-    return core.withTexts([name], (n, size) =>
-        core.withCopies([data], (b) => wrapMap(core, core.try('map_load', b, data.length, n, size))));
+    return core.withTexts([name], (n) => {
+        const own = core.take(data.length); // of the map, which reads it in place
+        try {
+            core.views.bytes.set(data, own);
+            return wrapMap(core, core.make('echinus_map_view', own, data.length, core.call('wasm_free'), own, n));
+        } catch (error) {
+            core.giveBack(own);
+            throw error;
+        }
+    });
 }
 
 export function requireMap(core, map) {

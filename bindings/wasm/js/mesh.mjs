@@ -1,112 +1,108 @@
 import { Handle, requireOwn } from './core.mjs';
 import { refuse, requireCount, requirePoint } from './errors.mjs';
+import { meshReport, repairOptions, repairReport, repairs } from './structs.mjs';
 
 const FAULTS = ['borderEdges', 'nonmanifoldEdges', 'misorientedEdges', 'duplicateFaces', 'degenerateFaces'];
-const REPAIRS = ['duplicate_faces', 'doubled_patches', 'inside_out', 'seams', 'slivers', 'orientation'];
 
 export class Mesh extends Handle {
     constructor(core, address) {
-        super(core, address, 'mesh_delete');
+        super(core, address, 'echinus_mesh_destroy');
     }
 
     static fromArrays(core, vertices, faces) {
         const arrays = [asVertices(vertices), asIndices(faces, 'faces', 3)];
         const [vertexCount, faceCount] = arrays.map(({ length }) => length / 3); // now: the module's own arrays are empty once its memory grows
-        return core.withCopies(arrays, (v, f) => new Mesh(core, core.try('mesh_make', v, vertexCount, f, faceCount)));
+        return core.withCopies(arrays, (v, f) => new Mesh(core, core.make('echinus_mesh_create', v, vertexCount, 0, f, faceCount)));
     }
     static fromPolygons(core, vertices, corners, cornerCounts) {
         const arrays = [asVertices(vertices), asIndices(corners, 'corners', 1), asIndices(cornerCounts, 'corner counts', 1)];
         const [coordinateCount, cornerCount, polygonCount] = arrays.map(({ length }) => length);
         return core.withCopies(arrays, (v, c, n) =>
-            new Mesh(core, core.try('mesh_make_from_polygons', v, coordinateCount / 3, c, cornerCount, n, polygonCount)));
+            new Mesh(core, core.make('wasm_mesh_from_polygons', v, coordinateCount / 3, c, cornerCount, n, polygonCount)));
     }
     static fromBytes(core, bytes, name) {
         if (typeof name !== 'string') refuse('the name of the file is required; its extension gives the format');
         const data = asBytes(bytes);
-        return core.withTexts([name], (n, size) =>
-            core.withCopies([data], (b) => new Mesh(core, core.try('mesh_read', b, data.length, n, size))));
+        return core.withTexts([name], (n) =>
+            core.withCopies([data], (b) => new Mesh(core, core.make('wasm_mesh_from_bytes', b, data.length, n))));
     }
     static torus(core, majorRadius, minorRadius, majorSegments, minorSegments) {
         requireCount(majorSegments, 'majorSegments');
         requireCount(minorSegments, 'minorSegments');
-        return new Mesh(core, core.try('mesh_make_torus', majorRadius, minorRadius, majorSegments, minorSegments));
+        return new Mesh(core, core.make('echinus_mesh_torus', majorRadius, minorRadius, majorSegments, minorSegments));
     }
     static sphere(core, radius, meridianCount, parallelCount) {
         requireCount(meridianCount, 'meridianCount');
         requireCount(parallelCount, 'parallelCount');
-        return new Mesh(core, core.try('mesh_make_sphere', radius, meridianCount, parallelCount));
+        return new Mesh(core, core.make('echinus_mesh_sphere', radius, meridianCount, parallelCount));
     }
     static box(core, size, segments) {
         requirePoint(size, 'the size of a box');
         requireCount(segments, 'segments');
-        return new Mesh(core, core.try('mesh_make_box', ...size, segments));
+        return new Mesh(core, core.make('echinus_mesh_box', ...core.vectorsAt(size), segments));
     }
 
     get vertexCount() {
-        return this.core.call('mesh_vertex_count', this.address);
+        return this.core.call('echinus_mesh_vertex_count', this.address);
     }
     get faceCount() {
-        return this.core.call('mesh_face_count', this.address);
+        return this.core.call('echinus_mesh_face_count', this.address);
     }
     /** Copies. */
     get vertices() {
-        return this.core.copyFloats(this.core.call('mesh_vertices', this.address), 3 * this.vertexCount);
+        return this.core.copyFloats(this.core.call('echinus_mesh_vertices', this.address), 3 * this.vertexCount);
     }
     get origin() {
-        const address = this.core.call('mesh_origin', this.address) >>> 0;
-        return Array.from(new Float64Array(this.core.views.bytes.buffer, address, 3));
+        return this.core.copyDoubles(this.core.call('echinus_mesh_origin', this.address), 3);
     }
     get faces() {
-        return this.core.copyWords(this.core.call('mesh_faces', this.address), 3 * this.faceCount);
+        return this.core.copyWords(this.core.call('echinus_mesh_faces', this.address), 3 * this.faceCount);
     }
 
     report() {
-        return this.core.json('mesh_report', this.address);
+        const { closed, manifold, orientable, centre, radius, ...report } = this.core.ask(meshReport, 'echinus_mesh_inspect', this.address);
+        for (const name of FAULTS) report[name] = { count: report[name].count, firstFaces: report[name].firstFaces.slice(0, report[name].firstFaceCount) };
+        return { ...report, closed: closed !== 0, manifold: manifold !== 0, orientable: orientable !== 0, boundingSphere: { centre, radius } };
     }
 
     faults() {
-        const lists = this.#numbers(FAULTS.length, 'mesh_faults');
-        return Object.fromEntries(FAULTS.map((name, which) => [name, lists[which]]));
+        const lists = this.core.makeAll(FAULTS.length, 'wasm_mesh_faults', this.address);
+        return Object.fromEntries(FAULTS.map((name, which) => [name, this.core.copyArray(lists[which])]));
     }
 
     intersectingPairs(other) {
-        return this.#numbers(1, 'mesh_intersecting_pairs', requireOwn(this.core, other, Mesh))[0];
+        return this.core.copyArray(this.core.make('echinus_mesh_intersecting_pairs', this.address, requireOwn(this.core, other, Mesh)), Uint32Array, 2);
     }
     selfIntersectingPairs() {
-        return this.#numbers(1, 'mesh_self_intersecting_pairs')[0];
-    }
-
-    /** Copies of the first lists of numbers that an export returns. */
-    #numbers(listCount, name, ...args) {
-        const arrays = this.core.try(name, this.address, ...args);
-        try {
-            return Array.from({ length: listCount }, (_, which) =>
-                this.core.copyWords(this.core.call('arrays_numbers', arrays, which), this.core.call('arrays_number_count', arrays, which)));
-        } finally {
-            this.core.call('arrays_delete', arrays);
-        }
+        return this.core.copyArray(this.core.make('echinus_mesh_self_intersecting_pairs', this.address), Uint32Array, 2);
     }
 
     weld() {
-        return new Mesh(this.core, this.core.try('mesh_weld', this.address));
+        return new Mesh(this.core, this.core.make('echinus_mesh_weld', this.address));
     }
 
-    repair(words = REPAIRS) {
-        for (const word of words) if (!REPAIRS.includes(word)) refuse(`there is no repair '${word}'; there are ${REPAIRS.join(', ')}`);
-        const repaired = this.core.try('mesh_repair', this.address, ...REPAIRS.map((word) => (words.includes(word) ? 1 : 0)));
-        try {
-            const report = this.core.json('repaired_report', repaired);
-            return { mesh: new Mesh(this.core, this.core.try('repaired_mesh', repaired)), report };
-        } finally {
-            this.core.call('repaired_delete', repaired);
-        }
+    repair(words = Object.keys(repairs)) {
+        const { core } = this;
+        for (const word of words) if (!Object.keys(repairs).includes(word)) refuse(`there is no repair '${word}'; there are ${Object.keys(repairs).join(', ')}`);
+        const steps = Object.fromEntries(words.map((word) => [repairs[word], 1]));
+        return core.withOptions('echinus_repair_options_init', repairOptions, steps, (options) =>
+            core.withStruct(repairReport, {}, (report) => {
+                const [mesh, dropped] = [core.scratch, core.scratch + 4];
+                core.do('echinus_mesh_repair', this.address, options, mesh, report, dropped);
+                const [repaired, droppedFaces] = [mesh, dropped].map((place) => core.views.words[place >>> 2]);
+                return { mesh: new Mesh(core, repaired), report: { ...core.read(repairReport, report), droppedFaces: core.copyArray(droppedFaces) } };
+            }));
     }
 
     windingNumber(point) {
-        return this.core.call('mesh_winding_number', this.address, ...requirePoint(point, 'the point'));
+        return this.#numberAt(point, 'echinus_mesh_winding_number');
     }
     unsignedDistance(point) {
-        return this.core.call('mesh_unsigned_distance', this.address, ...requirePoint(point, 'the point'));
+        return this.#numberAt(point, 'echinus_mesh_unsigned_distance');
+    }
+    #numberAt(point, name) {
+        this.core.do(name, this.address, ...this.core.vectorsAt(requirePoint(point, 'the point')), this.core.scratch);
+        return this.core.copyDoubles(this.core.scratch, 1)[0];
     }
 }
 

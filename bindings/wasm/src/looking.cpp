@@ -1,6 +1,5 @@
-// Inspects maps: their surfaces and cells, and their data along one ray.
+// Looks into maps: their layout and cells, and their data along one ray.
 
-#include "arrays.hpp"
 #include "directions/face_cone.hpp"
 #include "directions/octahedral_cells.hpp"
 #include "distance_map/interpolation.hpp"
@@ -12,11 +11,35 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <iterator>
+#include <limits>
 #include <vector>
 
 namespace echinus::wasm {
 
 namespace {
+
+// ---- Layouts
+
+void add_layout(const DistanceMap& map, Lists& lists) {
+    const DistanceMapView& view = map.view();
+    lists.add(std::initializer_list<std::size_t>{
+        static_cast<std::size_t>(view.grid), view.longitude_count, view.colatitude_count, view.divisions,
+        static_cast<std::size_t>(view.pole_axis), static_cast<std::size_t>(view.entry_format),
+        static_cast<std::size_t>(view.correction), view.centre_inside, view.direction_count(),
+        view.entry_count()});
+    lists.add(entry_histogram(view));
+}
+
+void add_layout(const ExactMap& map, Lists& lists) {
+    const ExactMapView& view = map.view();
+    lists.add(std::initializer_list<std::size_t>{view.divisions, static_cast<std::size_t>(view.rule),
+                                                 view.border.empty(), view.cell_count(),
+                                                 view.bands.size() - 1, view.references.size()});
+}
+
+// ---- Along a ray
 
 /// @throws Error InvalidOptions
 Vec3d unit_direction(double x, double y, double z) {
@@ -28,12 +51,10 @@ Vec3d unit_direction(double x, double y, double z) {
     return direction * (1 / size);
 }
 
-/// An interval of a ray on which the answer does not change.
-json interval(double from, double to, bool inside, bool certain = true) {
-    return {{"from", from}, {"to", to}, {"inside", inside}, {"certain", certain}};
+/// Intervals of a ray on each of which the answer does not change: from, to, inside, certain.
+void add_interval(std::vector<double>& intervals, double from, double to, bool inside, bool certain = true) {
+    intervals.insert(intervals.end(), {from, to, inside ? 1.0 : 0.0, certain ? 1.0 : 0.0});
 }
-
-// ---- Exact maps
 
 /// Distances from the centre at which a ray crosses the faces that a cell lists, ascending.
 std::vector<double> crossings_of(const ExactMapView& map, const BandRange& bands, const LatticePoint& along) {
@@ -54,28 +75,30 @@ std::vector<double> crossings_of(const ExactMapView& map, const BandRange& bands
     return distances;
 }
 
-json bands_along(const ExactMapView& map, const BandRange& bands, double length_per_unit) {
-    json result = json::array();
+/// Of each band: from, to, its faces, and the winding number towards the centre, NaN where it is not unique.
+std::vector<double> bands_along(const ExactMapView& map, const BandRange& bands, double length_per_unit) {
+    std::vector<double> result;
     for (std::uint32_t band = bands.first; band < bands.last; ++band) {
         const Band& b = map.bands[band];
         const int winding = map.winding_below[band];
         const bool known = winding != ExactMapView::kUncertain && winding != ExactMapView::kSplit;
-        result.push_back({{"from", b.lower * length_per_unit},
-                          {"to", b.upper * length_per_unit},
-                          {"faceCount", map.bands[band + 1].first_reference - b.first_reference},
-                          {"windingBelow", known ? json(winding) : json()}});
+        result.insert(result.end(),
+                      {b.lower * length_per_unit, b.upper * length_per_unit,
+                       static_cast<double>(map.bands[band + 1].first_reference - b.first_reference),
+                       known ? winding : std::numeric_limits<double>::quiet_NaN()});
     }
     return result;
 }
 
 /// The side does not change between crossings, so each interval is classified at its middle.
-json intervals_along(const ExactMapView& map, const std::vector<double>& crossings, const Vec3d& unit) {
-    json result = json::array();
+std::vector<double> intervals_along(const ExactMapView& map, const std::vector<double>& crossings,
+                                    const Vec3d& unit) {
+    std::vector<double> result;
     double from = 0;
     const auto add = [&](double to) {
         if (!(to > from)) return;
         const Containment side = classify(map, Vec3f(Vec3d(map.centre) + unit * ((from + to) / 2)));
-        result.push_back(interval(from, to, side.inside, side.certain));
+        add_interval(result, from, to, side.inside, side.certain);
         from = to;
     };
     for (const double distance : crossings) add(distance);
@@ -83,16 +106,16 @@ json intervals_along(const ExactMapView& map, const std::vector<double>& crossin
     return result;
 }
 
-json corners_of_cell(const OctahedralCells& cells, std::uint32_t cell) {
-    json result = json::array();
+/// Unit vectors to the three corners of a cell, after those that are there.
+template <typename T>
+void add_corners(const OctahedralCells& cells, std::uint32_t cell, std::vector<T>& corners) {
     for (const Vec3d& corner : cells.corners(cell)) {
         const Vec3d unit = corner * (1 / length(corner));
-        result.push_back({unit.x, unit.y, unit.z});
+        for (const double c : {unit.x, unit.y, unit.z}) corners.push_back(static_cast<T>(c));
     }
-    return result;
 }
 
-json look_along(const ExactMapView& map, const Vec3d& unit) {
+void look_along(const ExactMapView& map, const Vec3d& unit, Lists& lists) {
     const LatticePoint along = lattice_direction(unit);
     const OctahedralCells cells(map.divisions);
     const std::uint32_t cell = cells.locate(along).cell;
@@ -100,106 +123,100 @@ json look_along(const ExactMapView& map, const Vec3d& unit) {
     const double l1_per_length = std::fabs(unit.x) + std::fabs(unit.y) + std::fabs(unit.z);
     const double length_per_unit = ExactMapView::kBandUnit * frame_of(map).step / l1_per_length;
     const std::vector<double> crossings = crossings_of(map, bands, along);
-    return {{"cell", cell},
-            {"cellCorners", corners_of_cell(cells, cell)},
-            {"bands", bands_along(map, bands, length_per_unit)},
-            {"crossings", crossings},
-            {"intervals", intervals_along(map, crossings, unit)}};
+    std::vector<double> corners;
+    add_corners(cells, cell, corners);
+    lists.add(std::initializer_list<std::uint32_t>{cell});
+    lists.add(corners);
+    lists.add(bands_along(map, bands, length_per_unit));
+    lists.add(crossings);
+    lists.add(intervals_along(map, crossings, unit));
 }
-
-// ---- Distance maps
 
 /// The values that a query for a particle on this ray interpolates.
 template <typename Grid>
-json look_along(const DistanceMapView& map, const Grid& grid, const Vec3f& unit) {
+void look_along(const DistanceMapView& map, const Grid& grid, const Vec3f& unit, Lists& lists) {
     const auto at = grid.coordinates_of(grid.to_grid(unit));
     const Interpolation<Grid> samples = interpolation_at(map, grid, grid.cell_at(at));
-    std::vector<double> crossings;
-    json intervals = json::array();
+    std::vector<double> crossings, intervals;
     double from = 0;
     for (std::uint32_t k = 0; k <= samples.entry_count; ++k) {
         const bool last = k == samples.entry_count;
         const double to = last ? map.radius : Grid::distance_of(interpolated(map, samples, k), at);
         if (!last) crossings.push_back(to);
-        if (to > from) intervals.push_back(interval(from, to, (k % 2 == 0) == map.centre_inside));
+        if (to > from) add_interval(intervals, from, to, (k % 2 == 0) == map.centre_inside);
         from = std::max(from, to);
     }
     std::array<std::uint32_t, 4> entry_counts{};
     for (std::size_t corner = 0; corner < 4; ++corner)
         entry_counts[corner] = entry_count_of(map, samples.cell.corners[corner]);
-    return {{"samples", samples.cell.corners},
-            {"sampleEntryCounts", entry_counts},
-            {"samplesUsed", samples.usable},
-            {"crossings", crossings},
-            {"intervals", intervals}};
+    lists.add(samples.cell.corners);
+    lists.add(entry_counts);
+    lists.add(samples.usable);
+    lists.add(crossings);
+    lists.add(intervals);
 }
 
-json look_along(const DistanceMapView& map, const Vec3d& unit) {
-    return with_grid(map, [&](const auto& grid) { return look_along(map, grid, Vec3f(unit)); });
+void look_along(const DistanceMapView& map, const Vec3d& unit, Lists& lists) {
+    with_grid(map, [&](const auto& grid) { look_along(map, grid, Vec3f(unit), lists); });
 }
 
-// ---- Surfaces and cells
+// ---- Cells
 
-/// A surface to colour: the layer of each face, or the longest list that contains it.
-struct ColouredSurface {
-    TriangleMesh mesh;
-    std::vector<std::uint32_t> classes;
+struct Cells {
+    std::vector<std::uint32_t> band_counts, face_counts; ///< [cell_count] bands, and faces in all their lists
+    std::vector<float> corners;                          ///< [9 cell_count] unit vectors
 };
 
-ColouredSurface surface_of(const ExactMap& map) {
-    ExactMapSurface surface = reconstruct_surface(map.view());
-    return {std::move(surface.mesh), std::move(surface.longest_list)};
-}
-ColouredSurface surface_of(const DistanceMap& map) {
-    MapSurface surface = reconstruct_surface(map.view());
-    return {std::move(surface.mesh), std::move(surface.layer)};
-}
-
-/// @return  numbers: bands of each cell, faces in all lists of each cell; floats: unit vectors to each cell's
-/// three corners
-Arrays cells_of(const ExactMapView& map) {
-    Arrays result;
+Cells cells_of(const ExactMapView& map) {
+    Cells result;
     const OctahedralCells cells(map.divisions);
     for (std::uint32_t cell = 0; cell < map.cell_count(); ++cell) {
         const BandRange bands = bands_of_cell(map, cell);
-        result.numbers[0].push_back(bands.last - bands.first);
-        result.numbers[1].push_back(map.bands[bands.last].first_reference -
-                                    map.bands[bands.first].first_reference);
-        for (const Vec3d& corner : cells.corners(cell)) {
-            const Vec3d unit = corner * (1 / length(corner));
-            for (const double c : {unit.x, unit.y, unit.z}) result.floats[0].push_back(static_cast<float>(c));
-        }
+        result.band_counts.push_back(bands.last - bands.first);
+        result.face_counts.push_back(map.bands[bands.last].first_reference -
+                                     map.bands[bands.first].first_reference);
+        add_corners(cells, cell, result.corners);
     }
     return result;
 }
 
 } // namespace
 
-ECHINUS_EXPORT(map_ray) Text* map_ray(const AnyMap* map, double x, double y, double z) {
-    return make_json([&] {
-        const Vec3d unit = unit_direction(x, y, z);
-        return std::visit([&](const auto& kind) { return look_along(kind.view(), unit); }, *map);
+/// The layout of a map, as far as echinus_map_describe() and the statistics leave it out.
+ECHINUS_EXPORT(wasm_map_layout)
+echinus_status wasm_map_layout(const echinus_map* map, echinus_array** layout) {
+    return make(__func__, layout, [&] {
+        Lists lists;
+        with_map(map, [&](const auto& kind) { add_layout(kind, lists); });
+        return lists.array();
     });
 }
 
-ECHINUS_EXPORT(map_surface) ColouredSurface* map_surface(const AnyMap* map) {
-    return make_handle([&] { return std::visit([](const auto& kind) { return surface_of(kind); }, *map); });
-}
-/// Moves the mesh out.
-ECHINUS_EXPORT(surface_mesh) TriangleMesh* surface_mesh(ColouredSurface* surface) {
-    return make_handle([&] { return std::move(surface->mesh); });
-}
-/// [face_count]
-ECHINUS_EXPORT(surface_classes) const std::uint32_t* surface_classes(const ColouredSurface* surface) {
-    return surface->classes.data();
-}
-ECHINUS_EXPORT(surface_delete) void surface_delete(ColouredSurface* surface) {
-    delete surface;
+ECHINUS_EXPORT(wasm_map_ray)
+echinus_status wasm_map_ray(const echinus_map* map, double x, double y, double z, echinus_array** ray) {
+    return make(__func__, ray, [&] {
+        const Vec3d unit = unit_direction(x, y, z);
+        Lists lists;
+        with_map(map, [&](const auto& kind) { look_along(kind.view(), unit, lists); });
+        return lists.array();
+    });
 }
 
-/// Of an exact map.
-ECHINUS_EXPORT(map_cells) Arrays* map_cells(const AnyMap* map) {
-    return make_handle([&] { return cells_of(std::get<ExactMap>(*map).view()); });
+ECHINUS_EXPORT(wasm_map_cells)
+echinus_status wasm_map_cells(const echinus_map* map, echinus_array** band_counts,
+                              echinus_array** face_counts, echinus_array** corners) {
+    return guarded(__func__, [&] {
+        Cells cells = cells_of(exact_map_at(map).view());
+        put_arrays({band_counts, face_counts, corners},
+                   {array_of(std::move(cells.band_counts)), array_of(std::move(cells.face_counts)),
+                    array_of(std::move(cells.corners))});
+    });
+}
+
+/// @pre the map is a distance map
+ECHINUS_EXPORT(wasm_map_usable_sample_count)
+int wasm_map_usable_sample_count(const echinus_map* map, float x, float y, float z) {
+    return usable_sample_count(std::get<DistanceMap>(map->value.kind).view(), {x, y, z});
 }
 
 } // namespace echinus::wasm

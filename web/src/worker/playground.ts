@@ -405,7 +405,7 @@ export class Playground {
         const { mesh, report } = this.#mesh.repair();
         this.#mesh.delete();
         this.#mesh = mesh;
-        this.#mendedFaces = report.duplicateFacesDropped.length + report.doubledPatchFacesDropped.length;
+        this.#mendedFaces = report.duplicateFacesDropped + report.doubledPatchFacesDropped;
         this.#flippedParts = report.componentsFlipped;
     }
 
