@@ -190,7 +190,7 @@ class BadMesh : public CommandLineTest {
     json info(const std::string& name) const { return json::parse(expect_success({"info", name, "--json"})); }
 };
 
-constexpr const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+constexpr const char* kOneFace = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 } // namespace
 
@@ -201,7 +201,7 @@ TEST_F(BadMesh, ThatIsMissingOrADirectory) {
 }
 
 TEST_F(BadMesh, ThatIsOneFaceIsDescribedButBuiltOnlyWhenTold) {
-    write("one.obj", std::string(kTriangle) + "f 1 2 3\n");
+    write("one.obj", kOneFace);
     EXPECT_EQ(info("one.obj")["border_edges"], 3);
     expect_failure(1, "not closed", {"build", "one.obj", "-o", "map.ech"});
     expect_success(
