@@ -1,16 +1,148 @@
 #include "geometry/union_find.hpp"
+#include "geometry/whole_numbers.hpp"
 #include "mesh/faces.hpp"
-#include "repair/edge_balance.hpp"
 #include "repair/repairs.hpp"
+
+#include <echinus/mesh.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace echinus {
+
+namespace {
+
+/// How many more faces of a mesh run one way along each edge than the other: its *imbalance*, 0 at every edge
+/// of a closed mesh. repair() drops faces only where that leaves no edge with a larger imbalance, so it never
+/// opens a closed mesh.
+class EdgeBalance {
+  public:
+    using Faces = std::vector<std::uint32_t>;
+    static constexpr std::uint32_t kNoEdge = std::numeric_limits<std::uint32_t>::max();
+
+    /// @pre indices are in range
+    explicit EdgeBalance(const TriangleMesh& mesh);
+
+    std::size_t edge_count() const { return sums_.size(); }
+    /// The three edges of a face, numbered from 0, or kNoEdge three times where two of its corners are equal.
+    std::span<const std::uint32_t, 3> edges_of(std::uint32_t face) const {
+        return std::span(edges_of_face_).subspan(3 * std::size_t{face}).first<3>();
+    }
+
+    /// By how much the imbalances fall in total if these faces, each named once, are dropped.
+    std::ptrdiff_t gain_without(const Faces& faces);
+
+    /// The faces of as many sets as can be dropped together without a larger imbalance anywhere. Sets at an
+    /// edge where all of them together would leave one are given up, and so on. Time O(n log n) of the faces
+    /// in the sets.
+    /// @param sets  disjoint
+    Faces droppable(std::vector<Faces> sets);
+
+    void drop(const Faces& faces) { add(faces, -1); }
+
+  private:
+    std::size_t imbalance(std::uint32_t edge) const {
+        return static_cast<std::size_t>(sums_[edge] < 0 ? -sums_[edge] : sums_[edge]);
+    }
+    Faces edges_at(const Faces& faces) const;
+    void add(const Faces& faces, std::int32_t count);
+
+    std::vector<std::uint32_t> edges_of_face_; ///< [3 * face_count]
+    std::vector<std::int8_t> directions_;      ///< [3 * face_count] 1 or -1
+    std::vector<std::int32_t> sums_;           ///< [edge_count]
+};
+
+EdgeBalance::EdgeBalance(const TriangleMesh& mesh)
+    : edges_of_face_(3 * mesh.faces.size(), kNoEdge), directions_(3 * mesh.faces.size()) {
+    for_each_edge(sorted_edge_uses(mesh), [&](std::span<const EdgeUse> uses) {
+        const auto edge = kept_as<std::uint32_t>(sums_.size());
+        sums_.push_back(0);
+        for (const EdgeUse& use : uses) {
+            const std::size_t place = 3 * std::size_t{use.face} + use.corner;
+            edges_of_face_[place] = edge;
+            directions_[place] = use.ascending ? 1 : -1;
+            sums_[edge] += directions_[place];
+        }
+    });
+}
+
+void EdgeBalance::add(const Faces& faces, std::int32_t count) {
+    for (const std::uint32_t face : faces)
+        for (std::size_t place = 3 * std::size_t{face}; place < 3 * std::size_t{face} + 3; ++place)
+            if (edges_of_face_[place] != kNoEdge) sums_[edges_of_face_[place]] += count * directions_[place];
+}
+
+/// The edges of some faces, each once.
+EdgeBalance::Faces EdgeBalance::edges_at(const Faces& faces) const {
+    Faces edges;
+    for (const std::uint32_t face : faces)
+        for (const std::uint32_t edge : edges_of(face))
+            if (edge != kNoEdge) edges.push_back(edge);
+    std::sort(edges.begin(), edges.end());
+    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    return edges;
+}
+
+std::ptrdiff_t EdgeBalance::gain_without(const Faces& faces) {
+    const std::vector<std::uint32_t> edges = edges_at(faces);
+    const auto total = [&] {
+        std::ptrdiff_t sum = 0;
+        for (const std::uint32_t edge : edges) sum += static_cast<std::ptrdiff_t>(imbalance(edge));
+        return sum;
+    };
+    const std::ptrdiff_t before = total();
+    add(faces, -1);
+    const std::ptrdiff_t after = total();
+    add(faces, 1);
+    return before - after;
+}
+
+EdgeBalance::Faces EdgeBalance::droppable(std::vector<Faces> sets) {
+    struct EdgeOfSet {
+        std::uint32_t edge;
+        std::size_t set, before; ///< and the imbalance with all faces
+    };
+    std::vector<EdgeOfSet> uses;
+    for (std::size_t set = 0; set < sets.size(); ++set)
+        for (const std::uint32_t edge : edges_at(sets[set])) uses.push_back({edge, set, imbalance(edge)});
+    std::stable_sort(uses.begin(), uses.end(),
+                     [](const EdgeOfSet& a, const EdgeOfSet& b) { return a.edge < b.edge; });
+    for (const Faces& set : sets) add(set, -1);
+
+    // A face that is put back changes the balance of its edges, which may spoil other sets there.
+    std::vector<std::uint32_t> changed;
+    for (const EdgeOfSet& use : uses) changed.push_back(use.edge);
+    while (!changed.empty()) {
+        const std::uint32_t edge = changed.back();
+        changed.pop_back();
+        auto use = std::partition_point(uses.begin(), uses.end(),
+                                        [&](const EdgeOfSet& other) { return other.edge < edge; });
+        if (imbalance(edge) <= use->before) continue;
+        for (; use != uses.end() && use->edge == edge; ++use) {
+            const Faces given_up = std::exchange(sets[use->set], {});
+            add(given_up, 1);
+            for (const std::uint32_t other : edges_at(given_up)) changed.push_back(other);
+        }
+    }
+    Faces result;
+    for (const Faces& set : sets) {
+        add(set, 1);
+        result.insert(result.end(), set.begin(), set.end());
+    }
+    std::sort(result.begin(), result.end());
+    return result;
+}
+
+} // namespace
 
 // The faces that repair() drops from a surface before anything else: equal ones, doubled patches and loose
 // slivers; each where that leaves no edge less balanced.

@@ -1,9 +1,10 @@
 #include "tetrahedra/body_lattice.hpp"
-#include "geometry/whole_numbers.hpp"
-#include "geometry/parallel.hpp"
 
-#include <cmath>
+#include "geometry/parallel.hpp"
+#include "geometry/whole_numbers.hpp"
+
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <tuple>
 #include <utility>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <echinus/geometry.hpp>
 #include <echinus/exact_map.hpp>
+#include <echinus/geometry.hpp>
 
 #include <array>
 #include <cstddef>

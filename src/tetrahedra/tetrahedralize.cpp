@@ -2,7 +2,7 @@
 #include "geometry/box.hpp"
 #include "geometry/parallel.hpp"
 #include "geometry/whole_numbers.hpp"
-#include "tetrahedra/cut_points.hpp"
+#include "tetrahedra/body_lattice.hpp"
 #include "tetrahedra/mend.hpp"
 
 #include <echinus/error.hpp>

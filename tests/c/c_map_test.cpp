@@ -1,20 +1,20 @@
 #include "handles.hpp"
-#include "support/temporary_folder.hpp"
 #include "support/random_points.hpp"
+#include "support/temporary_folder.hpp"
 
-#include <echinus/map_file.hpp>
-#include <echinus/mesh.hpp>
 #include <echinus/distance_map.hpp>
 #include <echinus/exact_map.hpp>
+#include <echinus/map_file.hpp>
+#include <echinus/mesh.hpp>
 #include <echinus/surface_queries.hpp>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <algorithm>
-#include <array>
 #include <limits>
 
 using namespace echinus;

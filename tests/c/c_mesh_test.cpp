@@ -2,16 +2,16 @@
 #include "support/random_points.hpp"
 #include "support/temporary_folder.hpp"
 
+#include <echinus/exact_map.hpp>
 #include <echinus/intersections.hpp>
 #include <echinus/mesh.hpp>
 #include <echinus/mesh_io.hpp>
-#include <echinus/exact_map.hpp>
 #include <echinus/tetrahedra.hpp>
 
 #include <gtest/gtest.h>
 
-#include <cstdint>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <limits>
 

@@ -1,8 +1,8 @@
+#include "directions/cast_rays.hpp"
+#include "directions/face_cone.hpp"
 #include "directions/lattice.hpp"
 #include "mesh/require_valid.hpp"
 #include "support/expectations.hpp"
-#include "directions/cast_rays.hpp"
-#include "directions/face_cone.hpp"
 #include "support/meshes.hpp"
 
 #include <echinus/error.hpp>
@@ -12,9 +12,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <string>
 #include <vector>
-#include <random>
 
 using namespace echinus;
 

@@ -1,5 +1,5 @@
-#include "support/random_points.hpp"
 #include "exact_map/query/ray_crossing.hpp"
+#include "support/random_points.hpp"
 
 #include <echinus/exact_map.hpp>
 

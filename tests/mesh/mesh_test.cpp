@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <random>
-#include <array>
 
 using namespace echinus;
 using namespace echinus::test;

@@ -1,11 +1,11 @@
 // The judge of intersections agrees with CGAL's exact predicates.
 
+#include "judges/check_cloth.hpp"
 #include "judges/intersection_judge.hpp"
 #include "judges/nasty_meshes.hpp"
-#include "support/meshes.hpp"
-#include "judges/check_cloth.hpp"
 #include "mesh_io/point_cache.hpp"
 #include "support/expectations.hpp"
+#include "support/meshes.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <echinus/mesh_io.hpp>

@@ -3,7 +3,6 @@
 #include "support/random_points.hpp"
 #include "support/soft_bodies.hpp"
 #include "tetrahedra/body_lattice.hpp"
-#include "tetrahedra/cut_points.hpp"
 #include "tetrahedra/mend.hpp"
 
 #include <echinus/exact_map.hpp>
