@@ -194,10 +194,9 @@ void init_struct(Struct* result, std::size_t size, Struct defaults) noexcept {
     std::memcpy(result, &defaults, common_size(size, sizeof(Struct)));
 }
 
-/// No padding at the end, or after the member before it: see read_struct(). Where an address has four bytes,
-/// in the JavaScript module, program and library are of one version.
+/// No padding at the end, or after the member before it: see read_struct().
 #define ECHINUS_REQUIRE_NO_PADDING_AFTER(STRUCT, LAST)                                                       \
-    static_assert(sizeof(void*) == 4 || sizeof(STRUCT) == offsetof(STRUCT, LAST) + sizeof(STRUCT::LAST))
+    static_assert(sizeof(STRUCT) == offsetof(STRUCT, LAST) + sizeof(STRUCT::LAST))
 
 } // namespace echinus::c
 
