@@ -1,5 +1,5 @@
-#include "bad_meshes.hpp"
 #include "rivals/dense_grid/dense_grid.hpp"
+#include "support/expectations.hpp"
 #include "support/instruction_sets.hpp"
 #include "support/random_points.hpp"
 
@@ -163,30 +163,6 @@ TEST(DenseGrid, BatchesGiveTheBitsOfSingleQueriesUnderEachInstructionSet) {
     }
 }
 
-TEST(DenseGrid, PutsWhatIsBeyondTheBoxOrNotFiniteOutside) {
-    const DenseGrid grid = DenseGrid::with_samples(make_box({2, 2, 2}), 5);
-    std::vector<Vec3f> points{{1.001F, 0, 0},    {0, -1.001F, 0},    {0, 0, 3e38F},     {kNan, 0, 0},
-                              {0, kInfinity, 0}, {0, 0, -kInfinity}, {kNan, kNan, kNan}};
-    std::vector<std::uint8_t> inside(points.size(), 2);
-    grid.contains_batch(points, inside);
-    EXPECT_EQ(inside, std::vector<std::uint8_t>(points.size(), 0));
-    std::vector<Contact> contacts(points.size());
-    grid.contacts_batch(points, contacts);
-    for (const Contact& contact : contacts) EXPECT_FALSE(contact.found());
-}
-
-TEST(DenseGrid, UsesItsBudgetAndNoMore) {
-    const TriangleMesh mesh = make_torus(0.7, 0.3, 24, 12);
-    for (const SampleFormat format : kFormats)
-        for (const std::size_t budget : {40'000U, 630'000U}) {
-            const DenseGrid grid = DenseGrid::with_bytes(mesh, budget, in(format));
-            EXPECT_LE(grid.byte_count(), budget);
-            EXPECT_GT(grid.byte_count(), budget * 9 / 10);
-            EXPECT_EQ(grid.byte_count(), grid.node_count(0) * grid.node_count(1) * grid.node_count(2) *
-                                             (format == SampleFormat::Float32 ? 4 : 2));
-        }
-}
-
 TEST(DenseGrid, HasAsManySamplesAlongTheLongestSideAsAskedFor) {
     for (const std::uint32_t sample_count : {2U, 3U, 10U, 50U}) {
         const DenseGrid grid = DenseGrid::with_samples(make_box({0.3, 0.7, 0.1}), sample_count);
@@ -230,11 +206,6 @@ TEST(DenseGrid, RefusesPaddingThatIsNone) {
     }
 }
 
-TEST(DenseGrid, RefusesBadMeshes) {
-    test::expect_bad_meshes_are_refused([](const TriangleMesh& mesh) { DenseGrid::with_samples(mesh, 10); });
-    test::expect_bad_meshes_are_refused([](const TriangleMesh& mesh) { DenseGrid::with_bytes(mesh, 1000); });
-}
-
 TEST(DenseGrid, RefusesSizesThatNoGridHas) {
     const TriangleMesh mesh = make_box({1, 1, 1});
     for (const std::uint32_t count : {0U, 1U, DenseGrid::kMaxSamples + 1})
@@ -248,16 +219,6 @@ TEST(DenseGrid, RefusesSizesThatNoGridHas) {
                  [&] { DenseGrid::with_bytes(mesh, std::numeric_limits<std::size_t>::max()); });
     for (const double spacing : {0.0, -1.0, 1.5, double{kNan}, double{kInfinity}, 1e-9})
         EXPECT_THROW(DenseGrid::with_spacing(mesh, spacing), Error) << spacing;
-}
-
-TEST(DenseGrid, OfAFlatMeshHasNoInside) {
-    const DenseGrid grid = DenseGrid::with_samples(test::flat_mesh(), 9);
-    EXPECT_EQ(grid.node_count(2), 2);
-    std::vector<Vec3f> points;
-    for (int i = 0; i <= 20; ++i) points.push_back({0.05F * static_cast<float>(i), 0.2F, 0});
-    std::vector<std::uint8_t> inside(points.size(), 2);
-    grid.contains_batch(points, inside);
-    EXPECT_EQ(inside, std::vector<std::uint8_t>(points.size(), 0));
 }
 
 TEST(DenseGrid, MayBeAsSmallOrAsLargeAsAMap) {

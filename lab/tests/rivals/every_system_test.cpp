@@ -243,21 +243,3 @@ TEST(EverySystem, FindsNothingInAFlatMesh) {
         EXPECT_EQ(inside, std::vector<std::uint8_t>(points.size(), 0)) << system.name;
     }
 }
-
-TEST(DistanceMapSystem, UsesItsBudgetAndNoMore) {
-    const TriangleMesh mesh = make_torus(0.7, 0.3, 24, 12);
-    for (const DirectionGrid grid : {DirectionGrid::Spherical, DirectionGrid::Octahedral})
-        for (const std::size_t budget : {20'000U, 630'000U}) {
-            DistanceMapOptions options;
-            options.grid = grid;
-            const auto map = rivals::distance_map(mesh, rivals::finest_within(mesh, budget, options));
-            EXPECT_LE(map->byte_count(), budget);
-            EXPECT_GT(map->byte_count(), budget * 9 / 10);
-        }
-}
-
-TEST(DistanceMapSystem, RefusesABudgetThatTheCoarsestMapExceeds) {
-    test::expect_error(ErrorCode::InvalidOptions, "budget", [] {
-        (void)rivals::finest_within(make_box({1, 1, 1}), 50);
-    });
-}

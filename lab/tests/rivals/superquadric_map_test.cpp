@@ -282,10 +282,6 @@ TEST(SuperquadricMap, IsTheSameWhetherItsSegmentsWereFittedForItOrForAnother) {
     expect_same_answers(map, SuperquadricMap::build(torus, options), torus);
 }
 
-TEST(SuperquadricMap, RefusesWhatItCannotBeBuiltAround) {
-    test::expect_bad_meshes_are_refused([](const TriangleMesh& mesh) { (void)SuperquadricMap::build(mesh); });
-}
-
 TEST(SuperquadricMap, HasNoSegmentsWhereThereIsNoVolume) {
     TriangleMesh squashed = make_box({1, 1, 1}, 2);
     for (Vec3f& p : squashed.vertices) p.z = 0;
