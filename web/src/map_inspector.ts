@@ -1,11 +1,11 @@
 import type { Raycaster } from 'three';
-import { UNIT, furthestAlong } from './axes';
+import { UNIT, furthestAlong } from './frames';
 import { forgetRay, showLegend, showRay } from './panel/map_figures';
 import type { CellNews, FromWorker, MapNews, ModelNews, SurfaceNews, ToWorker, Triple } from './protocol';
 import type { Settings } from './settings';
 import { MapView } from './view/map_view';
 
-export interface InspectorWishes {
+interface InspectorWishes {
     settings(): Settings;
     /** The tour chooses the ray and the cut. */
     isGuided(): boolean;

@@ -1,11 +1,12 @@
+import type { ColliderState, DistanceMapDescription, ExactMapDescription, MeshFaults, MeshReport, RayInterval } from 'echinus';
+import type { Axis } from './frames';
+import type { Shape } from './normals';
+import type { Settings } from './settings';
+
 /**
  * The messages between the page and the worker. The worker holds the mesh, the maps and the cloth; the page draws.
  * Large arrays are transferred, and returned to be filled again.
  */
-import type { ColliderState, DistanceMapDescription, ExactMapDescription, MeshFaults, MeshReport, RayInterval } from 'echinus';
-import type { Axis } from './axes';
-import type { Shape } from './creased_normals';
-import type { Settings } from './settings';
 
 export type Triple = [number, number, number];
 
@@ -81,7 +82,7 @@ export interface FrameArrays {
     positions: Float32Array<ArrayBuffer>;
     /** [3 particles] */
     normals: Float32Array<ArrayBuffer>;
-    /** [particles] depth of contact (worker/depth.ts), where the colours need it. */
+    /** [particles] depth of contact (worker/judge.ts), where the colours need it. */
     depths: Float32Array<ArrayBuffer>;
 }
 
@@ -205,3 +206,6 @@ export interface Figures {
     inside?: number;
     stepCount: number;
 }
+
+/** Do the faces look inwards? Undecided for an open mesh, whose volume is meaningless. */
+export const isInsideOut = ({ closed, signedVolume }: MeshReport): boolean => closed && signedVolume < 0;

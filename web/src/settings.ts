@@ -1,4 +1,4 @@
-import { AXES, type Axis } from './axes';
+import { AXES, type Axis } from './frames';
 import * as standpoint from './standpoint';
 
 /** All of the visitor's choices. A link contains them, the panel shows them, the worker applies them. */
@@ -45,6 +45,9 @@ export interface Settings {
 }
 
 export type Sample = 'horse' | 'torus' | 'sphere' | 'figure' | 'organ' | 'ring' | 'flag' | 'layers';
+/** Whether the horse was available when the page was built (vite.config.js). */
+declare const HAS_HORSE: boolean;
+
 /** On these samples, and on every file, sheets fall; around the others something else happens. */
 export const UNDER_SHEETS: readonly Sample[] = ['horse', 'torus', 'sphere'];
 export const CELLS = ['auto', '16', '64', '256', '1024', '4096', '16384', '65536'] as const;

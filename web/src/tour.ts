@@ -1,10 +1,9 @@
-import { furthestAlong } from './axes';
-import { byId } from './panel/elements';
-import { count } from './panel/numbers';
+import { furthestAlong } from './frames';
+import { byId, count } from './panel/elements';
 import type { ModelNews, Triple } from './protocol';
 import type { Settings } from './settings';
 
-export interface TourWishes {
+interface TourWishes {
     model(): ModelNews | undefined;
     settings(): Settings;
     choose<K extends keyof Settings>(key: K, value: Settings[K]): void;

@@ -1,6 +1,5 @@
 import { CELLS, DEFAULTS, RANGES, SAMPLES, SAMPLE_NAMES, type Settings } from '../settings';
-import { byId } from './elements';
-import { count } from './numbers';
+import { byId, count } from './elements';
 
 type Control = HTMLInputElement | HTMLSelectElement;
 

@@ -1,7 +1,8 @@
-import type { Cuts, Figures, MapNews } from '../protocol';
-import { byId, writeCount } from './elements';
+import { type Cuts, type Figures, type MapNews, type ModelNews, isInsideOut } from '../protocol';
+import type { Counts } from '../side';
+import { FAULT } from '../view/colours';
+import { byId, bytes, count, make, milliseconds, numbered, perSecond, swatch, writeCount } from './elements';
 import { remark } from './notice';
-import { bytes, milliseconds, perSecond } from './numbers';
 
 /** How often the figures are updated: flickering numbers are unreadable. */
 const PERIOD_MS = 250;
@@ -91,4 +92,84 @@ export class FigureStrip {
         this.#sums = { ...NOTHING };
         this.#mostInside = 0;
     }
+}
+
+/** What falls, and what is counted of it. */
+export interface Cloth {
+    particles: number;
+    soft: boolean;
+    counts: Counts;
+}
+
+/** One sentence with the page's own figures: what is there, that nothing is wrong with it, and what that took. Of the map alone, where no cloth is seen. */
+export function showHeadline(map: MapNews, cloth?: Cloth): void {
+    const ofMap = `map of ${bytes(map.byteCount)} built in ${milliseconds(map.buildMs)}`;
+    const isExact = map.kind === 'exact';
+    const parts = cloth
+        ? [
+              make('span', `${count(cloth.particles)} ${cloth.soft ? 'particles of a soft body' : 'particles'}, `),
+              verdict(cloth.counts),
+              make('span', `, ${isExact ? 'a' : 'the paper\u2019s'} ${ofMap}`),
+          ]
+        : [make('span', `${isExact ? 'An exact' : 'The paper\u2019s'} ${ofMap}`)];
+    // At a thin space a line may end, and a number must not.
+    for (const part of parts) part.textContent = part.textContent!.replaceAll('\u2009', '\u202f');
+    if (byId('headline').textContent !== parts.map(({ textContent }) => textContent).join('')) byId('headline').replaceChildren(...parts);
+}
+
+function verdict(counts: Counts): HTMLElement {
+    const wrong = wrongsOf(counts);
+    if (wrong.length > 0) return make('span', wrong.join(' and '), 'bad');
+    if (counts.withModel !== undefined) return make('span', 'no face through the model', 'good');
+    return counts.inside === undefined ? make('span', 'falling') : make('span', 'none inside the model', 'good');
+}
+
+/** What is wrong with a cloth, in words; nothing, where nothing is. */
+function wrongsOf({ inside = 0, withModel = 0 }: Counts): string[] {
+    return [
+        ...(inside > 0 ? [`${count(inside)} inside the model`] : []),
+        ...(withModel > 0 ? [`${count(withModel)} ${withModel === 1 ? 'pair of faces' : 'pairs of faces'} cut`] : []),
+    ];
+}
+
+/** Beneath a half of the picture. */
+export function showHalf(id: 'half-left' | 'half-right', title: string | undefined, counts: Counts): void {
+    const half = byId(id);
+    const { inside = 0, withModel } = counts;
+    if (title) half.querySelector('strong')!.textContent = title;
+    const cut = withModel === undefined ? '' : withModel === 0 ? ', none cut' : `, ${numbered(withModel, 'pair', 'pairs')} of faces cut`;
+    half.querySelector('span')!.textContent = `${inside === 0 ? 'none' : count(inside)} inside${cut}`;
+    half.className = wrongsOf(counts).length > 0 ? 'bad' : 'good';
+}
+
+/** The mesh report: closed or not, and each fault with the colour that marks it on the model. */
+export function showReport({ report, mendedFaces, flippedParts, certainShare }: ModelNews): void {
+    const parts = report.componentCount === 1 ? 'one part' : `${count(report.componentCount)} parts`;
+    const lines = [
+        make('p', `${numbered(report.faceCount, 'face', 'faces')}, ${numbered(report.vertexCount, 'vertex', 'vertices')}, ${parts}`),
+        make('p', report.closed ? 'Closed: inside and outside are exact' : 'Open: sides are estimated near the gaps', report.closed ? 'good' : 'bad'),
+        ...(report.closed ? [] : [make('p', whatOpenMeans(certainShare), 'note')]),
+        ...(isInsideOut(report) ? [make('p', 'Inside out: its faces look inwards', 'bad')] : []),
+        ...faultLine(report.borderEdges.count, 'border edge', 'border edges', FAULT.borderEdges),
+        ...faultLine(report.nonmanifoldEdges.count, 'edge of more than two faces', 'edges of more than two faces', FAULT.nonmanifoldEdges),
+        ...faultLine(report.misorientedEdges.count, 'edge between faces turned apart', 'edges between faces turned apart', FAULT.misorientedEdges),
+        ...faultLine(report.duplicateFaces.count, 'face that is there twice', 'faces that are there twice', FAULT.faces),
+        ...faultLine(report.degenerateFaces.count, 'face without area', 'faces without area', FAULT.faces),
+    ];
+    if (mendedFaces > 0) lines.push(make('p', `${numbered(mendedFaces, 'face', 'faces')} left out that repeated others`));
+    if (flippedParts > 0) lines.push(make('p', `${numbered(flippedParts, 'inside-out part', 'inside-out parts')} turned round`));
+    byId('report').replaceChildren(...lines);
+}
+
+/** For somebody who has never had to think about it. */
+function whatOpenMeans(certainShare: number): string {
+    const share = `${(100 * certainShare).toFixed(certainShare > 0.995 && certainShare < 1 ? 2 : 0)}\u2009%`;
+    return `Its faces do not enclose a solid, so near its gaps what is inside is a guess; in ${share} of the ball around it the answer is certain. As long as surfaces collide, no face of the cloth gets through it all the same. Close its holes in the program it came from, or by "echinus mesh repair", and all answers are certain.`;
+}
+
+function faultLine(number: number, one: string, many: string, colour: number): HTMLElement[] {
+    if (number === 0) return [];
+    const line = make('p', numbered(number, one, many));
+    line.prepend(swatch(colour));
+    return [line];
 }

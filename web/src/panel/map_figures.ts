@@ -1,8 +1,7 @@
 import type { CellNews, Difference, FromWorker, MapNews, SurfaceNews } from '../protocol';
 import type { Settings } from '../settings';
 import { LAYERS } from '../view/colours';
-import { byId, make, scaleBar, swatch } from './elements';
-import { bytes, count, milliseconds } from './numbers';
+import { byId, bytes, count, make, milliseconds, scaleBar, swatch } from './elements';
 
 /** The map in numbers. */
 export function showMapFigures({ description, byteCount, buildMs }: MapNews): void {

@@ -1,6 +1,5 @@
-import { byId, make, writeCount } from '../panel/elements';
-import { count, milliseconds, perSecond } from '../panel/numbers';
-import type { Description, RecordedFrame } from './description';
+import { byId, count, make, milliseconds, perSecond, writeCount } from '../panel/elements';
+import type { Description, RecordedFrame } from './recording';
 
 /** The facts that do not change during playback. */
 export function showAbout(description: Description): void {

@@ -1,6 +1,5 @@
 /** Starts the player, or shows why it cannot. */
 import '../style.css';
-import './player.css';
 import { enableClosing, say } from '../panel/notice';
 import { Player } from './player';
 import { Recording } from './recording';

@@ -1,5 +1,101 @@
-import { ByteReader, fromBase64 } from './byte_reader';
-import type { Description } from './description';
+import type { ColliderState } from 'echinus';
+import type { Triple } from '../protocol';
+
+/** Reads a stream in pieces of any number of bytes. */
+class ByteReader {
+    readonly #reader: ReadableStreamDefaultReader<Uint8Array>;
+    #chunk = new Uint8Array(0);
+
+    constructor(stream: ReadableStream<Uint8Array>) {
+        this.#reader = stream.getReader();
+    }
+
+    async take(count: number): Promise<Uint8Array<ArrayBuffer>> {
+        const bytes = new Uint8Array(count);
+        for (let filled = 0; filled < count; ) {
+            if (this.#chunk.length === 0) await this.#next();
+            const part = this.#chunk.subarray(0, count - filled);
+            bytes.set(part, filled);
+            filled += part.length;
+            this.#chunk = this.#chunk.subarray(part.length);
+        }
+        return bytes;
+    }
+
+    async #next(): Promise<void> {
+        const { done, value } = await this.#reader.read();
+        if (done) throw new Error('it ends too early');
+        this.#chunk = new Uint8Array(value);
+    }
+}
+
+/** Decodes base64 text piece by piece on demand. */
+function fromBase64(text: string): ReadableStream<Uint8Array<ArrayBuffer>> {
+    const LENGTH = 1 << 18; // a multiple of 4, so that each piece gives whole bytes
+    let next = 0;
+    return new ReadableStream({
+        pull(controller) {
+            if (next >= text.length) return controller.close();
+            const piece = atob(text.slice(next, next + LENGTH));
+            next += LENGTH;
+            const bytes = new Uint8Array(piece.length);
+            for (let i = 0; i < piece.length; ++i) bytes[i] = piece.charCodeAt(i);
+            controller.enqueue(bytes);
+        },
+    });
+}
+
+/** The description that `echinus simulate --html` writes beside the data (docs/command_line.md). */
+export interface Description {
+    format: number;
+    version: string;
+    machine: string;
+    scene: string;
+    /** The parts are colliders, where there are several: their vertices follow each other, and then their faces. */
+    model: { name: string; notice: string; vertices: number; faces: number; centre: Triple; radius: number; parts?: Part[] };
+    cloth_faces: number;
+    lattice_step: number;
+    figures: Figures;
+    frames: RecordedFrame[];
+}
+
+export interface Part {
+    vertices: number;
+    faces: number;
+}
+
+export type Pose = Pick<ColliderState, 'position' | 'rotation'>;
+
+export interface Figures {
+    particles: number;
+    sticks: number;
+    solver: string;
+    substeps: number;
+    iterations: number;
+    time_step: number;
+    frames: number;
+    frames_to_rest: number | null;
+    ms_per_frame: { integration: number; constraints: number; collision: number; total: number };
+    queries_per_frame: number;
+    ns_per_query: number;
+    map_kind: 'exact' | 'distance';
+    thickness: number;
+    gravity: Triple;
+}
+
+export interface RecordedFrame {
+    number: number;
+    inside: number;
+    /** Of faces: of the cloth and a model, and of the cloth alone; where all frames were judged. */
+    intersecting_pairs?: number;
+    self_intersecting_pairs?: number;
+    /** The smallest coordinates, in lattice steps. */
+    origin: Triple;
+    /** Of the first frame, and of each where the model moves. */
+    pose?: Pose;
+    /** The same of several colliders. */
+    poses?: Pose[];
+}
 
 /** The shapes and positions in a page. Frames arrive one after the other during reading. */
 export class Recording {

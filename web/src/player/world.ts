@@ -1,12 +1,11 @@
 import * as THREE from 'three';
-import { AXES, type Axis } from '../axes';
+import { AXES, type Axis } from '../frames';
 import type { ClothNews, FrameArrays } from '../protocol';
 import { ClothView } from '../view/cloth_view';
 import { ModelView } from '../view/model_view';
 import type { Stage } from '../view/stage';
-import type { Description, Part, Pose, RecordedFrame } from './description';
-import { surfaceNormals } from '../surface_normals';
-import type { Recording } from './recording';
+import type { Description, Part, Pose, RecordedFrame, Recording } from './recording';
+import { surfaceNormals } from '../normals';
 
 /** By how much of its width a flat cloth may rise, and a square one be shorter. */
 const FLAT = 0.001;

@@ -1,10 +1,9 @@
 import * as THREE from 'three';
 import type { ClothNews, FrameArrays } from '../protocol';
 import { CLOTH, CLOTH_BACK, FLESH, WRONG } from './colours';
+import { glow, replace } from './material';
 import { Edge } from './edge';
 import { FabricUniforms, fabric, weaveTexture } from './fabric';
-import { glow } from './glow';
-import { replace } from './replace';
 
 /** How much of the distance that particles keep is cloth, in the fine look: two layers that touch do not meet. */
 const THICK = 0.42;

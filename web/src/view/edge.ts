@@ -1,7 +1,7 @@
 import * as THREE from 'three';
 import type { FrameArrays } from '../protocol';
 import { CLOTH } from './colours';
-import { matte } from './matte';
+import { matte } from './material';
 
 /** The narrow strip between the two sides of a cloth, where it ends. */
 export class Edge {

@@ -1,6 +1,6 @@
 import * as THREE from 'three';
 import { HEM, SCALE, TINTS, WRONG } from './colours';
-import { matte } from './matte';
+import { matte } from './material';
 
 /** What the materials of both sides and of the edge of a cloth share. */
 export class FabricUniforms {

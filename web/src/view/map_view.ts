@@ -1,9 +1,9 @@
 import * as THREE from 'three';
-import { UNIT, following } from '../axes';
+import { UNIT, following } from '../frames';
 import type { CellNews, ColouredFaces, Cut, FromWorker, ModelNews, SurfaceNews, Triple } from '../protocol';
 import type { Settings } from '../settings';
 import { BAND, CHALK, CLOTH, FAULT, INK, LAYER_BACK } from './colours';
-import { matte } from './matte';
+import { matte } from './material';
 import { clear } from './model_view';
 
 /** The contents of a map: its surface in colour, a cut through it, a ray, and where two maps differ. */

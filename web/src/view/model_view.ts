@@ -1,10 +1,9 @@
 import * as THREE from 'three';
 import type { ColliderState } from 'echinus';
-import type { Shape } from '../creased_normals';
-import type { ModelNews, ModelShape } from '../protocol';
-import { CLAY, FAULT } from './colours';
-import { matte } from './matte';
-import { replace } from './replace';
+import type { Shape } from '../normals';
+import type { ModelNews, ModelShape, Triple } from '../protocol';
+import { CLAY, FAULT, TOOL } from './colours';
+import { matte, replace } from './material';
 
 /** How much of a line shows that something hides: faults on the far side must be seen, but not as if they lay on the cloth. */
 const HIDDEN = 0.18;
@@ -108,5 +107,22 @@ export function clear(group: THREE.Object3D): void {
             if ('map' in material) material.map?.dispose();
             material.dispose();
         }
+    }
+}
+
+/** The ball that the visitor leads. */
+export class BallView {
+    readonly mesh = new THREE.Mesh(new THREE.SphereGeometry(1, 40, 24), matte(TOOL));
+
+    constructor() {
+        this.mesh.visible = false;
+        this.mesh.castShadow = this.mesh.receiveShadow = true;
+    }
+
+    show(ball: { radius: number; position?: Triple } | undefined): void {
+        this.mesh.visible = ball?.position !== undefined;
+        if (!ball?.position) return;
+        this.mesh.position.set(...ball.position);
+        this.mesh.scale.setScalar(ball.radius);
     }
 }

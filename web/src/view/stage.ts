@@ -1,12 +1,45 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import type { Axis } from '../axes';
+import type { Axis } from '../frames';
 import type { Triple } from '../protocol';
 import type { Settings } from '../settings';
 import { type Standpoint, fromText, toText } from '../standpoint';
 import { ContactShading } from './contact_shading';
-import { Pace, drawsInSoftware } from './pace';
 import { Studio } from './studio';
+
+/** A picture that takes longer than this is drawn more lightly. */
+const LONG_MS = 26;
+/** Of so many pictures. */
+const COUNT = 40;
+/** Compiling takes long, and is not repeated. */
+const FIRST = 20;
+
+/** Judges whether pictures come quickly enough, by the times between them. */
+class Pace {
+    #last = 0;
+    #times: number[] = [];
+    #seen = 0;
+
+    /** Call for each picture. @returns whether the typical one has taken too long, once, after enough of them */
+    isSlow(now: number): boolean {
+        const took = now - this.#last;
+        this.#last = now;
+        // A hidden page draws nothing, and is not slow.
+        if (++this.#seen < FIRST || took > 500) return false;
+        this.#times.push(took);
+        if (this.#times.length < COUNT) return false;
+        const median = this.#times.sort((a, b) => a - b)[COUNT >> 1];
+        this.#times = [];
+        return median > LONG_MS;
+    }
+}
+
+/** Does the processor draw, in place of a graphics card? */
+function drawsInSoftware(context: WebGL2RenderingContext | WebGLRenderingContext): boolean {
+    const info = context.getExtension('WEBGL_debug_renderer_info');
+    const name = String(context.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : context.RENDERER));
+    return /swiftshader|llvmpipe|software|basic render/i.test(name);
+}
 
 type Axes = readonly [THREE.Vector3, THREE.Vector3, THREE.Vector3];
 
@@ -24,7 +57,7 @@ const MOST_ELEVATION = 89;
 const ARRIVAL_MS = 250;
 
 /** What is in sight, and the ground under it. */
-export interface Sight {
+interface Sight {
     centre: Triple;
     radius: number;
     up: Axis;

@@ -1,6 +1,6 @@
 import * as THREE from 'three';
 import { BACKDROP, GROUND } from './colours';
-import { spot } from './glow';
+import { spot } from './material';
 
 /** Of the ground, in radii of what is in sight. */
 const GROUND_RADIUS = 5;

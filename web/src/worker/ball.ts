@@ -1,8 +1,7 @@
 import type { ColliderState, Echinus, ExactMap, Placement, Shape, Simulation } from 'echinus';
-import { AXES, UNIT, following } from '../axes';
+import { AXES, following, intoFrameOf, outOfFrameOf, UNIT } from '../frames';
 import type { Triple } from '../protocol';
 import type { Body } from './cloth_scene';
-import { intoFrameOf, outOfFrameOf } from './collider_frame';
 
 /** Of the ball and of what is kept free between it and the model for the cloth, in the model's radii. */
 const RADIUS = 0.16, GAP = 0.05;

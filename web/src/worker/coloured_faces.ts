@@ -2,7 +2,7 @@ import type { ColouredFaces, Triple } from '../protocol';
 import { LAYERS, SCALE } from '../view/colours';
 
 /** A colour for each value from 0 on: [3 values], linear, as three.js takes the colours of vertices. */
-export type Palette = Float32Array;
+type Palette = Float32Array;
 
 /** @param positions  [9 faces] of their corners @param values  [faces] in the palette */
 export function colouredFaces(positions: Float32Array<ArrayBuffer>, values: Uint32Array, palette: Palette): ColouredFaces {

@@ -42,3 +42,48 @@ export class Hand {
         }
     }
 }
+
+/** How much of the way to where it is held the model goes in a second, to begin with. */
+const RATE = 9;
+
+/** The visitor's grip on the model, which follows it, and returns when it is let go. */
+export class Shake {
+    #wish: Triple = [0, 0, 0];
+    #offset: Triple = [0, 0, 0];
+    #held = false;
+
+    /** @param offset  from where the model would be otherwise @param up  an axis @param least  along it */
+    hold(offset: Triple, up: number, least: number): void {
+        this.#held = true;
+        this.#wish = offset.map((part, k) => (k === up ? Math.max(part, least) : part)) as Triple;
+    }
+    release(): void {
+        this.#held = false;
+        this.#wish = [0, 0, 0];
+    }
+    /** The model stands where it was at the start. */
+    forget(): void {
+        this.release();
+        this.#offset = [0, 0, 0];
+    }
+
+    get holds(): boolean {
+        return this.#held;
+    }
+    get offset(): Readonly<Triple> {
+        return this.#offset;
+    }
+    /** @param unit  a length in which a thousandth is nothing */
+    moves(unit: number): boolean {
+        return this.#held || Math.hypot(...this.#offset) > 0.001 * unit;
+    }
+
+    /** The velocity for the next step. @param limit  largest speed, units per second */
+    advance(timeStep: number, limit: number): Triple {
+        const way = this.#wish.map((part, k) => part - this.#offset[k]);
+        const share = Math.min(RATE, limit / (Math.hypot(...way) || 1));
+        const velocity = way.map((part) => share * part) as Triple;
+        this.#offset = this.#offset.map((part, k) => part + timeStep * velocity[k]) as Triple;
+        return velocity;
+    }
+}

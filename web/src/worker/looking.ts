@@ -1,7 +1,6 @@
 import type { DistanceMap, Echinus, ExactMap } from 'echinus';
-import { UNIT, following } from '../axes';
-import { isInsideOut } from '../inside_out';
-import type { CellNews, ColouredFaces, Cut, Difference, FromWorker, SurfaceNews, Triple } from '../protocol';
+import { UNIT, following } from '../frames';
+import { type CellNews, type ColouredFaces, type Cut, type Difference, type FromWorker, type SurfaceNews, type Triple, isInsideOut } from '../protocol';
 import { colouredFaces, cornersOf, largestOf, layersTo, onSphere, scaleTo } from './coloured_faces';
 import type { Playground } from './playground';
 

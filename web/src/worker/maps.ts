@@ -1,8 +1,31 @@
-import type { AnyMap, Echinus, ExactMap, Mesh } from 'echinus';
-import type { Axis } from '../axes';
+import type { AnyMap, DistanceMapOptions, Echinus, ExactMap, ExactMapOptions, Mesh } from 'echinus';
+import type { Axis } from '../frames';
 import type { MapNews } from '../protocol';
 import type { Settings } from '../settings';
-import { mapOptions } from './map_options';
+
+/** The settings as `map` of a scene. @param up  the axis of a grid's poles */
+function mapOptions(settings: Settings, up: Axis): ExactMapOptions | DistanceMapOptions {
+    return settings.map === 'exact' ? exactOptions(settings) : distanceOptions(settings, up);
+}
+
+function exactOptions({ cells }: Settings): ExactMapOptions {
+    return { kind: 'exact', ...(cells !== 'auto' && { cells_per_octant: Number(cells) }) };
+}
+
+function distanceOptions({ grid, directions }: Settings, up: Axis): DistanceMapOptions {
+    switch (grid) {
+        case 'spherical':
+        case 'ellipsoidal': {
+            const side = Math.round(Math.sqrt(directions));
+            return { kind: 'distance', grid, directions: [side, side], pole_axis: up };
+        }
+        // n divisions give (n + 1)^2 directions, the unfolded octahedron being one square, and the cube six.
+        case 'octahedral':
+            return { kind: 'distance', grid, divisions: Math.round(Math.sqrt(directions)) - 1 };
+        case 'cube':
+            return { kind: 'distance', grid, divisions: Math.round(Math.sqrt(directions / 6)) - 1 };
+    }
+}
 
 interface Built {
     map: AnyMap;

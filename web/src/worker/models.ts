@@ -1,12 +1,13 @@
 import type { Echinus, Mesh } from 'echinus';
 import type { Object3D } from 'three';
-import type { Axis } from '../axes';
+import type { Axis } from '../frames';
 import type { Sample } from '../settings';
 import type { Act } from './acts/act';
-import { pole } from './acts/flag';
-import { ACTS } from './acts/of_sample';
-import { probe } from './acts/organ';
-import { RING } from './acts/ring';
+import { figure } from './acts/figure';
+import { flag, pole } from './acts/flag';
+import { organ, probe } from './acts/organ';
+import { RING, ring } from './acts/ring';
+import { layers } from './acts/sheets';
 import type { SolidMesh } from './acts/solids';
 
 /** A mesh, its up axis by the convention of its source, and what happens on it unless a cloth falls on it. */
@@ -66,10 +67,10 @@ export async function prepareFile(name: string, bytes: ArrayBuffer): Promise<Rea
     if (ending === 'glb' && !beginsAs(bytes, 'glTF')) throw new Error(`${name}: it does not begin as a .glb file does, with "glTF"`);
     switch (ending) {
         case '3ds':
-            return welding(name, await described(name, async () => (await import('./three_ds')).read3ds(bytes)));
+            return welding(name, await described(name, async () => (await import('./loaders')).read3ds(bytes)));
         case 'glb':
         case 'gltf':
-            return welding(name, await described(name, async () => (await import('./gltf')).readGltf(bytes)));
+            return welding(name, await described(name, async () => (await import('./loaders')).readGltf(bytes)));
         case 'obj':
         case 'ply':
             return (echinus) => ({ name, mesh: echinus.readMesh(bytes, name), up: 'y' });
@@ -137,3 +138,6 @@ function weldTriangles(echinus: Echinus, root: Object3D): Mesh {
 }
 
 const isMesh = (object: Object3D): object is import('three').Mesh => 'isMesh' in object;
+
+/** What happens around a sample; nothing here: a sheet falls on it. */
+const ACTS: { readonly [S in Sample]?: () => Act } = { figure, flag, layers, organ, ring };

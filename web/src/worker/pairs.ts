@@ -1,7 +1,7 @@
 /** A worker of its own, with its own instance of the module, that counts faces which intersect: the cloth never waits for it. */
 import { type Echinus, type Mesh, load } from 'echinus';
 import type { Cuts, PairsQuestion } from '../protocol';
-import { intoFrameOf } from './collider_frame';
+import { intoFrameOf } from '../frames';
 
 const starting = load();
 let model: { faces: Uint32Array; mesh: Mesh } | undefined;

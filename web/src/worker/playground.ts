@@ -1,21 +1,16 @@
 import type { AnyMap, ColliderState, ContactBuffer, Echinus, ExactMap, Mesh, MeshFaults, MeshReport, Scene, Simulation, SimulationProfile } from 'echinus';
-import { AXES, type Axis, UNIT, furthestAlong } from '../axes';
-import { creasedNormals } from '../creased_normals';
+import { AXES, type Axis, UNIT, furthestAlong } from '../frames';
+import { creasedNormals, sheetNormals, surfaceNormals } from '../normals';
 import type { ClothNews, FrameArrays, Figures, MapNews, ModelNews, ModelShape, Stage, Triple } from '../protocol';
 import type { Settings } from '../settings';
-import { surfaceNormals } from '../surface_normals';
 import type { Act, Garment } from './acts/act';
 import { SIZE, sheets } from './acts/sheets';
 import { Ball, ballRadius } from './ball';
-import { type Body, columnsOf, groundSize, sceneFor } from './cloth_scene';
-import { measureDepths } from './depth';
-import { Hand } from './hand';
-import { Judge } from './judge';
+import { type Body, columnsOf, groundSize, motionAt, sceneFor } from './cloth_scene';
+import { Judge, measureDepths } from './judge';
+import { Hand, Shake } from './hand';
 import { Maps } from './maps';
 import type { Model } from './models';
-import { motionAt } from './motion';
-import { sheetNormals } from './normals';
-import { Shake } from './shake';
 
 /**
  * How long one frame may simulate: most of the time between frames, so that a slow display does not slow the cloth.

@@ -1,6 +1,5 @@
 import { columnsOf } from '../cloth_scene';
-import { type Act, garmentOf } from './act';
-import { sheetMesh } from './sheet_mesh';
+import { type Act, garmentOf, sheetMesh } from './act';
 import { lathe } from './solids';
 
 const RADIUS = 0.035, FOOT = -1.25, TOP = 1;

@@ -1,9 +1,8 @@
-import { AXES, type Axis } from '../../axes';
+import { type Axis, AXES } from '../../frames';
 import type { Triple } from '../../protocol';
 import type { Settings } from '../../settings';
 import { type Body, columnsOf } from '../cloth_scene';
-import { type Act, garmentOf } from './act';
-import { stackOf } from './sheet_mesh';
+import { type Act, garmentOf, stackOf } from './act';
 
 /** Edge of a square sheet, in radii of the model. */
 export const SIZE = 2.25;
@@ -47,3 +46,20 @@ function aboveModel(settings: Settings, body: Body) {
 }
 
 const sheetOf = (columns: number, radius: number) => ({ size: [SIZE * radius, SIZE * radius] as [number, number], particles: [columns, columns] as [number, number] });
+
+/** Of the ball's frame; apart: between two of them at the start, turn: of each against the one below. */
+const LAYERS = { count: 10, size: 1.9, apart: 0.07, turn: Math.PI / 20 };
+
+const columnsOfLayer = (particles: number): number => columnsOf(particles / LAYERS.count);
+
+/** Ten sheets fall on a ball, each on the one before it. */
+export function layers(): Act {
+    return {
+        body: { centre: [0, 0, 0.15], radius: 1.3, up: 'z' },
+        floor: -1.15,
+        lasts: 0,
+        thickness: ({ thickness, particles }) => (0.6 * thickness * LAYERS.size) / (columnsOfLayer(particles) - 1),
+        scene: (_, { top }) => ({ cloth: { mesh: 'layers', bending: 'sticks', position: [0, 0, top + 0.12] } }),
+        cloth: (echinus, { particles }) => garmentOf(echinus, stackOf({ ...LAYERS, columns: columnsOfLayer(particles) })),
+    };
+}

@@ -1,7 +1,7 @@
 import type { Triple } from '../../protocol';
 
 /** Negative inside a solid. */
-export type Field = (x: number, y: number, z: number) => number;
+type Field = (x: number, y: number, z: number) => number;
 
 export interface SolidMesh {
     vertices: Float32Array;

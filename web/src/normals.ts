@@ -1,3 +1,31 @@
+/**
+ * Normals at the vertices of any surface: of the faces around each, by their areas. 0 where there are none.
+ * @param positions  [3 vertices]
+ * @param faces      [3 faces]
+ * @param normals    [3 vertices] out
+ */
+export function surfaceNormals(positions: Float32Array, faces: Uint32Array, normals: Float32Array): void {
+    normals.fill(0);
+    for (let face = 0; face < faces.length; face += 3) {
+        const a = 3 * faces[face], b = 3 * faces[face + 1], c = 3 * faces[face + 2];
+        const ux = positions[b] - positions[a], vx = positions[c] - positions[a];
+        const uy = positions[b + 1] - positions[a + 1], vy = positions[c + 1] - positions[a + 1];
+        const uz = positions[b + 2] - positions[a + 2], vz = positions[c + 2] - positions[a + 2];
+        const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+        for (const corner of [a, b, c]) {
+            normals[corner] += x;
+            normals[corner + 1] += y;
+            normals[corner + 2] += z;
+        }
+    }
+    for (let i = 0; i < normals.length; i += 3) {
+        const scale = 1 / (Math.hypot(normals[i], normals[i + 1], normals[i + 2]) || 1);
+        normals[i] *= scale;
+        normals[i + 1] *= scale;
+        normals[i + 2] *= scale;
+    }
+}
+
 /** Faces that meet at a sharper angle than this keep an edge between them. */
 const CREASE = Math.cos(Math.PI / 4.5);
 
@@ -59,4 +87,31 @@ function cornersByVertex(faces: Uint32Array, vertexCount: number): { first: Uint
     const next = first.slice(), corners = new Uint32Array(faces.length);
     faces.forEach((vertex, corner) => (corners[next[vertex]++] = corner));
     return { first, corners };
+}
+
+/**
+ * Normals of a sheet whose particles lie row by row, of any length but 0: cross products of the differences between
+ * neighbours in the row and in the column. One pass, so that they do not delay a cloth of 100 000.
+ * @param positions  [3 columns rows]
+ * @param normals    [3 columns rows] out
+ */
+export function sheetNormals(positions: Float32Array, columns: number, normals: Float32Array): void {
+    const rows = positions.length / 3 / columns;
+    for (let row = 0; row < rows; ++row) {
+        const up = row > 0 ? -3 * columns : 0;
+        const down = row + 1 < rows ? 3 * columns : 0;
+        for (let column = 0; column < columns; ++column) {
+            const i = 3 * (row * columns + column);
+            const left = column > 0 ? i - 3 : i;
+            const right = column + 1 < columns ? i + 3 : i;
+            const ax = positions[right] - positions[left], bx = positions[i + down] - positions[i + up];
+            const ay = positions[right + 1] - positions[left + 1], by = positions[i + down + 1] - positions[i + up + 1];
+            const az = positions[right + 2] - positions[left + 2], bz = positions[i + down + 2] - positions[i + up + 2];
+            const x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
+            const scale = 1 / (Math.sqrt(x * x + y * y + z * z) || 1);
+            normals[i] = scale * x;
+            normals[i + 1] = scale * y;
+            normals[i + 2] = scale * z;
+        }
+    }
 }

@@ -1,5 +1,6 @@
-import { LoadingManager, type Object3D } from 'three';
+import { type Object3D, LoadingManager } from 'three';
 import { GLTFLoader } from 'three/examples/jsm/loaders/GLTFLoader.js';
+import { TDSLoader } from 'three/examples/jsm/loaders/TDSLoader.js';
 
 /** The scene of a .glb, or of a self-contained .gltf. @throws Error with a sentence that names no file */
 export async function readGltf(bytes: ArrayBuffer): Promise<Object3D> {
@@ -26,4 +27,9 @@ function withinFile(address: string): string {
     if (/^(data|blob):/.test(address)) return address;
     if (/\.(png|jpe?g|webp|avif|ktx2|gif)$/i.test(address)) return ONE_PIXEL;
     throw new Elsewhere(`it refers to another file, ${address}: save the model as one .glb`);
+}
+
+/** The objects of a .3ds. @throws Error with a sentence that names no file */
+export function read3ds(bytes: ArrayBuffer): Object3D {
+    return new TDSLoader().parse(bytes, '');
 }

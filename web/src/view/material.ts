@@ -1,6 +1,22 @@
 import * as THREE from 'three';
 import { WRONG } from './colours';
 
+/**
+ * Matte, with a second colour for back faces. One material for both sides, so that there is one mesh to draw and one
+ * program to compile, which is slow with software rendering.
+ */
+export function matte(front: number, back = front): THREE.MeshLambertMaterial {
+    const material = new THREE.MeshLambertMaterial({ color: front, side: THREE.DoubleSide, shadowSide: THREE.DoubleSide });
+    const colourBehind = { value: new THREE.Color(back) };
+    material.onBeforeCompile = (shader) => {
+        shader.uniforms.colourBehind = colourBehind;
+        shader.fragmentShader = shader.fragmentShader
+            .replace('#include <common>', '#include <common>\nuniform vec3 colourBehind;')
+            .replace('#include <color_fragment>', '#include <color_fragment>\nif (!gl_FrontFacing) diffuseColor.rgb = colourBehind;');
+    };
+    return material;
+}
+
 /** Marks on what is wrong, seen through everything in front: a face may be smaller than a pixel. */
 export function glow(geometry = new THREE.BufferGeometry(), opacity = 1): THREE.Points {
     const points = new THREE.Points(
@@ -26,4 +42,11 @@ export function spot(softness = 1): THREE.DataTexture {
     texture.magFilter = texture.minFilter = THREE.LinearFilter;
     texture.needsUpdate = true;
     return texture;
+}
+
+/** Other numbers, as many as before, for a part of the vertices. */
+export function replace(geometry: THREE.BufferGeometry, name: string, array: Float32Array): void {
+    const attribute = geometry.attributes[name] as THREE.BufferAttribute;
+    attribute.array = array;
+    attribute.needsUpdate = true;
 }
