@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-/// Shared by `echinus compare` and the benchmarks: systems answer for a set of particles in turns, and a
+/// Shared by `echinus-compare` and the benchmarks: systems answer for a set of particles in turns, and a
 /// judge measures the errors of the answers.
 namespace echinus::comparison {
 

@@ -33,11 +33,8 @@ class Choices {
     test::PortableRandom random_;
 };
 
-} // namespace echinus::test
-
-/// Closed, oriented parts as designers draw them, on a grid of small whole numbers, and what designers do
-/// with them.
-namespace echinus::test {
+// Closed, oriented parts as designers draw them, on a grid of small whole numbers, and what designers do
+// with them.
 
 /// A mesh and the words for how it was made.
 struct Part {

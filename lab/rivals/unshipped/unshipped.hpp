@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-/// Rivals that only benchmarks link: CGAL's packages are under the GPL, and `echinus compare` gains little by
+/// Rivals that only benchmarks link: CGAL's packages are under the GPL, and `echinus-compare` gains little by
 /// the others. Each is immutable and is asked as its users ask it.
 namespace echinus::rivals {
 
