@@ -102,10 +102,6 @@ struct Box {
 /// @pre the mesh has vertices
 Box box_of(const TriangleMesh& mesh);
 
-} // namespace echinus::test
-
-namespace echinus::test {
-
 /// A closed, oriented mesh as designers make them.
 struct Shape {
     std::uint64_t seed = 0;
