@@ -4,6 +4,7 @@
 #include <echinus/export.hpp>
 #include <echinus/geometry.hpp>
 #include <echinus/mesh.hpp>
+#include <echinus/tetrahedra.hpp>
 
 #include <array>
 #include <cstddef>
@@ -55,21 +56,6 @@ struct Fold {
     float lever;
 };
 
-/// Elastic material between four particles: stable Neo-Hookean (Macklin and Mueller 2021), under Xpbd. Made
-/// by make_soft_body() (soft_body.hpp). Units are those in which masses, lengths and seconds are given: with
-/// kilograms and metres, mu and lambda are in pascals.
-struct ElasticTetrahedron {
-    std::array<std::uint32_t, 4> particles; ///< (a, b, c, d)
-    /// At rest, the gradients of the barycentric coordinates of b, c and d: the rows of the inverse of the
-    /// matrix with the columns b - a, c - a and d - a. Per length.
-    std::array<Vec3f, 3> gradients;
-    float volume;     ///< at rest; positive
-    float mu, lambda; ///< the Lame parameters: mass / (length s^2); mu positive, lambda not negative
-    /// Viscosity over mu, seconds: of a strain that begins, its stress grows by as much as if that strain had
-    /// lasted so long.
-    float damping;
-};
-
 /// Fixes a particle to a collider: it moves rigidly with the collider, from where it is at the start.
 struct Attachment {
     std::uint32_t particle;
@@ -101,6 +87,9 @@ struct Deformable {
     /// inside: where surfaces collide, those around it do, and it does not.
     std::vector<ElasticTetrahedron> tetrahedra{};
     std::vector<CollisionFilter> filters{}; ///< in any order
+    /// [particle_count] The shape at rest, in any place and pose; empty: as it begins. Newton's cloth has its
+    /// strain and its angles from it; sticks and folds have them themselves.
+    std::vector<Vec3f> rest_positions{};
 
     std::size_t particle_count() const { return positions.size(); }
 };
@@ -198,6 +187,23 @@ enum class SolverKind : std::uint8_t {
     /// As springs (XPBD: Macklin et al. 2016, equation 18): their extension under a force depends neither on
     /// the number of relaxations, once there are enough, nor on the time step.
     Xpbd,
+    /// As a continuous material (docs/mechanics.md): each step minimises the energy of inertia, of the
+    /// material and of contact by Newton's method with multigrid. Cloth stretches as its ClothMaterial says,
+    /// whatever the resolution and the time step; 1/60 s per frame is a good step. In SI units. Needs
+    /// surface_collision where there are colliders, whose models may move but do not deform yet.
+    Newton,
+};
+
+/// The material of cloth, for SolverKind::Newton. The defaults are those of a cotton, in SI units. Faces of
+/// tetrahedra are not cloth: bodies have a material of their own.
+struct ClothMaterial {
+    double density = 0.2;            ///< mass per area, kg/m^2; positive
+    double stretch_stiffness = 1000; ///< force per width of warp and weft, N/m; positive. Threads have that
+                                     ///< of a strip as wide as the mean edge is long
+    double shear_stiffness = 400;    ///< between warp and weft, N/m; not negative
+    double bending_stiffness = 1e-5; ///< N m; not negative
+    double damping = 0.01; ///< viscosity over stiffness, seconds: not negative. Motions that take much
+                           ///< longer are hardly damped
 };
 
 struct SimulationOptions {
@@ -210,13 +216,17 @@ struct SimulationOptions {
     /// in all, substeps of one each stretch least (Macklin et al. 2019). Verlet: 1.
     std::uint32_t substep_count = 1;
     Vec3d gravity{0, 0, -9.81}; ///< units per second squared
-    double drag = 0.005;        ///< share of the velocity that is lost per frame, 0 to 1
+    double drag = 0.005; ///< share of the velocity that is lost per frame, 0 to 1. Newton: none is lost
     /// Verlet: share of a stick's or fold's error that one relaxation removes, by StickKind. 1 removes all;
     /// from 1 to 2 (not included) it overshoots, which carries tension further per relaxation.
     std::array<double, kStickKindCount> stiffness{1, 1, 0.3};
     /// Xpbd: how far a stick gives per unit of force, by StickKind: length / (mass * length / s^2), with the
     /// masses of the particles. 0 does not give.
     std::array<double, kStickKindCount> compliance{0, 1e-6, 1e-4};
+    ClothMaterial material{}; ///< Newton
+    /// Newton: at most so many steps of Newton's method in each frame, or part of one; fewer where it has
+    /// converged. Fewer than two leave contacts unresolved.
+    std::uint32_t newton_step_count = 4;
     /// Distance that particles keep from colliders, units. If not given, half the mean rest length of the
     /// structural sticks, or 0 without any: with that the model cuts few faces of a cloth, and the cloth lies
     /// close (docs/thickness.md). 0 is possible and slow: particles on the surface itself need a query in
@@ -310,6 +320,8 @@ struct SimulationProfile {
 struct Residual {
     double root_mean_square = 0, largest = 0; ///< 0 without such sticks
 };
+
+class [[gnu::visibility("hidden")]] Solver; // src/simulation/solver.hpp
 
 /// A deformable among colliders. The same input gives the same positions bit for bit, on every run and with
 /// every instruction set and number of threads; tested on x86-64 and WebAssembly. Copies are independent.
@@ -475,7 +487,6 @@ class Simulation {
     void restore_state(const std::filesystem::path& path);
 
   private:
-    class [[gnu::visibility("hidden")]] Solver; // src/simulation/solver.hpp
     std::unique_ptr<Solver> solver_;
 };
 

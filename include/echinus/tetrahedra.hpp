@@ -158,6 +158,21 @@ Embedding embed(const TetrahedralMesh& mesh, StridedSpan<const Vec3f> points, un
 void carry(const Embedding& embedding, StridedSpan<const Vec3f> positions, StridedSpan<Vec3f> points,
            unsigned thread_count = 1) noexcept;
 
+/// Elastic material between four particles: stable Neo-Hookean (Macklin and Mueller 2021), under Xpbd. Made
+/// by make_soft_body() (soft_body.hpp). Units are those in which masses, lengths and seconds are given: with
+/// kilograms and metres, mu and lambda are in pascals.
+struct ElasticTetrahedron {
+    std::array<std::uint32_t, 4> particles; ///< (a, b, c, d)
+    /// At rest, the gradients of the barycentric coordinates of b, c and d: the rows of the inverse of the
+    /// matrix with the columns b - a, c - a and d - a. Per length.
+    std::array<Vec3f, 3> gradients;
+    float volume;     ///< at rest; positive
+    float mu, lambda; ///< the Lame parameters: mass / (length s^2); mu positive, lambda not negative
+    /// Viscosity over mu, seconds: of a strain that begins, its stress grows by as much as if that strain had
+    /// lasted so long.
+    float damping;
+};
+
 } // namespace echinus
 
 ECHINUS_EXPORT_END

@@ -88,8 +88,12 @@ inline void read_solver_options(JsonObject& object, SimulationOptions& o) {
     object.read("gravity", o.gravity, {-1e9, 1e9});
     object.read("thread_count", o.thread_count, {0, 1024});
     object.read("multilevel", o.multilevel);
+    object.read("newton_steps", o.newton_step_count, {1, 1000});
+    if (o.solver != SolverKind::Verlet && o.solver != SolverKind::Xpbd)
+        object.refuse_keys({"iterations"}, "solver", "verlet\" or \"xpbd");
     if (o.solver != SolverKind::Xpbd) object.refuse_keys({"substeps"}, "solver", "xpbd");
     if (o.solver != SolverKind::Verlet) object.refuse_keys({"multilevel"}, "solver", "verlet");
+    if (o.solver != SolverKind::Newton) object.refuse_keys({"newton_steps"}, "solver", "newton");
 }
 
 inline void read_rest_options(JsonObject& object, SimulationOptions& o) {
@@ -126,6 +130,18 @@ inline void read_surfaces_options(JsonObject& object, SimulationOptions& o) {
     object.read("surface_collision", o.surface_collision);
     object.read("self_collision", o.self_collision);
     object.read("untangle", o.untangle);
+}
+
+inline void read_newton_options(JsonObject& object, SimulationOptions& o) {
+    object.read("density", o.material.density, {1e-6, 1e6});
+    object.read("stretch_stiffness", o.material.stretch_stiffness, {1e-6, 1e9});
+    object.read("shear_stiffness", o.material.shear_stiffness, {0, 1e9});
+    object.read("bending_stiffness", o.material.bending_stiffness, {0, 1e6});
+    object.read("damping", o.material.damping, {0, 1e6});
+    if (o.solver != SolverKind::Newton)
+        object.refuse_keys(
+            {"density", "stretch_stiffness", "shear_stiffness", "bending_stiffness", "damping"}, "solver",
+            "newton");
 }
 
 } // namespace echinus

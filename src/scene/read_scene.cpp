@@ -21,6 +21,8 @@ constexpr Range kLength{1e-9, 1e9};
 constexpr Range kSegmentCount{1, 4096};
 /// Of the square of a quaternion's length.
 constexpr double kUnitTolerance = 1e-4;
+constexpr double kNewtonTimeStep =
+    1.0 / 60; ///< unless a scene says otherwise: the solver needs no smaller one
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 
 /// The defaults beside an exact map. Beside a distance map surfaces collide only where the scene asks for it.
@@ -383,7 +385,8 @@ void read_material(JsonObject& root, Scene& scene) {
     }
     read_thickness_options(*material, options);
     read_verlet_options(*material, options);
-    if (options.solver == SolverKind::Verlet) material->refuse_keys({"compliance"}, "solver", "xpbd");
+    if (options.solver != SolverKind::Xpbd) material->refuse_keys({"compliance"}, "solver", "xpbd");
+    read_newton_options(*material, options);
     read_compliance(*material, options);
     read_material_options(*material, options);
     material->finish();
@@ -411,8 +414,12 @@ void read_surfaces(JsonObject& root, Scene& scene) {
 void read_solver(JsonObject& root, Scene& scene) {
     SimulationOptions& options = scene.simulation;
     const std::size_t usual = scene.bodies.empty() ? 0 : 1;
-    const std::size_t solver = root.read_word("solver", {"verlet", "xpbd"}).value_or(usual);
-    if (solver < usual) root.refuse("solver", "\"xpbd\" or left out where there are bodies");
+    const std::size_t solver = root.read_word("solver", {"verlet", "xpbd", "newton"}).value_or(usual);
+    if (solver < usual) root.refuse("solver", "\"xpbd\", \"newton\" or left out where there are bodies");
+    if (solver == 2) {
+        options.solver = SolverKind::Newton;
+        options.time_step = kNewtonTimeStep;
+    }
     if (solver == 1) {
         // As much work as ten iterations, in small steps.
         options.solver = SolverKind::Xpbd;

@@ -55,8 +55,8 @@ bool Bounds::contain_way(const Collider& collider, double seconds) {
            is_within(collider.angular_velocity * seconds, kLongestWay);
 }
 
-void Bounds::require_ends(const Particles& particles, std::uint32_t frame) {
-    require_within(particles.positions, particles.count(), farthest_, frame);
+void Bounds::require_ends(const PointArrays& positions, std::size_t count, std::uint32_t frame) {
+    require_within(positions, count, farthest_, frame);
 }
 
 void Bounds::require_within(const PointArrays& points, std::size_t count, double most, std::uint32_t frame) {

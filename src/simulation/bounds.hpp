@@ -23,7 +23,10 @@ class Bounds {
     /// In the middle of a frame, in which what would be far out may be stopped on its way; but not from a
     /// hundred times as far.
     void require_ways(const Particles& particles, std::uint32_t frame);
-    void require_ends(const Particles& particles, std::uint32_t frame);
+    void require_ends(const Particles& particles, std::uint32_t frame) {
+        require_ends(particles.positions, particles.count(), frame);
+    }
+    void require_ends(const PointArrays& positions, std::size_t count, std::uint32_t frame);
     [[noreturn]] void diverge(std::uint32_t frame, const std::string& what);
 
     /// Whether the collider goes a way that is one, in so many seconds.

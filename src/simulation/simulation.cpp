@@ -12,11 +12,11 @@ namespace echinus {
 
 Simulation::Simulation(Deformable deformable, std::vector<Collider> colliders,
                        const SimulationOptions& options)
-    : solver_(std::make_unique<Solver>(std::move(deformable), std::move(colliders), options)) {}
+    : solver_(make_solver(std::move(deformable), std::move(colliders), options)) {}
 Simulation::~Simulation() = default;
-Simulation::Simulation(const Simulation& other) : solver_(std::make_unique<Solver>(*other.solver_)) {}
+Simulation::Simulation(const Simulation& other) : solver_(other.solver_->copy()) {}
 Simulation& Simulation::operator=(const Simulation& other) {
-    if (this != &other) solver_ = std::make_unique<Solver>(*other.solver_);
+    if (this != &other) solver_ = other.solver_->copy();
     return *this;
 }
 Simulation::Simulation(Simulation&& other) noexcept = default;

@@ -140,6 +140,10 @@ void require_part(const Deformable& part, std::size_t number, std::size_t partic
 
 void append(Deformable& to, const Deformable& part) {
     const auto first = static_cast<std::uint32_t>(to.particle_count());
+    if (!to.rest_positions.empty() || !part.rest_positions.empty()) {
+        if (to.rest_positions.empty()) to.rest_positions = to.positions;
+        append(to.rest_positions, part.rest_positions.empty() ? part.positions : part.rest_positions);
+    }
     append(to.positions, part.positions);
     append(to.previous_positions, part.previous_positions);
     append(to.inverse_masses, part.inverse_masses);

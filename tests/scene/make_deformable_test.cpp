@@ -216,7 +216,7 @@ TEST(SceneBodies, ThatAreImpossibleAreRefused) {
                    R"("bodies": [{"mesh": "a.off", "element": 1, "young_modulu": 1}])");
     expect_refusal("the key cloth.density is missing",
                    R"("cloth": {"size": [1, 1]}, "bodies": [{"mesh": "a.off", "element": 1}])");
-    expect_refusal("\"xpbd\" or left out",
+    expect_refusal("\"xpbd\", \"newton\" or left out",
                    R"("solver": "verlet", "bodies": [{"mesh": "a.off", "element": 1}])");
     expect_refusal("material.thickness", R"("cloth": {"size": [1, 1]}, "material": {"thickness": 1})");
     test::expect_error(ErrorCode::InvalidOptions, "bodies[0]: its mesh is the file a.off: read it",

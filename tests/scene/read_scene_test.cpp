@@ -303,6 +303,22 @@ TEST(Scene, ChoosesTheSolverAndGivesEachItsOwnMaterial) {
     EXPECT_EQ(full.friction, 0.25);
 }
 
+TEST(Scene, TakesTheMaterialOfTheNewtonSolver) {
+    const SimulationOptions options = parse_scene(R"({"model": "a", "cloth": {"size": [1, 1]},
+           "solver": "newton", "newton_steps": 7, "material": {"density": 0.3, "stretch_stiffness": 500,
+           "shear_stiffness": 100, "bending_stiffness": 1e-4, "damping": 0.1}})",
+                                                  "a.json")
+                                          .simulation;
+    EXPECT_EQ(options.solver, SolverKind::Newton);
+    EXPECT_EQ(options.time_step, 1.0 / 60);
+    EXPECT_EQ(options.newton_step_count, 7u);
+    EXPECT_EQ(options.material.density, 0.3);
+    EXPECT_EQ(options.material.stretch_stiffness, 500);
+    EXPECT_EQ(options.material.shear_stiffness, 100);
+    EXPECT_EQ(options.material.bending_stiffness, 1e-4);
+    EXPECT_EQ(options.material.damping, 0.1);
+}
+
 TEST(Scene, RefusesTheKeysOfTheOtherSolver) {
     const auto refusal_of = [](const std::string& rest) {
         return refusal(R"({"model": "a", "cloth": {"size": [1, 1]}, )" + rest + "}");
@@ -313,7 +329,12 @@ TEST(Scene, RefusesTheKeysOfTheOtherSolver) {
               R"(a.json: material.compliance is {}; it must be left out, or "solver" must be "xpbd")");
     EXPECT_EQ(refusal_of(R"("solver": "xpbd", "material": {"shear": 1})"),
               R"(a.json: material.shear is 1; it must be left out, or "solver" must be "verlet")");
-    EXPECT_EQ(refusal_of(R"("solver": "pbd")"), R"(a.json: solver is "pbd"; it must be "verlet" or "xpbd")");
+    EXPECT_EQ(refusal_of(R"("solver": "newton", "iterations": 3)"),
+              R"(a.json: iterations is 3; it must be left out, or "solver" must be "verlet" or "xpbd")");
+    EXPECT_EQ(refusal_of(R"("material": {"density": 1})"),
+              R"(a.json: material.density is 1; it must be left out, or "solver" must be "newton")");
+    EXPECT_EQ(refusal_of(R"("solver": "pbd")"),
+              R"(a.json: solver is "pbd"; it must be "verlet", "xpbd" or "newton")");
     EXPECT_EQ(refusal_of(R"("solver": "xpbd", "substeps": 0)"),
               "a.json: substeps is 0; it must be a whole number from 1 to 1000000");
     EXPECT_EQ(refusal_of(R"("solver": "xpbd", "material": {"compliance": {"bending": -1}})"),

@@ -182,10 +182,29 @@ inline KindOfSimulation sheet_that_passes_through() {
     return kind;
 }
 
+/// A continuous material on a box that turns, in wind, of which a corner is attached to the box.
+inline KindOfSimulation continuous_material() {
+    SimulationOptions options = surfaces_for_kinds(true);
+    options.solver = SolverKind::Newton;
+    options.time_step = 1.0 / 60;
+    options.measure_loads = true;
+    KindOfSimulation kind{.name = "a continuous material",
+                          .deformable = sheet_at(0.11, 0.6, 13),
+                          .colliders = colliders_of({make_box({0.4, 0.4, 0.2}, 3)}),
+                          .options = options,
+                          .steer = [](Simulation& s) {
+                              s.blow({0.5, 0, 0}, 1);
+                          }};
+    kind.colliders[0].angular_velocity = {0, 0, 2};
+    kind.deformable.inverse_masses[84] = 0;
+    kind.deformable.attachments.push_back({84, 0});
+    return kind;
+}
+
 inline std::vector<KindOfSimulation> kinds_of_simulations() {
-    return {particles_beside_all_maps(), stretched_sheet(), sheet_among_moving_colliders(),
-            springs_with_folds(),        soft_bodies(),     sheet_on_deforming_balls(),
-            sheet_that_passes_through()};
+    return {particles_beside_all_maps(), stretched_sheet(),    sheet_among_moving_colliders(),
+            springs_with_folds(),        soft_bodies(),        sheet_on_deforming_balls(),
+            sheet_that_passes_through(), continuous_material()};
 }
 
 } // namespace echinus::test

@@ -84,7 +84,15 @@ const char* kind_of(const Simulation& simulation) {
 }
 
 const char* solver_of(const SimulationOptions& options) {
-    return options.solver == SolverKind::Verlet ? "verlet" : "xpbd";
+    switch (options.solver) {
+    case SolverKind::Verlet:
+        return "verlet";
+    case SolverKind::Xpbd:
+        return "xpbd";
+    case SolverKind::Newton:
+        return "newton";
+    }
+    return "";
 }
 
 Json json_of(const Vec3d& v) {

@@ -17,6 +17,7 @@ struct Limits {
 
 static_assert(ECHINUS_SOLVER_VERLET == static_cast<int>(SolverKind::Verlet));
 static_assert(ECHINUS_SOLVER_XPBD == static_cast<int>(SolverKind::Xpbd));
+static_assert(ECHINUS_SOLVER_NEWTON == static_cast<int>(SolverKind::Newton));
 static_assert(ECHINUS_INSIDE_NONZERO == static_cast<int>(InsideRule::Nonzero));
 static_assert(ECHINUS_INSIDE_PARITY == static_cast<int>(InsideRule::Parity));
 static_assert(ECHINUS_CENTRE_BOUNDING_SPHERE == static_cast<int>(CentreChoice::BoundingSphere));
@@ -182,14 +183,14 @@ echinus_soft_body_options as_c(const SoftBodyOptions& options);
 /// @throws WrongArgument
 SoftBodyOptions options_from(const echinus_soft_body_options* options);
 
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_options, multilevel);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_options, damping);
 /// Calls use() with each member of the structs of C and of C++, either of which may be constant.
 template <typename C, typename Options, typename Use>
 requires std::same_as<std::remove_const_t<C>, echinus_simulation_options> &&
     std::same_as<std::remove_const_t<Options>, SimulationOptions>
 void for_each_option(C& c, Options& o, const Use& use) {
     use("time_step", c.time_step, o.time_step, Limits{1e-9, 1e9});
-    use("solver", c.solver, o.solver, SolverKind::Xpbd);
+    use("solver", c.solver, o.solver, SolverKind::Newton);
     use("iteration_count", c.iteration_count, o.iteration_count, Limits{1, 1e6});
     use("substep_count", c.substep_count, o.substep_count, Limits{1, 1e6});
     use("rest_frame_count", c.rest_frame_count, o.rest.frame_count, Limits{1, 1e9});
@@ -211,6 +212,13 @@ void for_each_option(C& c, Options& o, const Use& use) {
     use("measure_loads", c.measure_loads, o.measure_loads);
     use("thread_count", c.thread_count, o.thread_count);
     use("multilevel", c.multilevel, o.multilevel);
+    use("newton_step_count", c.newton_step_count, o.newton_step_count, Limits{1, 1000});
+    use.reserved(c.reserved);
+    use("density", c.density, o.material.density, Limits{1e-6, 1e6});
+    use("stretch_stiffness", c.stretch_stiffness, o.material.stretch_stiffness, Limits{1e-6, 1e9});
+    use("shear_stiffness", c.shear_stiffness, o.material.shear_stiffness, Limits{0, 1e9});
+    use("bending_stiffness", c.bending_stiffness, o.material.bending_stiffness, Limits{0, 1e6});
+    use("damping", c.damping, o.material.damping, Limits{0, 1e6});
 }
 echinus_simulation_options as_c(const SimulationOptions& options);
 /// @param options  may be null, for the defaults

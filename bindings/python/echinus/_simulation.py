@@ -30,7 +30,7 @@ class SimulationOptions:
     """The options of a simulation that are in force; :class:`Simulation` describes them."""
 
     time_step: float
-    solver: Literal["verlet", "xpbd"]
+    solver: Literal["verlet", "xpbd", "newton"]
     iteration_count: int
     substep_count: int
     rest_frame_count: int
@@ -51,6 +51,12 @@ class SimulationOptions:
     untangle: bool
     measure_loads: bool
     multilevel: bool
+    newton_step_count: int
+    density: float
+    stretch_stiffness: float
+    shear_stiffness: float
+    bending_stiffness: float
+    damping: float
     threads: int
 
 
@@ -107,7 +113,8 @@ class Simulation:
         Seconds per frame. Half of it takes twice the time and leaves a quarter of the stretch (1e-9 to 1e9 s).
     solver
         ``verlet``: each relaxation of a stick removes a share of its error; ``xpbd``: sticks are springs, and the
-        only one for soft bodies. By default ``"verlet"``; ``"xpbd"`` with ``bodies``.
+        usual one for soft bodies; ``newton``: a continuous material in SI units. By default ``"verlet"``;
+        ``"xpbd"`` with ``bodies``.
     iteration_count
         Relaxations per substep, each of all sticks and then of all contacts; more cost time and leave less stretch
         (1 to 1e6). By default 10; 1 with ``xpbd``.
@@ -157,6 +164,19 @@ class Simulation:
         Keep account of what bears on the colliders; takes a few percent of the time.
     multilevel
         ``verlet`` only: relax coarser sheets of a rectangular cloth first, so that a large one hardly stretches.
+    newton_step_count
+        ``newton`` only: at most so many steps of Newton's method in a frame; fewer where it has converged (1 to
+        1000).
+    density
+        ``newton`` only, as the four that follow: mass of the cloth per area (1e-6 to 1e6 kg/m^2).
+    stretch_stiffness
+        Force per width against stretching of warp and weft (1e-6 to 1e9 N/m).
+    shear_stiffness
+        Force per width against shear between them (0 to 1e9 N/m).
+    bending_stiffness
+        Moment per width and curvature against folding (0 to 1e6 N m).
+    damping
+        Viscosity of the cloth over its stiffness (0 to 1e6 s).
     threads
         Threads that compute a frame; 0: all cores. The same bits with any number (0 to 1024).
 
@@ -176,7 +196,7 @@ class Simulation:
         *,
         frame_limit: int = 3000,
         time_step: float = 1 / 240,
-        solver: Literal["verlet", "xpbd"] | None = None,
+        solver: Literal["verlet", "xpbd", "newton"] | None = None,
         iteration_count: int | None = None,
         substep_count: int | None = None,
         rest_frame_count: int = 60,
@@ -197,6 +217,12 @@ class Simulation:
         untangle: bool = False,
         measure_loads: bool = False,
         multilevel: bool = False,
+        newton_step_count: int = 4,
+        density: float = 0.2,
+        stretch_stiffness: float = 1000,
+        shear_stiffness: float = 400,
+        bending_stiffness: float = 1e-5,
+        damping: float = 0.01,
         threads: int = 1,
     ) -> None:
         options = dict(locals())

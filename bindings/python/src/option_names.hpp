@@ -102,7 +102,7 @@ template <typename Options, typename Use>
 requires std::same_as<std::remove_const_t<Options>, SimulationOptions>
 void for_each_option(Options& o, const Use& use) {
     use("time_step", o.time_step);
-    use.unless_none("solver", o.solver, {"verlet", "xpbd"});
+    use.unless_none("solver", o.solver, {"verlet", "xpbd", "newton"});
     use.unless_none("iteration_count", o.iteration_count);
     use.unless_none("substep_count", o.substep_count);
     use("rest_frame_count", o.rest.frame_count);
@@ -124,6 +124,12 @@ void for_each_option(Options& o, const Use& use) {
     use("measure_loads", o.measure_loads);
     use("threads", o.thread_count);
     use("multilevel", o.multilevel);
+    use("newton_step_count", o.newton_step_count);
+    use("density", o.material.density);
+    use("stretch_stiffness", o.material.stretch_stiffness);
+    use("shear_stiffness", o.material.shear_stiffness);
+    use("bending_stiffness", o.material.bending_stiffness);
+    use("damping", o.material.damping);
 }
 
 /// Calls use() with the name and the defaults of each struct.

@@ -614,10 +614,10 @@ export interface SceneDescription {
      */
     time_step?: number;
     /**
-     * `verlet`: each relaxation of a stick removes a share of its error; `xpbd`: sticks are springs, and the only one
-     * for soft bodies. Default: `"verlet"`; `"xpbd"` with `bodies`.
+     * `verlet`: each relaxation of a stick removes a share of its error; `xpbd`: sticks are springs, and the usual one
+     * for soft bodies; `newton`: a continuous material in SI units. Default: `"verlet"`; `"xpbd"` with `bodies`.
      */
-    solver?: 'verlet' | 'xpbd';
+    solver?: 'verlet' | 'xpbd' | 'newton';
     /**
      * Relaxations per substep, each of all sticks and then of all contacts; more cost time and leave less stretch (1 to
      * 1e6). Default: 10; 1 with `xpbd`.
@@ -636,6 +636,11 @@ export interface SceneDescription {
      * false.
      */
     multilevel?: boolean;
+    /**
+     * `newton` only: at most so many steps of Newton's method in a frame; fewer where it has converged (1 to 1000).
+     * Default: 4.
+     */
+    newton_steps?: number;
     // End of options.
     frame_limit?: number;
     at_rest?: {

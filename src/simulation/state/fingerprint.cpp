@@ -55,6 +55,10 @@ std::uint64_t hash_of(const SimulationOptions& options) {
                options.surface_collision, options.self_collision, options.self_thickness.value_or(-1),
                options.measure_loads, options.bound);
     if (options.multilevel) hasher.add(options.multilevel); // states from before it was there stay good
+    if (options.solver == SolverKind::Newton)
+        hasher.add(options.material.density, options.material.stretch_stiffness,
+                   options.material.shear_stiffness, options.material.bending_stiffness,
+                   options.material.damping, options.newton_step_count);
     return hasher.hash();
 }
 
@@ -74,6 +78,7 @@ std::uint64_t hash_of(const Deformable& deformable, std::uint64_t start_hash) {
     for (const auto& [collider, particle] : filters) hasher.add(collider, particle);
     for (const ElasticTetrahedron& t : deformable.tetrahedra)
         hasher.add(t.particles, t.gradients, t.volume, t.mu, t.lambda, t.damping);
+    if (!deformable.rest_positions.empty()) hasher.add_all(deformable.rest_positions);
     return hasher.hash();
 }
 

@@ -91,7 +91,7 @@ void Simulation::restore_state(std::span<const std::byte> bytes, const std::stri
     archive(state, saved);
     require_same(saved, solver_->fingerprint(), name);
     // Into a copy, so that nothing has changed when it throws.
-    auto restored = std::make_unique<Solver>(*solver_);
+    auto restored = solver_->copy();
     restored->archive(state);
     state.finish();
     solver_ = std::move(restored);

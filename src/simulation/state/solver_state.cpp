@@ -1,12 +1,12 @@
 // What belongs to the state of a simulation: all that a frame reads before it writes it.
 
-#include "simulation/solver.hpp"
+#include "simulation/relaxation_solver.hpp"
 
 #include <variant>
 
 namespace echinus {
 
-StateFingerprint Simulation::Solver::fingerprint() const {
+StateFingerprint Solver::fingerprint() const {
     StateFingerprint result{hash_of(options), hash_of(deformable, start_hash_), {}};
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         const ColliderMap map = deforming_[c] ? deforming_[c]->first_map() : colliders[c].map;
@@ -15,7 +15,7 @@ StateFingerprint Simulation::Solver::fingerprint() const {
     return result;
 }
 
-void Simulation::Solver::archive(StateArchive& state) {
+void Solver::archive_counts(StateArchive& state) {
     state.value(frame);
     state.value(largest_speed);
     for (std::uint64_t* count :
@@ -23,24 +23,10 @@ void Simulation::Solver::archive(StateArchive& state) {
           &profile.lost_count, &profile.truncated_count, &profile.searched_face_count,
           &profile.measured_pair_count, &profile.squeezed_count})
         state.value(*count);
-    state.points(particles_.positions);
-    state.points(particles_.previous);
-    state.points(particles_.remainders);
-    state.points(particles_.previous_remainders);
-    rest_.archive(state);
-    if (stretched_part_) stretched_part_->archive(state, sticks_.count());
-    if (gentle_sticks_) gentle_sticks_->archive(state);
-    if (meter_) meter_->archive(state);
-    if (energy_limit_) energy_limit_->archive(state);
-    archive_colliders(state);
-    attachments_.archive(state, deforming_);
-    collisions_.archive(state, colliders);
-    if (surfaces_) surfaces_->archive(state);
-    if (state.reads()) publish();
 }
 
 /// Their maps before all else that asks them.
-void Simulation::Solver::archive_colliders(StateArchive& state) {
+void Solver::archive_colliders(StateArchive& state) {
     motions.archive(state);
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         Collider& collider = colliders[c];
@@ -61,6 +47,24 @@ void Simulation::Solver::archive_colliders(StateArchive& state) {
         }
         if (deforms) deforming_[c]->archive(state, collider);
     }
+}
+
+void RelaxationSolver::archive(StateArchive& state) {
+    archive_counts(state);
+    state.points(particles_.positions);
+    state.points(particles_.previous);
+    state.points(particles_.remainders);
+    state.points(particles_.previous_remainders);
+    rest_.archive(state);
+    if (stretched_part_) stretched_part_->archive(state, sticks_.count());
+    if (gentle_sticks_) gentle_sticks_->archive(state);
+    if (meter_) meter_->archive(state);
+    if (energy_limit_) energy_limit_->archive(state);
+    archive_colliders(state);
+    attachments_.archive(state, deforming_);
+    collisions_.archive(state, colliders);
+    if (surfaces_) surfaces_->archive(state);
+    if (state.reads()) publish();
 }
 
 } // namespace echinus

@@ -38,7 +38,10 @@ struct Pair {
 /// @param points  the deformable's vertices of the pair, then the opponent's
 Separation separation(PairKind kind, const std::array<Vec3f, 4>& points) noexcept;
 
-/// The same of many pairs: the same bits under every instruction set.
+/// The shares of the four points in the two that are nearest to each other, in double.
+std::array<double, 4> nearest_points(PairKind kind, const std::array<Vec3d, 4>& points) noexcept;
+
+/// separation() of many pairs: the same bits under every instruction set.
 /// @param own     the positions of the deformable's vertices
 /// @param other   those of the opponent's
 /// @param result  [pairs.size()] out

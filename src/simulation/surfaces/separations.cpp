@@ -310,6 +310,10 @@ Separation careful_separation(PairKind kind, const std::array<Vec3f, 4>& points)
 
 } // namespace
 
+std::array<double, 4> nearest_points(PairKind kind, const std::array<Vec3d, 4>& points) noexcept {
+    return nearest_points<double>(kind, points);
+}
+
 Separation separation(PairKind kind, const std::array<Vec3f, 4>& points) noexcept {
     const std::size_t own = own_count(kind);
     std::array<Vec3f, 4> p;

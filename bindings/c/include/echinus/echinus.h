@@ -1116,7 +1116,8 @@ ECHINUS_API void echinus_deformable_destroy(echinus_deformable* deformable);
 /// How sticks hold their particles.
 typedef enum echinus_solver {
     ECHINUS_SOLVER_VERLET = 0, ///< each relaxation removes a share of the error
-    ECHINUS_SOLVER_XPBD = 1    ///< as springs
+    ECHINUS_SOLVER_XPBD = 1,   ///< as springs
+    ECHINUS_SOLVER_NEWTON = 2  ///< as a continuous material in SI units
 } echinus_solver;
 
 /// In place of a thickness: it is chosen by the library.
@@ -1129,7 +1130,7 @@ typedef struct echinus_simulation_options {
     /// Seconds per frame. Half of it takes twice the time and leaves a quarter of the stretch (1e-9 to 1e9 s)
     double time_step;
     /// Verlet: each relaxation of a stick removes a share of its error; xpbd: sticks are springs, and the
-    /// only one for soft bodies
+    /// usual one for soft bodies; newton: a continuous material in SI units
     echinus_solver solver;
     /// Relaxations per substep, each of all sticks and then of all contacts; more cost time and leave less
     /// stretch (1 to 1e6)
@@ -1182,6 +1183,21 @@ typedef struct echinus_simulation_options {
     uint64_t thread_count;
     /// Verlet only: relax coarser sheets of a rectangular cloth first, so that a large one hardly stretches
     uint64_t multilevel;
+    /// Newton only: at most so many steps of Newton's method in a frame; fewer where it has converged (1 to
+    /// 1000)
+    uint32_t newton_step_count;
+    /// 0
+    int32_t reserved;
+    /// Newton only, as the four that follow: mass of the cloth per area (1e-6 to 1e6 kg/m^2)
+    double density;
+    /// Force per width against stretching of warp and weft (1e-6 to 1e9 N/m)
+    double stretch_stiffness;
+    /// Force per width against shear between them (0 to 1e9 N/m)
+    double shear_stiffness;
+    /// Moment per width and curvature against folding (0 to 1e6 N m)
+    double bending_stiffness;
+    /// Viscosity of the cloth over its stiffness (0 to 1e6 s)
+    double damping;
 } echinus_simulation_options;
 
 ECHINUS_API void echinus_simulation_options_init(echinus_simulation_options* options, size_t size);

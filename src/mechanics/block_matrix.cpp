@@ -1,0 +1,102 @@
+#include "mechanics/block_matrix.hpp"
+
+#include <algorithm>
+
+namespace echinus {
+
+Block inverse(const Block& block) {
+    std::array<std::array<double, 3>, 3> m{};
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) m[i][j] = double{block(i, j)};
+    const auto cofactor = [&](std::size_t i, std::size_t j) {
+        const std::size_t a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
+        return m[a][c] * m[b][d] - m[a][d] * m[b][c];
+    };
+    const double determinant = m[0][0] * cofactor(0, 0) + m[0][1] * cofactor(0, 1) + m[0][2] * cofactor(0, 2);
+    Block result;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+            result.columns[j].set(i, static_cast<float>(cofactor(j, i) / determinant));
+    return result;
+}
+
+namespace {
+
+void sort_unique(std::vector<Coupling>& couplings) {
+    std::sort(couplings.begin(), couplings.end());
+    couplings.erase(std::unique(couplings.begin(), couplings.end()), couplings.end());
+}
+
+/// @param couplings  ascending, each once
+template <typename Value>
+void set_rows(Rows<Value>& rows, std::size_t row_count, std::span<const Coupling> couplings) {
+    rows.first.assign(row_count + 1, 0);
+    rows.columns.clear();
+    for (const Coupling& coupling : couplings) {
+        ++rows.first[coupling[0] + 1];
+        rows.columns.push_back(coupling[1]);
+    }
+    for (std::size_t row = 0; row < row_count; ++row) rows.first[row + 1] += rows.first[row];
+    rows.values.assign(rows.columns.size(), Value{});
+}
+
+template <typename Value>
+std::uint32_t find(const Rows<Value>& rows, std::uint32_t row, std::uint32_t column) {
+    const auto begin = rows.columns.begin() + rows.first[row],
+               end = rows.columns.begin() + rows.first[row + 1];
+    const auto found = std::lower_bound(begin, end, column);
+    if (found == end || *found != column) return BlockMatrix::kNone;
+    return static_cast<std::uint32_t>(found - rows.columns.begin());
+}
+
+} // namespace
+
+void BlockMatrix::set_pattern(std::size_t row_count, std::vector<Coupling> coupled,
+                              std::vector<Coupling> coupled_by_multiples) {
+    for (std::uint32_t row = 0; row < row_count; ++row) coupled.push_back({row, row});
+    sort_unique(coupled);
+    sort_unique(coupled_by_multiples);
+    std::vector<Coupling> far;
+    std::set_difference(coupled_by_multiples.begin(), coupled_by_multiples.end(), coupled.begin(),
+                        coupled.end(), std::back_inserter(far));
+    set_rows(blocks, row_count, coupled);
+    set_rows(multiples, row_count, far);
+    set_rows(contacts, row_count, {});
+    diagonal.resize(row_count);
+    for (std::uint32_t row = 0; row < row_count; ++row) diagonal[row] = find_block(row, row);
+}
+
+std::uint32_t BlockMatrix::find_block(std::uint32_t row, std::uint32_t column) const {
+    return find(blocks, row, column);
+}
+
+std::uint32_t BlockMatrix::find_multiple(std::uint32_t row, std::uint32_t column) const {
+    return find(multiples, row, column);
+}
+
+void BlockMatrix::clear() {
+    std::fill(blocks.values.begin(), blocks.values.end(), Block{});
+    std::fill(multiples.values.begin(), multiples.values.end(), 0.0F);
+    contacts.first.assign(row_count() + 1, 0);
+    contacts.columns.clear();
+    contacts.values.clear();
+}
+
+void BlockMatrix::invert_diagonal(const Workers& workers) {
+    inverse_diagonal.resize(row_count());
+    workers.for_ranges(row_count(), kRowsPerPiece,
+                       [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
+                           for (std::size_t row = begin; row < end; ++row)
+                               inverse_diagonal[row] = inverse(blocks.values[diagonal[row]]);
+                       });
+}
+
+void BlockMatrix::multiply(std::span<const Float4> x, std::span<Float4> result,
+                           const Workers& workers) const {
+    workers.for_ranges(row_count(), kRowsPerPiece,
+                       [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
+                           for (std::size_t row = begin; row < end; ++row) result[row] = row_times(row, x);
+                       });
+}
+
+} // namespace echinus

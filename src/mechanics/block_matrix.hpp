@@ -1,0 +1,74 @@
+#pragma once
+
+#include "geometry/workers.hpp"
+#include "mechanics/block.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace echinus {
+
+/// Entries of a square matrix by rows: columns ascending within each.
+template <typename Value>
+struct Rows {
+    std::vector<std::uint32_t> first{0}; ///< [row_count + 1]
+    std::vector<std::uint32_t> columns;
+    std::vector<Value> values;
+
+    std::size_t row_count() const { return first.size() - 1; }
+};
+
+/// Particles that a term of energy couples.
+using Coupling = std::array<std::uint32_t, 2>;
+
+/// A symmetric matrix of 3 x 3 blocks, of which both triangles are stored. Entries of three kinds:
+/// - blocks on a pattern that is found once for a topology;
+/// - multiples of the identity on another such pattern: of bending, which couples particles that no face
+///   joins and would otherwise take as much memory traffic as all else;
+/// - blocks where contacts couple particles, on a pattern that changes.
+class BlockMatrix {
+  public:
+    Rows<Block> blocks; ///< with each row's diagonal
+    Rows<float> multiples;
+    Rows<Block> contacts;                ///< none on the diagonal
+    std::vector<std::uint32_t> diagonal; ///< [row_count] where it stands in `blocks`
+    std::vector<Block> inverse_diagonal; ///< [row_count] after invert_diagonal()
+
+    std::size_t row_count() const { return diagonal.size(); }
+
+    /// Sets both fixed patterns. @param coupled, coupled_by_multiples  in any order, each once or more often;
+    /// of those that are in both, the multiples belong to the blocks
+    void set_pattern(std::size_t row_count, std::vector<Coupling> coupled,
+                     std::vector<Coupling> coupled_by_multiples);
+    /// Where the block of a row and a column stands. @return kNone where the pattern has none
+    std::uint32_t find_block(std::uint32_t row, std::uint32_t column) const;
+    std::uint32_t find_multiple(std::uint32_t row, std::uint32_t column) const;
+    static constexpr std::uint32_t kNone = UINT32_MAX;
+
+    /// All values to 0, no contacts.
+    void clear();
+    /// @pre each diagonal block is positive definite
+    void invert_diagonal(const Workers& workers);
+
+    /// The product of a row with x.
+    Float4 row_times(std::size_t row, std::span<const Float4> x) const {
+        Float4 sum;
+        for (std::uint32_t e = blocks.first[row]; e < blocks.first[row + 1]; ++e)
+            sum += blocks.values[e] * x[blocks.columns[e]];
+        for (std::uint32_t e = multiples.first[row]; e < multiples.first[row + 1]; ++e)
+            sum += x[multiples.columns[e]] * multiples.values[e];
+        for (std::uint32_t e = contacts.first[row]; e < contacts.first[row + 1]; ++e)
+            sum += contacts.values[e] * x[contacts.columns[e]];
+        return sum;
+    }
+    /// result = A x
+    void multiply(std::span<const Float4> x, std::span<Float4> result, const Workers& workers) const;
+};
+
+/// Rows of a loop over rows that one thread takes at once: fixed, so that the threads decide no bits.
+inline constexpr std::size_t kRowsPerPiece = 1024;
+
+} // namespace echinus

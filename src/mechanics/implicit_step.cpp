@@ -1,0 +1,153 @@
+#include "mechanics/implicit_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace echinus {
+
+namespace {
+
+/// Armijo's condition: the share of the slope's promise that a step has to keep.
+constexpr double kSufficientDecrease = 1e-4;
+/// After so many shorter trials the step is taken as it is.
+constexpr std::uint32_t kMostHalvings = 12;
+/// Differences of the energy below this share of it are rounding.
+constexpr double kEnergyRounding = 1e-11;
+
+/// Of BDF2: m (3 v - 4 v0 + v00) / (2 h) = f with v = (3 x - 4 x0 + x00) / (2 h).
+constexpr double kSecondOrderInertia = 9.0 / 4;
+
+} // namespace
+
+ImplicitStep::ImplicitStep(const ElasticParts& parts)
+    : masses_(parts.masses), elastic_(parts), hessian_(elastic_.pattern()),
+      multigrid_(hessian_, parts.rest_places), inertial_(masses_.size()), inertia_(masses_.size()),
+      gradient_(masses_.size()), trial_(masses_.size()), right_side_(masses_.size()),
+      direction_(masses_.size()) {
+    elastic_.find_entries(hessian_);
+}
+
+void ImplicitStep::begin(const Motion& motion, std::span<const Vec3d> accelerations,
+                         std::span<const std::uint8_t> is_held, double step) {
+    is_held_ = is_held;
+    elastic_.begin_step(motion.places, step);
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+        const Vec3d place = motion.places[i], velocity = motion.velocities[i];
+        if (motion.is_smooth[i] != 0) {
+            const Vec3d smooth_place = (place * 4 - motion.places_before[i]) * (1.0 / 3);
+            const Vec3d smooth_velocity = (velocity * 4 - motion.velocities_before[i]) * (1.0 / 3);
+            inertia_[i] = kSecondOrderInertia * masses_[i] / (step * step);
+            inertial_[i] = smooth_place + smooth_velocity * (step * 2 / 3) +
+                           accelerations[i] * (step * step / kSecondOrderInertia);
+        } else {
+            inertia_[i] = masses_[i] / (step * step);
+            inertial_[i] = place + velocity * step + accelerations[i] * (step * step);
+        }
+    }
+}
+
+double ImplicitStep::energy(Places places, const ContactEnergy* contacts, const Workers& workers) const {
+    double energy = sum_of(masses_.size(), workers, [&](std::size_t i) {
+        if (is_held_[i] != 0) return 0.0;
+        const Vec3d away = places[i] - inertial_[i];
+        return inertia_[i] / 2 * dot(away, away);
+    });
+    energy += elastic_.energy(places, workers);
+    if (contacts != nullptr) energy += contacts->energy(places, workers);
+    return energy;
+}
+
+void ImplicitStep::add_derivatives(Places places, const ContactEnergy* contacts, const Workers& workers) {
+    hessian_.clear();
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+        gradient_[i] = (places[i] - inertial_[i]) * inertia_[i];
+        hessian_.blocks.values[hessian_.diagonal[i]].add_identity(static_cast<float>(inertia_[i]));
+    }
+    elastic_.add_derivatives(places, gradient_, hessian_, workers);
+    if (contacts != nullptr) contacts->add_derivatives(places, gradient_, hessian_, workers);
+    hold(workers);
+}
+
+/// Takes the particles that are held out of the system: their rows and columns are those of a multiple of the
+/// identity.
+void ImplicitStep::hold(const Workers& workers) {
+    workers.for_ranges(masses_.size(), kRowsPerPiece,
+                       [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
+                           const auto clear = [&](auto& rows, std::size_t row) {
+                               for (std::uint32_t e = rows.first[row]; e < rows.first[row + 1]; ++e)
+                                   if (is_held_[row] != 0 || is_held_[rows.columns[e]] != 0)
+                                       rows.values[e] = {};
+                           };
+                           for (std::size_t row = begin; row < end; ++row) {
+                               clear(hessian_.blocks, row);
+                               clear(hessian_.multiples, row);
+                               clear(hessian_.contacts, row);
+                               if (is_held_[row] == 0) continue;
+                               hessian_.blocks.values[hessian_.diagonal[row]].add_identity(
+                                   static_cast<float>(inertia_[row]));
+                               gradient_[row] = {};
+                           }
+                       });
+}
+
+StepReport ImplicitStep::solve(std::span<Vec3d> places, const ContactEnergy* contacts,
+                               const StepBudget& budget, const Workers& workers) {
+    StepReport report;
+    double energy = this->energy(places, contacts, workers);
+    while (report.newton_steps < budget.newton_steps) {
+        add_derivatives(places, contacts, workers);
+        multigrid_.set(hessian_, is_held_, workers);
+        for (std::size_t i = 0; i < masses_.size(); ++i) right_side_[i] = Float4(-gradient_[i]);
+        report.linear_iterations += linear_.solve(hessian_, multigrid_, right_side_, direction_,
+                                                  budget.linear_iterations, budget.linear_tolerance, workers);
+        double slope = 0, longest_sq = 0;
+        for (std::size_t i = 0; i < masses_.size(); ++i) {
+            const Vec3d move = direction_[i].to_double();
+            slope += dot(gradient_[i], move);
+            longest_sq = std::max(longest_sq, dot(move, move));
+        }
+        ++report.newton_steps;
+        const double share = search(places, contacts, slope, energy, report, workers);
+        report.last_move = share * std::sqrt(longest_sq);
+        if (report.last_move < budget.tolerance) break;
+    }
+    return report;
+}
+
+/// Goes so far along the direction that the energy falls. @return the share of it
+double ImplicitStep::search(std::span<Vec3d> places, const ContactEnergy* contacts, double slope,
+                            double& energy, StepReport& report, const Workers& workers) {
+    double share = 1, found = 0;
+    for (std::uint32_t trial = 0;; ++trial) {
+        for (std::size_t i = 0; i < masses_.size(); ++i)
+            trial_[i] = places[i] + direction_[i].to_double() * share;
+        found = this->energy(trial_, contacts, workers);
+        const bool is_rounding = std::abs(found - energy) < kEnergyRounding * std::abs(energy);
+        if (found <= energy + kSufficientDecrease * share * slope || is_rounding || trial == kMostHalvings)
+            break;
+        // The least of the parabola through both energies and the slope, within bounds.
+        const double least = -slope * share * share / (2 * (found - energy - slope * share));
+        share = std::min(share / 2, std::max(share / 10, least));
+        ++report.halvings;
+    }
+    if (slope < 0) report.energy_ratio = (energy - found) / (-slope / 2);
+    energy = found;
+    std::copy(trial_.begin(), trial_.end(), places.begin());
+    return share;
+}
+
+void advance(Motion& motion, Places places, std::span<const std::uint8_t> is_touching, double step) {
+    for (std::size_t i = 0; i < motion.particle_count(); ++i) {
+        const Vec3d before = motion.places[i], velocity_before = motion.velocities[i];
+        const bool is_smooth = is_touching[i] == 0;
+        motion.velocities[i] = is_smooth && motion.is_smooth[i] != 0
+                                   ? (places[i] * 3 - before * 4 + motion.places_before[i]) * (0.5 / step)
+                                   : (places[i] - before) * (1 / step);
+        motion.places_before[i] = before;
+        motion.velocities_before[i] = velocity_before;
+        motion.places[i] = places[i];
+        motion.is_smooth[i] = is_smooth ? 1 : 0;
+    }
+}
+
+} // namespace echinus

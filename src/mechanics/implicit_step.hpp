@@ -1,0 +1,101 @@
+#pragma once
+
+#include "mechanics/conjugate_gradients.hpp"
+#include "mechanics/elastic_model.hpp"
+#include "mechanics/multigrid.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace echinus {
+
+/// Where particles are and how they move. Of those that have a history, the last step's beginning, too.
+struct Motion {
+    std::vector<Vec3d> places, velocities;
+    std::vector<Vec3d> places_before, velocities_before;
+    /// 1 where what came before is smooth, so that the step is of second order (BDF2); 0 after an impact, or
+    /// where the host has set a velocity, where it is of first order (implicit Euler).
+    std::vector<std::uint8_t> is_smooth;
+
+    explicit Motion(std::size_t particle_count)
+        : places(particle_count), velocities(particle_count), places_before(particle_count),
+          velocities_before(particle_count), is_smooth(particle_count) {}
+    std::size_t particle_count() const { return places.size(); }
+};
+
+/// Energy beside the elastic one: of contacts, of friction.
+class ContactEnergy {
+  public:
+    virtual ~ContactEnergy() = default;
+    virtual double energy(Places places, const Workers& workers) const = 0;
+    /// The gradient, and a positive semi-definite Hessian: added to the diagonal blocks of the matrix, to
+    /// others of its pattern, and to its contacts.
+    virtual void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix& hessian,
+                                 const Workers& workers) const = 0;
+};
+
+/// What bounds the cost of a step. It ends earlier where it has converged.
+struct StepBudget {
+    std::uint32_t newton_steps = 2;
+    std::uint32_t linear_iterations = 4; ///< of each
+    double linear_tolerance = 1e-2;      ///< of the residual, relative
+    double tolerance = 1e-6; ///< a Newton step that moves nothing farther than this is the last; length
+};
+
+struct StepReport {
+    std::uint32_t newton_steps = 0, linear_iterations = 0, halvings = 0;
+    double last_move = 0; ///< the largest displacement of a particle in the last Newton step
+    /// By which the energy of the step has fallen, over that which the quadratic model promised: about 1
+    /// where it has converged.
+    double energy_ratio = 1;
+};
+
+/// Steps of a deformable's motion: each finds a minimum of
+///     sum of c m / (2 h^2) |x - y|^2 + elastic energy(x) + contact energy(x),
+/// y where inertia and outer forces would lead, by Newton's method with a projected Hessian, a line search,
+/// and conjugate gradients preconditioned by multigrid (docs/mechanics.md). Places are in double: the
+/// residual of a stiff material is a small difference of large forces.
+class ImplicitStep {
+  public:
+    explicit ImplicitStep(const ElasticParts& parts);
+
+    /// Where inertia leads: begins a step. @param accelerations  [particle] by outer forces
+    /// @param is_held  [particle] 1 for those that do not follow forces, but goals
+    void begin(const Motion& motion, std::span<const Vec3d> accelerations,
+               std::span<const std::uint8_t> is_held, double step);
+    /// Minimises from a guess. @param places  in: the guess; held particles are where they are to be. Out:
+    /// the minimum as far as the budget leads
+    StepReport solve(std::span<Vec3d> places, const ContactEnergy* contacts, const StepBudget& budget,
+                     const Workers& workers);
+
+    double energy(Places places, const ContactEnergy* contacts, const Workers& workers) const;
+    /// The elastic part alone, without dissipation in progress.
+    const ElasticModel& elastic() const { return elastic_; }
+    std::span<const double> masses() const { return masses_; }
+    std::size_t level_count() const { return multigrid_.level_count(); }
+
+  private:
+    void add_derivatives(Places places, const ContactEnergy* contacts, const Workers& workers);
+    void hold(const Workers& workers);
+    double search(std::span<Vec3d> places, const ContactEnergy* contacts, double slope, double& energy,
+                  StepReport& report, const Workers& workers);
+
+    std::vector<double> masses_;
+    ElasticModel elastic_;
+    BlockMatrix hessian_;
+    Multigrid multigrid_;
+    ConjugateGradients linear_;
+    std::span<const std::uint8_t> is_held_;
+    std::vector<Vec3d> inertial_; ///< y
+    std::vector<double> inertia_; ///< c m / h^2
+    std::vector<Vec3d> gradient_, trial_;
+    std::vector<Float4> right_side_, direction_;
+};
+
+/// The motion after a step that led to these places. @param is_touching  [particle] 1 where a contact pushed
+/// or stopped a particle, so that its velocity may have jumped: there the step counts as one of first order,
+/// and so does the next
+void advance(Motion& motion, Places places, std::span<const std::uint8_t> is_touching, double step);
+
+} // namespace echinus

@@ -1,0 +1,147 @@
+#include "mechanics/interpolation.hpp"
+
+#include "mechanics/cholesky.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace echinus {
+
+namespace {
+
+/// Edges between coarse nodes; more make fewer of them, which represent less of what is smooth.
+constexpr std::uint32_t kSpacing = 2;
+/// Coarse nodes that a node follows.
+constexpr std::size_t kMostParents = 4;
+/// Weights below it are left out.
+constexpr double kLeastWeight = 0.02;
+/// Of the least squares, relative to the square of the distance to the farthest parent: in a direction in
+/// which the parents do not extend (out of a sheet), what is linear is left out.
+constexpr double kFlatness = 1e-3;
+
+/// The nodes around one, by breadth-first search.
+class Neighbourhood {
+  public:
+    explicit Neighbourhood(const Rows<Block>& graph)
+        : graph_(graph), seen_from_(graph.row_count(), kNobody), distances_(graph.row_count()) {}
+
+    /// Those within so many edges, the nearer first. The span holds until the next call.
+    std::span<const std::uint32_t> around(std::uint32_t node, std::uint32_t radius) {
+        found_.assign(1, node);
+        ++search_;
+        seen_from_[node] = search_;
+        distances_[node] = 0;
+        for (std::size_t next = 0; next < found_.size(); ++next) {
+            const std::uint32_t at = found_[next];
+            if (distances_[at] == radius) break;
+            for (std::uint32_t e = graph_.first[at]; e < graph_.first[at + 1]; ++e) {
+                const std::uint32_t neighbour = graph_.columns[e];
+                if (std::exchange(seen_from_[neighbour], search_) == search_) continue;
+                distances_[neighbour] = distances_[at] + 1;
+                found_.push_back(neighbour);
+            }
+        }
+        return found_;
+    }
+
+  private:
+    static constexpr std::uint32_t kNobody = 0;
+
+    const Rows<Block>& graph_;
+    std::vector<std::uint32_t> seen_from_, distances_, found_;
+    std::uint32_t search_ = kNobody;
+};
+
+struct Parent {
+    double distance_sq;
+    std::uint32_t node; ///< fine
+    friend auto operator<=>(const Parent&, const Parent&) = default;
+};
+
+/// Of the moving least squares at a node: the value there of the linear function that fits the parents'.
+std::vector<double> weights_at(const Vec3d& place, std::span<const Parent> parents,
+                               std::span<const Vec3d> places) {
+    constexpr std::size_t kTerms = 4;
+    const double scale =
+        1 / std::sqrt(std::max(parents.back().distance_sq, std::numeric_limits<double>::min()));
+    std::vector<double> normal_matrix(kTerms * kTerms);
+    std::vector<std::array<double, kTerms>> rows;
+    for (const Parent& parent : parents) {
+        const Vec3d d = (places[parent.node] - place) * scale;
+        const std::array<double, kTerms> row{1, d.x, d.y, d.z};
+        const double distance_sq = dot(d, d) + kFlatness;
+        const double importance = 1 / (distance_sq * distance_sq);
+        std::array<double, kTerms> weighted{};
+        for (std::size_t i = 0; i < kTerms; ++i) {
+            weighted[i] = importance * row[i];
+            for (std::size_t j = 0; j < kTerms; ++j) normal_matrix[i * kTerms + j] += weighted[i] * row[j];
+        }
+        rows.push_back(weighted);
+    }
+    for (std::size_t i = 1; i < kTerms; ++i) normal_matrix[i * kTerms + i] += kFlatness;
+    Cholesky<double> normal;
+    normal.factorise(kTerms, std::move(normal_matrix));
+    std::array<double, kTerms> at_node{1, 0, 0, 0};
+    normal.solve(at_node);
+    std::vector<double> weights;
+    double sum = 0;
+    for (const auto& row : rows) {
+        double weight = 0;
+        for (std::size_t i = 0; i < kTerms; ++i) weight += row[i] * at_node[i];
+        weights.push_back(weight);
+        sum += weight;
+    }
+    for (double& weight : weights) weight /= sum;
+    return weights;
+}
+
+/// [node] its number among the coarse ones, or kNone.
+std::vector<std::uint32_t> choose_coarse(const Rows<Block>& graph, Neighbourhood& neighbourhood) {
+    std::vector<std::uint32_t> numbers(graph.row_count(), BlockMatrix::kNone);
+    std::vector<bool> is_covered(graph.row_count());
+    std::uint32_t count = 0;
+    for (std::uint32_t node = 0; node < graph.row_count(); ++node) {
+        if (is_covered[node]) continue;
+        numbers[node] = count++;
+        for (const std::uint32_t near : neighbourhood.around(node, kSpacing)) is_covered[near] = true;
+    }
+    return numbers;
+}
+
+} // namespace
+
+Interpolation interpolate(const Rows<Block>& graph, std::span<const Vec3d> places) {
+    Neighbourhood neighbourhood(graph);
+    const std::vector<std::uint32_t> numbers = choose_coarse(graph, neighbourhood);
+    Interpolation result;
+    std::vector<Parent> parents;
+    for (std::uint32_t node = 0; node < graph.row_count(); ++node) {
+        if (numbers[node] != BlockMatrix::kNone) {
+            result.coarse_places.push_back(places[node]);
+            result.parents.columns.push_back(numbers[node]);
+            result.parents.values.push_back(1);
+        } else {
+            parents.clear();
+            for (const std::uint32_t near : neighbourhood.around(node, 2 * kSpacing)) {
+                if (numbers[near] == BlockMatrix::kNone) continue;
+                const Vec3d d = places[near] - places[node];
+                parents.push_back({dot(d, d), near});
+            }
+            std::sort(parents.begin(), parents.end());
+            if (parents.size() > kMostParents) parents.resize(kMostParents);
+            const std::vector<double> weights = weights_at(places[node], parents, places);
+            for (std::size_t i = 0; i < parents.size(); ++i) {
+                if (std::abs(weights[i]) < kLeastWeight) continue;
+                result.parents.columns.push_back(numbers[parents[i].node]);
+                result.parents.values.push_back(static_cast<float>(weights[i]));
+            }
+        }
+        result.parents.first.push_back(static_cast<std::uint32_t>(result.parents.columns.size()));
+    }
+    return result;
+}
+
+} // namespace echinus

@@ -1,0 +1,237 @@
+#include "simulation/newton_solver.hpp"
+
+#include "simulation/contact/carry_field.hpp"
+#include "simulation/stopwatch.hpp"
+#include "simulation/surfaces/edge_lengths.hpp"
+
+#include <echinus/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace echinus {
+
+namespace {
+
+/// In mean edges: a Newton step that moves nothing farther has converged.
+constexpr double kTolerance = 1e-4;
+/// A frame in which colliders move is divided, so that in a part none moves farther than so many thicknesses.
+constexpr double kMostCarried = 4;
+constexpr std::uint32_t kMostPartsOfFrame = 32;
+/// In thicknesses: what is no farther from a collider is carried along with it whole.
+constexpr double kTouch = 2;
+
+SimulationOptions valid(const SimulationOptions& options, const std::vector<Collider>& colliders) {
+    if (!colliders.empty() && !options.surface_collision)
+        throw Error(
+            ErrorCode::InvalidOptions,
+            "simulation option surface_collision is false; the newton solver needs it where there are "
+            "colliders, since its contacts are between surfaces");
+    if (options.thickness && !(*options.thickness > 0))
+        throw Error(ErrorCode::InvalidOptions,
+                    "simulation option thickness is 0; the newton solver needs a positive one, within which "
+                    "contacts push");
+    return options;
+}
+
+} // namespace
+
+NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colliders_in,
+                           const SimulationOptions& options_in)
+    : Solver(std::move(deformable_in), std::move(colliders_in), valid(options_in, colliders_in)),
+      step_(elastic_parts(deformable, options.material)), motion_(deformable.particle_count()),
+      is_held_(deformable.particle_count()), accelerations_(deformable.particle_count(), options.gravity),
+      gained_(deformable.particle_count()),
+      mean_edge_(double{mean_edge_length(elements_of(deformable), deformable.positions)}) {
+    for (std::size_t i = 0; i < deformable.particle_count(); ++i) {
+        motion_.places[i] = Vec3d(deformable.positions[i]);
+        motion_.velocities[i] = (motion_.places[i] - Vec3d(deformable.previous_positions[i])) *
+                                (options.substep_count / options.time_step);
+        is_held_[i] = deformable.inverse_masses[i] == 0 ? 1 : 0;
+        if (is_held_[i] != 0) motion_.velocities[i] = {};
+    }
+    if (options.surface_collision) contacts_.emplace(deformable, colliders, step_.masses(), options);
+}
+
+void NewtonSolver::step() {
+    const Workers::Session session(workers_);
+    bounds_.require_sound();
+    move_colliders_on();
+    if (contacts_) contacts_->begin_frame();
+    const std::uint32_t parts = part_count();
+    for (std::uint32_t part = 0; part < parts; ++part) step_part(options.time_step / parts);
+    if (contacts_) profile.squeezed_count += contacts_->unresolved_count();
+    accelerations_.assign(deformable.particle_count(), options.gravity);
+    publish();
+    ++frame;
+    rest_.watch(deformable.positions, largest_speed);
+}
+
+/// So that what is carried along keeps its gaps.
+std::uint32_t NewtonSolver::part_count() const {
+    double longest = 0;
+    for (const Collider& collider : colliders) {
+        Collider after = collider;
+        after.pose = pose_after(collider, options.time_step);
+        longest = std::max(longest, CarryField::longest_displacement(collider, after));
+    }
+    const double parts = std::ceil(longest / (kMostCarried * *options.thickness));
+    return static_cast<std::uint32_t>(std::clamp(parts, 1.0, double{kMostPartsOfFrame}));
+}
+
+void NewtonSolver::step_part(double seconds) {
+    const std::vector<Collider> before = colliders;
+    for (Collider& collider : colliders) collider.pose = pose_after(collider, seconds);
+    const PointArrays start = carried_start(before);
+    std::vector<Vec3d> places = guess(start, seconds);
+    step_.begin(motion_, accelerations_, is_held_, seconds);
+    minimise(places, start, seconds);
+    const std::vector<Vec3d> velocities_before = motion_.velocities;
+    const std::vector<std::uint8_t> nothing_touches(contacts_ ? 0 : places.size());
+    advance(motion_, places, contacts_ ? contacts_->touching() : nothing_touches, seconds);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        gained_[i] = (motion_.velocities[i] - velocities_before[i]) * (1 / seconds);
+        // What is held is led, and has no motion of its own.
+        if (is_held_[i] != 0) motion_.is_smooth[i] = 0;
+    }
+}
+
+/// Where the step begins: what colliders carry is with them.
+PointArrays NewtonSolver::carried_start(const std::vector<Collider>& before) {
+    PointArrays from;
+    from.resize(motion_.particle_count());
+    for (std::size_t i = 0; i < motion_.particle_count(); ++i) from.set(i, Vec3f(motion_.places[i]));
+    PointArrays start = from;
+    attachments_.follow(colliders, deforming_, 1, start);
+    if (!contacts_) return start;
+    const CarryField field(before, colliders, kTouch * *options.thickness);
+    if (field.is_zero()) return start;
+    field.carry(start, is_held_, workers_);
+    contacts_->carry(before, colliders, from, start, is_held_, workers_);
+    return start;
+}
+
+/// Inertia and as much of gravity as the last step has left. @param start  from where what is carried goes on
+std::vector<Vec3d> NewtonSolver::guess(const PointArrays& start, double seconds) const {
+    std::vector<Vec3d> places(motion_.particle_count());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const Vec3d place = motion_.places[i];
+        // Where nothing carries a particle, all its digits are kept.
+        const Vec3d from = start[i] == Vec3f(place) ? place : Vec3d(start[i]);
+        places[i] = from;
+        if (is_held_[i] != 0) continue;
+        const Vec3d pull = accelerations_[i];
+        const double pull_sq = dot(pull, pull);
+        const double share = pull_sq > 0 ? std::clamp(dot(gained_[i], pull) / pull_sq, 0.0, 1.0) : 0;
+        // What is carried moves with what carries it already.
+        const Vec3d carried = from - place, own = motion_.velocities[i] * seconds;
+        places[i] += own - carried + pull * (share * seconds * seconds);
+    }
+    return places;
+}
+
+void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds) {
+    StepBudget budget;
+    budget.tolerance = kTolerance * mean_edge_;
+    if (!contacts_) {
+        const Stopwatch stopwatch(profile.constraint_seconds);
+        budget.newton_steps = options.newton_step_count;
+        step_.solve(places, nullptr, budget, workers_);
+        return;
+    }
+    const auto contact = [&](const auto& work) {
+        const Stopwatch stopwatch(profile.collision_seconds);
+        work();
+    };
+    contact([&] {
+        contacts_->begin_step(colliders, start, places, is_held_, seconds, workers_);
+        contacts_->advance(places, false, workers_);
+    });
+    budget.newton_steps = 1;
+    for (std::uint32_t newton = 0; newton < options.newton_step_count; ++newton) {
+        double last_move = 0;
+        {
+            const Stopwatch stopwatch(profile.constraint_seconds);
+            last_move = step_.solve(places, &*contacts_, budget, workers_).last_move;
+        }
+        std::size_t stopped = 0;
+        contact([&] { stopped = contacts_->advance(places, true, workers_); });
+        if (newton + 1 == options.newton_step_count) profile.truncated_count += stopped;
+        if (last_move < budget.tolerance && stopped == 0) break;
+    }
+    contact([&] { contacts_->end_step(places); });
+    profile.contact_count += contacts_->pushing_count(places);
+    profile.measured_pair_count += contacts_->pair_count();
+}
+
+void NewtonSolver::publish() {
+    double largest_sq = 0;
+    for (std::size_t i = 0; i < motion_.particle_count(); ++i) {
+        const Vec3d place = motion_.places[i], velocity = motion_.velocities[i];
+        deformable.positions[i] = Vec3f(place);
+        deformable.previous_positions[i] =
+            Vec3f(place - velocity * (options.time_step / options.substep_count));
+        if (is_held_[i] == 0) largest_sq = std::max(largest_sq, dot(velocity, velocity));
+    }
+    largest_speed = std::sqrt(largest_sq);
+    PointArrays ends;
+    ends.load(deformable.positions);
+    bounds_.require_ends(ends, deformable.particle_count(), frame);
+}
+
+void NewtonSolver::set_particle_velocity(std::size_t particle, const Vec3d& velocity) {
+    if (is_held_[particle] != 0) return;
+    motion_.velocities[particle] = velocity;
+    motion_.is_smooth[particle] = 0;
+    deformable.previous_positions[particle] =
+        Vec3f(motion_.places[particle] - velocity * (options.time_step / options.substep_count));
+}
+
+/// As an acceleration in the next frame: of the velocity of the air across a face, relative to it, the rate a
+/// second.
+void NewtonSolver::blow(const Vec3d& wind, double rate) {
+    const double most = 1 / options.time_step; // no more than all of the difference in a frame
+    std::vector<Vec3d> sums(deformable.particle_count());
+    std::vector<std::uint32_t> counts(deformable.particle_count());
+    for (const Triangle& face : deformable.faces) {
+        const auto& [a, b, c] = face;
+        const Vec3d normal =
+            cross(motion_.places[b] - motion_.places[a], motion_.places[c] - motion_.places[a]);
+        const double normal_sq = dot(normal, normal);
+        if (!(normal_sq > 0)) continue;
+        const Vec3d velocity =
+            (motion_.velocities[a] + motion_.velocities[b] + motion_.velocities[c]) * (1.0 / 3);
+        const Vec3d across = normal * (dot(wind - velocity, normal) / normal_sq);
+        for (const std::uint32_t corner : face) {
+            sums[corner] += across;
+            ++counts[corner];
+        }
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        if (counts[i] > 0) accelerations_[i] = options.gravity + sums[i] * (std::min(rate, most) / counts[i]);
+}
+
+Load NewtonSolver::load_on(std::size_t collider) const {
+    return contacts_ ? contacts_->load_on(collider, options.time_step) : Load{};
+}
+
+void NewtonSolver::archive(StateArchive& state) {
+    archive_counts(state);
+    for (std::vector<Vec3d>* vectors : {&motion_.places, &motion_.velocities, &motion_.places_before,
+                                        &motion_.velocities_before, &accelerations_, &gained_})
+        state.array(*vectors);
+    state.array(motion_.is_smooth);
+    rest_.archive(state);
+    archive_colliders(state);
+    attachments_.archive(state, deforming_);
+    if (contacts_) contacts_->archive(state);
+    if (!state.reads()) return;
+    for (std::size_t i = 0; i < motion_.particle_count(); ++i)
+        state.require(is_finite(motion_.places[i]) && is_finite(motion_.velocities[i]));
+    const double speed = largest_speed;
+    publish();
+    largest_speed = speed;
+}
+
+} // namespace echinus

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "mechanics/implicit_step.hpp"
+#include "simulation/contact/surface_contacts.hpp"
+#include "simulation/elastic_parts.hpp"
+#include "simulation/solver.hpp"
+
+#include <optional>
+
+namespace echinus {
+
+/// A continuous material in implicit steps, with contact and friction in the same energy (docs/mechanics.md).
+class NewtonSolver : public Solver {
+  public:
+    /// @throws Error InvalidOptions
+    NewtonSolver(Deformable deformable, std::vector<Collider> colliders, const SimulationOptions& options);
+
+    std::unique_ptr<Solver> copy() const override { return std::make_unique<NewtonSolver>(*this); }
+    void step() override;
+    void set_particle_velocity(std::size_t particle, const Vec3d& velocity) override;
+    void blow(const Vec3d& wind, double rate) override;
+    Load load_on(std::size_t collider) const override;
+    void archive(StateArchive& state) override;
+
+  private:
+    std::uint32_t part_count() const;
+    void step_part(double seconds);
+    PointArrays carried_start(const std::vector<Collider>& before);
+    std::vector<Vec3d> guess(const PointArrays& start, double seconds) const;
+    void minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds);
+    void publish();
+
+    ImplicitStep step_;
+    Motion motion_;
+    std::vector<std::uint8_t> is_held_;
+    std::vector<Vec3d> accelerations_; ///< by gravity and wind
+    std::vector<Vec3d> gained_; ///< [particle] the acceleration of the last step: what contacts left of
+                                ///< gravity, for the guess of the next
+    std::optional<SurfaceContacts> contacts_;
+    double mean_edge_; ///< of the surface
+};
+
+} // namespace echinus

@@ -1,0 +1,238 @@
+// The newton solver as a user sees it: strain, friction, contact, motion.
+
+#include "support/draping.hpp"
+#include "support/surface_judge.hpp"
+
+#include <echinus/error.hpp>
+#include <echinus/mesh.hpp>
+#include <echinus/simulation.hpp>
+#include <echinus/soft_body.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace echinus::test {
+namespace {
+
+constexpr double kEarthGravity = 9.81;
+
+SimulationOptions newton() {
+    SimulationOptions options;
+    options.solver = SolverKind::Newton;
+    options.time_step = 1.0 / 60;
+    return options;
+}
+
+SimulationOptions newton_contact(double thickness) {
+    SimulationOptions options = newton();
+    options.surface_collision = options.self_collision = true;
+    options.thickness = thickness;
+    return options;
+}
+
+Vec3d middle_of(const Simulation& simulation) {
+    Vec3d sum;
+    for (const Vec3f& place : simulation.positions()) sum += Vec3d(place);
+    return sum * (1.0 / static_cast<double>(simulation.positions().size()));
+}
+
+/// A sheet of a metre that hangs by its first row, where it comes to rest.
+Simulation hanging_sheet(std::uint32_t count, SimulationOptions options, int frame_count) {
+    ClothOptions cloth{.column_count = count, .row_count = count};
+    cloth.pose.rotation = Rotation::about({1, 0, 0}, -std::numbers::pi / 2);
+    for (std::uint32_t i = 0; i < count; ++i) cloth.pins.push_back(i);
+    options.material.damping = 0.2; // to come to rest soon
+    Simulation simulation(make_cloth(cloth), {}, options);
+    for (int i = 0; i < frame_count; ++i) simulation.step();
+    return simulation;
+}
+
+/// Of the rows beside the first: how much longer the vertical edges are than at rest.
+double strain_at_the_top(const Simulation& simulation, std::uint32_t count) {
+    double sum = 0;
+    for (std::uint32_t column = 0; column < count; ++column)
+        sum += length(Vec3d(simulation.positions()[count + column]) - Vec3d(simulation.positions()[column])) *
+                   (count - 1) -
+               1;
+    return sum / count;
+}
+
+TEST(Newton, ClothThatHangsIsStretchedAsItsMaterialSaysAtEveryResolution) {
+    const SimulationOptions options = newton();
+    for (const std::uint32_t count : {9U, 17U, 33U}) {
+        const Simulation simulation = hanging_sheet(count, options, 240);
+        // What hangs below the middle of the first row's squares.
+        const double below = 1 - 0.5 / (count - 1);
+        const double expected =
+            options.material.density * kEarthGravity * below / options.material.stretch_stiffness;
+        EXPECT_NEAR(strain_at_the_top(simulation, count) / expected, 1, 0.02) << count;
+    }
+}
+
+TEST(Newton, ClothThatHangsIsStretchedTheSameAtEveryStep) {
+    std::vector<double> strains;
+    for (const double step : {1.0 / 30, 1.0 / 60, 1.0 / 240}) {
+        SimulationOptions options = newton();
+        options.time_step = step;
+        strains.push_back(strain_at_the_top(hanging_sheet(13, options, static_cast<int>(4 / step)), 13));
+    }
+    EXPECT_NEAR(strains[0] / strains[1], 1, 0.01);
+    EXPECT_NEAR(strains[2] / strains[1], 1, 0.01);
+}
+
+TEST(Newton, ClothInFreeFallKeepsItsMomentumToTheTolerance) {
+    Deformable sheet = sheet_at(1, 1, 12);
+    for (std::size_t i = 0; i < sheet.particle_count(); ++i) // a spin about a diagonal, and a throw
+        sheet.previous_positions[i] =
+            Vec3f(Vec3d(sheet.positions[i]) - Vec3d{0.5, -0.2, 0.3 * sheet.positions[i].x} * (1.0 / 60));
+    SimulationOptions options = newton();
+    options.gravity = {};
+    Simulation simulation(sheet, {}, options);
+    const Vec3d before = middle_of(simulation);
+    for (int i = 0; i < 60; ++i) simulation.step();
+    const Vec3d moved = middle_of(simulation) - before;
+    EXPECT_NEAR(moved.x, 0.5, 1e-3);
+    EXPECT_NEAR(moved.y, -0.2, 1e-3);
+}
+
+/// A strip of cloth that hangs by one end and swings as a pendulum: the height of its middle over the lowest.
+TEST(Newton, APendulumOfClothKeepsNineTenthsOfItsAmplitudeOverTenSwings) {
+    ClothOptions strip{.column_count = 2, .row_count = 9, .width = 0.1, .height = 1};
+    strip.pins = {0, 1};
+    strip.pose.rotation = Rotation::about({1, 0, 0}, -std::numbers::pi / 2 + 0.1);
+    SimulationOptions options = newton();
+    options.material.damping = 0;
+    options.material.bending_stiffness = 1; // a rod: else energy goes from one mode to others
+    Simulation simulation(make_cloth(strip), {}, options);
+    const double period = 2 * std::numbers::pi * std::sqrt(2.0 / 3 / kEarthGravity); // of a rod
+    const auto swing = [&](double seconds) {
+        double most = 0;
+        for (int i = 0; i < static_cast<int>(seconds * 60); ++i) {
+            simulation.step();
+            most = std::max(
+                most, std::abs(double{simulation.positions()[17].y} - double{simulation.positions()[0].y}));
+        }
+        return most;
+    };
+    const double first = swing(period);
+    swing(8 * period);
+    EXPECT_GT(swing(period), 0.9 * first);
+}
+
+TEST(Newton, FrictionHoldsOnASlopeJustBelowItsAngleAndSlidesJustAbove) {
+    const auto crept = [](double degrees, double friction, int frames) {
+        const Rotation tilt = Rotation::about({1, 0, 0}, degrees * std::numbers::pi / 180);
+        const Deformable sheet = make_cloth({.column_count = 7,
+                                             .row_count = 7,
+                                             .width = 0.3,
+                                             .height = 0.3,
+                                             .pose = {tilt, tilt.apply({0, 0, 0.503})}});
+        SimulationOptions options = newton_contact(0.004);
+        options.friction = friction;
+        Simulation simulation(sheet, {{.map = ExactMap::build(make_box({4, 4, 1})), .pose = {tilt, {}}}},
+                              options);
+        // What it has of speed when it lands is lost slowly, so near to the angle.
+        for (int i = 0; i < 300; ++i) simulation.step();
+        const Vec3d before = middle_of(simulation);
+        for (int i = 0; i < frames; ++i) simulation.step();
+        return length(middle_of(simulation) - before);
+    };
+    EXPECT_LT(crept(26.5, 0.5, 300), 1e-6);
+    EXPECT_GT(crept(26.565, 0.49, 60), 0.02); // 0.044 by Coulomb's law
+}
+
+TEST(Newton, ClothFallsOnABallAndBecomesSlowWithHardlyAnyStrain) {
+    const TriangleMesh ball = make_sphere(0.3, 32, 16);
+    Simulation simulation(sheet_at(0.33, 0.8, 17), colliders_of({ball}), newton_contact(0.008));
+    expect_nothing_meets(simulation, {ball}, 120);
+    EXPECT_LT(simulation.residual().root_mean_square, 0.005);
+    EXPECT_LT(simulation.residual().largest, 0.03);
+    // Its folds would swing for long without air around them.
+    while (simulation.frame() < 400) {
+        simulation.blow({}, 5);
+        simulation.step();
+    }
+    EXPECT_LT(simulation.largest_speed(), 0.03);
+}
+
+TEST(Newton, LayersThatFallOnABoxLieOnEachOther) {
+    std::vector<Deformable> layers;
+    for (int i = 0; i < 3; ++i) layers.push_back(sheet_at(0.51 + 0.012 * i, 0.4, 7));
+    const TriangleMesh box = make_box({2, 2, 1});
+    Simulation simulation(combine(layers), colliders_of({box}), newton_contact(0.008));
+    expect_nothing_meets(simulation, {box}, 90);
+    EXPECT_GT(middle_of(simulation).z, 0.5);
+    EXPECT_LT(simulation.largest_speed(), 0.01);
+}
+
+TEST(Newton, ABoxThatRisesAndTurnsLiftsTheClothThatLiesOnIt) {
+    const TriangleMesh box = make_box({0.6, 0.6, 0.2});
+    std::vector<Collider> colliders = colliders_of({box});
+    colliders[0].linear_velocity = {0, 0, 0.5};
+    colliders[0].angular_velocity = {0, 0, 1};
+    Simulation simulation(sheet_at(0.107, 0.4, 9), colliders, newton_contact(0.006));
+    expect_nothing_meets(simulation, {box}, 60);
+    const Vec3f corner = simulation.positions()[0];
+    EXPECT_NEAR(corner.z, 0.5 + 0.105, 0.01);
+    // By friction it turns with the box: by a radian.
+    const double turned = std::atan2(double{corner.y}, double{corner.x}) - std::atan2(-0.2, -0.2);
+    EXPECT_NEAR(std::remainder(turned - 1, 2 * std::numbers::pi), 0, 0.05);
+}
+
+TEST(Newton, APlateThatStrikesASheetThrowsItWithoutAHole) {
+    const TriangleMesh plate = make_box({0.3, 0.3, 0.02});
+    for (const double speed : {4.0, 30.0}) {
+        std::vector<Collider> colliders = colliders_of({plate});
+        colliders[0].linear_velocity = {0, 0, speed};
+        Simulation simulation(sheet_at(0.3, 0.8, 17), colliders, newton_contact(0.008));
+        expect_nothing_meets(simulation, {plate}, 16);
+    }
+}
+
+TEST(Newton, TheLoadOfAClothAtRestIsItsWeight) {
+    SimulationOptions options = newton_contact(0.006);
+    options.measure_loads = true;
+    const TriangleMesh box = make_box({2, 2, 1});
+    Simulation simulation(sheet_at(0.505, 0.5, 11), colliders_of({box}), options);
+    for (int i = 0; i < 120; ++i) simulation.step();
+    const double weight = options.material.density * 0.25 * kEarthGravity;
+    EXPECT_NEAR(simulation.load_on(0).force.z / weight, -1, 0.01);
+}
+
+TEST(Newton, AStripOfTwiceTheBendingStiffnessSagsHalfAsMuch) {
+    const auto sag = [](double stiffness) {
+        ClothOptions strip{.column_count = 3, .row_count = 11, .width = 0.04, .height = 0.2};
+        strip.pins = {0, 1, 2, 3, 4, 5}; // clamped
+        SimulationOptions options = newton();
+        options.material.bending_stiffness = stiffness;
+        options.material.damping = 0.1;
+        Simulation simulation(make_cloth(strip), {}, options);
+        for (int i = 0; i < 200; ++i) simulation.step();
+        return double{simulation.positions()[0].z} - double{simulation.positions()[31].z};
+    };
+    EXPECT_NEAR(sag(0.02) / sag(0.04), 2, 0.05);
+}
+
+TEST(Newton, SaysWhatItCannotDo) {
+    const std::vector<Collider> ball = colliders_of({make_sphere(0.3, 8, 4)});
+    const auto refusal = [&](const SimulationOptions& options) -> std::string {
+        try {
+            Simulation(sheet_at(1, 1, 4), ball, options);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_NE(refusal(newton()).find("surface_collision"), std::string::npos);
+    EXPECT_NE(refusal(newton_contact(0)).find("thickness is 0"), std::string::npos);
+    EXPECT_EQ(refusal(newton_contact(0.01)), "");
+}
+
+} // namespace
+} // namespace echinus::test
