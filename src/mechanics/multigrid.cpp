@@ -115,13 +115,13 @@ void Multigrid::add_level(const BlockMatrix& fine, std::span<const Vec3d> places
     levels_.push_back(std::move(level));
     if (fine.row_count() <= kMostLastNodes) return;
     Transfer transfer;
-    transfer.interpolation = interpolate(fine.blocks, places);
+    transfer.coarsening = coarsen(fine.blocks, places);
     // A graph without edges has as many coarse nodes: it is diagonal, and sweeps solve it.
-    if (transfer.interpolation.coarse_count() > fine.row_count() / 2) return;
-    transfer.children = transposed(transfer.interpolation.parents, transfer.interpolation.coarse_count());
+    if (transfer.coarsening.coarse_count() > fine.row_count() / 2) return;
+    transfer.children = transposed(transfer.coarsening.parents, transfer.coarsening.coarse_count());
     BlockMatrix coarse;
     plan(fine, transfer, coarse);
-    const std::vector<Vec3d> coarse_places = transfer.interpolation.coarse_places;
+    const std::vector<Vec3d> coarse_places = transfer.coarsening.coarse_places;
     levels_.back().transfer = std::move(transfer);
     const std::size_t next = levels_.size();
     add_level(coarse, coarse_places);
@@ -129,7 +129,7 @@ void Multigrid::add_level(const BlockMatrix& fine, std::span<const Vec3d> places
 }
 
 void Multigrid::plan(const BlockMatrix& fine, Transfer& transfer, BlockMatrix& coarse) {
-    const Rows<float>& parents = transfer.interpolation.parents;
+    const Rows<float>& parents = transfer.coarsening.parents;
     std::vector<Coupling> coupled;
     transfer.first_local = {0};
     std::vector<std::uint32_t> locals;
@@ -153,7 +153,7 @@ void Multigrid::plan(const BlockMatrix& fine, Transfer& transfer, BlockMatrix& c
         for (std::uint32_t p = parents.first[row]; p < parents.first[row + 1]; ++p)
             for (const std::uint32_t local : locals) coupled.push_back({parents.columns[p], local});
     }
-    coarse.set_pattern(transfer.interpolation.coarse_count(), std::move(coupled), {});
+    coarse.set_pattern(transfer.coarsening.coarse_count(), std::move(coupled), {});
     transfer.first_target = {0};
     transfer.fine_of_piece.resize(Workers::piece_count(coarse.row_count(), kCoarseRowsPerPiece));
     for (std::uint32_t row = 0; row < fine.row_count(); ++row) {
@@ -171,7 +171,7 @@ void Multigrid::plan(const BlockMatrix& fine, Transfer& transfer, BlockMatrix& c
 /// P^T A P. @param is_held  of the fine rows; empty: none
 void Multigrid::product(const BlockMatrix& fine, std::span<const std::uint8_t> is_held,
                         const Transfer& transfer, BlockMatrix& coarse, const Workers& workers) {
-    const Rows<float>& parents = transfer.interpolation.parents;
+    const Rows<float>& parents = transfer.coarsening.parents;
     coarse.clear();
     const auto add_row = [&](std::uint32_t row, std::size_t begin, std::size_t end,
                              std::vector<Block>& locals) {
@@ -218,7 +218,7 @@ void Multigrid::add_contacts(const BlockMatrix& fine, std::span<const std::uint8
         Coupling at;
         Block value;
     };
-    const Rows<float>& parents = transfer.interpolation.parents;
+    const Rows<float>& parents = transfer.coarsening.parents;
     std::vector<Far> far;
     for (std::uint32_t row = 0; row < fine.row_count(); ++row) {
         if (!is_held.empty() && is_held[row] != 0) continue;
@@ -316,7 +316,7 @@ void Multigrid::cycle(std::size_t level, std::span<const Float4> b, std::span<Fl
             next.right_side[node] = sum;
         }
         cycle(level + 1, next.right_side, next.solution, workers);
-        const Rows<float>& parents = transfer.interpolation.parents;
+        const Rows<float>& parents = transfer.coarsening.parents;
         for (std::size_t row = 0; row < a.row_count(); ++row) {
             if (level == 0 && is_held_[row] != 0) continue;
             for (std::uint32_t p = parents.first[row]; p < parents.first[row + 1]; ++p)

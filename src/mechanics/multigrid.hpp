@@ -2,7 +2,7 @@
 
 #include "mechanics/block_matrix.hpp"
 #include "mechanics/cholesky.hpp"
-#include "mechanics/interpolation.hpp"
+#include "mechanics/coarsening.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -31,7 +31,7 @@ class Multigrid {
   private:
     /// What turns a matrix into the next coarser one.
     struct Transfer {
-        Interpolation interpolation;
+        Coarsening coarsening;
         Rows<float> children; ///< [coarse node] the fine ones that follow it, ascending
         // The plan of the product, by fine node: the coarse nodes that its row of A P has,
         Rows<std::uint8_t> blocks,

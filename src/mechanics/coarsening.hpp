@@ -10,7 +10,7 @@ namespace echinus {
 
 /// How the displacements of fine nodes follow from those of coarse ones: of each fine node the coarse nodes
 /// that it follows and their weights.
-struct Interpolation {
+struct Coarsening {
     Rows<float> parents;              ///< [fine node]; columns in no order
     std::vector<Vec3d> coarse_places; ///< at rest
     std::size_t coarse_count() const { return coarse_places.size(); }
@@ -22,6 +22,6 @@ struct Interpolation {
 /// node is held follows none.
 /// @param graph   whose rows say which nodes are neighbours
 /// @param places  [node] at rest
-Interpolation interpolate(const Rows<Block>& graph, std::span<const Vec3d> places);
+Coarsening coarsen(const Rows<Block>& graph, std::span<const Vec3d> places);
 
 } // namespace echinus

@@ -1,4 +1,4 @@
-#include "mechanics/interpolation.hpp"
+#include "mechanics/coarsening.hpp"
 
 #include "mechanics/cholesky.hpp"
 
@@ -113,10 +113,10 @@ std::vector<std::uint32_t> choose_coarse(const Rows<Block>& graph, Neighbourhood
 
 } // namespace
 
-Interpolation interpolate(const Rows<Block>& graph, std::span<const Vec3d> places) {
+Coarsening coarsen(const Rows<Block>& graph, std::span<const Vec3d> places) {
     Neighbourhood neighbourhood(graph);
     const std::vector<std::uint32_t> numbers = choose_coarse(graph, neighbourhood);
-    Interpolation result;
+    Coarsening result;
     std::vector<Parent> parents;
     for (std::uint32_t node = 0; node < graph.row_count(); ++node) {
         if (numbers[node] != BlockMatrix::kNone) {

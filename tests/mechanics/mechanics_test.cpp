@@ -1,0 +1,284 @@
+// Energies against differences of themselves, the linear solver against what it solves.
+
+#include "mechanics/conjugate_gradients.hpp"
+#include "mechanics/elastic_model.hpp"
+#include "mechanics/implicit_step.hpp"
+#include "support/random_points.hpp"
+
+#include <echinus/soft_body.hpp>
+#include <echinus/tetrahedra.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace echinus::test {
+namespace {
+
+constexpr double kDamping = 0.02, kStepSeconds = 1.0 / 60;
+
+Vec3d random_vector(Random& random, double size) {
+    const auto part = [&] { return double{uniform(random, -1, 1)} * size; };
+    const double x = part(), y = part();
+    return {x, y, part()};
+}
+
+/// A sheet of count x count particles and a metre, of which every second hinge has an angle at rest.
+ElasticParts sheet_parts(std::uint32_t count, bool is_curved) {
+    ElasticParts parts;
+    parts.masses.assign(std::size_t{count} * count, 0.2 / (count * count));
+    for (std::uint32_t row = 0; row < count; ++row)
+        for (std::uint32_t column = 0; column < count; ++column)
+            parts.rest_places.push_back(Vec3d(column, row, 0) * (1.0 / (count - 1)));
+    const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        ElasticTriangle triangle{};
+        triangle.particles = {a, b, c};
+        std::array<std::array<double, 2>, 3> corners{};
+        for (std::size_t k = 0; k < 3; ++k)
+            corners[k] = {parts.rest_places[triangle.particles[k]].x,
+                          parts.rest_places[triangle.particles[k]].y};
+        EXPECT_GT(set_rest_shape(triangle, corners), 0);
+        triangle.warp_stiffness = 1000;
+        triangle.weft_stiffness = 700;
+        triangle.coupling = 200;
+        triangle.shear_stiffness = 300;
+        triangle.damping = kDamping;
+        parts.triangles.push_back(triangle);
+    };
+    const auto add_hinge = [&](const std::array<std::uint32_t, 4>& particles) {
+        ElasticHinge hinge{};
+        hinge.particles = particles;
+        hinge.rest_angle = is_curved && parts.hinges.size() % 2 == 0 ? 0.3F : 0.0F;
+        hinge.damping = kDamping;
+        std::array<Vec3d, 4> rest;
+        for (std::size_t k = 0; k < 4; ++k) rest[k] = parts.rest_places[particles[k]];
+        set_rest_shape(hinge, rest, 1e-3);
+        parts.hinges.push_back(hinge);
+    };
+    for (std::uint32_t row = 0; row + 1 < count; ++row)
+        for (std::uint32_t column = 0; column + 1 < count; ++column) {
+            const std::uint32_t a = row * count + column;
+            add(a, a + 1, a + count + 1);
+            add(a, a + count + 1, a + count);
+            add_hinge({a, a + count + 1, a + count, a + 1});
+        }
+    return parts;
+}
+
+/// Springs and a body of tetrahedra.
+ElasticParts body_parts() {
+    const Deformable body = make_soft_body(make_solid_box({0.2, 0.2, 0.2}, {2, 2, 2}),
+                                           {.young_modulus = 1e4, .damping = kDamping});
+    ElasticParts parts;
+    for (std::size_t i = 0; i < body.particle_count(); ++i) {
+        parts.rest_places.emplace_back(body.positions[i]);
+        parts.masses.push_back(1 / double{body.inverse_masses[i]});
+    }
+    parts.tetrahedra = body.tetrahedra;
+    parts.springs = {{0, 5, 0.05F, 300, kDamping}, {3, 9, 0.3F, 200, 0}};
+    return parts;
+}
+
+/// Two states of a model: where a step begins, and where it is looked at.
+struct Trial {
+    explicit Trial(const ElasticParts& parts, std::uint32_t seed, double size)
+        : model(parts), matrix(model.pattern()) {
+        Random random(seed);
+        places = parts.rest_places;
+        for (Vec3d& place : places) place += random_vector(random, size);
+        model.find_entries(matrix);
+        model.begin_step(places, kStepSeconds);
+        for (Vec3d& place : places) place += random_vector(random, size);
+        for (std::size_t i = 0; i < places.size(); ++i) direction.push_back(random_vector(random, 1));
+    }
+    std::vector<Vec3d> moved(double by) const {
+        std::vector<Vec3d> result = places;
+        for (std::size_t i = 0; i < result.size(); ++i) result[i] += direction[i] * by;
+        return result;
+    }
+    std::vector<Vec3d> gradient_at(Places at) const {
+        std::vector<Vec3d> gradient(at.size());
+        model.add_gradient(at, gradient, workers);
+        return gradient;
+    }
+    double slope_of(const std::vector<Vec3d>& gradient) const {
+        double sum = 0;
+        for (std::size_t i = 0; i < gradient.size(); ++i) sum += dot(gradient[i], direction[i]);
+        return sum;
+    }
+
+    ElasticModel model;
+    BlockMatrix matrix;
+    Workers workers;
+    std::vector<Vec3d> places, direction;
+};
+
+std::vector<ElasticParts> all_parts() {
+    return {sheet_parts(5, false), sheet_parts(5, true), body_parts()};
+}
+
+TEST(Mechanics, TheGradientIsTheDerivativeOfTheEnergy) {
+    for (const ElasticParts& parts : all_parts())
+        for (std::uint32_t seed = 1; seed < 8; ++seed) {
+            const Trial trial(parts, seed, 0.02);
+            constexpr double kDifference = 1e-6;
+            const double expected = (trial.model.energy(trial.moved(kDifference), trial.workers) -
+                                     trial.model.energy(trial.moved(-kDifference), trial.workers)) /
+                                    (2 * kDifference);
+            const double slope = trial.slope_of(trial.gradient_at(trial.places));
+            EXPECT_NEAR(slope / expected, 1, 1e-5) << seed;
+        }
+}
+
+TEST(Mechanics, TheGradientWithTheHessianIsTheSame) {
+    for (const ElasticParts& parts : all_parts()) {
+        Trial trial(parts, 3, 0.02);
+        std::vector<Vec3d> gradient(trial.places.size());
+        trial.matrix.clear();
+        trial.model.add_derivatives(trial.places, gradient, trial.matrix, trial.workers);
+        EXPECT_EQ(gradient, trial.gradient_at(trial.places));
+    }
+}
+
+TEST(Mechanics, TheHessianIsSymmetricAndLeavesOnlyOutWhatIsNegative) {
+    for (const ElasticParts& parts : all_parts())
+        for (std::uint32_t seed = 1; seed < 8; ++seed) {
+            Trial trial(parts, seed, 0.02);
+            std::vector<Vec3d> gradient(trial.places.size());
+            trial.matrix.clear();
+            trial.model.add_derivatives(trial.places, gradient, trial.matrix, trial.workers);
+            std::vector<Float4> along, across, product(trial.places.size()), other(trial.places.size());
+            Random random(seed + 100);
+            for (const Vec3d& d : trial.direction) {
+                along.emplace_back(d);
+                across.emplace_back(random_vector(random, 1));
+            }
+            trial.matrix.multiply(along, product, trial.workers);
+            trial.matrix.multiply(across, other, trial.workers);
+            double curvature = 0, one_way = 0, other_way = 0;
+            for (std::size_t i = 0; i < along.size(); ++i) {
+                curvature += double{dot(along[i], product[i])};
+                one_way += double{dot(across[i], product[i])};
+                other_way += double{dot(along[i], other[i])};
+            }
+            EXPECT_NEAR(one_way, other_way, 1e-4 * curvature);
+            constexpr double kDifference = 1e-6;
+            const double exact = (trial.slope_of(trial.gradient_at(trial.moved(kDifference))) -
+                                  trial.slope_of(trial.gradient_at(trial.moved(-kDifference)))) /
+                                 (2 * kDifference);
+            EXPECT_GT(curvature, 0);
+            EXPECT_GE(curvature, exact * (1 - 0.02)) << seed;
+        }
+}
+
+TEST(Mechanics, AtRestTheHessianIsExact) {
+    for (const ElasticParts& parts : {sheet_parts(5, false), body_parts()}) {
+        ElasticParts unloaded = parts;
+        unloaded.springs.clear();
+        Trial trial(unloaded, 1, 0);
+        std::vector<Vec3d> gradient(trial.places.size());
+        trial.matrix.clear();
+        trial.model.add_derivatives(trial.places, gradient, trial.matrix, trial.workers);
+        std::vector<Float4> along, product(trial.places.size());
+        for (const Vec3d& d : trial.direction) along.emplace_back(d);
+        trial.matrix.multiply(along, product, trial.workers);
+        constexpr double kDifference = 1e-6;
+        const auto after = trial.gradient_at(trial.moved(kDifference));
+        const auto before = trial.gradient_at(trial.moved(-kDifference));
+        double error = 0, size = 0;
+        for (std::size_t i = 0; i < product.size(); ++i) {
+            const Vec3d exact = (after[i] - before[i]) * (0.5 / kDifference);
+            error = std::max(error, length(product[i].to_double() - exact));
+            size = std::max(size, length(exact));
+        }
+        EXPECT_LT(error, 1e-3 * size);
+    }
+}
+
+TEST(Mechanics, ARigidMotionChangesNoEnergy) {
+    for (const ElasticParts& parts : all_parts()) {
+        ElasticModel model(parts);
+        const Workers workers;
+        const Rotation turn = Rotation::about({1, 2, 3}, 0.7);
+        std::vector<Vec3d> places;
+        for (const Vec3d& place : parts.rest_places) places.push_back(turn.apply(place) + Vec3d{1, -2, 3});
+        model.begin_step(parts.rest_places, kStepSeconds);
+        const double before = model.energy(parts.rest_places, workers);
+        model.begin_step(places, kStepSeconds);
+        EXPECT_NEAR(model.energy(places, workers), before, 1e-6 * (1 + before));
+    }
+}
+
+TEST(Mechanics, CoarseDisplacementsThatAreLinearInThePlaneAreKeptByInterpolation) {
+    const ElasticParts parts = sheet_parts(17, false);
+    const BlockMatrix pattern = ElasticModel(parts).pattern();
+    const Coarsening coarsening = coarsen(pattern.blocks, parts.rest_places);
+    EXPECT_LT(coarsening.coarse_count(), pattern.row_count() / 5);
+    const auto linear = [](const Vec3d& p) { return 2 + 3 * p.x - p.y; };
+    double worst = 0, mean = 0;
+    for (std::size_t node = 0; node < pattern.row_count(); ++node) {
+        double sum = 0, weights = 0;
+        for (std::uint32_t p = coarsening.parents.first[node]; p < coarsening.parents.first[node + 1]; ++p) {
+            sum += double{coarsening.parents.values[p]} *
+                   linear(coarsening.coarse_places[coarsening.parents.columns[p]]);
+            weights += double{coarsening.parents.values[p]};
+        }
+        EXPECT_NEAR(weights, 1, 0.05) << node; // small ones are left out
+        worst = std::max(worst, std::abs(sum - linear(parts.rest_places[node])));
+        mean += std::abs(sum - linear(parts.rest_places[node])) / static_cast<double>(pattern.row_count());
+    }
+    EXPECT_LT(mean, 0.02);
+    EXPECT_LT(worst, 0.2);
+}
+
+TEST(Mechanics, MultigridSolvesASheetInAFewIterationsAtEveryResolution) {
+    for (const std::uint32_t count : {17U, 33U, 65U}) {
+        const ElasticParts parts = sheet_parts(count, false);
+        ElasticModel model(parts);
+        BlockMatrix matrix = model.pattern();
+        model.find_entries(matrix);
+        const Workers workers;
+        std::vector<Vec3d> gradient(parts.masses.size());
+        model.begin_step(parts.rest_places, kStepSeconds);
+        model.add_derivatives(parts.rest_places, gradient, matrix, workers);
+        std::vector<std::uint8_t> is_held(parts.masses.size());
+        for (std::size_t i = 0; i < parts.masses.size(); ++i)
+            matrix.blocks.values[matrix.diagonal[i]].add_identity(
+                static_cast<float>(parts.masses[i] / (kStepSeconds * kStepSeconds)));
+        Multigrid multigrid(matrix, parts.rest_places);
+        multigrid.set(matrix, is_held, workers);
+        Random random(count);
+        std::vector<Float4> right, solution(parts.masses.size());
+        for (std::size_t i = 0; i < parts.masses.size(); ++i) right.emplace_back(random_vector(random, 1));
+        ConjugateGradients solver;
+        EXPECT_LE(solver.solve(matrix, multigrid, right, solution, 100, 1e-3, workers), 20u) << count;
+        std::vector<Float4> converged(right.size());
+        solver.solve(matrix, multigrid, right, converged, 100, 1e-6, workers);
+        double error = 0, size = 0;
+        for (std::size_t i = 0; i < right.size(); ++i) {
+            error = std::max(error, length((solution[i] - converged[i]).to_double()));
+            size = std::max(size, length(converged[i].to_double()));
+        }
+        EXPECT_LT(error, 0.02 * size) << count;
+    }
+}
+
+TEST(Mechanics, CholeskySolvesAndPassesOverWhatIsSingular) {
+    Cholesky<double> factor;
+    factor.factorise(2, {4, 0, 2, 3});
+    std::array<double, 2> x{10, 8};
+    factor.solve(x);
+    EXPECT_NEAR(x[0], 1.75, 1e-12);
+    EXPECT_NEAR(x[1], 1.5, 1e-12);
+    factor.factorise(2, {1, 0, 1, 1}); // of rank 1
+    x = {1, 1};
+    factor.solve(x);
+    EXPECT_TRUE(std::isfinite(x[0]) && std::isfinite(x[1]));
+}
+
+} // namespace
+} // namespace echinus::test
