@@ -232,6 +232,18 @@ Json to_json(const SimulationResult& result) {
     };
 }
 
+namespace {
+
+std::string text_of_solver(const SimulationOptions& options) {
+    if (options.solver == SolverKind::Newton)
+        return fmt::format("newton, at most {} steps of Newton's method per frame",
+                           options.newton_step_count);
+    return fmt::format("{}, substeps x iterations per frame: {} x {}", solver_of(options),
+                       options.substep_count, options.iteration_count);
+}
+
+} // namespace
+
 std::string to_text(const SimulationResult& result) {
     const Simulation& simulation = result.simulation;
     const Rates rates = rates_of(simulation);
@@ -246,8 +258,7 @@ std::string to_text(const SimulationResult& result) {
     if (const Deformable& body = simulation.deformable(); !body.tetrahedra.empty())
         add("tetrahedra",
             fmt::format("{}, {} flat or inside out at the end", body.tetrahedra.size(), count_crushed(body)));
-    add("solver", fmt::format("{}, substeps x iterations per frame: {} x {}", solver_of(simulation.options()),
-                              simulation.options().substep_count, simulation.options().iteration_count));
+    add("solver", text_of_solver(simulation.options()));
     add("frames", fmt::format("{}, {}", simulation.frame(),
                               simulation.at_rest() ? "at rest" : "not at rest: the frame limit"));
     add("ms per frame",
