@@ -207,34 +207,26 @@ void Bending::add_curved(Places places, std::span<Vec3d> gradient, BlockMatrix* 
     });
 }
 
-void Bending::add_gradient(Places places, std::span<Vec3d> gradient, const Workers& workers) const {
-    workers.for_ranges(flat_.row_count(), kRowsPerPiece,
-                       [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
-                           for (std::size_t row = begin; row < end; ++row)
-                               gradient[row] += curvature_force(row, places);
-                       });
-    add_curved(places, gradient, nullptr, workers);
-}
-
-void Bending::add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix& hessian,
+void Bending::add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,
                               const Workers& workers) const {
     const bool is_damped = !flat_damping_.values.empty();
     workers.for_ranges(
         flat_.row_count(), kRowsPerPiece, [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
             for (std::size_t row = begin; row < end; ++row) {
                 gradient[row] += curvature_force(row, places);
+                if (hessian == nullptr) continue;
                 for (std::uint32_t e = flat_.first[row]; e < flat_.first[row + 1]; ++e) {
                     const double damped = is_damped ? flat_damping_.values[e] * inverse_step_ : 0;
                     const auto value = static_cast<float>(flat_.values[e] + damped);
                     const std::uint32_t entry = flat_entries_[e];
                     if ((entry & kIsMultiple) != 0)
-                        hessian.multiples.values[entry & ~kIsMultiple] += value;
+                        hessian->multiples.values[entry & ~kIsMultiple] += value;
                     else
-                        hessian.blocks.values[entry].add_identity(value);
+                        hessian->blocks.values[entry].add_identity(value);
                 }
             }
         });
-    add_curved(places, gradient, &hessian, workers);
+    add_curved(places, gradient, hessian, workers);
 }
 
 } // namespace echinus

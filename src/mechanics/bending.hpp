@@ -40,8 +40,8 @@ class Bending {
 
     void begin_step(Places places, double step);
     double energy(Places places, const Workers& workers) const;
-    void add_gradient(Places places, std::span<Vec3d> gradient, const Workers& workers) const;
-    void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix& hessian,
+    /// @param hessian  or null
+    void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,
                          const Workers& workers) const;
 
   private:

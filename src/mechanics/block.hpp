@@ -73,12 +73,6 @@ struct Block {
     void add_outer(const Float4& a, const Float4& b) {
         for (std::size_t i = 0; i < 3; ++i) columns[i] += a * b[i];
     }
-    Block transposed() const {
-        Block t;
-        for (std::size_t i = 0; i < 3; ++i)
-            for (std::size_t j = 0; j < 3; ++j) t.columns[i].set(j, columns[j][i]);
-        return t;
-    }
     float trace() const { return columns[0][0] + columns[1][1] + columns[2][2]; }
 };
 

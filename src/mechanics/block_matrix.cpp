@@ -1,6 +1,8 @@
 #include "mechanics/block_matrix.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 namespace echinus {
 
@@ -74,12 +76,30 @@ std::uint32_t BlockMatrix::find_multiple(std::uint32_t row, std::uint32_t column
     return find(multiples, row, column);
 }
 
-void BlockMatrix::clear() {
-    std::fill(blocks.values.begin(), blocks.values.end(), Block{});
-    std::fill(multiples.values.begin(), multiples.values.end(), 0.0F);
+void BlockMatrix::set_contacts(std::vector<ContactEntry> entries) {
+    std::stable_sort(entries.begin(), entries.end(),
+                     [](const ContactEntry& a, const ContactEntry& b) { return a.at < b.at; });
     contacts.first.assign(row_count() + 1, 0);
     contacts.columns.clear();
     contacts.values.clear();
+    const Coupling* previous = nullptr;
+    for (const ContactEntry& entry : entries) {
+        if (previous != nullptr && *previous == entry.at) {
+            contacts.values.back() += entry.value;
+        } else {
+            ++contacts.first[entry.at[0] + 1];
+            contacts.columns.push_back(entry.at[1]);
+            contacts.values.push_back(entry.value);
+        }
+        previous = &entry.at;
+    }
+    std::partial_sum(contacts.first.begin(), contacts.first.end(), contacts.first.begin());
+}
+
+void BlockMatrix::clear() {
+    std::fill(blocks.values.begin(), blocks.values.end(), Block{});
+    std::fill(multiples.values.begin(), multiples.values.end(), 0.0F);
+    set_contacts({});
 }
 
 void BlockMatrix::invert_diagonal(const Workers& workers) {

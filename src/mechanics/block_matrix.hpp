@@ -48,6 +48,14 @@ class BlockMatrix {
     std::uint32_t find_multiple(std::uint32_t row, std::uint32_t column) const;
     static constexpr std::uint32_t kNone = UINT32_MAX;
 
+    /// A block where contacts couple a row and a column.
+    struct ContactEntry {
+        Coupling at;
+        Block value;
+    };
+    /// Sets the contacts; entries of one place are summed in their order. None is on the diagonal.
+    void set_contacts(std::vector<ContactEntry> entries);
+
     /// All values to 0, no contacts.
     void clear();
     /// @pre each diagonal block is positive definite

@@ -39,19 +39,12 @@ double ElasticModel::energy(Places places, const Workers& workers) const {
            springs_.energy(places, workers) + tetrahedra_.energy(places, workers);
 }
 
-void ElasticModel::add_gradient(Places places, std::span<Vec3d> gradient, const Workers& workers) const {
-    membrane_.add_gradient(places, gradient, workers);
-    bending_.add_gradient(places, gradient, workers);
-    springs_.add_derivatives(places, gradient, nullptr, workers);
-    tetrahedra_.add_derivatives(places, gradient, nullptr, workers);
-}
-
-void ElasticModel::add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix& hessian,
+void ElasticModel::add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,
                                    const Workers& workers) const {
     membrane_.add_derivatives(places, gradient, hessian, workers);
     bending_.add_derivatives(places, gradient, hessian, workers);
-    springs_.add_derivatives(places, gradient, &hessian, workers);
-    tetrahedra_.add_derivatives(places, gradient, &hessian, workers);
+    springs_.add_derivatives(places, gradient, hessian, workers);
+    tetrahedra_.add_derivatives(places, gradient, hessian, workers);
 }
 
 } // namespace echinus

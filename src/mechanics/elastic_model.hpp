@@ -11,7 +11,7 @@
 
 namespace echinus {
 
-/// What a deformable is made of.
+/// The material parts of a deformable.
 struct ElasticParts {
     std::vector<Vec3d> rest_places; ///< [particle] for the coarse levels; those of a cut-out pattern, too
     std::vector<double> masses;     ///< [particle] positive
@@ -32,9 +32,8 @@ class ElasticModel {
 
     void begin_step(Places places, double step);
     double energy(Places places, const Workers& workers) const;
-    void add_gradient(Places places, std::span<Vec3d> gradient, const Workers& workers) const;
-    /// The gradient and a positive semi-definite Hessian.
-    void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix& hessian,
+    /// The gradient and a positive semi-definite Hessian. @param hessian  or null
+    void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,
                          const Workers& workers) const;
 
     const Membrane& membrane() const { return membrane_; }

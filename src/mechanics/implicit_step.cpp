@@ -63,7 +63,7 @@ void ImplicitStep::add_derivatives(Places places, const ContactEnergy* contacts,
         gradient_[i] = (places[i] - inertial_[i]) * inertia_[i];
         hessian_.blocks.values[hessian_.diagonal[i]].add_identity(static_cast<float>(inertia_[i]));
     }
-    elastic_.add_derivatives(places, gradient_, hessian_, workers);
+    elastic_.add_derivatives(places, gradient_, &hessian_, workers);
     if (contacts != nullptr) contacts->add_derivatives(places, gradient_, hessian_, workers);
     hold(workers);
 }

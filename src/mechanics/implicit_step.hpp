@@ -35,7 +35,7 @@ class ContactEnergy {
                                  const Workers& workers) const = 0;
 };
 
-/// What bounds the cost of a step. It ends earlier where it has converged.
+/// The bound of a step's cost. It ends earlier where it has converged.
 struct StepBudget {
     std::uint32_t newton_steps = 2;
     std::uint32_t linear_iterations = 4; ///< of each

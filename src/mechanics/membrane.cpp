@@ -27,7 +27,7 @@ float set_rest_shape(ElasticTriangle& triangle, const std::array<std::array<doub
     return triangle.area = static_cast<float>(twice_area / 2);
 }
 
-/// What a triangle's places say of it.
+/// A triangle as its places deform it.
 struct Membrane::State {
     Vec3d warp, weft; ///< the deformed directions Fu and Fv
     double warp_length, weft_length;
@@ -117,17 +117,7 @@ void scatter(const ElasticTriangle& triangle, const Vec3d& by_warp, const Vec3d&
 
 } // namespace
 
-void Membrane::add_gradient(Places places, std::span<Vec3d> gradient, const Workers& workers) const {
-    slabs_.for_each(workers, [&](std::uint32_t t, const RowSlab& slab) {
-        const ElasticTriangle& triangle = triangles_[t];
-        const State s = state_of(t, places);
-        const double area = double{triangle.area}, shear = area * double{triangle.shear_stiffness} * s.shear;
-        scatter(triangle, s.warp * (area * s.warp_stress / s.warp_length) + s.weft * shear,
-                s.weft * (area * s.weft_stress / s.weft_length) + s.warp * shear, slab, gradient);
-    });
-}
-
-void Membrane::add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix& hessian,
+void Membrane::add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,
                                const Workers& workers) const {
     slabs_.for_each(workers, [&](std::uint32_t t, const RowSlab& slab) {
         const ElasticTriangle& triangle = triangles_[t];
@@ -135,7 +125,7 @@ void Membrane::add_derivatives(Places places, std::span<Vec3d> gradient, BlockMa
         const double area = double{triangle.area}, shear = area * double{triangle.shear_stiffness} * s.shear;
         scatter(triangle, s.warp * (area * s.warp_stress / s.warp_length) + s.weft * shear,
                 s.weft * (area * s.weft_stress / s.weft_length) + s.warp * shear, slab, gradient);
-        add_hessian(t, s, slab, hessian);
+        if (hessian != nullptr) add_hessian(t, s, slab, *hessian);
     });
 }
 

@@ -39,10 +39,9 @@ class Membrane {
     /// @param step  seconds
     void begin_step(Places places, double step);
     double energy(Places places, const Workers& workers) const;
-    void add_gradient(Places places, std::span<Vec3d> gradient, const Workers& workers) const;
     /// The gradient, and a Hessian that is positive semi-definite: of compressed directions the negative
-    /// curvature is left out.
-    void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix& hessian,
+    /// curvature is left out. @param hessian  or null
+    void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix* hessian,
                          const Workers& workers) const;
 
   private:

@@ -214,12 +214,8 @@ void Multigrid::product(const BlockMatrix& fine, std::span<const std::uint8_t> i
 /// Contacts couple coarse nodes that the pattern joins, and others.
 void Multigrid::add_contacts(const BlockMatrix& fine, std::span<const std::uint8_t> is_held,
                              const Transfer& transfer, BlockMatrix& coarse) {
-    struct Far {
-        Coupling at;
-        Block value;
-    };
     const Rows<float>& parents = transfer.coarsening.parents;
-    std::vector<Far> far;
+    std::vector<BlockMatrix::ContactEntry> far;
     for (std::uint32_t row = 0; row < fine.row_count(); ++row) {
         if (!is_held.empty() && is_held[row] != 0) continue;
         for (std::uint32_t e = fine.contacts.first[row]; e < fine.contacts.first[row + 1]; ++e) {
@@ -236,20 +232,7 @@ void Multigrid::add_contacts(const BlockMatrix& fine, std::span<const std::uint8
                 }
         }
     }
-    std::stable_sort(far.begin(), far.end(), [](const Far& a, const Far& b) { return a.at < b.at; });
-    Rows<Block>& contacts = coarse.contacts;
-    const Coupling* previous = nullptr;
-    for (const Far& entry : far) {
-        if (previous != nullptr && *previous == entry.at) {
-            contacts.values.back() += entry.value;
-        } else {
-            ++contacts.first[entry.at[0] + 1];
-            contacts.columns.push_back(entry.at[1]);
-            contacts.values.push_back(entry.value);
-        }
-        previous = &entry.at;
-    }
-    std::partial_sum(contacts.first.begin(), contacts.first.end(), contacts.first.begin());
+    coarse.set_contacts(std::move(far));
 }
 
 void Multigrid::set(BlockMatrix& matrix, std::span<const std::uint8_t> is_held, const Workers& workers) {

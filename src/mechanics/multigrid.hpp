@@ -29,7 +29,7 @@ class Multigrid {
     std::size_t level_count() const { return levels_.size(); }
 
   private:
-    /// What turns a matrix into the next coarser one.
+    /// Makes the next coarser matrix of one.
     struct Transfer {
         Coarsening coarsening;
         Rows<float> children; ///< [coarse node] the fine ones that follow it, ascending

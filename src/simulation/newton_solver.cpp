@@ -92,7 +92,7 @@ void NewtonSolver::step_part(double seconds) {
     advance(motion_, places, contacts_ ? contacts_->touching() : nothing_touches, seconds);
     for (std::size_t i = 0; i < places.size(); ++i) {
         gained_[i] = (motion_.velocities[i] - velocities_before[i]) * (1 / seconds);
-        // What is held is led, and has no motion of its own.
+        // A held particle is led, and has no motion of its own.
         if (is_held_[i] != 0) motion_.is_smooth[i] = 0;
     }
 }
@@ -124,7 +124,7 @@ std::vector<Vec3d> NewtonSolver::guess(const PointArrays& start, double seconds)
         const Vec3d pull = accelerations_[i];
         const double pull_sq = dot(pull, pull);
         const double share = pull_sq > 0 ? std::clamp(dot(gained_[i], pull) / pull_sq, 0.0, 1.0) : 0;
-        // What is carried moves with what carries it already.
+        // A carried particle has the motion of its collider already.
         const Vec3d carried = from - place, own = motion_.velocities[i] * seconds;
         places[i] += own - carried + pull * (share * seconds * seconds);
     }

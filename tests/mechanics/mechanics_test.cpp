@@ -102,7 +102,7 @@ struct Trial {
     }
     std::vector<Vec3d> gradient_at(Places at) const {
         std::vector<Vec3d> gradient(at.size());
-        model.add_gradient(at, gradient, workers);
+        model.add_derivatives(at, gradient, nullptr, workers);
         return gradient;
     }
     double slope_of(const std::vector<Vec3d>& gradient) const {
@@ -139,7 +139,7 @@ TEST(Mechanics, TheGradientWithTheHessianIsTheSame) {
         Trial trial(parts, 3, 0.02);
         std::vector<Vec3d> gradient(trial.places.size());
         trial.matrix.clear();
-        trial.model.add_derivatives(trial.places, gradient, trial.matrix, trial.workers);
+        trial.model.add_derivatives(trial.places, gradient, &trial.matrix, trial.workers);
         EXPECT_EQ(gradient, trial.gradient_at(trial.places));
     }
 }
@@ -150,7 +150,7 @@ TEST(Mechanics, TheHessianIsSymmetricAndLeavesOnlyOutWhatIsNegative) {
             Trial trial(parts, seed, 0.02);
             std::vector<Vec3d> gradient(trial.places.size());
             trial.matrix.clear();
-            trial.model.add_derivatives(trial.places, gradient, trial.matrix, trial.workers);
+            trial.model.add_derivatives(trial.places, gradient, &trial.matrix, trial.workers);
             std::vector<Float4> along, across, product(trial.places.size()), other(trial.places.size());
             Random random(seed + 100);
             for (const Vec3d& d : trial.direction) {
@@ -182,7 +182,7 @@ TEST(Mechanics, AtRestTheHessianIsExact) {
         Trial trial(unloaded, 1, 0);
         std::vector<Vec3d> gradient(trial.places.size());
         trial.matrix.clear();
-        trial.model.add_derivatives(trial.places, gradient, trial.matrix, trial.workers);
+        trial.model.add_derivatives(trial.places, gradient, &trial.matrix, trial.workers);
         std::vector<Float4> along, product(trial.places.size());
         for (const Vec3d& d : trial.direction) along.emplace_back(d);
         trial.matrix.multiply(along, product, trial.workers);
@@ -244,7 +244,7 @@ TEST(Mechanics, MultigridSolvesASheetInAFewIterationsAtEveryResolution) {
         const Workers workers;
         std::vector<Vec3d> gradient(parts.masses.size());
         model.begin_step(parts.rest_places, kStepSeconds);
-        model.add_derivatives(parts.rest_places, gradient, matrix, workers);
+        model.add_derivatives(parts.rest_places, gradient, &matrix, workers);
         std::vector<std::uint8_t> is_held(parts.masses.size());
         for (std::size_t i = 0; i < parts.masses.size(); ++i)
             matrix.blocks.values[matrix.diagonal[i]].add_identity(

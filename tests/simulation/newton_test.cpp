@@ -67,7 +67,7 @@ TEST(Newton, ClothThatHangsIsStretchedAsItsMaterialSaysAtEveryResolution) {
     const SimulationOptions options = newton();
     for (const std::uint32_t count : {9U, 17U, 33U}) {
         const Simulation simulation = hanging_sheet(count, options, 240);
-        // What hangs below the middle of the first row's squares.
+        // The length that hangs below the middle of the first row's squares.
         const double below = 1 - 0.5 / (count - 1);
         const double expected =
             options.material.density * kEarthGravity * below / options.material.stretch_stiffness;
@@ -137,7 +137,7 @@ TEST(Newton, FrictionHoldsOnASlopeJustBelowItsAngleAndSlidesJustAbove) {
         options.friction = friction;
         Simulation simulation(sheet, {{.map = ExactMap::build(make_box({4, 4, 1})), .pose = {tilt, {}}}},
                               options);
-        // What it has of speed when it lands is lost slowly, so near to the angle.
+        // So near to the angle the speed of landing is lost slowly.
         for (int i = 0; i < 300; ++i) simulation.step();
         const Vec3d before = middle_of(simulation);
         for (int i = 0; i < frames; ++i) simulation.step();

@@ -70,14 +70,14 @@ void PairSet::list(const PointArrays& own_from, const PointArrays& own_to, const
     };
     refit(own_tree_, *own_, own_from, own_to);
     if (!is_of_itself()) refit(obstacle_tree_, *obstacle_, obstacle_from, obstacle_to);
-    searches_.resize(workers.count());
+    near_elements_.resize(workers.count());
     found_.begin(workers, own_tree_.piece_count());
     workers.for_pieces(own_tree_.piece_count(), [&](std::size_t worker, std::size_t piece) {
-        Search& search = searches_[worker];
-        search.near.clear();
-        find_near(own_tree_, is_of_itself() ? own_tree_ : obstacle_tree_, reach_, piece, search.near);
+        auto& near = near_elements_[worker];
+        near.clear();
+        find_near(own_tree_, is_of_itself() ? own_tree_ : obstacle_tree_, reach_, piece, near);
         found_.add(worker, piece, [&](std::vector<Pair>& pairs) {
-            for (const auto& elements : search.near) add_pairs(elements, pairs);
+            for (const auto& elements : near) add_pairs(elements, pairs);
         });
     });
     const bool had_some = !pairs_.empty();

@@ -49,9 +49,6 @@ class PairSet {
     std::size_t moving_count(const Pair& pair) const { return is_of_itself() ? 4 : own_count(pair.kind); }
 
   private:
-    struct Search {
-        std::vector<std::array<std::uint32_t, 2>> near;
-    };
     void add_pairs(const std::array<std::uint32_t, 2>& elements, std::vector<Pair>& pairs) const;
     void add_vertex_face(std::uint32_t vertex, const Element& face, bool is_own_vertex,
                          std::vector<Pair>& pairs) const;
@@ -61,8 +58,8 @@ class PairSet {
     float reach_ = 0;
     MovingTree own_tree_, obstacle_tree_; ///< the second unused of itself
     const PointArrays *own_from_ = nullptr, *own_to_ = nullptr;
-    const PointArrays *obstacle_from_ = nullptr, *obstacle_to_ = nullptr; ///< while pairs are listed
-    std::vector<Search> searches_;                                        ///< by worker
+    const PointArrays *obstacle_from_ = nullptr, *obstacle_to_ = nullptr;  ///< while pairs are listed
+    std::vector<std::vector<std::array<std::uint32_t, 2>>> near_elements_; ///< by worker
     PiecewiseList<Pair> found_;
     std::vector<Pair> pairs_;
     std::vector<Separation> separations_;

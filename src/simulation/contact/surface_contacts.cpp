@@ -59,7 +59,7 @@ float least_height_of(const Element& element, std::span<const Vec3f> positions) 
 
 } // namespace
 
-/// What the surface may meet: a model, in the frame that moves with it, or itself, in the world.
+/// An obstacle of the surface: a model, in the frame that moves with it, or itself, in the world.
 struct SurfaceContacts::Side {
     std::shared_ptr<const Elements> own;
     Elements obstacle; ///< of a model
@@ -75,7 +75,7 @@ struct SurfaceContacts::Side {
     Side(std::shared_ptr<const Elements> own_in) : own(std::move(own_in)), pairs(*own) {}
     Side(std::shared_ptr<const Elements> own_in, Elements obstacle_in)
         : own(std::move(own_in)), obstacle(std::move(obstacle_in)), pairs(*own, obstacle) {}
-    /// What is known of pairs is of one step, and is not copied.
+    /// Pairs are known for one step, and are not copied.
     Side(const Side& other)
         : own(other.own), obstacle(other.obstacle), obstacle_places(other.obstacle_places),
           pairs(other.pairs.is_of_itself() ? PairSet(*own) : PairSet(*own, obstacle)), frame(other.frame),
@@ -127,7 +127,7 @@ struct SurfaceContacts::Contact {
     Pair pair;
 };
 
-/// What a pair remembers from step to step: how far it is strained along its plane.
+/// The memory of a pair from step to step: how far it is strained along its plane.
 struct SurfaceContacts::Friction {
     std::uint32_t side;
     PairKind kind;
@@ -305,8 +305,8 @@ bool SurfaceContacts::join_closing(const Side& side, const PointArrays& from, co
     return is_any_joined;
 }
 
-/// What is joined goes with what is held among it, or else with the one that is carried farthest: that keeps
-/// all gaps among them, and leaves the colliders behind.
+/// Joined particles go with the one that is held among them, or else with the one that is carried farthest:
+/// that keeps all gaps among them, and leaves the colliders behind.
 void SurfaceContacts::carry_together(UnionFind& groups, const PointArrays& from, const PointArrays& wanted,
                                      std::span<const std::uint8_t> is_held, PointArrays& carried) {
     const auto count = static_cast<std::uint32_t>(is_held.size());
@@ -569,13 +569,7 @@ double SurfaceContacts::energy(Places places, const Workers& workers) const {
 
 void SurfaceContacts::add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix& hessian,
                                       const Workers&) const {
-    struct Far {
-        Coupling at;
-        Block value;
-    };
-    std::vector<Far> far;
-    /// Of the true curvature of what slips, which has none along the slip: a share is left, against jumps.
-    constexpr float kSlipShare = 1.0F;
+    std::vector<BlockMatrix::ContactEntry> far;
     for (const Contact& contact : contacts_) {
         const GapEnergy gap = gap_energy(gap_of(contact, places), contact.thickness, contact.force);
         Vec3d force = contact.normal * gap.first;
@@ -593,7 +587,7 @@ void SurfaceContacts::add_derivatives(Places places, std::span<Vec3d> gradient, 
             block.add_outer(normal * -tangential, normal);
             if (slips) {
                 const Float4 direction(slip * (1 / size));
-                block.add_outer(direction * (-tangential * kSlipShare), direction);
+                block.add_outer(direction * -tangential, direction);
             }
         } else if (gap.second == 0) {
             continue;
@@ -614,20 +608,7 @@ void SurfaceContacts::add_derivatives(Places places, std::span<Vec3d> gradient, 
             }
         }
     }
-    std::stable_sort(far.begin(), far.end(), [](const Far& a, const Far& b) { return a.at < b.at; });
-    Rows<Block>& rows = hessian.contacts;
-    const Coupling* previous = nullptr;
-    for (const Far& entry : far) {
-        if (previous != nullptr && *previous == entry.at) {
-            rows.values.back() += entry.value;
-        } else {
-            ++rows.first[entry.at[0] + 1];
-            rows.columns.push_back(entry.at[1]);
-            rows.values.push_back(entry.value);
-        }
-        previous = &entry.at;
-    }
-    for (std::size_t row = 0; row + 1 < rows.first.size(); ++row) rows.first[row + 1] += rows.first[row];
+    hessian.set_contacts(std::move(far));
 }
 
 std::size_t SurfaceContacts::pushing_count(Places places) const {

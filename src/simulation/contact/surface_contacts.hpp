@@ -70,7 +70,7 @@ class SurfaceContacts : public ContactEnergy {
     std::size_t pair_count() const;
     /// Pairs that touched, or could not be told apart, when the last step began or ended.
     std::size_t unresolved_count() const { return unresolved_count_; }
-    /// What the deformable has put on a collider in this frame, as its mean over so many seconds.
+    /// The load of the deformable on a collider in this frame, as its mean over so many seconds.
     Load load_on(std::size_t collider, double seconds) const;
 
     void archive(StateArchive& state);
