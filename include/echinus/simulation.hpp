@@ -192,6 +192,9 @@ enum class SolverKind : std::uint8_t {
     /// whatever the resolution and the time step; 1/60 s per frame is a good step. In SI units. Needs
     /// surface_collision where there are colliders, whose models may move but do not deform yet.
     Newton,
+    /// The paper's (section 2.3), for reproduction and comparison: as Verlet, and nothing but sticks and
+    /// particles that collide. It refuses folds, tetrahedra, surface_collision and measure_loads.
+    Jakobsen,
 };
 
 /// The material of cloth, for SolverKind::Newton. The defaults are those of a cotton, in SI units. Faces of

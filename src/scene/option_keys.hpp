@@ -89,8 +89,8 @@ inline void read_solver_options(JsonObject& object, SimulationOptions& o) {
     object.read("thread_count", o.thread_count, {0, 1024});
     object.read("multilevel", o.multilevel);
     object.read("newton_steps", o.newton_step_count, {1, 1000});
-    if (o.solver != SolverKind::Verlet && o.solver != SolverKind::Xpbd)
-        object.refuse_keys({"iterations"}, "solver", "verlet\" or \"xpbd");
+    if (o.solver != SolverKind::Verlet && o.solver != SolverKind::Xpbd && o.solver != SolverKind::Jakobsen)
+        object.refuse_keys({"iterations"}, "solver", "verlet\", \"xpbd\" or \"jakobsen");
     if (o.solver != SolverKind::Xpbd) object.refuse_keys({"substeps"}, "solver", "xpbd");
     if (o.solver != SolverKind::Verlet) object.refuse_keys({"multilevel"}, "solver", "verlet");
     if (o.solver != SolverKind::Newton) object.refuse_keys({"newton_steps"}, "solver", "newton");
@@ -111,8 +111,8 @@ inline void read_verlet_options(JsonObject& object, SimulationOptions& o) {
     object.read("structural", o.stiffness[0], {0, 1.99});
     object.read("shear", o.stiffness[1], {0, 1.99});
     object.read("bending", o.stiffness[2], {0, 1.99});
-    if (o.solver != SolverKind::Verlet)
-        object.refuse_keys({"structural", "shear", "bending"}, "solver", "verlet");
+    if (o.solver != SolverKind::Verlet && o.solver != SolverKind::Jakobsen)
+        object.refuse_keys({"structural", "shear", "bending"}, "solver", "verlet\" or \"jakobsen");
 }
 
 inline void read_xpbd_options(JsonObject& object, SimulationOptions& o) {

@@ -307,7 +307,11 @@ void read_mesh_cloth(JsonObject& cloth, Scene& scene) {
     made.mesh = read_model(cloth, "mesh");
     if (cloth.has("rest_mesh")) made.rest_mesh = read_model(cloth, "rest_mesh");
     made.pose = read_pose(cloth);
+    const bool has_sticks_only = scene.simulation.solver == SolverKind::Jakobsen;
+    if (has_sticks_only) made.bending = BendingKind::Sticks;
     read_mesh_cloth_options(cloth, made);
+    if (has_sticks_only && made.bending != BendingKind::Sticks)
+        cloth.refuse("bending", "\"sticks\", or another solver than \"jakobsen\"");
     made.pins = read_vertices(cloth, "pins");
     made.attachments = read_vertices(cloth, "attachments");
 }
@@ -349,10 +353,13 @@ SceneBody read_body(JsonObject& object, const Scene& scene) {
     return body;
 }
 
-/// @pre the map was read
-void read_cloth(JsonObject& root, Scene& scene) {
+void read_bodies(JsonObject& root, Scene& scene) {
     for (JsonObject& object : root.objects("bodies")) scene.bodies.push_back(read_body(object, scene));
     scene.has_cloth = scene.bodies.empty() || root.has("cloth");
+}
+
+/// @pre the map, the bodies and the solver were read
+void read_cloth(JsonObject& root, Scene& scene) {
     if (!scene.has_cloth) return;
     root.require("cloth");
     auto cloth = root.object("cloth");
@@ -392,19 +399,24 @@ void read_material(JsonObject& root, Scene& scene) {
     material->finish();
 }
 
-/// @pre the map was read
+/// @pre the map and the solver were read
 void read_surfaces(JsonObject& root, Scene& scene) {
     const bool is_exact = std::holds_alternative<ExactMapOptions>(scene.map);
     SimulationOptions& options = scene.simulation;
-    options.surface_collision = is_exact && kSurfaceCollision;
+    const bool has_particles_only = options.solver == SolverKind::Jakobsen;
+    options.surface_collision = is_exact && !has_particles_only && kSurfaceCollision;
     read_surfaces_options(root, options);
     const bool surfaces = options.surface_collision;
+    if (surfaces && has_particles_only)
+        root.refuse("surface_collision", "false, or another solver than \"jakobsen\"");
     if (!root.has("self_collision")) options.self_collision = surfaces && kSelfCollision;
     if (options.self_collision && !surfaces)
         root.refuse("self_collision", "false, or \"surface_collision\" must be true");
     for (const SceneCollider& collider : scene.colliders)
         if (collider.cache && !surfaces)
-            root.refuse(root.has("surface_collision") ? "surface_collision" : "map",
+            root.refuse(has_particles_only              ? "solver"
+                        : root.has("surface_collision") ? "surface_collision"
+                                                        : "map",
                         "such that surfaces collide, since a collider has a vertex cache");
     if (options.untangle && !surfaces)
         root.refuse("untangle", "false, or \"surface_collision\" must be true");
@@ -414,8 +426,11 @@ void read_surfaces(JsonObject& root, Scene& scene) {
 void read_solver(JsonObject& root, Scene& scene) {
     SimulationOptions& options = scene.simulation;
     const std::size_t usual = scene.bodies.empty() ? 0 : 1;
-    const std::size_t solver = root.read_word("solver", {"verlet", "xpbd", "newton"}).value_or(usual);
-    if (solver < usual) root.refuse("solver", "\"xpbd\", \"newton\" or left out where there are bodies");
+    const std::size_t solver =
+        root.read_word("solver", {"verlet", "xpbd", "newton", "jakobsen"}).value_or(usual);
+    if (solver < usual || (usual == 1 && solver == 3))
+        root.refuse("solver", "\"xpbd\", \"newton\" or left out where there are bodies");
+    if (solver == 3) options.solver = SolverKind::Jakobsen;
     if (solver == 2) {
         options.solver = SolverKind::Newton;
         options.time_step = kNewtonTimeStep;
@@ -462,9 +477,10 @@ Scene parse_scene(std::string_view text, const std::string& name) {
     Scene scene;
     read_colliders(root, scene);
     if (auto map = root.object("map")) scene.map = read_map(*std::move(map));
+    read_bodies(root, scene);
+    read_solver(root, scene);
     read_cloth(root, scene);
     read_surfaces(root, scene);
-    read_solver(root, scene);
     read_material(root, scene);
     read_end(root, scene);
     root.finish();

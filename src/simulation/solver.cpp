@@ -1,5 +1,6 @@
 #include "simulation/solver.hpp"
 
+#include "simulation/jakobsen_solver.hpp"
 #include "simulation/newton_solver.hpp"
 #include "simulation/relaxation_solver.hpp"
 #include "simulation/start_state.hpp"
@@ -84,6 +85,8 @@ std::unique_ptr<Solver> make_solver(Deformable deformable, std::vector<Collider>
                                     const SimulationOptions& options) {
     if (options.solver == SolverKind::Newton)
         return std::make_unique<NewtonSolver>(std::move(deformable), std::move(colliders), options);
+    if (options.solver == SolverKind::Jakobsen)
+        return std::make_unique<JakobsenSolver>(std::move(deformable), std::move(colliders), options);
     return std::make_unique<RelaxationSolver>(std::move(deformable), std::move(colliders), options);
 }
 
@@ -129,6 +132,9 @@ void Solver::lead_surface(std::size_t collider, const Lead& lead) {
     if (options.solver == SolverKind::Newton)
         throw Error(ErrorCode::InvalidOptions,
                     name + " cannot deform under the newton solver yet; use another solver for this scene");
+    if (options.solver == SolverKind::Jakobsen)
+        throw Error(ErrorCode::InvalidOptions,
+                    name + " cannot deform under the jakobsen solver; use another solver for this scene");
     if (exact == nullptr || !options.surface_collision)
         throw Error(ErrorCode::InvalidOptions,
                     name + (exact == nullptr

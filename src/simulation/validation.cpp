@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <variant>
@@ -67,9 +68,10 @@ void require_valid(const RigidTransform& pose, const std::string& owner) {
 
 void require_valid(const SimulationOptions& options) {
     require_ranges(options);
-    if (options.solver == SolverKind::Verlet && options.substep_count != 1)
+    if ((options.solver == SolverKind::Verlet || options.solver == SolverKind::Jakobsen) &&
+        options.substep_count != 1)
         fail("simulation option substep_count is " + std::to_string(options.substep_count) +
-             "; it must be 1 with the Verlet solver, whose sticks would become stiffer");
+             "; it must be 1 with the solvers Verlet and Jakobsen, whose sticks would become stiffer");
     if (options.multilevel && options.solver != SolverKind::Verlet)
         fail("simulation option multilevel needs the Verlet solver: coarse sheets would take back what "
              "springs give; use substeps");
@@ -160,7 +162,40 @@ void require_valid(const Deformable& deformable) {
                      "; the last one is " + std::to_string(count - 1));
 }
 
+namespace {
+
+/// Positions are floats. Does gravity move a particle in a frame by so little that their rounding decides?
+bool rounding_decides(const Deformable& deformable, const SimulationOptions& options) {
+    constexpr double kFewDigits = 5; // rounding takes a tenth of gravity
+    float largest = 0;
+    for (const Vec3f& p : deformable.positions)
+        largest = std::max({largest, std::fabs(p.x), std::fabs(p.y), std::fabs(p.z)});
+    const double digit = double{largest} * std::numeric_limits<float>::epsilon();
+    const double fall = length(options.gravity) * options.time_step * options.time_step;
+    return fall > 0 && fall < kFewDigits * digit;
+}
+
+void require_jakobsen(const Deformable& deformable, const SimulationOptions& options) {
+    const auto refuse = [](bool condition, const char* cause) {
+        require_option(!condition, std::string(cause) + ", or use the newton solver");
+    };
+    refuse(!deformable.tetrahedra.empty(),
+           "the deformable has tetrahedra, and the jakobsen solver has sticks only; leave them out");
+    refuse(!deformable.folds.empty(), "the deformable has folds, and the jakobsen solver has sticks only; "
+                                      "make the cloth with bending by sticks");
+    refuse(options.surface_collision, "simulation option surface_collision is true, and under the jakobsen "
+                                      "solver only particles collide; leave it out");
+    refuse(options.measure_loads,
+           "simulation option measure_loads is true, and the jakobsen solver measures none; leave it out");
+    refuse(rounding_decides(deformable, options),
+           "the deformable begins so far from the origin, or time_step is so small, that in a frame of the "
+           "jakobsen solver gravity moves particles by little more than a float's last digit; begin nearer");
+}
+
+} // namespace
+
 void require_solver(const Deformable& deformable, const SimulationOptions& options) {
+    if (options.solver == SolverKind::Jakobsen) return require_jakobsen(deformable, options);
     if (!deformable.tetrahedra.empty() && options.solver != SolverKind::Xpbd)
         fail("the deformable has tetrahedra, which need the solver Xpbd; set simulation option solver, and "
              "substep_count to 10 or more with an iteration_count of 1");

@@ -319,6 +319,35 @@ TEST(Scene, TakesTheMaterialOfTheNewtonSolver) {
     EXPECT_EQ(options.material.damping, 0.1);
 }
 
+TEST(Scene, HasSticksAndParticlesOnlyUnderJakobsensSolver) {
+    const auto text = [](const std::string& cloth, const std::string& rest) {
+        return R"({"model": "a", "solver": "jakobsen", "cloth": {)" + cloth + "}" + rest + "}";
+    };
+    const Scene scene =
+        parse_scene(text(R"("mesh": "b")", R"(, "iterations": 4, "material": {"shear": 0.5})"), "a.json");
+    EXPECT_EQ(scene.simulation.solver, SolverKind::Jakobsen);
+    EXPECT_EQ(scene.simulation.iteration_count, 4u);
+    EXPECT_EQ(scene.simulation.stiffness[1], 0.5);
+    EXPECT_EQ(scene.mesh_cloth->bending, BendingKind::Sticks);
+    EXPECT_FALSE(scene.simulation.surface_collision);
+    EXPECT_FALSE(scene.simulation.self_collision);
+    const auto refusal_of = [&](const std::string& cloth, const std::string& rest) {
+        return refusal(text(cloth, rest));
+    };
+    EXPECT_EQ(refusal_of(R"("mesh": "b", "bending": "angles")", ""),
+              R"(a.json: cloth.bending is "angles"; it must be "sticks", or another solver than "jakobsen")");
+    EXPECT_EQ(refusal_of(R"("size": [1, 1])", R"(, "surface_collision": true)"),
+              R"(a.json: surface_collision is true; it must be false, or another solver than "jakobsen")");
+    EXPECT_NE(refusal_of(R"("size": [1, 1])", R"(, "self_collision": true)").find("self_collision"),
+              std::string::npos);
+    EXPECT_NE(
+        refusal_of(R"("size": [1, 1])", R"(, "collider": {"cache": "b.pc2"})").find("solver is \"jakobsen\""),
+        std::string::npos);
+    EXPECT_NE(refusal_of(R"("size": [1, 1], "density": 1)", R"(, "bodies": [{"mesh": "b", "element": 1}])")
+                  .find("solver is \"jakobsen\""),
+              std::string::npos);
+}
+
 TEST(Scene, RefusesTheKeysOfTheOtherSolver) {
     const auto refusal_of = [](const std::string& rest) {
         return refusal(R"({"model": "a", "cloth": {"size": [1, 1]}, )" + rest + "}");
@@ -327,14 +356,16 @@ TEST(Scene, RefusesTheKeysOfTheOtherSolver) {
               R"(a.json: substeps is 4; it must be left out, or "solver" must be "xpbd")");
     EXPECT_EQ(refusal_of(R"("material": {"compliance": {}})"),
               R"(a.json: material.compliance is {}; it must be left out, or "solver" must be "xpbd")");
-    EXPECT_EQ(refusal_of(R"("solver": "xpbd", "material": {"shear": 1})"),
-              R"(a.json: material.shear is 1; it must be left out, or "solver" must be "verlet")");
-    EXPECT_EQ(refusal_of(R"("solver": "newton", "iterations": 3)"),
-              R"(a.json: iterations is 3; it must be left out, or "solver" must be "verlet" or "xpbd")");
+    EXPECT_EQ(
+        refusal_of(R"("solver": "xpbd", "material": {"shear": 1})"),
+        R"(a.json: material.shear is 1; it must be left out, or "solver" must be "verlet" or "jakobsen")");
+    EXPECT_EQ(
+        refusal_of(R"("solver": "newton", "iterations": 3)"),
+        R"(a.json: iterations is 3; it must be left out, or "solver" must be "verlet", "xpbd" or "jakobsen")");
     EXPECT_EQ(refusal_of(R"("material": {"density": 1})"),
               R"(a.json: material.density is 1; it must be left out, or "solver" must be "newton")");
     EXPECT_EQ(refusal_of(R"("solver": "pbd")"),
-              R"(a.json: solver is "pbd"; it must be "verlet", "xpbd" or "newton")");
+              R"(a.json: solver is "pbd"; it must be "verlet", "xpbd", "newton" or "jakobsen")");
     EXPECT_EQ(refusal_of(R"("solver": "xpbd", "substeps": 0)"),
               "a.json: substeps is 0; it must be a whole number from 1 to 1000000");
     EXPECT_EQ(refusal_of(R"("solver": "xpbd", "material": {"compliance": {"bending": -1}})"),

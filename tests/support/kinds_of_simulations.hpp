@@ -81,6 +81,18 @@ inline KindOfSimulation particles_beside_all_maps() {
     return kind;
 }
 
+/// The same by the paper's method, in wind, with a particle that is attached.
+inline KindOfSimulation jakobsens_particles() {
+    KindOfSimulation kind = particles_beside_all_maps();
+    kind.name = "particles by Jakobsen's method";
+    kind.options.solver = SolverKind::Jakobsen;
+    kind.options.measure_loads = false;
+    kind.deformable.inverse_masses[0] = 0;
+    kind.deformable.attachments.push_back({0, 0});
+    kind.steer = [](Simulation& s) { s.blow({0.5, 0, 0}, 1); };
+    return kind;
+}
+
 /// A sheet that is pulled over a tip, so that a part of it is stretched far.
 inline KindOfSimulation stretched_sheet() {
     return {.name = "a sheet that is stretched over a tip",
@@ -202,9 +214,9 @@ inline KindOfSimulation continuous_material() {
 }
 
 inline std::vector<KindOfSimulation> kinds_of_simulations() {
-    return {particles_beside_all_maps(), stretched_sheet(),    sheet_among_moving_colliders(),
-            springs_with_folds(),        soft_bodies(),        sheet_on_deforming_balls(),
-            sheet_that_passes_through(), continuous_material()};
+    return {particles_beside_all_maps(),    jakobsens_particles(),       stretched_sheet(),
+            sheet_among_moving_colliders(), springs_with_folds(),        soft_bodies(),
+            sheet_on_deforming_balls(),     sheet_that_passes_through(), continuous_material()};
 }
 
 } // namespace echinus::test

@@ -91,6 +91,8 @@ const char* solver_of(const SimulationOptions& options) {
         return "xpbd";
     case SolverKind::Newton:
         return "newton";
+    case SolverKind::Jakobsen:
+        return "jakobsen";
     }
     return "";
 }

@@ -18,6 +18,7 @@ struct Limits {
 static_assert(ECHINUS_SOLVER_VERLET == static_cast<int>(SolverKind::Verlet));
 static_assert(ECHINUS_SOLVER_XPBD == static_cast<int>(SolverKind::Xpbd));
 static_assert(ECHINUS_SOLVER_NEWTON == static_cast<int>(SolverKind::Newton));
+static_assert(ECHINUS_SOLVER_JAKOBSEN == static_cast<int>(SolverKind::Jakobsen));
 static_assert(ECHINUS_INSIDE_NONZERO == static_cast<int>(InsideRule::Nonzero));
 static_assert(ECHINUS_INSIDE_PARITY == static_cast<int>(InsideRule::Parity));
 static_assert(ECHINUS_CENTRE_BOUNDING_SPHERE == static_cast<int>(CentreChoice::BoundingSphere));
@@ -190,7 +191,7 @@ requires std::same_as<std::remove_const_t<C>, echinus_simulation_options> &&
     std::same_as<std::remove_const_t<Options>, SimulationOptions>
 void for_each_option(C& c, Options& o, const Use& use) {
     use("time_step", c.time_step, o.time_step, Limits{1e-9, 1e9});
-    use("solver", c.solver, o.solver, SolverKind::Newton);
+    use("solver", c.solver, o.solver, SolverKind::Jakobsen);
     use("iteration_count", c.iteration_count, o.iteration_count, Limits{1, 1e6});
     use("substep_count", c.substep_count, o.substep_count, Limits{1, 1e6});
     use("rest_frame_count", c.rest_frame_count, o.rest.frame_count, Limits{1, 1e9});

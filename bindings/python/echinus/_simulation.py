@@ -30,7 +30,7 @@ class SimulationOptions:
     """The options of a simulation that are in force; :class:`Simulation` describes them."""
 
     time_step: float
-    solver: Literal["verlet", "xpbd", "newton"]
+    solver: Literal["verlet", "xpbd", "newton", "jakobsen"]
     iteration_count: int
     substep_count: int
     rest_frame_count: int
@@ -113,8 +113,9 @@ class Simulation:
         Seconds per frame. Half of it takes twice the time and leaves a quarter of the stretch (1e-9 to 1e9 s).
     solver
         ``verlet``: each relaxation of a stick removes a share of its error; ``xpbd``: sticks are springs, and the
-        usual one for soft bodies; ``newton``: a continuous material in SI units. By default ``"verlet"``;
-        ``"xpbd"`` with ``bodies``.
+        usual one for soft bodies; ``newton``: a continuous material in SI units; ``jakobsen``: as ``verlet``, with
+        nothing but sticks and particles that collide, as the paper has it. By default ``"verlet"``; ``"xpbd"`` with
+        ``bodies``.
     iteration_count
         Relaxations per substep, each of all sticks and then of all contacts; more cost time and leave less stretch
         (1 to 1e6). By default 10; 1 with ``xpbd``.
@@ -131,8 +132,8 @@ class Simulation:
     drag
         Share of the velocity that is lost per frame; another ``time_step`` makes another drag (0 to 1).
     stiffness
-        ``verlet`` only: share of a stick's error that one relaxation removes, of structural, shear and bending
-        sticks (0 to 1.99).
+        ``verlet`` and ``jakobsen`` only: share of a stick's error that one relaxation removes, of structural, shear
+        and bending sticks (0 to 1.99).
     compliance
         ``xpbd`` only: how far a stick gives per unit of force, of structural, shear and bending sticks (0 to 1e9
         s^2).
@@ -153,7 +154,7 @@ class Simulation:
         Accept exact maps of open meshes, for which nothing is promised. Surface collision needs no such permission.
     surface_collision
         Faces and edges keep off the model, too: none of them intersects it at the end of a frame, within limits. By
-        default ``true`` beside an exact map.
+        default ``true`` beside an exact map, but not under ``jakobsen``.
     self_collision
         Nor do two faces of what deforms intersect; needs ``surface_collision``. By default as
         ``surface_collision``.
@@ -196,7 +197,7 @@ class Simulation:
         *,
         frame_limit: int = 3000,
         time_step: float = 1 / 240,
-        solver: Literal["verlet", "xpbd", "newton"] | None = None,
+        solver: Literal["verlet", "xpbd", "newton", "jakobsen"] | None = None,
         iteration_count: int | None = None,
         substep_count: int | None = None,
         rest_frame_count: int = 60,
@@ -229,7 +230,8 @@ class Simulation:
         of_kind("deformable", deformable, Deformable)
         models = list_of_kind("colliders", colliders, Collider)
         xpbd = solver == "xpbd" or (solver is None and len(deformable.tetrahedra) > 0)
-        surfaces = _chosen(surface_collision, keep_free and all(isinstance(c.map, ExactMap) for c in models))
+        can_meet = keep_free and solver != "jakobsen" and all(isinstance(c.map, ExactMap) for c in models)
+        surfaces = _chosen(surface_collision, can_meet)
         options["solver"] = "xpbd" if solver is None and xpbd else solver
         options["iteration_count"] = (1 if xpbd else 10) if iteration_count is None else iteration_count
         options["substep_count"] = (10 if xpbd else 1) if substep_count is None else substep_count

@@ -102,7 +102,7 @@ template <typename Options, typename Use>
 requires std::same_as<std::remove_const_t<Options>, SimulationOptions>
 void for_each_option(Options& o, const Use& use) {
     use("time_step", o.time_step);
-    use.unless_none("solver", o.solver, {"verlet", "xpbd", "newton"});
+    use.unless_none("solver", o.solver, {"verlet", "xpbd", "newton", "jakobsen"});
     use.unless_none("iteration_count", o.iteration_count);
     use.unless_none("substep_count", o.substep_count);
     use("rest_frame_count", o.rest.frame_count);

@@ -596,7 +596,7 @@ export interface SceneDescription {
     // Options: surfaces. By bindings/generate_options from bindings/options.toml: edit that.
     /**
      * Faces and edges keep off the model, too: none of them intersects it at the end of a frame, within limits.
-     * Default: `true` beside an exact map.
+     * Default: `true` beside an exact map, but not under `jakobsen`.
      */
     surface_collision?: boolean;
     /** Nor do two faces of what deforms intersect; needs `surface_collision`. Default: as `surface_collision`. */
@@ -615,9 +615,10 @@ export interface SceneDescription {
     time_step?: number;
     /**
      * `verlet`: each relaxation of a stick removes a share of its error; `xpbd`: sticks are springs, and the usual one
-     * for soft bodies; `newton`: a continuous material in SI units. Default: `"verlet"`; `"xpbd"` with `bodies`.
+     * for soft bodies; `newton`: a continuous material in SI units; `jakobsen`: as `verlet`, with nothing but sticks
+     * and particles that collide, as the paper has it. Default: `"verlet"`; `"xpbd"` with `bodies`.
      */
-    solver?: 'verlet' | 'xpbd' | 'newton';
+    solver?: 'verlet' | 'xpbd' | 'newton' | 'jakobsen';
     /**
      * Relaxations per substep, each of all sticks and then of all contacts; more cost time and leave less stretch (1 to
      * 1e6). Default: 10; 1 with `xpbd`.

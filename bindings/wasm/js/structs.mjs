@@ -80,7 +80,7 @@ export const simulationProfile = { bytes: 104, members: {
 
 /** Of choices, in the order of their numbers. */
 export const words = {
-    solver: ['verlet', 'xpbd', 'newton'], rule: ['nonzero', 'parity'], centre: ['sphere', 'search'],
+    solver: ['verlet', 'xpbd', 'newton', 'jakobsen'], rule: ['nonzero', 'parity'], centre: ['sphere', 'search'],
     grid: ['spherical', 'octahedral', 'cube', 'ellipsoidal'], correction: ['none', 'paper', 'signed'],
     entry: ['float32', 'unorm16'], pole: ['x', 'y', 'z'], bending: ['angles', 'sticks'],
 };

@@ -1115,9 +1115,10 @@ ECHINUS_API void echinus_deformable_destroy(echinus_deformable* deformable);
 
 /// How sticks hold their particles.
 typedef enum echinus_solver {
-    ECHINUS_SOLVER_VERLET = 0, ///< each relaxation removes a share of the error
-    ECHINUS_SOLVER_XPBD = 1,   ///< as springs
-    ECHINUS_SOLVER_NEWTON = 2  ///< as a continuous material in SI units
+    ECHINUS_SOLVER_VERLET = 0,  ///< each relaxation removes a share of the error
+    ECHINUS_SOLVER_XPBD = 1,    ///< as springs
+    ECHINUS_SOLVER_NEWTON = 2,  ///< as a continuous material in SI units
+    ECHINUS_SOLVER_JAKOBSEN = 3 ///< as ECHINUS_SOLVER_VERLET, by the paper: sticks and particles, no surfaces
 } echinus_solver;
 
 /// In place of a thickness: it is chosen by the library.
@@ -1130,7 +1131,8 @@ typedef struct echinus_simulation_options {
     /// Seconds per frame. Half of it takes twice the time and leaves a quarter of the stretch (1e-9 to 1e9 s)
     double time_step;
     /// Verlet: each relaxation of a stick removes a share of its error; xpbd: sticks are springs, and the
-    /// usual one for soft bodies; newton: a continuous material in SI units
+    /// usual one for soft bodies; newton: a continuous material in SI units; jakobsen: as verlet, with
+    /// nothing but sticks and particles that collide, as the paper has it
     echinus_solver solver;
     /// Relaxations per substep, each of all sticks and then of all contacts; more cost time and leave less
     /// stretch (1 to 1e6)
@@ -1147,8 +1149,8 @@ typedef struct echinus_simulation_options {
     double gravity[3];
     /// Share of the velocity that is lost per frame; another time_step makes another drag (0 to 1)
     double drag;
-    /// Verlet only: share of a stick's error that one relaxation removes, of structural, shear and bending
-    /// sticks (0 to 1.99)
+    /// Verlet and jakobsen only: share of a stick's error that one relaxation removes, of structural, shear
+    /// and bending sticks (0 to 1.99)
     double stiffness[ECHINUS_STICK_KIND_COUNT];
     /// Xpbd only: how far a stick gives per unit of force, of structural, shear and bending sticks (0 to 1e9
     /// s^2)
