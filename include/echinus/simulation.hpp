@@ -219,7 +219,7 @@ struct SimulationOptions {
     /// in all, substeps of one each stretch least (Macklin et al. 2019). Verlet: 1.
     std::uint32_t substep_count = 1;
     Vec3d gravity{0, 0, -9.81}; ///< units per second squared
-    double drag = 0.005; ///< share of the velocity that is lost per frame, 0 to 1. Newton: none is lost
+    double drag = 0.005; ///< share of the velocity that is lost per frame, 0 to 1. Newton: see air_drag
     /// Verlet: share of a stick's or fold's error that one relaxation removes, by StickKind. 1 removes all;
     /// from 1 to 2 (not included) it overshoots, which carries tension further per relaxation.
     std::array<double, kStickKindCount> stiffness{1, 1, 0.3};
@@ -230,6 +230,12 @@ struct SimulationOptions {
     /// Newton: at most so many steps of Newton's method in each frame, or part of one; fewer where it has
     /// converged. Fewer than two leave contacts unresolved.
     std::uint32_t newton_step_count = 4;
+    /// Newton: a step of Newton's method that moves no particle farther than this has converged; share of the
+    /// mean edge length.
+    double newton_tolerance = 1e-4;
+    /// Newton: resistance of still air, 1/s: the rate at which a velocity decays that nothing keeps up,
+    /// whatever the time step. 0 is a vacuum.
+    double air_drag = 0.5;
     /// Distance that particles keep from colliders, units. If not given, half the mean rest length of the
     /// structural sticks, or 0 without any: with that the model cuts few faces of a cloth, and the cloth lies
     /// close (docs/thickness.md). 0 is possible and slow: particles on the surface itself need a query in

@@ -14,8 +14,8 @@ constexpr std::uint32_t kMostHalvings = 12;
 /// Differences of the energy below this share of it are rounding.
 constexpr double kEnergyRounding = 1e-11;
 
-/// Of BDF2: m (3 v - 4 v0 + v00) / (2 h) = f with v = (3 x - 4 x0 + x00) / (2 h).
-constexpr double kSecondOrderInertia = 9.0 / 4;
+/// Of BDF2: v = (x - from) / (2 h / 3) with from = (4 x0 - x00) / 3, and the same of the velocity.
+constexpr double kSecondOrderStep = 2.0 / 3;
 
 } // namespace
 
@@ -28,21 +28,24 @@ ImplicitStep::ImplicitStep(const ElasticParts& parts)
 }
 
 void ImplicitStep::begin(const Motion& motion, std::span<const Vec3d> accelerations,
-                         std::span<const std::uint8_t> is_held, double step) {
+                         std::span<const std::uint8_t> is_held, double step, double drag) {
     is_held_ = is_held;
     elastic_.begin_step(motion.places, step);
     for (std::size_t i = 0; i < masses_.size(); ++i) {
         const Vec3d place = motion.places[i], velocity = motion.velocities[i];
+        // The step in seconds that the velocity at its end has acted, and the places and velocities before
+        // it.
+        double seconds = step;
+        Vec3d from = place, velocity_from = velocity;
         if (motion.is_smooth[i] != 0) {
-            const Vec3d smooth_place = (place * 4 - motion.places_before[i]) * (1.0 / 3);
-            const Vec3d smooth_velocity = (velocity * 4 - motion.velocities_before[i]) * (1.0 / 3);
-            inertia_[i] = kSecondOrderInertia * masses_[i] / (step * step);
-            inertial_[i] = smooth_place + smooth_velocity * (step * 2 / 3) +
-                           accelerations[i] * (step * step / kSecondOrderInertia);
-        } else {
-            inertia_[i] = masses_[i] / (step * step);
-            inertial_[i] = place + velocity * step + accelerations[i] * (step * step);
+            seconds = kSecondOrderStep * step;
+            from = (place * 4 - motion.places_before[i]) * (1.0 / 3);
+            velocity_from = (velocity * 4 - motion.velocities_before[i]) * (1.0 / 3);
         }
+        // Drag pulls towards `from` as a spring of m * drag / seconds.
+        const double kept = 1 / (1 + drag * seconds);
+        inertia_[i] = masses_[i] / (seconds * seconds * kept);
+        inertial_[i] = from + (velocity_from + accelerations[i] * seconds) * (seconds * kept);
     }
 }
 

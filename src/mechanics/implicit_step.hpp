@@ -38,8 +38,8 @@ class ContactEnergy {
 /// The bound of a step's cost. It ends earlier where it has converged.
 struct StepBudget {
     std::uint32_t newton_steps = 2;
-    std::uint32_t linear_iterations = 4; ///< of each
-    double linear_tolerance = 1e-2;      ///< of the residual, relative
+    std::uint32_t linear_iterations = 16; ///< at most, of each
+    double linear_tolerance = 1e-2;       ///< of the residual, relative
     double tolerance = 1e-6; ///< a Newton step that moves nothing farther than this is the last; length
 };
 
@@ -62,8 +62,9 @@ class ImplicitStep {
 
     /// Where inertia leads: begins a step. @param accelerations  [particle] by outer forces
     /// @param is_held  [particle] 1 for those that do not follow forces, but goals
+    /// @param drag     the rate at which a velocity decays, 1/s
     void begin(const Motion& motion, std::span<const Vec3d> accelerations,
-               std::span<const std::uint8_t> is_held, double step);
+               std::span<const std::uint8_t> is_held, double step, double drag = 0);
     /// Minimises from a guess. @param places  in: the guess; held particles are where they are to be. Out:
     /// the minimum as far as the budget leads
     StepReport solve(std::span<Vec3d> places, const ContactEnergy* contacts, const StepBudget& budget,

@@ -89,11 +89,13 @@ inline void read_solver_options(JsonObject& object, SimulationOptions& o) {
     object.read("thread_count", o.thread_count, {0, 1024});
     object.read("multilevel", o.multilevel);
     object.read("newton_steps", o.newton_step_count, {1, 1000});
+    object.read("newton_tolerance", o.newton_tolerance, {0, 1});
     if (o.solver != SolverKind::Verlet && o.solver != SolverKind::Xpbd && o.solver != SolverKind::Jakobsen)
         object.refuse_keys({"iterations"}, "solver", "verlet\", \"xpbd\" or \"jakobsen");
     if (o.solver != SolverKind::Xpbd) object.refuse_keys({"substeps"}, "solver", "xpbd");
     if (o.solver != SolverKind::Verlet) object.refuse_keys({"multilevel"}, "solver", "verlet");
-    if (o.solver != SolverKind::Newton) object.refuse_keys({"newton_steps"}, "solver", "newton");
+    if (o.solver != SolverKind::Newton)
+        object.refuse_keys({"newton_steps", "newton_tolerance"}, "solver", "newton");
 }
 
 inline void read_rest_options(JsonObject& object, SimulationOptions& o) {
@@ -105,6 +107,8 @@ inline void read_rest_options(JsonObject& object, SimulationOptions& o) {
 inline void read_material_options(JsonObject& object, SimulationOptions& o) {
     object.read("drag", o.drag, {0, 1});
     object.read("friction", o.friction, {0, 1e9});
+    object.read("air_drag", o.air_drag, {0, 1e6});
+    if (o.solver != SolverKind::Newton) object.refuse_keys({"air_drag"}, "solver", "newton");
 }
 
 inline void read_verlet_options(JsonObject& object, SimulationOptions& o) {

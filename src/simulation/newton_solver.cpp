@@ -14,8 +14,6 @@ namespace echinus {
 
 namespace {
 
-/// In mean edges: a Newton step that moves nothing farther has converged.
-constexpr double kTolerance = 1e-4;
 /// A frame in which colliders move is divided, so that in a part none moves farther than so many thicknesses.
 constexpr double kMostCarried = 4;
 constexpr std::uint32_t kMostPartsOfFrame = 32;
@@ -85,7 +83,7 @@ void NewtonSolver::step_part(double seconds) {
     for (Collider& collider : colliders) collider.pose = pose_after(collider, seconds);
     const PointArrays start = carried_start(before);
     std::vector<Vec3d> places = guess(start, seconds);
-    step_.begin(motion_, accelerations_, is_held_, seconds);
+    step_.begin(motion_, accelerations_, is_held_, seconds, options.air_drag);
     minimise(places, start, seconds);
     const std::vector<Vec3d> velocities_before = motion_.velocities;
     const std::vector<std::uint8_t> nothing_touches(contacts_ ? 0 : places.size());
@@ -133,7 +131,7 @@ std::vector<Vec3d> NewtonSolver::guess(const PointArrays& start, double seconds)
 
 void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds) {
     StepBudget budget;
-    budget.tolerance = kTolerance * mean_edge_;
+    budget.tolerance = options.newton_tolerance * mean_edge_;
     if (!contacts_) {
         const Stopwatch stopwatch(profile.constraint_seconds);
         budget.newton_steps = options.newton_step_count;
@@ -153,7 +151,7 @@ void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start
         double last_move = 0;
         {
             const Stopwatch stopwatch(profile.constraint_seconds);
-            last_move = step_.solve(places, &*contacts_, budget, workers_).last_move;
+            last_move = step_.solve(places, &contacts_->energy(), budget, workers_).last_move;
         }
         std::size_t stopped = 0;
         contact([&] { stopped = contacts_->advance(places, true, workers_); });

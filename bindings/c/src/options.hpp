@@ -214,6 +214,8 @@ void for_each_option(C& c, Options& o, const Use& use) {
     use("thread_count", c.thread_count, o.thread_count);
     use("multilevel", c.multilevel, o.multilevel);
     use("newton_step_count", c.newton_step_count, o.newton_step_count, Limits{1, 1000});
+    use("newton_tolerance", c.newton_tolerance, o.newton_tolerance, Limits{0, 1});
+    use("air_drag", c.air_drag, o.air_drag, Limits{0, 1e6});
     use.reserved(c.reserved);
     use("density", c.density, o.material.density, Limits{1e-6, 1e6});
     use("stretch_stiffness", c.stretch_stiffness, o.material.stretch_stiffness, Limits{1e-6, 1e9});

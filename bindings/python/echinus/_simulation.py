@@ -52,6 +52,8 @@ class SimulationOptions:
     measure_loads: bool
     multilevel: bool
     newton_step_count: int
+    newton_tolerance: float
+    air_drag: float
     density: float
     stretch_stiffness: float
     shear_stiffness: float
@@ -168,6 +170,12 @@ class Simulation:
     newton_step_count
         ``newton`` only: at most so many steps of Newton's method in a frame; fewer where it has converged (1 to
         1000).
+    newton_tolerance
+        ``newton`` only: a step of Newton's method that moves no particle farther than this has converged; share of
+        the mean edge length (0 to 1).
+    air_drag
+        ``newton`` only: resistance of still air, the rate at which a velocity decays that nothing keeps up; 0 is a
+        vacuum (0 to 1e6 1/s).
     density
         ``newton`` only, as the four that follow: mass of the cloth per area (1e-6 to 1e6 kg/m^2).
     stretch_stiffness
@@ -219,6 +227,8 @@ class Simulation:
         measure_loads: bool = False,
         multilevel: bool = False,
         newton_step_count: int = 4,
+        newton_tolerance: float = 0.0001,
+        air_drag: float = 0.5,
         density: float = 0.2,
         stretch_stiffness: float = 1000,
         shear_stiffness: float = 400,

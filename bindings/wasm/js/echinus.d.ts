@@ -591,6 +591,11 @@ export interface SceneDescription {
         drag?: number;
         /** Coulomb's coefficient between cloth and model; 0 is ice (0 to 1e9). Default: 0.5. */
         friction?: number;
+        /**
+         * `newton` only: resistance of still air, the rate at which a velocity decays that nothing keeps up; 0 is a
+         * vacuum (0 to 1e6 1/s). Default: 0.5.
+         */
+        air_drag?: number;
         // End of options.
     };
     // Options: surfaces. By bindings/generate_options from bindings/options.toml: edit that.
@@ -642,6 +647,11 @@ export interface SceneDescription {
      * Default: 4.
      */
     newton_steps?: number;
+    /**
+     * `newton` only: a step of Newton's method that moves no particle farther than this has converged; share of the
+     * mean edge length (0 to 1). Default: 0.0001.
+     */
+    newton_tolerance?: number;
     // End of options.
     frame_limit?: number;
     at_rest?: {

@@ -80,17 +80,16 @@ void PairSet::list(const PointArrays& own_from, const PointArrays& own_to, const
             for (const auto& elements : near) add_pairs(elements, pairs);
         });
     });
-    const bool had_some = !pairs_.empty();
+    pairs_.clear();
     found_.append_to(pairs_);
-    if (!had_some) return;
-    const auto before = [](const Pair& a, const Pair& b) {
-        return a.kind != b.kind ? a.kind < b.kind : a.points < b.points;
-    };
-    std::sort(pairs_.begin(), pairs_.end(), before);
-    pairs_.erase(
-        std::unique(pairs_.begin(), pairs_.end(),
-                    [](const Pair& a, const Pair& b) { return a.kind == b.kind && a.points == b.points; }),
-        pairs_.end());
+}
+
+void PairSet::archive(StateArchive& state) {
+    state.items(pairs_, [&](Pair& pair) {
+        state.choice(pair.kind, PairKind::EdgeEdge);
+        for (std::size_t k = 0; k < 4; ++k)
+            state.index(pair.points[k], (k < own_count(pair.kind) ? own_ : obstacle_)->vertex_count());
+    });
 }
 
 void PairSet::add_vertex_face(std::uint32_t vertex, const Element& face, bool is_own_vertex,

@@ -2,6 +2,7 @@
 
 #include "geometry/workers.hpp"
 #include "simulation/particles.hpp"
+#include "simulation/state/state_archive.hpp"
 #include "simulation/surfaces/elements.hpp"
 #include "simulation/surfaces/near_elements.hpp"
 #include "simulation/surfaces/separation.hpp"
@@ -33,13 +34,16 @@ class PairSet {
     /// How far the end of a vertex may be from where it was expected.
     float covered() const { return reach_ / 4; }
 
-    /// Forgets all pairs, for a step that begins at other places.
-    void clear() { pairs_.clear(); }
-    /// Adds the pairs that come near on the displacements. Of itself both are the surface's.
+    /// The pairs that come near on the displacements, instead of those before. Of itself both are the
+    /// surface's.
     void list(const PointArrays& own_from, const PointArrays& own_to, const PointArrays& obstacle_from,
               const PointArrays& obstacle_to, const Workers& workers);
     /// Measures all pairs at these places.
     void measure(const PointArrays& own, const PointArrays& obstacle, const Workers& workers);
+
+    /// Takes those of another set of the same surfaces.
+    void set_pairs(std::span<const Pair> pairs) { pairs_.assign(pairs.begin(), pairs.end()); }
+    void archive(StateArchive& state);
 
     bool is_of_itself() const { return own_ == obstacle_; }
     std::span<const Pair> pairs() const { return pairs_; }

@@ -1,0 +1,294 @@
+#include "simulation/contact/contact_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace echinus {
+
+namespace {
+
+/// The force of a contact's barrier over the weight that it carries: with one layer on it a contact at rest
+/// is 0.77 of the thickness wide, under ten 0.4.
+constexpr double kContactWeights = 5;
+/// The share of the thickness from which on the barrier goes on as a parabola.
+constexpr double kLeastShare = 1.0 / 64;
+/// Of friction that holds: stiffness over mass / h^2, the resistance of inertia in a step.
+constexpr double kFrictionStiffness = 100;
+/// The cosine between the normals of two contacts that may go on with each other's bristles.
+constexpr double kSamePlane = 0.5;
+
+/// The energy of a gap and its derivatives by the gap: the barrier -(1 - s)^2 ln s of the gap's share s of
+/// the thickness (Li et al. 2020), which begins so smoothly that Newton's method sees a contact before it
+/// pushes.
+struct GapEnergy {
+    double value, first, second;
+};
+GapEnergy gap_energy(double gap, double thickness, double force) {
+    if (!(gap < thickness)) return {0, 0, 0};
+    const double share = std::max(gap / thickness, kLeastShare);
+    const double open = 1 - share, logarithm = std::log(share);
+    GapEnergy energy{-open * open * logarithm, 2 * open * logarithm - open * open / share,
+                     -2 * logarithm + 4 * open / share + open * open / (share * share)};
+    // Nearer, or beyond the plane, where only trials come, the barrier goes on as a parabola.
+    const double beyond = gap / thickness - share;
+    energy.value += (energy.first + energy.second / 2 * beyond) * beyond;
+    energy.first += energy.second * beyond;
+    return {force * thickness * energy.value, force * energy.first, force / thickness * energy.second};
+}
+
+Vec3d turned_to_world(const std::optional<FrameChange>& frame, const Vec3d& local) {
+    return frame ? Vec3d(frame->normal_to_world(Vec3f(local))) : local;
+}
+
+Vec3d turned_to_local(const std::optional<FrameChange>& frame, const Vec3d& world) {
+    if (!frame) return world;
+    return Vec3d(frame->point_to_local(frame->point_to_world<double>({}) + world));
+}
+
+} // namespace
+
+ContactSet::ContactSet(std::size_t particle_count, std::size_t obstacle_count, std::size_t collider_count,
+                       double gravity)
+    : gravity_(gravity), obstacle_count_(obstacle_count), first_at_(particle_count + 1),
+      impulses_(collider_count) {}
+
+void ContactSet::begin_frame() {
+    std::fill(impulses_.begin(), impulses_.end(), Impulse{});
+}
+
+Load ContactSet::load_on(std::size_t collider, double seconds) const {
+    const Impulse& impulse = impulses_[collider];
+    return {impulse.linear * (1 / seconds), impulse.angular * (1 / seconds)};
+}
+
+void ContactSet::begin_step(double step, std::span<const std::optional<FrameChange>> frames) {
+    step_ = step;
+    for (Bristle& bristle : bristles_) {
+        const auto& frame = frames[bristle.key.obstacle];
+        bristle.normal = turned_to_world(frame, bristle.normal);
+        bristle.slip = turned_to_world(frame, bristle.slip);
+    }
+    clear();
+}
+
+const ContactSet::Bristle* ContactSet::find(const ContactKey& key) const {
+    const auto found =
+        std::lower_bound(bristles_.begin(), bristles_.end(), key,
+                         [](const Bristle& a, const ContactKey& b) { return a.key.order() < b.order(); });
+    return found != bristles_.end() && found->key.order() == key.order() ? &*found : nullptr;
+}
+
+/// The bristle that a contact goes on with: its own, or, where the nearest parts of two surfaces have become
+/// others, the mean of those around it in about the same plane.
+ContactSet::Bristle ContactSet::remembered(const Contact& contact) const {
+    if (const Bristle* const own = find(contact.key)) return *own;
+    Bristle mean{};
+    double weights = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        if (contact.weights[k] == 0) continue;
+        const std::uint32_t particle = contact.particles[k];
+        for (std::uint32_t b = first_at_[particle]; b < first_at_[particle + 1]; ++b) {
+            const Bristle& bristle = bristles_[bristles_at_[b]];
+            if (bristle.key.obstacle != contact.key.obstacle) continue;
+            const auto& points = bristle.key.points;
+            const auto at =
+                static_cast<std::size_t>(std::find(points.begin(), points.end(), particle) - points.begin());
+            // Of itself a pair may come the other way round.
+            const double turn = contact.weights[k] * double{bristle.weights[at]} < 0 ? -1 : 1;
+            if (turn * dot(bristle.normal, contact.normal) < kSamePlane) continue;
+            const double weight = std::abs(contact.weights[k] * double{bristle.weights[at]});
+            mean.slip += bristle.slip * (turn * weight);
+            mean.push += bristle.push * weight;
+            weights += weight;
+        }
+    }
+    if (!(weights > 0)) return {};
+    mean.slip *= 1 / weights;
+    mean.push *= 1 / weights;
+    return mean;
+}
+
+double ContactSet::push_of(const Contact& contact, double gap) const {
+    return -gap_energy(gap, contact.thickness, barrier_force(contact)).first;
+}
+
+double ContactSet::barrier_force(const Contact& contact) const {
+    return (gravity_ > 0 ? kContactWeights * gravity_ : contact.thickness / (step_ * step_)) /
+           contact.mobility;
+}
+
+void ContactSet::add(const Contact& contact, const PointArrays& base, std::optional<double> push) {
+    Held held{};
+    static_cast<Contact&>(held) = contact;
+    held.force = barrier_force(contact);
+    held.stiffness = kFrictionStiffness / (contact.mobility * step_ * step_);
+    if (contact.friction > 0) {
+        const Bristle before = remembered(contact);
+        held.most_friction = contact.friction * push.value_or(before.push);
+        Vec3d from;
+        for (std::size_t k = 0; k < 4; ++k)
+            if (contact.weights[k] != 0) from += Vec3d(base[contact.particles[k]]) * contact.weights[k];
+        held.slip_offset = before.slip - from;
+    }
+    contacts_.push_back(held);
+}
+
+double ContactSet::gap_of(const Held& contact, Places places) const {
+    double gap = contact.offset;
+    for (std::size_t k = 0; k < 4; ++k)
+        gap += contact.weights[k] * dot(contact.normal, places[contact.particles[k]]);
+    return gap;
+}
+
+/// Along the contact's plane, since it began to hold.
+Vec3d ContactSet::slip_of(const Held& contact, Places places) const {
+    Vec3d slip = contact.slip_offset;
+    for (std::size_t k = 0; k < 4; ++k) slip += places[contact.particles[k]] * contact.weights[k];
+    return slip - contact.normal * dot(contact.normal, slip);
+}
+
+/// The part of it that bends the bristle.
+Vec3d ContactSet::held_slip(const Held& contact, Places places) const {
+    if (!(contact.most_friction > 0)) return {};
+    const Vec3d slip = slip_of(contact, places);
+    const double size = length(slip), held = contact.most_friction / contact.stiffness;
+    return size > held ? slip * (held / size) : slip;
+}
+
+double ContactSet::energy(Places places, const Workers& workers) const {
+    return sum_of(contacts_.size(), workers, [&](std::size_t c) {
+        const Held& contact = contacts_[c];
+        double energy = gap_energy(gap_of(contact, places), contact.thickness, contact.force).value;
+        if (!(contact.most_friction > 0)) return energy;
+        const double slip = length(slip_of(contact, places));
+        const double most = contact.most_friction, held = most / contact.stiffness;
+        return energy + (slip <= held ? contact.stiffness / 2 * slip * slip : most * (slip - held / 2));
+    });
+}
+
+void ContactSet::add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix& hessian,
+                                 const Workers&) const {
+    std::vector<BlockMatrix::ContactEntry> far;
+    for (const Held& contact : contacts_) {
+        const GapEnergy gap = gap_energy(gap_of(contact, places), contact.thickness, contact.force);
+        Vec3d force = contact.normal * gap.first;
+        Block block;
+        const Float4 normal(contact.normal);
+        block.add_outer(normal * static_cast<float>(gap.second), normal);
+        if (contact.most_friction > 0) {
+            const Vec3d slip = slip_of(contact, places);
+            const double size = length(slip), held = contact.most_friction / contact.stiffness;
+            const bool slips = size > held;
+            const double stiffness = slips ? contact.most_friction / size : contact.stiffness;
+            force += slip * stiffness;
+            const auto tangential = static_cast<float>(stiffness);
+            block.add_identity(tangential);
+            block.add_outer(normal * -tangential, normal);
+            if (slips) {
+                const Float4 direction(slip * (1 / size));
+                block.add_outer(direction * -tangential, direction);
+            }
+        } else if (gap.second == 0) {
+            continue;
+        }
+        for (std::size_t k = 0; k < 4; ++k) {
+            if (contact.weights[k] == 0) continue;
+            const std::uint32_t i = contact.particles[k];
+            gradient[i] += force * contact.weights[k];
+            for (std::size_t l = 0; l < 4; ++l) {
+                const double weight = contact.weights[k] * contact.weights[l];
+                if (weight == 0) continue;
+                const std::uint32_t j = contact.particles[l];
+                const std::uint32_t entry = i == j ? hessian.diagonal[i] : hessian.find_block(i, j);
+                if (entry != BlockMatrix::kNone)
+                    hessian.blocks.values[entry].add_scaled(block, static_cast<float>(weight));
+                else
+                    far.push_back({{i, j}, block * static_cast<float>(weight)});
+            }
+        }
+    }
+    hessian.set_contacts(std::move(far));
+}
+
+std::size_t ContactSet::pushing_count(Places places) const {
+    return static_cast<std::size_t>(
+        std::count_if(contacts_.begin(), contacts_.end(),
+                      [&](const Held& contact) { return gap_of(contact, places) < contact.thickness; }));
+}
+
+void ContactSet::end_step(Places places, std::span<const std::optional<FrameChange>> frames,
+                          std::span<std::uint8_t> is_touching) {
+    bristles_.clear();
+    for (const Held& contact : contacts_) {
+        const double push = push_of(contact, gap_of(contact, places));
+        if (push > 0)
+            for (std::size_t k = 0; k < 4; ++k)
+                if (contact.weights[k] != 0) is_touching[contact.particles[k]] = 1;
+        const Vec3d slip = held_slip(contact, places);
+        const std::uint32_t obstacle = contact.key.obstacle;
+        const auto& frame = frames[obstacle];
+        if (obstacle < impulses_.size())
+            note_load(contact, places, slip * contact.stiffness - contact.normal * push,
+                      frame ? frame->point_to_world<double>({}) : Vec3d{});
+        if (!(push > 0)) continue;
+        Bristle bristle{
+            contact.key, {}, turned_to_local(frame, contact.normal), turned_to_local(frame, slip), push};
+        for (std::size_t k = 0; k < 4; ++k) bristle.weights[k] = static_cast<float>(contact.weights[k]);
+        bristles_.push_back(bristle);
+    }
+    std::sort(bristles_.begin(), bristles_.end(),
+              [](const Bristle& a, const Bristle& b) { return a.key.order() < b.key.order(); });
+    index_bristles();
+}
+
+void ContactSet::index_bristles() {
+    std::fill(first_at_.begin(), first_at_.end(), 0);
+    const auto for_each_part = [&](const auto& body) {
+        for (std::uint32_t b = 0; b < bristles_.size(); ++b)
+            for (std::size_t k = 0; k < 4; ++k)
+                if (bristles_[b].weights[k] != 0) body(bristles_[b].key.points[k], b);
+    };
+    for_each_part([&](std::uint32_t particle, std::uint32_t) { ++first_at_[particle + 1]; });
+    std::partial_sum(first_at_.begin(), first_at_.end(), first_at_.begin());
+    bristles_at_.resize(first_at_.back());
+    std::vector<std::uint32_t> next(first_at_.begin(), first_at_.end() - 1);
+    for_each_part([&](std::uint32_t particle, std::uint32_t b) { bristles_at_[next[particle]++] = b; });
+}
+
+/// @param force  on the collider
+/// @param pivot  about which the moment is
+void ContactSet::note_load(const Held& contact, Places places, const Vec3d& force, const Vec3d& pivot) {
+    Vec3d point;
+    for (std::size_t k = 0; k < 4; ++k) point += places[contact.particles[k]] * contact.weights[k];
+    Impulse& impulse = impulses_[contact.key.obstacle];
+    impulse.linear += force * step_;
+    impulse.angular += cross(point - pivot, force) * step_;
+}
+
+void ContactSet::archive(StateArchive& state) {
+    state.items(bristles_, [&](Bristle& bristle) {
+        state.index(bristle.key.obstacle, obstacle_count_);
+        state.choice(bristle.key.kind, PairKind::EdgeEdge);
+        state.value(bristle.key.points);
+        state.value(bristle.weights);
+        state.value(bristle.normal);
+        state.value(bristle.slip);
+        state.value(bristle.push);
+    });
+    for (Impulse& impulse : impulses_) {
+        state.value(impulse.linear);
+        state.value(impulse.angular);
+    }
+    if (!state.reads()) return;
+    state.require(std::is_sorted(bristles_.begin(), bristles_.end(), [](const Bristle& a, const Bristle& b) {
+        return a.key.order() < b.key.order();
+    }));
+    const std::size_t particle_count = first_at_.size() - 1;
+    for (const Bristle& bristle : bristles_)
+        for (std::size_t k = 0; k < 4; ++k)
+            state.require(bristle.weights[k] == 0 || bristle.key.points[k] < particle_count);
+    index_bristles();
+}
+
+} // namespace echinus

@@ -1,0 +1,111 @@
+#pragma once
+
+#include "collider/frame_change.hpp"
+#include "mechanics/implicit_step.hpp"
+#include "simulation/state/state_archive.hpp"
+#include "simulation/surfaces/separation.hpp"
+
+#include <echinus/simulation.hpp>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <vector>
+
+namespace echinus {
+
+/// The parts that touch: a pair of a deformable and an obstacle, by its number.
+struct ContactKey {
+    std::uint32_t obstacle;
+    PairKind kind;
+    std::array<std::uint32_t, 4> points;
+    auto order() const { return std::tie(obstacle, kind, points); }
+};
+
+/// The energy of contact and friction of pairs whose gap is linear in the places (docs/mechanics.md): a
+/// barrier that grows as the gap closes (Li et al. 2020), and friction as bristles (Dahl 1968) that bend
+/// elastically until Coulomb's limit and then slip. Bristles last from step to step, so what they hold does
+/// not creep.
+class ContactSet : public ContactEnergy {
+  public:
+    struct Contact {
+        ContactKey key;
+        std::array<std::uint32_t, 4> particles{};
+        std::array<double, 4> weights{}; ///< 0 of what is not the deformable's
+        Vec3d normal;                    ///< of unit length, towards positive weights
+        double offset = 0;               ///< gap = offset + normal . sum of weights * place
+        double thickness = 0;            ///< the gap from which on it pushes
+        double friction = 0;             ///< Coulomb's coefficient
+        double mobility = 0;             ///< of the gap: sum of weight^2 / mass
+    };
+
+    /// @param obstacle_count  those that contacts name: colliders, then perhaps the deformable itself
+    /// @param collider_count  of them those of which loads are kept
+    ContactSet(std::size_t particle_count, std::size_t obstacle_count, std::size_t collider_count,
+               double gravity);
+
+    /// Begins a frame of one step or more, whose loads are summed.
+    void begin_frame();
+    /// @param frames  [obstacle] of the colliders where the step ends, in which their bristles turn along;
+    /// none of what stands in the world
+    void begin_step(double step, std::span<const std::optional<FrameChange>> frames);
+    /// Forgets the contacts, not the bristles.
+    void clear() { contacts_.clear(); }
+    /// @param base  where the step began
+    /// @param push  the normal force that limits its friction; none: that of the step before
+    void add(const Contact& contact, const PointArrays& base, std::optional<double> push);
+    /// The normal force of a gap.
+    double push_of(const Contact& contact, double gap) const;
+    /// Keeps bristles and loads of the step that ends here. @param is_touching  out: 1 where a contact pushes
+    void end_step(Places places, std::span<const std::optional<FrameChange>> frames,
+                  std::span<std::uint8_t> is_touching);
+
+    double energy(Places places, const Workers& workers) const override;
+    void add_derivatives(Places places, std::span<Vec3d> gradient, BlockMatrix& hessian,
+                         const Workers& workers) const override;
+
+    /// Contacts that push at these places.
+    std::size_t pushing_count(Places places) const;
+    /// The load of the deformable on a collider in this frame, as its mean over so many seconds.
+    Load load_on(std::size_t collider, double seconds) const;
+
+    void archive(StateArchive& state);
+
+  private:
+    struct Held : Contact {
+        double force;                        ///< of the barrier
+        double stiffness, most_friction = 0; ///< of the bristle
+        Vec3d slip_offset;                   ///< slip = tangential part of this + sum of weights * place
+    };
+    /// How far the parts of a contact have moved along each other since they began to hold.
+    struct Bristle {
+        ContactKey key;
+        std::array<float, 4> weights{};
+        Vec3d normal, slip; ///< in the obstacle's frame between steps, in the world during one
+        double push = 0;    ///< the normal force when the step ended
+    };
+    struct Impulse {
+        Vec3d linear, angular; ///< the moment about where the collider stood when the frame's last step ended
+    };
+
+    double barrier_force(const Contact& contact) const;
+    const Bristle* find(const ContactKey& key) const;
+    Bristle remembered(const Contact& contact) const;
+    void index_bristles();
+    double gap_of(const Held& contact, Places places) const;
+    Vec3d slip_of(const Held& contact, Places places) const;
+    Vec3d held_slip(const Held& contact, Places places) const;
+    void note_load(const Held& contact, Places places, const Vec3d& force, const Vec3d& pivot);
+
+    double gravity_, step_ = 0;
+    std::size_t obstacle_count_;
+    std::vector<Held> contacts_;
+    std::vector<Bristle> bristles_;          ///< of the step before, by key
+    std::vector<std::uint32_t> first_at_;    ///< [particle + 1] into bristles_at_
+    std::vector<std::uint32_t> bristles_at_; ///< those that a particle is a part of
+    std::vector<Impulse> impulses_;          ///< by collider, in this frame
+};
+
+} // namespace echinus
