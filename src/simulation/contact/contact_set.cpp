@@ -123,7 +123,7 @@ void ContactSet::add(const Contact& contact, const PointArrays& base, std::optio
     static_cast<Contact&>(held) = contact;
     held.force = barrier_force(contact);
     held.stiffness = kFrictionStiffness / (contact.mobility * step_ * step_);
-    if (contact.friction > 0) {
+    if (contact.friction > 0 && push.value_or(1) > 0) {
         const Bristle before = remembered(contact);
         held.most_friction = contact.friction * push.value_or(before.push);
         Vec3d from;

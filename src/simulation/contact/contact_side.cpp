@@ -4,15 +4,6 @@
 
 namespace echinus {
 
-ContactSide::ContactSide(const ContactSide& other)
-    : own(other.own), obstacle(other.obstacle), obstacle_places(other.obstacle_places),
-      pairs(other.pairs.is_of_itself() ? PairSet(*own) : PairSet(*own, obstacle)), frame(other.frame),
-      thickness(other.thickness), friction(other.friction), least_gap(other.least_gap), extent(other.extent),
-      listed_from(other.listed_from), expected(other.expected) {
-    pairs.set_reach(other.pairs.reach());
-    pairs.set_pairs(other.pairs.pairs());
-}
-
 void ContactSide::set_pose(const RigidTransform& pose) {
     const Rotation& r = pose.rotation;
     frame.reset();
@@ -58,9 +49,28 @@ bool ContactSide::list(Places ends, const Workers& workers) {
     to_frame(ends, goal);
     if (covers(safe) && covers(goal)) return false;
     listed_from = safe;
+    is_elsewhere = true;
     expected = goal;
     pairs.list(safe, expected, obstacle_at(safe), obstacle_at(expected), workers);
     return true;
+}
+
+void ContactSide::measure_towards(Places goals, const Workers& workers) {
+    to_frame(goals, goal);
+    base = goal;
+    measure(workers);
+}
+
+void ContactSide::measure(const Workers& workers) {
+    const std::size_t count = own->vertex_count();
+    strayed.resize(count);
+    ahead.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        strayed[i] = length(safe[i] - listed_from[i]);
+        ahead[i] = std::max(length(base[i] - safe[i]), length(goal[i] - safe[i]));
+    }
+    pairs.measure(safe, obstacle_at(safe), strayed, ahead, ready, is_elsewhere, workers);
+    is_elsewhere = false;
 }
 
 } // namespace echinus

@@ -111,21 +111,25 @@ class Joining {
 
 } // namespace
 
-void join_displacements(std::span<const std::unique_ptr<ContactSide>> sides, Places safe, Places goals,
+void join_displacements(std::span<ContactSide> sides, Places safe, Places goals,
                         std::span<const double> masses, std::span<const std::uint8_t> is_held,
-                        std::vector<Vec3d>& joined) {
+                        std::vector<Vec3d>& joined, const Workers& workers) {
     joined.assign(goals.begin(), goals.end());
-    for (const auto& side : sides) {
-        side->to_frame(goals, side->goal);
-        side->base = side->goal;
+    for (ContactSide& side : sides) {
+        side.to_frame(goals, side.goal);
+        side.base = side.goal;
+        side.measure(workers);
     }
     Joining joining(safe, goals, masses, is_held);
     for (int round = 0; round < kMostRounds; ++round) {
         bool is_any_new = false;
-        for (const auto& side : sides) is_any_new = joining.join(*side) || is_any_new;
+        for (const ContactSide& side : sides) is_any_new = joining.join(side) || is_any_new;
         if (!is_any_new) return;
         joining.find_displacements(joined);
-        for (const auto& side : sides) side->to_frame(joined, side->base);
+        for (ContactSide& side : sides) {
+            side.to_frame(joined, side.base);
+            side.measure(workers);
+        }
     }
 }
 

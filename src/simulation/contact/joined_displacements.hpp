@@ -4,7 +4,6 @@
 #include "simulation/contact/contact_side.hpp"
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,10 +14,11 @@ namespace echinus {
 /// that of one that is held among them; or of the model that they would run into; or else the mean by mass.
 /// All others keep their own.
 ///
-/// @param sides  where `safe` is measured; out: `base` and `goal`, in each side's frame
+/// @param sides  where pairs are listed; out: `base` and `goal` in each side's frame, and the pairs that are
+/// near on the way there, measured
 /// @param joined  out: [particle] where each goes together with others: its goal where it is alone
-void join_displacements(std::span<const std::unique_ptr<ContactSide>> sides, Places safe, Places goals,
+void join_displacements(std::span<ContactSide> sides, Places safe, Places goals,
                         std::span<const double> masses, std::span<const std::uint8_t> is_held,
-                        std::vector<Vec3d>& joined);
+                        std::vector<Vec3d>& joined, const Workers& workers);
 
 } // namespace echinus

@@ -1,75 +1,97 @@
 #include "simulation/contact/pair_set.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 namespace echinus {
 
 namespace {
 
 constexpr std::size_t kPairsPerPiece = 512;
+constexpr std::size_t kBoxesPerPiece = 4096;
+/// Pairs are sorted by their gaps in steps of this share of the reach.
+constexpr std::size_t kGapsPerReach = 16;
 
-/// The range of some points along an axis when displacements begin, and when they end.
-struct Span {
-    float low_from, high_from, low_to, high_to;
-};
-
-Span span_of(std::span<const std::uint32_t> points, const std::vector<float>& from,
-             const std::vector<float>& to) {
-    Span span{from[points[0]], from[points[0]], to[points[0]], to[points[0]]};
-    for (const std::uint32_t p : points.subspan(1)) {
-        span.low_from = std::min(span.low_from, from[p]);
-        span.high_from = std::max(span.high_from, from[p]);
-        span.low_to = std::min(span.low_to, to[p]);
-        span.high_to = std::max(span.high_to, to[p]);
+PairSet::SweptBox box_of(std::span<const std::uint32_t> points, const PointArrays& from,
+                         const PointArrays& to) {
+    PairSet::SweptBox box;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto along = [&](const PointArrays& places) -> const std::vector<float>& {
+            return axis == 0 ? places.x : axis == 1 ? places.y : places.z;
+        };
+        const std::vector<float>&begin = along(from), &end = along(to);
+        box.low_from[axis] = box.high_from[axis] = begin[points[0]];
+        box.low_to[axis] = box.high_to[axis] = end[points[0]];
+        for (const std::uint32_t p : points.subspan(1)) {
+            box.low_from[axis] = std::min(box.low_from[axis], begin[p]);
+            box.high_from[axis] = std::max(box.high_from[axis], begin[p]);
+            box.low_to[axis] = std::min(box.low_to[axis], end[p]);
+            box.high_to[axis] = std::max(box.high_to[axis], end[p]);
+        }
     }
-    return span;
+    return box;
 }
 
-/// More than the reach apart at both ends of the displacements, on the same side.
-bool stay_apart(const Span& a, const Span& b, float reach) {
-    return (a.low_from - b.high_from > reach && a.low_to - b.high_to > reach) ||
-           (b.low_from - a.high_from > reach && b.low_to - a.high_to > reach);
-}
-
-struct Displaced {
-    const PointArrays& from;
-    const PointArrays& to;
-};
-
-bool come_near(std::span<const std::uint32_t> a, const Displaced& of_a, std::span<const std::uint32_t> b,
-               const Displaced& of_b, float reach) {
-    for (const auto axis : {&PointArrays::x, &PointArrays::y, &PointArrays::z})
-        if (stay_apart(span_of(a, of_a.from.*axis, of_a.to.*axis), span_of(b, of_b.from.*axis, of_b.to.*axis),
-                       reach))
-            return false;
-    return true;
+/// Not more than the reach apart, along every axis, at both ends of the displacements on the same side.
+bool come_near(const PairSet::SweptBox& a, const PairSet::SweptBox& b, float reach) {
+    bool is_near = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const bool above =
+            (a.low_from[axis] - b.high_from[axis] > reach) & (a.low_to[axis] - b.high_to[axis] > reach);
+        const bool below =
+            (b.low_from[axis] - a.high_from[axis] > reach) & (b.low_to[axis] - a.high_to[axis] > reach);
+        is_near = is_near & !above & !below;
+    }
+    return is_near;
 }
 
 std::size_t edge_count(const Element& element) {
     return element.vertex_count == 3 ? 3 : element.vertex_count - 1U;
 }
 
+MovingTree tree_of(const Elements& elements, const PointArrays& places) {
+    MovingTree tree(elements.all, places);
+    tree.want([](std::uint32_t) { return true; }, Workers(1));
+    return tree;
+}
+
 } // namespace
 
-PairSet::PairSet(const Elements& own, const Elements& obstacle) : own_(&own), obstacle_(&obstacle) {}
-PairSet::PairSet(const Elements& own) : PairSet(own, own) {}
+PairSet::PairSet(std::shared_ptr<const Elements> own, const PointArrays& own_places,
+                 std::shared_ptr<const Elements> obstacle, const PointArrays& obstacle_places)
+    : own_(std::move(own)), obstacle_(std::move(obstacle)), own_tree_(tree_of(*own_, own_places)) {
+    if (!is_of_itself()) obstacle_tree_ = tree_of(*obstacle_, obstacle_places);
+}
+
+PairSet::PairSet(std::shared_ptr<const Elements> own, const PointArrays& places)
+    : PairSet(own, places, own, places) {}
+
+void PairSet::find_boxes(const Elements& elements, const PointArrays& from, const PointArrays& to,
+                         const Workers& workers, Boxes& boxes) const {
+    const auto find = [&](std::vector<SweptBox>& result, std::size_t count, const auto& points_of) {
+        result.resize(count);
+        workers.for_ranges(count, kBoxesPerPiece,
+                           [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
+                               for (std::size_t i = begin; i < end; ++i)
+                                   result[i] = box_of(points_of(i), from, to);
+                           });
+    };
+    find(boxes.vertices, elements.vertex_count(),
+         [](std::size_t i) { return std::array{static_cast<std::uint32_t>(i)}; });
+    find(boxes.edges, elements.edges.size(), [&](std::size_t i) { return elements.edges[i]; });
+    find(boxes.faces, elements.all.size(), [&](std::size_t i) { return elements.all[i].vertices; });
+}
 
 void PairSet::list(const PointArrays& own_from, const PointArrays& own_to, const PointArrays& obstacle_from,
                    const PointArrays& obstacle_to, const Workers& workers) {
-    own_from_ = &own_from;
-    own_to_ = &own_to;
-    obstacle_from_ = &obstacle_from;
-    obstacle_to_ = &obstacle_to;
-    const auto refit = [&](MovingTree& tree, const Elements& elements, const PointArrays& from,
-                           const PointArrays& to) {
-        if (tree.wanted.empty()) {
-            tree = MovingTree(elements.all, from);
-            tree.want([](std::uint32_t) { return true; }, workers);
-        }
-        tree.refit(elements.all, from, to, workers);
-    };
-    refit(own_tree_, *own_, own_from, own_to);
-    if (!is_of_itself()) refit(obstacle_tree_, *obstacle_, obstacle_from, obstacle_to);
+    own_tree_.refit(own_->all, own_from, own_to, workers);
+    find_boxes(*own_, own_from, own_to, workers, own_boxes_);
+    const bool is_known = &obstacle_from == &obstacle_to && !obstacle_boxes_.faces.empty();
+    if (!is_of_itself() && !is_known) {
+        obstacle_tree_.refit(obstacle_->all, obstacle_from, obstacle_to, workers);
+        find_boxes(*obstacle_, obstacle_from, obstacle_to, workers, obstacle_boxes_);
+    }
     near_elements_.resize(workers.count());
     found_.begin(workers, own_tree_.piece_count());
     workers.for_pieces(own_tree_.piece_count(), [&](std::size_t worker, std::size_t piece) {
@@ -80,63 +102,129 @@ void PairSet::list(const PointArrays& own_from, const PointArrays& own_to, const
             for (const auto& elements : near) add_pairs(elements, pairs);
         });
     });
-    pairs_.clear();
-    found_.append_to(pairs_);
+    near_.clear();
+    found_.append_to(near_);
+    separations_.clear();
+    measure_new(own_from, obstacle_from, workers);
+    sort_listed();
 }
 
-void PairSet::archive(StateArchive& state) {
-    state.items(pairs_, [&](Pair& pair) {
-        state.choice(pair.kind, PairKind::EdgeEdge);
-        for (std::size_t k = 0; k < 4; ++k)
-            state.index(pair.points[k], (k < own_count(pair.kind) ? own_ : obstacle_)->vertex_count());
-    });
-}
-
-void PairSet::add_vertex_face(std::uint32_t vertex, const Element& face, bool is_own_vertex,
-                              std::vector<Pair>& pairs) const {
-    if (is_of_itself() && face.has(vertex)) return;
-    const std::array<std::uint32_t, 1> point{vertex};
-    const Displaced own{*own_from_, *own_to_}, obstacle{*obstacle_from_, *obstacle_to_};
-    const auto& corners = face.vertices;
-    if (is_own_vertex) {
-        if (come_near(point, own, corners, obstacle, reach_))
-            pairs.push_back({{vertex, corners[0], corners[1], corners[2]}, PairKind::VertexFace});
-    } else if (come_near(corners, own, point, obstacle, reach_)) {
-        pairs.push_back({{corners[0], corners[1], corners[2], vertex}, PairKind::FaceVertex});
+/// Takes what was found and measured as the list, the nearest first: then a call that needs only those ends
+/// early.
+void PairSet::sort_listed() {
+    std::array<std::size_t, kGapsPerReach + 1> first{};
+    const auto step_of = [&](float gap) {
+        const float steps = gap / reach_ * static_cast<float>(kGapsPerReach);
+        return static_cast<std::size_t>(std::clamp(steps, 0.0F, static_cast<float>(kGapsPerReach - 1)));
+    };
+    for (const Separation& apart : separations_) ++first[step_of(apart.gap) + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    listed_.resize(near_.size());
+    listed_gaps_.resize(near_.size());
+    for (std::size_t p = 0; p < near_.size(); ++p) {
+        const std::size_t to = first[step_of(separations_[p].gap)]++;
+        listed_[to] = near_[p];
+        listed_gaps_[to] = separations_[p].gap;
     }
+    near_.clear();
+    separations_.clear();
+    is_near_.assign(listed_.size(), 0);
 }
 
 void PairSet::add_pairs(const std::array<std::uint32_t, 2>& elements, std::vector<Pair>& pairs) const {
     const Element& own = own_->all[elements[0]];
     const Element& other = obstacle_->all[elements[1]];
+    const Boxes& others = obstacle_boxes();
+    const SweptBox& own_box = own_boxes_.faces[elements[0]];
+    const SweptBox& other_box = others.faces[elements[1]];
+    if (!come_near(own_box, other_box, reach_)) return;
     if (other.is_face())
-        for (std::size_t k = 0; k < own.vertex_count; ++k)
-            if (own.owns_vertex(k)) add_vertex_face(own.vertices[k], other, true, pairs);
+        for (std::size_t k = 0; k < own.vertex_count; ++k) {
+            const std::uint32_t v = own.vertices[k];
+            if (!own.owns_vertex(k) || (is_of_itself() && other.has(v))) continue;
+            if (come_near(own_boxes_.vertices[v], other_box, reach_))
+                pairs.push_back(
+                    {{v, other.vertices[0], other.vertices[1], other.vertices[2]}, PairKind::VertexFace});
+        }
     if (own.is_face())
-        for (std::size_t k = 0; k < other.vertex_count; ++k)
-            if (other.owns_vertex(k)) add_vertex_face(other.vertices[k], own, is_of_itself(), pairs);
+        for (std::size_t k = 0; k < other.vertex_count; ++k) {
+            const std::uint32_t v = other.vertices[k];
+            if (!other.owns_vertex(k) || (is_of_itself() && own.has(v))) continue;
+            if (!come_near(others.vertices[v], own_box, reach_)) continue;
+            if (is_of_itself())
+                pairs.push_back(
+                    {{v, own.vertices[0], own.vertices[1], own.vertices[2]}, PairKind::VertexFace});
+            else
+                pairs.push_back(
+                    {{own.vertices[0], own.vertices[1], own.vertices[2], v}, PairKind::FaceVertex});
+        }
     for (std::size_t i = 0; i < edge_count(own); ++i) {
-        if (!own.owns_edge(i)) continue;
-        const std::array<std::uint32_t, 2> edge{own.vertices[i], own.vertices[(i + 1) % 3]};
+        if (!own.owns_edge(i) || !come_near(own_boxes_.edges[own.edges[i]], other_box, reach_)) continue;
+        const Edge edge{own.vertices[i], own.vertices[(i + 1) % 3]};
         for (std::size_t j = 0; j < edge_count(other); ++j) {
             if (!other.owns_edge(j)) continue;
-            const std::array<std::uint32_t, 2> across{other.vertices[j], other.vertices[(j + 1) % 3]};
+            const Edge across{other.vertices[j], other.vertices[(j + 1) % 3]};
             if (is_of_itself() && (edge[0] == across[0] || edge[0] == across[1] || edge[1] == across[0] ||
                                    edge[1] == across[1]))
                 continue;
-            if (come_near(edge, {*own_from_, *own_to_}, across, {*obstacle_from_, *obstacle_to_}, reach_))
+            if (come_near(own_boxes_.edges[own.edges[i]], others.edges[other.edges[j]], reach_))
                 pairs.push_back({{edge[0], edge[1], across[0], across[1]}, PairKind::EdgeEdge});
         }
     }
 }
 
-void PairSet::measure(const PointArrays& own, const PointArrays& obstacle, const Workers& workers) {
-    separations_.resize(pairs_.size());
-    workers.for_ranges(pairs_.size(), kPairsPerPiece,
+void PairSet::measure(const PointArrays& own, const PointArrays& obstacle, std::span<const float> strayed,
+                      std::span<const float> ahead, float near, bool is_elsewhere, const Workers& workers) {
+    if (is_elsewhere) {
+        near_.clear();
+        separations_.clear();
+        std::fill(is_near_.begin(), is_near_.end(), std::uint8_t{0});
+    }
+    // No pair is nearer by more than what two vertices could do to it.
+    float most = 0;
+    for (std::size_t i = 0; i < strayed.size(); ++i) most = std::max(most, strayed[i] + 2 * ahead[i]);
+    const float last = near + 2 * most + reach_ / static_cast<float>(kGapsPerReach);
+    for (std::size_t p = 0; p < listed_.size() && listed_gaps_[p] <= last; ++p) {
+        if (is_near_[p] != 0) continue;
+        const Pair& pair = listed_[p];
+        std::array<float, 2> closer{};
+        const std::size_t moving = moving_count(pair), of_own = own_count(pair.kind);
+        for (std::size_t k = 0; k < moving; ++k) {
+            float& of_part = closer[k < of_own ? 0 : 1];
+            of_part = std::max(of_part, strayed[pair.points[k]] + 2 * ahead[pair.points[k]]);
+        }
+        if (!(listed_gaps_[p] - (closer[0] + closer[1]) < near)) continue;
+        is_near_[p] = 1;
+        near_.push_back(pair);
+    }
+    measure_new(own, obstacle, workers);
+}
+
+/// Measures those of `near_` that are not.
+void PairSet::measure_new(const PointArrays& own, const PointArrays& obstacle, const Workers& workers) {
+    const std::size_t first = separations_.size();
+    separations_.resize(near_.size());
+    const std::span<const Pair> pairs = std::span(near_).subspan(first);
+    const std::span<Separation> result = std::span(separations_).subspan(first);
+    workers.for_ranges(pairs.size(), kPairsPerPiece,
                        [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
-                           echinus::separations(std::span(pairs_).subspan(begin, end - begin), own, obstacle,
-                                                std::span(separations_).subspan(begin, end - begin));
+                           echinus::separations(pairs.subspan(begin, end - begin), own, obstacle,
+                                                result.subspan(begin, end - begin));
                        });
+}
+
+void PairSet::archive(StateArchive& state) {
+    listed_gaps_.resize(listed_.size());
+    state.items(listed_, [&](Pair& pair) {
+        state.choice(pair.kind, PairKind::EdgeEdge);
+        for (std::size_t k = 0; k < 4; ++k)
+            state.index(pair.points[k], (k < own_count(pair.kind) ? own_ : obstacle_)->vertex_count());
+    });
+    state.list(listed_gaps_);
+    state.require(listed_gaps_.size() == listed_.size());
+    near_.clear();
+    separations_.clear();
+    is_near_.assign(listed_.size(), 0);
 }
 
 } // namespace echinus

@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -18,54 +19,75 @@ namespace echinus {
 /// The pairs of a vertex and a face or of two edges, of a deformable's surface and an obstacle or of the
 /// surface and itself, that could meet in a step, and how far apart they are.
 ///
-/// Pairs are found along straight displacements from where all are safe. One that is not listed is farther
+/// Pairs are listed along straight displacements from where all are safe. One that is not listed is farther
 /// apart than the reach at both ends of the displacements, on the same side along an axis; so it does not
-/// meet as long as every vertex ends within covered() of where it was expected.
+/// meet as long as every vertex ends within covered() of where it was expected. Of those that are listed,
+/// only those are measured again that the displacements since then may have brought near.
 class PairSet {
   public:
-    /// Of the surface and an obstacle. Both outlive this.
-    PairSet(const Elements& own, const Elements& obstacle);
+    /// @param own_places, obstacle_places  by which elements that are near each other are grouped
+    PairSet(std::shared_ptr<const Elements> own, const PointArrays& own_places,
+            std::shared_ptr<const Elements> obstacle, const PointArrays& obstacle_places);
     /// Of the surface and itself.
-    explicit PairSet(const Elements& own);
+    PairSet(std::shared_ptr<const Elements> own, const PointArrays& places);
 
     /// All lengths: pairs that come so near are listed.
     void set_reach(float reach) { reach_ = reach; }
-    float reach() const { return reach_; }
     /// How far the end of a vertex may be from where it was expected.
     float covered() const { return reach_ / 4; }
 
-    /// The pairs that come near on the displacements, instead of those before. Of itself both are the
-    /// surface's.
+    /// Lists the pairs that come near on the displacements, instead of those before, and measures all where
+    /// the displacements begin. Of itself both are the surface's. An obstacle with the same array twice never
+    /// moves.
     void list(const PointArrays& own_from, const PointArrays& own_to, const PointArrays& obstacle_from,
               const PointArrays& obstacle_to, const Workers& workers);
-    /// Measures all pairs at these places.
-    void measure(const PointArrays& own, const PointArrays& obstacle, const Workers& workers);
 
-    /// Takes those of another set of the same surfaces.
-    void set_pairs(std::span<const Pair> pairs) { pairs_.assign(pairs.begin(), pairs.end()); }
+    /// Measures the pairs that may be nearer than `near`, or of which displacements may close half of the
+    /// gap.
+    /// @param strayed  [vertex] how far each of the surface's is from where the pairs were listed
+    /// @param ahead    [vertex] and how far its displacement leads from here
+    /// @param is_elsewhere  whether vertices have moved since the last call; else what was measured stays
+    void measure(const PointArrays& own, const PointArrays& obstacle, std::span<const float> strayed,
+                 std::span<const float> ahead, float near, bool is_elsewhere, const Workers& workers);
+
     void archive(StateArchive& state);
 
     bool is_of_itself() const { return own_ == obstacle_; }
-    std::span<const Pair> pairs() const { return pairs_; }
-    /// [pairs().size()] after measure()
+    /// Those that were measured.
+    std::span<const Pair> pairs() const { return near_; }
+    /// [pairs().size()]
     std::span<const Separation> separations() const { return separations_; }
+    std::size_t listed_count() const { return listed_.size(); }
     /// Of a pair, the points that are the deformable's: all four of itself.
     std::size_t moving_count(const Pair& pair) const { return is_of_itself() ? 4 : own_count(pair.kind); }
 
-  private:
-    void add_pairs(const std::array<std::uint32_t, 2>& elements, std::vector<Pair>& pairs) const;
-    void add_vertex_face(std::uint32_t vertex, const Element& face, bool is_own_vertex,
-                         std::vector<Pair>& pairs) const;
+    /// The boxes around something where its displacement begins, and where it ends.
+    struct SweptBox {
+        std::array<float, 3> low_from, high_from, low_to, high_to;
+    };
 
-    const Elements* own_;
-    const Elements* obstacle_;
+  private:
+    struct Boxes {
+        std::vector<SweptBox> vertices, edges, faces; ///< [vertex], [edge], [element]
+    };
+
+    void find_boxes(const Elements& elements, const PointArrays& from, const PointArrays& to,
+                    const Workers& workers, Boxes& boxes) const;
+    void add_pairs(const std::array<std::uint32_t, 2>& elements, std::vector<Pair>& pairs) const;
+    void sort_listed();
+    void measure_new(const PointArrays& own, const PointArrays& obstacle, const Workers& workers);
+    const Boxes& obstacle_boxes() const { return is_of_itself() ? own_boxes_ : obstacle_boxes_; }
+
+    std::shared_ptr<const Elements> own_, obstacle_;
     float reach_ = 0;
     MovingTree own_tree_, obstacle_tree_; ///< the second unused of itself
-    const PointArrays *own_from_ = nullptr, *own_to_ = nullptr;
-    const PointArrays *obstacle_from_ = nullptr, *obstacle_to_ = nullptr;  ///< while pairs are listed
+    Boxes own_boxes_, obstacle_boxes_;
     std::vector<std::vector<std::array<std::uint32_t, 2>>> near_elements_; ///< by worker
     PiecewiseList<Pair> found_;
-    std::vector<Pair> pairs_;
+    std::vector<Pair> listed_, unsorted_;
+    std::vector<float> listed_gaps_;    ///< where the displacements began, ascending by kGapsPerReach steps
+    std::vector<std::uint8_t> is_near_; ///< [listed] 1 of those that are in `near_`
+    std::vector<Pair> near_;
     std::vector<Separation> separations_;
 };
 

@@ -14,7 +14,7 @@ namespace echinus {
 namespace {
 
 /// In thicknesses: a pair this near is a contact, which begins to push as soon as a trial comes within one.
-constexpr double kReady = 2;
+constexpr float kReady = 2;
 /// Edges and faces of a model lie between vertices: they need less thickness than vertices keep.
 constexpr float kSurfaceShare = 0.75F;
 /// In mean edges: how far around its displacement a vertex looks for pairs.
@@ -51,42 +51,40 @@ SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector
       contacts_(own_->vertex_count(), colliders.size() + (options.self_collision ? 1 : 0), colliders.size(),
                 length(options.gravity)) {
     const float edge_length = mean_edge_length(*own_, deformable.positions);
+    PointArrays places;
+    places.load(deformable.positions);
     for (const Collider& collider : colliders) {
         const std::vector<std::uint8_t> passes = let_through(deformable, sides_.size());
         const auto own =
             passes.empty() ? own_ : std::make_shared<const Elements>(elements_of(deformable, passes));
         const TriangleMesh mesh = model_mesh(map_of_surface(collider)->view(), collider.scale);
-        auto side = std::make_unique<ContactSide>(own, Elements(mesh.vertices.size(), mesh.faces, {}));
-        side->obstacle_places.load(mesh.vertices);
-        side->thickness = static_cast<float>(*options.thickness);
-        side->friction = static_cast<float>(options.friction);
-        side->extent = largest_coordinate(side->obstacle_places, mesh.vertices.size());
-        side->pairs.set_reach(std::max(2 * side->thickness, kReach * edge_length + side->thickness));
-        sides_.push_back(std::move(side));
+        PointArrays vertices;
+        vertices.load(mesh.vertices);
+        ContactSide& side = sides_.emplace_back(
+            own, places,
+            std::make_shared<const Elements>(mesh.vertices.size(), mesh.faces, std::span<const Edge>{}),
+            std::move(vertices));
+        side.thickness = static_cast<float>(*options.thickness);
+        side.extent = largest_coordinate(side.obstacle_places, mesh.vertices.size());
+        side.pairs.set_reach(std::max(kReady * side.thickness, kReach * edge_length + side.thickness));
     }
     most_.assign(own_->vertex_count(), kMostSelfThickness * edge_length);
     for (const Element& element : own_->all)
         for (const std::uint32_t v : element.vertices)
             most_[v] = std::min(most_[v], kMostOfHeight * least_height_of(element, deformable.positions));
     if (options.self_collision) {
-        auto side = std::make_unique<ContactSide>(own_);
-        side->thickness = static_cast<float>(options.self_thickness.value_or(*options.thickness));
-        side->thickness = std::min(side->thickness, kMostSelfThickness * edge_length);
-        side->friction = static_cast<float>(options.friction);
-        side->pairs.set_reach(std::max(2 * side->thickness, kReach * edge_length));
-        sides_.push_back(std::move(side));
+        ContactSide& side = sides_.emplace_back(own_, places);
+        side.thickness = static_cast<float>(options.self_thickness.value_or(*options.thickness));
+        side.thickness = std::min(side.thickness, kMostSelfThickness * edge_length);
+        side.pairs.set_reach(std::max(kReady * side.thickness, kReach * edge_length));
+    }
+    for (ContactSide& side : sides_) {
+        side.friction = static_cast<float>(options.friction);
+        side.ready = kReady * side.thickness;
     }
     frames_.resize(sides_.size());
     is_touching_.resize(own_->vertex_count());
     safe_places_.resize(own_->vertex_count());
-}
-
-SurfaceContacts::SurfaceContacts(const SurfaceContacts& other)
-    : own_(other.own_), masses_(other.masses_), collider_count_(other.collider_count_),
-      contacts_(other.contacts_), most_(other.most_), frames_(other.frames_),
-      unresolved_count_(other.unresolved_count_), safe_places_(other.safe_places_),
-      is_touching_(other.is_touching_) {
-    for (const auto& side : other.sides_) sides_.push_back(std::make_unique<ContactSide>(*side));
 }
 
 void SurfaceContacts::begin_frame() {
@@ -96,7 +94,7 @@ void SurfaceContacts::begin_frame() {
 
 std::size_t SurfaceContacts::pair_count() const {
     std::size_t count = 0;
-    for (const auto& side : sides_) count += side->pairs.pairs().size();
+    for (const ContactSide& side : sides_) count += side.pairs.listed_count();
     return count;
 }
 
@@ -108,12 +106,11 @@ void SurfaceContacts::carry(const std::vector<Collider>& before, const std::vect
     std::vector<Vec3d> places(safe_places_.size());
     for (std::size_t i = 0; i < places.size(); ++i) places[i] = Vec3d(carried[i]);
     for (std::size_t s = 0; s < sides_.size(); ++s) {
-        ContactSide& side = *sides_[s];
+        ContactSide& side = sides_[s];
         if (s < collider_count_) side.set_pose(before[s].pose);
-        side.to_frame(from, side.safe);
+        side.set_safe(from);
         if (s < collider_count_) side.set_pose(after[s].pose);
         side.list(places, workers);
-        side.measure(workers);
     }
     go_towards(places, workers);
     for (std::size_t i = 0; i < places.size(); ++i) carried.set(i, Vec3f(places[i]));
@@ -133,18 +130,14 @@ void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const P
     std::fill(is_touching_.begin(), is_touching_.end(), std::uint8_t{0});
     const float extent = largest_coordinate(places, own_->vertex_count());
     for (std::size_t s = 0; s < sides_.size(); ++s) {
-        ContactSide& side = *sides_[s];
+        ContactSide& side = sides_[s];
         side.least_gap = (extent + side.extent) * kLeastGap;
         if (s < collider_count_) side.set_pose(colliders[s].pose);
         frames_[s] = side.frame;
-        side.to_frame(safe_, side.safe);
+        side.set_safe(safe_);
         side.list(guess, workers);
-        side.measure(workers);
-        for (const Separation& apart : side.pairs.separations())
-            if (!(apart.gap > 0)) ++unresolved_count_;
     }
     contacts_.begin_step(step, frames_);
-    find_contacts(guess, false);
 }
 
 /// Goes from the safe state towards goals as far as the planes between the pairs allow. @param places  in:
@@ -158,19 +151,16 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const Workers& 
         if (round == kMostRounds) // What is not held stays, which needs no pairs but those that are known.
             for (std::size_t i = 0; i < count; ++i)
                 if (is_held_[i] == 0) goals[i] = safe_places_[i];
-        join_displacements(sides_, safe_places_, goals, masses_, is_held_, joined);
+        join_displacements(sides_, safe_places_, goals, masses_, is_held_, joined, workers);
         std::fill(shares.begin(), shares.end(), 1.0F);
-        for (const auto& side : sides_) limit_displacements(*side, is_held_, shares);
+        touching_count_ = 0;
+        for (ContactSide& side : sides_) touching_count_ += limit_displacements(side, is_held_, shares);
         for (std::size_t i = 0; i < count; ++i) {
             if (is_held_[i] != 0) shares[i] = 1;
             ends[i] = shares[i] == 1 ? goals[i] : joined[i] + (goals[i] - joined[i]) * double{shares[i]};
         }
         bool is_listed_anew = false;
-        for (const auto& side : sides_)
-            if (side->list(ends, workers)) {
-                side->measure(workers);
-                is_listed_anew = true;
-            }
+        for (ContactSide& side : sides_) is_listed_anew = side.list(ends, workers) || is_listed_anew;
         if (!is_listed_anew || round == kMostRounds) break;
     }
     std::size_t stopped = 0;
@@ -189,9 +179,10 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const Workers& 
 std::size_t SurfaceContacts::advance(std::span<Vec3d> places, bool is_solved, const Workers& workers) {
     const std::vector<Vec3d> goals(places.begin(), places.end());
     const std::size_t stopped = go_towards(places, workers);
-    for (const auto& side : sides_) {
-        side->to_frame(safe_, side->safe);
-        side->measure(workers);
+    if (!is_solved) unresolved_count_ += touching_count_;
+    for (ContactSide& side : sides_) {
+        side.set_safe(safe_);
+        side.measure_towards(goals, workers);
     }
     find_contacts(goals, is_solved);
     return stopped;
@@ -212,7 +203,7 @@ float SurfaceContacts::thickness_of(const ContactSide& side, const Pair& pair) c
 }
 
 void SurfaceContacts::add_contacts(std::uint32_t side_number, Places goals, bool is_solved) {
-    const ContactSide& side = *sides_[side_number];
+    const ContactSide& side = sides_[side_number];
     const auto pairs = side.pairs.pairs();
     const auto separations = side.pairs.separations();
     for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -225,7 +216,7 @@ void SurfaceContacts::add_contacts(std::uint32_t side_number, Places goals, bool
         double approach = 0;
         for (std::size_t k = 0; k < moving; ++k)
             approach = std::max(approach, length(goals[pair.points[k]] - safe_places_[pair.points[k]]));
-        if (!(double{separations[p].gap} - 2 * approach < kReady * thickness)) continue;
+        if (!(double{separations[p].gap} - 2 * approach < double{kReady} * thickness)) continue;
         std::array<Vec3d, 4> points;
         for (std::size_t k = 0; k < 4; ++k)
             points[k] = k < moving ? safe_places_[pair.points[k]] : side.obstacle_point(pair.points[k]);
@@ -251,7 +242,8 @@ void SurfaceContacts::add_contacts(std::uint32_t side_number, Places goals, bool
             closing -= weight * dot(contact.normal, goals[i] - safe_places_[i]);
             if (is_held_[i] == 0) contact.mobility += weight * weight / masses_[i];
         }
-        if (!(distance - std::max(closing, 0.0) < kReady * thickness) || !(contact.mobility > 0)) continue;
+        if (!(distance - std::max(closing, 0.0) < double{kReady} * thickness) || !(contact.mobility > 0))
+            continue;
         contacts_.add(contact, base_,
                       is_solved ? std::optional(contacts_.push_of(contact, distance)) : std::nullopt);
     }
@@ -263,16 +255,16 @@ void SurfaceContacts::end_step(Places places) {
 
 void SurfaceContacts::archive(StateArchive& state) {
     contacts_.archive(state);
-    for (const auto& side : sides_) {
-        bool is_listed = side->is_listed();
+    for (ContactSide& side : sides_) {
+        bool is_listed = side.is_listed();
         state.flag(is_listed);
-        for (PointArrays* places : {&side->listed_from, &side->expected}) {
+        for (PointArrays* places : {&side.listed_from, &side.expected}) {
             *places = is_listed ? std::move(*places) : PointArrays{};
             if (!is_listed) continue;
             places->resize(own_->vertex_count());
             state.points(*places);
         }
-        if (is_listed) side->pairs.archive(state);
+        if (is_listed) side.pairs.archive(state);
     }
 }
 

@@ -26,8 +26,6 @@ class SurfaceContacts {
     /// @param masses  [particle]; infinite or of any size where a particle is held
     SurfaceContacts(const Deformable& deformable, const std::vector<Collider>& colliders,
                     std::span<const double> masses, const SimulationOptions& options);
-    SurfaceContacts(const SurfaceContacts& other);
-    SurfaceContacts& operator=(const SurfaceContacts&) = delete;
 
     /// Begins a frame of one step or more, whose loads are summed.
     void begin_frame();
@@ -81,11 +79,12 @@ class SurfaceContacts {
     std::shared_ptr<const Elements> own_;
     std::vector<double> masses_;
     std::size_t collider_count_;
-    std::vector<std::unique_ptr<ContactSide>> sides_; ///< of the colliders, then of itself
+    std::vector<ContactSide> sides_; ///< of the colliders, then of itself
     ContactSet contacts_;
     std::vector<float> most_; ///< by vertex: the most thickness that the faces around it leave room for
     std::vector<std::optional<FrameChange>> frames_; ///< by side
     std::span<const std::uint8_t> is_held_;
+    std::size_t touching_count_ = 0; ///< pairs that touch at the safe state
     std::size_t unresolved_count_ = 0;
     PointArrays base_;                      ///< where the step began
     PointArrays safe_;                      ///< the safe state

@@ -22,15 +22,17 @@ struct Closing {
 
 } // namespace
 
-void limit_displacements(const ContactSide& side, std::span<const std::uint8_t> is_held,
-                         std::span<float> shares) {
+std::size_t limit_displacements(const ContactSide& side, std::span<const std::uint8_t> is_held,
+                                std::span<float> shares) {
     const auto pairs = side.pairs.pairs();
     const auto separations = side.pairs.separations();
+    std::size_t touching = 0;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         const Pair& pair = pairs[p];
         const Separation& apart = separations[p];
         const std::size_t own = own_count(pair.kind), moving = side.pairs.moving_count(pair);
         if (!(apart.gap > 0)) {
+            ++touching;
             for (std::size_t k = 0; k < moving; ++k) shares[pair.points[k]] = 0;
             continue;
         }
@@ -61,6 +63,7 @@ void limit_displacements(const ContactSide& side, std::span<const std::uint8_t> 
             }
         }
     }
+    return touching;
 }
 
 } // namespace echinus

@@ -2,6 +2,7 @@
 
 #include "simulation/contact/contact_side.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -12,7 +13,8 @@ namespace echinus {
 /// what it asks for; one that is held gets all.
 /// @param side    measured at `safe`
 /// @param shares  [particle] in and out, 0 to 1
-void limit_displacements(const ContactSide& side, std::span<const std::uint8_t> is_held,
-                         std::span<float> shares);
+/// @return how many pairs touch at `safe`, or cannot be told apart: their particles stay
+std::size_t limit_displacements(const ContactSide& side, std::span<const std::uint8_t> is_held,
+                                std::span<float> shares);
 
 } // namespace echinus
