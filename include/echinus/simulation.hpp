@@ -286,6 +286,10 @@ struct SimulationOptions {
     /// relaxations. For rectangles of cloth, as make_cloth(ClothOptions) lays them, also as parts of what
     /// combine() makes; what else there is, is relaxed as ever.
     bool multilevel = false;
+    /// Wind of every frame for which blow() is not called, with the numbers that blow() takes. A rate of 0:
+    /// no air; then the wind must be 0, too.
+    Vec3d wind{};         ///< units per second
+    double wind_rate = 0; ///< per second
 };
 
 /// What bears on a collider, in the world's axes.
@@ -462,7 +466,8 @@ class Simulation {
 
     /// Wind for the time of one frame: of the velocity with which air moves across a face, along its normal,
     /// particles take on the share rate * time_step, each as the mean over the faces around it. Air slips
-    /// along faces. Call before each frame; allocates the first time.
+    /// along faces. Call before each frame, in which it takes the place of the options' wind; allocates the
+    /// first time.
     /// @param wind  of the air, units per second; 0 is air at rest, which brakes
     /// @param rate  per second: the higher, the lighter the cloth. Not negative
     /// @pre both are finite

@@ -52,6 +52,18 @@ struct VertexBox {
 /// Vertices of a mesh, by their numbers or by where they are.
 using VertexChoice = std::variant<std::vector<std::uint32_t>, VertexBox>;
 
+/// Vertices, or particles of a sheet, that move with a collider.
+struct SceneAttachment {
+    VertexChoice vertices;
+    std::uint32_t collider = 0; ///< its number
+};
+
+/// Of all particles at the start that are not pinned, in the world.
+struct SceneVelocity {
+    Vec3d linear;  ///< units per second
+    Vec3d angular; ///< radians per second, about their centre of mass
+};
+
 /// A cloth of any shape: what make_cloth() of a mesh takes, by name.
 struct MeshCloth {
     SceneModel mesh;                     ///< where it starts
@@ -60,7 +72,6 @@ struct MeshCloth {
     double scale = 1;
     BendingKind bending = BendingKind::Angles;
     VertexChoice pins;
-    VertexChoice attachments; ///< move with the first collider
 };
 
 /// A soft body: what make_soft_body() takes, by name.
@@ -70,8 +81,8 @@ struct SceneBody {
     double element = 0;      ///< about their size, units; 0 where the file has them
     SoftBodyOptions options; ///< without pins and attachments
     VertexChoice pins;
-    VertexChoice attachments;           ///< move with the collider
-    Vec3d velocity;                     ///< of all particles at the start that are not pinned
+    std::vector<SceneAttachment> attachments;
+    SceneVelocity velocity;
     std::vector<std::uint32_t> ignores; ///< colliders that it passes through, by their numbers
 };
 
@@ -109,8 +120,9 @@ struct Scene {
     MapOptions map;                       ///< of each collider
     bool has_cloth = true;
     ClothOptions cloth;
-    std::optional<MeshCloth> mesh_cloth;      ///< in place of `cloth`
-    Vec3d cloth_velocity;                     ///< of all particles at the start that are not pinned
+    std::optional<MeshCloth> mesh_cloth;            ///< in place of `cloth`
+    std::vector<SceneAttachment> cloth_attachments; ///< by numbers, of a sheet: row * column_count + column
+    SceneVelocity cloth_velocity;
     std::optional<double> cloth_density;      ///< mass per area; without one particles have the mean mass 1
     std::vector<std::uint32_t> cloth_ignores; ///< colliders that it passes through, by their numbers
     std::vector<SceneBody> bodies;            ///< soft bodies, after the cloth

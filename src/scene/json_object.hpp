@@ -59,6 +59,10 @@ class JsonObject {
     bool is_string(const char* key) const { return has(key) && value_[key].is_string(); }
     bool is_object(const char* key) const { return has(key) && value_[key].is_object(); }
     bool is_array(const char* key) const { return has(key) && value_[key].is_array(); }
+    /// An array whose first element is an object.
+    bool is_array_of_objects(const char* key) const {
+        return is_array(key) && !value_[key].empty() && value_[key].front().is_object();
+    }
 
     /// To be called when everything has been asked for.
     void finish() const;

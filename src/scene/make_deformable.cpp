@@ -63,7 +63,25 @@ void require_same_faces(const NamedMesh& cloth, const NamedMesh& rest) {
                                                 "; both must name the same vertices in the same order");
 }
 
-Deformable make_cloth(const MeshCloth& cloth, const NamedMesh& start, const ClothMeshes& meshes) {
+std::vector<Attachment> attached(const std::vector<SceneAttachment>& attachments,
+                                 const std::vector<Vec3f>& vertices, const std::string& key) {
+    std::vector<Attachment> all;
+    for (const SceneAttachment& some : attachments)
+        for (const std::uint32_t vertex : chosen(some.vertices, vertices, key))
+            all.push_back({vertex, some.collider});
+    return all;
+}
+
+/// A sheet's particles have the places of no mesh, and are named by numbers.
+Deformable make_sheet(const Scene& scene) {
+    Deformable sheet = make_cloth(scene.cloth);
+    sheet.attachments = attached(scene.cloth_attachments, {}, "cloth.attachments");
+    for (const Attachment& attachment : sheet.attachments) sheet.inverse_masses[attachment.particle] = 0;
+    return sheet;
+}
+
+Deformable make_cloth(const MeshCloth& cloth, const std::vector<SceneAttachment>& attachments,
+                      const NamedMesh& start, const ClothMeshes& meshes) {
     require_no_origin(start.mesh.origin, "the cloth"); // before boxes choose vertices
     MeshClothOptions options{.pose = cloth.pose, .scale = cloth.scale, .bending = cloth.bending};
     if (cloth.rest_mesh) {
@@ -73,18 +91,17 @@ Deformable make_cloth(const MeshCloth& cloth, const NamedMesh& start, const Clot
     }
     options.threads = meshes.threads;
     options.pins = chosen(cloth.pins, start.mesh.vertices, "cloth.pins");
-    for (const std::uint32_t vertex : chosen(cloth.attachments, start.mesh.vertices, "cloth.attachments"))
-        options.attachments.push_back({.particle = vertex});
+    options.attachments = attached(attachments, start.mesh.vertices, "cloth.attachments");
     return make_cloth(start.mesh, options);
 }
 
 } // namespace
 
 Deformable make_cloth(const Scene& scene, const ClothMeshes& meshes) {
-    if (!scene.mesh_cloth) return make_cloth(scene.cloth);
+    if (!scene.mesh_cloth) return make_sheet(scene);
     const NamedMesh start(scene.mesh_cloth->mesh, meshes.mesh, "cloth.mesh");
     try {
-        return make_cloth(*scene.mesh_cloth, start, meshes);
+        return make_cloth(*scene.mesh_cloth, scene.cloth_attachments, start, meshes);
     } catch (const Error& error) {
         throw Error(error.code(), start.name + ": " + error.what());
     }
@@ -116,11 +133,28 @@ struct Filling {
     TetrahedralMesh operator()(const auto& shape) const { return fill(make_mesh(shape), element); }
 };
 
-void set_velocity(const Vec3d& velocity, const SimulationOptions& options, Deformable& deformable) {
-    const Vec3d way = velocity * (options.time_step / options.substep_count);
-    for (std::size_t i = 0; i < deformable.particle_count(); ++i)
-        if (deformable.inverse_masses[i] != 0)
-            deformable.previous_positions[i] = Vec3f(Vec3d(deformable.positions[i]) - way);
+/// Of the particles that are not pinned.
+Vec3d centre_of_mass(const Deformable& deformable) {
+    Vec3d sum;
+    double mass = 0;
+    for (std::size_t i = 0; i < deformable.particle_count(); ++i) {
+        if (deformable.inverse_masses[i] == 0) continue;
+        const double of_particle = 1 / double{deformable.inverse_masses[i]};
+        sum += Vec3d(deformable.positions[i]) * of_particle;
+        mass += of_particle;
+    }
+    return mass > 0 ? sum * (1 / mass) : Vec3d{};
+}
+
+void set_velocity(const SceneVelocity& velocity, const SimulationOptions& options, Deformable& deformable) {
+    const double substep = options.time_step / options.substep_count;
+    const Vec3d centre = centre_of_mass(deformable);
+    for (std::size_t i = 0; i < deformable.particle_count(); ++i) {
+        if (deformable.inverse_masses[i] == 0) continue;
+        const Vec3d place(deformable.positions[i]);
+        const Vec3d of_particle = velocity.linear + cross(velocity.angular, place - centre);
+        deformable.previous_positions[i] = Vec3f(place - of_particle * substep);
+    }
 }
 
 double area_of(const Deformable& deformable) {
@@ -148,8 +182,7 @@ Deformable make_body(const SceneBody& body, const TetrahedralMesh* read,
     require_no_origin(mesh.origin, "the soft body"); // before boxes choose vertices
     SoftBodyOptions options = body.options;
     options.pins = chosen(body.pins, mesh.vertices, "pins");
-    for (const std::uint32_t vertex : chosen(body.attachments, mesh.vertices, "attachments"))
-        options.attachments.push_back({.particle = vertex});
+    options.attachments = attached(body.attachments, mesh.vertices, "attachments");
     Deformable made = make_soft_body(mesh, options);
     set_velocity(body.velocity, simulation, made);
     return made;

@@ -86,10 +86,13 @@ inline void read_solver_options(JsonObject& object, SimulationOptions& o) {
     object.read("iterations", o.iteration_count, {1, 1e6});
     object.read("substeps", o.substep_count, {1, 1e6});
     object.read("gravity", o.gravity, {-1e9, 1e9});
+    object.read("measure_loads", o.measure_loads);
     object.read("thread_count", o.thread_count, {0, 1024});
     object.read("multilevel", o.multilevel);
     object.read("newton_steps", o.newton_step_count, {1, 1000});
     object.read("newton_tolerance", o.newton_tolerance, {0, 1});
+    object.read("wind", o.wind, {-1e9, 1e9});
+    object.read("wind_rate", o.wind_rate, {0, 1e9});
     if (o.solver != SolverKind::Verlet && o.solver != SolverKind::Xpbd && o.solver != SolverKind::Jakobsen)
         object.refuse_keys({"iterations"}, "solver", "verlet\", \"xpbd\" or \"jakobsen");
     if (o.solver != SolverKind::Xpbd) object.refuse_keys({"substeps"}, "solver", "xpbd");

@@ -19,6 +19,7 @@ namespace {
 constexpr Range kCoordinate{-1e9, 1e9};
 constexpr Range kLength{1e-9, 1e9};
 constexpr Range kSegmentCount{1, 4096};
+constexpr Range kDegrees{-1e6, 1e6};
 /// Of the square of a quaternion's length.
 constexpr double kUnitTolerance = 1e-4;
 constexpr double kNewtonTimeStep =
@@ -163,7 +164,7 @@ RigidTransform read_pose(JsonObject& object) {
     rotation->require("axis");
     rotation->require("degrees");
     rotation->read("axis", axis, kCoordinate);
-    rotation->read("degrees", degrees, {-1e6, 1e6});
+    rotation->read("degrees", degrees, kDegrees);
     if (length(axis) < 1e-9) rotation->refuse("axis", "a direction, longer than zero");
     rotation->finish();
     pose.rotation = Rotation::about(axis, degrees * kRadiansPerDegree);
@@ -232,8 +233,13 @@ void read_motion(JsonObject& object, SceneCollider& collider) {
     Vec3d degrees_per_second;
     collider.pose = read_pose(object);
     object.read("linear_velocity", collider.linear_velocity, kCoordinate);
-    object.read("angular_velocity", degrees_per_second, {-1e6, 1e6});
+    object.read("angular_velocity", degrees_per_second, kDegrees);
     collider.angular_velocity = degrees_per_second * kRadiansPerDegree;
+}
+
+/// @pre the colliders were read
+Range numbers_of_colliders(const Scene& scene) {
+    return {0, static_cast<double>(scene.colliders.size() - 1)};
 }
 
 /// One model, with the keys of its collider apart; or an array of colliders with a model each.
@@ -261,23 +267,63 @@ void read_colliders(JsonObject& root, Scene& scene) {
     object->finish();
 }
 
-void read_pins(JsonObject& cloth, ClothOptions& options) {
-    std::vector<Counts> pins;
-    cloth.read("pins", pins, {0, 1e6});
-    for (const auto& [column, row] : pins) {
-        if (column >= options.column_count || row >= options.row_count)
-            cloth.refuse("pins", "[column, row] of particles that the cloth has");
-        options.pins.push_back(row * options.column_count + column);
+/// Also of bodies. Angles in scenes are degrees.
+SceneVelocity read_velocity(JsonObject& object) {
+    SceneVelocity velocity;
+    Vec3d degrees_per_second;
+    object.read("velocity", velocity.linear, kCoordinate);
+    object.read("angular_velocity", degrees_per_second, kDegrees);
+    velocity.angular = degrees_per_second * kRadiansPerDegree;
+    return velocity;
+}
+
+/// What moves with the first collider; or an array of objects, each with some of that and a collider.
+/// @param read_choice  (object, key) gives what is under a key
+/// @pre the colliders were read
+template <typename ReadChoice>
+std::vector<SceneAttachment> read_attachments(JsonObject& object, const Scene& scene, const char* what,
+                                              const ReadChoice& read_choice) {
+    if (!object.has("attachments")) return {};
+    if (!object.is_array_of_objects("attachments")) return {{read_choice(object, "attachments")}};
+    std::vector<SceneAttachment> attachments;
+    for (JsonObject& some : object.objects("attachments")) {
+        SceneAttachment& attachment = attachments.emplace_back();
+        some.require(what);
+        some.require("collider");
+        attachment.vertices = read_choice(some, what);
+        some.read("collider", attachment.collider, numbers_of_colliders(scene));
+        some.finish();
     }
+    return attachments;
+}
+
+/// Particles of a sheet, by column and row, that are not pinned yet.
+std::vector<std::uint32_t> read_particles(JsonObject& object, const char* key, const ClothOptions& options) {
+    std::vector<Counts> places;
+    object.read(key, places, {0, 1e6});
+    std::vector<std::uint32_t> particles;
+    for (const auto& [column, row] : places) {
+        if (column >= options.column_count || row >= options.row_count)
+            object.refuse(key, "[column, row] of particles that the cloth has");
+        const std::uint32_t particle = row * options.column_count + column;
+        if (std::find(options.pins.begin(), options.pins.end(), particle) != options.pins.end())
+            object.refuse(key, "particles that are not among the pins");
+        particles.push_back(particle);
+    }
+    return particles;
 }
 
 void read_sheet(JsonObject& cloth, Scene& scene) {
-    for (const char* key : {"rest_mesh", "scale", "bending", "attachments"})
+    for (const char* key : {"rest_mesh", "scale", "bending"})
         if (cloth.has(key)) cloth.refuse(key, "left out, or the cloth must have the key \"mesh\"");
     ClothOptions& options = scene.cloth;
     read_sheet_options(cloth, options);
     options.pose = read_pose(cloth);
-    read_pins(cloth, options);
+    options.pins = read_particles(cloth, "pins", options);
+    scene.cloth_attachments =
+        read_attachments(cloth, scene, "particles", [&](JsonObject& object, const char* key) {
+            return read_particles(object, key, options);
+        });
 }
 
 /// An array of numbers, or a box.
@@ -313,13 +359,13 @@ void read_mesh_cloth(JsonObject& cloth, Scene& scene) {
     if (has_sticks_only && made.bending != BendingKind::Sticks)
         cloth.refuse("bending", "\"sticks\", or another solver than \"jakobsen\"");
     made.pins = read_vertices(cloth, "pins");
-    made.attachments = read_vertices(cloth, "attachments");
+    scene.cloth_attachments = read_attachments(cloth, scene, "vertices", read_vertices);
 }
 
 /// @pre the colliders were read
 std::vector<std::uint32_t> read_ignores(JsonObject& object, const Scene& scene) {
     std::vector<std::uint32_t> numbers;
-    object.read("ignores", numbers, {0, static_cast<double>(scene.colliders.size() - 1)});
+    object.read("ignores", numbers, numbers_of_colliders(scene));
     return numbers;
 }
 
@@ -345,9 +391,9 @@ SceneBody read_body(JsonObject& object, const Scene& scene) {
     }
     read_body_options(object, body.options);
     body.options.pose = read_pose(object);
-    object.read("velocity", body.velocity, kCoordinate);
+    body.velocity = read_velocity(object);
     body.pins = read_vertices(object, "pins");
-    body.attachments = read_vertices(object, "attachments");
+    body.attachments = read_attachments(object, scene, "vertices", read_vertices);
     body.ignores = read_ignores(object, scene);
     object.finish();
     return body;
@@ -365,7 +411,7 @@ void read_cloth(JsonObject& root, Scene& scene) {
     auto cloth = root.object("cloth");
     if (!scene.bodies.empty()) cloth->require("density");
     cloth->read("density", scene.cloth_density, {1e-9, 1e15});
-    cloth->read("velocity", scene.cloth_velocity, kCoordinate);
+    scene.cloth_velocity = read_velocity(*cloth);
     read_thickness_options(*cloth, scene.simulation);
     scene.cloth_ignores = read_ignores(*cloth, scene);
     if (!std::holds_alternative<ExactMapOptions>(scene.map))
@@ -442,6 +488,7 @@ void read_solver(JsonObject& root, Scene& scene) {
         options.substep_count = 10;
     }
     read_solver_options(root, options);
+    if (root.has("wind")) root.require("wind_rate");
 }
 
 void read_end(JsonObject& root, Scene& scene) {

@@ -33,13 +33,14 @@ void require_ranges(const SimulationOptions& o) {
     require_within("simulation option friction", o.friction, 0, 1e9);
     require_within("simulation option bound", o.bound, 0, 1e30);
     require_within("simulation option newton_step_count", o.newton_step_count, 1, 1000);
-    require_within("simulation option newton_tolerance", o.newton_tolerance, 0, 1);
-    require_within("simulation option air_drag", o.air_drag, 0, 1e6);
     require_within("simulation option material.density", o.material.density, 1e-6, 1e6);
     require_within("simulation option material.stretch_stiffness", o.material.stretch_stiffness, 1e-6, 1e9);
     require_within("simulation option material.shear_stiffness", o.material.shear_stiffness, 0, 1e9);
     require_within("simulation option material.bending_stiffness", o.material.bending_stiffness, 0, 1e6);
     require_within("simulation option material.damping", o.material.damping, 0, 1e6);
+    require_within("simulation option newton_tolerance", o.newton_tolerance, 0, 1);
+    require_within("simulation option air_drag", o.air_drag, 0, 1e6);
+    require_within("simulation option wind_rate", o.wind_rate, 0, 1e9);
 }
 
 } // namespace echinus

@@ -23,7 +23,10 @@ Simulation::Simulation(Simulation&& other) noexcept = default;
 Simulation& Simulation::operator=(Simulation&& other) noexcept = default;
 
 void Simulation::step() {
+    const SimulationOptions& options = solver_->options;
+    if (options.wind_rate > 0 && !solver_->has_blown) blow(options.wind, options.wind_rate);
     solver_->step();
+    solver_->has_blown = false;
 }
 
 const Deformable& Simulation::deformable() const {
@@ -84,6 +87,7 @@ void Simulation::set_particle_velocity(std::size_t particle, const Vec3d& veloci
 
 void Simulation::blow(const Vec3d& wind, double rate) {
     solver_->blow(wind, rate);
+    solver_->has_blown = true;
 }
 
 std::uint64_t Simulation::state_hash() const {

@@ -52,6 +52,7 @@ class Solver {
     ColliderMotions motions;
     SimulationOptions options;
     std::uint32_t frame = 0;
+    bool has_blown = false; ///< blow() was called for the frame that comes
     double largest_speed;
     SimulationProfile profile;
 

@@ -76,6 +76,10 @@ void require_valid(const SimulationOptions& options) {
         fail("simulation option multilevel needs the Verlet solver: coarse sheets would take back what "
              "springs give; use substeps");
     if (!is_finite(options.gravity)) fail("simulation option gravity is not finite");
+    if (!is_finite(options.wind)) fail("simulation option wind is not finite");
+    if (options.wind != Vec3d{} && options.wind_rate == 0)
+        fail("simulation option wind_rate is 0, so that the wind takes hold of nothing; give the rate, per "
+             "second, at which the cloth takes on its velocity");
     if (options.self_collision && !options.surface_collision)
         fail("simulation option self_collision needs surface_collision, which keeps faces off colliders too; "
              "set both");

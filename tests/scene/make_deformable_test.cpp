@@ -11,8 +11,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <fstream>
+#include <numbers>
 #include <string>
+#include <vector>
 
 using namespace echinus;
 
@@ -63,6 +66,88 @@ TEST(SceneMeshCloth, ChoosesItsVerticesByABoxInTheMeshsOwnCoordinates) {
         EXPECT_EQ(cloth.inverse_masses[i] == 0, pinned || attached) << i;
     }
     EXPECT_EQ(cloth.attachments.size(), 2u);
+}
+
+TEST(SceneAttachments, MoveWithAnyColliderOfTheScene) {
+    const auto made = [](const std::string& parts) {
+        return make_deformable(
+            parse_scene(R"({"colliders": [{"model": {"box": {}}}, {"model": {"sphere": {}}},
+            {"model": {"torus": {}}}], "solver": "newton", )" +
+                            parts + "}",
+                        "a.json"));
+    };
+    const auto expect_attached = [](const Deformable& deformable,
+                                    const std::vector<std::array<std::uint32_t, 2>>& expected) {
+        std::vector<std::array<std::uint32_t, 2>> found;
+        for (const Attachment& a : deformable.attachments) {
+            found.push_back({a.particle, a.collider});
+            EXPECT_EQ(deformable.inverse_masses[a.particle], 0);
+        }
+        EXPECT_EQ(found, expected);
+    };
+    expect_attached(made(R"("cloth": {"size": [1, 1], "particles": [4, 3], "pins": [[0, 0]],
+        "attachments": [{"collider": 2, "particles": [[3, 0], [1, 2]]}, {"collider": 0, "particles": [[2, 2]]}]})"),
+                    {{3, 2}, {9, 2}, {10, 0}});
+    expect_attached(made(R"("cloth": {"size": [1, 1], "particles": [4, 3], "attachments": [[3, 0]]})"),
+                    {{3, 0}});
+    expect_attached(made(R"("cloth": {"mesh": {"box": {"size": [2, 2, 2]}},
+        "attachments": [{"collider": 1, "vertices": [0]}, {"collider": 2, "vertices": {"from": [1, 1, 1], "to": [1, 1, 1]}}]})"),
+                    {{0, 1}, {7, 2}});
+    expect_attached(
+        made(
+            R"("bodies": [{"mesh": {"box": {}}, "element": 1, "attachments": [{"collider": 1, "vertices": [5]}]}])"),
+        {{5, 1}});
+}
+
+TEST(SceneAttachments, AreRefusedByTheirKeys) {
+    const auto expect_words = [](const std::string& words, const std::string& cloth) {
+        test::expect_error(ErrorCode::InvalidScene, words, [&] { scene_with_cloth(cloth); });
+    };
+    expect_words("cloth.attachments[0].collider is 1; it must be a whole number from 0 to 0",
+                 R"("mesh": "s.obj", "attachments": [{"vertices": [0], "collider": 1}])");
+    expect_words("the key cloth.attachments[1].vertices is missing",
+                 R"("mesh": "s.obj", "attachments": [{"vertices": [0], "collider": 0}, {"collider": 0}])");
+    expect_words("the key cloth.attachments[0].collider is missing",
+                 R"("size": [1, 1], "attachments": [{"particles": [[0, 0]]}])");
+    expect_words(
+        "there is no key \"cloth.attachments[0].vertex\"; the nearest is \"cloth.attachments[0].vertices\"",
+        R"("mesh": "s.obj", "attachments": [{"vertices": [0], "collider": 0, "vertex": 1}])");
+    expect_words("cloth.attachments is [[4,0]]; it must be [column, row] of particles that the cloth has",
+                 R"("size": [1, 1], "particles": [4, 4], "attachments": [[4, 0]])");
+    expect_words("cloth.attachments is [[1,0]]; it must be particles that are not among the pins",
+                 R"("size": [1, 1], "pins": [[1, 0]], "attachments": [[1, 0]])");
+}
+
+TEST(SceneVelocity, TurnsAllThatIsNotPinnedAboutTheirCentreOfMass) {
+    const Scene scene = parse_scene(R"({"model": {"box": {}}, "solver": "newton", "time_step": 0.001,
+        "cloth": {"size": [2, 1], "particles": [5, 4], "position": [3, 4, 5], "density": 1, "angular_velocity": [0, 90, 180]},
+        "bodies": [{"mesh": {"box": {}}, "element": 0.5, "pins": [0], "position": [7, 0, 0], "velocity": [1, 2, 3],
+                    "angular_velocity": [360, 0, 0]}]})",
+                                    "a.json");
+    const Deformable made = make_deformable(scene);
+    const auto velocity = [&](std::size_t i) {
+        return (Vec3d(made.positions[i]) - Vec3d(made.previous_positions[i])) * 1000;
+    };
+    const double pi = std::numbers::pi;
+    for (std::size_t i = 0; i < 20; ++i) {
+        const Vec3d expected = cross(Vec3d{0, pi / 2, pi}, Vec3d(made.positions[i]) - Vec3d{3, 4, 5});
+        EXPECT_NEAR(length(velocity(i) - expected), 0, 1e-3);
+    }
+    EXPECT_EQ(length(velocity(20)), 0); // pinned
+    Vec3d momentum, centre;
+    double mass = 0;
+    for (std::size_t i = 21; i < made.particle_count(); ++i) {
+        const double of_particle = 1 / double{made.inverse_masses[i]};
+        momentum += velocity(i) * of_particle;
+        centre += Vec3d(made.positions[i]) * of_particle;
+        mass += of_particle;
+    }
+    EXPECT_NEAR(length(momentum * (1 / mass) - Vec3d{1, 2, 3}), 0, 1e-3);
+    for (std::size_t i = 21; i < made.particle_count(); ++i) {
+        const Vec3d expected =
+            Vec3d{1, 2, 3} + cross(Vec3d{2 * pi, 0, 0}, Vec3d(made.positions[i]) - centre * (1 / mass));
+        EXPECT_NEAR(length(velocity(i) - expected), 0, 2e-3);
+    }
 }
 
 TEST(SceneMeshCloth, IsRefusedByNameWhereItsMeshesDoNotFit) {

@@ -124,7 +124,7 @@ TEST(Scene, IsReadKeyByKey) {
     EXPECT_EQ(scene.cloth.height, 2);
     EXPECT_EQ(scene.cloth.pose.translation, (Vec3d{4, 5, 6}));
     EXPECT_NEAR(length(scene.cloth.pose.rotation.apply({0, 0, 1}) - Vec3d{0, 1, 0}), 0, 1e-12);
-    EXPECT_EQ(scene.cloth_velocity, (Vec3d{1, 2, -3}));
+    EXPECT_EQ(scene.cloth_velocity.linear, (Vec3d{1, 2, -3}));
     EXPECT_EQ(scene.cloth.pins, (std::vector<std::uint32_t>{0, 29 * 20 + 19}));
     EXPECT_EQ(scene.simulation.thickness, 0.02);
     EXPECT_EQ(scene.simulation.stiffness, (std::array{1.1, 0.9, 0.2}));
@@ -149,7 +149,7 @@ TEST(Scene, OfAMeshIsReadKeyByKey) {
     EXPECT_EQ(cloth.scale, 0.5);
     EXPECT_EQ(cloth.pose.translation, (Vec3d{4, 5, 6}));
     EXPECT_NEAR(length(cloth.pose.rotation.apply({0, 0, 1}) - Vec3d{0, 1, 0}), 0, 1e-12);
-    EXPECT_EQ(scene.cloth_velocity, (Vec3d{1, 2, -3}));
+    EXPECT_EQ(scene.cloth_velocity.linear, (Vec3d{1, 2, -3}));
     EXPECT_EQ(scene.simulation.thickness, 0.02);
     EXPECT_EQ(scene.simulation.self_thickness, 0.03);
     EXPECT_TRUE(scene.simulation.surface_collision);
@@ -158,8 +158,10 @@ TEST(Scene, OfAMeshIsReadKeyByKey) {
     EXPECT_EQ(scene.simulation.thread_count, 3u);
     EXPECT_TRUE(scene.simulation.multilevel);
     EXPECT_EQ(std::get<std::vector<std::uint32_t>>(cloth.pins), (std::vector<std::uint32_t>{3, 5}));
-    EXPECT_EQ(std::get<VertexBox>(cloth.attachments).from, (Vec3d{-1, -2, -3}));
-    EXPECT_EQ(std::get<VertexBox>(cloth.attachments).to, (Vec3d{1, 2, 3}));
+    ASSERT_EQ(scene.cloth_attachments.size(), 1u);
+    EXPECT_EQ(scene.cloth_attachments[0].collider, 0u);
+    EXPECT_EQ(std::get<VertexBox>(scene.cloth_attachments[0].vertices).from, (Vec3d{-1, -2, -3}));
+    EXPECT_EQ(std::get<VertexBox>(scene.cloth_attachments[0].vertices).to, (Vec3d{1, 2, 3}));
 }
 
 TEST(Scene, KeepsHalfTheSpacingAwayUnlessItHasAThickness) {
@@ -352,6 +354,7 @@ TEST(Scene, RefusesTheKeysOfTheOtherSolver) {
     const auto refusal_of = [](const std::string& rest) {
         return refusal(R"({"model": "a", "cloth": {"size": [1, 1]}, )" + rest + "}");
     };
+    EXPECT_EQ(refusal_of(R"("wind": [0, 1, 0])"), "a.json: the key wind_rate is missing");
     EXPECT_EQ(refusal_of(R"("substeps": 4)"),
               R"(a.json: substeps is 4; it must be left out, or "solver" must be "xpbd")");
     EXPECT_EQ(refusal_of(R"("material": {"compliance": {}})"),

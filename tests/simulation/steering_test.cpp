@@ -105,6 +105,30 @@ TEST(Steering, AirAtRestBrakesAndNeverTurnsRound) {
     EXPECT_NEAR(mean_velocity(simulation).z, 0, 1e-5);
 }
 
+TEST(Steering, WindOfTheOptionsBlowsInEveryFrameInWhichTheHostDoesNot) {
+    for (const SolverKind solver : {SolverKind::Jakobsen, SolverKind::Newton}) {
+        SimulationOptions still = kWithoutForces;
+        still.solver = solver;
+        SimulationOptions windy = still;
+        windy.wind = {0, 0, 2};
+        windy.wind_rate = 5;
+        Simulation blown = sheet(still), in_wind = sheet(windy);
+        for (int i = 0; i < 20; ++i) {
+            blown.blow(i == 7 ? Vec3d{0, 0, -9} : windy.wind, i == 7 ? 1 : 5);
+            if (i == 7) {
+                in_wind.blow({0, 0, -9}, 1);
+                Simulation other = sheet(windy);
+                other.restore_state(in_wind.save_state());
+                in_wind = other;
+            }
+            blown.step();
+            in_wind.step();
+            ASSERT_EQ(blown.state_hash(), in_wind.state_hash()) << i;
+        }
+        EXPECT_GT(mean_velocity(in_wind).z, 0.1);
+    }
+}
+
 // ---- Colliders
 
 namespace {

@@ -64,6 +64,19 @@ TEST(SimulationSetUp, NamesTheOptionOutOfRange) {
     expect_names(refusal_of_option([](auto& o) { o.rest.frame_count = 0; }), "rest.frame_count");
 }
 
+TEST(SimulationSetUp, RefusesWindThatTakesHoldOfNothing) {
+    EXPECT_NE(refusal([](Deformable&, SimulationOptions& o) {
+                  o.wind = {0, 1, 0};
+              }).find("wind_rate is 0"),
+              std::string::npos);
+    EXPECT_NE(refusal([](Deformable&, SimulationOptions& o) {
+                  o.wind = {0, kNaNOption, 0};
+                  o.wind_rate = 1;
+              }).find("wind is not finite"),
+              std::string::npos);
+    EXPECT_EQ(refusal([](Deformable&, SimulationOptions& o) { o.wind_rate = 1; }), "");
+}
+
 TEST(SimulationSetUp, RefusesAColliderWhoseScaleIsZeroOrNoNumber) {
     const ExactMap map = ExactMap::build(make_box({1, 1, 1}));
     const auto is_refused = [&](const Vec3d& scale) {

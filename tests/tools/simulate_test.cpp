@@ -110,6 +110,23 @@ TEST_F(SimulateCommand, DrapesTheSmallClothOnTheHorseAsEverBefore) {
     expect_rest("horse_small_distance.json", "da42aa1fdf3570bb");
 }
 
+TEST_F(SimulateCommand, ReportsTheLoadOnEachColliderWhereTheSceneAsksForIt) {
+    const auto load = [&](const std::string& keys) {
+        write("scene.json",
+              R"({"colliders": [{"model": {"box": {}}}, {"model": {"box": {}}, "position": [0, 0, 9]}],
+            "cloth": {"particles": [5, 5], "size": [0.4, 0.4], "position": [0, 0, 0.51], "thickness": 0.01},
+            "solver": "newton", "frame_limit": 90)" +
+                  keys + "}");
+        return simulate("scene.json").at("colliders");
+    };
+    const nlohmann::json measured = load(R"(, "measure_loads": true)");
+    const double weight = 0.2 * 0.4 * 0.4 * 9.81; // of the material's density
+    EXPECT_NEAR(measured[0].at("load").at("force")[2].get<double>(), -weight, 0.02 * weight);
+    EXPECT_EQ(measured[1].at("load").at("force"), nlohmann::json({0.0, 0.0, 0.0}));
+    EXPECT_EQ(measured[0].at("load").at("torque").size(), 3u);
+    EXPECT_TRUE(load("")[0].at("load").is_null());
+}
+
 TEST_F(SimulateCommand, WritesTheClothItsMotionTheColliderAndAReport) {
     write("scene.json", kFallingSheetScene);
     const nlohmann::json report = simulate("scene.json", {"--every", "2"});

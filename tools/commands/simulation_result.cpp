@@ -101,6 +101,13 @@ Json json_of(const Vec3d& v) {
     return {v.x, v.y, v.z};
 }
 
+/// In the last frame. Null where no account was kept.
+Json json_of_load(const Simulation& simulation, std::size_t collider) {
+    if (!simulation.options().measure_loads) return nullptr;
+    const Load load = simulation.load_on(collider);
+    return {{"force", json_of(load.force)}, {"torque", json_of(load.torque)}};
+}
+
 Json json_of(const std::vector<SavedPose>& poses) {
     Json list = Json::array();
     for (const auto& [frame, pose] : poses) {
@@ -154,10 +161,13 @@ Json json_of(const ColliderResult& collider, const std::vector<std::uint8_t>& pa
     return result;
 }
 
-Json json_of(const std::vector<ColliderResult>& colliders, const Deformable& deformable) {
+Json json_of(const std::vector<ColliderResult>& colliders, const Simulation& simulation) {
     Json list = Json::array();
-    for (std::size_t c = 0; c < colliders.size(); ++c)
-        list.push_back(json_of(colliders[c], let_through(deformable, c)));
+    for (std::size_t c = 0; c < colliders.size(); ++c) {
+        Json collider = json_of(colliders[c], let_through(simulation.deformable(), c));
+        collider.add("load", json_of_load(simulation, c));
+        list.push_back(std::move(collider));
+    }
     return list;
 }
 
@@ -229,7 +239,7 @@ Json to_json(const SimulationResult& result) {
           {"vertices", first.model.vertex_count},
           {"radius", first.radius}}},
         {"collider", {{"mesh", first.mesh_name}, {"poses", json_of(first.poses)}}},
-        {"colliders", json_of(result.colliders, deformable)},
+        {"colliders", json_of(result.colliders, simulation)},
         {"state_hash", fmt::format("{:016x}", simulation.state_hash())},
     };
 }

@@ -184,7 +184,7 @@ echinus_soft_body_options as_c(const SoftBodyOptions& options);
 /// @throws WrongArgument
 SoftBodyOptions options_from(const echinus_soft_body_options* options);
 
-ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_options, damping);
+ECHINUS_REQUIRE_NO_PADDING_AFTER(echinus_simulation_options, wind_rate);
 /// Calls use() with each member of the structs of C and of C++, either of which may be constant.
 template <typename C, typename Options, typename Use>
 requires std::same_as<std::remove_const_t<C>, echinus_simulation_options> &&
@@ -214,14 +214,16 @@ void for_each_option(C& c, Options& o, const Use& use) {
     use("thread_count", c.thread_count, o.thread_count);
     use("multilevel", c.multilevel, o.multilevel);
     use("newton_step_count", c.newton_step_count, o.newton_step_count, Limits{1, 1000});
-    use("newton_tolerance", c.newton_tolerance, o.newton_tolerance, Limits{0, 1});
-    use("air_drag", c.air_drag, o.air_drag, Limits{0, 1e6});
     use.reserved(c.reserved);
     use("density", c.density, o.material.density, Limits{1e-6, 1e6});
     use("stretch_stiffness", c.stretch_stiffness, o.material.stretch_stiffness, Limits{1e-6, 1e9});
     use("shear_stiffness", c.shear_stiffness, o.material.shear_stiffness, Limits{0, 1e9});
     use("bending_stiffness", c.bending_stiffness, o.material.bending_stiffness, Limits{0, 1e6});
     use("damping", c.damping, o.material.damping, Limits{0, 1e6});
+    use("newton_tolerance", c.newton_tolerance, o.newton_tolerance, Limits{0, 1});
+    use("air_drag", c.air_drag, o.air_drag, Limits{0, 1e6});
+    use("wind", c.wind, o.wind, Limits{-1e9, 1e9});
+    use("wind_rate", c.wind_rate, o.wind_rate, Limits{0, 1e9});
 }
 echinus_simulation_options as_c(const SimulationOptions& options);
 /// @param options  may be null, for the defaults

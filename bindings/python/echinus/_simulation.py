@@ -52,13 +52,15 @@ class SimulationOptions:
     measure_loads: bool
     multilevel: bool
     newton_step_count: int
-    newton_tolerance: float
-    air_drag: float
     density: float
     stretch_stiffness: float
     shear_stiffness: float
     bending_stiffness: float
     damping: float
+    newton_tolerance: float
+    air_drag: float
+    wind: Vector
+    wind_rate: float
     threads: int
 
 
@@ -170,12 +172,6 @@ class Simulation:
     newton_step_count
         ``newton`` only: at most so many steps of Newton's method in a frame; fewer where it has converged (1 to
         1000).
-    newton_tolerance
-        ``newton`` only: a step of Newton's method that moves no particle farther than this has converged; share of
-        the mean edge length (0 to 1).
-    air_drag
-        ``newton`` only: resistance of still air, the rate at which a velocity decays that nothing keeps up; 0 is a
-        vacuum (0 to 1e6 1/s).
     density
         ``newton`` only, as the four that follow: mass of the cloth per area (1e-6 to 1e6 kg/m^2).
     stretch_stiffness
@@ -186,6 +182,17 @@ class Simulation:
         Moment per width and curvature against folding (0 to 1e6 N m).
     damping
         Viscosity of the cloth over its stiffness (0 to 1e6 s).
+    newton_tolerance
+        ``newton`` only: a step of Newton's method that moves no particle farther than this has converged; share of
+        the mean edge length (0 to 1).
+    air_drag
+        ``newton`` only: resistance of still air, the rate at which a velocity decays that nothing keeps up; 0 is a
+        vacuum (0 to 1e6 1/s).
+    wind
+        Velocity of the air; needs ``wind_rate`` (-1e9 to 1e9 length/s).
+    wind_rate
+        Of the air's velocity across a face, along its normal, particles take on so much per second: the higher, the
+        lighter the cloth. 0: no air. Without ``wind`` the air is at rest and brakes (0 to 1e9 1/s).
     threads
         Threads that compute a frame; 0: all cores. The same bits with any number (0 to 1024).
 
@@ -227,13 +234,15 @@ class Simulation:
         measure_loads: bool = False,
         multilevel: bool = False,
         newton_step_count: int = 4,
-        newton_tolerance: float = 0.0001,
-        air_drag: float = 0.5,
         density: float = 0.2,
         stretch_stiffness: float = 1000,
         shear_stiffness: float = 400,
         bending_stiffness: float = 1e-5,
         damping: float = 0.01,
+        newton_tolerance: float = 0.0001,
+        air_drag: float = 0.5,
+        wind: Sequence[float] = (0, 0, 0),
+        wind_rate: float = 0,
         threads: int = 1,
     ) -> None:
         options = dict(locals())
@@ -263,7 +272,7 @@ class Simulation:
         self_collision: bool | None = None,
         untangle: bool | None = None,
         allow_open_colliders: bool = False,
-        measure_loads: bool = False,
+        measure_loads: bool | None = None,
         threads: int = 0,
     ) -> Simulation:
         """The beginning of a scene.
@@ -288,7 +297,7 @@ class Simulation:
             Accept a model that is not closed, for which nothing is promised. Surface collision needs no such
             permission.
         measure_loads
-            Keep account for :meth:`load_on`.
+            Keep account for :meth:`load_on`, in place of the scene's key.
         threads
             For the build of maps. 0: all cores.
 
@@ -312,7 +321,7 @@ class Simulation:
         parsed.self_collision = surfaces and flag("self_collision", _chosen(self_collision, parsed.self_collision))
         parsed.untangle = surfaces and flag("untangle", _chosen(untangle, parsed.untangle))
         parsed.allow_open_colliders = flag("allow_open_colliders", allow_open_colliders)
-        parsed.measure_loads = flag("measure_loads", measure_loads)
+        parsed.measure_loads = flag("measure_loads", _chosen(measure_loads, parsed.measure_loads))
         threads = threads_of(threads)
         folders = [model_folders] if isinstance(model_folders, (str, bytes, os.PathLike)) else model_folders
         files = _Files([*(pathlib.Path(path_of(each)) for each in folders), folder, folder / ".." / "models", pathlib.Path("models")])

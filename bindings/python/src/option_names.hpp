@@ -125,13 +125,15 @@ void for_each_option(Options& o, const Use& use) {
     use("threads", o.thread_count);
     use("multilevel", o.multilevel);
     use("newton_step_count", o.newton_step_count);
-    use("newton_tolerance", o.newton_tolerance);
-    use("air_drag", o.air_drag);
     use("density", o.material.density);
     use("stretch_stiffness", o.material.stretch_stiffness);
     use("shear_stiffness", o.material.shear_stiffness);
     use("bending_stiffness", o.material.bending_stiffness);
     use("damping", o.material.damping);
+    use("newton_tolerance", o.newton_tolerance);
+    use("air_drag", o.air_drag);
+    use("wind", o.wind);
+    use("wind_rate", o.wind_rate);
 }
 
 /// Calls use() with the name and the defaults of each struct.

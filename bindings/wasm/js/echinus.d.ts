@@ -545,6 +545,8 @@ export interface SceneDescription {
         position?: Vec3;
         rotation?: { axis: Vec3; degrees: number };
         velocity?: Vec3;
+        /** Degrees per second, about the centre of mass. */
+        angular_velocity?: Vec3;
         // Options: thickness. By bindings/generate_options from bindings/options.toml: edit that.
         /**
          * Distance that particles keep from colliders, by default half the mean length of structural sticks at rest (0
@@ -635,6 +637,8 @@ export interface SceneDescription {
      * Where down is. A model whose y is up needs `[0, -9.81, 0]` (-1e9 to 1e9 length/s^2). Default: `[0, 0, -9.81]`.
      */
     gravity?: Vec3;
+    /** Keep account of what bears on the colliders; takes a few percent of the time. Default: false. */
+    measure_loads?: boolean;
     /** Threads that compute a frame; 0: all cores. The same bits with any number (0 to 1024). Default: 1. */
     thread_count?: number;
     /**
@@ -652,6 +656,13 @@ export interface SceneDescription {
      * mean edge length (0 to 1). Default: 0.0001.
      */
     newton_tolerance?: number;
+    /** Velocity of the air; needs `wind_rate` (-1e9 to 1e9 length/s). Default: `[0, 0, 0]`. */
+    wind?: Vec3;
+    /**
+     * Of the air's velocity across a face, along its normal, particles take on so much per second: the higher, the
+     * lighter the cloth. 0: no air. Without `wind` the air is at rest and brakes (0 to 1e9 1/s). Default: 0.
+     */
+    wind_rate?: number;
     // End of options.
     frame_limit?: number;
     at_rest?: {
@@ -694,8 +705,10 @@ export interface Body {
     position?: Vec3;
     rotation?: { axis: Vec3; degrees: number };
     velocity?: Vec3;
+    /** Degrees per second, about the centre of mass. */
+    angular_velocity?: Vec3;
     pins?: VertexChoice;
-    attachments?: VertexChoice;
+    attachments?: VertexChoice | readonly Attachments[];
     /** Colliders, by their numbers, that it passes through. */
     ignores?: readonly number[];
 }
@@ -710,6 +723,14 @@ export interface Sheet {
     // End of options.
     /** [column, row] of fixed particles. */
     pins?: readonly (readonly [number, number])[];
+    /** Of particles that move with a collider, the first unless it is named. */
+    attachments?: readonly (readonly [number, number])[] | readonly { collider: number; particles: readonly (readonly [number, number])[] }[];
+}
+
+/** Vertices that move with a collider. */
+export interface Attachments {
+    collider: number;
+    vertices: VertexChoice;
 }
 
 /** Vertices by their numbers, or all in a box. */
@@ -730,7 +751,7 @@ export interface MeshCloth {
     bending?: 'angles' | 'sticks';
     // End of options.
     pins?: VertexChoice;
-    attachments?: VertexChoice;
+    attachments?: VertexChoice | readonly Attachments[];
 }
 
 /** A validated scene. */

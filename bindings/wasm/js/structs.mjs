@@ -59,7 +59,7 @@ export const deformableArrays = { bytes: 68, members: {
     attachmentCount: [48, 'Uint32'], tetrahedra: [52, 'Uint32'], tetrahedronCount: [56, 'Uint32'],
     filters: [60, 'Uint32'], filterCount: [64, 'Uint32'],
 } };
-export const simulationOptions = { bytes: 272, members: {
+export const simulationOptions = { bytes: 296, members: {
     size: [0, 'Uint32'], timeStep: [8, 'Float64'], solver: [16, 'Int32'], iterationCount: [20, 'Uint32'],
     substepCount: [24, 'Uint32'], restFrameCount: [28, 'Uint32'], restDistance: [32, 'Float64'],
     restSpeed: [40, 'Float64'], gravity: [48, 'Float64', 3], drag: [72, 'Float64'], stiffness: [80, 'Float64', 3],
@@ -67,9 +67,9 @@ export const simulationOptions = { bytes: 272, members: {
     friction: [144, 'Float64'], bound: [152, 'Float64'], keepFree: [160, 'Int32'], allowOpenColliders: [164, 'Int32'],
     surfaceCollision: [168, 'Int32'], selfCollision: [172, 'Int32'], untangle: [176, 'Int32'],
     measureLoads: [180, 'Int32'], threadCount: [184, 'BigUint64'], multilevel: [192, 'BigUint64'],
-    newtonStepCount: [200, 'Uint32'], newtonTolerance: [208, 'Float64'], airDrag: [216, 'Float64'],
-    density: [232, 'Float64'], stretchStiffness: [240, 'Float64'], shearStiffness: [248, 'Float64'],
-    bendingStiffness: [256, 'Float64'], damping: [264, 'Float64'],
+    newtonStepCount: [200, 'Uint32'], density: [208, 'Float64'], stretchStiffness: [216, 'Float64'],
+    shearStiffness: [224, 'Float64'], bendingStiffness: [232, 'Float64'], damping: [240, 'Float64'],
+    newtonTolerance: [248, 'Float64'], airDrag: [256, 'Float64'], wind: [264, 'Float64', 3], windRate: [288, 'Float64'],
 } };
 export const simulationProfile = { bytes: 104, members: {
     size: [0, 'Uint32'], integrationSeconds: [8, 'Float64'], constraintSeconds: [16, 'Float64'],

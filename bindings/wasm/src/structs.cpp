@@ -98,7 +98,7 @@ static_assert(sizeof(echinus_deformable_arrays) == 68 && offsetof(echinus_deform
               offsetof(echinus_deformable_arrays, tetrahedron_count) == 56 &&
               offsetof(echinus_deformable_arrays, filters) == 60 &&
               offsetof(echinus_deformable_arrays, filter_count) == 64);
-static_assert(sizeof(echinus_simulation_options) == 272 && offsetof(echinus_simulation_options, size) == 0 &&
+static_assert(sizeof(echinus_simulation_options) == 296 && offsetof(echinus_simulation_options, size) == 0 &&
               offsetof(echinus_simulation_options, time_step) == 8 &&
               offsetof(echinus_simulation_options, solver) == 16 &&
               offsetof(echinus_simulation_options, iteration_count) == 20 &&
@@ -123,14 +123,16 @@ static_assert(sizeof(echinus_simulation_options) == 272 && offsetof(echinus_simu
               offsetof(echinus_simulation_options, thread_count) == 184 &&
               offsetof(echinus_simulation_options, multilevel) == 192 &&
               offsetof(echinus_simulation_options, newton_step_count) == 200 &&
-              offsetof(echinus_simulation_options, newton_tolerance) == 208 &&
-              offsetof(echinus_simulation_options, air_drag) == 216 &&
-              offsetof(echinus_simulation_options, reserved) == 224 &&
-              offsetof(echinus_simulation_options, density) == 232 &&
-              offsetof(echinus_simulation_options, stretch_stiffness) == 240 &&
-              offsetof(echinus_simulation_options, shear_stiffness) == 248 &&
-              offsetof(echinus_simulation_options, bending_stiffness) == 256 &&
-              offsetof(echinus_simulation_options, damping) == 264);
+              offsetof(echinus_simulation_options, reserved) == 204 &&
+              offsetof(echinus_simulation_options, density) == 208 &&
+              offsetof(echinus_simulation_options, stretch_stiffness) == 216 &&
+              offsetof(echinus_simulation_options, shear_stiffness) == 224 &&
+              offsetof(echinus_simulation_options, bending_stiffness) == 232 &&
+              offsetof(echinus_simulation_options, damping) == 240 &&
+              offsetof(echinus_simulation_options, newton_tolerance) == 248 &&
+              offsetof(echinus_simulation_options, air_drag) == 256 &&
+              offsetof(echinus_simulation_options, wind) == 264 &&
+              offsetof(echinus_simulation_options, wind_rate) == 288);
 static_assert(sizeof(echinus_simulation_profile) == 104 && offsetof(echinus_simulation_profile, size) == 0 &&
               offsetof(echinus_simulation_profile, integration_seconds) == 8 &&
               offsetof(echinus_simulation_profile, constraint_seconds) == 16 &&

@@ -54,7 +54,7 @@ std::uint64_t hash_of(const SimulationOptions& options) {
                options.rest.frame_count, options.keep_free, options.allow_open_colliders,
                options.surface_collision, options.self_collision, options.self_thickness.value_or(-1),
                options.measure_loads, options.bound);
-    if (options.multilevel) hasher.add(options.multilevel); // states from before it was there stay good
+    hasher.add(options.multilevel, options.wind, options.wind_rate);
     if (options.solver == SolverKind::Newton)
         hasher.add(options.material.density, options.material.stretch_stiffness,
                    options.material.shear_stiffness, options.material.bending_stiffness,

@@ -17,6 +17,7 @@ StateFingerprint Solver::fingerprint() const {
 
 void Solver::archive_counts(StateArchive& state) {
     state.value(frame);
+    state.flag(has_blown);
     state.value(largest_speed);
     for (std::uint64_t* count :
          {&profile.query_count, &profile.contact_count, &profile.map_query_count, &profile.rescued_count,

@@ -1188,12 +1188,6 @@ typedef struct echinus_simulation_options {
     /// Newton only: at most so many steps of Newton's method in a frame; fewer where it has converged (1 to
     /// 1000)
     uint32_t newton_step_count;
-    /// Newton only: a step of Newton's method that moves no particle farther than this has converged; share
-    /// of the mean edge length (0 to 1)
-    double newton_tolerance;
-    /// Newton only: resistance of still air, the rate at which a velocity decays that nothing keeps up; 0 is
-    /// a vacuum (0 to 1e6 1/s)
-    double air_drag;
     /// 0
     int32_t reserved;
     /// Newton only, as the four that follow: mass of the cloth per area (1e-6 to 1e6 kg/m^2)
@@ -1206,6 +1200,17 @@ typedef struct echinus_simulation_options {
     double bending_stiffness;
     /// Viscosity of the cloth over its stiffness (0 to 1e6 s)
     double damping;
+    /// Newton only: a step of Newton's method that moves no particle farther than this has converged; share
+    /// of the mean edge length (0 to 1)
+    double newton_tolerance;
+    /// Newton only: resistance of still air, the rate at which a velocity decays that nothing keeps up; 0 is
+    /// a vacuum (0 to 1e6 1/s)
+    double air_drag;
+    /// Velocity of the air; needs wind_rate (-1e9 to 1e9 length/s)
+    double wind[3];
+    /// Of the air's velocity across a face, along its normal, particles take on so much per second: the
+    /// higher, the lighter the cloth. 0: no air. Without wind the air is at rest and brakes (0 to 1e9 1/s)
+    double wind_rate;
 } echinus_simulation_options;
 
 ECHINUS_API void echinus_simulation_options_init(echinus_simulation_options* options, size_t size);
