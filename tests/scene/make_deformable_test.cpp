@@ -99,6 +99,25 @@ TEST(SceneAttachments, MoveWithAnyColliderOfTheScene) {
         {{5, 1}});
 }
 
+TEST(SceneAttachments, ToAColliderThatTheClothIgnoresArePinsThatMove) {
+    for (const std::string solver : {"newton", "jakobsen"}) {
+        const Scene scene = parse_scene(R"({"colliders": [{"model": {"box": {}}, "position": [0, 0, -2]},
+            {"model": {"box": {"size": [0.1, 0.1, 0.1]}},
+             "keyframes": [{"time": 0, "position": [1, 1, 0]}, {"time": 0.5, "position": [1, 1, 1]}]}],
+            "cloth": {"size": [2, 2], "particles": [9, 9], "ignores": [1],
+                      "attachments": [{"collider": 1, "particles": [[8, 8], [7, 8]]}]}, "time_step": 0.01, "solver": ")" +
+                                            solver + "\"}",
+                                        "a.json");
+        const std::vector<ColliderMap> maps{ExactMap::build(make_box({1, 1, 1})),
+                                            ExactMap::build(make_box({0.1, 0.1, 0.1}))};
+        Simulation simulation = make_simulation(scene, maps);
+        for (int i = 0; i < 60; ++i) simulation.step();
+        EXPECT_NEAR(length(Vec3d(simulation.positions()[80]) - Vec3d{1, 1, 1}), 0, 1e-5) << solver;
+        EXPECT_NEAR(length(Vec3d(simulation.positions()[79]) - Vec3d{0.75, 1, 1}), 0, 1e-5) << solver;
+        EXPECT_LT(simulation.positions()[0].z, 0) << solver; // the rest of it falls
+    }
+}
+
 TEST(SceneAttachments, AreRefusedByTheirKeys) {
     const auto expect_words = [](const std::string& words, const std::string& cloth) {
         test::expect_error(ErrorCode::InvalidScene, words, [&] { scene_with_cloth(cloth); });
