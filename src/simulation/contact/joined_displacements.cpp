@@ -1,6 +1,7 @@
 #include "simulation/contact/joined_displacements.hpp"
 
 #include "geometry/union_find.hpp"
+#include "simulation/surfaces/shares.hpp"
 
 #include <algorithm>
 #include <array>
@@ -40,7 +41,8 @@ class Joining {
         for (std::size_t p = 0; p < side.pairs.pairs().size(); ++p) {
             const Pair& pair = side.pairs.pairs()[p];
             const Separation& apart = side.pairs.separations()[p];
-            if (closing_of(side, pair, apart.normal) <= kMostClosed * apart.gap) continue;
+            const float room = std::min(usable_gap(apart.gap, side.least_gap), kMostClosed * apart.gap);
+            if (closing_of(side, pair, apart.normal) <= std::max(room, 0.0F)) continue;
             const std::size_t moving = side.pairs.moving_count(pair);
             for (std::size_t k = 0; k < moving; ++k)
                 is_any_new = (moving == 4 ? join_particles(pair.points[0], pair.points[k])

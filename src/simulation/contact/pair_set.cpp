@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::size_t kPairsPerPiece = 512;
 constexpr std::size_t kBoxesPerPiece = 4096;
-/// Pairs are sorted by their gaps in steps of this share of the reach.
-constexpr std::size_t kGapsPerReach = 16;
+/// Pairs are sorted by their gaps in so many steps.
+constexpr std::size_t kGapSteps = 64;
 
 PairSet::SweptBox box_of(std::span<const std::uint32_t> points, const PointArrays& from,
                          const PointArrays& to) {
@@ -112,10 +112,13 @@ void PairSet::list(const PointArrays& own_from, const PointArrays& own_to, const
 /// Takes what was found and measured as the list, the nearest first: then a call that needs only those ends
 /// early.
 void PairSet::sort_listed() {
-    std::array<std::size_t, kGapsPerReach + 1> first{};
+    std::array<std::size_t, kGapSteps + 1> first{};
+    float largest = 0;
+    for (const Separation& apart : separations_) largest = std::max(largest, apart.gap);
+    gap_step_ = largest / static_cast<float>(kGapSteps);
     const auto step_of = [&](float gap) {
-        const float steps = gap / reach_ * static_cast<float>(kGapsPerReach);
-        return static_cast<std::size_t>(std::clamp(steps, 0.0F, static_cast<float>(kGapsPerReach - 1)));
+        const float steps = largest > 0 ? gap / largest * static_cast<float>(kGapSteps) : 0;
+        return static_cast<std::size_t>(std::clamp(steps, 0.0F, static_cast<float>(kGapSteps - 1)));
     };
     for (const Separation& apart : separations_) ++first[step_of(apart.gap) + 1];
     std::partial_sum(first.begin(), first.end(), first.begin());
@@ -183,7 +186,7 @@ void PairSet::measure(const PointArrays& own, const PointArrays& obstacle, std::
     // No pair is nearer by more than what two vertices could do to it.
     float most = 0;
     for (std::size_t i = 0; i < strayed.size(); ++i) most = std::max(most, strayed[i] + 2 * ahead[i]);
-    const float last = near + 2 * most + reach_ / static_cast<float>(kGapsPerReach);
+    const float last = near + 2 * (most + gap_step_);
     for (std::size_t p = 0; p < listed_.size() && listed_gaps_[p] <= last; ++p) {
         if (is_near_[p] != 0) continue;
         const Pair& pair = listed_[p];
@@ -221,6 +224,7 @@ void PairSet::archive(StateArchive& state) {
             state.index(pair.points[k], (k < own_count(pair.kind) ? own_ : obstacle_)->vertex_count());
     });
     state.list(listed_gaps_);
+    state.value(gap_step_);
     state.require(listed_gaps_.size() == listed_.size());
     near_.clear();
     separations_.clear();

@@ -119,6 +119,8 @@ void SurfaceContacts::carry(const std::vector<Collider>& before, const std::vect
 void SurfaceContacts::set_safe(const PointArrays& places) {
     safe_ = places;
     for (std::size_t i = 0; i < safe_places_.size(); ++i) safe_places_[i] = Vec3d(places[i]);
+    const float extent = largest_coordinate(places, own_->vertex_count());
+    for (ContactSide& side : sides_) side.least_gap = (extent + side.extent) * kLeastGap;
 }
 
 void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const PointArrays& places,
@@ -128,10 +130,8 @@ void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const P
     base_ = places;
     set_safe(places);
     std::fill(is_touching_.begin(), is_touching_.end(), std::uint8_t{0});
-    const float extent = largest_coordinate(places, own_->vertex_count());
     for (std::size_t s = 0; s < sides_.size(); ++s) {
         ContactSide& side = sides_[s];
-        side.least_gap = (extent + side.extent) * kLeastGap;
         if (s < collider_count_) side.set_pose(colliders[s].pose);
         frames_[s] = side.frame;
         side.set_safe(safe_);
