@@ -25,24 +25,26 @@ void ContactSide::to_frame(Places world, PointArrays& result) const {
         result.set(i, frame ? frame->point_to_local(Vec3f(world[i])) : Vec3f(world[i]));
 }
 
-namespace {
-
-/// Is each point within a distance of its counterpart?
-bool are_near(const PointArrays& a, const PointArrays& b, std::size_t count, float distance) {
-    for (std::size_t i = 0; i < count; ++i) {
-        const Vec3f away = a[i] - b[i];
-        if (!(dot(away, away) <= distance * distance)) return false;
-    }
-    return true;
+/// The motion that all have in common between two states. It changes no gap of the surface to itself.
+Vec3f ContactSide::common_motion(const PointArrays& from, const PointArrays& to) const {
+    if (!pairs.is_of_itself()) return {};
+    Vec3d sum;
+    for (std::size_t i = 0; i < own->vertex_count(); ++i) sum += Vec3d(to[i] - from[i]);
+    return Vec3f(sum * (1 / static_cast<double>(own->vertex_count())));
 }
-
-} // namespace
 
 bool ContactSide::covers(const PointArrays& in_frame) const {
     if (!is_listed()) return false;
-    const std::size_t count = own->vertex_count();
-    return are_near(in_frame, expected, count, pairs.covered()) ||
-           are_near(in_frame, listed_from, count, pairs.covered());
+    const float most_sq = pairs.covered() * pairs.covered();
+    const auto is_near = [&](const PointArrays& places) {
+        const Vec3f common = common_motion(places, in_frame);
+        for (std::size_t i = 0; i < own->vertex_count(); ++i) {
+            const Vec3f away = in_frame[i] - places[i] - common;
+            if (!(dot(away, away) <= most_sq)) return false;
+        }
+        return true;
+    };
+    return is_near(expected) || is_near(listed_from);
 }
 
 bool ContactSide::list(Places ends, const Workers& workers) {
@@ -65,9 +67,11 @@ void ContactSide::measure(const Workers& workers) {
     const std::size_t count = own->vertex_count();
     strayed.resize(count);
     ahead.resize(count);
+    const Vec3f common_past = common_motion(listed_from, safe), common_ahead = common_motion(safe, goal);
     for (std::size_t i = 0; i < count; ++i) {
-        strayed[i] = length(safe[i] - listed_from[i]);
-        ahead[i] = std::max(length(base[i] - safe[i]), length(goal[i] - safe[i]));
+        strayed[i] = length(safe[i] - listed_from[i] - common_past);
+        ahead[i] =
+            std::max(length(base[i] - safe[i] - common_ahead), length(goal[i] - safe[i] - common_ahead));
     }
     pairs.measure(safe, obstacle_at(safe), strayed, ahead, ready, is_elsewhere, workers);
     is_elsewhere = false;

@@ -58,6 +58,8 @@ struct ContactSide {
         return Vec3f(to) == Vec3f(from) ? from : to;
     }
 
+    Vec3f common_motion(const PointArrays& from, const PointArrays& to) const;
+
     std::shared_ptr<const Elements> own, obstacle; ///< the same of itself
     PointArrays obstacle_places;                   ///< of a model
     PairSet pairs;
