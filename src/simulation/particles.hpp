@@ -23,6 +23,7 @@ struct PointArrays {
     void fill(float value) {
         for (std::vector<float>* c : {&x, &y, &z}) std::fill(c->begin(), c->end(), value);
     }
+    bool operator==(const PointArrays&) const = default;
     Vec3f operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
     void set(std::size_t i, const Vec3f& p) {
         x[i] = p.x;

@@ -44,16 +44,19 @@ bool ContactSide::covers(const PointArrays& in_frame) const {
         }
         return true;
     };
-    return is_near(expected) || is_near(listed_from);
+    return is_near(listed_from) || std::any_of(expected.begin(), expected.end(), is_near);
 }
 
 bool ContactSide::list(Places ends, const Workers& workers) {
     to_frame(ends, goal);
     if (covers(safe) && covers(goal)) return false;
+    // Displacements of one beginning add to the list, so that the search for ends that are covered ends.
+    const bool adds = is_listed() && listed_from == safe;
+    if (!adds) expected.clear();
     listed_from = safe;
     is_elsewhere = true;
-    expected = goal;
-    pairs.list(safe, expected, obstacle_at(safe), obstacle_at(expected), workers);
+    expected.push_back(goal);
+    pairs.list(safe, goal, obstacle_at(safe), obstacle_at(goal), adds, workers);
     return true;
 }
 

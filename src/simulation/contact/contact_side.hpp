@@ -36,12 +36,11 @@ struct ContactSide {
         return pairs.is_of_itself() ? own_places : obstacle_places;
     }
 
-    bool is_listed() const { return !expected.x.empty(); }
+    bool is_listed() const { return !expected.empty(); }
     /// Are these places so near to those where displacements begin, or to those where they end, that their
     /// pairs are listed?
     bool covers(const PointArrays& in_frame) const;
-    /// Lists the pairs of displacements from `safe` to here, unless they are.
-    /// @return whether they were not
+    /// Lists the pairs of displacements from `safe` to here, unless they are. @return whether they were not
     bool list(Places ends, const Workers& workers);
     /// Where the surface is safe now. @param world  the same in the world
     void set_safe(const PointArrays& world) {
@@ -66,8 +65,9 @@ struct ContactSide {
     std::optional<FrameChange> frame; ///< of a model that does not stand in the world's
     float thickness = 0, ready = 0, friction = 0, least_gap = 0;
     float extent = 0; ///< of the obstacle's coordinates
-    /// Where displacements begin and end for which the pairs are listed. Empty: for none.
-    PointArrays listed_from, expected;
+    /// Where displacements begin and end for which the pairs are listed: to any of these ends.
+    PointArrays listed_from;
+    std::vector<PointArrays> expected;
     PointArrays safe;                  ///< where the pairs are measured
     PointArrays base;                  ///< and where displacements lead them that they make together
     PointArrays goal;                  ///< and those of each alone

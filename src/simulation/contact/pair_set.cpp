@@ -50,6 +50,15 @@ std::size_t edge_count(const Element& element) {
     return element.vertex_count == 3 ? 3 : element.vertex_count - 1U;
 }
 
+void drop_doubles(std::vector<Pair>& pairs) {
+    const auto before = [](const Pair& a, const Pair& b) {
+        return a.kind != b.kind ? a.kind < b.kind : a.points < b.points;
+    };
+    const auto same = [](const Pair& a, const Pair& b) { return a.kind == b.kind && a.points == b.points; };
+    std::sort(pairs.begin(), pairs.end(), before);
+    pairs.erase(std::unique(pairs.begin(), pairs.end(), same), pairs.end());
+}
+
 MovingTree tree_of(const Elements& elements, const PointArrays& places) {
     MovingTree tree(elements.all, places);
     tree.want([](std::uint32_t) { return true; }, Workers(1));
@@ -84,7 +93,7 @@ void PairSet::find_boxes(const Elements& elements, const PointArrays& from, cons
 }
 
 void PairSet::list(const PointArrays& own_from, const PointArrays& own_to, const PointArrays& obstacle_from,
-                   const PointArrays& obstacle_to, const Workers& workers) {
+                   const PointArrays& obstacle_to, bool adds, const Workers& workers) {
     own_tree_.refit(own_->all, own_from, own_to, workers);
     find_boxes(*own_, own_from, own_to, workers, own_boxes_);
     const bool is_known = &obstacle_from == &obstacle_to && !obstacle_boxes_.faces.empty();
@@ -103,7 +112,9 @@ void PairSet::list(const PointArrays& own_from, const PointArrays& own_to, const
         });
     });
     near_.clear();
+    if (adds) near_ = listed_;
     found_.append_to(near_);
+    if (adds) drop_doubles(near_);
     separations_.clear();
     measure_new(own_from, obstacle_from, workers);
     sort_listed();

@@ -40,7 +40,7 @@ class PairSet {
     /// the displacements begin. Of itself both are the surface's. An obstacle with the same array twice never
     /// moves.
     void list(const PointArrays& own_from, const PointArrays& own_to, const PointArrays& obstacle_from,
-              const PointArrays& obstacle_to, const Workers& workers);
+              const PointArrays& obstacle_to, bool adds, const Workers& workers);
 
     /// Measures the pairs that may be nearer than `near`, or of which displacements may close half of the
     /// gap.

@@ -256,15 +256,13 @@ void SurfaceContacts::end_step(Places places) {
 void SurfaceContacts::archive(StateArchive& state) {
     contacts_.archive(state);
     for (ContactSide& side : sides_) {
-        bool is_listed = side.is_listed();
-        state.flag(is_listed);
-        for (PointArrays* places : {&side.listed_from, &side.expected}) {
-            *places = is_listed ? std::move(*places) : PointArrays{};
-            if (!is_listed) continue;
-            places->resize(own_->vertex_count());
-            state.points(*places);
-        }
-        if (is_listed) side.pairs.archive(state);
+        const auto archive_places = [&](PointArrays& places) {
+            places.resize(own_->vertex_count());
+            state.points(places);
+        };
+        archive_places(side.listed_from);
+        state.items(side.expected, archive_places);
+        side.pairs.archive(state);
     }
 }
 
