@@ -126,15 +126,18 @@ void DeformingCollider::build_ahead(double end_time) {
 
 void DeformingCollider::begin_frame(Collider& collider, const Particles& particles,
                                     std::span<const float> clearances, float reach, const Workers& workers) {
+    const Collider before = collider;
+    begin_frame(collider);
+    if (deforms_) find_carried(before, particles, clearances, reach, workers);
+}
+
+void DeformingCollider::begin_frame(Collider& collider) {
     if (prepared_map_) {
         next_map_ = std::exchange(prepared_map_, std::nullopt);
         next_vertices_ = prepared_vertices_;
     }
     deforms_ = next_map_.has_value() && next_vertices_ != vertices_;
-    if (deforms_) {
-        find_motion(collider);
-        find_carried(collider, particles, clearances, reach, workers);
-    }
+    if (deforms_) find_motion(collider);
     if (!next_map_) return;
     collider.map = *next_map_;
     has_deformed_ = true;

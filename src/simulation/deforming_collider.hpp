@@ -42,6 +42,8 @@ class DeformingCollider {
     /// @throws Error as ExactMapBuilder::rebuild() of the cache's vertices; then nothing has changed
     void build_ahead(double end_time);
     /// Gives the collider the map of the frame's end, for which build_ahead() was called.
+    void begin_frame(Collider& collider);
+    /// The same, and finds what the surface carries.
     /// @param clearances  lower bounds of the particles' distances from the surface
     /// @param reach       particles so near are beside it
     /// @param workers     share the queries of the particles

@@ -1,8 +1,10 @@
 #include "simulation/newton_solver.hpp"
 
+#include "collider/frame_change.hpp"
 #include "simulation/contact/carry_field.hpp"
 #include "simulation/stopwatch.hpp"
 #include "simulation/surfaces/edge_lengths.hpp"
+#include "simulation/surfaces/model_mesh.hpp"
 
 #include <echinus/error.hpp>
 
@@ -17,6 +19,9 @@ namespace {
 /// A frame in which colliders move is divided, so that in a part none moves farther than so many thicknesses.
 constexpr double kMostCarried = 4;
 constexpr std::uint32_t kMostPartsOfFrame = 32;
+/// In displacements of the fastest particle in a frame: how far off vertices of a collider that deforms may
+/// be to decide about the division.
+constexpr double kRoom = 2;
 /// In thicknesses: what is no farther from a collider is carried along with it whole.
 constexpr double kTouch = 2;
 
@@ -33,6 +38,14 @@ SimulationOptions valid(const SimulationOptions& options, const std::vector<Coll
     return options;
 }
 
+/// Of a collider's surface as it is, in its body frame.
+std::vector<Vec3f> vertices_of(const Collider& collider, const std::optional<DeformingCollider>& surface) {
+    if (!surface) return model_mesh(map_of_surface(collider)->view(), collider.scale).vertices;
+    std::vector<Vec3f> vertices = surface->vertices();
+    for (Vec3f& v : vertices) v = Vec3f(times(Vec3d(v), collider.scale));
+    return vertices;
+}
+
 } // namespace
 
 NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colliders_in,
@@ -40,7 +53,7 @@ NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colli
     : Solver(std::move(deformable_in), std::move(colliders_in), valid(options_in, colliders_in)),
       step_(elastic_parts(deformable, options.material)), motion_(deformable.particle_count()),
       is_held_(deformable.particle_count()), accelerations_(deformable.particle_count(), options.gravity),
-      gained_(deformable.particle_count()),
+      gained_(deformable.particle_count()), deformations_(colliders.size()),
       mean_edge_(double{mean_edge_length(elements_of(deformable), deformable.positions)}) {
     for (std::size_t i = 0; i < deformable.particle_count(); ++i) {
         motion_.places[i] = Vec3d(deformable.positions[i]);
@@ -55,10 +68,21 @@ NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colli
 void NewtonSolver::step() {
     const Workers::Session session(workers_);
     bounds_.require_sound();
+    {
+        const Stopwatch stopwatch(profile.collision_seconds);
+        build_maps();
+    }
     move_colliders_on();
+    deform();
+    prepare_next_frame();
     if (contacts_) contacts_->begin_frame();
     const std::uint32_t parts = part_count();
-    for (std::uint32_t part = 0; part < parts; ++part) step_part(options.time_step / parts);
+    const auto share = [&](std::uint32_t part) {
+        return static_cast<float>(part) / static_cast<float>(parts);
+    };
+    for (std::uint32_t part = 0; part < parts; ++part)
+        step_part(options.time_step / parts, {share(part), share(part + 1)});
+    std::fill(deformations_.begin(), deformations_.end(), Deformation{});
     if (contacts_) profile.squeezed_count += contacts_->unresolved_count();
     accelerations_.assign(deformable.particle_count(), options.gravity);
     publish();
@@ -66,22 +90,39 @@ void NewtonSolver::step() {
     rest_.watch(deformable.positions, largest_speed);
 }
 
+/// Colliders that deform get the maps of the frame's end.
+void NewtonSolver::deform() {
+    const Stopwatch stopwatch(profile.collision_seconds);
+    for (std::size_t c = 0; c < colliders.size(); ++c) {
+        deformations_[c] = {};
+        if (!deforming_[c]) continue;
+        const Collider before = colliders[c];
+        deforming_[c]->begin_frame(colliders[c]);
+        const double room = kRoom * fastest() * options.time_step;
+        deformations_[c] = {before,       *deforming_[c],
+                            places_now(), motion_.particle_count(),
+                            room,         kTouch * *options.thickness,
+                            workers_};
+    }
+}
+
 /// So that what is carried along keeps its gaps.
 std::uint32_t NewtonSolver::part_count() const {
     double longest = 0;
-    for (const Collider& collider : colliders) {
-        Collider after = collider;
-        after.pose = pose_after(collider, options.time_step);
-        longest = std::max(longest, CarryField::longest_displacement(collider, after));
+    for (std::size_t c = 0; c < colliders.size(); ++c) {
+        Collider after = colliders[c];
+        after.pose = pose_after(colliders[c], options.time_step);
+        longest = std::max(longest,
+                           CarryField::longest_displacement(colliders[c], after) + deformations_[c].longest);
     }
     const double parts = std::ceil(longest / (kMostCarried * *options.thickness));
     return static_cast<std::uint32_t>(std::clamp(parts, 1.0, double{kMostPartsOfFrame}));
 }
 
-void NewtonSolver::step_part(double seconds) {
+void NewtonSolver::step_part(double seconds, const FramePart& part) {
     const std::vector<Collider> before = colliders;
     for (Collider& collider : colliders) collider.pose = pose_after(collider, seconds);
-    const PointArrays start = carried_start(before);
+    const PointArrays start = carried_start(before, part);
     std::vector<Vec3d> places = guess(start, seconds);
     step_.begin(motion_, accelerations_, is_held_, seconds, options.air_drag);
     minimise(places, start, seconds);
@@ -95,18 +136,24 @@ void NewtonSolver::step_part(double seconds) {
     }
 }
 
+PointArrays NewtonSolver::places_now() const {
+    PointArrays places;
+    places.resize(motion_.particle_count());
+    for (std::size_t i = 0; i < motion_.particle_count(); ++i) places.set(i, Vec3f(motion_.places[i]));
+    return places;
+}
+
 /// Where the step begins: what colliders carry is with them.
-PointArrays NewtonSolver::carried_start(const std::vector<Collider>& before) {
-    PointArrays from;
-    from.resize(motion_.particle_count());
-    for (std::size_t i = 0; i < motion_.particle_count(); ++i) from.set(i, Vec3f(motion_.places[i]));
+PointArrays NewtonSolver::carried_start(const std::vector<Collider>& before, const FramePart& part) {
+    const PointArrays from = places_now();
     PointArrays start = from;
-    attachments_.follow(colliders, deforming_, 1, start);
+    attachments_.follow(colliders, deforming_, part.end, start);
     if (!contacts_) return start;
-    const CarryField field(before, colliders, kTouch * *options.thickness);
+    const Stopwatch stopwatch(profile.collision_seconds);
+    const CarryField field(before, colliders, deformations_, part, kTouch * *options.thickness);
     if (field.is_zero()) return start;
     field.carry(start, is_held_, workers_);
-    contacts_->carry(before, colliders, from, start, is_held_, workers_);
+    contacts_->carry(before, colliders, deformations_, part, from, start, is_held_, workers_);
     return start;
 }
 
@@ -163,16 +210,22 @@ void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start
     profile.measured_pair_count += contacts_->pair_count();
 }
 
-void NewtonSolver::publish() {
+double NewtonSolver::fastest() const {
     double largest_sq = 0;
+    for (std::size_t i = 0; i < motion_.particle_count(); ++i)
+        if (is_held_[i] == 0)
+            largest_sq = std::max(largest_sq, dot(motion_.velocities[i], motion_.velocities[i]));
+    return std::sqrt(largest_sq);
+}
+
+void NewtonSolver::publish() {
     for (std::size_t i = 0; i < motion_.particle_count(); ++i) {
         const Vec3d place = motion_.places[i], velocity = motion_.velocities[i];
         deformable.positions[i] = Vec3f(place);
         deformable.previous_positions[i] =
             Vec3f(place - velocity * (options.time_step / options.substep_count));
-        if (is_held_[i] == 0) largest_sq = std::max(largest_sq, dot(velocity, velocity));
     }
-    largest_speed = std::sqrt(largest_sq);
+    largest_speed = fastest();
     PointArrays ends;
     ends.load(deformable.positions);
     bounds_.require_ends(ends, deformable.particle_count(), frame);
@@ -227,6 +280,8 @@ void NewtonSolver::archive(StateArchive& state) {
     if (!state.reads()) return;
     for (std::size_t i = 0; i < motion_.particle_count(); ++i)
         state.require(is_finite(motion_.places[i]) && is_finite(motion_.velocities[i]));
+    for (std::size_t c = 0; c < colliders.size(); ++c)
+        if (contacts_) contacts_->place_obstacle(c, vertices_of(colliders[c], deforming_[c]));
     const double speed = largest_speed;
     publish();
     largest_speed = speed;

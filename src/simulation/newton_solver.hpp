@@ -23,9 +23,12 @@ class NewtonSolver : public Solver {
     void archive(StateArchive& state) override;
 
   private:
+    void deform();
     std::uint32_t part_count() const;
-    void step_part(double seconds);
-    PointArrays carried_start(const std::vector<Collider>& before);
+    void step_part(double seconds, const FramePart& part);
+    PointArrays places_now() const;
+    double fastest() const;
+    PointArrays carried_start(const std::vector<Collider>& before, const FramePart& part);
     std::vector<Vec3d> guess(const PointArrays& start, double seconds) const;
     void minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds);
     void publish();
@@ -36,6 +39,7 @@ class NewtonSolver : public Solver {
     std::vector<Vec3d> accelerations_; ///< by gravity and wind
     std::vector<Vec3d> gained_; ///< [particle] the acceleration of the last step: what contacts left of
                                 ///< gravity, for the guess of the next
+    std::vector<Deformation> deformations_; ///< by collider, in this frame
     std::optional<SurfaceContacts> contacts_;
     double mean_edge_; ///< of the surface
 };

@@ -4,6 +4,7 @@
 #include <echinus/simulation.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -38,6 +39,13 @@ struct PointArrays {
         for (std::size_t i = 0; i < points.size(); ++i) points[i] = (*this)[i];
     }
 };
+
+inline float largest_coordinate(const PointArrays& points, std::size_t count) {
+    float largest = 0;
+    for (std::size_t i = 0; i < count; ++i)
+        largest = std::max({largest, std::fabs(points.x[i]), std::fabs(points.y[i]), std::fabs(points.z[i])});
+    return largest;
+}
 
 /// Where a particle is put, and what it has moved in the last substep: its velocity.
 struct Placement {

@@ -129,9 +129,6 @@ void Solver::lead_surface(std::size_t collider, const Lead& lead) {
     if (surface) return lead(*surface);
     const std::string name = name_of_collider(collider);
     const auto* exact = std::get_if<ExactMap>(&colliders[collider].map.kind);
-    if (options.solver == SolverKind::Newton)
-        throw Error(ErrorCode::InvalidOptions,
-                    name + " cannot deform under the newton solver yet; use another solver for this scene");
     if (options.solver == SolverKind::Jakobsen)
         throw Error(ErrorCode::InvalidOptions,
                     name + " cannot deform under the jakobsen solver; use another solver for this scene");

@@ -8,7 +8,15 @@ namespace echinus {
 /// (the collider's frame with its scale applied), whatever the collider itself does meanwhile.
 struct SurfaceMotion {
     PointArrays from, to; ///< [vertex_count of the model]
-    float most = 0;       ///< no vertex goes farther
+    /// Where vertices are when a share of the frame is over.
+    PointArrays at(float share) const {
+        PointArrays places = to;
+        if (share == 1) return places;
+        for (std::size_t v = 0; v + PointArrays::kPadding < places.x.size(); ++v)
+            places.set(v, from[v] + (to[v] - from[v]) * share);
+        return places;
+    }
+    float most = 0; ///< no vertex goes farther
     /// [particle_count] The way of the surface beside each particle, the mean way of all vertices where none
     /// is near: one that goes it stays beside the surface, as one does that a rigid model takes along.
     PointArrays carried;

@@ -33,6 +33,13 @@ SimulationOptions surfaces(bool self = false) {
     return {.thickness = kSheetThickness, .surface_collision = true, .self_collision = self};
 }
 
+SimulationOptions newton_surfaces() {
+    SimulationOptions options = surfaces(true);
+    options.solver = SolverKind::Newton;
+    options.time_step = 1.0 / 60;
+    return options;
+}
+
 /// Where a point of the mesh is at a time.
 using Deformation = std::function<Vec3d(const Vec3d& point, double seconds)>;
 
@@ -80,6 +87,9 @@ void expect_nothing_meets_while(const TriangleMesh& model, const Deformation& de
     EXPECT_EQ(simulation.profile().squeezed_count, 0u);
     EXPECT_EQ(simulation.profile().lost_count, 0u);
     EXPECT_GT(simulation.profile().contact_count, 1000u);
+    if (options.solver == SolverKind::Newton) {
+        EXPECT_LT(simulation.residual().largest, 0.1); // beside corners that are held
+    }
 }
 
 void expect_nothing_meets_while(const TriangleMesh& model, const Deformation& deform, Deformable sheet,
@@ -116,12 +126,30 @@ TEST(DeformingCollider, KeepsAPinnedSheetOffABallThatGrowsIntoIt) {
 }
 
 TEST(DeformingCollider, MayMoveAndBeScaledMeanwhile) {
+    constexpr double kSeconds = 2.0 / 3;
     const TriangleMesh ball = make_sphere(1, 24, 12);
     Collider collider{.map = ExactMap::build(ball), .pose = {Rotation::about({1, 0, 0}, 0.3), {0, 0, -0.1}}};
     collider.scale = {0.4, -0.5, 0.35};
     collider.linear_velocity = {0.2, 0, 0.1};
     collider.angular_velocity = {0, 0, 3};
-    expect_nothing_meets_while(ball, breathe, sheet_at(0.4, 1.2, 19), 160, collider, surfaces());
+    for (const SimulationOptions& options : {surfaces(), newton_surfaces()})
+        expect_nothing_meets_while(ball, breathe, sheet_at(0.4, 1.2, 19),
+                                   static_cast<int>(kSeconds / options.time_step), collider, options);
+}
+
+TEST(DeformingCollider, IsFollowedByContinuousMaterial) {
+    const SimulationOptions options = newton_surfaces();
+    expect_nothing_meets_while(make_sphere(0.4, 24, 12), breathe, sheet_at(0.43, 1.2, 19), 60, options);
+    expect_nothing_meets_while(make_box({1.4, 0.5, 0.06}, 10), bend, sheet_at(0.06, 1, 17), 50, options);
+    expect_nothing_meets_while(make_box({1.6, 1.2, 0.1}, 16), wave, sheet_at(0.08, 0.9, 19), 50, options);
+}
+
+TEST(DeformingCollider, PushesHeldContinuousMaterial) {
+    Deformable sheet = sheet_at(0.45, 1, 17);
+    for (const std::size_t corner : {0u, 16u, 272u, 288u}) sheet.inverse_masses[corner] = 0;
+    expect_nothing_meets_while(
+        make_sphere(0.4, 24, 12), [](const Vec3d& p, double t) { return p * (1 + std::min(t, 0.5)); }, sheet,
+        60, newton_surfaces());
 }
 
 TEST(DeformingCollider, IsFollowedInSmallSteps) {
@@ -150,17 +178,22 @@ TEST(DeformingCollider, LeadsABodyAsAPoseDoesWhenAllVerticesJump) {
         EXPECT_EQ(most_pairs(simulation, ball, deform, 9), 0u);
         EXPECT_EQ(simulation.profile().squeezed_count, 0u);
         EXPECT_EQ(simulation.profile().lost_count, 0u);
+        Simulation continuous(sheet_at(0.31, 1, 17), colliders_of({ball}), newton_surfaces());
+        EXPECT_EQ(most_pairs(continuous, ball, deform, 9), 0u);
+        EXPECT_EQ(continuous.profile().squeezed_count, 0u);
     }
 }
 
 TEST(DeformingCollider, TakesASheetAlongByFriction) {
     // The top of the box goes at 0.4 * 0.1 units per second; so does what lies on it.
     const TriangleMesh box = make_box({1.6, 1.6, 0.1}, 4);
-    Simulation simulation(sheet_at(0.061, 0.6, 13), {{.map = ExactMap::build(box)}}, surfaces());
-    EXPECT_EQ(most_pairs(simulation, box, shear, 480), 0u);
-    double way = 0;
-    for (const Vec3f& p : simulation.positions()) way += double{p.x};
-    EXPECT_NEAR(way / double(simulation.positions().size()), 2 * 0.4 * 0.1, 0.004);
+    for (const SimulationOptions& options : {surfaces(), newton_surfaces()}) {
+        Simulation simulation(sheet_at(0.061, 0.6, 13), {{.map = ExactMap::build(box)}}, options);
+        EXPECT_EQ(most_pairs(simulation, box, shear, static_cast<int>(2 / options.time_step)), 0u);
+        double way = 0;
+        for (const Vec3f& p : simulation.positions()) way += double{p.x};
+        EXPECT_NEAR(way / double(simulation.positions().size()), 2 * 0.4 * 0.1, 0.004);
+    }
 }
 
 TEST(DeformingCollider, LeadsAttachedParticlesBesideTheirFaces) {
@@ -171,19 +204,21 @@ TEST(DeformingCollider, LeadsAttachedParticlesBesideTheirFaces) {
         sheet.inverse_masses[i] = 0;
         sheet.attachments.push_back({i, 0});
     }
-    Simulation simulation(sheet, {{.map = ExactMap::build(box), .angular_velocity = {0, 0, 1}}}, surfaces());
     // The whole box turns about x and rises: attached particles do the same, and turn with the pose.
     const auto turn = [](const Vec3d& p, double t) {
         return Rotation::about({1, 0, 0}, t).apply(p) + Vec3d{0, 0, t};
     };
-    const double dt = simulation.options().time_step;
-    for (int i = 1; i <= 240; ++i) {
-        simulation.set_collider_vertices(0, deformed(box, turn, i * dt).vertices);
-        simulation.step();
-        for (std::size_t p = 0; p < 36; ++p) {
-            const Vec3d expected =
-                Rotation::about({0, 0, 1}, i * dt).apply(turn(Vec3d(sheet.positions[p]), i * dt));
-            ASSERT_NEAR(length(Vec3d(simulation.positions()[p]) - expected), 0, 2e-5) << i;
+    for (const SimulationOptions& options : {surfaces(), newton_surfaces()}) {
+        Simulation simulation(sheet, {{.map = ExactMap::build(box), .angular_velocity = {0, 0, 1}}}, options);
+        const double dt = options.time_step;
+        for (int i = 1; i <= static_cast<int>(1 / dt); ++i) {
+            simulation.set_collider_vertices(0, deformed(box, turn, i * dt).vertices);
+            simulation.step();
+            for (std::size_t p = 0; p < 36; ++p) {
+                const Vec3d expected =
+                    Rotation::about({0, 0, 1}, i * dt).apply(turn(Vec3d(sheet.positions[p]), i * dt));
+                ASSERT_NEAR(length(Vec3d(simulation.positions()[p]) - expected), 0, 2e-5) << i;
+            }
         }
     }
 }

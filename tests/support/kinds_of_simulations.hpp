@@ -213,10 +213,20 @@ inline KindOfSimulation continuous_material() {
     return kind;
 }
 
+inline KindOfSimulation continuous_material_on_deforming_balls() {
+    KindOfSimulation kind = sheet_on_deforming_balls();
+    kind.name = "a continuous material on balls that deform";
+    kind.options = continuous_material().options;
+    kind.colliders[1].angular_velocity = {0, 0, 1};
+    return kind;
+}
+
 inline std::vector<KindOfSimulation> kinds_of_simulations() {
-    return {particles_beside_all_maps(),    jakobsens_particles(),       stretched_sheet(),
-            sheet_among_moving_colliders(), springs_with_folds(),        soft_bodies(),
-            sheet_on_deforming_balls(),     sheet_that_passes_through(), continuous_material()};
+    return {particles_beside_all_maps(), jakobsens_particles(),
+            stretched_sheet(),           sheet_among_moving_colliders(),
+            springs_with_folds(),        soft_bodies(),
+            sheet_on_deforming_balls(),  sheet_that_passes_through(),
+            continuous_material(),       continuous_material_on_deforming_balls()};
 }
 
 } // namespace echinus::test

@@ -19,7 +19,64 @@ bool same_pose(const RigidTransform& a, const RigidTransform& b) {
            a.rotation.y == b.rotation.y && a.rotation.z == b.rotation.z;
 }
 
+constexpr std::size_t kPointsPerPiece = 256;
+
+/// A box around points.
+struct Box {
+    Vec3d low, high;
+
+    Box(const PointArrays& points, std::size_t count) : low(points[0]), high(low) {
+        for (std::size_t i = 1; i < count; ++i) {
+            const Vec3d p(points[i]);
+            low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+            high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+        }
+    }
+    double distance(const Vec3d& p) const {
+        return length(Vec3d{std::max({low.x - p.x, p.x - high.x, 0.0}),
+                            std::max({low.y - p.y, p.y - high.y, 0.0}),
+                            std::max({low.z - p.z, p.z - high.z, 0.0})});
+    }
+};
+
+Vec3f displacement_at(const SurfaceMotion& motion, const Triangle& face, const Vec3f& point) {
+    const auto shares =
+        shares_in(std::array{motion.from[face[0]], motion.from[face[1]], motion.from[face[2]]}, point);
+    Vec3f sum;
+    for (std::size_t k = 0; k < 3; ++k) sum += (motion.to[face[k]] - motion.from[face[k]]) * shares[k];
+    return sum;
+}
+
 } // namespace
+
+Deformation::Deformation(const Collider& before, const DeformingCollider& surface, const PointArrays& points,
+                         std::size_t point_count, double room, double touch, const Workers& workers)
+    : motion(surface.motion()) {
+    if (motion == nullptr || point_count == 0) return;
+    const FrameChange body(before.pose, {1, 1, 1});
+    const Box box(points, point_count);
+    for (std::size_t v = 0; v < surface.vertices().size(); ++v) {
+        const double displacement{length(motion->to[v] - motion->from[v])};
+        if (displacement > longest &&
+            box.distance(body.point_to_world<double>(motion->from[v])) <= displacement + touch + room)
+            longest = displacement;
+    }
+    std::vector<Vec3f> places(point_count);
+    points.store(places);
+    std::vector<Contact> contacts(point_count);
+    const auto reach = static_cast<float>(touch + kFade * longest);
+    workers.for_ranges(point_count, kPointsPerPiece,
+                       [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
+                           contacts_batch(before, std::span(places).subspan(begin, end - begin), reach,
+                                          std::span(contacts).subspan(begin, end - begin));
+                       });
+    for (std::uint32_t i = 0; i < point_count; ++i) {
+        if (!contacts[i].found() || contacts[i].face == Contact::kUnknownFace) continue;
+        const Triangle& face = surface.faces()[static_cast<std::size_t>(contacts[i].face)];
+        near.push_back({i, std::fabs(contacts[i].depth),
+                        displacement_at(*motion, face, body.point_to_local(contacts[i].point))});
+    }
+}
 
 double CarryField::longest_displacement(const Collider& before, const Collider& after) {
     if (same_pose(before.pose, after.pose)) return 0;
@@ -35,43 +92,68 @@ double CarryField::longest_displacement(const Collider& before, const Collider& 
            2 * sine * largest * double{view.radius};
 }
 
-CarryField::CarryField(const std::vector<Collider>& before, const std::vector<Collider>& after, double touch)
-    : before_(before), after_(after), touch_(touch), reach_(touch) {
+CarryField::CarryField(const std::vector<Collider>& before, const std::vector<Collider>& after,
+                       std::span<const Deformation> deformations, const FramePart& part, double touch)
+    : before_(before), after_(after), deformations_(deformations), part_(part), touch_(touch), reach_(touch) {
     for (std::size_t c = 0; c < before.size(); ++c) {
-        const double longest = longest_displacement(before[c], after[c]);
-        moves_ = moves_ || longest > 0;
+        const double longest = longest_displacement(before[c], after[c]) +
+                               deformations[c].longest * double{part.end - part.begin};
+        moves_ = moves_ || longest > 0 || deformations[c].motion != nullptr;
         reach_ = std::max(reach_, touch + kFade * longest);
     }
 }
 
-Vec3d CarryField::displacement_at(const Vec3f& point) const {
+struct CarryField::Blend {
     Vec3d sum;
     double weights = 0, nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t c = 0; c < before_.size(); ++c) {
-        const Contact found = contact(before_[c], point, static_cast<float>(reach_));
-        if (!found.found()) continue;
-        const double distance = std::max(double{std::fabs(found.depth)}, std::numeric_limits<double>::min());
-        nearest = std::min(nearest, distance);
-        const Vec3d material =
-            before_[c].pose.rotation.inverse().apply(Vec3d(point) - before_[c].pose.translation);
-        const double weight = 1 / distance;
-        sum += (after_[c].pose.to_world(material) - Vec3d(point)) * weight;
-        weights += weight;
+
+    void add(const Vec3d& displacement, float distance) {
+        const double away = std::max(double{distance}, std::numeric_limits<double>::min());
+        nearest = std::min(nearest, away);
+        sum += displacement * (1 / away);
+        weights += 1 / away;
     }
-    if (!(nearest < reach_)) return {};
-    const double fading = nearest <= touch_ ? 1 : (reach_ - nearest) / (reach_ - touch_);
-    return sum * (fading / weights);
+};
+
+void CarryField::add_rigid(std::size_t collider, const Vec3f& point, Blend& blend) const {
+    const Contact found = contact(before_[collider], point, static_cast<float>(reach_));
+    if (!found.found()) return;
+    const RigidTransform &before = before_[collider].pose, &after = after_[collider].pose;
+    blend.add(after.to_world(before.to_local(Vec3d(point))) - Vec3d(point), std::fabs(found.depth));
+}
+
+void CarryField::add_deforming(std::size_t collider, const PointArrays& points,
+                               std::span<Blend> blends) const {
+    const RigidTransform &before = before_[collider].pose, &after = after_[collider].pose;
+    const double share{part_.end - part_.begin};
+    for (const Deformation::Near& near : deformations_[collider].near) {
+        const Vec3d point(points[near.particle]);
+        const Vec3d to = before.to_local(point) + Vec3d(near.displacement) * share;
+        blends[near.particle].add(after.to_world(to) - point, near.distance);
+    }
+}
+
+Vec3d CarryField::displacement_of(const Blend& blend) const {
+    if (!(blend.nearest < reach_)) return {};
+    const double fading = blend.nearest <= touch_ ? 1 : (reach_ - blend.nearest) / (reach_ - touch_);
+    return blend.sum * (fading / blend.weights);
 }
 
 void CarryField::carry(PointArrays& points, std::span<const std::uint8_t> is_held,
                        const Workers& workers) const {
     if (!moves_) return;
-    constexpr std::size_t kPointsPerPiece = 256;
+    std::vector<Blend> blends(is_held.size());
+    for (std::size_t c = 0; c < before_.size(); ++c)
+        if (deformations_[c].motion != nullptr) add_deforming(c, points, blends);
+    const auto carry_point = [&](std::size_t i) {
+        if (is_held[i] != 0) return;
+        for (std::size_t c = 0; c < before_.size(); ++c)
+            if (deformations_[c].motion == nullptr) add_rigid(c, points[i], blends[i]);
+        points.set(i, Vec3f(Vec3d(points[i]) + displacement_of(blends[i])));
+    };
     workers.for_ranges(is_held.size(), kPointsPerPiece,
                        [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
-                           for (std::size_t i = begin; i < end; ++i)
-                               if (is_held[i] == 0)
-                                   points.set(i, Vec3f(Vec3d(points[i]) + displacement_at(points[i])));
+                           for (std::size_t i = begin; i < end; ++i) carry_point(i);
                        });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "geometry/workers.hpp"
+#include "simulation/deforming_collider.hpp"
 #include "simulation/particles.hpp"
 
 #include <echinus/collider.hpp>
@@ -11,27 +12,62 @@
 
 namespace echinus {
 
+/// How the surface of a collider deforms in a frame, and how it takes along what is near it.
+struct Deformation {
+    /// Beside the surface when the frame begins.
+    struct Near {
+        std::uint32_t particle;
+        float distance;
+        Vec3f displacement; ///< of the nearest point of the surface in the frame, in the body frame
+    };
+
+    Deformation() = default;
+    /// @param before  the collider when the frame begins, with the map of its surface there
+    /// @param points  of the deformable
+    /// @param room    how far the deformable may go in the frame
+    /// @param touch   as CarryField's
+    Deformation(const Collider& before, const DeformingCollider& surface, const PointArrays& points,
+                std::size_t point_count, double room, double touch, const Workers& workers);
+
+    const SurfaceMotion* motion = nullptr; ///< null: it does not deform
+    double longest = 0;                    ///< displacement of a vertex that may come near the deformable
+    std::vector<Near> near;
+};
+
+/// A part of a frame: the shares of it that are over when the part begins and when it ends.
+struct FramePart {
+    float begin = 0, end = 1;
+};
+
 /// How colliders that move in a step carry what is near them along: the displacements of their material,
 /// blended by the inverse of the distance (Shepard 1968), and fading with it. What lies on a collider keeps
 /// its gap as if it were glued to it, so that a step begins in a state that is safe where the colliders end.
 class CarryField {
   public:
     /// @param before, after  the colliders when a step begins and when it ends
+    /// @param deformations   [collider] in the frame of which the step is a part
     /// @param touch  what is no farther from a collider is carried whole
-    CarryField(const std::vector<Collider>& before, const std::vector<Collider>& after, double touch);
+    CarryField(const std::vector<Collider>& before, const std::vector<Collider>& after,
+               std::span<const Deformation> deformations, const FramePart& part, double touch);
 
     bool is_zero() const { return !moves_; }
-    /// The longest displacement of any collider's material.
+    /// The longest displacement of any collider's material by its pose.
     static double longest_displacement(const Collider& before, const Collider& after);
 
     /// Moves points, but those that are held.
     void carry(PointArrays& points, std::span<const std::uint8_t> is_held, const Workers& workers) const;
 
   private:
-    Vec3d displacement_at(const Vec3f& point) const;
+    /// Of the displacements beside a point, with their weights.
+    struct Blend;
+    void add_rigid(std::size_t collider, const Vec3f& point, Blend& blend) const;
+    void add_deforming(std::size_t collider, const PointArrays& points, std::span<Blend> blends) const;
+    Vec3d displacement_of(const Blend& blend) const;
 
     const std::vector<Collider>& before_;
     const std::vector<Collider>& after_;
+    std::span<const Deformation> deformations_;
+    FramePart part_;
     double touch_, reach_;
     bool moves_ = false;
 };

@@ -118,7 +118,7 @@ double ContactSet::barrier_force(const Contact& contact) const {
            contact.mobility;
 }
 
-void ContactSet::add(const Contact& contact, const PointArrays& base, std::optional<double> push) {
+void ContactSet::add(const Contact& contact, const Vec3d& start, std::optional<double> push) {
     Held held{};
     static_cast<Contact&>(held) = contact;
     held.force = barrier_force(contact);
@@ -126,10 +126,7 @@ void ContactSet::add(const Contact& contact, const PointArrays& base, std::optio
     if (contact.friction > 0 && push.value_or(1) > 0) {
         const Bristle before = remembered(contact);
         held.most_friction = contact.friction * push.value_or(before.push);
-        Vec3d from;
-        for (std::size_t k = 0; k < 4; ++k)
-            if (contact.weights[k] != 0) from += Vec3d(base[contact.particles[k]]) * contact.weights[k];
-        held.slip_offset = before.slip - from;
+        held.slip_offset = before.slip - start;
     }
     contacts_.push_back(held);
 }

@@ -53,9 +53,9 @@ class ContactSet : public ContactEnergy {
     void begin_step(double step, std::span<const std::optional<FrameChange>> frames);
     /// Forgets the contacts, not the bristles.
     void clear() { contacts_.clear(); }
-    /// @param base  where the step began
+    /// @param start  the sum of weight * place where the step began, taken along with the obstacle
     /// @param push  the normal force that limits its friction; none: that of the step before
-    void add(const Contact& contact, const PointArrays& base, std::optional<double> push);
+    void add(const Contact& contact, const Vec3d& start, std::optional<double> push);
     /// The normal force of a gap.
     double push_of(const Contact& contact, double gap) const;
     /// Keeps bristles and loads of the step that ends here. @param is_touching  out: 1 where a contact pushes

@@ -1,6 +1,8 @@
 #include "simulation/contact/contact_side.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace echinus {
 
@@ -25,6 +27,49 @@ void ContactSide::to_frame(Places world, PointArrays& result) const {
         result.set(i, frame ? frame->point_to_local(Vec3f(world[i])) : Vec3f(world[i]));
 }
 
+void ContactSide::place_obstacle(PointArrays places) {
+    obstacle_places = std::move(places);
+    extent = largest_coordinate(obstacle_places, obstacle->vertex_count());
+    pairs.forget_obstacle_boxes();
+}
+
+void ContactSide::deform(PointArrays places) {
+    obstacle_before = std::move(obstacle_places);
+    place_obstacle(std::move(places));
+    is_deforming = has_deformed = true;
+    float most_sq = 0;
+    for (std::uint32_t v = 0; v < obstacle->vertex_count(); ++v) {
+        const Vec3f displacement = obstacle_places[v] - obstacle_before[v];
+        most_sq = std::max(most_sq, dot(displacement, displacement));
+    }
+    deformed = std::sqrt(most_sq);
+    away = {away_before.from + deformed, away_before.expected + deformed};
+}
+
+void ContactSide::end_deforming() {
+    if (!is_deforming) return;
+    is_deforming = false;
+    deformed = 0;
+    away_before = away;
+    pairs.forget_obstacle_boxes();
+}
+
+float ContactSide::obstacle_closing(const Pair& pair, const Vec3f& normal) const {
+    if (!is_deforming) return 0;
+    float most = -std::numeric_limits<float>::infinity();
+    for (std::size_t k = own_count(pair.kind); k < 4; ++k)
+        most = std::max(most, dot(normal, obstacle_places[pair.points[k]] - obstacle_before[pair.points[k]]));
+    return most;
+}
+
+Vec3d ContactSide::obstacle_displacement(const Pair& pair, const std::array<double, 4>& shares) const {
+    Vec3d sum;
+    if (!has_deformed) return sum;
+    for (std::size_t k = own_count(pair.kind); k < 4; ++k)
+        sum += Vec3d(obstacle_places[pair.points[k]] - obstacle_before[pair.points[k]]) * shares[k];
+    return sum;
+}
+
 /// The motion that all have in common between two states. It changes no gap of the surface to itself.
 Vec3f ContactSide::common_motion(const PointArrays& from, const PointArrays& to) const {
     if (!pairs.is_of_itself()) return {};
@@ -33,30 +78,37 @@ Vec3f ContactSide::common_motion(const PointArrays& from, const PointArrays& to)
     return Vec3f(sum * (1 / static_cast<double>(own->vertex_count())));
 }
 
-bool ContactSide::covers(const PointArrays& in_frame) const {
+bool ContactSide::covers(const PointArrays& in_frame, const Away& obstacle_away) const {
     if (!is_listed()) return false;
     const float most_sq = pairs.covered() * pairs.covered();
     const auto is_near = [&](const PointArrays& places) {
         const Vec3f common = common_motion(places, in_frame);
         for (std::size_t i = 0; i < own->vertex_count(); ++i) {
-            const Vec3f away = in_frame[i] - places[i] - common;
-            if (!(dot(away, away) <= most_sq)) return false;
+            const Vec3f away_from_it = in_frame[i] - places[i] - common;
+            if (!(dot(away_from_it, away_from_it) <= most_sq)) return false;
         }
         return true;
     };
-    return is_near(listed_from) || std::any_of(expected.begin(), expected.end(), is_near);
+    return (obstacle_away.from <= pairs.covered() && is_near(listed_from)) ||
+           (obstacle_away.expected <= pairs.covered() &&
+            std::any_of(expected.begin(), expected.end(), is_near));
 }
 
 bool ContactSide::list(Places ends, const Workers& workers) {
     to_frame(ends, goal);
-    if (covers(safe) && covers(goal)) return false;
+    if (covers(safe, away_before) && covers(goal, away)) return false;
     // Displacements of one beginning add to the list, so that the search for ends that are covered ends.
-    const bool adds = is_listed() && listed_from == safe;
+    const bool adds = is_listed() && listed_from == safe && away_before.from == 0 && away.expected == 0;
     if (!adds) expected.clear();
     listed_from = safe;
     is_elsewhere = true;
     expected.push_back(goal);
-    pairs.list(safe, goal, obstacle_at(safe), obstacle_at(goal), adds, workers);
+    away_before = {0, deformed};
+    away = {deformed, 0};
+    if (pairs.is_of_itself())
+        pairs.list(safe, goal, safe, goal, adds, workers);
+    else
+        pairs.list(safe, goal, obstacle_from(), obstacle_places, adds, workers);
     return true;
 }
 
@@ -72,11 +124,13 @@ void ContactSide::measure(const Workers& workers) {
     ahead.resize(count);
     const Vec3f common_past = common_motion(listed_from, safe), common_ahead = common_motion(safe, goal);
     for (std::size_t i = 0; i < count; ++i) {
-        strayed[i] = length(safe[i] - listed_from[i] - common_past);
+        strayed[i] = length(safe[i] - listed_from[i] - common_past) + away_before.from;
         ahead[i] =
-            std::max(length(base[i] - safe[i] - common_ahead), length(goal[i] - safe[i] - common_ahead));
+            std::max(length(base[i] - safe[i] - common_ahead), length(goal[i] - safe[i] - common_ahead)) +
+            deformed;
     }
-    pairs.measure(safe, obstacle_at(safe), strayed, ahead, ready, is_elsewhere, workers);
+    pairs.measure(safe, pairs.is_of_itself() ? safe : obstacle_from(), strayed, ahead, ready, is_elsewhere,
+                  workers);
     is_elsewhere = false;
 }
 

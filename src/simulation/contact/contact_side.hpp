@@ -28,18 +28,24 @@ struct ContactSide {
     void set_pose(const RigidTransform& pose);
     void to_frame(const PointArrays& world, PointArrays& result) const;
     void to_frame(Places world, PointArrays& result) const;
-    Vec3d obstacle_point(std::uint32_t vertex) const {
-        return frame ? frame->point_to_world<double>(obstacle_places[vertex])
-                     : Vec3d(obstacle_places[vertex]);
-    }
-    const PointArrays& obstacle_at(const PointArrays& own_places) const {
-        return pairs.is_of_itself() ? own_places : obstacle_places;
+    Vec3d to_world(const Vec3f& in_frame) const {
+        return frame ? frame->point_to_world<double>(in_frame) : Vec3d(in_frame);
     }
 
+    /// The vertices of the obstacle stand there.
+    void place_obstacle(PointArrays places);
+    /// They go straight from where they are to there, while the surface makes the displacement that is looked
+    /// at next.
+    void deform(PointArrays places);
+    void end_deforming();
+    /// Where they are at the beginning of the displacement that is looked at.
+    const PointArrays& obstacle_from() const { return is_deforming ? obstacle_before : obstacle_places; }
+    /// How far a pair's vertices of the obstacle come along the normal meanwhile, at most.
+    float obstacle_closing(const Pair& pair, const Vec3f& normal) const;
+    /// By which the obstacle has deformed in this step, at a point of a pair.
+    Vec3d obstacle_displacement(const Pair& pair, const std::array<double, 4>& shares) const;
+
     bool is_listed() const { return !expected.empty(); }
-    /// Are these places so near to those where displacements begin, or to those where they end, that their
-    /// pairs are listed?
-    bool covers(const PointArrays& in_frame) const;
     /// Lists the pairs of displacements from `safe` to here, unless they are. @return whether they were not
     bool list(Places ends, const Workers& workers);
     /// Where the surface is safe now. @param world  the same in the world
@@ -53,14 +59,14 @@ struct ContactSide {
     void measure(const Workers& workers);
     /// Where the obstacle carries a particle from where its pairs are measured.
     Vec3d carried(std::uint32_t particle, const Vec3d& from) const {
-        const Vec3d to = frame ? frame->point_to_world<double>(safe[particle]) : Vec3d(safe[particle]);
+        const Vec3d to = to_world(safe[particle]);
         return Vec3f(to) == Vec3f(from) ? from : to;
     }
 
-    Vec3f common_motion(const PointArrays& from, const PointArrays& to) const;
-
-    std::shared_ptr<const Elements> own, obstacle; ///< the same of itself
-    PointArrays obstacle_places;                   ///< of a model
+    std::shared_ptr<const Elements> own, obstacle;   ///< the same of itself
+    PointArrays obstacle_places, obstacle_before;    ///< of a model: now, and before it deformed in this step
+    bool is_deforming = false, has_deformed = false; ///< in the displacement, and in the step
+    float deformed = 0;                              ///< no vertex goes farther in the displacement
     PairSet pairs;
     std::optional<FrameChange> frame; ///< of a model that does not stand in the world's
     float thickness = 0, ready = 0, friction = 0, least_gap = 0;
@@ -68,11 +74,24 @@ struct ContactSide {
     /// Where displacements begin and end for which the pairs are listed: to any of these ends.
     PointArrays listed_from;
     std::vector<PointArrays> expected;
+    /// How far the vertices of the obstacle may be from where they were at those two.
+    struct Away {
+        float from = 0, expected = 0;
+    };
+    Away away_before, away;            ///< at the beginning and the end of the displacement that is looked at
+    PointArrays start;                 ///< where this step began, beside a model that moves; as its frame was
+    bool moves = false;                ///< does the model move in this step?
     PointArrays safe;                  ///< where the pairs are measured
     PointArrays base;                  ///< and where displacements lead them that they make together
     PointArrays goal;                  ///< and those of each alone
     bool is_elsewhere = true;          ///< than where pairs were measured
     std::vector<float> strayed, ahead; ///< scratch of measure()
+
+  private:
+    Vec3f common_motion(const PointArrays& from, const PointArrays& to) const;
+    /// Are these places so near to those where displacements begin, or to those where they end, that their
+    /// pairs are listed? @param obstacle  how far the obstacle is from where it was
+    bool covers(const PointArrays& in_frame, const Away& obstacle) const;
 };
 
 } // namespace echinus

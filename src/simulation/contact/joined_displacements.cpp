@@ -26,27 +26,28 @@ float closing_of(const ContactSide& side, const Pair& pair, const Vec3f& normal)
         float& of_part = most[k < own ? 0 : 1];
         of_part = std::max(of_part, k < own ? -along : along);
     }
-    return most[0] + (moving == 4 ? most[1] : 0);
+    return most[0] + (moving == 4 ? most[1] : side.obstacle_closing(pair, normal));
 }
 
 class Joining {
   public:
     Joining(Places safe, Places goals, std::span<const double> masses, std::span<const std::uint8_t> is_held)
         : safe_(safe), goals_(goals), masses_(masses), is_held_(is_held), groups_(safe.size()),
-          is_led_(safe.size()), led_to_(goals.begin(), goals.end()) {}
+          led_by_(safe.size()), led_to_(goals.begin(), goals.end()) {}
 
     /// @return whether anything is joined that was not before
-    bool join(const ContactSide& side) {
+    bool join(ContactSide& side) {
         bool is_any_new = false;
         for (std::size_t p = 0; p < side.pairs.pairs().size(); ++p) {
             const Pair& pair = side.pairs.pairs()[p];
             const Separation& apart = side.pairs.separations()[p];
-            const float room = std::min(usable_gap(apart.gap, side.least_gap), kMostClosed * apart.gap);
-            if (closing_of(side, pair, apart.normal) <= std::max(room, 0.0F)) continue;
+            const float room =
+                std::max(std::min(usable_gap(apart.gap, side.least_gap), kMostClosed * apart.gap), 0.0F);
+            if (closing_of(side, pair, apart.normal) <= room) continue;
             const std::size_t moving = side.pairs.moving_count(pair);
             for (std::size_t k = 0; k < moving; ++k)
                 is_any_new = (moving == 4 ? join_particles(pair.points[0], pair.points[k])
-                                          : lead(pair.points[k], side)) ||
+                                          : lead(pair, apart.normal, pair.points[k], side, room)) ||
                              is_any_new;
         }
         return is_any_new;
@@ -65,7 +66,7 @@ class Joining {
             const std::uint32_t number = groups_.find(i);
             ++sizes[number];
             Group& group = of_group[number];
-            const std::uint8_t rank = is_held_[i] != 0 ? 2 : is_led_[i];
+            const std::uint8_t rank = is_held_[i] != 0 ? 2 : led_by_[i] != nullptr ? 1 : 0;
             if (rank < group.rank) continue;
             if (rank > group.rank) group = {{}, 0, -1, rank};
             const Vec3d own = led_to_[i] - safe_[i];
@@ -94,11 +95,23 @@ class Joining {
         groups_.join(a, b);
         return true;
     }
-    /// A particle goes along with a model.
-    bool lead(std::uint32_t i, const ContactSide& side) {
-        const Vec3d to = side.carried(i, safe_[i]);
-        if (is_held_[i] != 0 || (is_led_[i] != 0 && led_to_[i] == to)) return false;
-        is_led_[i] = 1;
+    /// A particle goes along with a model. @param room  of the pair
+    bool lead(const Pair& pair, const Vec3f& normal, std::uint32_t i, ContactSide& side, float room) {
+        if (is_held_[i] != 0) return false;
+        const bool is_led_by_another = led_by_[i] != nullptr && led_by_[i] != &side;
+        Vec3d to;
+        if (side.is_deforming || is_led_by_another) {
+            // No frame keeps all gaps: just as far as is missing, one pair after the other.
+            const float closing =
+                side.obstacle_closing(pair, normal) - dot(normal, side.base[i] - side.safe[i]);
+            if (closing <= room) return false;
+            side.base.set(i, side.base[i] + normal * (closing - room / 2 + side.least_gap / 4));
+            to = side.to_world(side.base[i]);
+        } else {
+            to = side.carried(i, safe_[i]);
+        }
+        if (led_by_[i] != nullptr && led_to_[i] == to) return false;
+        led_by_[i] = &side;
         led_to_[i] = to;
         return true;
     }
@@ -107,8 +120,8 @@ class Joining {
     std::span<const double> masses_;
     std::span<const std::uint8_t> is_held_;
     UnionFind groups_;
-    std::vector<std::uint8_t> is_led_; ///< by a model
-    std::vector<Vec3d> led_to_;        ///< the goal, or where the model leads
+    std::vector<const ContactSide*> led_by_; ///< the model, or null
+    std::vector<Vec3d> led_to_;              ///< the goal, or where the model leads
 };
 
 } // namespace
@@ -125,7 +138,7 @@ void join_displacements(std::span<ContactSide> sides, Places safe, Places goals,
     Joining joining(safe, goals, masses, is_held);
     for (int round = 0; round < kMostRounds; ++round) {
         bool is_any_new = false;
-        for (const ContactSide& side : sides) is_any_new = joining.join(side) || is_any_new;
+        for (ContactSide& side : sides) is_any_new = joining.join(side) || is_any_new;
         if (!is_any_new) return;
         joining.find_displacements(joined);
         for (ContactSide& side : sides) {

@@ -37,11 +37,13 @@ class PairSet {
     float covered() const { return reach_ / 4; }
 
     /// Lists the pairs that come near on the displacements, instead of those before, and measures all where
-    /// the displacements begin. Of itself both are the surface's. An obstacle with the same array twice never
-    /// moves.
+    /// the displacements begin. Of itself both are the surface's. An obstacle with the same array twice
+    /// stands where it stood, unless forget_obstacle_boxes() was called.
     void list(const PointArrays& own_from, const PointArrays& own_to, const PointArrays& obstacle_from,
               const PointArrays& obstacle_to, bool adds, const Workers& workers);
 
+    /// The obstacle is elsewhere than when pairs were listed.
+    void forget_obstacle_boxes() { obstacle_boxes_.faces.clear(); }
     /// Measures the pairs that may be nearer than `near`, or of which displacements may close half of the
     /// gap.
     /// @param strayed  [vertex] how far each of the surface's is from where the pairs were listed

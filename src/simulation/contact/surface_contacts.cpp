@@ -27,13 +27,6 @@ constexpr int kMostRounds = 8;
 /// Of coordinates: no pair comes nearer, since its gap would be lost in rounding.
 constexpr float kLeastGap = 1.0F / (1 << 19);
 
-float largest_coordinate(const PointArrays& points, std::size_t count) {
-    float largest = 0;
-    for (std::size_t i = 0; i < count; ++i)
-        largest = std::max({largest, std::fabs(points.x[i]), std::fabs(points.y[i]), std::fabs(points.z[i])});
-    return largest;
-}
-
 float least_height_of(const Element& element, std::span<const Vec3f> positions) {
     if (!element.is_face()) return std::numeric_limits<float>::infinity();
     const Vec3f a = positions[element.vertices[0]], b = positions[element.vertices[1]],
@@ -98,10 +91,19 @@ std::size_t SurfaceContacts::pair_count() const {
     return count;
 }
 
+void SurfaceContacts::place_obstacle(std::size_t collider, std::span<const Vec3f> vertices) {
+    PointArrays places;
+    places.load(vertices);
+    sides_[collider].place_obstacle(std::move(places));
+}
+
 void SurfaceContacts::carry(const std::vector<Collider>& before, const std::vector<Collider>& after,
+                            std::span<const Deformation> deformations, const FramePart& part,
                             const PointArrays& from, PointArrays& carried,
                             std::span<const std::uint8_t> is_held, const Workers& workers) {
     is_held_ = is_held;
+    start_ = from;
+    is_carried_ = true;
     set_safe(from);
     std::vector<Vec3d> places(safe_places_.size());
     for (std::size_t i = 0; i < places.size(); ++i) places[i] = Vec3d(carried[i]);
@@ -109,10 +111,18 @@ void SurfaceContacts::carry(const std::vector<Collider>& before, const std::vect
         ContactSide& side = sides_[s];
         if (s < collider_count_) side.set_pose(before[s].pose);
         side.set_safe(from);
-        if (s < collider_count_) side.set_pose(after[s].pose);
+        if (s < collider_count_) {
+            side.start = side.safe;
+            side.set_pose(after[s].pose);
+            const SurfaceMotion* const motion = deformations[s].motion;
+            side.moves = CarryField::longest_displacement(before[s], after[s]) > 0 || motion != nullptr;
+            side.has_deformed = false;
+            if (motion != nullptr) side.deform(motion->at(part.end));
+        }
         side.list(places, workers);
     }
     go_towards(places, workers);
+    for (ContactSide& side : sides_) side.end_deforming();
     for (std::size_t i = 0; i < places.size(); ++i) carried.set(i, Vec3f(places[i]));
 }
 
@@ -127,17 +137,19 @@ void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const P
                                  Places guess, std::span<const std::uint8_t> is_held, double step,
                                  const Workers& workers) {
     is_held_ = is_held;
-    base_ = places;
+    if (!is_carried_) start_ = places;
     set_safe(places);
     std::fill(is_touching_.begin(), is_touching_.end(), std::uint8_t{0});
     for (std::size_t s = 0; s < sides_.size(); ++s) {
         ContactSide& side = sides_[s];
         if (s < collider_count_) side.set_pose(colliders[s].pose);
+        if (!is_carried_) side.moves = side.has_deformed = false;
         frames_[s] = side.frame;
         side.set_safe(safe_);
         side.list(guess, workers);
     }
     contacts_.begin_step(step, frames_);
+    is_carried_ = false;
 }
 
 /// Goes from the safe state towards goals as far as the planes between the pairs allow. @param places  in:
@@ -202,6 +214,19 @@ float SurfaceContacts::thickness_of(const ContactSide& side, const Pair& pair) c
     return thickness;
 }
 
+/// How far a pair's nearest points were apart when the step began, as the obstacle has taken them along
+/// since.
+Vec3d SurfaceContacts::slip_start(const ContactSide& side, const Pair& pair,
+                                  const std::array<double, 4>& shares) const {
+    const std::size_t own = own_count(pair.kind), moving = side.pairs.moving_count(pair);
+    Vec3d start;
+    for (std::size_t k = 0; k < moving; ++k) {
+        const std::uint32_t i = pair.points[k];
+        start += Vec3d(side.moves ? side.start[i] : start_[i]) * (k < own ? shares[k] : -shares[k]);
+    }
+    return side.moves ? side.to_world(Vec3f(start + side.obstacle_displacement(pair, shares))) : start;
+}
+
 void SurfaceContacts::add_contacts(std::uint32_t side_number, Places goals, bool is_solved) {
     const ContactSide& side = sides_[side_number];
     const auto pairs = side.pairs.pairs();
@@ -219,7 +244,8 @@ void SurfaceContacts::add_contacts(std::uint32_t side_number, Places goals, bool
         if (!(double{separations[p].gap} - 2 * approach < double{kReady} * thickness)) continue;
         std::array<Vec3d, 4> points;
         for (std::size_t k = 0; k < 4; ++k)
-            points[k] = k < moving ? safe_places_[pair.points[k]] : side.obstacle_point(pair.points[k]);
+            points[k] = k < moving ? safe_places_[pair.points[k]]
+                                   : side.to_world(side.obstacle_places[pair.points[k]]);
         const std::array<double, 4> shares = nearest_points(pair.kind, points);
         Vec3d across;
         for (std::size_t k = 0; k < 4; ++k) across += points[k] * (k < own ? shares[k] : -shares[k]);
@@ -244,7 +270,7 @@ void SurfaceContacts::add_contacts(std::uint32_t side_number, Places goals, bool
         }
         if (!(distance - std::max(closing, 0.0) < double{kReady} * thickness) || !(contact.mobility > 0))
             continue;
-        contacts_.add(contact, base_,
+        contacts_.add(contact, slip_start(side, pair, shares),
                       is_solved ? std::optional(contacts_.push_of(contact, distance)) : std::nullopt);
     }
 }
@@ -262,6 +288,10 @@ void SurfaceContacts::archive(StateArchive& state) {
         };
         archive_places(side.listed_from);
         state.items(side.expected, archive_places);
+        state.value(side.away.from);
+        state.value(side.away.expected);
+        state.require(side.away.from >= 0 && side.away.expected >= 0);
+        side.away_before = side.away;
         side.pairs.archive(state);
     }
 }

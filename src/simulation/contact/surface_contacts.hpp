@@ -1,5 +1,6 @@
 #pragma once
 
+#include "simulation/contact/carry_field.hpp"
 #include "simulation/contact/contact_set.hpp"
 #include "simulation/contact/contact_side.hpp"
 #include "simulation/particles.hpp"
@@ -29,13 +30,16 @@ class SurfaceContacts {
 
     /// Begins a frame of one step or more, whose loads are summed.
     void begin_frame();
+    /// A collider's vertices stand there, in its body frame.
+    void place_obstacle(std::size_t collider, std::span<const Vec3f> vertices);
 
     /// Where a step begins into which colliders that move carry particles, so that nothing meets on the way.
+    /// @param deformations  [collider] in the frame of which the step is a part
     /// @param from  safe
     /// @param carried  in: where the field of the colliders carries each particle. Out: where it begins
     void carry(const std::vector<Collider>& before, const std::vector<Collider>& after,
-               const PointArrays& from, PointArrays& carried, std::span<const std::uint8_t> is_held,
-               const Workers& workers);
+               std::span<const Deformation> deformations, const FramePart& part, const PointArrays& from,
+               PointArrays& carried, std::span<const std::uint8_t> is_held, const Workers& workers);
 
     /// Begins a step: colliders stand where it ends.
     /// @param places  safe beside the colliders as they stand then: those of the step before, carried along
@@ -71,6 +75,7 @@ class SurfaceContacts {
 
   private:
     void set_safe(const PointArrays& places);
+    Vec3d slip_start(const ContactSide& side, const Pair& pair, const std::array<double, 4>& shares) const;
     std::size_t go_towards(std::span<Vec3d> places, const Workers& workers);
     void find_contacts(Places goals, bool is_solved);
     void add_contacts(std::uint32_t side_number, Places goals, bool is_solved);
@@ -86,7 +91,8 @@ class SurfaceContacts {
     std::span<const std::uint8_t> is_held_;
     std::size_t touching_count_ = 0; ///< pairs that touch at the safe state
     std::size_t unresolved_count_ = 0;
-    PointArrays base_;                      ///< where the step began
+    PointArrays start_;                     ///< where the step began, before anything was carried
+    bool is_carried_ = false;               ///< in this step
     PointArrays safe_;                      ///< the safe state
     std::vector<Vec3d> safe_places_;        ///< the same, with all digits
     std::vector<std::uint8_t> is_touching_; ///< [particle] in this step

@@ -48,7 +48,8 @@ std::size_t limit_displacements(const ContactSide& side, std::span<const std::ui
             closing.is_held[part] = closing.is_held[part] || (is_held[i] != 0 && closing.of_point[k] > 0);
             joined[part] = std::max(joined[part], direction * dot(apart.normal, side.base[i] - side.safe[i]));
         }
-        const float closed = joined[0] + (moving == 4 ? joined[1] : 0);
+        const float closed =
+            joined[0] + (moving == 4 ? joined[1] : side.obstacle_closing(pair, apart.normal));
         const float room = std::max(usable_gap(apart.gap, side.least_gap) - closed, 0.0F);
         const float asked = closing.most[0] + closing.most[1];
         if (asked <= room) continue;
