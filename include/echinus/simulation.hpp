@@ -189,8 +189,7 @@ enum class SolverKind : std::uint8_t {
     Xpbd,
     /// As a continuous material (docs/mechanics.md): each step minimises the energy of inertia, of the
     /// material and of contact by Newton's method with multigrid. Cloth stretches as its ClothMaterial says,
-    /// whatever the resolution and the time step; 1/60 s per frame is a good step. In SI units. Needs
-    /// surface_collision where there are colliders, whose models may move but do not deform yet.
+    /// whatever the resolution and the time step; 1/60 s per frame is a good step. In SI units.
     Newton,
     /// The paper's (section 2.3), for reproduction and comparison: as Verlet, and nothing but sticks and
     /// particles that collide. It refuses folds, tetrahedra, surface_collision and measure_loads.
@@ -239,7 +238,7 @@ struct SimulationOptions {
     /// Distance that particles keep from colliders, units. If not given, half the mean rest length of the
     /// structural sticks, or 0 without any: with that the model cuts few faces of a cloth, and the cloth lies
     /// close (docs/thickness.md). 0 is possible and slow: particles on the surface itself need a query in
-    /// every relaxation, and a face in twenty is cut.
+    /// every relaxation, and a face in twenty is cut. Newton: never less than a fiftieth of the mean edge.
     std::optional<double> thickness{};
     /// Coulomb's coefficient: tangential motion relative to the collider is shortened by this times the
     /// length of the push, and never reversed. 0 is ice.
@@ -253,10 +252,10 @@ struct SimulationOptions {
     /// how often. Prefer a closed mesh (see repair()) or a distance map.
     bool allow_open_colliders = false;
     /// Edges and faces collide too, not only particles: no face of the deformable ever meets a collider
-    /// (docs/surfaces.md). Every collider needs an exact map, as its map or as ColliderMap::surface; one
-    /// of an open mesh needs no allow_open_colliders and keeps each particle on its side. Nothing may
-    /// intersect at the start, no particle may begin inside a closed model (but see untangle), and keep_free
-    /// must be true.
+    /// (docs/surfaces.md). Every collider needs an exact map, as its map or as ColliderMap::surface; under
+    /// Newton only particles collide with one that has none. One of an open mesh needs no
+    /// allow_open_colliders and keeps each particle on its side. Nothing may intersect at the start, no
+    /// particle may begin inside a closed model (but see untangle), and keep_free must be true.
     bool surface_collision = false;
     /// Needs surface_collision: the faces of the deformable do not meet each other either. A frame in which
     /// it moves fast, relative to itself or to a model near by, is divided into up to 32 parts, each of which

@@ -25,16 +25,18 @@ constexpr double kRoom = 2;
 /// In thicknesses: what is no farther from a collider is carried along with it whole.
 constexpr double kTouch = 2;
 
-SimulationOptions valid(const SimulationOptions& options, const std::vector<Collider>& colliders) {
-    if (!colliders.empty() && !options.surface_collision)
-        throw Error(
-            ErrorCode::InvalidOptions,
-            "simulation option surface_collision is false; the newton solver needs it where there are "
-            "colliders, since its contacts are between surfaces");
-    if (options.thickness && !(*options.thickness > 0))
-        throw Error(ErrorCode::InvalidOptions,
-                    "simulation option thickness is 0; the newton solver needs a positive one, within which "
-                    "contacts push");
+/// In mean edges, and in metres: contacts push within a thickness, which therefore is never less.
+constexpr double kLeastThickness = 0.02, kLeastThicknessOfAll = 1e-6;
+
+double mean_edge_of(const Deformable& deformable) {
+    return double{mean_edge_length(elements_of(deformable), deformable.positions)};
+}
+
+/// With a thickness within which contacts can push.
+SimulationOptions contact_options(SimulationOptions options, double mean_edge) {
+    const double least = std::max(kLeastThickness * mean_edge, kLeastThicknessOfAll);
+    options.thickness = std::max(*options.thickness, least);
+    if (options.self_thickness) options.self_thickness = std::max(*options.self_thickness, least);
     return options;
 }
 
@@ -50,11 +52,11 @@ std::vector<Vec3f> vertices_of(const Collider& collider, const std::optional<Def
 
 NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colliders_in,
                            const SimulationOptions& options_in)
-    : Solver(std::move(deformable_in), std::move(colliders_in), valid(options_in, colliders_in)),
+    : Solver(std::move(deformable_in), std::move(colliders_in), options_in),
       step_(elastic_parts(deformable, options.material)), motion_(deformable.particle_count()),
       is_held_(deformable.particle_count()), accelerations_(deformable.particle_count(), options.gravity),
       gained_(deformable.particle_count()), deformations_(colliders.size()),
-      mean_edge_(double{mean_edge_length(elements_of(deformable), deformable.positions)}) {
+      mean_edge_(mean_edge_of(deformable)), thickness_(*contact_options(options, mean_edge_).thickness) {
     for (std::size_t i = 0; i < deformable.particle_count(); ++i) {
         motion_.places[i] = Vec3d(deformable.positions[i]);
         motion_.velocities[i] = (motion_.places[i] - Vec3d(deformable.previous_positions[i])) *
@@ -62,7 +64,8 @@ NewtonSolver::NewtonSolver(Deformable deformable_in, std::vector<Collider> colli
         is_held_[i] = deformable.inverse_masses[i] == 0 ? 1 : 0;
         if (is_held_[i] != 0) motion_.velocities[i] = {};
     }
-    if (options.surface_collision) contacts_.emplace(deformable, colliders, step_.masses(), options);
+    if (options.surface_collision || !colliders.empty())
+        contacts_.emplace(deformable, colliders, step_.masses(), contact_options(options, mean_edge_));
 }
 
 void NewtonSolver::step() {
@@ -83,7 +86,11 @@ void NewtonSolver::step() {
     for (std::uint32_t part = 0; part < parts; ++part)
         step_part(options.time_step / parts, {share(part), share(part + 1)});
     std::fill(deformations_.begin(), deformations_.end(), Deformation{});
-    if (contacts_) profile.squeezed_count += contacts_->unresolved_count();
+    if (contacts_) {
+        profile.squeezed_count += contacts_->unresolved_count();
+        profile.map_query_count += contacts_->particles().take_query_count();
+        profile.lost_count += contacts_->particles().take_lost_count();
+    }
     accelerations_.assign(deformable.particle_count(), options.gravity);
     publish();
     ++frame;
@@ -99,15 +106,14 @@ void NewtonSolver::deform() {
         const Collider before = colliders[c];
         deforming_[c]->begin_frame(colliders[c]);
         const double room = kRoom * fastest() * options.time_step;
-        deformations_[c] = {before,       *deforming_[c],
-                            places_now(), motion_.particle_count(),
-                            room,         kTouch * *options.thickness,
-                            workers_};
+        deformations_[c] = {before, *deforming_[c],      places_now(), motion_.particle_count(),
+                            room,   kTouch * thickness_, workers_};
     }
 }
 
 /// So that what is carried along keeps its gaps.
 std::uint32_t NewtonSolver::part_count() const {
+    if (!options.surface_collision) return 1;
     double longest = 0;
     for (std::size_t c = 0; c < colliders.size(); ++c) {
         Collider after = colliders[c];
@@ -115,7 +121,7 @@ std::uint32_t NewtonSolver::part_count() const {
         longest = std::max(longest,
                            CarryField::longest_displacement(colliders[c], after) + deformations_[c].longest);
     }
-    const double parts = std::ceil(longest / (kMostCarried * *options.thickness));
+    const double parts = std::ceil(longest / (kMostCarried * thickness_));
     return static_cast<std::uint32_t>(std::clamp(parts, 1.0, double{kMostPartsOfFrame}));
 }
 
@@ -123,12 +129,14 @@ void NewtonSolver::step_part(double seconds, const FramePart& part) {
     const std::vector<Collider> before = colliders;
     for (Collider& collider : colliders) collider.pose = pose_after(collider, seconds);
     const PointArrays start = carried_start(before, part);
+    if (contacts_) contacts_->particles().begin_step(before, colliders, motion_.places, is_held_);
     std::vector<Vec3d> places = guess(start, seconds);
     step_.begin(motion_, accelerations_, is_held_, seconds, options.air_drag);
     minimise(places, start, seconds);
     const std::vector<Vec3d> velocities_before = motion_.velocities;
     const std::vector<std::uint8_t> nothing_touches(contacts_ ? 0 : places.size());
     advance(motion_, places, contacts_ ? contacts_->touching() : nothing_touches, seconds);
+    if (contacts_) contacts_->particles().end_step(motion_.places, motion_.velocities, seconds);
     for (std::size_t i = 0; i < places.size(); ++i) {
         gained_[i] = (motion_.velocities[i] - velocities_before[i]) * (1 / seconds);
         // A held particle is led, and has no motion of its own.
@@ -148,9 +156,9 @@ PointArrays NewtonSolver::carried_start(const std::vector<Collider>& before, con
     const PointArrays from = places_now();
     PointArrays start = from;
     attachments_.follow(colliders, deforming_, part.end, start);
-    if (!contacts_) return start;
+    if (!contacts_ || !options.surface_collision) return start;
     const Stopwatch stopwatch(profile.collision_seconds);
-    const CarryField field(before, colliders, deformations_, part, kTouch * *options.thickness);
+    const CarryField field(before, colliders, deformations_, part, kTouch * thickness_);
     if (field.is_zero()) return start;
     field.carry(start, is_held_, workers_);
     contacts_->carry(before, colliders, deformations_, part, from, start, is_held_, workers_);
@@ -205,7 +213,10 @@ void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start
         if (newton + 1 == options.newton_step_count) profile.truncated_count += stopped;
         if (last_move < budget.tolerance && stopped == 0) break;
     }
-    contact([&] { contacts_->end_step(places); });
+    contact([&] {
+        contacts_->put_outside(places, workers_);
+        contacts_->end_step(places);
+    });
     profile.contact_count += contacts_->pushing_count(places);
     profile.measured_pair_count += contacts_->pair_count();
 }
@@ -281,7 +292,8 @@ void NewtonSolver::archive(StateArchive& state) {
     for (std::size_t i = 0; i < motion_.particle_count(); ++i)
         state.require(is_finite(motion_.places[i]) && is_finite(motion_.velocities[i]));
     for (std::size_t c = 0; c < colliders.size(); ++c)
-        if (contacts_) contacts_->place_obstacle(c, vertices_of(colliders[c], deforming_[c]));
+        if (options.surface_collision && map_of_surface(colliders[c]) != nullptr)
+            contacts_->place_obstacle(c, vertices_of(colliders[c], deforming_[c]));
     const double speed = largest_speed;
     publish();
     largest_speed = speed;

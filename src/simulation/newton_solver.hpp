@@ -42,6 +42,7 @@ class NewtonSolver : public Solver {
     std::vector<Deformation> deformations_; ///< by collider, in this frame
     std::optional<SurfaceContacts> contacts_;
     double mean_edge_; ///< of the surface
+    double thickness_; ///< in force: positive
 };
 
 } // namespace echinus

@@ -105,8 +105,9 @@ void require_apart(const Deformable& deformable, const std::vector<Collider>& co
     const Elements elements = elements_of(deformable);
     const TriangleMesh surface = surface_of(deformable, elements);
     for (std::size_t i = 0; i < colliders.size(); ++i)
-        require_apart(deformable, surface, elements, let_through(deformable, i), colliders[i], options,
-                      name_of(colliders[i], i));
+        if (map_of_surface(colliders[i]) != nullptr)
+            require_apart(deformable, surface, elements, let_through(deformable, i), colliders[i], options,
+                          name_of(colliders[i], i));
     if (!options.self_collision) return;
     const std::vector<FacePair> pairs = self_intersecting_pairs(surface);
     if (!pairs.empty())

@@ -255,7 +255,7 @@ void require_valid(const Collider& collider, const SimulationOptions& options, c
     require_no_origin(origin_of(collider.map), name);
     const auto* exact = std::get_if<ExactMap>(&collider.map.kind);
     if (options.surface_collision) {
-        if (exact == nullptr && !collider.map.surface)
+        if (exact == nullptr && !collider.map.surface && options.solver != SolverKind::Newton)
             fail(name + " has a " + (custom != nullptr ? "custom" : "distance") +
                  " map, which does not have the faces that surface_collision needs; give it an exact map, as "
                  "its map or as map.surface beside it, or switch surface_collision off, and only particles "

@@ -93,6 +93,15 @@ inline KindOfSimulation jakobsens_particles() {
     return kind;
 }
 
+/// The same of a continuous material.
+inline KindOfSimulation continuous_materials_particles() {
+    KindOfSimulation kind = particles_beside_all_maps();
+    kind.name = "particles of a continuous material";
+    kind.options.solver = SolverKind::Newton;
+    kind.options.time_step = 1.0 / 60;
+    return kind;
+}
+
 /// A sheet that is pulled over a tip, so that a part of it is stretched far.
 inline KindOfSimulation stretched_sheet() {
     return {.name = "a sheet that is stretched over a tip",
@@ -222,11 +231,17 @@ inline KindOfSimulation continuous_material_on_deforming_balls() {
 }
 
 inline std::vector<KindOfSimulation> kinds_of_simulations() {
-    return {particles_beside_all_maps(), jakobsens_particles(),
-            stretched_sheet(),           sheet_among_moving_colliders(),
-            springs_with_folds(),        soft_bodies(),
-            sheet_on_deforming_balls(),  sheet_that_passes_through(),
-            continuous_material(),       continuous_material_on_deforming_balls()};
+    return {particles_beside_all_maps(),
+            jakobsens_particles(),
+            stretched_sheet(),
+            sheet_among_moving_colliders(),
+            springs_with_folds(),
+            soft_bodies(),
+            sheet_on_deforming_balls(),
+            sheet_that_passes_through(),
+            continuous_material(),
+            continuous_material_on_deforming_balls(),
+            continuous_materials_particles()};
 }
 
 } // namespace echinus::test

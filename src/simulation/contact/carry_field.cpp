@@ -116,6 +116,7 @@ struct CarryField::Blend {
 };
 
 void CarryField::add_rigid(std::size_t collider, const Vec3f& point, Blend& blend) const {
+    if (map_of_surface(before_[collider]) == nullptr) return;
     const Contact found = contact(before_[collider], point, static_cast<float>(reach_));
     if (!found.found()) return;
     const RigidTransform &before = before_[collider].pose, &after = after_[collider].pose;

@@ -6,10 +6,10 @@
 
 namespace echinus {
 
-void ContactSide::set_pose(const RigidTransform& pose) {
+std::optional<FrameChange> frame_of(const RigidTransform& pose) {
     const Rotation& r = pose.rotation;
-    frame.reset();
-    if (pose.translation != Vec3d{} || r.x != 0 || r.y != 0 || r.z != 0) frame.emplace(pose, Vec3d{1, 1, 1});
+    if (pose.translation == Vec3d{} && r.x == 0 && r.y == 0 && r.z == 0) return std::nullopt;
+    return FrameChange(pose, {1, 1, 1});
 }
 
 void ContactSide::to_frame(const PointArrays& world, PointArrays& result) const {

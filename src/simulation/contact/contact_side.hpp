@@ -14,6 +14,9 @@
 
 namespace echinus {
 
+/// The frame of a model; none where it is the world's.
+std::optional<FrameChange> frame_of(const RigidTransform& pose);
+
 /// The surface of a deformable and what it may touch: a model, in the frame that moves with it, or itself, in
 /// the world.
 struct ContactSide {
@@ -25,7 +28,7 @@ struct ContactSide {
     ContactSide(const std::shared_ptr<const Elements>& own_in, const PointArrays& places)
         : own(own_in), obstacle(own_in), pairs(own_in, places) {}
 
-    void set_pose(const RigidTransform& pose);
+    void set_pose(const RigidTransform& pose) { frame = frame_of(pose); }
     void to_frame(const PointArrays& world, PointArrays& result) const;
     void to_frame(Places world, PointArrays& result) const;
     Vec3d to_world(const Vec3f& in_frame) const {
@@ -67,6 +70,7 @@ struct ContactSide {
     PointArrays obstacle_places, obstacle_before;    ///< of a model: now, and before it deformed in this step
     bool is_deforming = false, has_deformed = false; ///< in the displacement, and in the step
     float deformed = 0;                              ///< no vertex goes farther in the displacement
+    std::uint32_t number = 0;                        ///< of the collider; of itself the count of colliders
     PairSet pairs;
     std::optional<FrameChange> frame; ///< of a model that does not stand in the world's
     float thickness = 0, ready = 0, friction = 0, least_gap = 0;

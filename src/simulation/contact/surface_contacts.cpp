@@ -35,19 +35,32 @@ float least_height_of(const Element& element, std::span<const Vec3f> positions) 
     return longest > 0 ? length(cross(b - a, c - a)) / longest : 0;
 }
 
+/// [collider] 1 for those of which only particles keep out.
+std::vector<std::uint8_t> without_faces(const std::vector<Collider>& colliders,
+                                        const SimulationOptions& options) {
+    std::vector<std::uint8_t> result;
+    for (const Collider& collider : colliders)
+        result.push_back(options.surface_collision && map_of_surface(collider) != nullptr ? 0 : 1);
+    return result;
+}
+
 } // namespace
 
 SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector<Collider>& colliders,
                                  std::span<const double> masses, const SimulationOptions& options)
     : own_(std::make_shared<Elements>(elements_of(deformable))), masses_(masses.begin(), masses.end()),
-      collider_count_(colliders.size()),
+      collider_count_(colliders.size()), particles_(deformable, colliders, without_faces(colliders, options),
+                                                    *options.thickness, options.friction),
       contacts_(own_->vertex_count(), colliders.size() + (options.self_collision ? 1 : 0), colliders.size(),
                 length(options.gravity)) {
     const float edge_length = mean_edge_length(*own_, deformable.positions);
     PointArrays places;
     places.load(deformable.positions);
-    for (const Collider& collider : colliders) {
-        const std::vector<std::uint8_t> passes = let_through(deformable, sides_.size());
+    const std::vector<std::uint8_t> has_none = without_faces(colliders, options);
+    for (std::uint32_t c = 0; c < colliders.size(); ++c) {
+        if (has_none[c] != 0) continue;
+        const Collider& collider = colliders[c];
+        const std::vector<std::uint8_t> passes = let_through(deformable, c);
         const auto own =
             passes.empty() ? own_ : std::make_shared<const Elements>(elements_of(deformable, passes));
         const TriangleMesh mesh = model_mesh(map_of_surface(collider)->view(), collider.scale);
@@ -57,6 +70,7 @@ SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector
             own, places,
             std::make_shared<const Elements>(mesh.vertices.size(), mesh.faces, std::span<const Edge>{}),
             std::move(vertices));
+        side.number = c;
         side.thickness = static_cast<float>(*options.thickness);
         side.extent = largest_coordinate(side.obstacle_places, mesh.vertices.size());
         side.pairs.set_reach(std::max(kReady * side.thickness, kReach * edge_length + side.thickness));
@@ -67,6 +81,7 @@ SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector
             most_[v] = std::min(most_[v], kMostOfHeight * least_height_of(element, deformable.positions));
     if (options.self_collision) {
         ContactSide& side = sides_.emplace_back(own_, places);
+        side.number = static_cast<std::uint32_t>(collider_count_);
         side.thickness = static_cast<float>(options.self_thickness.value_or(*options.thickness));
         side.thickness = std::min(side.thickness, kMostSelfThickness * edge_length);
         side.pairs.set_reach(std::max(kReady * side.thickness, kReach * edge_length));
@@ -75,7 +90,7 @@ SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector
         side.friction = static_cast<float>(options.friction);
         side.ready = kReady * side.thickness;
     }
-    frames_.resize(sides_.size());
+    frames_.resize(collider_count_ + 1);
     is_touching_.resize(own_->vertex_count());
     safe_places_.resize(own_->vertex_count());
 }
@@ -94,7 +109,8 @@ std::size_t SurfaceContacts::pair_count() const {
 void SurfaceContacts::place_obstacle(std::size_t collider, std::span<const Vec3f> vertices) {
     PointArrays places;
     places.load(vertices);
-    sides_[collider].place_obstacle(std::move(places));
+    for (ContactSide& side : sides_)
+        if (side.number == collider) side.place_obstacle(std::move(places));
 }
 
 void SurfaceContacts::carry(const std::vector<Collider>& before, const std::vector<Collider>& after,
@@ -107,15 +123,16 @@ void SurfaceContacts::carry(const std::vector<Collider>& before, const std::vect
     set_safe(from);
     std::vector<Vec3d> places(safe_places_.size());
     for (std::size_t i = 0; i < places.size(); ++i) places[i] = Vec3d(carried[i]);
-    for (std::size_t s = 0; s < sides_.size(); ++s) {
-        ContactSide& side = sides_[s];
-        if (s < collider_count_) side.set_pose(before[s].pose);
+    for (ContactSide& side : sides_) {
+        const bool is_model = !side.pairs.is_of_itself();
+        if (is_model) side.set_pose(before[side.number].pose);
         side.set_safe(from);
-        if (s < collider_count_) {
+        if (is_model) {
             side.start = side.safe;
-            side.set_pose(after[s].pose);
-            const SurfaceMotion* const motion = deformations[s].motion;
-            side.moves = CarryField::longest_displacement(before[s], after[s]) > 0 || motion != nullptr;
+            side.set_pose(after[side.number].pose);
+            const SurfaceMotion* const motion = deformations[side.number].motion;
+            side.moves = CarryField::longest_displacement(before[side.number], after[side.number]) > 0 ||
+                         motion != nullptr;
             side.has_deformed = false;
             if (motion != nullptr) side.deform(motion->at(part.end));
         }
@@ -140,14 +157,13 @@ void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const P
     if (!is_carried_) start_ = places;
     set_safe(places);
     std::fill(is_touching_.begin(), is_touching_.end(), std::uint8_t{0});
-    for (std::size_t s = 0; s < sides_.size(); ++s) {
-        ContactSide& side = sides_[s];
-        if (s < collider_count_) side.set_pose(colliders[s].pose);
+    for (ContactSide& side : sides_) {
+        if (!side.pairs.is_of_itself()) side.set_pose(colliders[side.number].pose);
         if (!is_carried_) side.moves = side.has_deformed = false;
-        frames_[s] = side.frame;
         side.set_safe(safe_);
         side.list(guess, workers);
     }
+    for (std::size_t c = 0; c < collider_count_; ++c) frames_[c] = frame_of(colliders[c].pose);
     contacts_.begin_step(step, frames_);
     is_carried_ = false;
 }
@@ -203,7 +219,8 @@ std::size_t SurfaceContacts::advance(std::span<Vec3d> places, bool is_solved, co
 /// @param goals  where particles may go: contacts that push there are ready
 void SurfaceContacts::find_contacts(Places goals, bool is_solved) {
     contacts_.clear();
-    for (std::uint32_t s = 0; s < sides_.size(); ++s) add_contacts(s, goals, is_solved);
+    for (const ContactSide& side : sides_) add_contacts(side, goals, is_solved);
+    particles_.add_to(contacts_, safe_places_, masses_, is_solved);
 }
 
 float SurfaceContacts::thickness_of(const ContactSide& side, const Pair& pair) const {
@@ -227,8 +244,7 @@ Vec3d SurfaceContacts::slip_start(const ContactSide& side, const Pair& pair,
     return side.moves ? side.to_world(Vec3f(start + side.obstacle_displacement(pair, shares))) : start;
 }
 
-void SurfaceContacts::add_contacts(std::uint32_t side_number, Places goals, bool is_solved) {
-    const ContactSide& side = sides_[side_number];
+void SurfaceContacts::add_contacts(const ContactSide& side, Places goals, bool is_solved) {
     const auto pairs = side.pairs.pairs();
     const auto separations = side.pairs.separations();
     for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -252,7 +268,7 @@ void SurfaceContacts::add_contacts(std::uint32_t side_number, Places goals, bool
         const double distance = length(across);
         if (!(distance > 0)) continue;
         ContactSet::Contact contact;
-        contact.key = {side_number, pair.kind, pair.points};
+        contact.key = {side.number, pair.kind, pair.points};
         contact.normal = across * (1 / distance);
         contact.offset = distance;
         contact.thickness = thickness;
@@ -273,6 +289,10 @@ void SurfaceContacts::add_contacts(std::uint32_t side_number, Places goals, bool
         contacts_.add(contact, slip_start(side, pair, shares),
                       is_solved ? std::optional(contacts_.push_of(contact, distance)) : std::nullopt);
     }
+}
+
+void SurfaceContacts::put_outside(std::span<Vec3d> places, const Workers& workers) {
+    if (particles_.put_outside(places, is_touching_)) advance(places, true, workers);
 }
 
 void SurfaceContacts::end_step(Places places) {

@@ -3,6 +3,7 @@
 #include "simulation/contact/carry_field.hpp"
 #include "simulation/contact/contact_set.hpp"
 #include "simulation/contact/contact_side.hpp"
+#include "simulation/contact/particle_contacts.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/state/state_archive.hpp"
 
@@ -25,6 +26,7 @@ namespace echinus {
 class SurfaceContacts {
   public:
     /// @param masses  [particle]; infinite or of any size where a particle is held
+    /// @param options  with a positive thickness
     SurfaceContacts(const Deformable& deformable, const std::vector<Collider>& colliders,
                     std::span<const double> masses, const SimulationOptions& options);
 
@@ -47,6 +49,10 @@ class SurfaceContacts {
     /// @param is_held [particle]
     void begin_step(const std::vector<Collider>& colliders, const PointArrays& places, Places guess,
                     std::span<const std::uint8_t> is_held, double step, const Workers& workers);
+    /// Contact of particles with colliders without faces, in the step that begins.
+    ParticleContacts& particles() { return particles_; }
+    /// Does any collider, or the deformable itself, have faces that collide?
+    bool has_surfaces() const { return !sides_.empty(); }
 
     /// Goes from the safe state towards these places as far as is proven safe, and measures all pairs there.
     /// @param places  in: the goals. Out: where the particles are. Those that nothing stops keep all their
@@ -56,6 +62,9 @@ class SurfaceContacts {
     ///                   friction. Those at a guess are of any size; then those of the step before do
     /// @return how many particles were stopped
     std::size_t advance(std::span<Vec3d> places, bool is_solved, const Workers& workers);
+
+    /// Puts particles outside of colliders without faces, as far as those with faces allow.
+    void put_outside(std::span<Vec3d> places, const Workers& workers);
 
     /// The friction that this step has left in contacts stays for the next.
     void end_step(Places places);
@@ -78,13 +87,14 @@ class SurfaceContacts {
     Vec3d slip_start(const ContactSide& side, const Pair& pair, const std::array<double, 4>& shares) const;
     std::size_t go_towards(std::span<Vec3d> places, const Workers& workers);
     void find_contacts(Places goals, bool is_solved);
-    void add_contacts(std::uint32_t side_number, Places goals, bool is_solved);
+    void add_contacts(const ContactSide& side, Places goals, bool is_solved);
     float thickness_of(const ContactSide& side, const Pair& pair) const;
 
     std::shared_ptr<const Elements> own_;
     std::vector<double> masses_;
     std::size_t collider_count_;
     std::vector<ContactSide> sides_; ///< of the colliders, then of itself
+    ParticleContacts particles_;
     ContactSet contacts_;
     std::vector<float> most_; ///< by vertex: the most thickness that the faces around it leave room for
     std::vector<std::optional<FrameChange>> frames_; ///< by side

@@ -273,7 +273,8 @@ bool part_from_models(const Elements& elements, const Deformable& deformable,
     std::vector<Model> models;
     models.reserve(colliders.size());
     for (std::size_t c = 0; c < colliders.size(); ++c)
-        models.emplace_back(colliders[c], let_through(deformable, c), options);
+        if (map_of_surface(colliders[c]) != nullptr)
+            models.emplace_back(colliders[c], let_through(deformable, c), options);
     BestPlaces best(elements, positions);
     const Attempt start(elements, deformable.inverse_masses, models, positions);
     best.consider(positions, start.tangle_count());
