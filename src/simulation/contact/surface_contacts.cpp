@@ -139,6 +139,7 @@ void SurfaceContacts::carry(const std::vector<Collider>& before, const std::vect
         side.list(places, workers);
     }
     go_towards(places, workers);
+    unresolved_count_ += touching_count_;
     for (ContactSide& side : sides_) side.end_deforming();
     for (std::size_t i = 0; i < places.size(); ++i) carried.set(i, Vec3f(places[i]));
 }
