@@ -201,7 +201,8 @@ void require_jakobsen(const Deformable& deformable, const SimulationOptions& opt
 void require_solver(const Deformable& deformable, const SimulationOptions& options) {
     if (options.solver == SolverKind::Jakobsen) return require_jakobsen(deformable, options);
     if (!deformable.tetrahedra.empty() && options.solver == SolverKind::Verlet)
-        fail("the deformable has tetrahedra, which need the solver Xpbd, with a substep_count of 10 or more and "
+        fail("the deformable has tetrahedra, which need the solver Xpbd, with a substep_count of 10 or more "
+             "and "
              "an iteration_count of 1, or Newton; set simulation option solver");
 }
 

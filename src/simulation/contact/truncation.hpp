@@ -13,7 +13,8 @@ namespace echinus {
 /// what it asks for; one that is held gets all.
 /// @param side    measured at `safe`
 /// @param shares  [particle] in and out, 0 to 1
-/// @return how many pairs touch at `safe`, or cannot be told apart: their particles stay
+/// @return how many pairs touch at `safe`, cannot be told apart, so that their particles stay, or meet at
+/// `base`
 std::size_t limit_displacements(const ContactSide& side, std::span<const std::uint8_t> is_held,
                                 std::span<float> shares);
 
