@@ -22,6 +22,8 @@ constexpr std::uint32_t kMostPartsOfFrame = 32;
 /// In displacements of the fastest particle in a frame: how far off vertices of a collider that deforms may
 /// be to decide about the division.
 constexpr double kRoom = 2;
+/// In mean edges: and so that in a part no displacement would close a pair by more beyond its gap.
+constexpr double kMostOverlap = 1;
 /// In thicknesses: what is no farther from a collider is carried along with it whole.
 constexpr double kTouch = 2;
 
@@ -83,8 +85,7 @@ void NewtonSolver::step() {
     const auto share = [&](std::uint32_t part) {
         return static_cast<float>(part) / static_cast<float>(parts);
     };
-    for (std::uint32_t part = 0; part < parts; ++part)
-        step_part(options.time_step / parts, {share(part), share(part + 1)});
+    for (std::uint32_t part = 0; part < parts; ++part) step_part(parts, {share(part), share(part + 1)});
     std::fill(deformations_.begin(), deformations_.end(), Deformation{});
     if (contacts_) {
         profile.squeezed_count += contacts_->unresolved_count();
@@ -111,8 +112,8 @@ void NewtonSolver::deform() {
     }
 }
 
-/// So that what is carried along keeps its gaps.
-std::uint32_t NewtonSolver::part_count() const {
+/// So that what is carried along keeps its gaps, and that impacts are solved where they happen.
+std::uint32_t NewtonSolver::part_count() {
     if (!options.surface_collision) return 1;
     double longest = 0;
     for (std::size_t c = 0; c < colliders.size(); ++c) {
@@ -121,18 +122,26 @@ std::uint32_t NewtonSolver::part_count() const {
         longest = std::max(longest,
                            CarryField::longest_displacement(colliders[c], after) + deformations_[c].longest);
     }
-    const double parts = std::ceil(longest / (kMostCarried * thickness_));
+    const double overlap =
+        contacts_->overlap_ahead(colliders, motion_.places, guess(places_now(), options.time_step), workers_);
+    const double parts =
+        std::ceil(std::max(longest / (kMostCarried * thickness_), overlap / (kMostOverlap * mean_edge_)));
     return static_cast<std::uint32_t>(std::clamp(parts, 1.0, double{kMostPartsOfFrame}));
 }
 
-void NewtonSolver::step_part(double seconds, const FramePart& part) {
+/// @param parts  of the frame, of which this is one
+void NewtonSolver::step_part(std::uint32_t parts, const FramePart& part) {
+    const double seconds = options.time_step / parts;
     const std::vector<Collider> before = colliders;
     for (Collider& collider : colliders) collider.pose = pose_after(collider, seconds);
     const PointArrays start = carried_start(before, part);
     if (contacts_) contacts_->particles().begin_step(before, colliders, motion_.places, is_held_);
     std::vector<Vec3d> places = guess(start, seconds);
     step_.begin(motion_, accelerations_, is_held_, seconds, options.air_drag);
-    minimise(places, start, seconds);
+    // In a part of a frame inertia has more of a say, and fewer steps lead as far.
+    const std::uint32_t newton_steps =
+        parts > 1 ? (options.newton_step_count + 1) / 2 : options.newton_step_count;
+    minimise(places, start, seconds, newton_steps);
     const std::vector<Vec3d> velocities_before = motion_.velocities;
     const std::vector<std::uint8_t> nothing_touches(contacts_ ? 0 : places.size());
     advance(motion_, places, contacts_ ? contacts_->touching() : nothing_touches, seconds);
@@ -184,12 +193,13 @@ std::vector<Vec3d> NewtonSolver::guess(const PointArrays& start, double seconds)
     return places;
 }
 
-void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds) {
+void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds,
+                            std::uint32_t newton_steps) {
     StepBudget budget;
     budget.tolerance = options.newton_tolerance * mean_edge_;
     if (!contacts_) {
         const Stopwatch stopwatch(profile.constraint_seconds);
-        budget.newton_steps = options.newton_step_count;
+        budget.newton_steps = newton_steps;
         step_.solve(places, nullptr, budget, workers_);
         return;
     }
@@ -197,20 +207,17 @@ void NewtonSolver::minimise(std::vector<Vec3d>& places, const PointArrays& start
         const Stopwatch stopwatch(profile.collision_seconds);
         work();
     };
-    contact([&] {
-        contacts_->begin_step(colliders, start, places, is_held_, seconds, workers_);
-        contacts_->advance(places, false, workers_);
-    });
+    contact([&] { contacts_->begin_step(colliders, start, places, is_held_, seconds, workers_); });
     budget.newton_steps = 1;
-    for (std::uint32_t newton = 0; newton < options.newton_step_count; ++newton) {
+    for (std::uint32_t newton = 0; newton < newton_steps; ++newton) {
         double last_move = 0;
         {
             const Stopwatch stopwatch(profile.constraint_seconds);
             last_move = step_.solve(places, &contacts_->energy(), budget, workers_).last_move;
         }
         std::size_t stopped = 0;
-        contact([&] { stopped = contacts_->advance(places, true, workers_); });
-        if (newton + 1 == options.newton_step_count) profile.truncated_count += stopped;
+        contact([&] { stopped = contacts_->advance(places, workers_); });
+        if (newton + 1 == newton_steps) profile.truncated_count += stopped;
         if (last_move < budget.tolerance && stopped == 0) break;
     }
     contact([&] {

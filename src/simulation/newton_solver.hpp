@@ -24,13 +24,14 @@ class NewtonSolver : public Solver {
 
   private:
     void deform();
-    std::uint32_t part_count() const;
-    void step_part(double seconds, const FramePart& part);
+    std::uint32_t part_count();
+    void step_part(std::uint32_t parts, const FramePart& part);
     PointArrays places_now() const;
     double fastest() const;
     PointArrays carried_start(const std::vector<Collider>& before, const FramePart& part);
     std::vector<Vec3d> guess(const PointArrays& start, double seconds) const;
-    void minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds);
+    void minimise(std::vector<Vec3d>& places, const PointArrays& start, double seconds,
+                  std::uint32_t newton_steps);
     void publish();
 
     ImplicitStep step_;

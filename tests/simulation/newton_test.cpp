@@ -243,7 +243,7 @@ TEST(Newton, ParticlesFallOnEveryKindOfMapAndStayOutside) {
         // Particles stick where rays of the distance map touch the torus from aside.
         const bool is_ragged = std::holds_alternative<DistanceMap>(map.kind);
         EXPECT_LT(simulation.residual().root_mean_square, is_ragged ? 0.03 : 0.01);
-        EXPECT_LT(simulation.residual().largest, is_ragged ? 0.3 : 0.06);
+        EXPECT_LT(simulation.residual().largest, is_ragged ? 0.4 : 0.06);
     }
 }
 

@@ -12,9 +12,9 @@ namespace {
 /// is 0.77 of the thickness wide, under ten 0.4.
 constexpr double kContactWeights = 5;
 /// The share of the thickness from which on the barrier goes on as a parabola.
-constexpr double kLeastShare = 1.0 / 64;
+constexpr double kLeastShare = 1.0 / 16;
 /// Of friction that holds: stiffness over mass / h^2, the resistance of inertia in a step.
-constexpr double kFrictionStiffness = 100;
+constexpr double kFrictionStiffness = 10;
 /// The cosine between the normals of two contacts that may go on with each other's bristles.
 constexpr double kSamePlane = 0.5;
 

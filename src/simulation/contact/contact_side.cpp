@@ -1,6 +1,7 @@
 #include "simulation/contact/contact_side.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -96,19 +97,35 @@ bool ContactSide::covers(const PointArrays& in_frame, const Away& obstacle_away)
 
 bool ContactSide::list(Places ends, const Workers& workers) {
     to_frame(ends, goal);
+    if (is_listed() && listed_from == safe && away_before.from == 0 && away.expected == 0)
+        return add_to_list(workers);
     if (covers(safe, away_before) && covers(goal, away)) return false;
-    // Displacements of one beginning add to the list, so that the search for ends that are covered ends.
-    const bool adds = is_listed() && listed_from == safe && away_before.from == 0 && away.expected == 0;
-    if (!adds) expected.clear();
     listed_from = safe;
     is_elsewhere = true;
-    expected.push_back(goal);
+    expected.assign(1, goal);
     away_before = {0, deformed};
     away = {deformed, 0};
-    if (pairs.is_of_itself())
-        pairs.list(safe, goal, safe, goal, adds, workers);
-    else
-        pairs.list(safe, goal, obstacle_from(), obstacle_places, adds, workers);
+    pairs.list({safe, goal, obstacle_at_start(), pairs.is_of_itself() ? goal : obstacle_places}, workers);
+    return true;
+}
+
+/// Displacements from where pairs are listed add to the list, so that a search for ends that it covers ends.
+bool ContactSide::add_to_list(const Workers& workers) {
+    if (covers(goal, away)) return false;
+    PointArrays ends = expected.back();
+    const Vec3f common = common_motion(ends, goal);
+    std::vector<std::uint8_t> is_other(own->vertex_count());
+    for (std::size_t i = 0; i < is_other.size(); ++i) {
+        const Vec3f end = goal[i] - common, off = end - ends[i];
+        if (dot(off, off) <= pairs.covered() * pairs.covered()) continue;
+        is_other[i] = 1;
+        ends.set(i, end);
+    }
+    is_elsewhere = true;
+    expected.push_back(std::move(ends));
+    const PointArrays& to = expected.back();
+    pairs.add_to_list({safe, to, obstacle_at_start(), pairs.is_of_itself() ? to : obstacle_places}, is_other,
+                      workers);
     return true;
 }
 
@@ -129,9 +146,29 @@ void ContactSide::measure(const Workers& workers) {
             std::max(length(base[i] - safe[i] - common_ahead), length(goal[i] - safe[i] - common_ahead)) +
             deformed;
     }
-    pairs.measure(safe, pairs.is_of_itself() ? safe : obstacle_from(), strayed, ahead, ready, is_elsewhere,
-                  workers);
+    pairs.measure(safe, obstacle_at_start(), strayed, ahead, ready, is_elsewhere, workers);
     is_elsewhere = false;
+}
+
+float ContactSide::closing_of(const Pair& pair, const Vec3f& normal) const {
+    std::array<float, 2> most;
+    most.fill(-std::numeric_limits<float>::infinity());
+    const std::size_t of_own = own_count(pair.kind), moving = pairs.moving_count(pair);
+    for (std::size_t k = 0; k < moving; ++k) {
+        const float along = dot(normal, base[pair.points[k]] - safe[pair.points[k]]);
+        float& of_part = most[k < of_own ? 0 : 1];
+        of_part = std::max(of_part, k < of_own ? -along : along);
+    }
+    return most[0] + (moving == 4 ? most[1] : obstacle_closing(pair, normal));
+}
+
+double ContactSide::overlap_ahead() const {
+    float most = 0;
+    for (std::size_t p = 0; p < pairs.pairs().size(); ++p) {
+        const Separation& apart = pairs.separations()[p];
+        most = std::max(most, closing_of(pairs.pairs()[p], apart.normal) - apart.gap);
+    }
+    return double{most};
 }
 
 } // namespace echinus

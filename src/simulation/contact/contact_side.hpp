@@ -66,6 +66,17 @@ struct ContactSide {
         return Vec3f(to) == Vec3f(from) ? from : to;
     }
 
+    /// How far a pair that lies `gap` apart may close: a share of the gap remains, or of the thickness where
+    /// that is less, so that rounding has no say.
+    float room(float gap) const {
+        return gap - std::max(least_gap, std::min(gap * kLeastOfGap, thickness * kLeastOfThickness));
+    }
+    static constexpr float kLeastOfGap = 1.0F / 16, kLeastOfThickness = 1.0F / 4;
+    /// How far a pair that was measured closes along its normal, on the way to `base`.
+    float closing_of(const Pair& pair, const Vec3f& normal) const;
+    /// The most by which pairs would close beyond their gaps on the way to `base`; not negative.
+    double overlap_ahead() const;
+
     std::shared_ptr<const Elements> own, obstacle;   ///< the same of itself
     PointArrays obstacle_places, obstacle_before;    ///< of a model: now, and before it deformed in this step
     bool is_deforming = false, has_deformed = false; ///< in the displacement, and in the step
@@ -92,6 +103,8 @@ struct ContactSide {
     std::vector<float> strayed, ahead; ///< scratch of measure()
 
   private:
+    bool add_to_list(const Workers& workers);
+    const PointArrays& obstacle_at_start() const { return pairs.is_of_itself() ? safe : obstacle_from(); }
     Vec3f common_motion(const PointArrays& from, const PointArrays& to) const;
     /// Are these places so near to those where displacements begin, or to those where they end, that their
     /// pairs are listed? @param obstacle  how far the obstacle is from where it was

@@ -1,6 +1,7 @@
 #include "simulation/contact/pair_set.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -50,13 +51,8 @@ std::size_t edge_count(const Element& element) {
     return element.vertex_count == 3 ? 3 : element.vertex_count - 1U;
 }
 
-void drop_doubles(std::vector<Pair>& pairs) {
-    const auto before = [](const Pair& a, const Pair& b) {
-        return a.kind != b.kind ? a.kind < b.kind : a.points < b.points;
-    };
-    const auto same = [](const Pair& a, const Pair& b) { return a.kind == b.kind && a.points == b.points; };
-    std::sort(pairs.begin(), pairs.end(), before);
-    pairs.erase(std::unique(pairs.begin(), pairs.end(), same), pairs.end());
+bool comes_before(const Pair& a, const Pair& b) {
+    return a.kind != b.kind ? a.kind < b.kind : a.points < b.points;
 }
 
 MovingTree tree_of(const Elements& elements, const PointArrays& places) {
@@ -92,8 +88,9 @@ void PairSet::find_boxes(const Elements& elements, const PointArrays& from, cons
     find(boxes.faces, elements.all.size(), [&](std::size_t i) { return elements.all[i].vertices; });
 }
 
-void PairSet::list(const PointArrays& own_from, const PointArrays& own_to, const PointArrays& obstacle_from,
-                   const PointArrays& obstacle_to, bool adds, const Workers& workers) {
+void PairSet::list(const Displacements& displacements, const Workers& workers) {
+    const auto& [own_from, own_to, obstacle_from, obstacle_to] = displacements;
+    own_tree_.want([](std::uint32_t) { return true; }, workers);
     own_tree_.refit(own_->all, own_from, own_to, workers);
     find_boxes(*own_, own_from, own_to, workers, own_boxes_);
     const bool is_known = &obstacle_from == &obstacle_to && !obstacle_boxes_.faces.empty();
@@ -101,6 +98,47 @@ void PairSet::list(const PointArrays& own_from, const PointArrays& own_to, const
         obstacle_tree_.refit(obstacle_->all, obstacle_from, obstacle_to, workers);
         find_boxes(*obstacle_, obstacle_from, obstacle_to, workers, obstacle_boxes_);
     }
+    near_.clear();
+    separations_.clear();
+    find_near_pairs(workers);
+    measure_new(own_from, obstacle_from, workers);
+    list_measured(displacements, 0);
+}
+
+void PairSet::add_to_list(const Displacements& displacements, std::span<const std::uint8_t> is_other,
+                          const Workers& workers) {
+    const auto is_affected = [&](const Pair& pair) {
+        for (std::size_t k = 0; k < moving_count(pair); ++k)
+            if (is_other[pair.points[k]] != 0) return true;
+        return false;
+    };
+    own_tree_.want(
+        [&](std::uint32_t element) {
+            const Element& e = own_->all[element];
+            return (is_other[e.vertices[0]] | is_other[e.vertices[1]] | is_other[e.vertices[2]]) != 0;
+        },
+        workers);
+    own_tree_.refit(own_->all, displacements.own_from, displacements.own_to, workers);
+    find_boxes(*own_, displacements.own_from, displacements.own_to, workers, own_boxes_);
+    near_.clear();
+    separations_.clear();
+    find_near_pairs(workers);
+    // Of those found, the ones that are not known.
+    std::vector<Pair> known;
+    std::copy_if(listed_.begin(), listed_.end(), std::back_inserter(known), is_affected);
+    std::sort(known.begin(), known.end(), comes_before);
+    std::erase_if(near_, [&](const Pair& pair) {
+        return !is_affected(pair) || std::binary_search(known.begin(), known.end(), pair, comes_before);
+    });
+    measure_new(displacements.own_from, displacements.obstacle_from, workers);
+    // Behind them those that are listed.
+    const std::size_t known_count = listed_.size();
+    near_.insert(near_.end(), listed_.begin(), listed_.end());
+    for (const float gap : listed_gaps_) separations_.push_back({{}, gap, {}});
+    list_measured(displacements, known_count);
+}
+
+void PairSet::find_near_pairs(const Workers& workers) {
     near_elements_.resize(workers.count());
     found_.begin(workers, own_tree_.piece_count());
     workers.for_pieces(own_tree_.piece_count(), [&](std::size_t worker, std::size_t piece) {
@@ -111,31 +149,53 @@ void PairSet::list(const PointArrays& own_from, const PointArrays& own_to, const
             for (const auto& elements : near) add_pairs(elements, pairs);
         });
     });
-    near_.clear();
-    if (adds) near_ = listed_;
     found_.append_to(near_);
-    if (adds) drop_doubles(near_);
-    separations_.clear();
-    measure_new(own_from, obstacle_from, workers);
-    sort_listed();
+}
+
+/// How far displacements close a pair along its normal.
+float PairSet::closing_of(const Pair& pair, const Vec3f& normal, const Displacements& displacements) const {
+    std::array<float, 2> most;
+    most.fill(-std::numeric_limits<float>::infinity());
+    const std::size_t of_own = own_count(pair.kind);
+    for (std::size_t k = 0; k < 4; ++k) {
+        const std::uint32_t point = pair.points[k];
+        const float along =
+            k < of_own ? -dot(normal, displacements.own_to[point] - displacements.own_from[point])
+                       : dot(normal, displacements.obstacle_to[point] - displacements.obstacle_from[point]);
+        most[k < of_own ? 0 : 1] = std::max(most[k < of_own ? 0 : 1], along);
+    }
+    return most[0] + most[1];
 }
 
 /// Takes what was found and measured as the list, the nearest first: then a call that needs only those ends
-/// early.
-void PairSet::sort_listed() {
+/// early. What stays apart along its own normal, too, is left out. @param known_count  of the last ones,
+/// which were listed
+void PairSet::list_measured(const Displacements& displacements, std::size_t known_count) {
     std::array<std::size_t, kGapSteps + 1> first{};
     float largest = 0;
-    for (const Separation& apart : separations_) largest = std::max(largest, apart.gap);
+    for (std::size_t p = 0; p < near_.size(); ++p) {
+        Separation& apart = separations_[p];
+        if (p + known_count < near_.size() && apart.gap > reach_ &&
+            apart.gap - closing_of(near_[p], apart.normal, displacements) > reach_)
+            apart.gap = std::numeric_limits<float>::infinity();
+        else
+            largest = std::max(largest, apart.gap);
+    }
     gap_step_ = largest / static_cast<float>(kGapSteps);
     const auto step_of = [&](float gap) {
         const float steps = largest > 0 ? gap / largest * static_cast<float>(kGapSteps) : 0;
         return static_cast<std::size_t>(std::clamp(steps, 0.0F, static_cast<float>(kGapSteps - 1)));
     };
-    for (const Separation& apart : separations_) ++first[step_of(apart.gap) + 1];
+    const auto is_left_out = [](const Separation& apart) {
+        return !(apart.gap <= std::numeric_limits<float>::max());
+    };
+    for (const Separation& apart : separations_)
+        if (!is_left_out(apart)) ++first[step_of(apart.gap) + 1];
     std::partial_sum(first.begin(), first.end(), first.begin());
-    listed_.resize(near_.size());
-    listed_gaps_.resize(near_.size());
+    listed_.resize(first.back());
+    listed_gaps_.resize(first.back());
     for (std::size_t p = 0; p < near_.size(); ++p) {
+        if (is_left_out(separations_[p])) continue;
         const std::size_t to = first[step_of(separations_[p].gap)]++;
         listed_[to] = near_[p];
         listed_gaps_[to] = separations_[p].gap;

@@ -36,11 +36,18 @@ class PairSet {
     /// How far the end of a vertex may be from where it was expected.
     float covered() const { return reach_ / 4; }
 
+    /// Displacements of the surface and of the obstacle; of itself both are the surface's. An obstacle with
+    /// the same array twice never moves.
+    struct Displacements {
+        const PointArrays &own_from, &own_to, &obstacle_from, &obstacle_to;
+    };
     /// Lists the pairs that come near on the displacements, instead of those before, and measures all where
-    /// the displacements begin. Of itself both are the surface's. An obstacle with the same array twice
-    /// stands where it stood, unless forget_obstacle_boxes() was called.
-    void list(const PointArrays& own_from, const PointArrays& own_to, const PointArrays& obstacle_from,
-              const PointArrays& obstacle_to, bool adds, const Workers& workers);
+    /// the displacements begin.
+    void list(const Displacements& displacements, const Workers& workers);
+    /// Adds the pairs of vertices whose displacements have become others.
+    /// @param is_other  [vertex] 1 for those
+    void add_to_list(const Displacements& displacements, std::span<const std::uint8_t> is_other,
+                     const Workers& workers);
 
     /// The obstacle is elsewhere than when pairs were listed.
     void forget_obstacle_boxes() { obstacle_boxes_.faces.clear(); }
@@ -75,8 +82,10 @@ class PairSet {
 
     void find_boxes(const Elements& elements, const PointArrays& from, const PointArrays& to,
                     const Workers& workers, Boxes& boxes) const;
+    void find_near_pairs(const Workers& workers);
+    void list_measured(const Displacements& displacements, std::size_t known_count);
+    float closing_of(const Pair& pair, const Vec3f& normal, const Displacements& displacements) const;
     void add_pairs(const std::array<std::uint32_t, 2>& elements, std::vector<Pair>& pairs) const;
-    void sort_listed();
     void measure_new(const PointArrays& own, const PointArrays& obstacle, const Workers& workers);
     const Boxes& obstacle_boxes() const { return is_of_itself() ? own_boxes_ : obstacle_boxes_; }
 

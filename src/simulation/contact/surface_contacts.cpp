@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace echinus {
 
@@ -22,8 +23,15 @@ constexpr float kReach = 0.25F;
 /// In mean edges, and in least heights of faces: layers of one surface cannot keep farther apart than the
 /// faces around a vertex are small.
 constexpr float kMostSelfThickness = 0.25F, kMostOfHeight = 0.4F;
+/// In mean edges: so far a particle may end from its goal before it is tried to go on.
+constexpr float kMostMissed = 0.1F;
+/// Planes turn with what passes along them: so often they are found anew on the way to the goals.
+constexpr int kMostPasses = 4;
 /// Rounds in which ends that were not expected are looked at anew.
 constexpr int kMostRounds = 8;
+/// Times that displacements are halved whose pairs are not found in those rounds; then nothing moves that is
+/// not held.
+constexpr int kMostHalvings = 6;
 /// Of coordinates: no pair comes nearer, since its gap would be lost in rounding.
 constexpr float kLeastGap = 1.0F / (1 << 19);
 
@@ -90,6 +98,7 @@ SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector
         side.friction = static_cast<float>(options.friction);
         side.ready = kReady * side.thickness;
     }
+    most_missed_ = kMostMissed * edge_length;
     frames_.resize(collider_count_ + 1);
     is_touching_.resize(own_->vertex_count());
     safe_places_.resize(own_->vertex_count());
@@ -138,10 +147,29 @@ void SurfaceContacts::carry(const std::vector<Collider>& before, const std::vect
         }
         side.list(places, workers);
     }
-    go_towards(places, workers);
+    using Kind = JoinedDisplacements::Kind;
+    const bool deforms =
+        std::any_of(sides_.begin(), sides_.end(), [](const ContactSide& side) { return side.is_deforming; });
+    go_towards(places, deforms ? Kind::Deforming : Kind::Carrying, workers);
     unresolved_count_ += touching_count_;
     for (ContactSide& side : sides_) side.end_deforming();
     for (std::size_t i = 0; i < places.size(); ++i) carried.set(i, Vec3f(places[i]));
+}
+
+double SurfaceContacts::overlap_ahead(const std::vector<Collider>& colliders, Places from, Places guess,
+                                      const Workers& workers) {
+    PointArrays places;
+    places.resize(from.size());
+    for (std::size_t i = 0; i < from.size(); ++i) places.set(i, Vec3f(from[i]));
+    double most = 0;
+    for (ContactSide& side : sides_) {
+        if (!side.pairs.is_of_itself()) side.set_pose(colliders[side.number].pose);
+        side.set_safe(places);
+        side.list(guess, workers);
+        side.measure_towards(guess, workers);
+        most = std::max(most, side.overlap_ahead());
+    }
+    return most;
 }
 
 void SurfaceContacts::set_safe(const PointArrays& places) {
@@ -163,65 +191,97 @@ void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const P
         if (!is_carried_) side.moves = side.has_deformed = false;
         side.set_safe(safe_);
         side.list(guess, workers);
+        side.measure_towards(guess, workers);
     }
     for (std::size_t c = 0; c < collider_count_; ++c) frames_[c] = frame_of(colliders[c].pose);
     contacts_.begin_step(step, frames_);
     is_carried_ = false;
+    is_begun_ = true;
+    find_contacts(guess, false);
+}
+
+/// Of displacements to goals the ends as far as the planes between the pairs allow.
+/// @param places  in: the goals. Out: the ends
+/// @return whether all pairs of these displacements are listed
+bool SurfaceContacts::find_ends(std::span<Vec3d> places, JoinedDisplacements::Kind kind,
+                                const Workers& workers) {
+    const std::size_t count = own_->vertex_count();
+    const std::vector<Vec3d> goals(places.begin(), places.end());
+    JoinedDisplacements joining(sides_, safe_places_, goals, masses_, is_held_, kind);
+    std::vector<float> shares(count, 1.0F);
+    for (int round = 0; round < kMostRounds; ++round) {
+        const Places joined = joining.find(workers);
+        if (!joining.has_converged() && kind == JoinedDisplacements::Kind::Standing) return false;
+        touching_count_ = joining.has_converged() ? 0 : 1;
+        for (ContactSide& side : sides_) touching_count_ += limit_displacements(side, is_held_, shares);
+        for (std::size_t i = 0; i < count; ++i) {
+            if (is_held_[i] != 0) shares[i] = 1;
+            places[i] = shares[i] == 1 ? goals[i] : joined[i] + (goals[i] - joined[i]) * double{shares[i]};
+        }
+        bool is_any_added = false;
+        for (ContactSide& side : sides_) is_any_added = side.list(places, workers) || is_any_added;
+        if (!is_any_added) return true;
+    }
+    return false;
 }
 
 /// Goes from the safe state towards goals as far as the planes between the pairs allow. @param places  in:
 /// the goals. Out: the new safe state, whose pairs are not measured yet
 /// @return how many particles were stopped
-std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, const Workers& workers) {
+std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, JoinedDisplacements::Kind kind,
+                                        const Workers& workers) {
     const std::size_t count = own_->vertex_count();
-    std::vector<float> shares(count);
-    std::vector<Vec3d> goals(places.begin(), places.end()), joined, ends(count);
-    for (int round = 0;; ++round) {
-        if (round == kMostRounds) // What is not held stays, which needs no pairs but those that are known.
-            for (std::size_t i = 0; i < count; ++i)
-                if (is_held_[i] == 0) goals[i] = safe_places_[i];
-        join_displacements(sides_, safe_places_, goals, masses_, is_held_, joined, workers);
-        std::fill(shares.begin(), shares.end(), 1.0F);
-        touching_count_ = 0;
-        for (ContactSide& side : sides_) touching_count_ += limit_displacements(side, is_held_, shares);
-        for (std::size_t i = 0; i < count; ++i) {
-            if (is_held_[i] != 0) shares[i] = 1;
-            ends[i] = shares[i] == 1 ? goals[i] : joined[i] + (goals[i] - joined[i]) * double{shares[i]};
-        }
-        bool is_listed_anew = false;
-        for (ContactSide& side : sides_) is_listed_anew = side.list(ends, workers) || is_listed_anew;
-        if (!is_listed_anew || round == kMostRounds) break;
+    const std::vector<Vec3d> goals(places.begin(), places.end());
+    bool is_covered = false;
+    for (int halvings = 0; !is_covered; ++halvings) {
+        // Half as far, if pairs go on being found; and at last those that are not held stay.
+        const double share = halvings < kMostHalvings ? std::ldexp(1.0, -halvings) : 0;
+        // What is carried has to go all the way.
+        for (std::size_t i = 0; i < count && halvings > 0 && kind == JoinedDisplacements::Kind::Standing; ++i)
+            if (is_held_[i] == 0) places[i] = safe_places_[i] + (goals[i] - safe_places_[i]) * share;
+        is_covered = find_ends(places, kind, workers);
+        if (halvings == kMostHalvings) break;
     }
+    if (!is_covered) ++touching_count_;
     std::size_t stopped = 0;
+    missed_ = 0;
     for (std::size_t i = 0; i < count; ++i) {
-        if (shares[i] < 1) {
+        const double missed = length(goals[i] - places[i]);
+        missed_ = std::max(missed_, missed);
+        if (missed > 0) {
             ++stopped;
             is_touching_[i] = 1;
         }
-        places[i] = ends[i];
-        safe_places_[i] = ends[i];
-        safe_.set(i, Vec3f(ends[i]));
+        safe_places_[i] = places[i];
+        safe_.set(i, Vec3f(places[i]));
     }
     return stopped;
 }
 
-std::size_t SurfaceContacts::advance(std::span<Vec3d> places, bool is_solved, const Workers& workers) {
+std::size_t SurfaceContacts::advance(std::span<Vec3d> places, const Workers& workers) {
     const std::vector<Vec3d> goals(places.begin(), places.end());
-    const std::size_t stopped = go_towards(places, workers);
-    if (!is_solved) unresolved_count_ += touching_count_;
-    for (ContactSide& side : sides_) {
-        side.set_safe(safe_);
-        side.measure_towards(goals, workers);
+    std::size_t stopped = 0;
+    for (int pass = 0; pass < kMostPasses; ++pass) {
+        std::copy(goals.begin(), goals.end(), places.begin());
+        stopped = go_towards(places, JoinedDisplacements::Kind::Standing, workers);
+        if (std::exchange(is_begun_, false)) unresolved_count_ += touching_count_;
+        for (ContactSide& side : sides_) {
+            side.set_safe(safe_);
+            side.measure_towards(goals, workers);
+        }
+        if (missed_ <= double{most_missed_}) break;
     }
-    find_contacts(goals, is_solved);
+    find_contacts(goals, true);
     return stopped;
 }
 
 /// @param goals  where particles may go: contacts that push there are ready
+/// @param is_solved  whether contact forces here are those of the step, and limit friction; else those of
+/// the step before do
 void SurfaceContacts::find_contacts(Places goals, bool is_solved) {
     contacts_.clear();
     for (const ContactSide& side : sides_) add_contacts(side, goals, is_solved);
-    particles_.add_to(contacts_, safe_places_, masses_, is_solved);
+    particles_.add_to(contacts_, is_solved ? Places(safe_places_) : goals, masses_, is_solved);
 }
 
 float SurfaceContacts::thickness_of(const ContactSide& side, const Pair& pair) const {
@@ -293,7 +353,7 @@ void SurfaceContacts::add_contacts(const ContactSide& side, Places goals, bool i
 }
 
 void SurfaceContacts::put_outside(std::span<Vec3d> places, const Workers& workers) {
-    if (particles_.put_outside(places, is_touching_)) advance(places, true, workers);
+    if (particles_.put_outside(places, is_touching_)) advance(places, workers);
 }
 
 void SurfaceContacts::end_step(Places places) {

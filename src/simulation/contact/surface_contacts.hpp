@@ -3,6 +3,7 @@
 #include "simulation/contact/carry_field.hpp"
 #include "simulation/contact/contact_set.hpp"
 #include "simulation/contact/contact_side.hpp"
+#include "simulation/contact/joined_displacements.hpp"
 #include "simulation/contact/particle_contacts.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/state/state_archive.hpp"
@@ -43,6 +44,11 @@ class SurfaceContacts {
                std::span<const Deformation> deformations, const FramePart& part, const PointArrays& from,
                PointArrays& carried, std::span<const std::uint8_t> is_held, const Workers& workers);
 
+    /// By how much displacements to these places would close pairs beyond their gaps, at most; length.
+    /// Colliders stand where they are.
+    double overlap_ahead(const std::vector<Collider>& colliders, Places from, Places guess,
+                         const Workers& workers);
+
     /// Begins a step: colliders stand where it ends.
     /// @param places  safe beside the colliders as they stand then: those of the step before, carried along
     /// @param guess   where particles would go without contact
@@ -55,13 +61,10 @@ class SurfaceContacts {
     bool has_surfaces() const { return !sides_.empty(); }
 
     /// Goes from the safe state towards these places as far as is proven safe, and measures all pairs there.
-    /// @param places  in: the goals. Out: where the particles are. Those that nothing stops keep all their
-    /// digits
-    /// @param is_solved  the goals come from the solver: contact forces there are those of the step, and
-    /// limit
-    ///                   friction. Those at a guess are of any size; then those of the step before do
+    /// @param places  in: the goals, which the solver has found with these contacts. Out: where the particles
+    /// are. Those that nothing stops keep all their digits
     /// @return how many particles were stopped
-    std::size_t advance(std::span<Vec3d> places, bool is_solved, const Workers& workers);
+    std::size_t advance(std::span<Vec3d> places, const Workers& workers);
 
     /// Puts particles outside of colliders without faces, as far as those with faces allow.
     void put_outside(std::span<Vec3d> places, const Workers& workers);
@@ -85,7 +88,8 @@ class SurfaceContacts {
   private:
     void set_safe(const PointArrays& places);
     Vec3d slip_start(const ContactSide& side, const Pair& pair, const std::array<double, 4>& shares) const;
-    std::size_t go_towards(std::span<Vec3d> places, const Workers& workers);
+    bool find_ends(std::span<Vec3d> places, JoinedDisplacements::Kind kind, const Workers& workers);
+    std::size_t go_towards(std::span<Vec3d> places, JoinedDisplacements::Kind kind, const Workers& workers);
     void find_contacts(Places goals, bool is_solved);
     void add_contacts(const ContactSide& side, Places goals, bool is_solved);
     float thickness_of(const ContactSide& side, const Pair& pair) const;
@@ -99,6 +103,9 @@ class SurfaceContacts {
     std::vector<float> most_; ///< by vertex: the most thickness that the faces around it leave room for
     std::vector<std::optional<FrameChange>> frames_; ///< by side
     std::span<const std::uint8_t> is_held_;
+    bool is_begun_ = false; ///< a step, in which no particle has moved
+    float most_missed_ = 0;
+    double missed_ = 0;              ///< how far a particle has ended from its goal, at most
     std::size_t touching_count_ = 0; ///< pairs that touch at the safe state
     std::size_t unresolved_count_ = 0;
     PointArrays start_;                     ///< where the step began, before anything was carried

@@ -1,7 +1,5 @@
 #include "simulation/contact/truncation.hpp"
 
-#include "simulation/surfaces/shares.hpp"
-
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -51,7 +49,7 @@ std::size_t limit_displacements(const ContactSide& side, std::span<const std::ui
         const float closed =
             joined[0] + (moving == 4 ? joined[1] : side.obstacle_closing(pair, apart.normal));
         if (closed >= apart.gap) ++touching;
-        const float room = std::max(usable_gap(apart.gap, side.least_gap) - closed, 0.0F);
+        const float room = std::max(side.room(apart.gap) - closed, 0.0F);
         const float asked = closing.most[0] + closing.most[1];
         if (asked <= room) continue;
         for (std::size_t part = 0; part < 2; ++part) {
