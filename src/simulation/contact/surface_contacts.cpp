@@ -1,7 +1,5 @@
 #include "simulation/contact/surface_contacts.hpp"
 
-#include "simulation/contact/joined_displacements.hpp"
-#include "simulation/contact/truncation.hpp"
 #include "simulation/surfaces/edge_lengths.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
 
@@ -147,7 +145,7 @@ void SurfaceContacts::carry(const std::vector<Collider>& before, const std::vect
         }
         side.list(places, workers);
     }
-    using Kind = JoinedDisplacements::Kind;
+    using Kind = SafeDisplacements::Kind;
     const bool deforms =
         std::any_of(sides_.begin(), sides_.end(), [](const ContactSide& side) { return side.is_deforming; });
     go_towards(places, deforms ? Kind::Deforming : Kind::Carrying, workers);
@@ -203,21 +201,15 @@ void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const P
 /// Of displacements to goals the ends as far as the planes between the pairs allow.
 /// @param places  in: the goals. Out: the ends
 /// @return whether all pairs of these displacements are listed
-bool SurfaceContacts::find_ends(std::span<Vec3d> places, JoinedDisplacements::Kind kind,
+bool SurfaceContacts::find_ends(std::span<Vec3d> places, SafeDisplacements::Kind kind,
                                 const Workers& workers) {
-    const std::size_t count = own_->vertex_count();
     const std::vector<Vec3d> goals(places.begin(), places.end());
-    JoinedDisplacements joining(sides_, safe_places_, goals, masses_, is_held_, kind);
-    std::vector<float> shares(count, 1.0F);
+    SafeDisplacements displacements(sides_, safe_places_, goals, masses_, is_held_, kind);
     for (int round = 0; round < kMostRounds; ++round) {
-        const Places joined = joining.find(workers);
-        if (!joining.has_converged() && kind == JoinedDisplacements::Kind::Standing) return false;
-        touching_count_ = joining.has_converged() ? 0 : 1;
-        for (ContactSide& side : sides_) touching_count_ += limit_displacements(side, is_held_, shares);
-        for (std::size_t i = 0; i < count; ++i) {
-            if (is_held_[i] != 0) shares[i] = 1;
-            places[i] = shares[i] == 1 ? goals[i] : joined[i] + (goals[i] - joined[i]) * double{shares[i]};
-        }
+        const Places ends = displacements.find(workers);
+        touching_count_ = displacements.touching_count() + (displacements.has_converged() ? 0 : 1);
+        if (!displacements.has_converged() && kind == SafeDisplacements::Kind::Standing) return false;
+        for (std::size_t i = 0; i < places.size(); ++i) places[i] = is_held_[i] != 0 ? goals[i] : ends[i];
         bool is_any_added = false;
         for (ContactSide& side : sides_) is_any_added = side.list(places, workers) || is_any_added;
         if (!is_any_added) return true;
@@ -228,7 +220,7 @@ bool SurfaceContacts::find_ends(std::span<Vec3d> places, JoinedDisplacements::Ki
 /// Goes from the safe state towards goals as far as the planes between the pairs allow. @param places  in:
 /// the goals. Out: the new safe state, whose pairs are not measured yet
 /// @return how many particles were stopped
-std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, JoinedDisplacements::Kind kind,
+std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, SafeDisplacements::Kind kind,
                                         const Workers& workers) {
     const std::size_t count = own_->vertex_count();
     const std::vector<Vec3d> goals(places.begin(), places.end());
@@ -237,7 +229,7 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, JoinedDisplacem
         // Half as far, if pairs go on being found; and at last those that are not held stay.
         const double share = halvings < kMostHalvings ? std::ldexp(1.0, -halvings) : 0;
         // What is carried has to go all the way.
-        for (std::size_t i = 0; i < count && halvings > 0 && kind == JoinedDisplacements::Kind::Standing; ++i)
+        for (std::size_t i = 0; i < count && halvings > 0 && kind == SafeDisplacements::Kind::Standing; ++i)
             if (is_held_[i] == 0) places[i] = safe_places_[i] + (goals[i] - safe_places_[i]) * share;
         is_covered = find_ends(places, kind, workers);
         if (halvings == kMostHalvings) break;
@@ -263,7 +255,7 @@ std::size_t SurfaceContacts::advance(std::span<Vec3d> places, const Workers& wor
     std::size_t stopped = 0;
     for (int pass = 0; pass < kMostPasses; ++pass) {
         std::copy(goals.begin(), goals.end(), places.begin());
-        stopped = go_towards(places, JoinedDisplacements::Kind::Standing, workers);
+        stopped = go_towards(places, SafeDisplacements::Kind::Standing, workers);
         if (std::exchange(is_begun_, false)) unresolved_count_ += touching_count_;
         for (ContactSide& side : sides_) {
             side.set_safe(safe_);
