@@ -1,5 +1,6 @@
 #include "simulation/contact/surface_contacts.hpp"
 
+#include "simulation/contact/safe_displacements.hpp"
 #include "simulation/surfaces/edge_lengths.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
 
@@ -21,6 +22,8 @@ constexpr float kReach = 0.25F;
 /// In mean edges, and in least heights of faces: layers of one surface cannot keep farther apart than the
 /// faces around a vertex are small.
 constexpr float kMostSelfThickness = 0.25F, kMostOfHeight = 0.4F;
+/// The share of a pair's gap that carrying may close: what particles do by themselves comes after it.
+constexpr float kMostCarriedAway = 0.5F;
 /// In mean edges: so far a particle may end from its goal before it is tried to go on.
 constexpr float kMostMissed = 0.1F;
 /// Planes turn with what passes along them: so often they are found anew on the way to the goals.
@@ -145,10 +148,7 @@ void SurfaceContacts::carry(const std::vector<Collider>& before, const std::vect
         }
         side.list(places, workers);
     }
-    using Kind = SafeDisplacements::Kind;
-    const bool deforms =
-        std::any_of(sides_.begin(), sides_.end(), [](const ContactSide& side) { return side.is_deforming; });
-    go_towards(places, deforms ? Kind::Deforming : Kind::Carrying, workers);
+    go_towards(places, true, workers);
     unresolved_count_ += touching_count_;
     for (ContactSide& side : sides_) side.end_deforming();
     for (std::size_t i = 0; i < places.size(); ++i) carried.set(i, Vec3f(places[i]));
@@ -201,14 +201,13 @@ void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const P
 /// Of displacements to goals the ends as far as the planes between the pairs allow.
 /// @param places  in: the goals. Out: the ends
 /// @return whether all pairs of these displacements are listed
-bool SurfaceContacts::find_ends(std::span<Vec3d> places, SafeDisplacements::Kind kind,
-                                const Workers& workers) {
+bool SurfaceContacts::find_ends(std::span<Vec3d> places, bool carries, const Workers& workers) {
     const std::vector<Vec3d> goals(places.begin(), places.end());
-    SafeDisplacements displacements(sides_, safe_places_, goals, masses_, is_held_, kind);
+    SafeDisplacements displacements(sides_, goals, is_held_, carries ? kMostCarriedAway : 1);
     for (int round = 0; round < kMostRounds; ++round) {
         const Places ends = displacements.find(workers);
         touching_count_ = displacements.touching_count() + (displacements.has_converged() ? 0 : 1);
-        if (!displacements.has_converged() && kind == SafeDisplacements::Kind::Standing) return false;
+        if (!displacements.has_converged() && !carries) return false;
         for (std::size_t i = 0; i < places.size(); ++i) places[i] = is_held_[i] != 0 ? goals[i] : ends[i];
         bool is_any_added = false;
         for (ContactSide& side : sides_) is_any_added = side.list(places, workers) || is_any_added;
@@ -220,8 +219,7 @@ bool SurfaceContacts::find_ends(std::span<Vec3d> places, SafeDisplacements::Kind
 /// Goes from the safe state towards goals as far as the planes between the pairs allow. @param places  in:
 /// the goals. Out: the new safe state, whose pairs are not measured yet
 /// @return how many particles were stopped
-std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, SafeDisplacements::Kind kind,
-                                        const Workers& workers) {
+std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, bool carries, const Workers& workers) {
     const std::size_t count = own_->vertex_count();
     const std::vector<Vec3d> goals(places.begin(), places.end());
     bool is_covered = false;
@@ -229,9 +227,9 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, SafeDisplacemen
         // Half as far, if pairs go on being found; and at last those that are not held stay.
         const double share = halvings < kMostHalvings ? std::ldexp(1.0, -halvings) : 0;
         // What is carried has to go all the way.
-        for (std::size_t i = 0; i < count && halvings > 0 && kind == SafeDisplacements::Kind::Standing; ++i)
+        for (std::size_t i = 0; i < count && halvings > 0 && !carries; ++i)
             if (is_held_[i] == 0) places[i] = safe_places_[i] + (goals[i] - safe_places_[i]) * share;
-        is_covered = find_ends(places, kind, workers);
+        is_covered = find_ends(places, carries, workers);
         if (halvings == kMostHalvings) break;
     }
     if (!is_covered) ++touching_count_;
@@ -255,7 +253,7 @@ std::size_t SurfaceContacts::advance(std::span<Vec3d> places, const Workers& wor
     std::size_t stopped = 0;
     for (int pass = 0; pass < kMostPasses; ++pass) {
         std::copy(goals.begin(), goals.end(), places.begin());
-        stopped = go_towards(places, SafeDisplacements::Kind::Standing, workers);
+        stopped = go_towards(places, false, workers);
         if (std::exchange(is_begun_, false)) unresolved_count_ += touching_count_;
         for (ContactSide& side : sides_) {
             side.set_safe(safe_);

@@ -4,7 +4,6 @@
 #include "simulation/contact/contact_set.hpp"
 #include "simulation/contact/contact_side.hpp"
 #include "simulation/contact/particle_contacts.hpp"
-#include "simulation/contact/safe_displacements.hpp"
 #include "simulation/particles.hpp"
 #include "simulation/state/state_archive.hpp"
 
@@ -88,8 +87,8 @@ class SurfaceContacts {
   private:
     void set_safe(const PointArrays& places);
     Vec3d slip_start(const ContactSide& side, const Pair& pair, const std::array<double, 4>& shares) const;
-    bool find_ends(std::span<Vec3d> places, SafeDisplacements::Kind kind, const Workers& workers);
-    std::size_t go_towards(std::span<Vec3d> places, SafeDisplacements::Kind kind, const Workers& workers);
+    bool find_ends(std::span<Vec3d> places, bool carries, const Workers& workers);
+    std::size_t go_towards(std::span<Vec3d> places, bool carries, const Workers& workers);
     void find_contacts(Places goals, bool is_solved);
     void add_contacts(const ContactSide& side, Places goals, bool is_solved);
     float thickness_of(const ContactSide& side, const Pair& pair) const;
