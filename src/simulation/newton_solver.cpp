@@ -2,6 +2,7 @@
 
 #include "collider/frame_change.hpp"
 #include "simulation/contact/carry_field.hpp"
+#include "simulation/contact/thresholds.hpp"
 #include "simulation/stopwatch.hpp"
 #include "simulation/surfaces/edge_lengths.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
@@ -16,27 +17,13 @@ namespace echinus {
 
 namespace {
 
-/// A frame in which colliders move is divided, so that in a part none moves farther than so many thicknesses.
-constexpr double kMostCarried = 4;
-constexpr std::uint32_t kMostPartsOfFrame = 32;
-/// In displacements of the fastest particle in a frame: how far off vertices of a collider that deforms may
-/// be to decide about the division.
-constexpr double kRoom = 2;
-/// In mean edges: and so that in a part no displacement would close a pair by more beyond its gap.
-constexpr double kMostOverlap = 1;
-/// In thicknesses: what is no farther from a collider is carried along with it whole.
-constexpr double kTouch = 2;
-
-/// In mean edges, and in metres: contacts push within a thickness, which therefore is never less.
-constexpr double kLeastThickness = 0.02, kLeastThicknessOfAll = 1e-6;
-
 double mean_edge_of(const Deformable& deformable) {
     return double{mean_edge_length(elements_of(deformable), deformable.positions)};
 }
 
 /// With a thickness within which contacts can push.
 SimulationOptions contact_options(SimulationOptions options, double mean_edge) {
-    const double least = std::max(kLeastThickness * mean_edge, kLeastThicknessOfAll);
+    const double least = std::max(threshold::kLeastThickness * mean_edge, threshold::kLeastThicknessOfAll);
     options.thickness = std::max(*options.thickness, least);
     if (options.self_thickness) options.self_thickness = std::max(*options.self_thickness, least);
     return options;
@@ -106,9 +93,11 @@ void NewtonSolver::deform() {
         if (!deforming_[c]) continue;
         const Collider before = colliders[c];
         deforming_[c]->begin_frame(colliders[c]);
-        const double room = kRoom * fastest() * options.time_step;
-        deformations_[c] = {before, *deforming_[c],      places_now(), motion_.particle_count(),
-                            room,   kTouch * thickness_, workers_};
+        const double room = threshold::kDecidingRoom * fastest() * options.time_step;
+        deformations_[c] = {before,       *deforming_[c],
+                            places_now(), motion_.particle_count(),
+                            room,         threshold::kTouch * thickness_,
+                            workers_};
     }
 }
 
@@ -124,9 +113,9 @@ std::uint32_t NewtonSolver::part_count() {
     }
     const double overlap =
         contacts_->overlap_ahead(colliders, motion_.places, guess(places_now(), options.time_step), workers_);
-    const double parts =
-        std::ceil(std::max(longest / (kMostCarried * thickness_), overlap / (kMostOverlap * mean_edge_)));
-    return static_cast<std::uint32_t>(std::clamp(parts, 1.0, double{kMostPartsOfFrame}));
+    const double parts = std::ceil(std::max(longest / (threshold::kMostCarried * thickness_),
+                                            overlap / (threshold::kMostOverlap * mean_edge_)));
+    return static_cast<std::uint32_t>(std::clamp(parts, 1.0, double{threshold::kMostPartsOfFrame}));
 }
 
 /// @param parts  of the frame, of which this is one
@@ -167,7 +156,7 @@ PointArrays NewtonSolver::carried_start(const std::vector<Collider>& before, con
     attachments_.follow(colliders, deforming_, part.end, start);
     if (!contacts_ || !options.surface_collision) return start;
     const Stopwatch stopwatch(profile.collision_seconds);
-    const CarryField field(before, colliders, deformations_, part, kTouch * thickness_);
+    const CarryField field(before, colliders, deformations_, part, threshold::kTouch * thickness_);
     if (field.is_zero()) return start;
     field.carry(start, is_held_, workers_);
     contacts_->carry(before, colliders, deformations_, part, from, start, is_held_, workers_);

@@ -1,6 +1,7 @@
 #include "simulation/contact/carry_field.hpp"
 
 #include "collider/frame_change.hpp"
+#include "simulation/contact/thresholds.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
 
 #include <algorithm>
@@ -11,9 +12,6 @@ namespace echinus {
 
 namespace {
 
-/// The field fades over so many times the longest displacement: it then closes at most a quarter of a gap.
-constexpr double kFade = 4;
-
 bool same_pose(const RigidTransform& a, const RigidTransform& b) {
     return a.translation == b.translation && a.rotation.w == b.rotation.w && a.rotation.x == b.rotation.x &&
            a.rotation.y == b.rotation.y && a.rotation.z == b.rotation.z;
@@ -22,10 +20,10 @@ bool same_pose(const RigidTransform& a, const RigidTransform& b) {
 constexpr std::size_t kPointsPerPiece = 256;
 
 /// A box around points.
-struct Box {
+struct BoxOfPoints {
     Vec3d low, high;
 
-    Box(const PointArrays& points, std::size_t count) : low(points[0]), high(low) {
+    BoxOfPoints(const PointArrays& points, std::size_t count) : low(points[0]), high(low) {
         for (std::size_t i = 1; i < count; ++i) {
             const Vec3d p(points[i]);
             low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
@@ -54,7 +52,7 @@ Deformation::Deformation(const Collider& before, const DeformingCollider& surfac
     : motion(surface.motion()) {
     if (motion == nullptr || point_count == 0) return;
     const FrameChange body(before.pose, {1, 1, 1});
-    const Box box(points, point_count);
+    const BoxOfPoints box(points, point_count);
     for (std::size_t v = 0; v < surface.vertices().size(); ++v) {
         const double displacement{length(motion->to[v] - motion->from[v])};
         if (displacement > longest &&
@@ -64,7 +62,7 @@ Deformation::Deformation(const Collider& before, const DeformingCollider& surfac
     std::vector<Vec3f> places(point_count);
     points.store(places);
     std::vector<Contact> contacts(point_count);
-    const auto reach = static_cast<float>(touch + kFade * longest);
+    const auto reach = static_cast<float>(touch + threshold::kFade * longest);
     workers.for_ranges(point_count, kPointsPerPiece,
                        [&](std::size_t, std::size_t, std::size_t begin, std::size_t end) {
                            contacts_batch(before, std::span(places).subspan(begin, end - begin), reach,
@@ -99,7 +97,7 @@ CarryField::CarryField(const std::vector<Collider>& before, const std::vector<Co
         const double longest = longest_displacement(before[c], after[c]) +
                                deformations[c].longest * double{part.end - part.begin};
         moves_ = moves_ || longest > 0 || deformations[c].motion != nullptr;
-        reach_ = std::max(reach_, touch + kFade * longest);
+        reach_ = std::max(reach_, touch + threshold::kFade * longest);
     }
 }
 

@@ -1,5 +1,7 @@
 #include "simulation/contact/contact_set.hpp"
 
+#include "simulation/contact/thresholds.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -7,16 +9,6 @@
 namespace echinus {
 
 namespace {
-
-/// The force of a contact's barrier over the weight that it carries: with one layer on it a contact at rest
-/// is 0.77 of the thickness wide, under ten 0.4.
-constexpr double kContactWeights = 5;
-/// The share of the thickness from which on the barrier goes on as a parabola.
-constexpr double kLeastShare = 1.0 / 16;
-/// Of friction that holds: stiffness over mass / h^2, the resistance of inertia in a step.
-constexpr double kFrictionStiffness = 10;
-/// The cosine between the normals of two contacts that may go on with each other's bristles.
-constexpr double kSamePlane = 0.5;
 
 /// The energy of a gap and its derivatives by the gap: the barrier -(1 - s)^2 ln s of the gap's share s of
 /// the thickness (Li et al. 2020), which begins so smoothly that Newton's method sees a contact before it
@@ -26,7 +18,7 @@ struct GapEnergy {
 };
 GapEnergy gap_energy(double gap, double thickness, double force) {
     if (!(gap < thickness)) return {0, 0, 0};
-    const double share = std::max(gap / thickness, kLeastShare);
+    const double share = std::max(gap / thickness, threshold::kLeastBarrierShare);
     const double open = 1 - share, logarithm = std::log(share);
     GapEnergy energy{-open * open * logarithm, 2 * open * logarithm - open * open / share,
                      -2 * logarithm + 4 * open / share + open * open / (share * share)};
@@ -96,7 +88,7 @@ ContactSet::Bristle ContactSet::remembered(const Contact& contact) const {
                 static_cast<std::size_t>(std::find(points.begin(), points.end(), particle) - points.begin());
             // Of itself a pair may come the other way round.
             const double turn = contact.weights[k] * double{bristle.weights[at]} < 0 ? -1 : 1;
-            if (turn * dot(bristle.normal, contact.normal) < kSamePlane) continue;
+            if (turn * dot(bristle.normal, contact.normal) < threshold::kSamePlane) continue;
             const double weight = std::abs(contact.weights[k] * double{bristle.weights[at]});
             mean.slip += bristle.slip * (turn * weight);
             mean.push += bristle.push * weight;
@@ -114,7 +106,7 @@ double ContactSet::push_of(const Contact& contact, double gap) const {
 }
 
 double ContactSet::barrier_force(const Contact& contact) const {
-    return (gravity_ > 0 ? kContactWeights * gravity_ : contact.thickness / (step_ * step_)) /
+    return (gravity_ > 0 ? threshold::kBarrierWeights * gravity_ : contact.thickness / (step_ * step_)) /
            contact.mobility;
 }
 
@@ -122,7 +114,7 @@ void ContactSet::add(const Contact& contact, const Vec3d& start, std::optional<d
     Held held{};
     static_cast<Contact&>(held) = contact;
     held.force = barrier_force(contact);
-    held.stiffness = kFrictionStiffness / (contact.mobility * step_ * step_);
+    held.stiffness = threshold::kBristleStiffness / (contact.mobility * step_ * step_);
     if (contact.friction > 0 && push.value_or(1) > 0) {
         const Bristle before = remembered(contact);
         held.most_friction = contact.friction * push.value_or(before.push);

@@ -3,6 +3,7 @@
 #include "collider/frame_change.hpp"
 #include "mechanics/energy_term.hpp"
 #include "simulation/contact/pair_set.hpp"
+#include "simulation/contact/thresholds.hpp"
 #include "simulation/particles.hpp"
 
 #include <echinus/collider.hpp>
@@ -69,9 +70,9 @@ struct ContactSide {
     /// How far a pair that lies `gap` apart may close: a share of the gap remains, or of the thickness where
     /// that is less, so that rounding has no say.
     float room(float gap) const {
-        return gap - std::max(least_gap, std::min(gap * kLeastOfGap, thickness * kLeastOfThickness));
+        return gap - std::max(least_gap, std::min(gap * threshold::kLeastOfGap,
+                                                  thickness * threshold::kLeastOfThickness));
     }
-    static constexpr float kLeastOfGap = 1.0F / 16, kLeastOfThickness = 1.0F / 4;
     /// How far a pair that was measured closes along its normal, on the way to `base`.
     float closing_of(const Pair& pair, const Vec3f& normal) const;
     /// The most by which pairs would close beyond their gaps on the way to `base`; not negative.

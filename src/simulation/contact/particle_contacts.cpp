@@ -1,23 +1,13 @@
 #include "simulation/contact/particle_contacts.hpp"
 
+#include "simulation/contact/thresholds.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <tuple>
 
 namespace echinus {
-
-namespace {
-
-/// In thicknesses: a particle this near is a contact, which begins to push within one.
-constexpr double kReady = 2;
-/// In thicknesses: how far along its ray a particle is looked for, which a distance map measures by. Steeper
-/// than 60 degrees a contact begins to push later.
-constexpr double kReach = 4;
-/// Rounds in which particles are put outside; one collider may put them into another.
-constexpr int kMostRounds = 4;
-
-} // namespace
 
 ParticleContacts::ParticleContacts(const Deformable& deformable, const std::vector<Collider>& colliders,
                                    std::span<const std::uint8_t> collides, double thickness, double friction)
@@ -105,7 +95,7 @@ bool ParticleContacts::came_through_a_side(const Found& found, const Vec3d& plac
 void ParticleContacts::add_to(ContactSet& contacts, Places places, std::span<const double> masses,
                               bool is_solved) {
     if (empty()) return;
-    find(places, kReach * thickness_);
+    find(places, threshold::kParticleReach * thickness_);
     for (const Found& found : found_) {
         const Vec3d place = places[found.particle];
         if (came_through_a_side(found, place)) continue;
@@ -119,7 +109,7 @@ void ParticleContacts::add_to(ContactSet& contacts, Places places, std::span<con
         const std::uint32_t i = found.particle;
         const std::uint32_t number = obstacles_[found.obstacle].number;
         const double gap = dot(contact.normal, place - found.point);
-        if (!(gap < kReady * thickness_)) continue;
+        if (!(gap < threshold::kReady * thickness_)) continue;
         contact.key = {number, PairKind::VertexFace, {i, i, i, i}};
         contact.particles.fill(i);
         contact.weights = {1, 0, 0, 0};
@@ -136,7 +126,7 @@ bool ParticleContacts::put_outside(std::span<Vec3d> places, std::span<std::uint8
     if (empty()) return false;
     for (int round = 0;; ++round) {
         find(places, 0);
-        if (round == kMostRounds) {
+        if (round == threshold::kMostRoundsOutside) {
             for (const Found& found : found_) lost_count_ += found.inside ? 1 : 0;
             break;
         }
@@ -173,7 +163,8 @@ void ParticleContacts::keep_with_surface(const Inside& inside, Places places,
                                          std::span<Vec3d> velocities) const {
     const Collider& collider = after_[inside.obstacle];
     const Vec3d place = places[inside.particle];
-    const Contact found = contact(collider, Vec3f(place), static_cast<float>(kReach * thickness_));
+    const Contact found =
+        contact(collider, Vec3f(place), static_cast<float>(threshold::kParticleReach * thickness_));
     if (!found.found()) return;
     const Vec3d normal(found.normal);
     Vec3d& velocity = velocities[inside.particle];

@@ -1,21 +1,13 @@
 #include "simulation/contact/safe_displacements.hpp"
 
+#include "simulation/contact/thresholds.hpp"
+
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <utility>
 
 namespace echinus {
-
-namespace {
-
-/// Of the room of a pair that is pushed apart the share that it then closes, so that the next pairs need not
-/// push it again.
-constexpr float kPushedTo = 0.9F;
-/// Rounds through the pairs.
-constexpr int kMostRounds = 64;
-
-} // namespace
 
 SafeDisplacements::SafeDisplacements(std::span<ContactSide> sides, Places goals,
                                      std::span<const std::uint8_t> is_held, float share)
@@ -26,7 +18,7 @@ Places SafeDisplacements::find(const Workers& workers) {
     for (ContactSide& side : sides_) side.to_frame(goals_, side.goal);
     has_converged_ = false;
     touching_count_ = 0;
-    for (int round = 0; round < kMostRounds && !has_converged_; ++round) {
+    for (int round = 0; round < threshold::kMostPushingRounds && !has_converged_; ++round) {
         has_converged_ = true;
         for (ContactSide& side : sides_) {
             side.to_frame(ends_, side.base);
@@ -75,7 +67,7 @@ bool SafeDisplacements::push_apart(ContactSide& side, const Pair& pair, const Ve
         is_free[part] = is_free[part] && is_held_[i] == 0;
     }
     if (moving < 4) most[1] = side.obstacle_closing(pair, normal);
-    const float missing = most[0] + most[1] - room * kPushedTo + side.least_gap / 4;
+    const float missing = most[0] + most[1] - room * threshold::kPushedTo + side.least_gap / 4;
     const float push = is_free[0] && is_free[1] ? missing / 2 : missing;
     bool is_any_pushed = false;
     for (std::size_t k = 0; k < moving; ++k) {

@@ -1,6 +1,7 @@
 #include "simulation/contact/surface_contacts.hpp"
 
 #include "simulation/contact/safe_displacements.hpp"
+#include "simulation/contact/thresholds.hpp"
 #include "simulation/surfaces/edge_lengths.hpp"
 #include "simulation/surfaces/model_mesh.hpp"
 
@@ -12,29 +13,6 @@
 namespace echinus {
 
 namespace {
-
-/// In thicknesses: a pair this near is a contact, which begins to push as soon as a trial comes within one.
-constexpr float kReady = 2;
-/// Edges and faces of a model lie between vertices: they need less thickness than vertices keep.
-constexpr float kSurfaceShare = 0.75F;
-/// In mean edges: how far around its displacement a vertex looks for pairs.
-constexpr float kReach = 0.25F;
-/// In mean edges, and in least heights of faces: layers of one surface cannot keep farther apart than the
-/// faces around a vertex are small.
-constexpr float kMostSelfThickness = 0.25F, kMostOfHeight = 0.4F;
-/// The share of a pair's gap that carrying may close: what particles do by themselves comes after it.
-constexpr float kMostCarriedAway = 0.5F;
-/// In mean edges: so far a particle may end from its goal before it is tried to go on.
-constexpr float kMostMissed = 0.1F;
-/// Planes turn with what passes along them: so often they are found anew on the way to the goals.
-constexpr int kMostPasses = 4;
-/// Rounds in which ends that were not expected are looked at anew.
-constexpr int kMostRounds = 8;
-/// Times that displacements are halved whose pairs are not found in those rounds; then nothing moves that is
-/// not held.
-constexpr int kMostHalvings = 6;
-/// Of coordinates: no pair comes nearer, since its gap would be lost in rounding.
-constexpr float kLeastGap = 1.0F / (1 << 19);
 
 float least_height_of(const Element& element, std::span<const Vec3f> positions) {
     if (!element.is_face()) return std::numeric_limits<float>::infinity();
@@ -82,24 +60,26 @@ SurfaceContacts::SurfaceContacts(const Deformable& deformable, const std::vector
         side.number = c;
         side.thickness = static_cast<float>(*options.thickness);
         side.extent = largest_coordinate(side.obstacle_places, mesh.vertices.size());
-        side.pairs.set_reach(std::max(kReady * side.thickness, kReach * edge_length + side.thickness));
+        side.pairs.set_reach(
+            std::max(threshold::kReady * side.thickness, threshold::kReach * edge_length + side.thickness));
     }
-    most_.assign(own_->vertex_count(), kMostSelfThickness * edge_length);
+    most_.assign(own_->vertex_count(), threshold::kMostSelfThickness * edge_length);
     for (const Element& element : own_->all)
         for (const std::uint32_t v : element.vertices)
-            most_[v] = std::min(most_[v], kMostOfHeight * least_height_of(element, deformable.positions));
+            most_[v] =
+                std::min(most_[v], threshold::kMostOfHeight * least_height_of(element, deformable.positions));
     if (options.self_collision) {
         ContactSide& side = sides_.emplace_back(own_, places);
         side.number = static_cast<std::uint32_t>(collider_count_);
         side.thickness = static_cast<float>(options.self_thickness.value_or(*options.thickness));
-        side.thickness = std::min(side.thickness, kMostSelfThickness * edge_length);
-        side.pairs.set_reach(std::max(kReady * side.thickness, kReach * edge_length));
+        side.thickness = std::min(side.thickness, threshold::kMostSelfThickness * edge_length);
+        side.pairs.set_reach(std::max(threshold::kReady * side.thickness, threshold::kReach * edge_length));
     }
     for (ContactSide& side : sides_) {
         side.friction = static_cast<float>(options.friction);
-        side.ready = kReady * side.thickness;
+        side.ready = threshold::kReady * side.thickness;
     }
-    most_missed_ = kMostMissed * edge_length;
+    most_missed_ = threshold::kMostMissed * edge_length;
     frames_.resize(collider_count_ + 1);
     is_touching_.resize(own_->vertex_count());
     safe_places_.resize(own_->vertex_count());
@@ -174,7 +154,7 @@ void SurfaceContacts::set_safe(const PointArrays& places) {
     safe_ = places;
     for (std::size_t i = 0; i < safe_places_.size(); ++i) safe_places_[i] = Vec3d(places[i]);
     const float extent = largest_coordinate(places, own_->vertex_count());
-    for (ContactSide& side : sides_) side.least_gap = (extent + side.extent) * kLeastGap;
+    for (ContactSide& side : sides_) side.least_gap = (extent + side.extent) * threshold::kLeastGap;
 }
 
 void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const PointArrays& places,
@@ -203,8 +183,8 @@ void SurfaceContacts::begin_step(const std::vector<Collider>& colliders, const P
 /// @return whether all pairs of these displacements are listed
 bool SurfaceContacts::find_ends(std::span<Vec3d> places, bool carries, const Workers& workers) {
     const std::vector<Vec3d> goals(places.begin(), places.end());
-    SafeDisplacements displacements(sides_, goals, is_held_, carries ? kMostCarriedAway : 1);
-    for (int round = 0; round < kMostRounds; ++round) {
+    SafeDisplacements displacements(sides_, goals, is_held_, carries ? threshold::kMostClosedByCarrying : 1);
+    for (int round = 0; round < threshold::kMostListingRounds; ++round) {
         const Places ends = displacements.find(workers);
         touching_count_ = displacements.touching_count() + (displacements.has_converged() ? 0 : 1);
         if (!displacements.has_converged() && !carries) return false;
@@ -225,12 +205,12 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, bool carries, c
     bool is_covered = false;
     for (int halvings = 0; !is_covered; ++halvings) {
         // Half as far, if pairs go on being found; and at last those that are not held stay.
-        const double share = halvings < kMostHalvings ? std::ldexp(1.0, -halvings) : 0;
+        const double share = halvings < threshold::kMostHalvings ? std::ldexp(1.0, -halvings) : 0;
         // What is carried has to go all the way.
         for (std::size_t i = 0; i < count && halvings > 0 && !carries; ++i)
             if (is_held_[i] == 0) places[i] = safe_places_[i] + (goals[i] - safe_places_[i]) * share;
         is_covered = find_ends(places, carries, workers);
-        if (halvings == kMostHalvings) break;
+        if (halvings == threshold::kMostHalvings) break;
     }
     if (!is_covered) ++touching_count_;
     std::size_t stopped = 0;
@@ -251,7 +231,7 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, bool carries, c
 std::size_t SurfaceContacts::advance(std::span<Vec3d> places, const Workers& workers) {
     const std::vector<Vec3d> goals(places.begin(), places.end());
     std::size_t stopped = 0;
-    for (int pass = 0; pass < kMostPasses; ++pass) {
+    for (int pass = 0; pass < threshold::kMostPasses; ++pass) {
         std::copy(goals.begin(), goals.end(), places.begin());
         stopped = go_towards(places, false, workers);
         if (std::exchange(is_begun_, false)) unresolved_count_ += touching_count_;
@@ -276,7 +256,7 @@ void SurfaceContacts::find_contacts(Places goals, bool is_solved) {
 
 float SurfaceContacts::thickness_of(const ContactSide& side, const Pair& pair) const {
     if (!side.pairs.is_of_itself())
-        return pair.kind == PairKind::VertexFace ? side.thickness : kSurfaceShare * side.thickness;
+        return pair.kind == PairKind::VertexFace ? side.thickness : threshold::kSurfaceShare * side.thickness;
     float thickness = side.thickness;
     for (const std::uint32_t v : pair.points) thickness = std::min(thickness, most_[v]);
     return thickness;
@@ -308,7 +288,7 @@ void SurfaceContacts::add_contacts(const ContactSide& side, Places goals, bool i
         double approach = 0;
         for (std::size_t k = 0; k < moving; ++k)
             approach = std::max(approach, length(goals[pair.points[k]] - safe_places_[pair.points[k]]));
-        if (!(double{separations[p].gap} - 2 * approach < double{kReady} * thickness)) continue;
+        if (!(double{separations[p].gap} - 2 * approach < double{threshold::kReady} * thickness)) continue;
         std::array<Vec3d, 4> points;
         for (std::size_t k = 0; k < 4; ++k)
             points[k] = k < moving ? safe_places_[pair.points[k]]
@@ -335,7 +315,8 @@ void SurfaceContacts::add_contacts(const ContactSide& side, Places goals, bool i
             closing -= weight * dot(contact.normal, goals[i] - safe_places_[i]);
             if (is_held_[i] == 0) contact.mobility += weight * weight / masses_[i];
         }
-        if (!(distance - std::max(closing, 0.0) < double{kReady} * thickness) || !(contact.mobility > 0))
+        if (!(distance - std::max(closing, 0.0) < double{threshold::kReady} * thickness) ||
+            !(contact.mobility > 0))
             continue;
         contacts_.add(contact, slip_start(side, pair, shares),
                       is_solved ? std::optional(contacts_.push_of(contact, distance)) : std::nullopt);
