@@ -25,7 +25,7 @@ SimulationOptions jakobsen(SimulationOptions options = {}) {
 }
 
 /// Mass times way in a frame.
-Vec3d momentum_of(const Simulation& simulation) {
+Vec3d whole_momentum(const Simulation& simulation) {
     const Deformable& d = simulation.deformable();
     Vec3d sum;
     for (std::size_t i = 0; i < d.particle_count(); ++i)
@@ -57,10 +57,10 @@ TEST(Jakobsen, LetsAParticleFallAsVerletDoes) {
 
 TEST(Jakobsen, KeepsTheMomentumOfAFreeSheet) {
     Simulation simulation(lively_sheet(), {}, jakobsen({.gravity = {}, .drag = 0}));
-    const Vec3d before = momentum_of(simulation);
+    const Vec3d before = whole_momentum(simulation);
     ASSERT_GT(length(before), 0.01);
     for (int i = 0; i < 200; ++i) simulation.step();
-    EXPECT_NEAR(length(momentum_of(simulation) - before), 0, 1e-3 * length(before));
+    EXPECT_NEAR(length(whole_momentum(simulation) - before), 0, 1e-3 * length(before));
 }
 
 TEST(Jakobsen, RemovesTheShareOfAnErrorThatTheStiffnessOfItsKindSaysByTheMasses) {
