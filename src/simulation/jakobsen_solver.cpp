@@ -12,8 +12,8 @@ namespace {
 
 /// x' = x + (1 - drag) (x - x_previous) + a dt^2 (Jakobsen 2001, section 2), of one coordinate.
 /// @param mobility  1, or 0 of a particle that is pinned
-void integrate_axis(float* __restrict positions, float* __restrict previous,
-                          const float* __restrict mobility, std::size_t count, float keep, float fall) {
+void integrate_axis(float* __restrict positions, float* __restrict previous, const float* __restrict mobility,
+                    std::size_t count, float keep, float fall) {
     for (std::size_t i = 0; i < count; ++i) {
         const float position = positions[i];
         const float way = (position - previous[i]) * keep * mobility[i];
@@ -63,7 +63,7 @@ void JakobsenSolver::integrate() {
     const auto keep = static_cast<float>(1 - options.drag);
     const auto along = [&](std::vector<float> PointArrays::*axis, float fall_along) {
         integrate_axis((particles_.positions.*axis).data(), (particles_.previous.*axis).data(),
-                             particles_.mobility.data(), particles_.count(), keep, fall_along);
+                       particles_.mobility.data(), particles_.count(), keep, fall_along);
     };
     along(&PointArrays::x, fall.x);
     along(&PointArrays::y, fall.y);
