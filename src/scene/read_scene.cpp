@@ -488,7 +488,7 @@ void read_solver(JsonObject& root, Scene& scene) {
         options.substep_count = 10;
     }
     read_solver_options(root, options);
-    if (root.has("wind")) root.require("wind_rate");
+    if (options.wind != Vec3d{}) root.require("wind_rate");
 }
 
 void read_end(JsonObject& root, Scene& scene) {
