@@ -277,7 +277,8 @@ SceneVelocity read_velocity(JsonObject& object) {
     return velocity;
 }
 
-/// What moves with the first collider; or an array of objects, each with some of that and a collider.
+/// Particles that move with the first collider; or an array of objects, each with some particles and a
+/// collider.
 /// @param read_choice  (object, key) gives what is under a key
 /// @pre the colliders were read
 template <typename ReadChoice>

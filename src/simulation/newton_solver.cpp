@@ -111,8 +111,8 @@ std::uint32_t NewtonSolver::part_count() {
         longest = std::max(longest,
                            CarryField::longest_displacement(colliders[c], after) + deformations_[c].longest);
     }
-    const double overlap =
-        contacts_->overlap_ahead(colliders, motion_.places, guess(places_now(), options.time_step), workers_);
+    const PointArrays now = places_now();
+    const double overlap = contacts_->overlap_ahead(colliders, now, guess(now, options.time_step), workers_);
     const double parts = std::ceil(std::max(longest / (threshold::kMostCarried * thickness_),
                                             overlap / (threshold::kMostOverlap * mean_edge_)));
     return static_cast<std::uint32_t>(std::clamp(parts, 1.0, double{threshold::kMostPartsOfFrame}));

@@ -61,11 +61,6 @@ struct ContactSide {
     void measure_towards(Places goals, const Workers& workers);
     /// Measures the pairs at `safe` that displacements to `base` or `goal` may bring near.
     void measure(const Workers& workers);
-    /// Where the obstacle carries a particle from where its pairs are measured.
-    Vec3d carried(std::uint32_t particle, const Vec3d& from) const {
-        const Vec3d to = to_world(safe[particle]);
-        return Vec3f(to) == Vec3f(from) ? from : to;
-    }
 
     /// How far a pair that lies `gap` apart may close: a share of the gap remains, or of the thickness where
     /// that is less, so that rounding has no say.

@@ -168,7 +168,7 @@ float PairSet::closing_of(const Pair& pair, const Vec3f& normal, const Displacem
 }
 
 /// Takes what was found and measured as the list, the nearest first: then a call that needs only those ends
-/// early. What stays apart along its own normal, too, is left out. @param known_count  of the last ones,
+/// early. Pairs that stay apart along their own normal are left out. @param known_count  of the last ones,
 /// which were listed
 void PairSet::list_measured(const Displacements& displacements, std::size_t known_count) {
     std::array<std::size_t, kGapSteps + 1> first{};

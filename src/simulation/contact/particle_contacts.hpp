@@ -15,8 +15,8 @@ namespace echinus {
 
 /// Contact of a deformable's particles with colliders that have no faces for it: the paper's distance map, a
 /// user's own map, and exact maps where surfaces do not collide. A particle is a contact with the plane that
-/// the map answers with; nothing is proven. What ends inside all the same is put outside, as the paper has
-/// it, and keeps no velocity into the collider or out of it.
+/// the map answers with; nothing is proven. A particle that ends inside all the same is put outside, as the
+/// paper has it, and keeps no velocity into the collider or out of it.
 class ParticleContacts {
   public:
     /// @param collides  [collider] 1 for those that particles collide with

@@ -134,15 +134,12 @@ void SurfaceContacts::carry(const std::vector<Collider>& before, const std::vect
     for (std::size_t i = 0; i < places.size(); ++i) carried.set(i, Vec3f(places[i]));
 }
 
-double SurfaceContacts::overlap_ahead(const std::vector<Collider>& colliders, Places from, Places guess,
-                                      const Workers& workers) {
-    PointArrays places;
-    places.resize(from.size());
-    for (std::size_t i = 0; i < from.size(); ++i) places.set(i, Vec3f(from[i]));
+double SurfaceContacts::overlap_ahead(const std::vector<Collider>& colliders, const PointArrays& from,
+                                      Places guess, const Workers& workers) {
     double most = 0;
     for (ContactSide& side : sides_) {
         if (!side.pairs.is_of_itself()) side.set_pose(colliders[side.number].pose);
-        side.set_safe(places);
+        side.set_safe(from);
         side.list(guess, workers);
         side.measure_towards(guess, workers);
         most = std::max(most, side.overlap_ahead());
@@ -206,7 +203,7 @@ std::size_t SurfaceContacts::go_towards(std::span<Vec3d> places, bool carries, c
     for (int halvings = 0; !is_covered; ++halvings) {
         // Half as far, if pairs go on being found; and at last those that are not held stay.
         const double share = halvings < threshold::kMostHalvings ? std::ldexp(1.0, -halvings) : 0;
-        // What is carried has to go all the way.
+        // Carried particles have to go all the way.
         for (std::size_t i = 0; i < count && halvings > 0 && !carries; ++i)
             if (is_held_[i] == 0) places[i] = safe_places_[i] + (goals[i] - safe_places_[i]) * share;
         is_covered = find_ends(places, carries, workers);

@@ -45,7 +45,7 @@ class SurfaceContacts {
 
     /// By how much displacements to these places would close pairs beyond their gaps, at most; length.
     /// Colliders stand where they are.
-    double overlap_ahead(const std::vector<Collider>& colliders, Places from, Places guess,
+    double overlap_ahead(const std::vector<Collider>& colliders, const PointArrays& from, Places guess,
                          const Workers& workers);
 
     /// Begins a step: colliders stand where it ends.
